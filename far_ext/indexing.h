@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_INDEXING_H
+#define OPENSUBDIVHEX_FAR_EXT_INDEXING_H
+
+#include "status.h"
+
+#include <cstdint>
+
+namespace OpenSubdivHex::FarExt {
+
+/// \brief Where the components of one side of an edge stand in the edge's E-face.
+///
+/// A *side* is a face's view of its edge: the face runs from the side's start vertex to its end
+/// vertex.  An interior edge v0-v1 has side a (its first face, v0 to v1) and side b (v1 to v0); its
+/// E-face is v0', P_b(v0), P_b(v1), v1', P_a(v1), P_a(v0).  A boundary edge has side a alone; its
+/// E-face is v0', v1', P_a(v1), P_a(v0).  Edge i of the E-face joins its vertices i and i + 1.
+struct EFaceSide {
+    Far::LocalIndex startVertex;  ///< V-vertex of the start vertex
+    Far::LocalIndex endVertex;    ///< V-vertex of the end vertex
+    Far::LocalIndex startFVertex; ///< the face's F-vertex beside the start vertex
+    Far::LocalIndex endFVertex;   ///< the face's F-vertex beside the end vertex
+    Far::LocalIndex fFaceEdge;    ///< edge shared with the F-face, run from end to start
+    Far::LocalIndex startSpoke;   ///< edge from startFVertex to startVertex
+    Far::LocalIndex endSpoke;     ///< edge from endVertex to endFVertex
+};
+
+inline constexpr EFaceSide kEFaceSideA = {0, 3, 5, 4, 4, 5, 3};
+inline constexpr EFaceSide kEFaceSideB = {3, 0, 2, 1, 1, 2, 0};
+inline constexpr EFaceSide kBoundaryEFaceSide = {0, 1, 3, 2, 2, 3, 1};
+/// Place in a boundary edge's E-face of the edge that stays on the boundary.
+inline constexpr Far::LocalIndex kBoundaryEFaceEdge = 0;
+
+/// \brief The closed-form numbering of a child level in terms of its parent: see INDEXING.md.
+///
+/// A *corner* is a position in the parent's face-vertex array.  Nothing is stored but the parent's
+/// counts; every function is arithmetic on them.  This numbering is public and stable.
+class HexIndexing {
+public:
+    using Index = Far::Index;
+
+    HexIndexing(Index numVertices, Index numEdges, Index numFaces, Index numCorners)
+        : _numVertices(numVertices), _numEdges(numEdges), _numFaces(numFaces),
+          _numCorners(numCorners) {}
+
+    // V' = V + C, F' = F + E, C' = C + 6 Ei + 4 Eb, E' = 2C + Eb with Ei interior and Eb boundary
+    // edges; on a closed mesh C = 2E, so that E' = 4E, V' = V + 2E, C' = C + 6E.
+    static std::int64_t GetNumChildVertices(std::int64_t v, std::int64_t c) { return v + c; }
+    static std::int64_t GetNumChildFaces(std::int64_t f, std::int64_t e) { return f + e; }
+    static std::int64_t GetNumChildEdges(std::int64_t c, std::int64_t eb) { return 2 * c + eb; }
+    static std::int64_t GetNumChildCorners(std::int64_t c, std::int64_t e, std::int64_t eb) {
+        return c + kNumEFaceCorners * e - (kNumEFaceCorners - kNumBoundaryEFaceCorners) * eb;
+    }
+
+    /// Corners of the E-face of an interior and of a boundary edge.
+    static constexpr int kNumEFaceCorners = 6;
+    static constexpr int kNumBoundaryEFaceCorners = 4;
+
+    /// V-vertex: the child of parent vertex \p v.
+    Index GetVertexChildVertex(Index v) const { return v; }
+    /// F-vertex: the child of parent corner \p c.
+    Index GetCornerChildVertex(Index c) const { return _numVertices + c; }
+
+    /// F-face: the child of parent face \p f.
+    Index GetFaceChildFace(Index f) const { return f; }
+    /// E-face: the child of parent edge \p e.
+    Index GetEdgeChildFace(Index e) const { return _numFaces + e; }
+
+    /// First corner of the F-face of parent face \p f, whose first corner is \p pFirstCorner.
+    Index GetFaceChildFirstCorner(Index pFirstCorner) const { return pFirstCorner; }
+    /// First corner of the E-face of parent edge \p e, \p numBoundaryBefore of the edges before
+    /// which are boundaries.
+    Index GetEdgeChildFirstCorner(Index e, Index numBoundaryBefore) const {
+        return _numCorners + kNumEFaceCorners * e -
+               (kNumEFaceCorners - kNumBoundaryEFaceCorners) * numBoundaryBefore;
+    }
+
+    /// Edge of the F-face from the F-vertex of parent corner \p c to that of the next corner.
+    Index GetCornerChildEdge(Index c) const { return c; }
+    /// Spoke: the edge from the V-vertex to the F-vertex of parent corner \p c.
+    Index GetCornerChildSpoke(Index c) const { return _numCorners + c; }
+    /// Boundary edge between the V-vertices of the \p rank'th boundary edge of the parent.
+    Index GetBoundaryChildEdge(Index rank) const { return 2 * _numCorners + rank; }
+
+    /// Inverse queries: what a child component came from.
+    bool IsVertexFromCorner(Index cVert) const { return cVert >= _numVertices; }
+    Index GetChildVertexCorner(Index cVert) const { return cVert - _numVertices; }
+    bool IsFaceFromEdge(Index cFace) const { return cFace >= _numFaces; }
+    Index GetChildFaceEdge(Index cFace) const { return cFace - _numFaces; }
+
+private:
+    Index _numVertices;
+    Index _numEdges;
+    Index _numFaces;
+    Index _numCorners;
+};
+
+} // namespace OpenSubdivHex::FarExt
+
+#endif

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mask.h"
+
+#include <cmath>
+
+namespace OpenSubdivHex::FarExt {
+
+namespace {
+
+// Cosine in extended precision, so that those of 60 and 90 degrees come out exact in double.
+long double cosOfTurn(int j, int n) {
+    return std::cos(2.0L * 3.141592653589793238462643383279502884L * j / n);
+}
+
+long double averageWeight(int j, int n) {
+    bool const isNeighbor = (j == 1 || j == n - 1);
+    if (j == 0) {
+        return (2.0L * n + 1) / (4.0L * n);
+    }
+    return isNeighbor ? (n + 2.0L) / (8.0L * n) : 1 / (4.0L * n);
+}
+
+long double cosineWeight(int j, int n) {
+    return ((j == 0 ? n : 0) + 3 + 2 * cosOfTurn(j, n)) / (4.0L * n);
+}
+
+long double smoothWeight(int j, int n) {
+    long double const sum = 7 + 6 * cosOfTurn(j, n) + 2 * cosOfTurn(2 * j, n);
+    return ((j == 0 ? n : 0) + sum) / (8.0L * n);
+}
+
+long double varyingWeight(int j, int n) { return ((j == 0 ? n : 0) + 1) / (2.0L * n); }
+
+long double faceWeight(FaceMask mask, Interpolation interpolation, int j, int n) {
+    if (interpolation == Interpolation::Varying) {
+        return varyingWeight(j, n);
+    }
+    switch (mask) {
+    case FaceMask::Average:
+        return averageWeight(j, n);
+    case FaceMask::Cosine:
+        return cosineWeight(j, n);
+    case FaceMask::Smooth:
+        return n < 5 ? cosineWeight(j, n) : smoothWeight(j, n);
+    }
+    return 0;
+}
+
+} // namespace
+
+template <typename REAL>
+void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, REAL *weights) {
+    for (int j = 0; j <= n / 2; ++j) {
+        weights[j] = REAL(faceWeight(mask, interpolation, j, n));
+    }
+    for (int j = n / 2 + 1; j < n; ++j) {
+        weights[j] = weights[n - j];
+    }
+}
+
+template <typename REAL>
+VertexVertexMask<REAL> ComputeVertexVertexMask(Interpolation interpolation, int numFaces) {
+    if (interpolation == Interpolation::Varying) {
+        return {REAL(1), REAL(0)};
+    }
+    REAL const weight = REAL(1) / REAL(numFaces + 1);
+    return {weight, weight};
+}
+
+template void ComputeFaceVertexMask(FaceMask, Interpolation, int, float *);
+template void ComputeFaceVertexMask(FaceMask, Interpolation, int, double *);
+template VertexVertexMask<float> ComputeVertexVertexMask(Interpolation, int);
+template VertexVertexMask<double> ComputeVertexVertexMask(Interpolation, int);
+
+} // namespace OpenSubdivHex::FarExt

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_MASK_H
+#define OPENSUBDIVHEX_FAR_EXT_MASK_H
+
+#include <vector>
+
+namespace OpenSubdivHex::FarExt {
+
+/// \brief The circulant mask that makes a face's new points (F-vertices) from its vertices.
+///
+/// With theta_j = 2 pi j / n, the weight of the vertex j steps around a face of n sides is
+///
+/// | mask    | w_0                      | w_j                                                   |
+/// |---------|--------------------------|-------------------------------------------------------|
+/// | Average | 1/2 + 1/(4n)             | 1/(4n), plus 1/8 for the two neighbours               |
+/// | Cosine  | (n + 5)/(4n)             | (3 + 2 cos theta_j)/(4n)                              |
+/// | Smooth  | 1/8 + 15/(8n), if n >= 5 | (7/8 + 3/4 cos theta_j + 1/4 cos 2 theta_j)/n, n >= 5 |
+///
+/// Average is (vertex + its two edge midpoints + centroid)/4, the paper's stage 1 (Ghaleb and
+/// Abd El-Latif 2005, section 3).  Cosine is Doo and Sabin's of 1978.  Smooth has eigenvalues
+/// 1, 1/2, 1/2, 1/4, 1/4, 1/8 ...; for n < 5 it is Cosine.
+enum class FaceMask { Average, Cosine, Smooth };
+
+/// \brief What is interpolated: as Far's vertex, varying and face-varying primvars.
+enum class Interpolation {
+    Vertex, ///< the scheme's own masks
+    Varying ///< linear: V' = V and P = (V + centroid)/2
+};
+
+/// \brief Writes the \p n weights of the vertices 0 ... n-1 steps around a face of \p n sides.
+///
+/// The weights are non-negative, symmetric (w[j] == w[n-j]) and sum to 1.  \p n is at least 3.
+template <typename REAL>
+void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, REAL *weights);
+
+/// \brief The mask of an old vertex: V' = vertexWeight V + sum over its faces of faceWeight P_i.
+template <typename REAL>
+struct VertexVertexMask {
+    REAL vertexWeight;
+    REAL faceWeight;
+};
+
+/// \brief Returns the mask of a vertex with \p numFaces incident faces: both weights are
+/// 1/(numFaces + 1) for vertex data (the paper's stage 2); 1 and 0 for varying data.
+template <typename REAL>
+VertexVertexMask<REAL> ComputeVertexVertexMask(Interpolation interpolation, int numFaces);
+
+} // namespace OpenSubdivHex::FarExt
+
+#endif

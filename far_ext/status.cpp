@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "status.h"
+
+namespace OpenSubdivHex::FarExt {
+
+namespace {
+bool callbackInstalled = false;
+}
+
+void SetErrorCallback(Far::ErrorCallbackFunc callback) {
+    Far::SetErrorCallback(callback);
+    callbackInstalled = (callback != nullptr);
+}
+
+namespace internal {
+
+bool Report(Status const &result, Status *status) {
+    if (status) {
+        *status = result;
+    }
+    if (!result.IsOk() && callbackInstalled) {
+        Far::Error(Far::FAR_RUNTIME_ERROR, "%s", result.GetMessage().c_str());
+    }
+    return result.IsOk();
+}
+
+} // namespace internal
+} // namespace OpenSubdivHex::FarExt

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_STATUS_H
+#define OPENSUBDIVHEX_FAR_EXT_STATUS_H
+
+#include <opensubdiv/far/error.h>
+#include <opensubdiv/far/types.h>
+
+#include <string>
+
+namespace OpenSubdivHex {
+
+namespace Far = OpenSubdiv::Far;
+
+namespace FarExt {
+
+/// \brief What kind of failure a Status reports.
+enum class StatusCode {
+    Ok,
+    InvalidArgument, ///< an option or argument is outside its documented range
+    InvalidTopology, ///< the mesh itself is broken; Status names the component
+    Unsupported,     ///< valid for OpenSubdiv, but not handled by this scheme
+    TooLarge         ///< a size would exceed the 32-bit indices of Far
+};
+
+/// \brief The kind of mesh component that a Status points at.
+enum class ComponentType { None, Face, Edge, Vertex, Level };
+
+/// \brief The outcome of an operation: a code, the component that caused it and one sentence.
+///
+/// Every function that can fail takes an optional `Status *` and assigns it on success as well as
+/// on failure.  Nothing in this library prints.
+class Status {
+public:
+    /// Ok, no component, empty message.
+    Status() = default;
+
+    Status(StatusCode code, ComponentType component, Far::Index index, std::string message)
+        : _code(code), _component(component), _index(index), _message(std::move(message)) {}
+
+    bool IsOk() const { return _code == StatusCode::Ok; }
+
+    StatusCode GetCode() const { return _code; }
+
+    /// Kind of the offending component, None when no single component is to blame.
+    ComponentType GetComponentType() const { return _component; }
+
+    /// Index of the offending component in the input (INDEX_INVALID when there is none).
+    Far::Index GetComponentIndex() const { return _index; }
+
+    /// One sentence that names the component and the cause; empty when Ok.
+    std::string const &GetMessage() const { return _message; }
+
+private:
+    StatusCode _code = StatusCode::Ok;
+    ComponentType _component = ComponentType::None;
+    Far::Index _index = Far::INDEX_INVALID;
+    std::string _message;
+};
+
+/// \brief Installs \p callback as Far's error callback and has this library report through it too.
+///
+/// Far prints an error when it has no callback and offers no way to ask whether it has one, so
+/// errors of this library are passed to Far::Error only once a callback was installed here.
+/// A null pointer restores Far's default and silences this library.  Not thread-safe, as
+/// Far::SetErrorCallback is not.
+void SetErrorCallback(Far::ErrorCallbackFunc callback);
+
+namespace internal {
+
+/// Assigns \p result to \p status (when given) and sends a failure to the installed callback.
+/// Returns result.IsOk().
+bool Report(Status const &result, Status *status);
+
+} // namespace internal
+} // namespace FarExt
+} // namespace OpenSubdivHex
+
+#endif

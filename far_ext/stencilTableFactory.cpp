@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stencilTableFactory.h"
+
+#include "refinementMask.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace OpenSubdivHex::FarExt {
+
+using Far::ConstIndexArray;
+using Far::Index;
+using internal::RefinementMask;
+
+namespace {
+
+// The stencils of one level within a table: entries [offsets[v], offsets[v] + sizes[v]) of indices
+// and weights belong to vertex v.
+template <typename REAL>
+struct LevelRows {
+    int *sizes;
+    Index *offsets;
+    Index *indices;
+    REAL *weights;
+};
+
+// The arrays of Far's tables are protected; a derived class may fill them.
+template <typename REAL>
+class WritableTable : public StencilTableTypes<REAL>::Table {
+public:
+    WritableTable(int numControlVertices, std::size_t numStencils, std::size_t numWeights) {
+        this->_numControlVertices = numControlVertices;
+        this->_sizes.resize(numStencils);
+        this->_offsets.resize(numStencils);
+        this->_indices.resize(numWeights);
+        this->_weights.resize(numWeights);
+    }
+
+    // The stencils from number first on.
+    LevelRows<REAL> GetRows(Index first) {
+        return {this->_sizes.data() + first, this->_offsets.data() + first, this->_indices.data(),
+                this->_weights.data()};
+    }
+};
+
+// Forms unions of lists of source vertices: a mark per source tells what was seen already.
+class UnionBuilder {
+public:
+    explicit UnionBuilder(Index numSources) : _seenIn(numSources, -1) {}
+
+    void Begin() {
+        ++_current;
+        _members.clear();
+    }
+    void Add(ConstIndexArray list) {
+        for (Index source : list) {
+            if (_seenIn[source] != _current) {
+                _seenIn[source] = _current;
+                _members.push_back(source);
+            }
+        }
+    }
+    std::vector<Index> const &GetSorted() {
+        std::sort(_members.begin(), _members.end());
+        return _members;
+    }
+
+private:
+    std::vector<Index> _seenIn;
+    Index _current = -1;
+    std::vector<Index> _members;
+};
+
+// Which source vertices each stencil of a level depends on, in ascending lists.  All F-vertices
+// of a parent face share one list; every V-vertex has its own.
+class LevelSupports {
+public:
+    // A level that is its own source: vertex v depends on v alone.
+    explicit LevelSupports(Index numVertices) : _numSources(numVertices) {
+        _indices.resize(numVertices);
+        std::iota(_indices.begin(), _indices.end(), 0);
+    }
+
+    // The level that refinement makes of pLevel, the supports of whose vertices are pSupports.
+    LevelSupports(TopologyLevel const &pLevel, LevelSupports const &pSupports,
+                  Interpolation interpolation)
+        : _isIdentity(false), _numSources(pSupports._numSources),
+          _numParentFaces(pLevel.GetNumFaces()) {
+        UnionBuilder sources(_numSources);
+        for (Index pFace = 0; pFace < pLevel.GetNumFaces(); ++pFace) {
+            sources.Begin();
+            for (Index pVert : pLevel.GetFaceVertices(pFace)) {
+                sources.Add(pSupports.OfVertex(pLevel, pVert));
+            }
+            append(sources.GetSorted());
+            _numWeights += std::int64_t(pLevel.GetFaceVertices(pFace).size()) *
+                           OfParentFace(pFace).size();
+        }
+        for (Index pVert = 0; pVert < pLevel.GetNumVertices(); ++pVert) {
+            sources.Begin();
+            sources.Add(pSupports.OfVertex(pLevel, pVert));
+            if (interpolation == Interpolation::Vertex) {
+                for (Index pFace : pLevel.GetVertexFaces(pVert)) {
+                    sources.Add(OfParentFace(pFace));
+                }
+            }
+            append(sources.GetSorted());
+            _numWeights += OfParentVertex(pVert).size();
+        }
+    }
+
+    // The support of all F-vertices of a face of the parent level, and of the V-vertex of a vertex.
+    ConstIndexArray OfParentFace(Index pFace) const { return list(pFace); }
+    ConstIndexArray OfParentVertex(Index pVert) const { return list(_numParentFaces + pVert); }
+
+    // The support of a vertex of the level itself, which is given.
+    ConstIndexArray OfVertex(TopologyLevel const &level, Index vert) const {
+        if (_isIdentity) {
+            return ConstIndexArray(&_indices[vert], 1);
+        }
+        Index const numVVertices = Index(_firsts.size() - 1) - _numParentFaces;
+        // The first face of an F-vertex is the F-face, which has the index of the parent face.
+        return vert < numVVertices ? OfParentVertex(vert)
+                                   : OfParentFace(level.GetVertexFaces(vert)[0]);
+    }
+
+    Index GetNumSources() const { return _numSources; }
+    // Sum of the sizes of the supports of all vertices of the level.
+    std::int64_t GetNumWeights() const { return _numWeights; }
+
+private:
+    ConstIndexArray list(std::size_t i) const {
+        return ConstIndexArray(_indices.data() + _firsts[i], int(_firsts[i + 1] - _firsts[i]));
+    }
+    void append(std::vector<Index> const &sources) {
+        _indices.insert(_indices.end(), sources.begin(), sources.end());
+        _firsts.push_back(_indices.size());
+    }
+
+    bool _isIdentity = true;
+    Index _numSources;
+    Index _numParentFaces = 0;
+    std::int64_t _numWeights = 0;
+    std::vector<std::size_t> _firsts = {0}; // of the lists: parent faces, then parent vertices
+    std::vector<Index> _indices;
+};
+
+template <typename REAL>
+void fillControlRows(LevelRows<REAL> const &rows, Index numControlVertices) {
+    for (Index vert = 0; vert < numControlVertices; ++vert) {
+        rows.sizes[vert] = 1;
+        rows.offsets[vert] = vert;
+        rows.indices[vert] = vert;
+        rows.weights[vert] = REAL(1);
+    }
+}
+
+// Writes the stencils of the level that refinement makes of pLevel, given those of pLevel (none:
+// its vertices are the sources themselves).  The first offset is firstOffset.
+template <typename REAL>
+class LevelBuilder {
+public:
+    LevelBuilder(TopologyLevel const &pLevel, LevelSupports const &supports,
+                 RefinementMask<REAL> const &mask, LevelRows<REAL> const *pRows,
+                 LevelRows<REAL> const &rows)
+        : _pLevel(pLevel), _indexing(pLevel.GetChildIndexing()), _supports(supports), _mask(mask),
+          _pRows(pRows), _rows(rows), _position(supports.GetNumSources()) {}
+
+    void Fill(Index firstOffset) {
+        fillSizesAndOffsets(firstOffset);
+        for (Index pFace = 0; pFace < _pLevel.GetNumFaces(); ++pFace) {
+            fillFace(pFace);
+        }
+        for (Index pVert = 0; pVert < _pLevel.GetNumVertices(); ++pVert) {
+            fillVertex(pVert);
+        }
+    }
+
+private:
+    void fillSizesAndOffsets(Index firstOffset);
+    void fillFace(Index pFace);
+    void fillVertex(Index pVert);
+
+    // Where each source of the support stands in it.
+    void locate(ConstIndexArray support) {
+        for (int k = 0; k < support.size(); ++k) {
+            _position[support[k]] = k;
+        }
+    }
+
+    // Adds weight times the stencil of a row to a dense row over the located support.
+    void addRow(LevelRows<REAL> const &rows, Index row, REAL weight, REAL *dense) const {
+        Index const *indices = rows.indices + rows.offsets[row];
+        REAL const *weights = rows.weights + rows.offsets[row];
+        for (int k = 0; k < rows.sizes[row]; ++k) {
+            dense[_position[indices[k]]] += weight * weights[k];
+        }
+    }
+    void addParent(Index pVert, REAL weight, REAL *dense) const {
+        if (_pRows) {
+            addRow(*_pRows, pVert, weight, dense);
+        } else {
+            dense[_position[pVert]] += weight;
+        }
+    }
+
+    TopologyLevel const &_pLevel;
+    HexIndexing const _indexing;
+    LevelSupports const &_supports;
+    RefinementMask<REAL> const &_mask;
+    LevelRows<REAL> const *_pRows;
+    LevelRows<REAL> const _rows;
+
+    std::vector<int> _position;     // by source
+    std::vector<REAL> _parentBlock; // dense stencils of a face's vertices over the face's support
+};
+
+template <typename REAL>
+void LevelBuilder<REAL>::fillSizesAndOffsets(Index firstOffset) {
+    for (Index pVert = 0; pVert < _pLevel.GetNumVertices(); ++pVert) {
+        _rows.sizes[_indexing.GetVertexChildVertex(pVert)] =
+            _supports.OfParentVertex(pVert).size();
+    }
+    for (Index pFace = 0; pFace < _pLevel.GetNumFaces(); ++pFace) {
+        Index const first = _indexing.GetCornerChildVertex(_pLevel.GetFaceFirstCorner(pFace));
+        std::fill_n(_rows.sizes + first, _pLevel.GetFaceVertices(pFace).size(),
+                    _supports.OfParentFace(pFace).size());
+    }
+    Index offset = firstOffset;
+    Index const numVertices = _indexing.GetCornerChildVertex(_pLevel.GetNumFaceVertices());
+    for (Index cVert = 0; cVert < numVertices; ++cVert) {
+        _rows.offsets[cVert] = offset;
+        offset += _rows.sizes[cVert];
+    }
+}
+
+// The stencils of a face's F-vertices are the face mask times the stencils of its vertices.
+template <typename REAL>
+void LevelBuilder<REAL>::fillFace(Index pFace) {
+    ConstIndexArray const pVerts = _pLevel.GetFaceVertices(pFace);
+    ConstIndexArray const support = _supports.OfParentFace(pFace);
+    std::size_t const width = support.size();
+    locate(support);
+    _parentBlock.assign(pVerts.size() * width, REAL(0));
+    for (int j = 0; j < pVerts.size(); ++j) {
+        addParent(pVerts[j], REAL(1), _parentBlock.data() + j * width);
+    }
+    for (int i = 0; i < pVerts.size(); ++i) {
+        Index const corner = _pLevel.GetFaceFirstCorner(pFace) + i;
+        Index const offset = _rows.offsets[_indexing.GetCornerChildVertex(corner)];
+        REAL const *mask = _mask.GetFaceVertexWeights(pVerts.size(), i);
+        REAL *weights = _rows.weights + offset;
+        std::copy(support.begin(), support.end(), _rows.indices + offset);
+        std::fill_n(weights, width, REAL(0));
+        for (int j = 0; j < pVerts.size(); ++j) {
+            REAL const *parent = _parentBlock.data() + j * width;
+            for (std::size_t k = 0; k < width; ++k) {
+                weights[k] += mask[j] * parent[k];
+            }
+        }
+    }
+}
+
+template <typename REAL>
+void LevelBuilder<REAL>::fillVertex(Index pVert) {
+    ConstIndexArray const support = _supports.OfParentVertex(pVert);
+    Index const offset = _rows.offsets[_indexing.GetVertexChildVertex(pVert)];
+    REAL *weights = _rows.weights + offset;
+    locate(support);
+    std::copy(support.begin(), support.end(), _rows.indices + offset);
+    std::fill_n(weights, support.size(), REAL(0));
+
+    int const numFaces = _pLevel.GetVertexFaces(pVert).size();
+    VertexVertexMask<REAL> const mask = _mask.GetVertexMask(numFaces);
+    addParent(pVert, mask.vertexWeight, weights);
+    if (mask.faceWeight > 0) {
+        for (int i = 0; i < numFaces; ++i) {
+            Index const corner = _pLevel.GetVertexCorner(pVert, i);
+            addRow(_rows, _indexing.GetCornerChildVertex(corner), mask.faceWeight, weights);
+        }
+    }
+}
+
+constexpr std::int64_t kMaxCount = std::numeric_limits<Index>::max();
+
+Status checkCount(int level, std::int64_t count, char const *name) {
+    if (count <= kMaxCount) {
+        return Status();
+    }
+    return Status(StatusCode::TooLarge, ComponentType::Level, level,
+                  "the stencil table would have " + std::to_string(count) + " " + name +
+                      " up to level " + std::to_string(level) + ", more than the " +
+                      std::to_string(kMaxCount) + " that Far's 32-bit offsets reach");
+}
+
+// Which levels the options ask for.
+struct Plan {
+    template <typename OPTIONS>
+    Plan(TopologyRefiner const &refiner, OPTIONS const &options)
+        : interpolation(options.interpolationMode == INTERPOLATE_VARYING ? Interpolation::Varying
+                                                                       : Interpolation::Vertex),
+          factorize(options.factorizeIntermediateLevels),
+          lastLevel(std::min(options.maxLevel, refiner.GetMaxLevel())),
+          firstStored(options.generateIntermediateLevels ? 1 : std::max(1, lastLevel)),
+          firstBuilt(factorize ? 1 : firstStored),
+          numControlStencils(
+              options.generateControlVerts ? refiner.GetLevel(0).GetNumVertices() : 0) {}
+
+    Interpolation interpolation;
+    bool factorize;
+    int lastLevel;
+    int firstStored; // in the table, behind the control vertices
+    int firstBuilt;  // as a source of later levels, or to be stored
+    Index numControlStencils;
+};
+
+// The supports of the levels plan.firstBuilt ... plan.lastLevel, and the size of the table.
+struct SymbolicTable {
+    std::vector<LevelSupports> supports;
+    std::int64_t numStencils;
+    std::int64_t numWeights;
+};
+
+Status buildSupports(TopologyRefiner const &refiner, Plan const &plan, SymbolicTable &result) {
+    result.numStencils = plan.numControlStencils;
+    result.numWeights = plan.numControlStencils;
+    for (int level = plan.firstBuilt; level <= plan.lastLevel; ++level) {
+        TopologyLevel const &pLevel = refiner.GetLevel(level - 1);
+        if (plan.factorize && level > plan.firstBuilt) {
+            result.supports.emplace_back(pLevel, result.supports.back(), plan.interpolation);
+        } else {
+            result.supports.emplace_back(pLevel, LevelSupports(pLevel.GetNumVertices()),
+                                         plan.interpolation);
+        }
+        std::int64_t const numLevelWeights = result.supports.back().GetNumWeights();
+        if (level >= plan.firstStored) {
+            result.numStencils += refiner.GetLevel(level).GetNumVertices();
+            result.numWeights += numLevelWeights;
+        }
+        Status status = checkCount(level, result.numStencils, "stencils");
+        if (status.IsOk()) {
+            status = checkCount(level, std::max(result.numWeights, numLevelWeights), "weights");
+        }
+        if (!status.IsOk()) {
+            return status;
+        }
+    }
+    return Status();
+}
+
+template <typename REAL>
+std::unique_ptr<WritableTable<REAL>> buildTable(TopologyRefiner const &refiner, Plan const &plan,
+                                                SymbolicTable const &symbolic) {
+    Index const numControlVertices = refiner.GetLevel(0).GetNumVertices();
+    auto table = std::make_unique<WritableTable<REAL>>(numControlVertices, symbolic.numStencils,
+                                                       symbolic.numWeights);
+    fillControlRows(table->GetRows(0), plan.numControlStencils);
+    Index nextStencil = plan.numControlStencils;
+    Index nextOffset = plan.numControlStencils;
+
+    RefinementMask<REAL> const mask(refiner, plan.interpolation);
+    std::unique_ptr<WritableTable<REAL>> previous, current; // of levels that are not stored
+    LevelRows<REAL> pRows{};
+    for (int level = plan.firstBuilt; level <= plan.lastLevel; ++level) {
+        TopologyLevel const &pLevel = refiner.GetLevel(level - 1);
+        LevelSupports const &supports = symbolic.supports[level - plan.firstBuilt];
+        Index const numStencils = refiner.GetLevel(level).GetNumVertices();
+        Index const numWeights = Index(supports.GetNumWeights());
+        bool const isStored = level >= plan.firstStored;
+        bool const hasParentRows = plan.factorize && level > plan.firstBuilt;
+
+        previous = std::move(current);
+        if (!isStored) {
+            current = std::make_unique<WritableTable<REAL>>(numControlVertices, numStencils,
+                                                            numWeights);
+        }
+        LevelRows<REAL> const rows = isStored ? table->GetRows(nextStencil) : current->GetRows(0);
+        LevelBuilder<REAL>(pLevel, supports, mask, hasParentRows ? &pRows : nullptr, rows)
+            .Fill(isStored ? nextOffset : 0);
+        pRows = rows;
+        if (isStored) {
+            nextStencil += numStencils;
+            nextOffset += numWeights;
+        }
+    }
+    return table;
+}
+
+} // namespace
+
+template <typename REAL>
+auto StencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Options options,
+                                           Status *status) -> std::unique_ptr<Table const> {
+    if (options.maxLevel < 0) {
+        internal::Report(Status(StatusCode::InvalidArgument, ComponentType::Level,
+                                options.maxLevel,
+                                "maxLevel " + std::to_string(options.maxLevel) + " is negative"),
+                         status);
+        return nullptr;
+    }
+    Plan const plan(refiner, options);
+    SymbolicTable symbolic;
+    if (!internal::Report(buildSupports(refiner, plan, symbolic), status)) {
+        return nullptr;
+    }
+    return buildTable<REAL>(refiner, plan, symbolic);
+}
+
+template class StencilTableFactoryReal<float>;
+template class StencilTableFactoryReal<double>;
+
+} // namespace OpenSubdivHex::FarExt
