@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+
+# opensubdivhex_add_library(NAME SOURCES...): a library of this project, OpenSubdivHex::NAME to all
+# who link it, installed with every header among its sources.  Users include <NAME/header.h>.
+function(opensubdivhex_add_library name)
+  add_library(${name} ${ARGN})
+  add_library(OpenSubdivHex::${name} ALIAS ${name})
+  set_target_properties(${name} PROPERTIES
+    OUTPUT_NAME opensubdivhex_${name}
+    VERSION ${PROJECT_VERSION}
+    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    POSITION_INDEPENDENT_CODE ON
+    WINDOWS_EXPORT_ALL_SYMBOLS ON)
+  target_compile_features(${name} PUBLIC cxx_std_17)
+
+  set(headers ${ARGN})
+  list(FILTER headers INCLUDE REGEX "\\.h$")
+  target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
+
+  # The file set puts the project's root on the include path; installed, it is DESTINATION.
+  if(OPENSUBDIVHEX_INSTALL)
+    install(TARGETS ${name} EXPORT OpenSubdivHexTargets
+      FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex)
+  endif()
+endfunction()
+
+# Gives OpenMP to a library that uses it, unless it is switched off or not there.
+function(opensubdivhex_link_openmp name)
+  if(TARGET OpenMP::OpenMP_CXX)
+    target_link_libraries(${name} PRIVATE OpenMP::OpenMP_CXX)
+    get_target_property(type ${name} TYPE)
+    if(type STREQUAL "STATIC_LIBRARY")
+      set_property(GLOBAL PROPERTY OPENSUBDIVHEX_NEEDS_OPENMP TRUE)
+    endif()
+  endif()
+endfunction()

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# The installed package: the build tree is installed, moved to another place, and used from there.
+# Included by the top level, whose whole install is tested.
+set(consumerDir ${PROJECT_BINARY_DIR}/consumer)
+add_test(NAME consumer.install
+  COMMAND ${CMAKE_COMMAND}
+    -D buildDir=${PROJECT_BINARY_DIR}
+    -D sourceDir=${PROJECT_SOURCE_DIR}
+    -D prefix=${consumerDir}/prefix
+    -D config=$<CONFIG>
+    -P ${PROJECT_SOURCE_DIR}/regression/consumer/install.cmake)
+add_test(NAME consumer.build
+  COMMAND ${CMAKE_CTEST_COMMAND}
+    --build-and-test ${PROJECT_SOURCE_DIR}/regression/consumer ${consumerDir}/build
+    --build-generator ${CMAKE_GENERATOR}
+    --build-config $<CONFIG>
+    --build-options
+      "-DCMAKE_PREFIX_PATH=${consumerDir}/prefix;${CMAKE_PREFIX_PATH}"
+      -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
+      -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
+      -DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}
+      -DCMAKE_BUILD_TYPE=$<CONFIG>
+      -DCMAKE_TOOLCHAIN_FILE=${CMAKE_TOOLCHAIN_FILE}
+      -DOpenSubdiv_ROOT=${OpenSubdiv_ROOT}
+      -DOpenSubdiv_DIR=${OpenSubdiv_DIR}
+    --test-command ${consumerDir}/build/consumer)
+set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed)
+set_tests_properties(consumer.build PROPERTIES FIXTURES_REQUIRED installed)
+if(OPENSUBDIVHEX_TUTORIALS)
+  add_test(NAME consumer.hexrefine
+    COMMAND ${consumerDir}/prefix/${CMAKE_INSTALL_BINDIR}/hexrefine --help)
+  set_tests_properties(consumer.hexrefine PROPERTIES FIXTURES_REQUIRED installed)
+endif()

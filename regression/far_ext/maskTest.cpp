@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "far_ext/mask.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::FaceMask;
+using FarExt::Interpolation;
+
+namespace {
+
+double const kPi = std::acos(-1.0);
+
+template <typename REAL = double>
+std::vector<REAL> faceMask(FaceMask mask, int n,
+                           Interpolation interpolation = Interpolation::Vertex) {
+    std::vector<REAL> weights(n);
+    FarExt::ComputeFaceVertexMask(mask, interpolation, n, weights.data());
+    return weights;
+}
+
+/// Row i holds the weights of the face's vertices in new point i, as the paper prints matrices.
+Eigen::MatrixXd faceMatrix(FaceMask mask, int n) {
+    std::vector<double> const weights = faceMask(mask, n);
+    Eigen::MatrixXd matrix(n, n);
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+            matrix(i, j) = weights[(j - i + n) % n];
+        }
+    }
+    return matrix;
+}
+
+void expectWeights(FaceMask mask, std::vector<double> expected, double denominator) {
+    for (double &weight : expected) {
+        weight /= denominator;
+    }
+    EXPECT_EQ(faceMask(mask, int(expected.size())), expected);
+}
+
+/// Compares the spectrum of the face matrix with \p eigenvalue of frequency 0 ... n-1.
+void expectEigenvalues(FaceMask mask, int n, std::function<double(int)> const &eigenvalue) {
+    std::vector<double> expected;
+    for (int k = 0; k < n; ++k) {
+        expected.push_back(eigenvalue(k));
+    }
+    std::sort(expected.begin(), expected.end());
+    Eigen::VectorXd const actual =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(faceMatrix(mask, n)).eigenvalues();
+    for (int k = 0; k < n; ++k) {
+        EXPECT_NEAR(actual[k], expected[k], 1e-14) << "n = " << n << ", eigenvalue " << k;
+    }
+}
+
+/// The frequency and its mirror image are the same.
+int frequency(int k, int n) { return std::min(k, n - k); }
+
+} // namespace
+
+TEST(Mask, PaperMatrices) {
+    expectWeights(FaceMask::Average, {14, 5, 5}, 24);
+    expectWeights(FaceMask::Average, {9, 3, 1, 3}, 16);
+    expectWeights(FaceMask::Average, {13, 4, 1, 1, 1, 4}, 24);
+    Eigen::MatrixXd m4(4, 4);
+    m4 << 9, 3, 1, 3, 3, 9, 3, 1, 1, 3, 9, 3, 3, 1, 3, 9;
+    EXPECT_EQ(faceMatrix(FaceMask::Average, 4), m4 / 16);
+}
+
+TEST(Mask, CosineAndSmooth) {
+    expectWeights(FaceMask::Cosine, {4, 1, 1}, 6);
+    expectWeights(FaceMask::Cosine, {9, 3, 1, 3}, 16);
+    expectWeights(FaceMask::Cosine, {11, 4, 2, 1, 2, 4}, 24);
+    expectWeights(FaceMask::Smooth, {4, 1, 1}, 6);
+    expectWeights(FaceMask::Smooth, {9, 3, 1, 3}, 16);
+    expectWeights(FaceMask::Smooth, {7, 3, 1, 1, 1, 3}, 16);
+}
+
+TEST(Mask, FormulasForAllSizes) {
+    for (int n = 3; n <= 400; ++n) {
+        std::vector<double> const averages = faceMask(FaceMask::Average, n);
+        std::vector<double> const cosines = faceMask(FaceMask::Cosine, n);
+        std::vector<double> const smooths = faceMask(FaceMask::Smooth, n);
+        for (int j = 0; j < n; ++j) {
+            double const theta = 2 * kPi * j / n;
+            double const average = (j == 0 ? 0.5 : 0.0) + (j == 1 ? 0.125 : 0.0) +
+                                   (j == n - 1 ? 0.125 : 0.0) + 0.25 / n;
+            double const cosine = (j == 0 ? 0.25 : 0.0) + (3 + 2 * std::cos(theta)) / (4 * n);
+            double const smooth =
+                n < 5 ? cosine
+                      : (j == 0 ? 0.125 : 0.0) +
+                            (0.875 + 0.75 * std::cos(theta) + 0.25 * std::cos(2 * theta)) / n;
+            ASSERT_NEAR(averages[j], average, 1e-15) << n << " " << j;
+            ASSERT_NEAR(cosines[j], cosine, 1e-15) << n << " " << j;
+            ASSERT_NEAR(smooths[j], smooth, 1e-15) << n << " " << j;
+        }
+    }
+}
+
+TEST(Mask, NonNegativeSymmetricSumOne) {
+    for (FaceMask mask : {FaceMask::Average, FaceMask::Cosine, FaceMask::Smooth}) {
+        for (Interpolation interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
+            for (int n = 3; n <= 400; ++n) {
+                std::vector<double> const weights = faceMask(mask, n, interpolation);
+                std::vector<float> const floats = faceMask<float>(mask, n, interpolation);
+                double sum = 0;
+                for (int j = 0; j < n; ++j) {
+                    ASSERT_GE(weights[j], 0) << n << " " << j;
+                    ASSERT_EQ(weights[j], weights[(n - j) % n]) << n << " " << j;
+                    ASSERT_EQ(floats[j], float(weights[j])) << n << " " << j;
+                    sum += weights[j];
+                }
+                ASSERT_NEAR(sum, 1, 1e-13) << n;
+            }
+        }
+    }
+}
+
+TEST(Mask, AverageEigenvalues) {
+    for (int n = 3; n <= 24; ++n) {
+        expectEigenvalues(FaceMask::Average, n, [n](int k) {
+            return k == 0 ? 1 : 0.5 + 0.25 * std::cos(2 * kPi * k / n);
+        });
+    }
+    // As the paper prints them.
+    std::vector<double> const paper = {1, 0.625, 0.375, 0.25, 0.375, 0.625};
+    expectEigenvalues(FaceMask::Average, 6, [&](int k) { return paper[k]; });
+}
+
+TEST(Mask, CosineEigenvalues) {
+    for (int n = 3; n <= 24; ++n) {
+        expectEigenvalues(FaceMask::Cosine, n, [n](int k) {
+            return k == 0 ? 1 : frequency(k, n) == 1 ? 0.5 : 0.25;
+        });
+    }
+}
+
+TEST(Mask, SmoothEigenvalues) {
+    for (int n = 5; n <= 24; ++n) {
+        expectEigenvalues(FaceMask::Smooth, n, [n](int k) {
+            return k == 0 ? 1 : std::max(0.125, std::pow(0.5, frequency(k, n)));
+        });
+    }
+}
+
+TEST(Mask, Varying) {
+    for (int n = 3; n <= 12; ++n) {
+        std::vector<double> const weights = faceMask(FaceMask::Smooth, n, Interpolation::Varying);
+        for (int j = 0; j < n; ++j) {
+            EXPECT_DOUBLE_EQ(weights[j], (j == 0 ? 0.5 : 0.0) + 0.5 / n);
+        }
+    }
+}
+
+TEST(Mask, VertexMask) {
+    for (int k = 0; k <= 400; ++k) {
+        auto const vertex = FarExt::ComputeVertexVertexMask<double>(Interpolation::Vertex, k);
+        EXPECT_EQ(vertex.vertexWeight, 1.0 / (k + 1));
+        EXPECT_EQ(vertex.faceWeight, 1.0 / (k + 1));
+        auto const varying = FarExt::ComputeVertexVertexMask<float>(Interpolation::Varying, k);
+        EXPECT_EQ(varying.vertexWeight, 1.0f);
+        EXPECT_EQ(varying.faceWeight, 0.0f);
+    }
+}
+
+} // namespace OpenSubdivHex::Regression

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "referenceMatch.h"
+
+#include "far_ext/primvarRefiner.h"
+
+#include <gtest/gtest.h>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::PrimvarRefinerReal;
+
+namespace {
+
+/// Three numbers with the interface that Far's primvar refiner asks for.
+template <typename REAL>
+struct Element {
+    void Clear() { value[0] = value[1] = value[2] = 0; }
+    void AddWithWeight(Element const &other, REAL weight) {
+        for (int k = 0; k < 3; ++k) {
+            value[k] += weight * other.value[k];
+        }
+    }
+    /// Not zero, so that an element that is never cleared shows.
+    REAL value[3] = {REAL(17), REAL(-23), REAL(41)};
+};
+
+template <typename REAL>
+std::vector<Element<REAL>> toElements(ReferenceValues const &values) {
+    std::vector<Element<REAL>> elements(values.rows());
+    for (Eigen::Index i = 0; i < values.rows(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            elements[i].value[k] = REAL(values(i, k));
+        }
+    }
+    return elements;
+}
+
+template <typename REAL>
+double largestError(std::vector<Element<REAL>> const &actual, ReferenceValues const &expected) {
+    double error = 0;
+    for (Eigen::Index i = 0; i < expected.rows(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            error = std::max(error, std::abs(double(actual[i].value[k]) - expected(i, k)));
+        }
+    }
+    return error;
+}
+
+/// Compares every level with the reference; \p tolerance is relative to the size of the values.
+template <typename REAL>
+void expectEqual(FarExt::TopologyRefiner const &refiner, bool varying,
+                 std::vector<ReferenceValues> const &expected, double tolerance) {
+    PrimvarRefinerReal<REAL> const primvarRefiner(refiner);
+    EXPECT_EQ(&primvarRefiner.GetTopologyRefiner(), &refiner);
+    std::vector<Element<REAL>> src = toElements<REAL>(expected[0]);
+    for (int level = 1; level < int(expected.size()); ++level) {
+        std::vector<Element<REAL>> dst(refiner.GetLevel(level).GetNumVertices());
+        if (varying) {
+            primvarRefiner.InterpolateVarying(level, src, dst);
+        } else {
+            primvarRefiner.Interpolate(level, src, dst);
+        }
+        ASSERT_EQ(Eigen::Index(dst.size()), expected[level].rows());
+        ASSERT_LE(largestError(dst, expected[level]), tolerance * GetSize(expected[0]))
+            << "level " << level;
+        src = std::move(dst);
+    }
+}
+
+/// Vertex and varying data of every shape, level and mask, in the precision of REAL.
+template <typename REAL>
+void expectEveryShapeEqual(double tolerance) {
+    for (Shape const &shape : GetManifoldShapes()) {
+        SCOPED_TRACE(shape.name);
+        ReferenceMatch const match(shape, GetTestLevel(shape, 3, 80000));
+        ASSERT_EQ(match.GetError(), "");
+        ReferenceValues const positions = GetPositions(shape);
+        std::vector<ReferenceValues> const varying = match.InterpolateVaryingAll(positions);
+        for (ReferenceMask mask : kMasks) {
+            SCOPED_TRACE(ToString(mask));
+            auto const refiner = CreateRefiner(shape, mask, match.GetMaxLevel());
+            ASSERT_NO_FATAL_FAILURE(expectEqual<REAL>(
+                *refiner, false, match.InterpolateAll(mask, positions), tolerance));
+            ASSERT_NO_FATAL_FAILURE(expectEqual<REAL>(*refiner, true, varying, tolerance));
+        }
+    }
+}
+
+} // namespace
+
+TEST(Primvar, DoubleEqualsReference) { expectEveryShapeEqual<double>(1e-12); }
+
+TEST(Primvar, FloatEqualsReference) { expectEveryShapeEqual<float>(1e-6); }
+
+TEST(Primvar, SpotAtLevel3EqualsReference) {
+    for (Shape const &shape : GetManifoldShapes()) {
+        if (shape.name != "spot") {
+            continue;
+        }
+        ReferenceMatch const match(shape, 3);
+        ASSERT_EQ(match.GetError(), "");
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 3);
+        EXPECT_EQ(refiner->GetLevel(3).GetNumVertices(), 371858);
+        EXPECT_EQ(refiner->GetLevel(3).GetNumFaces(), 190320);
+        EXPECT_EQ(refiner->GetLevel(3).GetNumBoundaryEdges(), 0);
+        expectEqual<double>(*refiner, false,
+                            match.InterpolateAll(ReferenceMask::Average, GetPositions(shape)),
+                            1e-12);
+        return;
+    }
+    GTEST_SKIP() << "the folder of real meshes is not there";
+}
+
+TEST(Primvar, LastLevelNeedsFaceVerticesOnly) {
+    Shape const &shape = GetShape("mixedPatch");
+    ReferenceMatch const match(shape, 2);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);
+    ASSERT_TRUE(refiner->RefineUniform(2));
+    expectEqual<double>(*refiner, false,
+                        match.InterpolateAll(ReferenceMask::Smooth, GetPositions(shape)), 1e-12);
+}
+
+TEST(Primvar, FaceUniform) {
+    for (Shape const &shape : GetManifoldShapes()) {
+        SCOPED_TRACE(shape.name);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, GetTestLevel(shape, 3));
+        PrimvarRefinerReal<double> const primvarRefiner(*refiner);
+        std::vector<int> src(shape.GetNumFaces());
+        for (int f = 0; f < shape.GetNumFaces(); ++f) {
+            src[f] = f;
+        }
+        for (int level = 1; level <= refiner->GetMaxLevel(); ++level) {
+            FarExt::TopologyLevel const &parent = refiner->GetLevel(level - 1);
+            std::vector<int> dst(refiner->GetLevel(level).GetNumFaces(), -1);
+            primvarRefiner.InterpolateFaceUniform(level, src, dst);
+            for (int f = 0; f < parent.GetNumFaces(); ++f) {
+                ASSERT_EQ(dst[f], src[f]);
+            }
+            for (int e = 0; e < parent.GetNumEdges(); ++e) {
+                ASSERT_EQ(dst[parent.GetNumFaces() + e], src[parent.GetEdgeFaces(e)[0]]);
+            }
+            for (int f = 0; f < int(dst.size()); ++f) {
+                ASSERT_EQ(dst[f], refiner->GetLevel(level).GetFaceBaseFace(f));
+            }
+            src = std::move(dst);
+        }
+    }
+}
+
+} // namespace OpenSubdivHex::Regression

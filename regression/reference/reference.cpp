@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reference.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+double const kPi = std::acos(-1.0);
+
+using FaceHandle = ReferenceMesh::FaceHandle;
+using HalfedgeHandle = ReferenceMesh::HalfedgeHandle;
+using VertexHandle = ReferenceMesh::VertexHandle;
+using Point = Eigen::RowVectorXd;
+
+/// The corner of a face at a vertex is the face's halfedge that leaves the vertex.
+std::vector<HalfedgeHandle> faceCorners(ReferenceMesh const &mesh, FaceHandle face) {
+    std::vector<HalfedgeHandle> corners;
+    HalfedgeHandle const first = mesh.halfedge_handle(face);
+    HalfedgeHandle corner = first;
+    do {
+        corners.push_back(corner);
+        corner = mesh.next_halfedge_handle(corner);
+    } while (corner != first);
+    return corners;
+}
+
+void addFace(ReferenceMesh &mesh, std::vector<VertexHandle> const &vertices) {
+    FaceHandle const face = mesh.add_face(vertices);
+    if (!face.is_valid()) {
+        throw std::runtime_error("reference: OpenMesh refuses face " +
+                                 std::to_string(mesh.n_faces()));
+    }
+}
+
+Point centroid(std::vector<Point> const &face) {
+    Point sum = Point::Zero(face[0].size());
+    for (Point const &p : face) {
+        sum += p;
+    }
+    return sum / double(face.size());
+}
+
+/// "The average of the vertex, the two edge midpoints and the face's centroid."
+Point averagePoint(std::vector<Point> const &face, int i) {
+    int const n = int(face.size());
+    Point const &previous = face[(i + n - 1) % n];
+    Point const &vertex = face[i];
+    Point const &next = face[(i + 1) % n];
+    Point const previousMidpoint = (previous + vertex) / 2;
+    Point const nextMidpoint = (vertex + next) / 2;
+    return (vertex + previousMidpoint + nextMidpoint + centroid(face)) / 4;
+}
+
+/// Doo and Sabin 1978: the vertex itself has (n + 5)/4n, one at angle theta (3 + 2 cos theta)/4n.
+Point cosinePoint(std::vector<Point> const &face, int i) {
+    int const n = int(face.size());
+    Point sum = (n + 5.0) / (4.0 * n) * face[i];
+    for (int j = 1; j < n; ++j) {
+        sum += (3 + 2 * std::cos(2 * kPi * j / n)) / (4.0 * n) * face[(i + j) % n];
+    }
+    return sum;
+}
+
+/// The scheme's smooth variant; triangles and quads are as Doo and Sabin's.
+Point smoothPoint(std::vector<Point> const &face, int i) {
+    int const n = int(face.size());
+    if (n < 5) {
+        return cosinePoint(face, i);
+    }
+    Point sum = (1.0 / 8 + 15.0 / (8.0 * n)) * face[i];
+    for (int j = 1; j < n; ++j) {
+        double const theta = 2 * kPi * j / n;
+        double const weight =
+            (7.0 / 8 + 3.0 / 4 * std::cos(theta) + 1.0 / 4 * std::cos(2 * theta)) / n;
+        sum += weight * face[(i + j) % n];
+    }
+    return sum;
+}
+
+Point varyingPoint(std::vector<Point> const &face, int i) { return (face[i] + centroid(face)) / 2; }
+
+Point newPoint(ReferenceMask mask, std::vector<Point> const &face, int i) {
+    switch (mask) {
+    case ReferenceMask::Average:
+        return averagePoint(face, i);
+    case ReferenceMask::Cosine:
+        return cosinePoint(face, i);
+    case ReferenceMask::Smooth:
+        return smoothPoint(face, i);
+    }
+    throw std::invalid_argument("reference: no such mask");
+}
+
+/// The number that Refine() gave to the new vertex of each corner, by halfedge.
+std::vector<VertexHandle> numberFVertices(ReferenceMesh const &mesh) {
+    std::vector<VertexHandle> fVertices(mesh.n_halfedges());
+    int count = 0;
+    for (FaceHandle face : mesh.faces()) {
+        for (HalfedgeHandle corner : faceCorners(mesh, face)) {
+            fVertices[corner.idx()] = VertexHandle(count++);
+        }
+    }
+    return fVertices;
+}
+
+/// Stage 1: a new point at each corner of each face, from the points of that face alone.
+template <typename NewPoint>
+void makeFVertices(ReferenceMesh const &mesh, ReferenceValues const &values,
+                   std::vector<VertexHandle> const &fVertices, NewPoint &&makePoint,
+                   ReferenceValues &result) {
+    for (FaceHandle face : mesh.faces()) {
+        std::vector<HalfedgeHandle> const corners = faceCorners(mesh, face);
+        std::vector<Point> points;
+        for (HalfedgeHandle corner : corners) {
+            points.push_back(values.row(mesh.from_vertex_handle(corner).idx()));
+        }
+        for (int i = 0; i < int(corners.size()); ++i) {
+            result.row(fVertices[corners[i].idx()].idx()) = makePoint(points, i);
+        }
+    }
+}
+
+/// Stage 2: an old vertex moves to the average of itself and the new points around it.
+Point movedVertex(ReferenceMesh const &mesh, ReferenceValues const &values,
+                  std::vector<VertexHandle> const &fVertices, VertexHandle vertex,
+                  ReferenceValues const &newPoints) {
+    Point sum = values.row(vertex.idx());
+    int numPoints = 1;
+    for (auto it = mesh.cvoh_iter(vertex); it.is_valid(); ++it) {
+        if (!mesh.is_boundary(*it)) {
+            sum += newPoints.row(fVertices[it->idx()].idx());
+            ++numPoints;
+        }
+    }
+    return sum / double(numPoints);
+}
+
+VertexHandle vVertex(std::size_t numFVertices, VertexHandle vertex) {
+    return VertexHandle(int(numFVertices) + vertex.idx());
+}
+
+std::size_t countCorners(ReferenceMesh const &mesh) {
+    std::size_t count = 0;
+    for (FaceHandle face : mesh.faces()) {
+        count += mesh.valence(face);
+    }
+    return count;
+}
+
+/// Stage 3: the new points of each face are joined to a face, and each edge makes one between the
+/// faces on its two sides.
+void connect(ReferenceMesh const &mesh, std::vector<VertexHandle> const &fVertices,
+             std::size_t numFVertices, ReferenceLevel &child) {
+    for (FaceHandle face : mesh.faces()) {
+        std::vector<VertexHandle> vertices;
+        for (HalfedgeHandle corner : faceCorners(mesh, face)) {
+            vertices.push_back(fVertices[corner.idx()]);
+        }
+        addFace(child.mesh, vertices);
+        ReferenceFaceOrigin origin;
+        origin.face = face.idx();
+        child.faceOrigins.push_back(origin);
+    }
+    for (auto edge : mesh.edges()) {
+        HalfedgeHandle a = mesh.halfedge_handle(edge, 0);
+        if (mesh.is_boundary(a)) {
+            a = mesh.opposite_halfedge_handle(a);
+        }
+        HalfedgeHandle const b = mesh.opposite_halfedge_handle(a);
+        VertexHandle const v0 = mesh.from_vertex_handle(a);
+        VertexHandle const v1 = mesh.to_vertex_handle(a);
+        VertexHandle const aV0 = fVertices[a.idx()];
+        VertexHandle const aV1 = fVertices[mesh.next_halfedge_handle(a).idx()];
+        if (mesh.is_boundary(b)) {
+            addFace(child.mesh, {vVertex(numFVertices, v0), vVertex(numFVertices, v1), aV1, aV0});
+        } else {
+            VertexHandle const bV1 = fVertices[b.idx()];
+            VertexHandle const bV0 = fVertices[mesh.next_halfedge_handle(b).idx()];
+            addFace(child.mesh,
+                    {vVertex(numFVertices, v0), bV0, bV1, vVertex(numFVertices, v1), aV1, aV0});
+        }
+        ReferenceFaceOrigin origin;
+        origin.isEFace = true;
+        origin.edgeVertices[0] = v0.idx();
+        origin.edgeVertices[1] = v1.idx();
+        child.faceOrigins.push_back(origin);
+    }
+}
+
+} // namespace
+
+ReferenceMesh MakeReferenceMesh(std::vector<double> const &positions,
+                                std::vector<int> const &faceSizes,
+                                std::vector<int> const &faceVertices) {
+    ReferenceMesh mesh;
+    for (std::size_t i = 0; i < positions.size(); i += 3) {
+        mesh.add_vertex({positions[i], positions[i + 1], positions[i + 2]});
+    }
+    auto vertex = faceVertices.begin();
+    for (int size : faceSizes) {
+        std::vector<VertexHandle> vertices;
+        for (int i = 0; i < size; ++i) {
+            vertices.push_back(VertexHandle(*vertex++));
+        }
+        addFace(mesh, vertices);
+    }
+    for (VertexHandle v : mesh.vertices()) {
+        if (!mesh.is_manifold(v)) {
+            throw std::runtime_error("reference: vertex " + std::to_string(v.idx()) +
+                                     " is not manifold");
+        }
+    }
+    return mesh;
+}
+
+ReferenceValues GetPoints(ReferenceMesh const &mesh) {
+    ReferenceValues points(mesh.n_vertices(), 3);
+    for (VertexHandle v : mesh.vertices()) {
+        for (int k = 0; k < 3; ++k) {
+            points(v.idx(), k) = mesh.point(v)[k];
+        }
+    }
+    return points;
+}
+
+ReferenceLevel Refine(ReferenceMesh const &mesh, ReferenceMask mask) {
+    ReferenceLevel child;
+    std::vector<VertexHandle> const fVertices = numberFVertices(mesh);
+    std::size_t const numFVertices = countCorners(mesh);
+    child.vertexOrigins.resize(numFVertices + mesh.n_vertices());
+    for (FaceHandle face : mesh.faces()) {
+        for (HalfedgeHandle corner : faceCorners(mesh, face)) {
+            ReferenceVertexOrigin &origin = child.vertexOrigins[fVertices[corner.idx()].idx()];
+            origin.isFVertex = true;
+            origin.vertex = mesh.from_vertex_handle(corner).idx();
+            origin.face = face.idx();
+        }
+    }
+    for (VertexHandle vertex : mesh.vertices()) {
+        child.vertexOrigins[vVertex(numFVertices, vertex).idx()].vertex = vertex.idx();
+    }
+    ReferenceValues const points = Interpolate(mesh, child, mask, GetPoints(mesh));
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        child.mesh.add_vertex({points(i, 0), points(i, 1), points(i, 2)});
+    }
+    connect(mesh, fVertices, numFVertices, child);
+    return child;
+}
+
+ReferenceValues Interpolate(ReferenceMesh const &mesh, ReferenceLevel const &child,
+                            ReferenceMask mask, ReferenceValues const &values) {
+    ReferenceValues result(child.vertexOrigins.size(), values.cols());
+    std::vector<VertexHandle> const fVertices = numberFVertices(mesh);
+    auto const makePoint = [mask](std::vector<Point> const &face, int i) {
+        return newPoint(mask, face, i);
+    };
+    makeFVertices(mesh, values, fVertices, makePoint, result);
+    std::size_t const numFVertices = countCorners(mesh);
+    for (VertexHandle v : mesh.vertices()) {
+        result.row(vVertex(numFVertices, v).idx()) =
+            movedVertex(mesh, values, fVertices, v, result);
+    }
+    return result;
+}
+
+ReferenceValues InterpolateVarying(ReferenceMesh const &mesh, ReferenceLevel const &child,
+                                   ReferenceValues const &values) {
+    ReferenceValues result(child.vertexOrigins.size(), values.cols());
+    makeFVertices(mesh, values, numberFVertices(mesh), varyingPoint, result);
+    std::size_t const numFVertices = countCorners(mesh);
+    for (VertexHandle v : mesh.vertices()) {
+        result.row(vVertex(numFVertices, v).idx()) = values.row(v.idx());
+    }
+    return result;
+}
+
+} // namespace OpenSubdivHex::Regression
