@@ -59,6 +59,27 @@ void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, RE
 }
 
 template <typename REAL>
+void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, REAL *weights) {
+    long double w[4]; // by distance in the completed hexagon
+    for (int j = 0; j < 4; ++j) {
+        w[j] = faceWeight(mask, interpolation, j, 6);
+    }
+    long double const atLong = w[1] + 1.5L * w[2] + 0.5L * w[3]; // the end beside the corner
+    long double const atOther = 1.5L * (w[2] + w[3]);
+    long double const atSelf = w[0] - w[2];
+    long double const atTwin = w[1] - w[3];
+    long double const rows[4][4] = {{0.75L, 0.25L, 0, 0},
+                                    {0.25L, 0.75L, 0, 0},
+                                    {atOther, atLong, atSelf, atTwin},
+                                    {atLong, atOther, atTwin, atSelf}};
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) {
+            weights[4 * i + j] = REAL(rows[i][j]);
+        }
+    }
+}
+
+template <typename REAL>
 VertexVertexMask<REAL> ComputeVertexVertexMask(Interpolation interpolation, int numFaces) {
     if (interpolation == Interpolation::Varying) {
         return {REAL(1), REAL(0)};
@@ -69,6 +90,8 @@ VertexVertexMask<REAL> ComputeVertexVertexMask(Interpolation interpolation, int 
 
 template void ComputeFaceVertexMask(FaceMask, Interpolation, int, float *);
 template void ComputeFaceVertexMask(FaceMask, Interpolation, int, double *);
+template void ComputeHalfFaceVertexMask(FaceMask, Interpolation, float *);
+template void ComputeHalfFaceVertexMask(FaceMask, Interpolation, double *);
 template VertexVertexMask<float> ComputeVertexVertexMask(Interpolation, int);
 template VertexVertexMask<double> ComputeVertexVertexMask(Interpolation, int);
 

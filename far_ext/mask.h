@@ -33,6 +33,16 @@ enum class Interpolation {
 template <typename REAL>
 void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, REAL *weights);
 
+/// \brief Writes the 4 x 4 weights of a half face V, W, Q, P, a half-hexagon whose long side V-W is
+/// a sharp boundary or crease: row i has the weights of the four vertices for the F-vertex of
+/// corner i.
+///
+/// On the long side P_V = (3 V + W)/4.  The other two corners follow the mask of the hexagon that is
+/// completed by the ghosts Q* = (3 V + W)/2 - P and P* = (V + 3 W)/2 - Q, in the order
+/// V, Q*, P*, W, Q, P; the weights come out non-negative.
+template <typename REAL>
+void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, REAL *weights);
+
 /// \brief The mask of an old vertex: V' = vertexWeight V + sum over its faces of faceWeight P_i.
 template <typename REAL>
 struct VertexVertexMask {

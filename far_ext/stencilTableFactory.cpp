@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stencilTableFactory.h"
 
+#include "fvarLevel.h"
 #include "refinementMask.h"
 
 #include <algorithm>
@@ -75,15 +76,14 @@ private:
 // of a parent face share one list; every V-vertex has its own.
 class LevelSupports {
 public:
-    // A level that is its own source: vertex v depends on v alone.
-    explicit LevelSupports(Index numVertices) : _numSources(numVertices) {
-        _indices.resize(numVertices);
-        std::iota(_indices.begin(), _indices.end(), 0);
-    }
+    // A level that is its own source: vertex v depends on source v alone, or on sources[v].
+    LevelSupports(Index numSources, std::vector<Index> sources)
+        : _numSources(numSources), _indices(std::move(sources)) {}
 
     // The level that refinement makes of pLevel, the supports of whose vertices are pSupports.
+    template <typename REAL>
     LevelSupports(TopologyLevel const &pLevel, LevelSupports const &pSupports,
-                  Interpolation interpolation)
+                  RefinementMask<REAL> const &mask)
         : _isIdentity(false), _numSources(pSupports._numSources),
           _numParentFaces(pLevel.GetNumFaces()) {
         UnionBuilder sources(_numSources);
@@ -97,9 +97,13 @@ public:
                            OfParentFace(pFace).size();
         }
         for (Index pVert = 0; pVert < pLevel.GetNumVertices(); ++pVert) {
+            auto const weights = mask.GetVertexMask(pLevel, pVert);
             sources.Begin();
             sources.Add(pSupports.OfVertex(pLevel, pVert));
-            if (interpolation == Interpolation::Vertex) {
+            for (int i = 0; i < weights.numNeighbors; ++i) {
+                sources.Add(pSupports.OfVertex(pLevel, weights.neighbors[i]));
+            }
+            if (weights.faceWeight > 0) {
                 for (Index pFace : pLevel.GetVertexFaces(pVert)) {
                     sources.Add(OfParentFace(pFace));
                 }
@@ -119,9 +123,7 @@ public:
             return ConstIndexArray(&_indices[vert], 1);
         }
         Index const numVVertices = Index(_firsts.size() - 1) - _numParentFaces;
-        // The first face of an F-vertex is the F-face, which has the index of the parent face.
-        return vert < numVVertices ? OfParentVertex(vert)
-                                   : OfParentFace(level.GetVertexFaces(vert)[0]);
+        return vert < numVVertices ? OfParentVertex(vert) : OfParentFace(fFaceOf(level, vert));
     }
 
     Index GetNumSources() const { return _numSources; }
@@ -129,6 +131,12 @@ public:
     std::int64_t GetNumWeights() const { return _numWeights; }
 
 private:
+    // The F-face around an F-vertex has the index of the parent face, less than any E-face.
+    static Index fFaceOf(TopologyLevel const &level, Index fVertex) {
+        ConstIndexArray const faces = level.GetVertexFaces(fVertex);
+        return *std::min_element(faces.begin(), faces.end());
+    }
+
     ConstIndexArray list(std::size_t i) const {
         return ConstIndexArray(_indices.data() + _firsts[i], int(_firsts[i + 1] - _firsts[i]));
     }
@@ -156,15 +164,16 @@ void fillControlRows(LevelRows<REAL> const &rows, Index numControlVertices) {
 }
 
 // Writes the stencils of the level that refinement makes of pLevel, given those of pLevel (none:
-// its vertices are the sources themselves).  The first offset is firstOffset.
+// its vertices are sources, as pSupports says).
 template <typename REAL>
 class LevelBuilder {
 public:
-    LevelBuilder(TopologyLevel const &pLevel, LevelSupports const &supports,
-                 RefinementMask<REAL> const &mask, LevelRows<REAL> const *pRows,
-                 LevelRows<REAL> const &rows)
-        : _pLevel(pLevel), _indexing(pLevel.GetChildIndexing()), _supports(supports), _mask(mask),
-          _pRows(pRows), _rows(rows), _position(supports.GetNumSources()) {}
+    LevelBuilder(TopologyLevel const &pLevel, LevelSupports const &pSupports,
+                 LevelSupports const &supports, RefinementMask<REAL> const &mask,
+                 LevelRows<REAL> const *pRows, LevelRows<REAL> const &rows)
+        : _pLevel(pLevel), _indexing(pLevel.GetChildIndexing()), _pSupports(pSupports),
+          _supports(supports), _mask(mask), _pRows(pRows), _rows(rows),
+          _position(supports.GetNumSources()) {}
 
     void Fill(Index firstOffset) {
         fillSizesAndOffsets(firstOffset);
@@ -200,12 +209,13 @@ private:
         if (_pRows) {
             addRow(*_pRows, pVert, weight, dense);
         } else {
-            dense[_position[pVert]] += weight;
+            dense[_position[_pSupports.OfVertex(_pLevel, pVert)[0]]] += weight;
         }
     }
 
     TopologyLevel const &_pLevel;
     HexIndexing const _indexing;
+    LevelSupports const &_pSupports;
     LevelSupports const &_supports;
     RefinementMask<REAL> const &_mask;
     LevelRows<REAL> const *_pRows;
@@ -248,7 +258,8 @@ void LevelBuilder<REAL>::fillFace(Index pFace) {
     for (int i = 0; i < pVerts.size(); ++i) {
         Index const corner = _pLevel.GetFaceFirstCorner(pFace) + i;
         Index const offset = _rows.offsets[_indexing.GetCornerChildVertex(corner)];
-        REAL const *mask = _mask.GetFaceVertexWeights(pVerts.size(), i);
+        REAL scratch[HexIndexing::kNumEFaceCorners];
+        REAL const *mask = _mask.GetFaceVertexWeights(_pLevel, pFace, i, scratch);
         REAL *weights = _rows.weights + offset;
         std::copy(support.begin(), support.end(), _rows.indices + offset);
         std::fill_n(weights, width, REAL(0));
@@ -270,11 +281,13 @@ void LevelBuilder<REAL>::fillVertex(Index pVert) {
     std::copy(support.begin(), support.end(), _rows.indices + offset);
     std::fill_n(weights, support.size(), REAL(0));
 
-    int const numFaces = _pLevel.GetVertexFaces(pVert).size();
-    VertexVertexMask<REAL> const mask = _mask.GetVertexMask(numFaces);
+    auto const mask = _mask.GetVertexMask(_pLevel, pVert);
     addParent(pVert, mask.vertexWeight, weights);
+    for (int i = 0; i < mask.numNeighbors; ++i) {
+        addParent(mask.neighbors[i], mask.neighborWeights[i], weights);
+    }
     if (mask.faceWeight > 0) {
-        for (int i = 0; i < numFaces; ++i) {
+        for (int i = 0; i < _pLevel.GetVertexFaces(pVert).size(); ++i) {
             Index const corner = _pLevel.GetVertexCorner(pVert, i);
             addRow(_rows, _indexing.GetCornerChildVertex(corner), mask.faceWeight, weights);
         }
@@ -293,48 +306,82 @@ Status checkCount(int level, std::int64_t count, char const *name) {
                       std::to_string(kMaxCount) + " that Far's 32-bit offsets reach");
 }
 
-// Which levels the options ask for.
+// Which levels of which mesh the options ask for.
 struct Plan {
     template <typename OPTIONS>
-    Plan(TopologyRefiner const &refiner, OPTIONS const &options)
-        : interpolation(options.interpolationMode == INTERPOLATE_VARYING ? Interpolation::Varying
-                                                                       : Interpolation::Vertex),
+    Plan(TopologyRefiner const &topologyRefiner, OPTIONS const &options)
+        : refiner(topologyRefiner),
+          channel(options.interpolationMode == INTERPOLATE_FACE_VARYING ? options.fvarChannel
+                                                                        : -1),
+          interpolation(isLinear(options.interpolationMode) ? Interpolation::Varying
+                                                            : Interpolation::Vertex),
           factorize(options.factorizeIntermediateLevels),
           lastLevel(std::min(options.maxLevel, refiner.GetMaxLevel())),
           firstStored(options.generateIntermediateLevels ? 1 : std::max(1, lastLevel)),
           firstBuilt(factorize ? 1 : firstStored),
-          numControlStencils(
-              options.generateControlVerts ? refiner.GetLevel(0).GetNumVertices() : 0) {}
+          numControlStencils(options.generateControlVerts ? GetNumVertices(0) : 0) {}
 
+    // The level of the mesh or, for face-varying stencils, of the value mesh.
+    TopologyLevel GetLevel(int level) const {
+        TopologyLevel const &mesh = refiner.GetLevel(level);
+        return channel < 0 ? mesh
+                           : TopologyLevel(&mesh.GetTopology().fvarLevels[channel]->topology);
+    }
+    // What a stencil is made for, and what stencils refer to.
+    Index GetNumVertices(int level) const {
+        TopologyLevel const &mesh = refiner.GetLevel(level);
+        return channel < 0 ? mesh.GetNumVertices() : mesh.GetNumFVarValues(channel);
+    }
+    // A level whose vertices are their own sources; of values, those that the user has.
+    LevelSupports GetSources(int level) const {
+        Index const numSources = GetNumVertices(level);
+        if (channel >= 0 && level == 0) {
+            internal::Buffer<Index> const &values =
+                refiner.GetLevel(0).GetTopology().fvarLevels[channel]->valuesOfVertices;
+            return LevelSupports(numSources, std::vector<Index>(values.begin(), values.end()));
+        }
+        std::vector<Index> sources(numSources);
+        std::iota(sources.begin(), sources.end(), 0);
+        return LevelSupports(numSources, std::move(sources));
+    }
+
+    TopologyRefiner const &refiner;
+    int channel; // face-varying channel, or -1
     Interpolation interpolation;
     bool factorize;
     int lastLevel;
     int firstStored; // in the table, behind the control vertices
     int firstBuilt;  // as a source of later levels, or to be stored
     Index numControlStencils;
+
+private:
+    bool isLinear(StencilMode mode) const {
+        return mode == INTERPOLATE_VARYING ||
+               (channel >= 0 &&
+                refiner.GetFVarLinearInterpolation(channel) == Sdc::Options::FVAR_LINEAR_ALL);
+    }
 };
 
-// The supports of the levels plan.firstBuilt ... plan.lastLevel, and the size of the table.
+// The supports of the levels plan.firstBuilt - 1 ... plan.lastLevel, and the size of the table.
 struct SymbolicTable {
     std::vector<LevelSupports> supports;
     std::int64_t numStencils;
     std::int64_t numWeights;
 };
 
-Status buildSupports(TopologyRefiner const &refiner, Plan const &plan, SymbolicTable &result) {
+template <typename REAL>
+Status buildSupports(Plan const &plan, RefinementMask<REAL> const &mask, SymbolicTable &result) {
     result.numStencils = plan.numControlStencils;
     result.numWeights = plan.numControlStencils;
+    result.supports.push_back(plan.GetSources(plan.firstBuilt - 1));
     for (int level = plan.firstBuilt; level <= plan.lastLevel; ++level) {
-        TopologyLevel const &pLevel = refiner.GetLevel(level - 1);
-        if (plan.factorize && level > plan.firstBuilt) {
-            result.supports.emplace_back(pLevel, result.supports.back(), plan.interpolation);
-        } else {
-            result.supports.emplace_back(pLevel, LevelSupports(pLevel.GetNumVertices()),
-                                         plan.interpolation);
-        }
+        TopologyLevel const pLevel = plan.GetLevel(level - 1);
+        result.supports.push_back(
+            plan.factorize ? LevelSupports(pLevel, result.supports.back(), mask)
+                           : LevelSupports(pLevel, plan.GetSources(level - 1), mask));
         std::int64_t const numLevelWeights = result.supports.back().GetNumWeights();
         if (level >= plan.firstStored) {
-            result.numStencils += refiner.GetLevel(level).GetNumVertices();
+            result.numStencils += plan.GetNumVertices(level);
             result.numWeights += numLevelWeights;
         }
         Status status = checkCount(level, result.numStencils, "stencils");
@@ -349,22 +396,22 @@ Status buildSupports(TopologyRefiner const &refiner, Plan const &plan, SymbolicT
 }
 
 template <typename REAL>
-std::unique_ptr<WritableTable<REAL>> buildTable(TopologyRefiner const &refiner, Plan const &plan,
+std::unique_ptr<WritableTable<REAL>> buildTable(Plan const &plan,
+                                                RefinementMask<REAL> const &mask,
                                                 SymbolicTable const &symbolic) {
-    Index const numControlVertices = refiner.GetLevel(0).GetNumVertices();
+    Index const numControlVertices = plan.GetNumVertices(0);
     auto table = std::make_unique<WritableTable<REAL>>(numControlVertices, symbolic.numStencils,
                                                        symbolic.numWeights);
     fillControlRows(table->GetRows(0), plan.numControlStencils);
     Index nextStencil = plan.numControlStencils;
     Index nextOffset = plan.numControlStencils;
 
-    RefinementMask<REAL> const mask(refiner, plan.interpolation);
     std::unique_ptr<WritableTable<REAL>> previous, current; // of levels that are not stored
     LevelRows<REAL> pRows{};
     for (int level = plan.firstBuilt; level <= plan.lastLevel; ++level) {
-        TopologyLevel const &pLevel = refiner.GetLevel(level - 1);
-        LevelSupports const &supports = symbolic.supports[level - plan.firstBuilt];
-        Index const numStencils = refiner.GetLevel(level).GetNumVertices();
+        TopologyLevel const pLevel = plan.GetLevel(level - 1);
+        LevelSupports const &supports = symbolic.supports[level - plan.firstBuilt + 1];
+        Index const numStencils = plan.GetNumVertices(level);
         Index const numWeights = Index(supports.GetNumWeights());
         bool const isStored = level >= plan.firstStored;
         bool const hasParentRows = plan.factorize && level > plan.firstBuilt;
@@ -375,7 +422,9 @@ std::unique_ptr<WritableTable<REAL>> buildTable(TopologyRefiner const &refiner, 
                                                             numWeights);
         }
         LevelRows<REAL> const rows = isStored ? table->GetRows(nextStencil) : current->GetRows(0);
-        LevelBuilder<REAL>(pLevel, supports, mask, hasParentRows ? &pRows : nullptr, rows)
+        LevelSupports const pSources = hasParentRows ? LevelSupports(0, {})
+                                                     : plan.GetSources(level - 1);
+        LevelBuilder<REAL>(pLevel, pSources, supports, mask, hasParentRows ? &pRows : nullptr, rows)
             .Fill(isStored ? nextOffset : 0);
         pRows = rows;
         if (isStored) {
@@ -386,24 +435,38 @@ std::unique_ptr<WritableTable<REAL>> buildTable(TopologyRefiner const &refiner, 
     return table;
 }
 
+template <typename OPTIONS>
+Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
+    if (options.maxLevel < 0) {
+        return Status(StatusCode::InvalidArgument, ComponentType::Level, options.maxLevel,
+                      "maxLevel " + std::to_string(options.maxLevel) + " is negative");
+    }
+    bool const hasChannel =
+        0 <= options.fvarChannel && options.fvarChannel < refiner.GetNumFVarChannels();
+    if (options.interpolationMode == INTERPOLATE_FACE_VARYING && !hasChannel) {
+        return Status(StatusCode::InvalidArgument, ComponentType::None, Far::INDEX_INVALID,
+                      "there is no face-varying channel " + std::to_string(options.fvarChannel) +
+                          "; the mesh has " + std::to_string(refiner.GetNumFVarChannels()));
+    }
+    return Status();
+}
+
 } // namespace
 
 template <typename REAL>
 auto StencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Options options,
                                            Status *status) -> std::unique_ptr<Table const> {
-    if (options.maxLevel < 0) {
-        internal::Report(Status(StatusCode::InvalidArgument, ComponentType::Level,
-                                options.maxLevel,
-                                "maxLevel " + std::to_string(options.maxLevel) + " is negative"),
-                         status);
+    if (!internal::Report(checkOptions(refiner, options), status)) {
         return nullptr;
     }
     Plan const plan(refiner, options);
+    RefinementMask<REAL> const mask(refiner.GetLevel(0), refiner.GetHexSchemeOptions().faceMask,
+                                    plan.interpolation);
     SymbolicTable symbolic;
-    if (!internal::Report(buildSupports(refiner, plan, symbolic), status)) {
+    if (!internal::Report(buildSupports(plan, mask, symbolic), status)) {
         return nullptr;
     }
-    return buildTable<REAL>(refiner, plan, symbolic);
+    return buildTable(plan, mask, symbolic);
 }
 
 template class StencilTableFactoryReal<float>;
