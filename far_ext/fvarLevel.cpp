@@ -161,7 +161,7 @@ void BuildFVarLevel(LevelTopology const &mesh, Index numValues,
         level.vertSharpness[vert] = endsSeam ? Sdc::Crease::SHARPNESS_INFINITE
                                              : valueSharpness[channel.valuesOfVertices[vert]];
     }
-    ComputeSharpVertices(sdcOptions, level);
+    ComputeSharpMasks(sdcOptions, level);
 }
 
 void RefineFVarLevel(LevelTopology const &pMesh, FVarLevel &pChannel, Sdc::Options sdcOptions,

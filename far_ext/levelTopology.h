@@ -31,6 +31,14 @@ struct SharpVertex {
     double neighborWeights[2];
 };
 
+/// \brief A corner whose F-vertex is drawn towards its vertex, because that has many faces between
+/// two sharp edges: see ComputeSectorShrink in mask.h.
+struct SectorCorner {
+    Far::Index corner;
+    float sectorSize; ///< faces between the sharp edges; a half hexagon counts half
+    float weight;     ///< 1, or less between semi-sharp edges whose sharpness is below 1
+};
+
 struct FVarLevel;
 
 /// \brief The arrays of one level.  TopologyLevel is the public view of them.
@@ -65,6 +73,10 @@ struct LevelTopology {
         return !halfFaces.empty() &&
                IsSharpBoundaryB(faceEdges[faceFirstCorner[f] + kHalfFaceLongEdge]);
     }
+    /// Whether any face of the level has another mask than that of its size.
+    bool HasFeatures() const {
+        return !halfFaces.empty() || !diagonalSharpness.empty() || !sectorCorners.empty();
+    }
     float GetEdgeSharpness(Index e) const { return edgeSharpness.empty() ? 0 : edgeSharpness[e]; }
     float GetDiagonalSharpness(Index f) const {
         return diagonalSharpness.empty() ? 0 : diagonalSharpness[f];
@@ -79,6 +91,13 @@ struct LevelTopology {
             std::lower_bound(sharpVerts.begin(), sharpVerts.end(), v,
                              [](SharpVertex const &sharp, Index vert) { return sharp.vert < vert; });
         return found != sharpVerts.end() && found->vert == v ? &*found : nullptr;
+    }
+    /// The entry of a corner in a wide sector, null for others.
+    SectorCorner const *FindSectorCorner(Index corner) const {
+        auto const found = std::lower_bound(
+            sectorCorners.begin(), sectorCorners.end(), corner,
+            [](SectorCorner const &sector, Index c) { return sector.corner < c; });
+        return found != sectorCorners.end() && found->corner == corner ? &*found : nullptr;
     }
 
     int depth = 0;
@@ -125,6 +144,8 @@ struct LevelTopology {
     std::vector<Index> nonManifoldEdges; ///< ascending; of level 0 alone
 
     std::vector<SharpVertex> sharpVerts; ///< ascending; all vertices with a rule but RULE_SMOOTH
+
+    std::vector<SectorCorner> sectorCorners; ///< ascending
 
     std::vector<std::unique_ptr<FVarLevel>> fvarLevels; ///< by channel
 };

@@ -48,18 +48,16 @@ long double faceWeight(FaceMask mask, Interpolation interpolation, int j, int n)
 
 } // namespace
 
-template <typename REAL>
-void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, REAL *weights) {
+void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, double *weights) {
     for (int j = 0; j <= n / 2; ++j) {
-        weights[j] = REAL(faceWeight(mask, interpolation, j, n));
+        weights[j] = double(faceWeight(mask, interpolation, j, n));
     }
     for (int j = n / 2 + 1; j < n; ++j) {
         weights[j] = weights[n - j];
     }
 }
 
-template <typename REAL>
-void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, REAL *weights) {
+void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, double *weights) {
     long double w[4]; // by distance in the completed hexagon
     for (int j = 0; j < 4; ++j) {
         w[j] = faceWeight(mask, interpolation, j, 6);
@@ -74,25 +72,25 @@ void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, REAL 
                                     {atLong, atOther, atTwin, atSelf}};
     for (int i = 0; i < 4; ++i) {
         for (int j = 0; j < 4; ++j) {
-            weights[4 * i + j] = REAL(rows[i][j]);
+            weights[4 * i + j] = double(rows[i][j]);
         }
     }
 }
 
-template <typename REAL>
-VertexVertexMask<REAL> ComputeVertexVertexMask(Interpolation interpolation, int numFaces) {
+double ComputeSectorShrink(FaceMask mask, double sectorSize) {
+    bool const isAverage = mask == FaceMask::Average;
+    double const alpha = isAverage ? 0.98 : 1.31;
+    double const beta = isAverage ? 0.305 : 0.515;
+    return 1 / (alpha + beta * std::cos(3.14159265358979323846 / sectorSize));
+}
+
+VertexVertexMask ComputeVertexVertexMask(Interpolation interpolation, int numFaces) {
     if (interpolation == Interpolation::Varying) {
-        return {REAL(1), REAL(0)};
+        return {1, 0};
     }
-    REAL const weight = REAL(1) / REAL(numFaces + 1);
+    double const weight = 1.0 / (numFaces + 1);
     return {weight, weight};
 }
 
-template void ComputeFaceVertexMask(FaceMask, Interpolation, int, float *);
-template void ComputeFaceVertexMask(FaceMask, Interpolation, int, double *);
-template void ComputeHalfFaceVertexMask(FaceMask, Interpolation, float *);
-template void ComputeHalfFaceVertexMask(FaceMask, Interpolation, double *);
-template VertexVertexMask<float> ComputeVertexVertexMask(Interpolation, int);
-template VertexVertexMask<double> ComputeVertexVertexMask(Interpolation, int);
 
 } // namespace OpenSubdivHex::FarExt

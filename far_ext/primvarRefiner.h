@@ -59,7 +59,7 @@ public:
     void InterpolateFaceVarying(int level, T const &src, U &dst, int channel = 0) const {
         internal::FVarLevel const &pChannel =
             *_refiner.GetLevel(level - 1).GetTopology().fvarLevels[channel];
-        internal::RefinementMask<REAL> const &mask =
+        internal::RefinementMask const &mask =
             pChannel.linearInterpolation == Sdc::Options::FVAR_LINEAR_ALL ? _varyingMask
                                                                           : _vertexMask;
         TopologyLevel const pValues(&pChannel.topology);
@@ -83,32 +83,32 @@ private:
     FaceMask faceMask() const { return _refiner.GetHexSchemeOptions().faceMask; }
 
     template <class T, class U>
-    void interpolate(TopologyLevel const &pLevel, internal::RefinementMask<REAL> const &mask,
+    void interpolate(TopologyLevel const &pLevel, internal::RefinementMask const &mask,
                      T const &src, U &dst) const;
 
     TopologyRefiner const &_refiner;
-    internal::RefinementMask<REAL> _vertexMask;
-    internal::RefinementMask<REAL> _varyingMask;
+    internal::RefinementMask _vertexMask;
+    internal::RefinementMask _varyingMask;
 };
 
 template <typename REAL>
 template <class T, class U>
 void PrimvarRefinerReal<REAL>::interpolate(TopologyLevel const &pLevel,
-                                           internal::RefinementMask<REAL> const &mask,
+                                           internal::RefinementMask const &mask,
                                            T const &src, U &dst) const {
     HexIndexing const indexing = pLevel.GetChildIndexing();
-    REAL scratch[HexIndexing::kNumEFaceCorners];
+    std::vector<double> scratch;
 
     for (Far::Index pFace = 0; pFace < pLevel.GetNumFaces(); ++pFace) {
         Far::ConstIndexArray const pVerts = pLevel.GetFaceVertices(pFace);
         for (int i = 0; i < pVerts.size(); ++i) {
             Far::Index const corner = pLevel.GetFaceFirstCorner(pFace) + i;
-            REAL const *weights = mask.GetFaceVertexWeights(pLevel, pFace, i, scratch);
+            double const *weights = mask.GetFaceVertexWeights(pLevel, pFace, i, scratch);
             auto &&point = dst[indexing.GetCornerChildVertex(corner)];
             point.Clear();
             for (int j = 0; j < pVerts.size(); ++j) {
                 if (weights[j] > 0) {
-                    point.AddWithWeight(src[pVerts[j]], weights[j]);
+                    point.AddWithWeight(src[pVerts[j]], REAL(weights[j]));
                 }
             }
         }
@@ -117,15 +117,15 @@ void PrimvarRefinerReal<REAL>::interpolate(TopologyLevel const &pLevel,
         auto const weights = mask.GetVertexMask(pLevel, pVert);
         auto &&point = dst[indexing.GetVertexChildVertex(pVert)];
         point.Clear();
-        point.AddWithWeight(src[pVert], weights.vertexWeight);
+        point.AddWithWeight(src[pVert], REAL(weights.vertexWeight));
         for (int i = 0; i < weights.numNeighbors; ++i) {
-            point.AddWithWeight(src[weights.neighbors[i]], weights.neighborWeights[i]);
+            point.AddWithWeight(src[weights.neighbors[i]], REAL(weights.neighborWeights[i]));
         }
         if (weights.faceWeight > 0) {
             for (int i = 0; i < pLevel.GetVertexFaces(pVert).size(); ++i) {
                 Far::Index const corner = pLevel.GetVertexCorner(pVert, i);
                 point.AddWithWeight(dst[indexing.GetCornerChildVertex(corner)],
-                                    weights.faceWeight);
+                                    REAL(weights.faceWeight));
             }
         }
     }

@@ -6,10 +6,9 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-template <typename REAL>
-RefinementMask<REAL>::RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask,
+RefinementMask::RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask,
                                      Interpolation interpolation)
-    : _interpolation(interpolation) {
+    : _faceMask(faceMask), _interpolation(interpolation) {
     // F-faces keep the size of their parent, so all sizes are those of the base and of E-faces.
     constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
     constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
@@ -18,7 +17,7 @@ RefinementMask<REAL>::RefinementMask(TopologyLevel const &baseLevel, FaceMask fa
         sizes.insert(baseLevel.GetFaceVertices(face).size());
     }
     for (int size : sizes) {
-        std::vector<REAL> &mask = _faceMasks[size];
+        std::vector<double> &mask = _faceMasks[size];
         mask.resize(2 * std::size_t(size));
         ComputeFaceVertexMask(faceMask, interpolation, size, mask.data());
         std::copy_n(mask.begin(), size, mask.begin() + size);
@@ -27,7 +26,7 @@ RefinementMask<REAL>::RefinementMask(TopologyLevel const &baseLevel, FaceMask fa
     ComputeHalfFaceVertexMask(faceMask, interpolation, &_halfFaceWeights[0][0]);
     // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
     // V and W are the ends of the diagonal, Q and P the two vertices between them.
-    std::fill_n(&_diagonalWeights[0][0], kHexagon * kHexagon, REAL(0));
+    std::fill_n(&_diagonalWeights[0][0], kHexagon * kHexagon, 0.0);
     int const halves[2][kTrapezoid] = {{3, 0, 1, 2}, {0, 3, 4, 5}};
     for (auto const &half : halves) {
         for (int i = 0; i < kTrapezoid; ++i) {
@@ -38,52 +37,71 @@ RefinementMask<REAL>::RefinementMask(TopologyLevel const &baseLevel, FaceMask fa
     }
 }
 
-template <typename REAL>
-REAL const *
-RefinementMask<REAL>::GetFaceVertexWeights(TopologyLevel const &level, Index face, int corner,
-                                           REAL scratch[HexIndexing::kNumEFaceCorners]) const {
+double const *RefinementMask::GetFaceVertexWeights(TopologyLevel const &level, Index face,
+                                                       int corner,
+                                                       std::vector<double> &scratch) const {
+    if (level.GetTopology().HasFeatures()) {
+        return featureWeights(level, face, corner, scratch);
+    }
+    return smoothWeights(level.GetFaceVertices(face).size(), corner);
+}
+
+double const *RefinementMask::featureWeights(TopologyLevel const &level, Index face,
+                                                 int corner, std::vector<double> &scratch) const {
     int const size = level.GetFaceVertices(face).size();
     if (level.IsFaceHalf(face)) {
         return _halfFaceWeights[corner];
     }
-    REAL const *smooth = smoothWeights(size, corner);
-    float const sharpness = level.GetFaceDiagonalSharpness(face);
-    if (_interpolation == Interpolation::Varying || !Sdc::Crease::IsSharp(sharpness)) {
+    double const *smooth = smoothWeights(size, corner);
+    if (_interpolation == Interpolation::Varying) {
         return smooth;
     }
-    REAL const *sharp = _diagonalWeights[corner];
-    if (sharpness >= 1) {
-        return sharp;
+    if (float const sharpness = level.GetFaceDiagonalSharpness(face);
+        Sdc::Crease::IsSharp(sharpness)) {
+        double const *sharp = _diagonalWeights[corner];
+        if (sharpness >= 1) {
+            return sharp;
+        }
+        double const weight = sharpness;
+        scratch.resize(size);
+        for (int j = 0; j < size; ++j) {
+            scratch[j] = weight * sharp[j] + (1 - weight) * smooth[j];
+        }
+        return scratch.data();
     }
-    REAL const weight = REAL(sharpness);
-    for (int j = 0; j < size; ++j) {
-        scratch[j] = weight * sharp[j] + (1 - weight) * smooth[j];
+    SectorCorner const *sector =
+        level.GetTopology().FindSectorCorner(level.GetFaceFirstCorner(face) + corner);
+    if (sector) {
+        double const towards =
+            sector->weight * (1 - ComputeSectorShrink(_faceMask, sector->sectorSize));
+        scratch.assign(smooth, smooth + size);
+        for (double &weight : scratch) {
+            weight *= 1 - towards;
+        }
+        scratch[corner] += towards;
+        return scratch.data();
     }
-    return scratch;
+    return smooth;
 }
 
-template <typename REAL>
-auto RefinementMask<REAL>::GetVertexMask(TopologyLevel const &level, Index vert) const
+auto RefinementMask::GetVertexMask(TopologyLevel const &level, Index vert) const
     -> VertexMask {
     SharpVertex const *sharp = _interpolation == Interpolation::Vertex
                                    ? level.GetTopology().FindSharpVertex(vert)
                                    : nullptr;
     if (!sharp) {
-        VertexVertexMask<REAL> const mask =
-            ComputeVertexVertexMask<REAL>(_interpolation, level.GetVertexFaces(vert).size());
+        VertexVertexMask const mask =
+            ComputeVertexVertexMask(_interpolation, level.GetVertexFaces(vert).size());
         return {mask.vertexWeight, mask.faceWeight, 0, {}, {}};
     }
-    VertexMask mask = {REAL(sharp->vertexWeight), REAL(sharp->faceWeight), 0, {}, {}};
+    VertexMask mask = {sharp->vertexWeight, sharp->faceWeight, 0, {}, {}};
     for (int i = 0; i < 2; ++i) {
         if (sharp->neighborWeights[i] > 0) {
             mask.neighbors[mask.numNeighbors] = sharp->neighbors[i];
-            mask.neighborWeights[mask.numNeighbors++] = REAL(sharp->neighborWeights[i]);
+            mask.neighborWeights[mask.numNeighbors++] = sharp->neighborWeights[i];
         }
     }
     return mask;
 }
-
-template class RefinementMask<float>;
-template class RefinementMask<double>;
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sharpFeatures.h"
 
+#include "mask.h"
+
 #include <algorithm>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -156,17 +158,109 @@ SharpVertex blend(SharpVertex const &parent, SharpVertex const &child, double pa
     return result;
 }
 
+// What is met on the way around a vertex: a corner, or between two of them an edge or a diagonal.
+struct RingItem {
+    Index corner;    // INDEX_INVALID for an edge or a diagonal, and for half a hexagon
+    bool isFace;     // a corner or half a hexagon
+    bool isLong;     // a diagonal or a B boundary
+    float sharpness; // of an edge or a diagonal; 0 for smooth ones
+};
+
+// The fan of faces that begins with the vertex's i'th face, in counter-clockwise order; returns the
+// number of its faces.
+Index gatherFan(LevelTopology const &level, Index vert, Index i, std::vector<RingItem> &ring) {
+    ring.clear();
+    auto addEdge = [&](Index edge) {
+        Index const kind = level.edgeFaces[2 * std::size_t(edge) + 1];
+        float const sharpness =
+            kind >= 0 ? level.GetEdgeSharpness(edge)
+                      : (kind == kFreeBoundary ? 0 : Crease::SHARPNESS_INFINITE);
+        ring.push_back({Far::INDEX_INVALID, false, kind == kSharpBoundaryB, sharpness});
+    };
+    Index const begin = level.vertFirstFace[vert];
+    Index const end = level.vertFirstFace[vert + 1];
+    Index firstEdge = Far::INDEX_INVALID;
+    for (Index k = begin + i; k < end; ++k) {
+        Index const face = level.vertFaces[k];
+        Index const first = level.faceFirstCorner[face];
+        int const size = level.faceFirstCorner[face + 1] - first;
+        int const local = level.vertFaceLocals[k];
+        Index const outEdge = level.faceEdges[first + local];
+        Index const inEdge = level.faceEdges[first + (local + size - 1) % size];
+        if (firstEdge == Far::INDEX_INVALID) {
+            firstEdge = outEdge;
+        }
+        addEdge(outEdge);
+        bool const onDiagonal = local == kDiagonalStart || local == kDiagonalEnd;
+        float const diagonal = level.GetDiagonalSharpness(face);
+        if (onDiagonal && Crease::IsSharp(diagonal)) {
+            ring.push_back({Far::INDEX_INVALID, true, false, 0});
+            ring.push_back({Far::INDEX_INVALID, false, true, diagonal});
+            ring.push_back({Far::INDEX_INVALID, true, false, 0});
+        } else {
+            bool const onLongEdge = level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
+            ring.push_back({onLongEdge ? Far::INDEX_INVALID : first + local, true, false, 0});
+        }
+        if (level.IsBoundary(inEdge)) {
+            addEdge(inEdge);
+            return k - begin - i + 1;
+        }
+        if (inEdge == firstEdge) {
+            // A closed fan begins and ends with one of its sharp edges.
+            auto const sharp = std::find_if(ring.begin(), ring.end(), [](RingItem const &item) {
+                return Crease::IsSharp(item.sharpness);
+            });
+            std::rotate(ring.begin(), sharp, ring.end());
+            ring.push_back(ring.front());
+            return k - begin - i + 1;
+        }
+    }
+    return end - begin - i;
+}
+
+// Adds the corners of wide sectors between two sharp edges of a fan.
+void addSectorCorners(std::vector<RingItem> const &ring, std::vector<SectorCorner> &result) {
+    auto isSharp = [](RingItem const &item) { return Crease::IsSharp(item.sharpness); };
+    auto start = std::find_if(ring.begin(), ring.end(), isSharp);
+    while (start != ring.end()) {
+        auto const end = std::find_if(start + 1, ring.end(), isSharp);
+        if (end == ring.end()) {
+            return;
+        }
+        auto const numFaces =
+            std::count_if(start, end, [](RingItem const &item) { return item.isFace; });
+        float const size = float(numFaces) - 0.5f * float(start->isLong) - 0.5f * float(end->isLong);
+        float const weight = std::min({1.0f, start->sharpness, end->sharpness});
+        if (size >= kMinShrunkSector) {
+            for (auto item = start; item != end; ++item) {
+                if (item->corner != Far::INDEX_INVALID) {
+                    result.push_back({item->corner, size, weight});
+                }
+            }
+        }
+        start = end;
+    }
+}
+
 } // namespace
 
-void ComputeSharpVertices(Sdc::Options sdcOptions, LevelTopology &level) {
+void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
     Crease const creasing(sdcOptions);
     SharpEdges edges;
     std::vector<float> childSharpness;
+    std::vector<RingItem> ring;
     level.sharpVerts.clear();
+    level.sectorCorners.clear();
     for (Index vert : findSharpVertices(level)) {
         int const numFaces = level.vertFirstFace[vert + 1] - level.vertFirstFace[vert];
         float const vertSharpness = level.GetVertexSharpness(vert);
         gatherSharpEdges(level, vert, edges);
+        if (edges.GetSize() >= 2) {
+            for (Index i = 0; i < numFaces;) {
+                i += gatherFan(level, vert, i, ring);
+                addSectorCorners(ring, level.sectorCorners);
+            }
+        }
         bool const isNonManifold = contains(level.nonManifoldVerts, vert);
         if (isNonManifold && !Crease::IsSharp(vertSharpness) && edges.GetSize() >= 2) {
             // A crease along which three or more sheets meet: all of them see the same curve, that
@@ -198,6 +292,8 @@ void ComputeSharpVertices(Sdc::Options sdcOptions, LevelTopology &level) {
             level.sharpVerts.push_back(mask);
         }
     }
+    std::sort(level.sectorCorners.begin(), level.sectorCorners.end(),
+              [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
 }
 
 namespace {

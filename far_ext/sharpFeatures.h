@@ -16,7 +16,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// \p child has its relations; without full topology only the tags of faces are made.
 void RefineTags(LevelTopology const &parent, Sdc::Options sdcOptions, LevelTopology &child);
 
-/// \brief Fills level.sharpVerts from the level's boundaries and tags, with Sdc::Crease's rules.
+/// \brief Fills level.sharpVerts and level.sectorCorners from the level's boundaries and tags, with Sdc::Crease's rules.
 ///
 /// Where a vertex meets a crease or a sharp boundary, its sharp edges are crease edges and sharp
 /// boundaries (phase A, one unit long in the lattice) and diagonals and B boundaries (two units
@@ -26,7 +26,7 @@ void RefineTags(LevelTopology const &parent, Sdc::Options sdcOptions, LevelTopol
 ///     B and B: V' = (26 V + 3 V_l + 3 V_r)/32
 ///
 /// which reproduces linear functions and gives curves with bounded curvature.
-void ComputeSharpVertices(Sdc::Options sdcOptions, LevelTopology &level);
+void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

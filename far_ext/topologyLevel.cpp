@@ -66,7 +66,7 @@ Far::ConstLocalIndexArray TopologyLevel::GetVertexEdgeLocalIndices(Index v) cons
 Index TopologyLevel::FindEdge(Index v0, Index v1) const {
     for (Index edge : GetVertexEdges(v0)) {
         ConstIndexArray const verts = GetEdgeVertices(edge);
-        if (verts[0] == v1 || verts[1] == v1) {
+        if ((verts[0] == v0 && verts[1] == v1) || (verts[0] == v1 && verts[1] == v0)) {
             return edge;
         }
     }
@@ -229,7 +229,7 @@ Far::ConstIndexArray TopologyLevel::GetEdgeChildEdges(Index e) const {
         return ConstIndexArray();
     }
     ConstIndexArray const edges = TopologyLevel(_topology->child).GetFaceEdges(GetEdgeChildFace(e));
-    return edges.size() ? ConstIndexArray(&edges[kBoundaryEFaceEdge], 1) : edges;
+    return edges.empty() ? edges : ConstIndexArray(&edges[kBoundaryEFaceEdge], 1);
 }
 
 Index TopologyLevel::GetEdgeChildFace(Index e) const {

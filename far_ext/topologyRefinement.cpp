@@ -345,6 +345,7 @@ void clearRelations(LevelTopology &level) {
         array->Resize(0);
     }
     level.sharpVerts.clear();
+    level.sectorCorners.clear();
 }
 
 } // namespace
@@ -403,7 +404,7 @@ void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTop
     }
     RefineTags(parent, sdcOptions, child);
     if (fullTopology) {
-        ComputeSharpVertices(sdcOptions, child);
+        ComputeSharpMasks(sdcOptions, child);
     }
 }
 

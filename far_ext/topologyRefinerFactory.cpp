@@ -216,7 +216,7 @@ std::unique_ptr<LevelTopology> Importer::Import(Status &status) {
     }
     internal::BuildBaseLevel(_edges, *_level);
     importTags();
-    internal::ComputeSharpVertices(_baseRefiner.GetSchemeOptions(), *_level);
+    internal::ComputeSharpMasks(_baseRefiner.GetSchemeOptions(), *_level);
     for (int channel = 0; channel < _base.GetNumFVarChannels(); ++channel) {
         importChannel(channel);
     }
