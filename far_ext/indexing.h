@@ -14,6 +14,7 @@ namespace OpenSubdivHex::FarExt {
 /// vertex.  An interior edge v0-v1 has side a (its first face, v0 to v1) and side b (v1 to v0); its
 /// E-face is v0', P_b(v0), P_b(v1), v1', P_a(v1), P_a(v0).  A boundary edge has side a alone; its
 /// E-face is v0', v1', P_a(v1), P_a(v0).  Edge i of the E-face joins its vertices i and i + 1.
+/// In both, the last vertex is the F-vertex of the corner where side a starts.
 struct EFaceSide {
     Far::LocalIndex startVertex;  ///< V-vertex of the start vertex
     Far::LocalIndex endVertex;    ///< V-vertex of the end vertex
@@ -30,6 +31,15 @@ inline constexpr EFaceSide kBoundaryEFaceSide = {0, 1, 3, 2, 2, 3, 1};
 /// Place in a boundary edge's E-face of the edge that stays on the boundary.
 inline constexpr Far::LocalIndex kBoundaryEFaceEdge = 0;
 
+/// \brief Where sharp features stand in the faces they cross.
+///
+/// The E-face of a crease edge v0-v1 is cut along the diagonal v0'-v1', its corners 0 and 3; that of
+/// a sharp boundary edge is a half-hexagon whose long side, its edge 0, lies on the boundary.
+/// F-faces inherit both in the same place.
+inline constexpr int kDiagonalStart = 0;
+inline constexpr int kDiagonalEnd = 3;
+inline constexpr int kHalfFaceLongEdge = 0;
+
 /// \brief The closed-form numbering of a child level in terms of its parent: see INDEXING.md.
 ///
 /// A *corner* is a position in the parent's face-vertex array.  Nothing is stored but the parent's
@@ -38,18 +48,8 @@ class HexIndexing {
 public:
     using Index = Far::Index;
 
-    HexIndexing(Index numVertices, Index numEdges, Index numFaces, Index numCorners)
-        : _numVertices(numVertices), _numEdges(numEdges), _numFaces(numFaces),
-          _numCorners(numCorners) {}
-
-    // V' = V + C, F' = F + E, C' = C + 6 Ei + 4 Eb, E' = 2C + Eb with Ei interior and Eb boundary
-    // edges; on a closed mesh C = 2E, so that E' = 4E, V' = V + 2E, C' = C + 6E.
-    static std::int64_t GetNumChildVertices(std::int64_t v, std::int64_t c) { return v + c; }
-    static std::int64_t GetNumChildFaces(std::int64_t f, std::int64_t e) { return f + e; }
-    static std::int64_t GetNumChildEdges(std::int64_t c, std::int64_t eb) { return 2 * c + eb; }
-    static std::int64_t GetNumChildCorners(std::int64_t c, std::int64_t e, std::int64_t eb) {
-        return c + kNumEFaceCorners * e - (kNumEFaceCorners - kNumBoundaryEFaceCorners) * eb;
-    }
+    HexIndexing(Index numVertices, Index numFaces, Index numCorners)
+        : _numVertices(numVertices), _numFaces(numFaces), _numCorners(numCorners) {}
 
     /// Corners of the E-face of an interior and of a boundary edge.
     static constexpr int kNumEFaceCorners = 6;
@@ -62,15 +62,16 @@ public:
 
     /// F-face: the child of parent face \p f.
     Index GetFaceChildFace(Index f) const { return f; }
-    /// E-face: the child of parent edge \p e.
-    Index GetEdgeChildFace(Index e) const { return _numFaces + e; }
+    /// E-face: the child of parent edge \p e.  \p numBBefore of the edges before it are B edges,
+    /// which make none.
+    Index GetEdgeChildFace(Index e, Index numBBefore) const { return _numFaces + e - numBBefore; }
 
     /// First corner of the F-face of parent face \p f, whose first corner is \p pFirstCorner.
     Index GetFaceChildFirstCorner(Index pFirstCorner) const { return pFirstCorner; }
-    /// First corner of the E-face of parent edge \p e, \p numBoundaryBefore of the edges before
-    /// which are boundaries.
-    Index GetEdgeChildFirstCorner(Index e, Index numBoundaryBefore) const {
-        return _numCorners + kNumEFaceCorners * e -
+    /// First corner of the E-face of parent edge \p e, when \p numBBefore of the edges before are
+    /// B edges, and \p numBoundaryBefore are boundaries that make an E-face.
+    Index GetEdgeChildFirstCorner(Index e, Index numBBefore, Index numBoundaryBefore) const {
+        return _numCorners + kNumEFaceCorners * (e - numBBefore) -
                (kNumEFaceCorners - kNumBoundaryEFaceCorners) * numBoundaryBefore;
     }
 
@@ -78,18 +79,18 @@ public:
     Index GetCornerChildEdge(Index c) const { return c; }
     /// Spoke: the edge from the V-vertex to the F-vertex of parent corner \p c.
     Index GetCornerChildSpoke(Index c) const { return _numCorners + c; }
-    /// Boundary edge between the V-vertices of the \p rank'th boundary edge of the parent.
+    /// Edge between the V-vertices of the \p rank'th of the parent's boundary edges that make an
+    /// E-face.
     Index GetBoundaryChildEdge(Index rank) const { return 2 * _numCorners + rank; }
 
-    /// Inverse queries: what a child component came from.
+    /// Whether a child vertex is an F-vertex, and of which corner.
     bool IsVertexFromCorner(Index cVert) const { return cVert >= _numVertices; }
     Index GetChildVertexCorner(Index cVert) const { return cVert - _numVertices; }
+    /// Whether a child face is an E-face.
     bool IsFaceFromEdge(Index cFace) const { return cFace >= _numFaces; }
-    Index GetChildFaceEdge(Index cFace) const { return cFace - _numFaces; }
 
 private:
     Index _numVertices;
-    Index _numEdges;
     Index _numFaces;
     Index _numCorners;
 };

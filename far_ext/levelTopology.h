@@ -5,34 +5,99 @@
 #include "buffer.h"
 #include "indexing.h"
 
+#include <opensubdiv/sdc/crease.h>
+
+#include <algorithm>
+#include <vector>
+
 namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief How a boundary edge refines.  Stands in LevelTopology::edgeFaces in place of the second
+/// face.  The phases A and B of sharp boundaries alternate as INDEXING.md shows.
+enum BoundaryKind : Far::Index {
+    kFreeBoundary = Far::INDEX_INVALID, ///< the paper's rule: stays one edge for ever
+    kSharpBoundaryA = -2,               ///< runs along an edge of the hexagonal lattice
+    kSharpBoundaryB = -3                ///< cuts a hexagon in two: its face is a half face
+};
+
+/// \brief The mask of a vertex on a sharp feature:
+/// V' = vertexWeight V + faceWeight (sum of its F-vertices) + sum of neighborWeights neighbors.
+struct SharpVertex {
+    Far::Index vert;
+    Sdc::Crease::Rule rule;
+    double vertexWeight;
+    double faceWeight;
+    Far::Index neighbors[2]; ///< along the crease; meaningless where the weight is 0
+    double neighborWeights[2];
+};
+
+/// \brief A corner whose F-vertex is drawn towards its vertex, because that has many faces between
+/// two sharp edges: see ComputeSectorShrink in mask.h.
+struct SectorCorner {
+    Far::Index corner;
+    float sectorSize; ///< faces between the sharp edges; a half hexagon counts half
+    float weight;     ///< 1, or less between semi-sharp edges whose sharpness is below 1
+};
+
+struct FVarLevel;
 
 /// \brief The arrays of one level.  TopologyLevel is the public view of them.
 ///
 /// Invariants of every level, level 0 included:
 ///  - a face's vertices run in its orientation; its edge i joins its vertices i and i + 1;
 ///  - an edge's first face runs from the edge's first vertex to its second, the other face back;
-///    a boundary edge has INDEX_INVALID in place of the second face;
+///    a boundary edge has a BoundaryKind in place of the second face;
 ///  - the edges and faces of a vertex are in counter-clockwise order: face i lies between edges i
-///    and i + 1; at a boundary vertex the first and the last edge are boundaries.
+///    and i + 1; at a boundary vertex the first and the last edge are boundaries.  The fans of a
+///    non-manifold vertex follow one another, each in this order.
 struct LevelTopology {
     using Index = Far::Index;
     using LocalIndex = Far::LocalIndex;
 
+    LevelTopology();
+    ~LevelTopology();
+
     HexIndexing ChildIndexing() const {
-        return HexIndexing(numVertices, numEdges, numFaces, numCorners);
+        return HexIndexing(numVertices, numFaces, numCorners);
     }
 
-    /// Empties all relations but the face-vertices.
-    void ClearRelations() {
-        hasFullTopology = false;
-        for (Buffer<Index> *array : {&faceEdges, &edgeVerts, &edgeFaces, &boundaryEdges,
-                                     &vertFirstFace, &vertFaces, &vertFirstEdge, &vertEdges}) {
-            array->Resize(0);
-        }
-        for (Buffer<LocalIndex> *array : {&edgeFaceLocals, &vertFaceLocals, &vertEdgeLocals}) {
-            array->Resize(0);
-        }
+    bool IsBoundary(Index e) const { return edgeFaces[2 * std::size_t(e) + 1] < 0; }
+    bool IsSharpBoundaryB(Index e) const {
+        return edgeFaces[2 * std::size_t(e) + 1] == kSharpBoundaryB;
+    }
+    /// The E-face of edge \p e, INDEX_INVALID for a B edge.
+    Index GetEdgeChildFace(Index e) const {
+        return edgeChildFaces.empty() ? ChildIndexing().GetEdgeChildFace(e, 0) : edgeChildFaces[e];
+    }
+    bool IsHalfFace(Index f) const {
+        return !halfFaces.empty() &&
+               IsSharpBoundaryB(faceEdges[faceFirstCorner[f] + kHalfFaceLongEdge]);
+    }
+    /// Whether any face of the level has another mask than that of its size.
+    bool HasFeatures() const {
+        return !halfFaces.empty() || !diagonalSharpness.empty() || !sectorCorners.empty();
+    }
+    float GetEdgeSharpness(Index e) const { return edgeSharpness.empty() ? 0 : edgeSharpness[e]; }
+    float GetDiagonalSharpness(Index f) const {
+        return diagonalSharpness.empty() ? 0 : diagonalSharpness[f];
+    }
+    float GetVertexSharpness(Index v) const {
+        return std::size_t(v) < vertSharpness.size() ? vertSharpness[v] : 0;
+    }
+
+    /// The sharp vertex \p v, null when its rule is the smooth one.
+    SharpVertex const *FindSharpVertex(Index v) const {
+        auto const found =
+            std::lower_bound(sharpVerts.begin(), sharpVerts.end(), v,
+                             [](SharpVertex const &sharp, Index vert) { return sharp.vert < vert; });
+        return found != sharpVerts.end() && found->vert == v ? &*found : nullptr;
+    }
+    /// The entry of a corner in a wide sector, null for others.
+    SectorCorner const *FindSectorCorner(Index corner) const {
+        auto const found = std::lower_bound(
+            sectorCorners.begin(), sectorCorners.end(), corner,
+            [](SectorCorner const &sector, Index c) { return sector.corner < c; });
+        return found != sectorCorners.end() && found->corner == corner ? &*found : nullptr;
     }
 
     int depth = 0;
@@ -43,7 +108,9 @@ struct LevelTopology {
     Index numEdges = 0;
     Index numFaces = 0;
     Index numCorners = 0;       ///< entries of faceVerts
-    Index numBoundaryEdges = 0; ///< edges with one face
+    Index numFreeBoundaries = 0; ///< boundary edges by their BoundaryKind
+    Index numSharpBoundariesA = 0;
+    Index numSharpBoundariesB = 0;
 
     /// False when only the face-vertices were made (the last level, unless asked for more).
     bool hasFullTopology = false;
@@ -55,7 +122,8 @@ struct LevelTopology {
     Buffer<Index> edgeVerts;           ///< 2 per edge
     Buffer<Index> edgeFaces;           ///< 2 per edge
     Buffer<LocalIndex> edgeFaceLocals; ///< 2 per edge: the edge's place in each face
-    Buffer<Index> boundaryEdges;       ///< numBoundaryEdges, ascending
+    Buffer<Index> boundaryEdges;       ///< all kinds, ascending
+    Buffer<Index> halfFaces;           ///< faces with a B edge, ascending
 
     Buffer<Index> vertFirstFace; ///< numVertices + 1 positions in vertFaces, vertFaceLocals
     Buffer<Index> vertFaces;
@@ -65,6 +133,21 @@ struct LevelTopology {
     Buffer<LocalIndex> vertEdgeLocals; ///< 0 or 1: the vertex's place in each of its edges
 
     Buffer<Index> faceChildFaces; ///< numFaces, of a level that was refined
+    Buffer<Index> edgeChildFaces; ///< numEdges; empty when every edge makes an E-face
+
+    // Tags; each array is empty in a level that has none of its kind.
+    Buffer<float> edgeSharpness;     ///< numEdges, of interior edges
+    Buffer<float> diagonalSharpness; ///< numFaces
+    Buffer<float> vertSharpness;     ///< of the vertices of level 0, the only ones that have any
+    Buffer<unsigned char> faceHoles; ///< numFaces
+    std::vector<Index> nonManifoldVerts; ///< ascending
+    std::vector<Index> nonManifoldEdges; ///< ascending; of level 0 alone
+
+    std::vector<SharpVertex> sharpVerts; ///< ascending; all vertices with a rule but RULE_SMOOTH
+
+    std::vector<SectorCorner> sectorCorners; ///< ascending
+
+    std::vector<std::unique_ptr<FVarLevel>> fvarLevels; ///< by channel
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -48,28 +48,49 @@ long double faceWeight(FaceMask mask, Interpolation interpolation, int j, int n)
 
 } // namespace
 
-template <typename REAL>
-void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, REAL *weights) {
+void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, double *weights) {
     for (int j = 0; j <= n / 2; ++j) {
-        weights[j] = REAL(faceWeight(mask, interpolation, j, n));
+        weights[j] = double(faceWeight(mask, interpolation, j, n));
     }
     for (int j = n / 2 + 1; j < n; ++j) {
         weights[j] = weights[n - j];
     }
 }
 
-template <typename REAL>
-VertexVertexMask<REAL> ComputeVertexVertexMask(Interpolation interpolation, int numFaces) {
-    if (interpolation == Interpolation::Varying) {
-        return {REAL(1), REAL(0)};
+void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, double *weights) {
+    long double w[4]; // by distance in the completed hexagon
+    for (int j = 0; j < 4; ++j) {
+        w[j] = faceWeight(mask, interpolation, j, 6);
     }
-    REAL const weight = REAL(1) / REAL(numFaces + 1);
+    long double const atLong = w[1] + 1.5L * w[2] + 0.5L * w[3]; // the end beside the corner
+    long double const atOther = 1.5L * (w[2] + w[3]);
+    long double const atSelf = w[0] - w[2];
+    long double const atTwin = w[1] - w[3];
+    long double const rows[4][4] = {{0.75L, 0.25L, 0, 0},
+                                    {0.25L, 0.75L, 0, 0},
+                                    {atOther, atLong, atSelf, atTwin},
+                                    {atLong, atOther, atTwin, atSelf}};
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) {
+            weights[4 * i + j] = double(rows[i][j]);
+        }
+    }
+}
+
+double ComputeSectorShrink(FaceMask mask, double sectorSize) {
+    bool const isAverage = mask == FaceMask::Average;
+    double const alpha = isAverage ? 0.98 : 1.31;
+    double const beta = isAverage ? 0.305 : 0.515;
+    return 1 / (alpha + beta * std::cos(3.14159265358979323846 / sectorSize));
+}
+
+VertexVertexMask ComputeVertexVertexMask(Interpolation interpolation, int numFaces) {
+    if (interpolation == Interpolation::Varying) {
+        return {1, 0};
+    }
+    double const weight = 1.0 / (numFaces + 1);
     return {weight, weight};
 }
 
-template void ComputeFaceVertexMask(FaceMask, Interpolation, int, float *);
-template void ComputeFaceVertexMask(FaceMask, Interpolation, int, double *);
-template VertexVertexMask<float> ComputeVertexVertexMask(Interpolation, int);
-template VertexVertexMask<double> ComputeVertexVertexMask(Interpolation, int);
 
 } // namespace OpenSubdivHex::FarExt

@@ -30,20 +30,43 @@ enum class Interpolation {
 /// \brief Writes the \p n weights of the vertices 0 ... n-1 steps around a face of \p n sides.
 ///
 /// The weights are non-negative, symmetric (w[j] == w[n-j]) and sum to 1.  \p n is at least 3.
-template <typename REAL>
-void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, REAL *weights);
+void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, double *weights);
+
+/// \brief Writes the 4 x 4 weights of a half face V, W, Q, P, a half-hexagon whose long side V-W is
+/// a sharp boundary or crease: row i has the weights of the four vertices for the F-vertex of
+/// corner i.
+///
+/// On the long side P_V = (3 V + W)/4.  The other two corners follow the mask of the hexagon that is
+/// completed by the ghosts Q* = (3 V + W)/2 - P and P* = (V + 3 W)/2 - Q, in the order
+/// V, Q*, P*, W, Q, P; the weights come out non-negative.
+void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, double *weights);
+
+/// \brief The least sector that ComputeSectorShrink is for.
+inline constexpr double kMinShrunkSector = 3;
+
+/// \brief Factor s by which F-vertices in a wide sector are drawn towards their vertex:
+/// P = s (mask of the face) + (1 - s) V.
+///
+/// A sector is what lies at a vertex between two sharp edges (boundaries or creases); its size k is
+/// the number of its faces, k >= 3.  With the plain masks the surface approaches the sharp curve in
+/// such a sector as at an interior vertex of valence 2k, with an eigenvalue above the curve's 1/2;
+/// from k = 4 on a second mode passes 1/2, and the tangent plane is lost.  With
+///
+///     s = 1/(alpha + beta cos(pi/k)),  Average: 0.98, 0.305,  Cosine and Smooth: 1.31, 0.515
+///
+/// the first mode across has the eigenvalue 1/2 (within 0.002) for every k, the next less.  The
+/// constants are a fit to numerical solutions for k = 3 ... 12.  Curve and topology are untouched.
+double ComputeSectorShrink(FaceMask mask, double sectorSize);
 
 /// \brief The mask of an old vertex: V' = vertexWeight V + sum over its faces of faceWeight P_i.
-template <typename REAL>
 struct VertexVertexMask {
-    REAL vertexWeight;
-    REAL faceWeight;
+    double vertexWeight;
+    double faceWeight;
 };
 
 /// \brief Returns the mask of a vertex with \p numFaces incident faces: both weights are
 /// 1/(numFaces + 1) for vertex data (the paper's stage 2); 1 and 0 for varying data.
-template <typename REAL>
-VertexVertexMask<REAL> ComputeVertexVertexMask(Interpolation interpolation, int numFaces);
+VertexVertexMask ComputeVertexVertexMask(Interpolation interpolation, int numFaces);
 
 } // namespace OpenSubdivHex::FarExt
 

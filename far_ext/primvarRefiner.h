@@ -2,7 +2,9 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PRIMVAR_REFINER_H
 #define OPENSUBDIVHEX_FAR_EXT_PRIMVAR_REFINER_H
 
+#include "fvarLevel.h"
 #include "refinementMask.h"
+#include "topologyRefiner.h"
 
 namespace OpenSubdivHex::FarExt {
 
@@ -23,8 +25,8 @@ template <typename REAL>
 class PrimvarRefinerReal {
 public:
     explicit PrimvarRefinerReal(TopologyRefiner const &refiner)
-        : _refiner(refiner), _vertexMask(refiner, Interpolation::Vertex),
-          _varyingMask(refiner, Interpolation::Varying) {}
+        : _refiner(refiner), _vertexMask(refiner.GetLevel(0), faceMask(), Interpolation::Vertex),
+          _varyingMask(refiner.GetLevel(0), faceMask(), Interpolation::Varying) {}
 
     TopologyRefiner const &GetTopologyRefiner() const { return _refiner; }
 
@@ -32,13 +34,13 @@ public:
     /// of the scheme.  1 <= level <= GetMaxLevel().
     template <class T, class U>
     void Interpolate(int level, T const &src, U &dst) const {
-        interpolate(level, _vertexMask, src, dst);
+        interpolate(_refiner.GetLevel(level - 1), _vertexMask, src, dst);
     }
 
     /// \brief Varying data: linear, V' = V and P = (V + centroid)/2.
     template <class T, class U>
     void InterpolateVarying(int level, T const &src, U &dst) const {
-        interpolate(level, _varyingMask, src, dst);
+        interpolate(_refiner.GetLevel(level - 1), _varyingMask, src, dst);
     }
 
     /// \brief Face-uniform data: dst[f] is a copy of src[GetFaceParentFace(f)], for an E-face the
@@ -51,46 +53,79 @@ public:
         }
     }
 
-private:
+    /// \brief Face-varying data: dst[i] for all GetNumFVarValues(channel) values of \p level from
+    /// those of level - 1, by the channel's FVarLinearInterpolation.
     template <class T, class U>
-    void interpolate(int level, internal::RefinementMask<REAL> const &mask, T const &src,
-                     U &dst) const;
+    void InterpolateFaceVarying(int level, T const &src, U &dst, int channel = 0) const {
+        internal::FVarLevel const &pChannel =
+            *_refiner.GetLevel(level - 1).GetTopology().fvarLevels[channel];
+        internal::RefinementMask const &mask =
+            pChannel.linearInterpolation == Sdc::Options::FVAR_LINEAR_ALL ? _varyingMask
+                                                                          : _vertexMask;
+        TopologyLevel const pValues(&pChannel.topology);
+        if (level == 1) {
+            ValuesOfVertices<T> const values{src, pChannel.valuesOfVertices.data()};
+            interpolate(pValues, mask, values, dst);
+        } else {
+            interpolate(pValues, mask, src, dst);
+        }
+    }
+
+private:
+    // The values of level 0 as seen from the vertices of its value mesh.
+    template <class T>
+    struct ValuesOfVertices {
+        auto const &operator[](Far::Index vert) const { return src[values[vert]]; }
+        T const &src;
+        Far::Index const *values;
+    };
+
+    FaceMask faceMask() const { return _refiner.GetHexSchemeOptions().faceMask; }
+
+    template <class T, class U>
+    void interpolate(TopologyLevel const &pLevel, internal::RefinementMask const &mask,
+                     T const &src, U &dst) const;
 
     TopologyRefiner const &_refiner;
-    internal::RefinementMask<REAL> _vertexMask;
-    internal::RefinementMask<REAL> _varyingMask;
+    internal::RefinementMask _vertexMask;
+    internal::RefinementMask _varyingMask;
 };
 
 template <typename REAL>
 template <class T, class U>
-void PrimvarRefinerReal<REAL>::interpolate(int level, internal::RefinementMask<REAL> const &mask,
+void PrimvarRefinerReal<REAL>::interpolate(TopologyLevel const &pLevel,
+                                           internal::RefinementMask const &mask,
                                            T const &src, U &dst) const {
-    TopologyLevel const &pLevel = _refiner.GetLevel(level - 1);
     HexIndexing const indexing = pLevel.GetChildIndexing();
+    std::vector<double> scratch;
 
     for (Far::Index pFace = 0; pFace < pLevel.GetNumFaces(); ++pFace) {
         Far::ConstIndexArray const pVerts = pLevel.GetFaceVertices(pFace);
         for (int i = 0; i < pVerts.size(); ++i) {
             Far::Index const corner = pLevel.GetFaceFirstCorner(pFace) + i;
-            REAL const *weights = mask.GetFaceVertexWeights(pVerts.size(), i);
+            double const *weights = mask.GetFaceVertexWeights(pLevel, pFace, i, scratch);
             auto &&point = dst[indexing.GetCornerChildVertex(corner)];
             point.Clear();
             for (int j = 0; j < pVerts.size(); ++j) {
-                point.AddWithWeight(src[pVerts[j]], weights[j]);
+                if (weights[j] > 0) {
+                    point.AddWithWeight(src[pVerts[j]], REAL(weights[j]));
+                }
             }
         }
     }
     for (Far::Index pVert = 0; pVert < pLevel.GetNumVertices(); ++pVert) {
-        int const numFaces = pLevel.GetVertexFaces(pVert).size();
-        VertexVertexMask<REAL> const weights = mask.GetVertexMask(numFaces);
+        auto const weights = mask.GetVertexMask(pLevel, pVert);
         auto &&point = dst[indexing.GetVertexChildVertex(pVert)];
         point.Clear();
-        point.AddWithWeight(src[pVert], weights.vertexWeight);
+        point.AddWithWeight(src[pVert], REAL(weights.vertexWeight));
+        for (int i = 0; i < weights.numNeighbors; ++i) {
+            point.AddWithWeight(src[weights.neighbors[i]], REAL(weights.neighborWeights[i]));
+        }
         if (weights.faceWeight > 0) {
-            for (int i = 0; i < numFaces; ++i) {
+            for (int i = 0; i < pLevel.GetVertexFaces(pVert).size(); ++i) {
                 Far::Index const corner = pLevel.GetVertexCorner(pVert, i);
                 point.AddWithWeight(dst[indexing.GetCornerChildVertex(corner)],
-                                    weights.faceWeight);
+                                    REAL(weights.faceWeight));
             }
         }
     }

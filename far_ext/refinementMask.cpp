@@ -6,25 +6,102 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-template <typename REAL>
-RefinementMask<REAL>::RefinementMask(TopologyRefiner const &refiner, Interpolation interpolation)
-    : _interpolation(interpolation) {
+RefinementMask::RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask,
+                                     Interpolation interpolation)
+    : _faceMask(faceMask), _interpolation(interpolation) {
     // F-faces keep the size of their parent, so all sizes are those of the base and of E-faces.
-    std::set<int> sizes = {HexIndexing::kNumEFaceCorners, HexIndexing::kNumBoundaryEFaceCorners};
-    TopologyLevel const &base = refiner.GetLevel(0);
-    for (Index face = 0; face < base.GetNumFaces(); ++face) {
-        sizes.insert(base.GetFaceVertices(face).size());
+    constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
+    constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
+    std::set<int> sizes = {kHexagon, kTrapezoid};
+    for (Index face = 0; face < baseLevel.GetNumFaces(); ++face) {
+        sizes.insert(baseLevel.GetFaceVertices(face).size());
     }
-    FaceMask const faceMask = refiner.GetHexSchemeOptions().faceMask;
     for (int size : sizes) {
-        std::vector<REAL> &mask = _faceMasks[size];
+        std::vector<double> &mask = _faceMasks[size];
         mask.resize(2 * std::size_t(size));
         ComputeFaceVertexMask(faceMask, interpolation, size, mask.data());
         std::copy_n(mask.begin(), size, mask.begin() + size);
     }
+
+    ComputeHalfFaceVertexMask(faceMask, interpolation, &_halfFaceWeights[0][0]);
+    // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
+    // V and W are the ends of the diagonal, Q and P the two vertices between them.
+    std::fill_n(&_diagonalWeights[0][0], kHexagon * kHexagon, 0.0);
+    int const halves[2][kTrapezoid] = {{3, 0, 1, 2}, {0, 3, 4, 5}};
+    for (auto const &half : halves) {
+        for (int i = 0; i < kTrapezoid; ++i) {
+            for (int j = 0; j < kTrapezoid; ++j) {
+                _diagonalWeights[half[i]][half[j]] = _halfFaceWeights[i][j];
+            }
+        }
+    }
 }
 
-template class RefinementMask<float>;
-template class RefinementMask<double>;
+double const *RefinementMask::GetFaceVertexWeights(TopologyLevel const &level, Index face,
+                                                       int corner,
+                                                       std::vector<double> &scratch) const {
+    if (level.GetTopology().HasFeatures()) {
+        return featureWeights(level, face, corner, scratch);
+    }
+    return smoothWeights(level.GetFaceVertices(face).size(), corner);
+}
+
+double const *RefinementMask::featureWeights(TopologyLevel const &level, Index face,
+                                                 int corner, std::vector<double> &scratch) const {
+    int const size = level.GetFaceVertices(face).size();
+    if (level.IsFaceHalf(face)) {
+        return _halfFaceWeights[corner];
+    }
+    double const *smooth = smoothWeights(size, corner);
+    if (_interpolation == Interpolation::Varying) {
+        return smooth;
+    }
+    if (float const sharpness = level.GetFaceDiagonalSharpness(face);
+        Sdc::Crease::IsSharp(sharpness)) {
+        double const *sharp = _diagonalWeights[corner];
+        if (sharpness >= 1) {
+            return sharp;
+        }
+        double const weight = sharpness;
+        scratch.resize(size);
+        for (int j = 0; j < size; ++j) {
+            scratch[j] = weight * sharp[j] + (1 - weight) * smooth[j];
+        }
+        return scratch.data();
+    }
+    SectorCorner const *sector =
+        level.GetTopology().FindSectorCorner(level.GetFaceFirstCorner(face) + corner);
+    if (sector) {
+        double const towards =
+            sector->weight * (1 - ComputeSectorShrink(_faceMask, sector->sectorSize));
+        scratch.assign(smooth, smooth + size);
+        for (double &weight : scratch) {
+            weight *= 1 - towards;
+        }
+        scratch[corner] += towards;
+        return scratch.data();
+    }
+    return smooth;
+}
+
+auto RefinementMask::GetVertexMask(TopologyLevel const &level, Index vert) const
+    -> VertexMask {
+    SharpVertex const *sharp = _interpolation == Interpolation::Vertex
+                                   ? level.GetTopology().FindSharpVertex(vert)
+                                   : nullptr;
+    if (!sharp) {
+        VertexVertexMask const mask =
+            ComputeVertexVertexMask(_interpolation, level.GetVertexFaces(vert).size());
+        return {mask.vertexWeight, mask.faceWeight, 0, {}, {}};
+    }
+    VertexMask mask = {sharp->vertexWeight, sharp->faceWeight, 0, {}, {}};
+    for (int i = 0; i < 2; ++i) {
+        if (sharp->neighborWeights[i] > 0) {
+            mask.neighbors[mask.numNeighbors] = sharp->neighbors[i];
+            mask.neighborWeights[mask.numNeighbors++] = sharp->neighborWeights[i];
+        }
+    }
+    return mask;
+}
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -2,7 +2,8 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_REFINEMENT_MASK_H
 #define OPENSUBDIVHEX_FAR_EXT_REFINEMENT_MASK_H
 
-#include "topologyRefiner.h"
+#include "mask.h"
+#include "topologyLevel.h"
 
 #include <map>
 #include <vector>
@@ -11,32 +12,48 @@ namespace OpenSubdivHex::FarExt::internal {
 
 /// \brief Joins the masks to the components of a parent level: which vertices make an F-vertex or
 /// a V-vertex, and with which weights.  PrimvarRefiner and the stencil factory both read it.
-template <typename REAL>
 class RefinementMask {
 public:
     using Index = Far::Index;
 
-    RefinementMask(TopologyRefiner const &refiner, Interpolation interpolation);
+    /// The mask of a V-vertex: V' = vertexWeight V + faceWeight (sum of the F-vertices around it) +
+    /// the sum of neighborWeights[i] neighbors[i], i < numNeighbors.
+    struct VertexMask {
+        double vertexWeight;
+        double faceWeight;
+        int numNeighbors;
+        Index neighbors[2];
+        double neighborWeights[2];
+    };
 
-    /// Weights of the \p faceSize vertices of a face, in their order, for the F-vertex of the
-    /// face's corner number \p corner.
-    REAL const *GetFaceVertexWeights(int faceSize, int corner) const {
+    /// Makes masks for faces of the sizes that \p baseLevel and its refinements have.
+    RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask, Interpolation interpolation);
+
+    /// Weights of the vertices of \p face, in their order, for the F-vertex of its corner number
+    /// \p corner.  The result is valid until \p scratch is used again.
+    double const *GetFaceVertexWeights(TopologyLevel const &level, Index face, int corner,
+                                     std::vector<double> &scratch) const;
+
+    VertexMask GetVertexMask(TopologyLevel const &level, Index vert) const;
+
+private:
+    double const *smoothWeights(int faceSize, int corner) const {
         // The mask stands twice in a row, so that every rotation of it is contiguous.
         return _faceMasks.find(faceSize)->second.data() + faceSize - corner;
     }
 
-    /// The mask of a vertex with \p numFaces faces.
-    VertexVertexMask<REAL> GetVertexMask(int numFaces) const {
-        return ComputeVertexVertexMask<REAL>(_interpolation, numFaces);
-    }
+    double const *featureWeights(TopologyLevel const &level, Index face, int corner,
+                               std::vector<double> &scratch) const;
 
-private:
+    FaceMask _faceMask;
     Interpolation _interpolation;
-    std::map<int, std::vector<REAL>> _faceMasks; ///< by face size
-};
+    std::map<int, std::vector<double>> _faceMasks; ///< by face size
 
-extern template class RefinementMask<float>;
-extern template class RefinementMask<double>;
+    // One row of weights per corner of a half face and of a hexagon with a sharp diagonal.
+    double _halfFaceWeights[HexIndexing::kNumBoundaryEFaceCorners]
+                         [HexIndexing::kNumBoundaryEFaceCorners];
+    double _diagonalWeights[HexIndexing::kNumEFaceCorners][HexIndexing::kNumEFaceCorners];
+};
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -4,12 +4,14 @@
 
 #include <opensubdiv/far/error.h>
 #include <opensubdiv/far/types.h>
+#include <opensubdiv/sdc/options.h>
 
 #include <string>
 
 namespace OpenSubdivHex {
 
 namespace Far = OpenSubdiv::Far;
+namespace Sdc = OpenSubdiv::Sdc;
 
 namespace FarExt {
 

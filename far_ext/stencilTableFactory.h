@@ -21,7 +21,7 @@ struct StencilTableTypes<float> {
 };
 
 /// \brief What the stencils interpolate, spelled as in Far::StencilTableFactory.
-enum StencilMode { INTERPOLATE_VERTEX, INTERPOLATE_VARYING };
+enum StencilMode { INTERPOLATE_VERTEX, INTERPOLATE_VARYING, INTERPOLATE_FACE_VARYING };
 
 /// \brief Makes Far stencil tables of hexagonal refinements, for any Osd evaluator.
 template <typename REAL>
@@ -48,6 +48,7 @@ public:
         bool generateIntermediateLevels = true;
         bool factorizeIntermediateLevels = true;
         int maxLevel = std::numeric_limits<int>::max(); ///< 0 or more; not cut to any bit width
+        int fvarChannel = 0; ///< for INTERPOLATE_FACE_VARYING, whose vertices are face-varying values
     };
 
     /// \brief Makes the table.
@@ -55,7 +56,7 @@ public:
     /// The table has its exact size: no spare capacity, as many weights as indices, offsets filled.
     /// The indices of a stencil ascend; weights are non-negative and sum to 1.
     ///
-    /// \return  null on failure: InvalidArgument (negative maxLevel) or TooLarge (more than
+    /// \return  null on failure: InvalidArgument (negative maxLevel, channel out of range) or TooLarge (more than
     ///          2^31 - 1 stencils or weights up to the level that the status names).
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,
                                                Status *status = nullptr);

@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "topologyLevel.h"
 
+#include "fvarLevel.h"
+
 #include <algorithm>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt {
 
 using Index = Far::Index;
+using internal::FVarLevel;
 using internal::LevelTopology;
 
 namespace {
 
 int numEdgeFaces(LevelTopology const &topology, Index e) {
-    return topology.edgeFaces[2 * std::size_t(e) + 1] == Far::INDEX_INVALID ? 1 : 2;
+    return topology.IsBoundary(e) ? 1 : 2;
+}
+
+bool contains(std::vector<Index> const &ascending, Index index) {
+    return std::binary_search(ascending.begin(), ascending.end(), index);
 }
 
 } // namespace
@@ -59,7 +66,7 @@ Far::ConstLocalIndexArray TopologyLevel::GetVertexEdgeLocalIndices(Index v) cons
 Index TopologyLevel::FindEdge(Index v0, Index v1) const {
     for (Index edge : GetVertexEdges(v0)) {
         ConstIndexArray const verts = GetEdgeVertices(edge);
-        if (verts[0] == v1 || verts[1] == v1) {
+        if ((verts[0] == v0 && verts[1] == v1) || (verts[0] == v1 && verts[1] == v0)) {
             return edge;
         }
     }
@@ -72,9 +79,91 @@ bool TopologyLevel::IsVertexBoundary(Index v) const {
     return GetVertexEdges(v).size() > GetVertexFaces(v).size();
 }
 
+bool TopologyLevel::IsEdgeNonManifold(Index e) const {
+    return contains(_topology->nonManifoldEdges, e);
+}
+
+bool TopologyLevel::IsVertexNonManifold(Index v) const {
+    return contains(_topology->nonManifoldVerts, v);
+}
+
+float TopologyLevel::GetEdgeSharpness(Index e) const {
+    if (HasFullTopology() && _topology->IsBoundary(e)) {
+        bool const isFree = _topology->edgeFaces[2 * std::size_t(e) + 1] == internal::kFreeBoundary;
+        return isFree ? Sdc::Crease::SHARPNESS_SMOOTH : Sdc::Crease::SHARPNESS_INFINITE;
+    }
+    return _topology->GetEdgeSharpness(e);
+}
+
+Sdc::Crease::Rule TopologyLevel::GetVertexRule(Index v) const {
+    internal::SharpVertex const *sharp = _topology->FindSharpVertex(v);
+    return sharp ? sharp->rule : Sdc::Crease::RULE_SMOOTH;
+}
+
 bool TopologyLevel::IsVertexValenceRegular(Index v) const {
     int const numFaces = GetVertexFaces(v).size();
     return IsVertexBoundary(v) ? (numFaces <= 2) : (numFaces == 3);
+}
+
+int TopologyLevel::GetNumFVarValues(int channel) const {
+    return _topology->fvarLevels[channel]->numValues;
+}
+
+Far::ConstIndexArray TopologyLevel::GetFaceFVarValues(Index f, int channel) const {
+    FVarLevel const &fvarLevel = *_topology->fvarLevels[channel];
+    if (!fvarLevel.faceValues.empty()) {
+        return span(fvarLevel.faceValues, _topology->faceFirstCorner, f);
+    }
+    if (FVarLevel::SplitFace const *split = fvarLevel.FindSplitFace(f)) {
+        return ConstIndexArray(split->values, HexIndexing::kNumEFaceCorners);
+    }
+    return TopologyLevel(&fvarLevel.topology).GetFaceVertices(fvarLevel.valueFaces[f]);
+}
+
+bool TopologyLevel::IsFaceFVarSplit(Index f, int channel) const {
+    return _topology->fvarLevels[channel]->FindSplitFace(f) != nullptr;
+}
+
+Far::ConstIndexArray TopologyLevel::GetFaceFVarValues(Index f, int channel, int half) const {
+    FVarLevel const &fvarLevel = *_topology->fvarLevels[channel];
+    FVarLevel::SplitFace const *split = fvarLevel.FindSplitFace(f);
+    return split ? TopologyLevel(&fvarLevel.topology).GetFaceVertices(split->valueFaces[half])
+                 : ConstIndexArray();
+}
+
+bool TopologyLevel::DoesEdgeFVarTopologyMatch(Index e, int channel) const {
+    if (IsEdgeBoundary(e)) {
+        return true;
+    }
+    FVarLevel const &fvarLevel = *_topology->fvarLevels[channel];
+    ConstIndexArray const faces = GetEdgeFaces(e);
+    ConstLocalIndexArray const locals = GetEdgeFaceLocalIndices(e);
+    return fvarLevel.GetFaceEdge(faces[0], locals[0]) == fvarLevel.GetFaceEdge(faces[1], locals[1]);
+}
+
+bool TopologyLevel::DoesVertexFVarTopologyMatch(Index v, int channel) const {
+    ConstIndexArray const faces = GetVertexFaces(v);
+    ConstLocalIndexArray const locals = GetVertexFaceLocalIndices(v);
+    ConstIndexArray const edges = GetVertexEdges(v);
+    auto isSplitHere = [&](int i) {
+        bool const onDiagonal = locals[i] == kDiagonalStart || locals[i] == kDiagonalEnd;
+        return onDiagonal && IsFaceFVarSplit(faces[i], channel);
+    };
+    for (int i = 0; i < faces.size(); ++i) {
+        if (GetFaceFVarValues(faces[i], channel)[locals[i]] !=
+                GetFaceFVarValues(faces[0], channel)[locals[0]] ||
+            isSplitHere(i)) {
+            return false;
+        }
+    }
+    return std::all_of(edges.begin(), edges.end(),
+                       [&](Index e) { return DoesEdgeFVarTopologyMatch(e, channel); });
+}
+
+bool TopologyLevel::DoesFaceFVarTopologyMatch(Index f, int channel) const {
+    ConstIndexArray const verts = GetFaceVertices(f);
+    return std::all_of(verts.begin(), verts.end(),
+                       [&](Index v) { return DoesVertexFVarTopologyMatch(v, channel); });
 }
 
 FaceKind TopologyLevel::GetFaceKind(Index f) const {
@@ -88,7 +177,10 @@ Index TopologyLevel::GetFaceParentEdge(Index f) const {
     if (GetFaceKind(f) != FaceKind::Edge) {
         return Far::INDEX_INVALID;
     }
-    return _topology->parent->ChildIndexing().GetChildFaceEdge(f);
+    // The last vertex of an E-face comes from the corner where the edge's first face runs along it.
+    LevelTopology const &parent = *_topology->parent;
+    Index const lastVert = _topology->faceVerts[_topology->faceFirstCorner[f + 1] - 1];
+    return parent.faceEdges[parent.ChildIndexing().GetChildVertexCorner(lastVert)];
 }
 
 Index TopologyLevel::GetFaceParentFace(Index f) const {
@@ -133,15 +225,15 @@ Far::ConstIndexArray TopologyLevel::GetFaceChildEdges(Index f) const {
 }
 
 Far::ConstIndexArray TopologyLevel::GetEdgeChildEdges(Index e) const {
-    if (!_topology->child || !IsEdgeBoundary(e)) {
+    if (!_topology->child || !IsEdgeBoundary(e) || _topology->IsSharpBoundaryB(e)) {
         return ConstIndexArray();
     }
     ConstIndexArray const edges = TopologyLevel(_topology->child).GetFaceEdges(GetEdgeChildFace(e));
-    return edges.size() ? ConstIndexArray(&edges[kBoundaryEFaceEdge], 1) : edges;
+    return edges.empty() ? edges : ConstIndexArray(&edges[kBoundaryEFaceEdge], 1);
 }
 
 Index TopologyLevel::GetEdgeChildFace(Index e) const {
-    return _topology->child ? GetChildIndexing().GetEdgeChildFace(e) : Far::INDEX_INVALID;
+    return _topology->child ? _topology->GetEdgeChildFace(e) : Far::INDEX_INVALID;
 }
 
 Index TopologyLevel::GetVertexChildVertex(Index v) const {
@@ -224,7 +316,8 @@ bool Validator::checkSizes() {
     }
     return sized(t.faceEdges, numCorners) && sized(t.edgeVerts, 2 * numEdges) &&
            sized(t.edgeFaces, 2 * numEdges) && sized(t.edgeFaceLocals, 2 * numEdges) &&
-           sized(t.boundaryEdges, t.numBoundaryEdges) && sized(t.vertFaces, numCorners) &&
+           sized(t.boundaryEdges, _level.GetNumBoundaryEdges()) &&
+           sized(t.halfFaces, t.numSharpBoundariesB) && sized(t.vertFaces, numCorners) &&
            sized(t.vertFaceLocals, numCorners) && sized(t.vertEdges, 2 * numEdges) &&
            sized(t.vertEdgeLocals, 2 * numEdges) &&
            offsets(t.vertFirstFace, t.numVertices, numCorners, ComponentType::Vertex) &&
@@ -241,8 +334,8 @@ bool Validator::checkFaces() {
         for (Index vert : verts) {
             bool const inRange = 0 <= vert && vert < _level.GetNumVertices();
             if (!require(inRange, ComponentType::Face, face, "a vertex is out of range") ||
-                !require(lastFace[vert] != face, ComponentType::Face, face,
-                         "a vertex is repeated")) {
+                !require(lastFace[vert] != face || _level.IsVertexNonManifold(vert),
+                         ComponentType::Face, face, "a vertex is repeated")) {
                 return false;
             }
             lastFace[vert] = face;
@@ -264,7 +357,8 @@ bool Validator::checkFaceEdges() {
             Far::ConstIndexArray const edgeFaces = _level.GetEdgeFaces(edges[i]);
             Index const start = verts[i];
             Index const end = verts[(i + 1) % verts.size()];
-            int const side = (edgeVerts[0] == start) ? 0 : 1;
+            int const side = (edgeFaces[0] == face &&
+                              _level.GetEdgeFaceLocalIndices(edges[i])[0] == i) ? 0 : 1;
             if (!require(edgeVerts[side] == start && edgeVerts[1 - side] == end,
                          ComponentType::Face, face, "an edge does not join its two vertices") ||
                 !require(side < edgeFaces.size() && edgeFaces[side] == face &&
@@ -286,8 +380,9 @@ bool Validator::checkEdges() {
         Far::ConstIndexArray const verts = _level.GetEdgeVertices(edge);
         bool const inRange = 0 <= std::min(verts[0], verts[1]) &&
                              std::max(verts[0], verts[1]) < _level.GetNumVertices();
-        if (!require(inRange && verts[0] != verts[1], ComponentType::Edge, edge,
-                     "its vertices are not two of the level")) {
+        bool const isLoop = inRange && verts[0] == verts[1];
+        if (!require(inRange && !(isLoop && !_level.IsVertexNonManifold(verts[0])),
+                     ComponentType::Edge, edge, "its vertices are not two of the level")) {
             return false;
         }
         numSides += _level.GetEdgeFaces(edge).size();
@@ -307,30 +402,25 @@ bool Validator::checkEdges() {
 }
 
 // As for edges: what each vertex names has it, and the sizes of the arrays leave no room for
-// anything missing or repeated.
+// anything missing or repeated.  Faces are followed fan by fan: a fan that begins with a boundary
+// edge ends with one and has an edge more than faces, any other comes back to its first edge.
 bool Validator::checkVertices() {
     for (Index vert = 0; vert < _level.GetNumVertices(); ++vert) {
         Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
         Far::ConstIndexArray const edges = _level.GetVertexEdges(vert);
         Far::ConstLocalIndexArray const inFace = _level.GetVertexFaceLocalIndices(vert);
         Far::ConstLocalIndexArray const inEdge = _level.GetVertexEdgeLocalIndices(vert);
-        bool const onBoundary = edges.size() == faces.size() + 1;
-        if (!require(onBoundary || edges.size() == faces.size(), ComponentType::Vertex, vert,
-                     "edges and faces do not alternate")) {
-            return false;
-        }
         for (int i = 0; i < edges.size(); ++i) {
             bool const inRange = 0 <= edges[i] && edges[i] < _level.GetNumEdges() && inEdge[i] < 2;
             if (!require(inRange && _level.GetEdgeVertices(edges[i])[inEdge[i]] == vert,
                          ComponentType::Vertex, vert, "an edge does not have it there")) {
                 return false;
             }
-            bool const atEnd = (i == 0 || i == edges.size() - 1);
-            if (!require(_level.IsEdgeBoundary(edges[i]) == (onBoundary && atEnd),
-                         ComponentType::Vertex, vert, "a boundary edge is not first or last")) {
-                return false;
-            }
         }
+        int numFans = 0;
+        int edge = 0;
+        int fanStart = 0;
+        bool inFan = false;
         for (int i = 0; i < faces.size(); ++i) {
             bool const inRange = 0 <= faces[i] && faces[i] < _level.GetNumFaces() &&
                                  inFace[i] < _level.GetFaceVertices(faces[i]).size();
@@ -338,13 +428,37 @@ bool Validator::checkVertices() {
                          ComponentType::Vertex, vert, "a face does not have it there")) {
                 return false;
             }
+            if (!inFan) {
+                fanStart = edge;
+                inFan = true;
+                ++numFans;
+            }
             Far::ConstIndexArray const faceEdges = _level.GetFaceEdges(faces[i]);
-            int const prev = (inFace[i] + faceEdges.size() - 1) % faceEdges.size();
-            if (!require(faceEdges[inFace[i]] == edges[i] &&
-                             faceEdges[prev] == edges[(i + 1) % edges.size()],
-                         ComponentType::Vertex, vert, "a face is not between its two edges")) {
+            Index const outEdge = faceEdges[inFace[i]];
+            Index const backEdge =
+                faceEdges[(inFace[i] + faceEdges.size() - 1) % faceEdges.size()];
+            if (!require(edge < edges.size() && edges[edge] == outEdge, ComponentType::Vertex, vert,
+                         "a face does not begin at its edge")) {
                 return false;
             }
+            ++edge;
+            bool const isOpen = _level.IsEdgeBoundary(edges[fanStart]);
+            if (isOpen && _level.IsEdgeBoundary(backEdge)) {
+                if (!require(edge < edges.size() && edges[edge] == backEdge, ComponentType::Vertex,
+                             vert, "a fan of faces does not end at its boundary edge")) {
+                    return false;
+                }
+                ++edge;
+                inFan = false;
+            } else if (!isOpen && backEdge == edges[fanStart]) {
+                inFan = false;
+            }
+        }
+        if (!require(!inFan && edge == edges.size(), ComponentType::Vertex, vert,
+                     "its edges and faces do not alternate") ||
+            !require(numFans <= 1 || _level.IsVertexNonManifold(vert), ComponentType::Vertex, vert,
+                     "more than one fan of faces, but not tagged non-manifold")) {
+            return false;
         }
     }
     return true;
@@ -390,7 +504,10 @@ bool Validator::checkEFaces() {
                 indexing.GetCornerChildVertex(first + (locals[far] + 1) % size));
             expected.push_back(indexing.GetCornerChildVertex(first + locals[far]));
         }
-        Index const cFace = indexing.GetEdgeChildFace(pEdge);
+        Index const cFace = parent.GetEdgeChildFace(pEdge);
+        if (cFace == Far::INDEX_INVALID) {
+            continue;
+        }
         Far::ConstIndexArray const actual = _level.GetFaceVertices(cFace);
         bool const good = actual.size() == int(expected.size()) &&
                           std::equal(expected.begin(), expected.end(), actual.begin());

@@ -4,13 +4,7 @@
 
 #include "levelTopology.h"
 
-#include <opensubdiv/sdc/crease.h>
-
-namespace OpenSubdivHex {
-
-namespace Sdc = OpenSubdiv::Sdc;
-
-namespace FarExt {
+namespace OpenSubdivHex::FarExt {
 
 /// \brief What a face of a refined level was made from.
 enum class FaceKind {
@@ -44,7 +38,10 @@ public:
     /// Sum of all face sizes: the number of corners.
     int GetNumFaceVertices() const { return _topology->numCorners; }
     /// Edges with one face.
-    int GetNumBoundaryEdges() const { return _topology->numBoundaryEdges; }
+    int GetNumBoundaryEdges() const {
+        return _topology->numFreeBoundaries + _topology->numSharpBoundariesA +
+               _topology->numSharpBoundariesB;
+    }
     /// Depth of this level; 0 is the base.
     int GetDepth() const { return _topology->depth; }
     /// Whether all relations are there, not face-vertices alone.
@@ -76,8 +73,11 @@ public:
 
     /// @name Topological properties, as in Far::TopologyLevel
     /// @{
-    bool IsEdgeNonManifold(Index) const { return false; }
-    bool IsVertexNonManifold(Index) const { return false; }
+    /// Of level 0: whether the base edge had other than two faces that run it in opposite directions,
+    /// or one.  Such an edge is taken apart into one boundary edge per face: INDEXING.md.
+    bool IsEdgeNonManifold(Index e) const;
+    /// Whether the faces of the vertex form more than one fan, or it lies on a non-manifold edge.
+    bool IsVertexNonManifold(Index v) const;
     bool IsEdgeBoundary(Index e) const;
     bool IsVertexBoundary(Index v) const;
     /// Whether the vertex has exactly one face.
@@ -85,6 +85,52 @@ public:
     /// Regular is three faces in the interior, as in the hexagonal lattice, and one or two at a
     /// boundary.
     bool IsVertexValenceRegular(Index v) const;
+    /// @}
+
+    /// @name Tags, as in Far::TopologyLevel
+    /// @{
+    /// Sharpness of the edge at this level; infinite for sharp boundaries, 0 for those that follow
+    /// the paper's rule (VTX_BOUNDARY_NONE).
+    float GetEdgeSharpness(Index e) const;
+    float GetVertexSharpness(Index v) const { return _topology->GetVertexSharpness(v); }
+    bool IsEdgeInfSharp(Index e) const { return Sdc::Crease::IsInfinite(GetEdgeSharpness(e)); }
+    bool IsEdgeSemiSharp(Index e) const { return Sdc::Crease::IsSemiSharp(GetEdgeSharpness(e)); }
+    bool IsVertexInfSharp(Index v) const {
+        return Sdc::Crease::IsInfinite(GetVertexSharpness(v));
+    }
+    bool IsVertexSemiSharp(Index v) const {
+        return Sdc::Crease::IsSemiSharp(GetVertexSharpness(v));
+    }
+    bool IsFaceHole(Index f) const {
+        return !_topology->faceHoles.empty() && _topology->faceHoles[f];
+    }
+    /// The rule that moves the vertex to the next level.  At a free boundary it is RULE_SMOOTH.
+    Sdc::Crease::Rule GetVertexRule(Index v) const;
+
+    /// Sharpness of the crease that crosses a hexagon from its vertex 0 to its vertex 3; 0 where
+    /// none does.
+    float GetFaceDiagonalSharpness(Index f) const { return _topology->GetDiagonalSharpness(f); }
+    /// Whether the face is half a hexagon, cut by a sharp boundary along its edge 0.
+    bool IsFaceHalf(Index f) const { return HasFullTopology() && _topology->IsHalfFace(f); }
+    /// @}
+
+    /// @name Face-varying data, as in Far::TopologyLevel
+    /// @{
+    int GetNumFVarChannels() const { return int(_topology->fvarLevels.size()); }
+    int GetNumFVarValues(int channel = 0) const;
+    /// The values of a face, by corner.  Of a face that a seam crosses, the two corners on the seam
+    /// have a value to either side; those of the first half are given here.
+    ConstIndexArray GetFaceFVarValues(Index f, int channel = 0) const;
+    /// Whether a seam crosses the face, a hexagon then, from its vertex 0 to its vertex 3.
+    bool IsFaceFVarSplit(Index f, int channel = 0) const;
+    /// The values of half 0 (the vertices 0, 3, 4, 5 of the face) or 1 (3, 0, 1, 2) of a face that
+    /// a seam crosses.
+    ConstIndexArray GetFaceFVarValues(Index f, int channel, int half) const;
+    /// Whether the values on both sides of the edge, around the vertex, or around all vertices of
+    /// the face are the same.
+    bool DoesEdgeFVarTopologyMatch(Index e, int channel = 0) const;
+    bool DoesVertexFVarTopologyMatch(Index v, int channel = 0) const;
+    bool DoesFaceFVarTopologyMatch(Index f, int channel = 0) const;
     /// @}
 
     /// @name Relations between levels
@@ -109,9 +155,10 @@ public:
     ConstIndexArray GetFaceChildVertices(Index f) const;
     /// The edges of the F-face, in the order of its vertices.
     ConstIndexArray GetFaceChildEdges(Index f) const;
-    /// The child edge of a boundary edge; interior edges have none.
+    /// The edge of the E-face of a boundary edge that is on the boundary again; other edges have
+    /// none, a B edge because its children belong to its vertices and its face.
     ConstIndexArray GetEdgeChildEdges(Index e) const;
-    /// The E-face of an edge.
+    /// The E-face of an edge; INDEX_INVALID for a B edge of a sharp boundary, which makes none.
     Index GetEdgeChildFace(Index e) const;
     /// The V-vertex of a vertex.
     Index GetVertexChildVertex(Index v) const;
@@ -126,6 +173,9 @@ public:
     ///
     /// \return  whether all hold; \p status names the first component that breaks one.
     bool Validate(Status *status = nullptr) const;
+
+    /// The arrays of the level, for the library's own use.
+    internal::LevelTopology const &GetTopology() const { return *_topology; }
 
 private:
     template <typename T>
@@ -142,7 +192,6 @@ private:
     internal::LevelTopology const *_topology;
 };
 
-} // namespace FarExt
-} // namespace OpenSubdivHex
+} // namespace OpenSubdivHex::FarExt
 
 #endif

@@ -4,6 +4,8 @@
 
 #include "levelTopology.h"
 
+#include <opensubdiv/sdc/options.h>
+
 namespace OpenSubdivHex::FarExt::internal {
 
 /// \brief The sizes of a level, in 64 bits.
@@ -12,7 +14,9 @@ struct LevelSizes {
     std::int64_t edges;
     std::int64_t faces;
     std::int64_t corners;
-    std::int64_t boundaryEdges;
+    std::int64_t freeBoundaries;
+    std::int64_t sharpBoundariesA;
+    std::int64_t sharpBoundariesB;
 };
 
 LevelSizes GetSizes(LevelTopology const &level);
@@ -20,9 +24,11 @@ LevelSizes GetSizes(LevelTopology const &level);
 /// The sizes of the level that refinement makes of a level of \p parent sizes.
 LevelSizes GetChildSizes(LevelSizes const &parent);
 
-/// \brief Makes \p child the refinement of \p parent, whose sizes must fit GetChildSizes and
-/// 32 bits.  Without \p fullTopology only the face-vertices of the child are made.
-void RefineTopology(LevelTopology &parent, LevelTopology &child, bool fullTopology);
+/// \brief Makes \p child the refinement of \p parent: topology, tags and, with \p fullTopology, the
+/// masks of its sharp vertices.  Its sizes must fit 32 bits.  Without \p fullTopology only the
+/// face-vertices and the tags of faces are made.
+void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTopology,
+                    LevelTopology &child);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

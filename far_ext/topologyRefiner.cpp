@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "topologyRefiner.h"
 
+#include "fvarLevel.h"
 #include "topologyRefinement.h"
 
 #include <limits>
@@ -19,7 +20,7 @@ struct Count {
     std::int64_t value;
 };
 
-Status tooLarge(int level, Count const &count, char const *where) {
+Status tooLarge(int level, Count const &count, std::string const &where) {
     return Status(StatusCode::TooLarge, ComponentType::Level, level,
                   "level " + std::to_string(level) + " would have " +
                       std::to_string(count.value) + " " + count.name + where +
@@ -28,7 +29,7 @@ Status tooLarge(int level, Count const &count, char const *where) {
 
 // Checks the sizes of all levels and their sums; the first level that exceeds 32 bits ends it, so
 // that 64 bits suffice.
-Status checkSizes(LevelTopology const &base, int refinementLevel) {
+Status checkSizes(LevelTopology const &base, int refinementLevel, std::string const &where) {
     LevelSizes sizes = internal::GetSizes(base);
     LevelSizes total = sizes;
     for (int level = 1; level <= refinementLevel; ++level) {
@@ -43,14 +44,14 @@ Status checkSizes(LevelTopology const &base, int refinementLevel) {
                                    Count{"face-vertices", sizes.corners},
                                    Count{"edge-vertices", 2 * sizes.edges}}) {
             if (count.value > kMaxCount) {
-                return tooLarge(level, count, "");
+                return tooLarge(level, count, where);
             }
         }
         for (Count const &count : {Count{"vertices", total.vertices}, Count{"edges", total.edges},
                                    Count{"faces", total.faces},
                                    Count{"face-vertices", total.corners}}) {
             if (count.value > kMaxCount) {
-                return tooLarge(level, count, " together with the levels before");
+                return tooLarge(level, count, where + " together with the levels before");
             }
         }
     }
@@ -85,7 +86,12 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
                                            " is negative"),
                                 status);
     }
-    Status const sizes = checkSizes(*_topologies[0], refinementLevel);
+    LevelTopology const &base = *_topologies[0];
+    Status sizes = checkSizes(base, refinementLevel, "");
+    for (std::size_t channel = 0; channel < base.fvarLevels.size() && sizes.IsOk(); ++channel) {
+        sizes = checkSizes(base.fvarLevels[channel]->topology, refinementLevel,
+                           " in face-varying channel " + std::to_string(channel));
+    }
     if (!sizes.IsOk()) {
         return internal::Report(sizes, status);
     }
@@ -95,7 +101,17 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
             _topologies.push_back(std::make_unique<LevelTopology>());
         }
         bool const fullTopology = level < refinementLevel || options.fullTopologyInLastLevel;
-        internal::RefineTopology(*_topologies[level - 1], *_topologies[level], fullTopology);
+        LevelTopology &parent = *_topologies[level - 1];
+        LevelTopology &child = *_topologies[level];
+        internal::RefineTopology(parent, _sdcOptions, fullTopology, child);
+        child.fvarLevels.resize(parent.fvarLevels.size());
+        for (std::size_t channel = 0; channel < child.fvarLevels.size(); ++channel) {
+            if (!child.fvarLevels[channel]) {
+                child.fvarLevels[channel] = std::make_unique<internal::FVarLevel>();
+            }
+            internal::RefineFVarLevel(parent, *parent.fvarLevels[channel], _sdcOptions,
+                                      fullTopology, *child.fvarLevels[channel]);
+        }
     }
     setNumLevels(refinementLevel + 1);
     _uniformOptions = options;
@@ -105,6 +121,19 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
 void TopologyRefiner::Unrefine() {
     setNumLevels(1);
     _uniformOptions = UniformOptions(0);
+}
+
+Sdc::Options::FVarLinearInterpolation
+TopologyRefiner::GetFVarLinearInterpolation(int channel) const {
+    return _topologies[0]->fvarLevels[channel]->linearInterpolation;
+}
+
+int TopologyRefiner::GetNumFVarValuesTotal(int channel) const {
+    int sum = 0;
+    for (TopologyLevel const &level : _levels) {
+        sum += level.GetNumFVarValues(channel);
+    }
+    return sum;
 }
 
 int TopologyRefiner::GetNumVerticesTotal() const { return total(&TopologyLevel::GetNumVertices); }

@@ -39,6 +39,17 @@ public:
     int GetMaxLevel() const { return GetNumLevels() - 1; }
     bool IsUniform() const { return true; }
 
+    /// Whether the base has faces tagged as holes.
+    bool HasHoles() const { return !_topologies[0]->faceHoles.empty(); }
+
+    /// @name Face-varying channels, as in Far::TopologyRefiner
+    /// @{
+    int GetNumFVarChannels() const { return GetLevel(0).GetNumFVarChannels(); }
+    Sdc::Options::FVarLinearInterpolation GetFVarLinearInterpolation(int channel = 0) const;
+    /// Sum over all levels.
+    int GetNumFVarValuesTotal(int channel = 0) const;
+    /// @}
+
     /// Sums over all levels.
     int GetNumVerticesTotal() const;
     int GetNumEdgesTotal() const;

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "topologyRefinerFactory.h"
 
-#include <opensubdiv/far/topologyRefinerFactory.h>
+#include "baseLevel.h"
+#include "fvarLevel.h"
+#include "sharpFeatures.h"
 
+#include <opensubdiv/far/topologyRefinerFactory.h>
+#include <opensubdiv/vtr/fvarLevel.h>
+
+#include <algorithm>
 #include <limits>
+#include <set>
 
 namespace OpenSubdivHex::FarExt {
 
 using Far::ConstIndexArray;
 using Far::Index;
+using internal::EdgeSides;
 using internal::LevelTopology;
 
 namespace {
@@ -19,15 +27,10 @@ Status invalid(ComponentType component, Index index, std::string message) {
     return Status(StatusCode::InvalidTopology, component, index, std::move(message));
 }
 
-Status unsupported(ComponentType component, Index index, std::string message) {
-    return Status(StatusCode::Unsupported, component, index, std::move(message));
-}
-
 // Checks what can be wrong in face-vertices alone; used for both kinds of input.
 class FaceVertexChecker {
 public:
-    explicit FaceVertexChecker(Index numVertices)
-        : _lastFace(numVertices, Far::INDEX_INVALID), _numFaces(numVertices, 0) {}
+    explicit FaceVertexChecker(Index numVertices) : _numFaces(numVertices, 0) {}
 
     Status Check(Index face, ConstIndexArray verts) {
         if (verts.size() < 3) {
@@ -42,17 +45,11 @@ public:
                               " that OpenSubdiv's local indices reach");
         }
         for (Index vert : verts) {
-            if (vert < 0 || vert >= Index(_lastFace.size())) {
+            if (vert < 0 || vert >= Index(_numFaces.size())) {
                 return invalid(ComponentType::Face, face,
                                "face " + str(face) + " refers to vertex " + str(vert) +
-                                   ", but vertices go from 0 to " + str(_lastFace.size() - 1));
+                                   ", but vertices go from 0 to " + str(_numFaces.size() - 1));
             }
-            if (_lastFace[vert] == face) {
-                return invalid(ComponentType::Face, face,
-                               "face " + str(face) + " has vertex " + str(vert) +
-                                   " more than once");
-            }
-            _lastFace[vert] = face;
             // Far counts the edges of a vertex, of which a boundary vertex has one more.
             if (++_numFaces[vert] >= OpenSubdiv::Vtr::VALENCE_LIMIT) {
                 return Status(StatusCode::TooLarge, ComponentType::Vertex, vert,
@@ -64,8 +61,7 @@ public:
     }
 
 private:
-    std::vector<Index> _lastFace; // that a vertex was seen in
-    std::vector<int> _numFaces;   // of a vertex
+    std::vector<int> _numFaces; // of a vertex
 };
 
 Status checkInventory(std::int64_t numVertices, std::int64_t numFaces) {
@@ -75,6 +71,70 @@ Status checkInventory(std::int64_t numVertices, std::int64_t numFaces) {
                            str(numFaces) + " faces");
     }
     return Status();
+}
+
+Status checkRange(std::string const &name, Index index, int count, ComponentType component) {
+    if (0 <= index && index < count) {
+        return Status();
+    }
+    return invalid(component, index, name + " refers to " + str(index) +
+                                         ", but indices go from 0 to " + str(count - 1));
+}
+
+// Far skips a crease that is no edge with a warning; here it is an error.
+Status checkCreases(Far::TopologyDescriptor const &descriptor) {
+    using Pair = std::pair<Index, Index>;
+    std::set<Pair> missing;
+    for (int i = 0; i < descriptor.numCreases; ++i) {
+        Index const *verts = descriptor.creaseVertexIndexPairs + 2 * i;
+        for (int end = 0; end < 2; ++end) {
+            Status status = checkRange("crease " + str(i), verts[end], descriptor.numVertices,
+                                       ComponentType::Vertex);
+            if (!status.IsOk()) {
+                return status;
+            }
+        }
+        missing.insert(std::minmax(verts[0], verts[1]));
+    }
+    Index const *verts = descriptor.vertIndicesPerFace;
+    for (Index face = 0; face < descriptor.numFaces && !missing.empty(); ++face) {
+        int const size = descriptor.numVertsPerFace[face];
+        for (int i = 0; i < size; ++i) {
+            missing.erase(std::minmax(verts[i], verts[(i + 1) % size]));
+        }
+        verts += size;
+    }
+    if (missing.empty()) {
+        return Status();
+    }
+    return invalid(ComponentType::Vertex, missing.begin()->first,
+                   "a crease joins vertices " + str(missing.begin()->first) + " and " +
+                       str(missing.begin()->second) + ", but no face has that edge");
+}
+
+Status checkTags(Far::TopologyDescriptor const &descriptor) {
+    Status status = checkCreases(descriptor);
+    for (int i = 0; i < descriptor.numCorners && status.IsOk(); ++i) {
+        status = checkRange("corner " + str(i), descriptor.cornerVertexIndices[i],
+                            descriptor.numVertices, ComponentType::Vertex);
+    }
+    for (int i = 0; i < descriptor.numHoles && status.IsOk(); ++i) {
+        status = checkRange("hole " + str(i), descriptor.holeIndices[i], descriptor.numFaces,
+                            ComponentType::Face);
+    }
+    std::int64_t numCorners = 0;
+    for (Index face = 0; face < descriptor.numFaces; ++face) {
+        numCorners += descriptor.numVertsPerFace[face];
+    }
+    for (int channel = 0; channel < descriptor.numFVarChannels; ++channel) {
+        Far::TopologyDescriptor::FVarChannel const &fvar = descriptor.fvarChannels[channel];
+        for (std::int64_t corner = 0; corner < numCorners && status.IsOk(); ++corner) {
+            status = checkRange("corner " + str(corner) + " of face-varying channel " +
+                                    str(channel),
+                                fvar.valueIndices[corner], fvar.numValues, ComponentType::None);
+        }
+    }
+    return status;
 }
 
 Status checkDescriptor(Far::TopologyDescriptor const &descriptor) {
@@ -102,7 +162,7 @@ Status checkDescriptor(Far::TopologyDescriptor const &descriptor) {
         status = checker.Check(face, ConstIndexArray(verts, size));
         verts += size;
     }
-    return status;
+    return status.IsOk() ? checkTags(descriptor) : status;
 }
 
 Status checkFaces(Far::TopologyLevel const &base) {
@@ -114,176 +174,239 @@ Status checkFaces(Far::TopologyLevel const &base) {
     return status;
 }
 
-// Whether face number \p i of the edge runs from the edge's first vertex to its second.
-bool runsForward(Far::TopologyLevel const &base, Index edge, int i) {
-    Index const face = base.GetEdgeFaces(edge)[i];
-    int const local = base.GetEdgeFaceLocalIndices(edge)[i];
-    return base.GetFaceVertices(face)[local] == base.GetEdgeVertices(edge)[0];
+// Takes apart a base level into faces and edges, and puts them together as level 0.
+class Importer {
+public:
+    Importer(Far::TopologyRefiner const &base, bool const *isHole)
+        : _base(base.GetLevel(0)), _baseRefiner(base), _isHole(isHole) {}
+
+    /// Null with a status when an edge is run twice in the same direction.
+    std::unique_ptr<LevelTopology> Import(Status &status);
+
+private:
+    void importFaces();
+    Status importEdges();
+    void importTags();
+    void importChannel(int channel);
+
+    bool isFree() const {
+        return _baseRefiner.GetSchemeOptions().GetVtxBoundaryInterpolation() ==
+               Sdc::Options::VTX_BOUNDARY_NONE;
+    }
+    bool isHole(Index face) const;
+
+    Far::TopologyLevel const &_base;
+    Far::TopologyRefiner const &_baseRefiner;
+    bool const *_isHole; // by face; null when only the base knows
+
+    std::unique_ptr<LevelTopology> _level;
+    std::vector<Index> _faceOfCorner;
+    std::vector<EdgeSides> _edges;
+};
+
+std::unique_ptr<LevelTopology> Importer::Import(Status &status) {
+    _level = std::make_unique<LevelTopology>();
+    _level->numVertices = _base.GetNumVertices();
+    _level->numFaces = _base.GetNumFaces();
+    _level->numCorners = _base.GetNumFaceVertices();
+    importFaces();
+    status = importEdges();
+    if (!status.IsOk()) {
+        return nullptr;
+    }
+    internal::BuildBaseLevel(_edges, *_level);
+    importTags();
+    internal::ComputeSharpMasks(_baseRefiner.GetSchemeOptions(), *_level);
+    for (int channel = 0; channel < _base.GetNumFVarChannels(); ++channel) {
+        importChannel(channel);
+    }
+    return std::move(_level);
 }
 
-Status checkEdges(Far::TopologyLevel const &base) {
-    for (Index edge = 0; edge < base.GetNumEdges(); ++edge) {
-        ConstIndexArray const verts = base.GetEdgeVertices(edge);
-        ConstIndexArray const faces = base.GetEdgeFaces(edge);
-        std::string const name =
-            "edge " + str(edge) + " between vertices " + str(verts[0]) + " and " + str(verts[1]);
-        if (faces.size() == 2 && runsForward(base, edge, 0) == runsForward(base, edge, 1)) {
-            return invalid(ComponentType::Edge, edge,
-                           "faces " + str(faces[0]) + " and " + str(faces[1]) + " run " + name +
-                               " in the same direction: their orientations are inconsistent");
-        }
-        if (faces.size() > 2 || base.IsEdgeNonManifold(edge)) {
-            return unsupported(ComponentType::Edge, edge,
-                               name + " is non-manifold: it has " + str(faces.size()) + " faces");
-        }
-        if (faces.size() == 2 && base.GetEdgeSharpness(edge) > 0) {
-            return unsupported(ComponentType::Edge, edge,
-                               name + " is a crease of sharpness " +
-                                   std::to_string(base.GetEdgeSharpness(edge)) +
-                                   "; creases are not supported yet");
-        }
-    }
-    return Status();
-}
-
-Status checkVertices(Far::TopologyLevel const &base) {
-    for (Index vert = 0; vert < base.GetNumVertices(); ++vert) {
-        if (base.IsVertexNonManifold(vert)) {
-            return unsupported(ComponentType::Vertex, vert,
-                               "vertex " + str(vert) +
-                                   " is non-manifold: its faces do not form one fan");
-        }
-        if (base.GetVertexSharpness(vert) > 0) {
-            return unsupported(ComponentType::Vertex, vert,
-                               "vertex " + str(vert) + " is a corner of sharpness " +
-                                   std::to_string(base.GetVertexSharpness(vert)) +
-                                   "; corners are not supported yet");
-        }
-    }
-    return Status();
-}
-
-Status checkBoundaryRule(Sdc::Options sdcOptions) {
-    if (sdcOptions.GetVtxBoundaryInterpolation() != Sdc::Options::VTX_BOUNDARY_NONE) {
-        return unsupported(ComponentType::None, Far::INDEX_INVALID,
-                           "boundary interpolation other than VTX_BOUNDARY_NONE is not supported "
-                           "yet");
-    }
-    return Status();
-}
-
-Status checkBase(Far::TopologyRefiner const &base) {
-    Far::TopologyLevel const &level = base.GetLevel(0);
-    Status status = checkBoundaryRule(base.GetSchemeOptions());
-    if (status.IsOk()) {
-        status = checkFaces(level);
-    }
-    if (status.IsOk()) {
-        status = checkEdges(level);
-    }
-    if (status.IsOk()) {
-        status = checkVertices(level);
-    }
-    return status;
-}
-
-void importFaces(Far::TopologyLevel const &base, LevelTopology &level) {
-    level.faceFirstCorner.Resize(std::size_t(level.numFaces) + 1);
-    level.faceVerts.Resize(level.numCorners);
-    level.faceEdges.Resize(level.numCorners);
+void Importer::importFaces() {
+    _level->faceFirstCorner.Resize(std::size_t(_level->numFaces) + 1);
+    _level->faceVerts.Resize(_level->numCorners);
+    _faceOfCorner.resize(_level->numCorners);
     Index corner = 0;
-    for (Index face = 0; face < level.numFaces; ++face) {
-        level.faceFirstCorner[face] = corner;
-        ConstIndexArray const verts = base.GetFaceVertices(face);
-        ConstIndexArray const edges = base.GetFaceEdges(face);
-        for (int i = 0; i < verts.size(); ++i, ++corner) {
-            level.faceVerts[corner] = verts[i];
-            level.faceEdges[corner] = edges[i];
+    for (Index face = 0; face < _level->numFaces; ++face) {
+        _level->faceFirstCorner[face] = corner;
+        for (Index vert : _base.GetFaceVertices(face)) {
+            _faceOfCorner[corner] = face;
+            _level->faceVerts[corner++] = vert;
         }
     }
-    level.faceFirstCorner[level.numFaces] = corner;
+    _level->faceFirstCorner[_level->numFaces] = corner;
 }
 
-// The first face is made to run from the first vertex to the second, by swapping the faces of an
-// interior edge or the vertices of a boundary edge.
-void importEdges(Far::TopologyLevel const &base, LevelTopology &level) {
-    level.edgeVerts.Resize(2 * std::size_t(level.numEdges));
-    level.edgeFaces.Resize(2 * std::size_t(level.numEdges));
-    level.edgeFaceLocals.Resize(2 * std::size_t(level.numEdges));
-    std::vector<Index> boundaryEdges;
-    for (Index edge = 0; edge < level.numEdges; ++edge) {
-        std::size_t const k = 2 * std::size_t(edge);
-        ConstIndexArray const verts = base.GetEdgeVertices(edge);
-        ConstIndexArray const faces = base.GetEdgeFaces(edge);
-        bool const isBoundary = faces.size() == 1;
-        int const a = runsForward(base, edge, 0) || isBoundary ? 0 : 1;
-        int const start = runsForward(base, edge, a) ? 0 : 1;
-        level.edgeVerts[k] = verts[start];
-        level.edgeVerts[k + 1] = verts[1 - start];
-        level.edgeFaces[k] = faces[a];
-        level.edgeFaceLocals[k] = base.GetEdgeFaceLocalIndices(edge)[a];
-        level.edgeFaces[k + 1] = isBoundary ? Far::INDEX_INVALID : faces[1 - a];
-        level.edgeFaceLocals[k + 1] =
-            isBoundary ? Far::LocalIndex(0) : base.GetEdgeFaceLocalIndices(edge)[1 - a];
-        if (isBoundary) {
-            boundaryEdges.push_back(edge);
+// An edge that does not join two faces which run it in opposite directions, nor bounds one, comes
+// apart: every face gets an edge of its own, the first of them with the edge's index.
+Status Importer::importEdges() {
+    _edges.assign(_base.GetNumEdges(), {{Far::INDEX_INVALID, Far::INDEX_INVALID}});
+    std::vector<int> numCorners(_base.GetNumEdges(), 0);
+    std::vector<std::pair<Index, Index>> others; // edge and corner, of third and later sides
+    Index corner = 0;
+    for (Index face = 0; face < _level->numFaces; ++face) {
+        for (Index edge : _base.GetFaceEdges(face)) {
+            if (numCorners[edge] < 2) {
+                _edges[edge].corners[numCorners[edge]] = corner;
+            } else {
+                others.emplace_back(edge, corner);
+            }
+            ++numCorners[edge];
+            ++corner;
         }
     }
-    level.numBoundaryEdges = Index(boundaryEdges.size());
-    level.boundaryEdges.Resize(boundaryEdges.size());
-    std::copy(boundaryEdges.begin(), boundaryEdges.end(), level.boundaryEdges.data());
+    Index const boundary = isFree() ? internal::kFreeBoundary : internal::kSharpBoundaryA;
+    std::vector<Index> second; // sides of edges that come apart
+    for (Index edge = 0; edge < _base.GetNumEdges(); ++edge) {
+        EdgeSides &sides = _edges[edge];
+        Index const start = _base.GetEdgeVertices(edge)[0];
+        Index const end = _base.GetEdgeVertices(edge)[1];
+        bool const isLoop = start == end;
+        if (numCorners[edge] == 0) {
+            return invalid(ComponentType::Edge, edge, "edge " + str(edge) + " has no face");
+        }
+        if (numCorners[edge] == 1 && !isLoop) {
+            sides.corners[1] = boundary;
+            continue;
+        }
+        if (numCorners[edge] == 2 && !isLoop) {
+            Index const face0 = _faceOfCorner[sides.corners[0]];
+            Index const face1 = _faceOfCorner[sides.corners[1]];
+            bool const isForward = _level->faceVerts[sides.corners[0]] == start;
+            bool const isOtherForward = _level->faceVerts[sides.corners[1]] == start;
+            if (isForward == isOtherForward && face0 != face1) {
+                return invalid(ComponentType::Edge, edge,
+                               "faces " + str(face0) + " and " + str(face1) + " run edge " +
+                                   str(edge) + " between vertices " + str(start) + " and " +
+                                   str(end) +
+                                   " in the same direction: their orientations are inconsistent");
+            }
+            if (face0 != face1 && !_base.IsEdgeNonManifold(edge)) {
+                if (!isForward) {
+                    std::swap(sides.corners[0], sides.corners[1]);
+                }
+                continue;
+            }
+        }
+        _level->nonManifoldEdges.push_back(edge);
+        if (numCorners[edge] > 1) {
+            second.push_back(sides.corners[1]);
+        }
+        sides.corners[1] = internal::kSharpBoundaryA;
+    }
+    for (auto const &[edge, otherCorner] : others) {
+        second.push_back(otherCorner);
+    }
+    std::sort(second.begin(), second.end());
+    for (Index secondCorner : second) {
+        _level->nonManifoldEdges.push_back(Index(_edges.size()));
+        _edges.push_back({{secondCorner, internal::kSharpBoundaryA}});
+    }
+    return Status();
 }
 
-// Far orders the edges and faces of a manifold vertex as LevelTopology wants them.
-void importVertices(Far::TopologyLevel const &base, LevelTopology &level) {
-    level.vertFirstFace.Resize(std::size_t(level.numVertices) + 1);
-    level.vertFirstEdge.Resize(std::size_t(level.numVertices) + 1);
-    level.vertFaces.Resize(level.numCorners);
-    level.vertFaceLocals.Resize(level.numCorners);
-    level.vertEdges.Resize(2 * std::size_t(level.numEdges));
-    level.vertEdgeLocals.Resize(2 * std::size_t(level.numEdges));
-    Index nextFace = 0;
-    Index nextEdge = 0;
+bool Importer::isHole(Index face) const {
+    if (_isHole) {
+        return _isHole[face];
+    }
+    // With VTX_BOUNDARY_NONE Far makes holes of all faces at the boundary, to leave them out of its
+    // limit surface; the paper's rule keeps them.
+    ConstIndexArray const verts = _base.GetFaceVertices(face);
+    bool const isImplied = isFree() && std::any_of(verts.begin(), verts.end(), [&](Index vert) {
+        return _base.IsVertexBoundary(vert) || _base.IsVertexNonManifold(vert);
+    });
+    return _base.IsFaceHole(face) && !isImplied;
+}
+
+void Importer::importTags() {
+    LevelTopology &level = *_level;
+    // Edges that came apart are boundaries, so that the base's edges are all that can be creases.
+    bool hasCreases = false;
+    for (Index edge = 0; edge < _base.GetNumEdges(); ++edge) {
+        hasCreases |= !level.IsBoundary(edge) && Sdc::Crease::IsSharp(_base.GetEdgeSharpness(edge));
+    }
+    if (hasCreases) {
+        level.edgeSharpness.Resize(level.numEdges);
+        for (Index edge = 0; edge < level.numEdges; ++edge) {
+            level.edgeSharpness[edge] = level.IsBoundary(edge) ? 0 : _base.GetEdgeSharpness(edge);
+        }
+    }
+    bool hasCorners = false;
     for (Index vert = 0; vert < level.numVertices; ++vert) {
-        level.vertFirstFace[vert] = nextFace;
-        level.vertFirstEdge[vert] = nextEdge;
-        ConstIndexArray const faces = base.GetVertexFaces(vert);
-        for (int i = 0; i < faces.size(); ++i) {
-            level.vertFaces[nextFace] = faces[i];
-            level.vertFaceLocals[nextFace++] = base.GetVertexFaceLocalIndices(vert)[i];
-        }
-        for (Index edge : base.GetVertexEdges(vert)) {
-            level.vertEdges[nextEdge] = edge;
-            level.vertEdgeLocals[nextEdge++] =
-                level.edgeVerts[2 * std::size_t(edge)] == vert ? 0 : 1;
+        hasCorners |= Sdc::Crease::IsSharp(_base.GetVertexSharpness(vert));
+        if (_base.IsVertexNonManifold(vert)) {
+            level.nonManifoldVerts.push_back(vert);
         }
     }
-    level.vertFirstFace[level.numVertices] = nextFace;
-    level.vertFirstEdge[level.numVertices] = nextEdge;
+    if (hasCorners) {
+        level.vertSharpness.Resize(level.numVertices);
+        for (Index vert = 0; vert < level.numVertices; ++vert) {
+            level.vertSharpness[vert] = _base.GetVertexSharpness(vert);
+        }
+    }
+    bool hasHoles = false;
+    for (Index face = 0; face < level.numFaces; ++face) {
+        hasHoles |= isHole(face);
+    }
+    if (hasHoles) {
+        level.faceHoles.Resize(level.numFaces);
+        for (Index face = 0; face < level.numFaces; ++face) {
+            level.faceHoles[face] = isHole(face);
+        }
+    }
 }
 
-std::unique_ptr<LevelTopology> importBase(Far::TopologyLevel const &base) {
-    auto level = std::make_unique<LevelTopology>();
-    level->numVertices = base.GetNumVertices();
-    level->numEdges = base.GetNumEdges();
-    level->numFaces = base.GetNumFaces();
-    level->numCorners = base.GetNumFaceVertices();
-    level->hasFullTopology = true;
-    importFaces(base, *level);
-    importEdges(base, *level);
-    importVertices(base, *level);
-    return level;
+// Far's tags tell which values stay (corners, and all boundary values with linear boundaries) and
+// which follow a curve along their seams.
+void Importer::importChannel(int channel) {
+    OpenSubdiv::Vtr::internal::FVarLevel const &fvar =
+        _baseRefiner.getLevel(0).getFVarLevel(channel);
+    std::vector<Index> faceValues;
+    faceValues.reserve(_level->numCorners);
+    for (Index face = 0; face < _level->numFaces; ++face) {
+        ConstIndexArray const values = _base.GetFaceFVarValues(face, channel);
+        faceValues.insert(faceValues.end(), values.begin(), values.end());
+    }
+    std::vector<float> sharpness(_base.GetNumFVarValues(channel), 0.0f);
+    for (Index vert = 0; vert < _level->numVertices && !fvar.isLinear(); ++vert) {
+        ConstIndexArray const values = fvar.getVertexValues(vert);
+        auto const tags = fvar.getVertexValueTags(vert);
+        for (int i = 0; i < values.size(); ++i) {
+            float valueSharpness = _base.GetVertexSharpness(vert);
+            if (tags[i].isMismatch() && !tags[i].isSemiSharp()) {
+                valueSharpness = tags[i].isInfSharp() ? Sdc::Crease::SHARPNESS_INFINITE
+                                                      : Sdc::Crease::SHARPNESS_SMOOTH;
+            }
+            sharpness[values[i]] = std::max(sharpness[values[i]], valueSharpness);
+        }
+    }
+    Sdc::Options options = _baseRefiner.GetSchemeOptions();
+    options.SetFVarLinearInterpolation(_baseRefiner.GetFVarLinearInterpolation(channel));
+    _level->fvarLevels.push_back(std::make_unique<internal::FVarLevel>());
+    internal::BuildFVarLevel(*_level, _base.GetNumFVarValues(channel), faceValues, sharpness,
+                             options, *_level->fvarLevels.back());
+}
+
+std::unique_ptr<TopologyRefiner> create(Far::TopologyRefiner const &base, bool const *isHole,
+                                        TopologyRefinerFactory::Options options, Status *status) {
+    Status result = checkFaces(base.GetLevel(0));
+    std::unique_ptr<LevelTopology> level;
+    if (result.IsOk()) {
+        level = Importer(base, isHole).Import(result);
+    }
+    if (!internal::Report(result, status)) {
+        return nullptr;
+    }
+    return std::make_unique<TopologyRefiner>(std::move(level), base.GetSchemeOptions(),
+                                             options.schemeOptions);
 }
 
 } // namespace
 
 std::unique_ptr<TopologyRefiner>
 TopologyRefinerFactory::Create(Far::TopologyRefiner const &base, Options options, Status *status) {
-    if (!internal::Report(checkBase(base), status)) {
-        return nullptr;
-    }
-    return std::make_unique<TopologyRefiner>(importBase(base.GetLevel(0)), base.GetSchemeOptions(),
-                                             options.schemeOptions);
+    return create(base, nullptr, options, status);
 }
 
 std::unique_ptr<TopologyRefiner>
@@ -301,7 +424,11 @@ TopologyRefinerFactory::Create(Far::TopologyDescriptor const &descriptor, Sdc::O
                          status);
         return nullptr;
     }
-    return Create(*base, options, status);
+    auto const isHole = std::make_unique<bool[]>(descriptor.numFaces);
+    for (int i = 0; i < descriptor.numHoles; ++i) {
+        isHole[descriptor.holeIndices[i]] = true;
+    }
+    return create(*base, isHole.get(), options, status);
 }
 
 } // namespace OpenSubdivHex::FarExt

@@ -11,7 +11,8 @@ namespace OpenSubdivHex::FarExt {
 
 /// \brief Makes a TopologyRefiner from a base mesh as OpenSubdiv describes it.
 ///
-/// Level 0 keeps the base's numbering of vertices, edges, faces and corners.
+/// Level 0 keeps the base's numbering of vertices, edges, faces, corners and face-varying values;
+/// INDEXING.md says what becomes of non-manifold edges.
 class TopologyRefinerFactory {
 public:
     struct Options {
@@ -19,15 +20,15 @@ public:
     };
 
     /// \brief Takes level 0 of \p base, which need not be refined and may have any Sdc scheme type
-    /// that accepts its faces (Catmark takes all).
+    /// that accepts its faces (Catmark takes all), with its sharpness, holes and face-varying
+    /// channels.  Boundary, crease and face-varying rules are those of base.GetSchemeOptions().
     ///
-    /// The boundary rule is that of base.GetSchemeOptions(); VTX_BOUNDARY_NONE, the paper's rule,
-    /// is the one supported.
+    /// Non-manifold edges and vertices are infinitely sharp, as in Far.  With VTX_BOUNDARY_NONE
+    /// boundaries follow the paper's rule, and holes beside a boundary are not taken over, since Far
+    /// tags all faces there as holes.
     ///
-    /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices
-    ///          or with a repeated vertex, two faces that run an edge in the same direction) or
-    ///          Unsupported (another boundary rule; non-manifold edges and vertices; crease and
-    ///          corner sharpness).
+    /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices,
+    ///          two faces that run an edge in the same direction) or TooLarge.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    Options options, Status *status = nullptr);
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
@@ -38,7 +39,8 @@ public:
     /// \brief The same from a descriptor, as Far's factory takes it, with the boundary and crease
     /// options \p sdcOptions.
     ///
-    /// Additionally refuses, with InvalidTopology, vertex indices out of range.
+    /// Additionally refuses, with InvalidTopology, indices out of range: of vertices in faces, creases
+    /// and corners, of faces that are holes, and of face-varying values.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyDescriptor const &descriptor,
                                                    Sdc::Options sdcOptions, Options options,
                                                    Status *status = nullptr);

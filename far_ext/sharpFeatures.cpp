@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sharpFeatures.h"
+
+#include "mask.h"
+
+#include <algorithm>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Far::Index;
+using Sdc::Crease;
+
+// The sharp edges that meet in a vertex: boundaries, crease edges and crease diagonals.
+struct SharpEdges {
+    std::vector<Index> neighbors;
+    std::vector<bool> isLong; // a diagonal or a B boundary
+    std::vector<float> sharpness;
+
+    void Clear() {
+        neighbors.clear();
+        isLong.clear();
+        sharpness.clear();
+    }
+    void Add(Index neighbor, bool isLongEdge, float edgeSharpness) {
+        neighbors.push_back(neighbor);
+        isLong.push_back(isLongEdge);
+        sharpness.push_back(edgeSharpness);
+    }
+    int GetSize() const { return int(neighbors.size()); }
+};
+
+void gatherBoundary(LevelTopology const &level, Index edge, Index neighbor, SharpEdges &result) {
+    Index const kind = level.edgeFaces[2 * std::size_t(edge) + 1];
+    if (kind == kSharpBoundaryA || kind == kSharpBoundaryB) {
+        result.Add(neighbor, kind == kSharpBoundaryB, Crease::SHARPNESS_INFINITE);
+    }
+}
+
+// In the order of the vertex's faces; an interior edge is seen from the side that starts here.
+void gatherSharpEdges(LevelTopology const &level, Index vert, SharpEdges &result) {
+    result.Clear();
+    for (Index i = level.vertFirstFace[vert]; i < level.vertFirstFace[vert + 1]; ++i) {
+        Index const face = level.vertFaces[i];
+        Index const first = level.faceFirstCorner[face];
+        int const size = level.faceFirstCorner[face + 1] - first;
+        int const local = level.vertFaceLocals[i];
+        int const next = (local + 1) % size;
+        int const prev = (local + size - 1) % size;
+        Index const outEdge = level.faceEdges[first + local];
+        Index const inEdge = level.faceEdges[first + prev];
+        Index const nextVert = level.faceVerts[first + next];
+        if (level.IsBoundary(outEdge)) {
+            gatherBoundary(level, outEdge, nextVert, result);
+        } else if (Crease::IsSharp(level.GetEdgeSharpness(outEdge))) {
+            result.Add(nextVert, false, level.GetEdgeSharpness(outEdge));
+        }
+        if (level.IsBoundary(inEdge)) {
+            gatherBoundary(level, inEdge, level.faceVerts[first + prev], result);
+        }
+        bool const onDiagonal = local == kDiagonalStart || local == kDiagonalEnd;
+        if (onDiagonal && Crease::IsSharp(level.GetDiagonalSharpness(face))) {
+            int const end = kDiagonalStart + kDiagonalEnd - local;
+            result.Add(level.faceVerts[first + end], true, level.GetDiagonalSharpness(face));
+        }
+    }
+}
+
+// The vertices that may need a rule of their own, ascending.
+std::vector<Index> findSharpVertices(LevelTopology const &level) {
+    std::vector<Index> verts = level.nonManifoldVerts;
+    auto addEdge = [&](std::size_t edge) {
+        verts.push_back(level.edgeVerts[2 * edge]);
+        verts.push_back(level.edgeVerts[2 * edge + 1]);
+    };
+    for (Index edge : level.boundaryEdges) {
+        if (level.edgeFaces[2 * std::size_t(edge) + 1] != kFreeBoundary) {
+            addEdge(edge);
+        }
+    }
+    for (std::size_t edge = 0; edge < level.edgeSharpness.size(); ++edge) {
+        if (Crease::IsSharp(level.edgeSharpness[edge])) {
+            addEdge(edge);
+        }
+    }
+    for (std::size_t face = 0; face < level.diagonalSharpness.size(); ++face) {
+        if (Crease::IsSharp(level.diagonalSharpness[face])) {
+            verts.push_back(level.faceVerts[level.faceFirstCorner[face] + kDiagonalStart]);
+            verts.push_back(level.faceVerts[level.faceFirstCorner[face] + kDiagonalEnd]);
+        }
+    }
+    for (std::size_t vert = 0; vert < level.vertSharpness.size(); ++vert) {
+        if (Crease::IsSharp(level.vertSharpness[vert])) {
+            verts.push_back(Index(vert));
+        }
+    }
+    std::sort(verts.begin(), verts.end());
+    verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
+    return verts;
+}
+
+bool contains(std::vector<Index> const &ascending, Index index) {
+    return std::binary_search(ascending.begin(), ascending.end(), index);
+}
+
+SharpVertex smoothMask(Index vert, int numFaces) {
+    double const weight = 1.0 / (numFaces + 1);
+    return {vert, Crease::RULE_SMOOTH, weight, weight, {vert, vert}, {0, 0}};
+}
+
+SharpVertex cornerMask(Index vert) {
+    return {vert, Crease::RULE_CORNER, 1, 0, {vert, vert}, {0, 0}};
+}
+
+SharpVertex creaseMask(Index vert, SharpEdges const &edges, int const pair[2]) {
+    SharpVertex mask = {vert, Crease::RULE_CREASE, 0, 0, {vert, vert}, {0, 0}};
+    bool const isLong[2] = {edges.isLong[pair[0]], edges.isLong[pair[1]]};
+    for (int i = 0; i < 2; ++i) {
+        mask.neighbors[i] = edges.neighbors[pair[i]];
+        if (isLong[i]) {
+            mask.neighborWeights[i] = isLong[1 - i] ? 3.0 / 32 : 1.0 / 8;
+        } else {
+            mask.neighborWeights[i] = isLong[1 - i] ? 2.0 / 8 : 1.0 / 8;
+        }
+    }
+    mask.vertexWeight = 1 - mask.neighborWeights[0] - mask.neighborWeights[1];
+    return mask;
+}
+
+SharpVertex maskOfRule(Crease const &creasing, Crease::Rule rule, Index vert, int numFaces,
+                       SharpEdges const &edges, std::vector<float> const &sharpness) {
+    if (rule == Crease::RULE_CORNER) {
+        return cornerMask(vert);
+    }
+    if (rule == Crease::RULE_CREASE) {
+        int pair[2] = {0, 1};
+        creasing.GetSharpEdgePairOfCrease(sharpness.data(), int(sharpness.size()), pair);
+        return creaseMask(vert, edges, pair);
+    }
+    SharpVertex mask = smoothMask(vert, numFaces);
+    mask.rule = rule;
+    return mask;
+}
+
+SharpVertex blend(SharpVertex const &parent, SharpVertex const &child, double parentWeight) {
+    // Of two rules in sequence at most one is a crease, so that its neighbours stand alone; a
+    // corner and a smooth mask have neighbours of weight 0.
+    SharpVertex result = parent.rule == Crease::RULE_CREASE ? parent : child;
+    double const childWeight = 1 - parentWeight;
+    result.rule = parent.rule;
+    result.vertexWeight = parentWeight * parent.vertexWeight + childWeight * child.vertexWeight;
+    result.faceWeight = parentWeight * parent.faceWeight + childWeight * child.faceWeight;
+    for (int i = 0; i < 2; ++i) {
+        result.neighborWeights[i] =
+            parentWeight * parent.neighborWeights[i] + childWeight * child.neighborWeights[i];
+    }
+    return result;
+}
+
+// What is met on the way around a vertex: a corner, or between two of them an edge or a diagonal.
+struct RingItem {
+    Index corner;    // INDEX_INVALID for an edge or a diagonal, and for half a hexagon
+    bool isFace;     // a corner or half a hexagon
+    bool isLong;     // a diagonal or a B boundary
+    float sharpness; // of an edge or a diagonal; 0 for smooth ones
+};
+
+// The fan of faces that begins with the vertex's i'th face, in counter-clockwise order; returns the
+// number of its faces.
+Index gatherFan(LevelTopology const &level, Index vert, Index i, std::vector<RingItem> &ring) {
+    ring.clear();
+    auto addEdge = [&](Index edge) {
+        Index const kind = level.edgeFaces[2 * std::size_t(edge) + 1];
+        float const sharpness =
+            kind >= 0 ? level.GetEdgeSharpness(edge)
+                      : (kind == kFreeBoundary ? 0 : Crease::SHARPNESS_INFINITE);
+        ring.push_back({Far::INDEX_INVALID, false, kind == kSharpBoundaryB, sharpness});
+    };
+    Index const begin = level.vertFirstFace[vert];
+    Index const end = level.vertFirstFace[vert + 1];
+    Index firstEdge = Far::INDEX_INVALID;
+    for (Index k = begin + i; k < end; ++k) {
+        Index const face = level.vertFaces[k];
+        Index const first = level.faceFirstCorner[face];
+        int const size = level.faceFirstCorner[face + 1] - first;
+        int const local = level.vertFaceLocals[k];
+        Index const outEdge = level.faceEdges[first + local];
+        Index const inEdge = level.faceEdges[first + (local + size - 1) % size];
+        if (firstEdge == Far::INDEX_INVALID) {
+            firstEdge = outEdge;
+        }
+        addEdge(outEdge);
+        bool const onDiagonal = local == kDiagonalStart || local == kDiagonalEnd;
+        float const diagonal = level.GetDiagonalSharpness(face);
+        if (onDiagonal && Crease::IsSharp(diagonal)) {
+            ring.push_back({Far::INDEX_INVALID, true, false, 0});
+            ring.push_back({Far::INDEX_INVALID, false, true, diagonal});
+            ring.push_back({Far::INDEX_INVALID, true, false, 0});
+        } else {
+            bool const onLongEdge = level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
+            ring.push_back({onLongEdge ? Far::INDEX_INVALID : first + local, true, false, 0});
+        }
+        if (level.IsBoundary(inEdge)) {
+            addEdge(inEdge);
+            return k - begin - i + 1;
+        }
+        if (inEdge == firstEdge) {
+            // A closed fan begins and ends with one of its sharp edges.
+            auto const sharp = std::find_if(ring.begin(), ring.end(), [](RingItem const &item) {
+                return Crease::IsSharp(item.sharpness);
+            });
+            std::rotate(ring.begin(), sharp, ring.end());
+            ring.push_back(ring.front());
+            return k - begin - i + 1;
+        }
+    }
+    return end - begin - i;
+}
+
+// Adds the corners of wide sectors between two sharp edges of a fan.
+void addSectorCorners(std::vector<RingItem> const &ring, std::vector<SectorCorner> &result) {
+    auto isSharp = [](RingItem const &item) { return Crease::IsSharp(item.sharpness); };
+    auto start = std::find_if(ring.begin(), ring.end(), isSharp);
+    while (start != ring.end()) {
+        auto const end = std::find_if(start + 1, ring.end(), isSharp);
+        if (end == ring.end()) {
+            return;
+        }
+        auto const numFaces =
+            std::count_if(start, end, [](RingItem const &item) { return item.isFace; });
+        float const size = float(numFaces) - 0.5f * float(start->isLong) - 0.5f * float(end->isLong);
+        float const weight = std::min({1.0f, start->sharpness, end->sharpness});
+        if (size >= kMinShrunkSector) {
+            for (auto item = start; item != end; ++item) {
+                if (item->corner != Far::INDEX_INVALID) {
+                    result.push_back({item->corner, size, weight});
+                }
+            }
+        }
+        start = end;
+    }
+}
+
+} // namespace
+
+void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
+    Crease const creasing(sdcOptions);
+    SharpEdges edges;
+    std::vector<float> childSharpness;
+    std::vector<RingItem> ring;
+    level.sharpVerts.clear();
+    level.sectorCorners.clear();
+    for (Index vert : findSharpVertices(level)) {
+        int const numFaces = level.vertFirstFace[vert + 1] - level.vertFirstFace[vert];
+        float const vertSharpness = level.GetVertexSharpness(vert);
+        gatherSharpEdges(level, vert, edges);
+        if (edges.GetSize() >= 2) {
+            for (Index i = 0; i < numFaces;) {
+                i += gatherFan(level, vert, i, ring);
+                addSectorCorners(ring, level.sectorCorners);
+            }
+        }
+        bool const isNonManifold = contains(level.nonManifoldVerts, vert);
+        if (isNonManifold && !Crease::IsSharp(vertSharpness) && edges.GetSize() >= 2) {
+            // A crease along which three or more sheets meet: all of them see the same curve, that
+            // of the boundary of the first.
+            int const pair[2] = {0, 1};
+            level.sharpVerts.push_back(creaseMask(vert, edges, pair));
+            continue;
+        }
+        Crease::Rule const rule = creasing.DetermineVertexVertexRule(
+            vertSharpness, edges.GetSize(), edges.sharpness.data());
+        SharpVertex mask =
+            maskOfRule(creasing, rule, vert, numFaces, edges, edges.sharpness);
+
+        float const childVertSharpness = creasing.SubdivideVertexSharpness(vertSharpness);
+        childSharpness.resize(edges.sharpness.size());
+        creasing.SubdivideEdgeSharpnessesAroundVertex(edges.GetSize(), edges.sharpness.data(),
+                                                      childSharpness.data());
+        Crease::Rule const childRule = creasing.DetermineVertexVertexRule(
+            childVertSharpness, edges.GetSize(), childSharpness.data());
+        if (childRule != rule) {
+            float const weight = creasing.ComputeFractionalWeightAtVertex(
+                vertSharpness, childVertSharpness, edges.GetSize(), edges.sharpness.data(),
+                childSharpness.data());
+            mask = blend(mask,
+                         maskOfRule(creasing, childRule, vert, numFaces, edges, childSharpness),
+                         weight);
+        }
+        if (mask.rule != Crease::RULE_SMOOTH) {
+            level.sharpVerts.push_back(mask);
+        }
+    }
+    std::sort(level.sectorCorners.begin(), level.sectorCorners.end(),
+              [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
+}
+
+namespace {
+
+// Sharpness after one step, as seen at the ends of a sharp edge.
+class SharpnessRefiner {
+public:
+    SharpnessRefiner(LevelTopology const &level, Sdc::Options sdcOptions)
+        : _level(level), _creasing(sdcOptions) {}
+
+    // Of a part of the edge that ends in the vertex.
+    float AtVertex(float sharpness, Index vert) {
+        if (_creasing.IsUniform()) {
+            return Along(sharpness);
+        }
+        gatherSharpEdges(_level, vert, _edges);
+        return _creasing.SubdivideEdgeSharpnessAtVertex(sharpness, _edges.GetSize(),
+                                                        _edges.sharpness.data());
+    }
+    // Of a part of the edge that ends in neither vertex.
+    float Along(float sharpness) const { return _creasing.SubdivideUniformSharpness(sharpness); }
+    // Of the whole edge: the mean of both ends.
+    float Between(float sharpness, Index vert0, Index vert1) {
+        if (Crease::IsInfinite(sharpness)) {
+            return sharpness;
+        }
+        return 0.5f * (AtVertex(sharpness, vert0) + AtVertex(sharpness, vert1));
+    }
+
+private:
+    LevelTopology const &_level;
+    Crease const _creasing;
+    SharpEdges _edges;
+};
+
+void fillZero(Buffer<float> &array, std::size_t size) {
+    array.Resize(size);
+    std::fill_n(array.data(), size, 0.0f);
+}
+
+// An array without any sharp entry is dropped, so that levels without tags have none.
+void dropIfSmooth(Buffer<float> &array) {
+    if (std::none_of(array.begin(), array.end(), Crease::IsSharp)) {
+        array.Resize(0);
+    }
+}
+
+void refineDiagonals(LevelTopology const &parent, SharpnessRefiner &refiner,
+                     LevelTopology &child) {
+    fillZero(child.diagonalSharpness, child.numFaces);
+    for (std::size_t face = 0; face < parent.diagonalSharpness.size(); ++face) {
+        child.diagonalSharpness[parent.ChildIndexing().GetFaceChildFace(Index(face))] =
+            refiner.Along(parent.diagonalSharpness[face]);
+    }
+    for (std::size_t edge = 0; edge < parent.edgeSharpness.size(); ++edge) {
+        if (Crease::IsSharp(parent.edgeSharpness[edge])) {
+            child.diagonalSharpness[parent.GetEdgeChildFace(Index(edge))] =
+                refiner.Between(parent.edgeSharpness[edge], parent.edgeVerts[2 * edge],
+                                parent.edgeVerts[2 * edge + 1]);
+        }
+    }
+    dropIfSmooth(child.diagonalSharpness);
+}
+
+void refineEdges(LevelTopology const &parent, SharpnessRefiner &refiner, LevelTopology &child) {
+    if (parent.diagonalSharpness.empty()) {
+        return;
+    }
+    fillZero(child.edgeSharpness, child.numEdges);
+    for (Index face = 0; face < parent.numFaces; ++face) {
+        float const sharpness = parent.diagonalSharpness[face];
+        if (!Crease::IsSharp(sharpness)) {
+            continue;
+        }
+        for (int local : {kDiagonalStart, kDiagonalEnd}) {
+            Index const corner = parent.faceFirstCorner[face] + local;
+            child.edgeSharpness[parent.ChildIndexing().GetCornerChildSpoke(corner)] =
+                refiner.AtVertex(sharpness, parent.faceVerts[corner]);
+        }
+    }
+    dropIfSmooth(child.edgeSharpness);
+}
+
+void refineHoles(LevelTopology const &parent, LevelTopology &child) {
+    child.faceHoles.Resize(child.numFaces);
+    for (Index face = 0; face < parent.numFaces; ++face) {
+        child.faceHoles[parent.ChildIndexing().GetFaceChildFace(face)] = parent.faceHoles[face];
+    }
+    for (Index edge = 0; edge < parent.numEdges; ++edge) {
+        if (Index const cFace = parent.GetEdgeChildFace(edge); cFace != Far::INDEX_INVALID) {
+            Index const face0 = parent.edgeFaces[2 * std::size_t(edge)];
+            Index const face1 = parent.edgeFaces[2 * std::size_t(edge) + 1];
+            child.faceHoles[cFace] =
+                parent.faceHoles[face0] && (face1 < 0 || parent.faceHoles[face1]);
+        }
+    }
+}
+
+} // namespace
+
+void RefineTags(LevelTopology const &parent, Sdc::Options sdcOptions, LevelTopology &child) {
+    child.edgeSharpness.Resize(0);
+    child.diagonalSharpness.Resize(0);
+    child.vertSharpness.Resize(0);
+    child.faceHoles.Resize(0);
+    child.nonManifoldVerts = parent.nonManifoldVerts;
+
+    SharpnessRefiner refiner(parent, sdcOptions);
+    if (!parent.edgeSharpness.empty() || !parent.diagonalSharpness.empty()) {
+        refineDiagonals(parent, refiner, child);
+        if (child.hasFullTopology) {
+            refineEdges(parent, refiner, child);
+        }
+    }
+    if (!parent.vertSharpness.empty()) {
+        child.vertSharpness.Resize(parent.vertSharpness.size());
+        std::transform(parent.vertSharpness.begin(), parent.vertSharpness.end(),
+                       child.vertSharpness.data(),
+                       [&](float sharpness) { return refiner.Along(sharpness); });
+        dropIfSmooth(child.vertSharpness);
+    }
+    if (!parent.faceHoles.empty()) {
+        refineHoles(parent, child);
+    }
+}
+
+} // namespace OpenSubdivHex::FarExt::internal
