@@ -21,8 +21,7 @@ EdgeSides sidesOf(LevelTopology const &mesh, Index edge) {
     for (int side = 0; side < 2; ++side) {
         std::size_t const k = 2 * std::size_t(edge) + side;
         Index const face = mesh.edgeFaces[k];
-        sides.corners[side] =
-            face < 0 ? face : mesh.faceFirstCorner[face] + mesh.edgeFaceLocals[k];
+        sides.corners[side] = face < 0 ? face : mesh.faceFirstCorner[face] + mesh.edgeFaceLocals[k];
     }
     return sides;
 }
@@ -81,8 +80,8 @@ void splitFans(FVarLevel &channel, std::vector<EdgeSides> const &edges) {
             Index const outEdge = level.faceEdges[corner];
             Index const inEdge =
                 level.faceEdges[first + (level.vertFaceLocals[i] + size - 1) % size];
-            bool const goesOn = lastInEdge == outEdge && !level.IsBoundary(outEdge) &&
-                                lastInEdge != fanOutEdge;
+            bool const goesOn =
+                lastInEdge == outEdge && !level.IsBoundary(outEdge) && lastInEdge != fanOutEdge;
             if (!goesOn) {
                 if (!isFirstFan) {
                     fanVert = Index(valuesOfVertices.size());
@@ -119,9 +118,8 @@ bool meetsFreeBoundary(LevelTopology const &level, Index vert, bool &meetsSharp)
 } // namespace
 
 void BuildFVarLevel(LevelTopology const &mesh, Index numValues,
-                    std::vector<Index> const &faceValues,
-                    std::vector<float> const &valueSharpness, Sdc::Options sdcOptions,
-                    FVarLevel &channel) {
+                    std::vector<Index> const &faceValues, std::vector<float> const &valueSharpness,
+                    Sdc::Options sdcOptions, FVarLevel &channel) {
     LevelTopology &level = channel.topology;
     channel.numValues = numValues;
     channel.linearInterpolation = sdcOptions.GetFVarLinearInterpolation();
@@ -181,7 +179,7 @@ void RefineFVarLevel(LevelTopology const &pMesh, FVarLevel &pChannel, Sdc::Optio
         FVarLevel::SplitFace split = {cFace, {first, second}, {}};
         for (int half = 1; half >= 0; --half) {
             for (int i = 0; i < HexIndexing::kNumBoundaryEFaceCorners; ++i) {
-                split.values[FVarLevel::kSplitCorners[half][i]] =
+                split.values[kHexagonHalves[half][i]] =
                     cValues.faceVerts[cValues.faceFirstCorner[split.valueFaces[half]] + i];
             }
         }
@@ -203,8 +201,7 @@ void RefineFVarLevel(LevelTopology const &pMesh, FVarLevel &pChannel, Sdc::Optio
             continue;
         }
         std::size_t const k = 2 * std::size_t(pEdge);
-        Index const valueEdge =
-            pChannel.GetFaceEdge(pMesh.edgeFaces[k], pMesh.edgeFaceLocals[k]);
+        Index const valueEdge = pChannel.GetFaceEdge(pMesh.edgeFaces[k], pMesh.edgeFaceLocals[k]);
         cChannel.valueFaces[cFace] = pValues.GetEdgeChildFace(valueEdge);
         if (!pMesh.IsBoundary(pEdge)) {
             Index const otherEdge =

@@ -17,11 +17,6 @@ namespace OpenSubdivHex::FarExt::internal {
 struct FVarLevel {
     using Index = Far::Index;
 
-    /// The halves of a split hexagon, in their own vertices 0 ... 3: vertex i of the first half is
-    /// the hexagon's vertex kSplitCorners[0][i].
-    static constexpr int kSplitCorners[2][HexIndexing::kNumBoundaryEFaceCorners] = {{0, 3, 4, 5},
-                                                                                    {3, 0, 1, 2}};
-
     /// The edge of \p topology that the mesh's face \p face has as its edge number \p local.
     Index GetFaceEdge(Index face, int local) const {
         Index valueFace = valueFaces[face];
@@ -34,8 +29,8 @@ struct FVarLevel {
     }
 
     struct SplitFace {
-        Index face;          ///< of the mesh
-        Index valueFaces[2]; ///< its halves in topology
+        Index face;                                  ///< of the mesh
+        Index valueFaces[2];                         ///< its halves in topology
         Index values[HexIndexing::kNumEFaceCorners]; ///< by corner; of the first half on the seam
     };
     SplitFace const *FindSplitFace(Index face) const {
@@ -48,13 +43,13 @@ struct FVarLevel {
     LevelTopology topology;
     Sdc::Options::FVarLinearInterpolation linearInterpolation =
         Sdc::Options::FVAR_LINEAR_CORNERS_ONLY;
-    Buffer<Index> valueFaces;          ///< face of topology, or first half, of each face of the mesh
+    Buffer<Index> valueFaces; ///< face of topology, or first half, of each face of the mesh
     std::vector<SplitFace> splitFaces; ///< ascending
 
     // Of level 0 alone.
-    Index numValues = 0;             ///< values of the user
-    Buffer<Index> valuesOfVertices;  ///< the value of each vertex of topology
-    Buffer<Index> faceValues;        ///< the value of each corner of the mesh
+    Index numValues = 0;            ///< values of the user
+    Buffer<Index> valuesOfVertices; ///< the value of each vertex of topology
+    Buffer<Index> faceValues;       ///< the value of each corner of the mesh
 };
 
 /// \brief Makes the value mesh of a channel of \p mesh, a level 0.

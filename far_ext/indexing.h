@@ -40,6 +40,10 @@ inline constexpr int kDiagonalStart = 0;
 inline constexpr int kDiagonalEnd = 3;
 inline constexpr int kHalfFaceLongEdge = 0;
 
+/// The corners of the two halves of a hexagon that a crease or a face-varying seam crosses: half 0 is
+/// on the side of the first face of the parent edge.
+inline constexpr int kHexagonHalves[2][4] = {{0, 3, 4, 5}, {3, 0, 1, 2}};
+
 /// \brief The closed-form numbering of a child level in terms of its parent: see INDEXING.md.
 ///
 /// A *corner* is a position in the parent's face-vertex array.  Nothing is stored but the parent's

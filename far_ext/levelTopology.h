@@ -57,9 +57,7 @@ struct LevelTopology {
     LevelTopology();
     ~LevelTopology();
 
-    HexIndexing ChildIndexing() const {
-        return HexIndexing(numVertices, numFaces, numCorners);
-    }
+    HexIndexing ChildIndexing() const { return HexIndexing(numVertices, numFaces, numCorners); }
 
     bool IsBoundary(Index e) const { return edgeFaces[2 * std::size_t(e) + 1] < 0; }
     bool IsSharpBoundaryB(Index e) const {
@@ -87,16 +85,16 @@ struct LevelTopology {
 
     /// The sharp vertex \p v, null when its rule is the smooth one.
     SharpVertex const *FindSharpVertex(Index v) const {
-        auto const found =
-            std::lower_bound(sharpVerts.begin(), sharpVerts.end(), v,
-                             [](SharpVertex const &sharp, Index vert) { return sharp.vert < vert; });
+        auto const found = std::lower_bound(
+            sharpVerts.begin(), sharpVerts.end(), v,
+            [](SharpVertex const &sharp, Index vert) { return sharp.vert < vert; });
         return found != sharpVerts.end() && found->vert == v ? &*found : nullptr;
     }
     /// The entry of a corner in a wide sector, null for others.
     SectorCorner const *FindSectorCorner(Index corner) const {
-        auto const found = std::lower_bound(
-            sectorCorners.begin(), sectorCorners.end(), corner,
-            [](SectorCorner const &sector, Index c) { return sector.corner < c; });
+        auto const found =
+            std::lower_bound(sectorCorners.begin(), sectorCorners.end(), corner,
+                             [](SectorCorner const &sector, Index c) { return sector.corner < c; });
         return found != sectorCorners.end() && found->corner == corner ? &*found : nullptr;
     }
 
@@ -107,7 +105,7 @@ struct LevelTopology {
     Index numVertices = 0;
     Index numEdges = 0;
     Index numFaces = 0;
-    Index numCorners = 0;       ///< entries of faceVerts
+    Index numCorners = 0;        ///< entries of faceVerts
     Index numFreeBoundaries = 0; ///< boundary edges by their BoundaryKind
     Index numSharpBoundariesA = 0;
     Index numSharpBoundariesB = 0;

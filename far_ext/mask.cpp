@@ -92,5 +92,4 @@ VertexVertexMask ComputeVertexVertexMask(Interpolation interpolation, int numFac
     return {weight, weight};
 }
 
-
 } // namespace OpenSubdivHex::FarExt

@@ -94,8 +94,8 @@ private:
 template <typename REAL>
 template <class T, class U>
 void PrimvarRefinerReal<REAL>::interpolate(TopologyLevel const &pLevel,
-                                           internal::RefinementMask const &mask,
-                                           T const &src, U &dst) const {
+                                           internal::RefinementMask const &mask, T const &src,
+                                           U &dst) const {
     HexIndexing const indexing = pLevel.GetChildIndexing();
     std::vector<double> scratch;
 

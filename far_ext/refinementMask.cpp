@@ -7,7 +7,7 @@
 namespace OpenSubdivHex::FarExt::internal {
 
 RefinementMask::RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask,
-                                     Interpolation interpolation)
+                               Interpolation interpolation)
     : _faceMask(faceMask), _interpolation(interpolation) {
     // F-faces keep the size of their parent, so all sizes are those of the base and of E-faces.
     constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
@@ -27,8 +27,7 @@ RefinementMask::RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask
     // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
     // V and W are the ends of the diagonal, Q and P the two vertices between them.
     std::fill_n(&_diagonalWeights[0][0], kHexagon * kHexagon, 0.0);
-    int const halves[2][kTrapezoid] = {{3, 0, 1, 2}, {0, 3, 4, 5}};
-    for (auto const &half : halves) {
+    for (auto const &half : kHexagonHalves) {
         for (int i = 0; i < kTrapezoid; ++i) {
             for (int j = 0; j < kTrapezoid; ++j) {
                 _diagonalWeights[half[i]][half[j]] = _halfFaceWeights[i][j];
@@ -38,16 +37,15 @@ RefinementMask::RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask
 }
 
 double const *RefinementMask::GetFaceVertexWeights(TopologyLevel const &level, Index face,
-                                                       int corner,
-                                                       std::vector<double> &scratch) const {
+                                                   int corner, std::vector<double> &scratch) const {
     if (level.GetTopology().HasFeatures()) {
         return featureWeights(level, face, corner, scratch);
     }
     return smoothWeights(level.GetFaceVertices(face).size(), corner);
 }
 
-double const *RefinementMask::featureWeights(TopologyLevel const &level, Index face,
-                                                 int corner, std::vector<double> &scratch) const {
+double const *RefinementMask::featureWeights(TopologyLevel const &level, Index face, int corner,
+                                             std::vector<double> &scratch) const {
     int const size = level.GetFaceVertices(face).size();
     if (level.IsFaceHalf(face)) {
         return _halfFaceWeights[corner];
@@ -84,8 +82,7 @@ double const *RefinementMask::featureWeights(TopologyLevel const &level, Index f
     return smooth;
 }
 
-auto RefinementMask::GetVertexMask(TopologyLevel const &level, Index vert) const
-    -> VertexMask {
+auto RefinementMask::GetVertexMask(TopologyLevel const &level, Index vert) const -> VertexMask {
     SharpVertex const *sharp = _interpolation == Interpolation::Vertex
                                    ? level.GetTopology().FindSharpVertex(vert)
                                    : nullptr;

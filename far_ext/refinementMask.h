@@ -32,7 +32,7 @@ public:
     /// Weights of the vertices of \p face, in their order, for the F-vertex of its corner number
     /// \p corner.  The result is valid until \p scratch is used again.
     double const *GetFaceVertexWeights(TopologyLevel const &level, Index face, int corner,
-                                     std::vector<double> &scratch) const;
+                                       std::vector<double> &scratch) const;
 
     VertexMask GetVertexMask(TopologyLevel const &level, Index vert) const;
 
@@ -43,7 +43,7 @@ private:
     }
 
     double const *featureWeights(TopologyLevel const &level, Index face, int corner,
-                               std::vector<double> &scratch) const;
+                                 std::vector<double> &scratch) const;
 
     FaceMask _faceMask;
     Interpolation _interpolation;
@@ -51,7 +51,7 @@ private:
 
     // One row of weights per corner of a half face and of a hexagon with a sharp diagonal.
     double _halfFaceWeights[HexIndexing::kNumBoundaryEFaceCorners]
-                         [HexIndexing::kNumBoundaryEFaceCorners];
+                           [HexIndexing::kNumBoundaryEFaceCorners];
     double _diagonalWeights[HexIndexing::kNumEFaceCorners][HexIndexing::kNumEFaceCorners];
 };
 

@@ -172,9 +172,9 @@ Index gatherFan(LevelTopology const &level, Index vert, Index i, std::vector<Rin
     ring.clear();
     auto addEdge = [&](Index edge) {
         Index const kind = level.edgeFaces[2 * std::size_t(edge) + 1];
-        float const sharpness =
-            kind >= 0 ? level.GetEdgeSharpness(edge)
-                      : (kind == kFreeBoundary ? 0 : Crease::SHARPNESS_INFINITE);
+        float const sharpness = kind >= 0
+                                    ? level.GetEdgeSharpness(edge)
+                                    : (kind == kFreeBoundary ? 0 : Crease::SHARPNESS_INFINITE);
         ring.push_back({Far::INDEX_INVALID, false, kind == kSharpBoundaryB, sharpness});
     };
     Index const begin = level.vertFirstFace[vert];
@@ -198,7 +198,8 @@ Index gatherFan(LevelTopology const &level, Index vert, Index i, std::vector<Rin
             ring.push_back({Far::INDEX_INVALID, false, true, diagonal});
             ring.push_back({Far::INDEX_INVALID, true, false, 0});
         } else {
-            bool const onLongEdge = level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
+            bool const onLongEdge =
+                level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
             ring.push_back({onLongEdge ? Far::INDEX_INVALID : first + local, true, false, 0});
         }
         if (level.IsBoundary(inEdge)) {
@@ -229,7 +230,8 @@ void addSectorCorners(std::vector<RingItem> const &ring, std::vector<SectorCorne
         }
         auto const numFaces =
             std::count_if(start, end, [](RingItem const &item) { return item.isFace; });
-        float const size = float(numFaces) - 0.5f * float(start->isLong) - 0.5f * float(end->isLong);
+        float const size =
+            float(numFaces) - 0.5f * float(start->isLong) - 0.5f * float(end->isLong);
         float const weight = std::min({1.0f, start->sharpness, end->sharpness});
         if (size >= kMinShrunkSector) {
             for (auto item = start; item != end; ++item) {
@@ -269,10 +271,9 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
             level.sharpVerts.push_back(creaseMask(vert, edges, pair));
             continue;
         }
-        Crease::Rule const rule = creasing.DetermineVertexVertexRule(
-            vertSharpness, edges.GetSize(), edges.sharpness.data());
-        SharpVertex mask =
-            maskOfRule(creasing, rule, vert, numFaces, edges, edges.sharpness);
+        Crease::Rule const rule = creasing.DetermineVertexVertexRule(vertSharpness, edges.GetSize(),
+                                                                     edges.sharpness.data());
+        SharpVertex mask = maskOfRule(creasing, rule, vert, numFaces, edges, edges.sharpness);
 
         float const childVertSharpness = creasing.SubdivideVertexSharpness(vertSharpness);
         childSharpness.resize(edges.sharpness.size());
@@ -284,9 +285,9 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
             float const weight = creasing.ComputeFractionalWeightAtVertex(
                 vertSharpness, childVertSharpness, edges.GetSize(), edges.sharpness.data(),
                 childSharpness.data());
-            mask = blend(mask,
-                         maskOfRule(creasing, childRule, vert, numFaces, edges, childSharpness),
-                         weight);
+            mask =
+                blend(mask, maskOfRule(creasing, childRule, vert, numFaces, edges, childSharpness),
+                      weight);
         }
         if (mask.rule != Crease::RULE_SMOOTH) {
             level.sharpVerts.push_back(mask);
@@ -341,8 +342,7 @@ void dropIfSmooth(Buffer<float> &array) {
     }
 }
 
-void refineDiagonals(LevelTopology const &parent, SharpnessRefiner &refiner,
-                     LevelTopology &child) {
+void refineDiagonals(LevelTopology const &parent, SharpnessRefiner &refiner, LevelTopology &child) {
     fillZero(child.diagonalSharpness, child.numFaces);
     for (std::size_t face = 0; face < parent.diagonalSharpness.size(); ++face) {
         child.diagonalSharpness[parent.ChildIndexing().GetFaceChildFace(Index(face))] =

@@ -269,7 +269,7 @@ private:
     LevelRows<REAL> const *_pRows;
     LevelRows<REAL> const _rows;
 
-    std::vector<int> _position;     // by source
+    std::vector<int> _position; // by source
     std::vector<double> _scratch;
     std::vector<double> _parentBlock; // dense stencils of a face's vertices over the face's support
     std::vector<double> _row;         // one dense stencil
@@ -278,8 +278,7 @@ private:
 template <typename REAL>
 void LevelBuilder<REAL>::fillSizesAndOffsets(Index firstOffset) {
     for (Index pVert = 0; pVert < _pLevel.GetNumVertices(); ++pVert) {
-        _rows.sizes[_indexing.GetVertexChildVertex(pVert)] =
-            _supports.OfParentVertex(pVert).size();
+        _rows.sizes[_indexing.GetVertexChildVertex(pVert)] = _supports.OfParentVertex(pVert).size();
     }
     for (Index pFace = 0; pFace < _pLevel.GetNumFaces(); ++pFace) {
         Index const first = _indexing.GetCornerChildVertex(_pLevel.GetFaceFirstCorner(pFace));
@@ -344,8 +343,7 @@ struct Plan {
     template <typename OPTIONS>
     Plan(TopologyRefiner const &topologyRefiner, OPTIONS const &options)
         : refiner(topologyRefiner),
-          channel(options.interpolationMode == INTERPOLATE_FACE_VARYING ? options.fvarChannel
-                                                                        : -1),
+          channel(options.interpolationMode == INTERPOLATE_FACE_VARYING ? options.fvarChannel : -1),
           interpolation(isLinear(options.interpolationMode) ? Interpolation::Varying
                                                             : Interpolation::Vertex),
           factorize(options.factorizeIntermediateLevels),
@@ -402,8 +400,9 @@ private:
 struct SymbolicTable {
     // The parent supports of a level: of the level before when stencils are factorized.
     LevelSupports const &ParentsOf(Plan const &plan, int level) const {
-        return plan.HasParentStencils(level) ? Of(plan, level - 1)
-                                             : sources[plan.factorize ? 0 : level - plan.firstBuilt];
+        return plan.HasParentStencils(level)
+                   ? Of(plan, level - 1)
+                   : sources[plan.factorize ? 0 : level - plan.firstBuilt];
     }
     LevelSupports const &Of(Plan const &plan, int level) const {
         return levels[level - plan.firstBuilt];
@@ -444,8 +443,7 @@ Status buildSupports(Plan const &plan, RefinementMask const &mask, SymbolicTable
 }
 
 template <typename REAL>
-std::unique_ptr<WritableTable<REAL>> buildTable(Plan const &plan,
-                                                RefinementMask const &mask,
+std::unique_ptr<WritableTable<REAL>> buildTable(Plan const &plan, RefinementMask const &mask,
                                                 SymbolicTable const &symbolic) {
     Index const numControlVertices = plan.GetNumVertices(0);
     auto table = std::make_unique<WritableTable<REAL>>(numControlVertices, symbolic.numStencils,
@@ -465,8 +463,8 @@ std::unique_ptr<WritableTable<REAL>> buildTable(Plan const &plan,
 
         previous.swap(current);
         if (!isStored) {
-            current = std::make_unique<WritableTable<REAL>>(numControlVertices, numStencils,
-                                                            numWeights);
+            current =
+                std::make_unique<WritableTable<REAL>>(numControlVertices, numStencils, numWeights);
         }
         LevelRows<REAL> const rows = isStored ? table->GetRows(nextStencil) : current->GetRows(0);
         LevelBuilder<REAL>(pLevel, symbolic.ParentsOf(plan, level), supports, mask,
@@ -507,7 +505,7 @@ auto StencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Optio
     }
     Plan const plan(refiner, options);
     RefinementMask const mask(refiner.GetLevel(0), refiner.GetHexSchemeOptions().faceMask,
-                                    plan.interpolation);
+                              plan.interpolation);
     SymbolicTable symbolic;
     if (!internal::Report(buildSupports(plan, mask, symbolic), status)) {
         return nullptr;

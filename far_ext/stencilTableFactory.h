@@ -48,7 +48,8 @@ public:
         bool generateIntermediateLevels = true;
         bool factorizeIntermediateLevels = true;
         int maxLevel = std::numeric_limits<int>::max(); ///< 0 or more; not cut to any bit width
-        int fvarChannel = 0; ///< for INTERPOLATE_FACE_VARYING, whose vertices are face-varying values
+        int fvarChannel =
+            0; ///< for INTERPOLATE_FACE_VARYING, whose vertices are face-varying values
     };
 
     /// \brief Makes the table.

@@ -14,9 +14,7 @@ using internal::LevelTopology;
 
 namespace {
 
-int numEdgeFaces(LevelTopology const &topology, Index e) {
-    return topology.IsBoundary(e) ? 1 : 2;
-}
+int numEdgeFaces(LevelTopology const &topology, Index e) { return topology.IsBoundary(e) ? 1 : 2; }
 
 bool contains(std::vector<Index> const &ascending, Index index) {
     return std::binary_search(ascending.begin(), ascending.end(), index);
@@ -213,8 +211,7 @@ Far::ConstIndexArray TopologyLevel::GetFaceChildVertices(Index f) const {
     if (!_topology->child) {
         return ConstIndexArray();
     }
-    return TopologyLevel(_topology->child)
-        .GetFaceVertices(GetChildIndexing().GetFaceChildFace(f));
+    return TopologyLevel(_topology->child).GetFaceVertices(GetChildIndexing().GetFaceChildFace(f));
 }
 
 Far::ConstIndexArray TopologyLevel::GetFaceChildEdges(Index f) const {
@@ -261,10 +258,10 @@ private:
     bool require(bool holds, ComponentType component, Index index, char const *cause) {
         if (!holds && _status.IsOk()) {
             static char const *const kNames[] = {"level", "face", "edge", "vertex", "level"};
-            _status = Status(StatusCode::InvalidTopology, component, index,
-                             "level " + std::to_string(_level.GetDepth()) + ", " +
-                                 kNames[int(component)] + " " + std::to_string(index) + ": " +
-                                 cause);
+            _status =
+                Status(StatusCode::InvalidTopology, component, index,
+                       "level " + std::to_string(_level.GetDepth()) + ", " +
+                           kNames[int(component)] + " " + std::to_string(index) + ": " + cause);
         }
         return holds;
     }
@@ -357,8 +354,8 @@ bool Validator::checkFaceEdges() {
             Far::ConstIndexArray const edgeFaces = _level.GetEdgeFaces(edges[i]);
             Index const start = verts[i];
             Index const end = verts[(i + 1) % verts.size()];
-            int const side = (edgeFaces[0] == face &&
-                              _level.GetEdgeFaceLocalIndices(edges[i])[0] == i) ? 0 : 1;
+            int const side =
+                (edgeFaces[0] == face && _level.GetEdgeFaceLocalIndices(edges[i])[0] == i) ? 0 : 1;
             if (!require(edgeVerts[side] == start && edgeVerts[1 - side] == end,
                          ComponentType::Face, face, "an edge does not join its two vertices") ||
                 !require(side < edgeFaces.size() && edgeFaces[side] == face &&
@@ -395,8 +392,8 @@ bool Validator::checkEdges() {
             ++numBoundary;
         }
     }
-    return require(numSides == _level.GetNumFaceVertices(), ComponentType::Level,
-                   _level.GetDepth(), "edges have not as many sides as faces") &&
+    return require(numSides == _level.GetNumFaceVertices(), ComponentType::Level, _level.GetDepth(),
+                   "edges have not as many sides as faces") &&
            require(numBoundary == _topology.boundaryEdges.size(), ComponentType::Level,
                    _level.GetDepth(), "the list of boundaries is too long");
 }
@@ -435,8 +432,7 @@ bool Validator::checkVertices() {
             }
             Far::ConstIndexArray const faceEdges = _level.GetFaceEdges(faces[i]);
             Index const outEdge = faceEdges[inFace[i]];
-            Index const backEdge =
-                faceEdges[(inFace[i] + faceEdges.size() - 1) % faceEdges.size()];
+            Index const backEdge = faceEdges[(inFace[i] + faceEdges.size() - 1) % faceEdges.size()];
             if (!require(edge < edges.size() && edges[edge] == outEdge, ComponentType::Vertex, vert,
                          "a face does not begin at its edge")) {
                 return false;
@@ -500,8 +496,7 @@ bool Validator::checkEFaces() {
             int const far = (faces.size() == 2) ? 1 - side : 0;
             int const size = parent.GetFaceVertices(faces[far]).size();
             Index const first = parent.GetFaceFirstCorner(faces[far]);
-            expected.push_back(
-                indexing.GetCornerChildVertex(first + (locals[far] + 1) % size));
+            expected.push_back(indexing.GetCornerChildVertex(first + (locals[far] + 1) % size));
             expected.push_back(indexing.GetCornerChildVertex(first + locals[far]));
         }
         Index const cFace = parent.GetEdgeChildFace(pEdge);

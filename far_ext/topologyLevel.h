@@ -50,8 +50,12 @@ public:
 
     /// @name Incident components and their local indices, as in Far::TopologyLevel
     /// @{
-    ConstIndexArray GetFaceVertices(Index f) const { return span(_topology->faceVerts, _topology->faceFirstCorner, f); }
-    ConstIndexArray GetFaceEdges(Index f) const { return span(_topology->faceEdges, _topology->faceFirstCorner, f); }
+    ConstIndexArray GetFaceVertices(Index f) const {
+        return span(_topology->faceVerts, _topology->faceFirstCorner, f);
+    }
+    ConstIndexArray GetFaceEdges(Index f) const {
+        return span(_topology->faceEdges, _topology->faceFirstCorner, f);
+    }
     /// The first face of the edge runs from the first vertex to the second.
     ConstIndexArray GetEdgeVertices(Index e) const;
     ConstIndexArray GetEdgeFaces(Index e) const;
@@ -95,9 +99,7 @@ public:
     float GetVertexSharpness(Index v) const { return _topology->GetVertexSharpness(v); }
     bool IsEdgeInfSharp(Index e) const { return Sdc::Crease::IsInfinite(GetEdgeSharpness(e)); }
     bool IsEdgeSemiSharp(Index e) const { return Sdc::Crease::IsSemiSharp(GetEdgeSharpness(e)); }
-    bool IsVertexInfSharp(Index v) const {
-        return Sdc::Crease::IsInfinite(GetVertexSharpness(v));
-    }
+    bool IsVertexInfSharp(Index v) const { return Sdc::Crease::IsInfinite(GetVertexSharpness(v)); }
     bool IsVertexSemiSharp(Index v) const {
         return Sdc::Crease::IsSemiSharp(GetVertexSharpness(v));
     }

@@ -81,8 +81,8 @@ private:
         }
     }
 
-    void setEdge(Index cEdge, Index vert0, Index vert1, Index face0, Index face1,
-                 LocalIndex local0, LocalIndex local1) {
+    void setEdge(Index cEdge, Index vert0, Index vert1, Index face0, Index face1, LocalIndex local0,
+                 LocalIndex local1) {
         std::size_t const k = 2 * std::size_t(cEdge);
         _c.edgeVerts[k] = vert0;
         _c.edgeVerts[k + 1] = vert1;
@@ -136,8 +136,7 @@ void Refinement::FillFaceVertices() {
         verts[ring.outSide.startFVertex] = _indexing.GetCornerChildVertex(pCorner);
         verts[ring.outSide.endFVertex] = _indexing.GetCornerChildVertex(ring.next);
         if (_p.IsBoundary(ring.outEdge)) {
-            verts[ring.outSide.endVertex] =
-                _indexing.GetVertexChildVertex(_p.faceVerts[ring.next]);
+            verts[ring.outSide.endVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[ring.next]);
         }
     });
 }
@@ -194,11 +193,10 @@ void Refinement::FillEdges() {
     forEachBoundaryEFace([&](Index pEdge, Index rank) {
         std::size_t const k = 2 * std::size_t(pEdge);
         bool const isFree = _p.edgeFaces[k + 1] == kFreeBoundary;
-        setBoundaryEdge(_indexing.GetBoundaryChildEdge(rank),
-                        _indexing.GetVertexChildVertex(_p.edgeVerts[k]),
-                        _indexing.GetVertexChildVertex(_p.edgeVerts[k + 1]),
-                        _p.GetEdgeChildFace(pEdge), isFree ? kFreeBoundary : kSharpBoundaryB,
-                        kBoundaryEFaceEdge);
+        setBoundaryEdge(
+            _indexing.GetBoundaryChildEdge(rank), _indexing.GetVertexChildVertex(_p.edgeVerts[k]),
+            _indexing.GetVertexChildVertex(_p.edgeVerts[k + 1]), _p.GetEdgeChildFace(pEdge),
+            isFree ? kFreeBoundary : kSharpBoundaryB, kBoundaryEFaceEdge);
     });
 }
 
@@ -334,10 +332,9 @@ void fillChildRelations(LevelTopology &parent) {
 }
 
 void clearRelations(LevelTopology &level) {
-    for (Buffer<Index> *array :
-         {&level.faceEdges, &level.edgeVerts, &level.edgeFaces, &level.boundaryEdges,
-          &level.halfFaces, &level.vertFirstFace, &level.vertFaces, &level.vertFirstEdge,
-          &level.vertEdges}) {
+    for (Buffer<Index> *array : {&level.faceEdges, &level.edgeVerts, &level.edgeFaces,
+                                 &level.boundaryEdges, &level.halfFaces, &level.vertFirstFace,
+                                 &level.vertFaces, &level.vertFirstEdge, &level.vertEdges}) {
         array->Resize(0);
     }
     for (Buffer<LocalIndex> *array :
@@ -351,8 +348,8 @@ void clearRelations(LevelTopology &level) {
 } // namespace
 
 LevelSizes GetSizes(LevelTopology const &level) {
-    return {level.numVertices,       level.numEdges,           level.numFaces,
-            level.numCorners,        level.numFreeBoundaries,  level.numSharpBoundariesA,
+    return {level.numVertices,        level.numEdges,          level.numFaces,
+            level.numCorners,         level.numFreeBoundaries, level.numSharpBoundariesA,
             level.numSharpBoundariesB};
 }
 

@@ -22,8 +22,8 @@ struct Count {
 
 Status tooLarge(int level, Count const &count, std::string const &where) {
     return Status(StatusCode::TooLarge, ComponentType::Level, level,
-                  "level " + std::to_string(level) + " would have " +
-                      std::to_string(count.value) + " " + count.name + where +
+                  "level " + std::to_string(level) + " would have " + std::to_string(count.value) +
+                      " " + count.name + where +
                       ", more than the 2147483647 that 32-bit indices reach");
 }
 
@@ -39,17 +39,17 @@ Status checkSizes(LevelTopology const &base, int refinementLevel, std::string co
         total.faces += sizes.faces;
         total.corners += sizes.corners;
         // The edge-vertices are the longest array.
-        for (Count const &count : {Count{"vertices", sizes.vertices}, Count{"edges", sizes.edges},
-                                   Count{"faces", sizes.faces},
-                                   Count{"face-vertices", sizes.corners},
-                                   Count{"edge-vertices", 2 * sizes.edges}}) {
+        for (Count const &count :
+             {Count{"vertices", sizes.vertices}, Count{"edges", sizes.edges},
+              Count{"faces", sizes.faces}, Count{"face-vertices", sizes.corners},
+              Count{"edge-vertices", 2 * sizes.edges}}) {
             if (count.value > kMaxCount) {
                 return tooLarge(level, count, where);
             }
         }
-        for (Count const &count : {Count{"vertices", total.vertices}, Count{"edges", total.edges},
-                                   Count{"faces", total.faces},
-                                   Count{"face-vertices", total.corners}}) {
+        for (Count const &count :
+             {Count{"vertices", total.vertices}, Count{"edges", total.edges},
+              Count{"faces", total.faces}, Count{"face-vertices", total.corners}}) {
             if (count.value > kMaxCount) {
                 return tooLarge(level, count, where + " together with the levels before");
             }
@@ -80,11 +80,10 @@ void TopologyRefiner::setNumLevels(int numLevels) {
 bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
     int const refinementLevel = options.refinementLevel;
     if (refinementLevel < 0) {
-        return internal::Report(Status(StatusCode::InvalidArgument, ComponentType::Level,
-                                       refinementLevel,
-                                       "refinement level " + std::to_string(refinementLevel) +
-                                           " is negative"),
-                                status);
+        return internal::Report(
+            Status(StatusCode::InvalidArgument, ComponentType::Level, refinementLevel,
+                   "refinement level " + std::to_string(refinementLevel) + " is negative"),
+            status);
     }
     LevelTopology const &base = *_topologies[0];
     Status sizes = checkSizes(base, refinementLevel, "");

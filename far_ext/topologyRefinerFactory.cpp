@@ -77,8 +77,9 @@ Status checkRange(std::string const &name, Index index, int count, ComponentType
     if (0 <= index && index < count) {
         return Status();
     }
-    return invalid(component, index, name + " refers to " + str(index) +
-                                         ", but indices go from 0 to " + str(count - 1));
+    return invalid(component, index,
+                   name + " refers to " + str(index) + ", but indices go from 0 to " +
+                       str(count - 1));
 }
 
 // Far skips a crease that is no edge with a warning; here it is an error.
@@ -129,9 +130,9 @@ Status checkTags(Far::TopologyDescriptor const &descriptor) {
     for (int channel = 0; channel < descriptor.numFVarChannels; ++channel) {
         Far::TopologyDescriptor::FVarChannel const &fvar = descriptor.fvarChannels[channel];
         for (std::int64_t corner = 0; corner < numCorners && status.IsOk(); ++corner) {
-            status = checkRange("corner " + str(corner) + " of face-varying channel " +
-                                    str(channel),
-                                fvar.valueIndices[corner], fvar.numValues, ComponentType::None);
+            status =
+                checkRange("corner " + str(corner) + " of face-varying channel " + str(channel),
+                           fvar.valueIndices[corner], fvar.numValues, ComponentType::None);
         }
     }
     return status;
@@ -313,9 +314,10 @@ bool Importer::isHole(Index face) const {
     // With VTX_BOUNDARY_NONE Far makes holes of all faces at the boundary, to leave them out of its
     // limit surface; the paper's rule keeps them.
     ConstIndexArray const verts = _base.GetFaceVertices(face);
-    bool const isImplied = isFree() && std::any_of(verts.begin(), verts.end(), [&](Index vert) {
-        return _base.IsVertexBoundary(vert) || _base.IsVertexNonManifold(vert);
-    });
+    bool const isImplied =
+        isFree() && std::any_of(verts.begin(), verts.end(), [&](Index vert) {
+            return _base.IsVertexBoundary(vert) || _base.IsVertexNonManifold(vert);
+        });
     return _base.IsFaceHole(face) && !isImplied;
 }
 
@@ -404,8 +406,8 @@ std::unique_ptr<TopologyRefiner> create(Far::TopologyRefiner const &base, bool c
 
 } // namespace
 
-std::unique_ptr<TopologyRefiner>
-TopologyRefinerFactory::Create(Far::TopologyRefiner const &base, Options options, Status *status) {
+std::unique_ptr<TopologyRefiner> TopologyRefinerFactory::Create(Far::TopologyRefiner const &base,
+                                                                Options options, Status *status) {
     return create(base, nullptr, options, status);
 }
 

@@ -12,6 +12,8 @@ namespace OpenSubdivHex::OsdExt {
 struct TriangleIndices {
     /// Three vertices of the level per triangle, in the orientation of the face.
     std::vector<int> vertices;
+    /// Three face-varying values per triangle; empty unless a channel was chosen.
+    std::vector<int> fvarValues;
     /// The face of the level that each triangle belongs to.
     std::vector<int> faces;
     /// The face of level 0 that each triangle came from (TopologyLevel::GetFaceBaseFace).
@@ -20,12 +22,21 @@ struct TriangleIndices {
     int GetNumTriangles() const { return int(faces.size()); }
 };
 
-/// \brief Triangulates every face of \p level: a face of n sides makes n - 2 triangles that
-/// zigzag across it, so that no vertex collects them all.
+/// \brief What CreateTriangleIndices draws.
+struct TriangleOptions {
+    int vertexOffset = 0;   ///< added to every vertex, for levels behind others in one buffer
+    int fvarChannel = -1;   ///< channel for fvarValues; -1 for none
+    bool drawHoles = false; ///< whether faces tagged as holes are drawn as well
+};
+
+/// \brief Triangulates the faces of \p level: a face of n sides makes n - 2 triangles that zigzag
+/// across it, so that no vertex collects them all.
 ///
-/// Triangles are in the order of the faces.  \p vertexOffset is added to every vertex, for
-/// levels that lie behind others in one vertex buffer.
-TriangleIndices CreateTriangleIndices(FarExt::TopologyLevel const &level, int vertexOffset = 0);
+/// A hexagon that a crease, or a seam of the chosen channel, crosses is split along that diagonal
+/// first, so that normals and values may differ to both sides.  Triangles are in the order of the
+/// faces.
+TriangleIndices CreateTriangleIndices(FarExt::TopologyLevel const &level,
+                                      TriangleOptions options = TriangleOptions());
 
 } // namespace OpenSubdivHex::OsdExt
 
