@@ -87,7 +87,7 @@ Status checkCreases(Far::TopologyDescriptor const &descriptor) {
     using Pair = std::pair<Index, Index>;
     std::set<Pair> missing;
     for (int i = 0; i < descriptor.numCreases; ++i) {
-        Index const *verts = descriptor.creaseVertexIndexPairs + 2 * i;
+        Index const *verts = descriptor.creaseVertexIndexPairs + 2 * std::ptrdiff_t(i);
         for (int end = 0; end < 2; ++end) {
             Status status = checkRange("crease " + str(i), verts[end], descriptor.numVertices,
                                        ComponentType::Vertex);
