@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "topologyRefinement.h"
 
+#include "parallel.h"
 #include "sharpFeatures.h"
+
+#include <utility>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -10,64 +13,125 @@ namespace {
 using Index = Far::Index;
 using LocalIndex = Far::LocalIndex;
 
-// A corner's two neighbours in its face, and the E-faces of the two edges that meet there
-// (INDEX_INVALID for a B edge, which makes none).
-struct CornerRing {
-    Index next;
-    Index prev;
-    Index outEdge; // from the corner to the next
-    Index inEdge;  // from the previous corner
-    Index outEFace;
-    Index inEFace;
-    EFaceSide outSide;
-    EFaceSide inSide;
+// Which corners of an E-face run along the first side of their edge; known without a look at the
+// edge, as the order of its vertices is always the same.
+constexpr bool kEFaceCornerIsSideA[HexIndexing::kNumEFaceCorners] = {true, false, false,
+                                                                     true, false, false};
+constexpr bool kBoundaryEFaceCornerIsSideA[HexIndexing::kNumBoundaryEFaceCorners] = {true, true,
+                                                                                     false, false};
+
+// An edge as one of its faces sees it.
+struct FaceEdge {
+    bool HasEFace() const { return eFace != Far::INDEX_INVALID; }
+
+    Index eFace;       // INDEX_INVALID for a B edge, which makes none
+    Index firstCorner; // of the E-face
+    EFaceSide const *side;
+    bool isBoundary;
 };
 
+// Fills a child level.  All that a component makes is written by that component alone, to places
+// that are known in advance, so that components can be taken in any order and in parallel.
+//
+// Without a boundary all places are closed-form: HAS_BOUNDARY leaves out what is for boundaries.
+template <bool HAS_BOUNDARY>
 class Refinement {
 public:
     Refinement(LevelTopology const &parent, LevelTopology &child)
         : _p(parent), _c(child), _indexing(parent.ChildIndexing()) {}
 
-    void FillFaceOffsets();
-    void FillFaceVertices();
-    void FillFaceEdges();
-    void FillEdges();
-    void FillBoundaries();
-    void FillVerticesOfVertices();
-    void FillVerticesOfCorners();
+    void FillFaceVertices() {
+        fillFaceOffsets();
+        _c.faceVerts.Resize(_c.numCorners);
+        ParallelFor(_p.numFaces, [this](Index pFace) { fillFaceVerticesOf(pFace); });
+    }
+
+    void FillRelations() {
+        _c.faceEdges.Resize(_c.numCorners);
+        _c.edgeVerts.Resize(2 * std::size_t(_c.numEdges));
+        _c.edgeFaces.Resize(2 * std::size_t(_c.numEdges));
+        _c.edgeFaceLocals.Resize(2 * std::size_t(_c.numEdges));
+        _c.vertFirstFace.Resize(std::size_t(_c.numVertices) + 1);
+        _c.vertFirstEdge.Resize(std::size_t(_c.numVertices) + 1);
+        _c.vertFaces.Resize(_c.numCorners);
+        _c.vertFaceLocals.Resize(_c.numCorners);
+        _c.vertEdges.Resize(2 * std::size_t(_c.numEdges));
+        _c.vertEdgeLocals.Resize(2 * std::size_t(_c.numEdges));
+        fillBoundaries();
+        fillVertexOffsets();
+        ParallelFor(_p.numFaces, [this](Index pFace) { fillRelationsOfFace(pFace); });
+        ParallelFor(_p.numVertices, [this](Index pVert) { fillRelationsOfVertex(pVert); });
+    }
 
 private:
-    // The side from which a face sees its edge.
-    EFaceSide sideOf(Index pEdge, Index pFace) const {
-        if (_p.IsBoundary(pEdge)) {
-            return kBoundaryEFaceSide;
+    void fillFaceOffsets();
+    void fillVertexOffsets();
+    void fillBoundaries();
+    void fillFaceVerticesOf(Index pFace);
+    void fillRelationsOfFace(Index pFace);
+    void fillRelationsOfVertex(Index pVert);
+
+    bool isBoundary(Index pEdge) const {
+        if constexpr (HAS_BOUNDARY) {
+            return _p.IsBoundary(pEdge);
         }
-        return _p.edgeFaces[2 * std::size_t(pEdge)] == pFace ? kEFaceSideA : kEFaceSideB;
+        static_cast<void>(pEdge);
+        return false;
     }
 
-    CornerRing ringOf(Index pFace, Index pCorner) const {
-        Index const first = _p.faceFirstCorner[pFace];
-        Index const end = _p.faceFirstCorner[pFace + 1];
-        CornerRing ring;
-        ring.next = (pCorner + 1 == end) ? first : pCorner + 1;
-        ring.prev = (pCorner == first) ? end - 1 : pCorner - 1;
-        ring.outEdge = _p.faceEdges[pCorner];
-        ring.inEdge = _p.faceEdges[ring.prev];
-        ring.outEFace = _p.GetEdgeChildFace(ring.outEdge);
-        ring.inEFace = _p.GetEdgeChildFace(ring.inEdge);
-        ring.outSide = sideOf(ring.outEdge, pFace);
-        ring.inSide = sideOf(ring.inEdge, pFace);
-        return ring;
+    bool isSideA(Index pFace, int size, Index pCorner, Index pEdge) const {
+        if (!_p.parent) {
+            return _p.edgeFaces[2 * std::size_t(pEdge)] == pFace;
+        }
+        if (!_p.parent->ChildIndexing().IsFaceFromEdge(pFace)) {
+            return true;
+        }
+        Index const local = pCorner - _p.faceFirstCorner[pFace];
+        return size == HexIndexing::kNumEFaceCorners ? kEFaceCornerIsSideA[local]
+                                                     : kBoundaryEFaceCornerIsSideA[local];
     }
 
-    template <typename FUNCTION>
-    void forEachCorner(FUNCTION function) const {
-        for (Index pFace = 0; pFace < _p.numFaces; ++pFace) {
-            Index const end = _p.faceFirstCorner[pFace + 1];
-            for (Index pCorner = _p.faceFirstCorner[pFace]; pCorner < end; ++pCorner) {
-                function(pFace, pCorner, ringOf(pFace, pCorner));
+    // The edge from a corner to the next, seen from the face.
+    FaceEdge edgeFrom(Index pFace, int size, Index pCorner) const {
+        Index const pEdge = _p.faceEdges[pCorner];
+        if constexpr (HAS_BOUNDARY) {
+            Index const eFace = _p.GetEdgeChildFace(pEdge);
+            Index const first = eFace < 0 ? Far::INDEX_INVALID : _c.faceFirstCorner[eFace];
+            if (isBoundary(pEdge)) {
+                return {eFace, first, &kBoundaryEFaceSide, true};
             }
+            return {eFace, first,
+                    isSideA(pFace, size, pCorner, pEdge) ? &kEFaceSideA : &kEFaceSideB, false};
         }
+        return {_indexing.GetEdgeChildFace(pEdge, 0),
+                _indexing.GetEdgeChildFirstCorner(pEdge, 0, 0),
+                isSideA(pFace, size, pCorner, pEdge) ? &kEFaceSideA : &kEFaceSideB, false};
+    }
+
+    // Calls function(edge, pCorner, next, prev) with the edge that ends at a corner and the one that
+    // starts there, for all corners of a face.
+    template <typename FUNCTION>
+    void forEachCorner(Index pFace, FUNCTION function) const {
+        Index const first = _p.faceFirstCorner[pFace];
+        Index const last = _p.faceFirstCorner[pFace + 1] - 1;
+        int const size = last - first + 1;
+        FaceEdge inEdge = edgeFrom(pFace, size, last);
+        Index prev = last;
+        for (Index pCorner = first; pCorner <= last; ++pCorner) {
+            FaceEdge const outEdge = edgeFrom(pFace, size, pCorner);
+            function(inEdge, outEdge, prev, pCorner, pCorner == last ? first : pCorner + 1);
+            inEdge = outEdge;
+            prev = pCorner;
+        }
+    }
+
+    // The edges of a face that end and start at a corner.
+    std::pair<FaceEdge, FaceEdge> edgesAt(Index pFace, Index pCorner) const {
+        Index const first = _p.faceFirstCorner[pFace];
+        Index const last = _p.faceFirstCorner[pFace + 1] - 1;
+        int const size = last - first + 1;
+        return {edgeFrom(pFace, size, pCorner == first ? last : pCorner - 1),
+                edgeFrom(pFace, size, pCorner)};
     }
 
     // Calls function(pEdge, rank) for the boundary edges that make an E-face.
@@ -98,109 +162,233 @@ private:
 
     LevelTopology const &_p;
     LevelTopology &_c;
-    HexIndexing _indexing;
+    HexIndexing const _indexing;
 };
 
-void Refinement::FillFaceOffsets() {
+template <bool HAS_BOUNDARY>
+void Refinement<HAS_BOUNDARY>::fillFaceOffsets() {
     _c.faceFirstCorner.Resize(std::size_t(_c.numFaces) + 1);
-    for (Index pFace = 0; pFace < _p.numFaces; ++pFace) {
+    ParallelFor(_p.numFaces, [this](Index pFace) {
         _c.faceFirstCorner[_indexing.GetFaceChildFace(pFace)] =
             _indexing.GetFaceChildFirstCorner(_p.faceFirstCorner[pFace]);
-    }
-    Index numBBefore = 0;
-    Index numBoundaryBefore = 0;
-    for (Index pEdge = 0; pEdge < _p.numEdges; ++pEdge) {
-        if (_p.IsSharpBoundaryB(pEdge)) {
-            ++numBBefore;
-            continue;
+    });
+    if constexpr (HAS_BOUNDARY) {
+        Index numBBefore = 0;
+        Index numBoundaryBefore = 0;
+        for (Index pEdge = 0; pEdge < _p.numEdges; ++pEdge) {
+            if (_p.IsSharpBoundaryB(pEdge)) {
+                ++numBBefore;
+                continue;
+            }
+            _c.faceFirstCorner[_indexing.GetEdgeChildFace(pEdge, numBBefore)] =
+                _indexing.GetEdgeChildFirstCorner(pEdge, numBBefore, numBoundaryBefore);
+            numBoundaryBefore += isBoundary(pEdge);
         }
-        _c.faceFirstCorner[_indexing.GetEdgeChildFace(pEdge, numBBefore)] =
-            _indexing.GetEdgeChildFirstCorner(pEdge, numBBefore, numBoundaryBefore);
-        numBoundaryBefore += _p.IsBoundary(pEdge);
+    } else {
+        ParallelFor(_p.numEdges, [this](Index pEdge) {
+            _c.faceFirstCorner[_indexing.GetEdgeChildFace(pEdge, 0)] =
+                _indexing.GetEdgeChildFirstCorner(pEdge, 0, 0);
+        });
     }
     _c.faceFirstCorner[_c.numFaces] = _c.numCorners;
 }
 
 // Every corner writes its own corner of the F-face and its own side of its edge's E-face; that of
 // a boundary edge has no other side, so its end vertex is written as well.
-void Refinement::FillFaceVertices() {
-    _c.faceVerts.Resize(_c.numCorners);
-    forEachCorner([&](Index, Index pCorner, CornerRing const &ring) {
-        _c.faceVerts[_indexing.GetFaceChildFirstCorner(pCorner)] =
-            _indexing.GetCornerChildVertex(pCorner);
-        if (ring.outEFace == Far::INDEX_INVALID) {
-            return;
-        }
-        Index *verts = _c.faceVerts.data() + _c.faceFirstCorner[ring.outEFace];
-        verts[ring.outSide.startVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[pCorner]);
-        verts[ring.outSide.startFVertex] = _indexing.GetCornerChildVertex(pCorner);
-        verts[ring.outSide.endFVertex] = _indexing.GetCornerChildVertex(ring.next);
-        if (_p.IsBoundary(ring.outEdge)) {
-            verts[ring.outSide.endVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[ring.next]);
-        }
-    });
+template <bool HAS_BOUNDARY>
+void Refinement<HAS_BOUNDARY>::fillFaceVerticesOf(Index pFace) {
+    forEachCorner(
+        pFace, [this](FaceEdge const &, FaceEdge const &edge, Index, Index pCorner, Index next) {
+            Index const fVertex = _indexing.GetCornerChildVertex(pCorner);
+            _c.faceVerts[_indexing.GetFaceChildFirstCorner(pCorner)] = fVertex;
+            if (HAS_BOUNDARY && !edge.HasEFace()) {
+                return;
+            }
+            Index *verts = _c.faceVerts.data() + edge.firstCorner;
+            verts[edge.side->startVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[pCorner]);
+            verts[edge.side->startFVertex] = fVertex;
+            verts[edge.side->endFVertex] = _indexing.GetCornerChildVertex(next);
+            if (HAS_BOUNDARY && edge.isBoundary) {
+                verts[edge.side->endVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[next]);
+            }
+        });
 }
 
-void Refinement::FillFaceEdges() {
-    _c.faceEdges.Resize(_c.numCorners);
-    forEachCorner([&](Index, Index pCorner, CornerRing const &ring) {
-        _c.faceEdges[_indexing.GetFaceChildFirstCorner(pCorner)] =
-            _indexing.GetCornerChildEdge(pCorner);
-        if (ring.outEFace == Far::INDEX_INVALID) {
-            return;
-        }
-        Index *edges = _c.faceEdges.data() + _c.faceFirstCorner[ring.outEFace];
-        edges[ring.outSide.fFaceEdge] = _indexing.GetCornerChildEdge(pCorner);
-        edges[ring.outSide.startSpoke] = _indexing.GetCornerChildSpoke(pCorner);
-        edges[ring.outSide.endSpoke] = _indexing.GetCornerChildSpoke(ring.next);
-    });
-    forEachBoundaryEFace([&](Index pEdge, Index rank) {
-        Index const first = _c.faceFirstCorner[_p.GetEdgeChildFace(pEdge)];
-        _c.faceEdges[first + kBoundaryEFaceEdge] = _indexing.GetBoundaryChildEdge(rank);
-    });
-}
-
+// What the corners of a face make: their part of the face-edges, two edges each, and the relations
+// of their F-vertices.
+//
 // An edge whose E-face is missing is a boundary: the edge of the F-face is a B edge then, and the
-// spokes at its ends are A edges, each directed as its one face runs.
-void Refinement::FillEdges() {
-    _c.edgeVerts.Resize(2 * std::size_t(_c.numEdges));
-    _c.edgeFaces.Resize(2 * std::size_t(_c.numEdges));
-    _c.edgeFaceLocals.Resize(2 * std::size_t(_c.numEdges));
-    forEachCorner([&](Index pFace, Index pCorner, CornerRing const &ring) {
-        Index const cFace = _indexing.GetFaceChildFace(pFace);
+// spokes at its ends are A edges, each directed as its one face runs; the F-vertices at its ends
+// have two faces, others have three.
+template <bool HAS_BOUNDARY>
+void Refinement<HAS_BOUNDARY>::fillRelationsOfFace(Index pFace) {
+    Index const cFace = _indexing.GetFaceChildFace(pFace);
+    Index const first = _p.faceFirstCorner[pFace];
+    std::size_t face = _c.vertFirstFace[_indexing.GetCornerChildVertex(first)];
+    std::size_t edge = _c.vertFirstEdge[_indexing.GetCornerChildVertex(first)];
+    forEachCorner(pFace, [&](FaceEdge const &inEdge, FaceEdge const &outEdge, Index prev,
+                             Index pCorner, Index next) {
         Index const vVertex = _indexing.GetVertexChildVertex(_p.faceVerts[pCorner]);
         Index const fVertex = _indexing.GetCornerChildVertex(pCorner);
-        Index const nextFVertex = _indexing.GetCornerChildVertex(ring.next);
-        Index const edge = _indexing.GetCornerChildEdge(pCorner);
+        Index const nextFVertex = _indexing.GetCornerChildVertex(next);
+        Index const fEdge = _indexing.GetCornerChildEdge(pCorner);
+        Index const prevFEdge = _indexing.GetCornerChildEdge(prev);
         Index const spoke = _indexing.GetCornerChildSpoke(pCorner);
-        LocalIndex const local = LocalIndex(pCorner - _p.faceFirstCorner[pFace]);
-        if (ring.outEFace == Far::INDEX_INVALID) {
-            setBoundaryEdge(edge, fVertex, nextFVertex, cFace, kSharpBoundaryB, local);
-            setBoundaryEdge(spoke, vVertex, fVertex, ring.inEFace, kSharpBoundaryA,
-                            ring.inSide.endSpoke);
-            return;
+        LocalIndex const local = LocalIndex(pCorner - first);
+        bool const hasOut = !HAS_BOUNDARY || outEdge.HasEFace();
+        bool const hasIn = !HAS_BOUNDARY || inEdge.HasEFace();
+
+        _c.faceEdges[_indexing.GetFaceChildFirstCorner(pCorner)] = fEdge;
+        if (hasOut) {
+            Index *edges = _c.faceEdges.data() + outEdge.firstCorner;
+            edges[outEdge.side->fFaceEdge] = fEdge;
+            edges[outEdge.side->startSpoke] = spoke;
+            edges[outEdge.side->endSpoke] = _indexing.GetCornerChildSpoke(next);
         }
-        setEdge(edge, fVertex, nextFVertex, cFace, ring.outEFace, local, ring.outSide.fFaceEdge);
-        if (ring.inEFace == Far::INDEX_INVALID) {
-            setBoundaryEdge(spoke, fVertex, vVertex, ring.outEFace, kSharpBoundaryA,
-                            ring.outSide.startSpoke);
+
+        if (!hasOut) {
+            setBoundaryEdge(fEdge, fVertex, nextFVertex, cFace, kSharpBoundaryB, local);
+            setBoundaryEdge(spoke, vVertex, fVertex, inEdge.eFace, kSharpBoundaryA,
+                            inEdge.side->endSpoke);
         } else {
-            // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
-            setEdge(spoke, vVertex, fVertex, ring.inEFace, ring.outEFace, ring.inSide.endSpoke,
-                    ring.outSide.startSpoke);
+            setEdge(fEdge, fVertex, nextFVertex, cFace, outEdge.eFace, local,
+                    outEdge.side->fFaceEdge);
+            if (!hasIn) {
+                setBoundaryEdge(spoke, fVertex, vVertex, outEdge.eFace, kSharpBoundaryA,
+                                outEdge.side->startSpoke);
+            } else {
+                // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
+                setEdge(spoke, vVertex, fVertex, inEdge.eFace, outEdge.eFace, inEdge.side->endSpoke,
+                        outEdge.side->startSpoke);
+            }
         }
-    });
-    forEachBoundaryEFace([&](Index pEdge, Index rank) {
-        std::size_t const k = 2 * std::size_t(pEdge);
-        bool const isFree = _p.edgeFaces[k + 1] == kFreeBoundary;
-        setBoundaryEdge(
-            _indexing.GetBoundaryChildEdge(rank), _indexing.GetVertexChildVertex(_p.edgeVerts[k]),
-            _indexing.GetVertexChildVertex(_p.edgeVerts[k + 1]), _p.GetEdgeChildFace(pEdge),
-            isFree ? kFreeBoundary : kSharpBoundaryB, kBoundaryEFaceEdge);
+
+        _c.vertFirstFace[fVertex] = Index(face);
+        _c.vertFirstEdge[fVertex] = Index(edge);
+        auto addFace = [&](Index vertFace, LocalIndex vertLocal) {
+            _c.vertFaces[face] = vertFace;
+            _c.vertFaceLocals[face++] = vertLocal;
+        };
+        auto addEdge = [&](Index vertEdge, LocalIndex vertLocal) {
+            _c.vertEdges[edge] = vertEdge;
+            _c.vertEdgeLocals[edge++] = vertLocal;
+        };
+        if (!hasIn) {
+            // The way around begins behind the missing face.
+            addEdge(spoke, 0);
+            addFace(outEdge.eFace, outEdge.side->startFVertex);
+        }
+        addEdge(fEdge, 0);
+        addFace(cFace, local);
+        addEdge(prevFEdge, 1);
+        if (hasIn) {
+            addFace(inEdge.eFace, inEdge.side->endFVertex);
+            addEdge(spoke, 1);
+            if (hasOut) {
+                addFace(outEdge.eFace, outEdge.side->startFVertex);
+            }
+        }
     });
 }
 
-void Refinement::FillBoundaries() {
+// Around a V-vertex the spokes take the place of the parent's faces and the E-faces that of its
+// edges.  Where a fan of faces ends in a boundary edge with an E-face, that one's boundary edge
+// comes first or last.
+template <bool HAS_BOUNDARY>
+void Refinement<HAS_BOUNDARY>::fillRelationsOfVertex(Index pVert) {
+    Index const cVert = _indexing.GetVertexChildVertex(pVert);
+    std::size_t face = _c.vertFirstFace[cVert];
+    std::size_t edge = _c.vertFirstEdge[cVert];
+    auto addEdge = [&](Index cEdge, LocalIndex local) {
+        _c.vertEdges[edge] = cEdge;
+        _c.vertEdgeLocals[edge++] = local;
+    };
+    auto addFace = [&](Index cFace, LocalIndex local) {
+        _c.vertFaces[face] = cFace;
+        _c.vertFaceLocals[face++] = local;
+    };
+    Index const begin = _p.vertFirstFace[pVert];
+    Index const end = _p.vertFirstFace[pVert + 1];
+    for (Index i = begin; i < end; ++i) {
+        Index const pFace = _p.vertFaces[i];
+        Index const pCorner = _p.faceFirstCorner[pFace] + _p.vertFaceLocals[i];
+        Index const spoke = _indexing.GetCornerChildSpoke(pCorner);
+        if constexpr (HAS_BOUNDARY) {
+            auto const [inEdge, outEdge] = edgesAt(pFace, pCorner);
+            if (outEdge.isBoundary && outEdge.HasEFace()) {
+                addEdge(_c.faceEdges[outEdge.firstCorner + kBoundaryEFaceEdge], 0);
+                addFace(outEdge.eFace, outEdge.side->startVertex);
+            }
+            addEdge(spoke, inEdge.HasEFace() ? 0 : 1);
+            if (inEdge.HasEFace()) {
+                addFace(inEdge.eFace, inEdge.side->endVertex);
+                if (inEdge.isBoundary) {
+                    addEdge(_c.faceEdges[inEdge.firstCorner + kBoundaryEFaceEdge], 1);
+                }
+            }
+        } else {
+            // The edge behind the face comes next in the vertex's own list.
+            Index const k = _p.vertFirstEdge[pVert] + (i + 1 == end ? 0 : i + 1 - begin);
+            addEdge(spoke, 0);
+            addFace(_indexing.GetEdgeChildFace(_p.vertEdges[k], 0),
+                    _p.vertEdgeLocals[k] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex);
+        }
+    }
+}
+
+// Where the faces and edges of each vertex begin: those of V-vertices, and of each parent face's
+// first F-vertex; the others follow from it.
+template <bool HAS_BOUNDARY>
+void Refinement<HAS_BOUNDARY>::fillVertexOffsets() {
+    Index numFaces = 0;
+    Index numEdges = 0;
+    if constexpr (HAS_BOUNDARY) {
+        for (Index pVert = 0; pVert < _p.numVertices; ++pVert) {
+            Index const cVert = _indexing.GetVertexChildVertex(pVert);
+            _c.vertFirstFace[cVert] = numFaces;
+            _c.vertFirstEdge[cVert] = numEdges;
+            for (Index i = _p.vertFirstFace[pVert]; i < _p.vertFirstFace[pVert + 1]; ++i) {
+                Index const pFace = _p.vertFaces[i];
+                auto const [inEdge, outEdge] =
+                    edgesAt(pFace, _p.faceFirstCorner[pFace] + _p.vertFaceLocals[i]);
+                bool const startsFan = outEdge.isBoundary && outEdge.HasEFace();
+                bool const endsFan = inEdge.isBoundary && inEdge.HasEFace();
+                numFaces += Index(inEdge.HasEFace()) + Index(startsFan);
+                numEdges += 1 + Index(startsFan) + Index(endsFan);
+            }
+        }
+        std::size_t half = 0;
+        for (Index pFace = 0; pFace < _p.numFaces; ++pFace) {
+            Index const first = _p.faceFirstCorner[pFace];
+            Index const size = _p.faceFirstCorner[pFace + 1] - first;
+            Index const fVertex = _indexing.GetCornerChildVertex(first);
+            bool const isHalf = half < _p.halfFaces.size() && _p.halfFaces[half] == pFace;
+            half += isHalf;
+            _c.vertFirstFace[fVertex] = numFaces;
+            _c.vertFirstEdge[fVertex] = numEdges;
+            numFaces += 3 * size - (isHalf ? 2 : 0);
+            numEdges += 3 * size;
+        }
+    } else {
+        // A V-vertex has as many faces and edges as its parent, which come to numCorners in all.
+        ParallelFor(_p.numVertices, [this](Index pVert) {
+            Index const cVert = _indexing.GetVertexChildVertex(pVert);
+            _c.vertFirstFace[cVert] = _p.vertFirstFace[pVert];
+            _c.vertFirstEdge[cVert] = _p.vertFirstEdge[pVert];
+        });
+        ParallelFor(_p.numFaces, [this](Index pFace) {
+            Index const first = _p.faceFirstCorner[pFace];
+            Index const fVertex = _indexing.GetCornerChildVertex(first);
+            _c.vertFirstFace[fVertex] = _p.numCorners + 3 * first;
+            _c.vertFirstEdge[fVertex] = _p.numCorners + 3 * first;
+        });
+    }
+    _c.vertFirstFace[_c.numVertices] = _c.numCorners;
+    _c.vertFirstEdge[_c.numVertices] = 2 * _c.numEdges;
+}
+
+template <bool HAS_BOUNDARY>
+void Refinement<HAS_BOUNDARY>::fillBoundaries() {
     std::size_t const numHalfFaces = _p.halfFaces.size();
     std::size_t const numBoundaryEFaces = _p.boundaryEdges.size() - numHalfFaces;
     _c.boundaryEdges.Resize(3 * numHalfFaces + numBoundaryEFaces);
@@ -218,109 +406,37 @@ void Refinement::FillBoundaries() {
     Index *boundaryChildren = spokes + 2 * numHalfFaces;
     Index *halfEFaces = _c.halfFaces.data() + numHalfFaces;
     forEachBoundaryEFace([&](Index pEdge, Index rank) {
-        boundaryChildren[rank] = _indexing.GetBoundaryChildEdge(rank);
-        if (_p.edgeFaces[2 * std::size_t(pEdge) + 1] == kSharpBoundaryA) {
-            *halfEFaces++ = _p.GetEdgeChildFace(pEdge);
+        std::size_t const k = 2 * std::size_t(pEdge);
+        Index const eFace = _p.GetEdgeChildFace(pEdge);
+        Index const cEdge = _indexing.GetBoundaryChildEdge(rank);
+        bool const isFree = _p.edgeFaces[k + 1] == kFreeBoundary;
+        boundaryChildren[rank] = cEdge;
+        if (!isFree) {
+            *halfEFaces++ = eFace;
         }
+        _c.faceEdges[_c.faceFirstCorner[eFace] + kBoundaryEFaceEdge] = cEdge;
+        setBoundaryEdge(cEdge, _indexing.GetVertexChildVertex(_p.edgeVerts[k]),
+                        _indexing.GetVertexChildVertex(_p.edgeVerts[k + 1]), eFace,
+                        isFree ? kFreeBoundary : kSharpBoundaryB, kBoundaryEFaceEdge);
     });
 }
 
-// Around a V-vertex the spokes take the place of the parent's faces and the E-faces that of its
-// edges.  Where a fan of faces ends in a boundary edge with an E-face, that one's boundary edge
-// comes first or last.
-void Refinement::FillVerticesOfVertices() {
-    _c.vertFirstFace.Resize(std::size_t(_c.numVertices) + 1);
-    _c.vertFirstEdge.Resize(std::size_t(_c.numVertices) + 1);
-    _c.vertFaces.Resize(_c.numCorners);
-    _c.vertFaceLocals.Resize(_c.numCorners);
-    _c.vertEdges.Resize(2 * std::size_t(_c.numEdges));
-    _c.vertEdgeLocals.Resize(2 * std::size_t(_c.numEdges));
-
-    Index nextFace = 0;
-    Index nextEdge = 0;
-    auto addEdge = [&](Index cEdge, LocalIndex local) {
-        _c.vertEdges[nextEdge] = cEdge;
-        _c.vertEdgeLocals[nextEdge++] = local;
-    };
-    auto addFace = [&](Index cFace, LocalIndex local) {
-        _c.vertFaces[nextFace] = cFace;
-        _c.vertFaceLocals[nextFace++] = local;
-    };
-    auto boundaryEdgeOf = [&](Index eFace) {
-        return _c.faceEdges[_c.faceFirstCorner[eFace] + kBoundaryEFaceEdge];
-    };
-
-    for (Index pVert = 0; pVert < _p.numVertices; ++pVert) {
-        Index const cVert = _indexing.GetVertexChildVertex(pVert);
-        _c.vertFirstFace[cVert] = nextFace;
-        _c.vertFirstEdge[cVert] = nextEdge;
-        for (Index i = _p.vertFirstFace[pVert]; i < _p.vertFirstFace[pVert + 1]; ++i) {
-            Index const pFace = _p.vertFaces[i];
-            Index const pCorner = _p.faceFirstCorner[pFace] + _p.vertFaceLocals[i];
-            CornerRing const ring = ringOf(pFace, pCorner);
-            if (_p.IsBoundary(ring.outEdge) && ring.outEFace != Far::INDEX_INVALID) {
-                addEdge(boundaryEdgeOf(ring.outEFace), 0);
-                addFace(ring.outEFace, ring.outSide.startVertex);
-            }
-            addEdge(_indexing.GetCornerChildSpoke(pCorner),
-                    ring.inEFace == Far::INDEX_INVALID ? 1 : 0);
-            if (ring.inEFace != Far::INDEX_INVALID) {
-                addFace(ring.inEFace, ring.inSide.endVertex);
-                if (_p.IsBoundary(ring.inEdge)) {
-                    addEdge(boundaryEdgeOf(ring.inEFace), 1);
-                }
-            }
-        }
+template <bool HAS_BOUNDARY>
+void fillLevel(LevelTopology const &parent, bool fullTopology, LevelTopology &child) {
+    Refinement<HAS_BOUNDARY> refinement(parent, child);
+    refinement.FillFaceVertices();
+    if (fullTopology) {
+        refinement.FillRelations();
     }
-    _c.vertFirstFace[_indexing.GetCornerChildVertex(0)] = nextFace;
-    _c.vertFirstEdge[_indexing.GetCornerChildVertex(0)] = nextEdge;
-}
-
-// An F-vertex has three edges and, but for the ends of a B edge, three faces.
-void Refinement::FillVerticesOfCorners() {
-    forEachCorner([&](Index pFace, Index pCorner, CornerRing const &ring) {
-        Index const cVert = _indexing.GetCornerChildVertex(pCorner);
-        std::size_t face = _c.vertFirstFace[cVert];
-        std::size_t edge = _c.vertFirstEdge[cVert];
-        auto addFace = [&](Index cFace, LocalIndex local) {
-            _c.vertFaces[face] = cFace;
-            _c.vertFaceLocals[face++] = local;
-        };
-        auto addEdge = [&](Index cEdge, LocalIndex local) {
-            _c.vertEdges[edge] = cEdge;
-            _c.vertEdgeLocals[edge++] = local;
-        };
-        auto addFFace = [&] {
-            addEdge(_indexing.GetCornerChildEdge(pCorner), 0);
-            addFace(_indexing.GetFaceChildFace(pFace),
-                    LocalIndex(pCorner - _p.faceFirstCorner[pFace]));
-            addEdge(_indexing.GetCornerChildEdge(ring.prev), 1);
-        };
-        Index const spoke = _indexing.GetCornerChildSpoke(pCorner);
-        if (ring.inEFace == Far::INDEX_INVALID) {
-            addEdge(spoke, 0);
-            addFace(ring.outEFace, ring.outSide.startFVertex);
-            addFFace();
-        } else {
-            addFFace();
-            addFace(ring.inEFace, ring.inSide.endFVertex);
-            addEdge(spoke, 1);
-            if (ring.outEFace != Far::INDEX_INVALID) {
-                addFace(ring.outEFace, ring.outSide.startFVertex);
-            }
-        }
-        _c.vertFirstFace[cVert + 1] = Index(face);
-        _c.vertFirstEdge[cVert + 1] = Index(edge);
-    });
 }
 
 // The relations that only a refined level has: to its children.
 void fillChildRelations(LevelTopology &parent) {
     HexIndexing const indexing = parent.ChildIndexing();
     parent.faceChildFaces.Resize(parent.numFaces);
-    for (Index pFace = 0; pFace < parent.numFaces; ++pFace) {
+    ParallelFor(parent.numFaces, [&](Index pFace) {
         parent.faceChildFaces[pFace] = indexing.GetFaceChildFace(pFace);
-    }
+    });
     parent.edgeChildFaces.Resize(parent.halfFaces.empty() ? 0 : parent.numEdges);
     Index numBBefore = 0;
     for (std::size_t pEdge = 0; pEdge < parent.edgeChildFaces.size(); ++pEdge) {
@@ -387,16 +503,12 @@ void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTop
     parent.child = &child;
     fillChildRelations(parent);
 
-    Refinement refinement(parent, child);
-    refinement.FillFaceOffsets();
-    refinement.FillFaceVertices();
-    if (fullTopology) {
-        refinement.FillFaceEdges();
-        refinement.FillEdges();
-        refinement.FillBoundaries();
-        refinement.FillVerticesOfVertices();
-        refinement.FillVerticesOfCorners();
+    if (parent.boundaryEdges.empty()) {
+        fillLevel<false>(parent, fullTopology, child);
     } else {
+        fillLevel<true>(parent, fullTopology, child);
+    }
+    if (!fullTopology) {
         clearRelations(child);
     }
     RefineTags(parent, sdcOptions, child);
