@@ -8,32 +8,48 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief Calls function(begin, end) for ranges that together are 0 ... count, in parallel with
-/// OpenMP where that is there.
+/// Number of ranges that ParallelForRange makes of \p count indices.
+constexpr Far::Index kParallelRange = 4096;
+inline Far::Index GetNumParallelRanges(Far::Index count) {
+    return count / kParallelRange + (count % kParallelRange != 0);
+}
+
+/// \brief Calls function(state, begin, end) for ranges that together are 0 ... count, in parallel
+/// with OpenMP where that is there.  Range number i begins at i kParallelRange; each thread has a
+/// state of its own, made by makeState().
 ///
-/// The ranges do not depend on the number of threads.  Calls must write to places of their own: then
-/// the result does not depend on it either.
-template <typename FUNCTION>
-void ParallelForRange(Far::Index count, FUNCTION function) {
-    constexpr Far::Index kRange = 4096;
-    Far::Index const numRanges = count / kRange + (count % kRange != 0);
+/// The ranges do not depend on the number of threads.  Calls must write to places of their own, and
+/// leave nothing in the state that another range could see: then the result does not depend on it
+/// either.
+template <typename MAKE_STATE, typename FUNCTION>
+void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function) {
+    Far::Index const numRanges = GetNumParallelRanges(count);
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 4) if (numRanges > 4)
+#pragma omp parallel if (numRanges > 4)
 #endif
-    for (Far::Index range = 0; range < numRanges; ++range) {
-        Far::Index const begin = range * kRange;
-        function(begin, std::min(count - begin, kRange) + begin);
+    {
+        auto state = makeState();
+#ifdef _OPENMP
+#pragma omp for schedule(dynamic, 2)
+#endif
+        for (Far::Index range = 0; range < numRanges; ++range) {
+            Far::Index const begin = range * kParallelRange;
+            function(state, begin, begin + std::min(count - begin, kParallelRange));
+        }
     }
 }
 
-/// The same for single indices.
+/// Calls function(i) for 0 <= i < count in the same way.
 template <typename FUNCTION>
 void ParallelFor(Far::Index count, FUNCTION function) {
-    ParallelForRange(count, [&](Far::Index begin, Far::Index end) {
-        for (Far::Index i = begin; i < end; ++i) {
-            function(i);
-        }
-    });
+    struct Nothing {};
+    ParallelForRange(
+        count, [] { return Nothing(); },
+        [&](Nothing, Far::Index begin, Far::Index end) {
+            for (Far::Index i = begin; i < end; ++i) {
+                function(i);
+            }
+        });
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

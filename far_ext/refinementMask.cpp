@@ -16,6 +16,7 @@ RefinementMask::RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask
     for (Index face = 0; face < baseLevel.GetNumFaces(); ++face) {
         sizes.insert(baseLevel.GetFaceVertices(face).size());
     }
+    _faceMasks.resize(*sizes.rbegin() + 1);
     for (int size : sizes) {
         std::vector<double> &mask = _faceMasks[size];
         mask.resize(2 * std::size_t(size));

@@ -5,7 +5,6 @@
 #include "mask.h"
 #include "topologyLevel.h"
 
-#include <map>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -39,7 +38,7 @@ public:
 private:
     double const *smoothWeights(int faceSize, int corner) const {
         // The mask stands twice in a row, so that every rotation of it is contiguous.
-        return _faceMasks.find(faceSize)->second.data() + faceSize - corner;
+        return _faceMasks[faceSize].data() + faceSize - corner;
     }
 
     double const *featureWeights(TopologyLevel const &level, Index face, int corner,
@@ -47,7 +46,7 @@ private:
 
     FaceMask _faceMask;
     Interpolation _interpolation;
-    std::map<int, std::vector<double>> _faceMasks; ///< by face size
+    std::vector<std::vector<double>> _faceMasks; ///< by face size
 
     // One row of weights per corner of a half face and of a hexagon with a sharp diagonal.
     double _halfFaceWeights[HexIndexing::kNumBoundaryEFaceCorners]

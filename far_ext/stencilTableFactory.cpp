@@ -2,6 +2,7 @@
 #include "stencilTableFactory.h"
 
 #include "fvarLevel.h"
+#include "parallel.h"
 #include "refinementMask.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ Status checkCount(int level, std::int64_t count, char const *name) {
         return Status();
     }
     return Status(StatusCode::TooLarge, ComponentType::Level, level,
-                  "the stencil table would have " + std::to_string(count) + " " + name +
+                  "the stencil table would have at least " + std::to_string(count) + " " + name +
                       " up to level " + std::to_string(level) + ", more than the " +
                       std::to_string(kMaxCount) + " that Far's 32-bit offsets reach");
 }
@@ -57,33 +58,106 @@ public:
     }
 };
 
-// Forms unions of lists of source vertices: a mark per source tells what was seen already.
+// Merges two ascending lists into a third, whose end it returns.
+Index *mergeLists(ConstIndexArray list0, ConstIndexArray list1, Index *result) {
+    Index const *i0 = list0.begin();
+    Index const *i1 = list1.begin();
+    while (i0 != list0.end() && i1 != list1.end()) {
+        Index const value0 = *i0;
+        Index const value1 = *i1;
+        *result++ = std::min(value0, value1);
+        i0 += value0 <= value1;
+        i1 += value1 <= value0;
+    }
+    result = std::copy(i0, list0.end(), result);
+    return std::copy(i1, list1.end(), result);
+}
+
+// Forms the union of ascending lists.
 class UnionBuilder {
 public:
-    explicit UnionBuilder(Index numSources) : _seenIn(numSources, -1) {}
-
-    void Begin() {
-        ++_current;
-        _members.clear();
-    }
+    void Begin() { _lists.clear(); }
+    // A list that is the one added last is passed over.
     void Add(ConstIndexArray list) {
-        for (Index source : list) {
-            if (_seenIn[source] != _current) {
-                _seenIn[source] = _current;
-                _members.push_back(source);
-            }
+        if (_lists.empty() || _lists.back().begin() != list.begin()) {
+            _lists.push_back(list);
         }
     }
-    int GetSize() const { return int(_members.size()); }
-    void CopySorted(Index *result) {
-        std::sort(_members.begin(), _members.end());
-        std::copy(_members.begin(), _members.end(), result);
+    ConstIndexArray GetUnion() {
+        std::size_t size = 0;
+        for (ConstIndexArray list : _lists) {
+            size += list.size();
+        }
+        if (_lists.size() > kMaxMerged) {
+            _result.clear();
+            for (ConstIndexArray list : _lists) {
+                _result.insert(_result.end(), list.begin(), list.end());
+            }
+            std::sort(_result.begin(), _result.end());
+            _result.erase(std::unique(_result.begin(), _result.end()), _result.end());
+            return ConstIndexArray(_result.data(), int(_result.size()));
+        }
+        _result.resize(std::max(_result.size(), size));
+        _merged.resize(std::max(_merged.size(), size));
+        ConstIndexArray all = _lists.front();
+        for (std::size_t i = 1; i < _lists.size(); ++i) {
+            Index const *end = mergeLists(all, _lists[i], _merged.data());
+            _merged.swap(_result);
+            all = ConstIndexArray(_result.data(), int(end - _result.data()));
+        }
+        return all;
     }
 
 private:
-    std::vector<Index> _seenIn;
-    Index _current = -1;
-    std::vector<Index> _members;
+    static constexpr std::size_t kMaxMerged = 16; // more lists are sorted together
+
+    std::vector<ConstIndexArray> _lists;
+    std::vector<Index> _result;
+    std::vector<Index> _merged;
+};
+
+// Lists of source vertices, made in parallel and stored one after the other.
+class SupportLists {
+public:
+    // Appends count lists; makeList(builder, i) gives number i.
+    template <typename FUNCTION>
+    void Append(Index count, FUNCTION makeList) {
+        std::size_t const begin = _firsts.size() - 1;
+        _firsts.resize(begin + count + 1);
+        std::vector<std::vector<Index>> ranges(internal::GetNumParallelRanges(count));
+        internal::ParallelForRange(
+            count, [] { return UnionBuilder(); },
+            [&](UnionBuilder &builder, Index rangeBegin, Index rangeEnd) {
+                std::vector<Index> &range = ranges[rangeBegin / internal::kParallelRange];
+                for (Index i = rangeBegin; i < rangeEnd; ++i) {
+                    builder.Begin();
+                    makeList(builder, i);
+                    ConstIndexArray const list = builder.GetUnion();
+                    range.insert(range.end(), list.begin(), list.end());
+                    _firsts[begin + i + 1] = list.size();
+                }
+            });
+        for (std::size_t i = begin; i + 1 < _firsts.size(); ++i) {
+            _firsts[i + 1] += _firsts[i];
+        }
+        _indices.resize(_firsts.back());
+        internal::ParallelForRange(
+            count, [] { return 0; },
+            [&](int, Index rangeBegin, Index) {
+                std::vector<Index> &range = ranges[rangeBegin / internal::kParallelRange];
+                std::copy(range.begin(), range.end(),
+                          _indices.begin() + std::ptrdiff_t(_firsts[begin + rangeBegin]));
+                std::vector<Index>().swap(range);
+            });
+    }
+
+    ConstIndexArray operator[](std::size_t i) const {
+        return ConstIndexArray(_indices.data() + _firsts[i], int(_firsts[i + 1] - _firsts[i]));
+    }
+
+private:
+    std::vector<std::size_t> _firsts = {0};
+    std::vector<Index> _indices;
 };
 
 // Which source vertices each stencil of a level depends on, in ascending lists.  All F-vertices
@@ -91,108 +165,90 @@ private:
 class LevelSupports {
 public:
     // A level that is its own source: vertex v depends on source v alone, or on sources[v].
-    LevelSupports(Index numSources, std::vector<Index> sources)
-        : _numSources(numSources), _indices(std::move(sources)) {}
+    explicit LevelSupports(std::vector<Index> sources) : _sources(std::move(sources)) {}
 
     // The level that refinement makes of pLevel, the supports of whose vertices are pSupports.
-    // The lists of V-vertices, by far the longer, are only counted: FillVertexLists makes them, once
-    // GetNumWeights is known to fit.
+    // The lists of V-vertices are not made when GetNumWeights exceeds what fits without them.
     LevelSupports(TopologyLevel const &pLevel, LevelSupports const &pSupports,
                   RefinementMask const &mask)
-        : _isIdentity(false), _numSources(pSupports._numSources),
-          _numParentFaces(pLevel.GetNumFaces()) {
-        _firsts.reserve(std::size_t(pLevel.GetNumFaces()) + pLevel.GetNumVertices() + 1);
-        UnionBuilder sources(_numSources);
-        for (Index pFace = 0; pFace < pLevel.GetNumFaces(); ++pFace) {
-            uniteFace(pLevel, pSupports, pFace, sources);
-            addCount(sources.GetSize(), pLevel.GetFaceVertices(pFace).size());
+        : _numParentFaces(pLevel.GetNumFaces()), _numVVertices(pLevel.GetNumVertices()) {
+        _lists.Append(_numParentFaces, [&](UnionBuilder &sources, Index pFace) {
+            for (Index pVert : pLevel.GetFaceVertices(pFace)) {
+                sources.Add(pSupports.OfVertex(pLevel, pVert));
+            }
+        });
+        for (Index pFace = 0; pFace < _numParentFaces; ++pFace) {
+            _numWeights +=
+                std::int64_t(pLevel.GetFaceVertices(pFace).size()) * OfParentFace(pFace).size();
         }
-        if (_numWeights > kMaxCount) {
+        if (std::int64_t const numLeast = _numWeights + countLeastVertexWeights(pLevel, mask);
+            numLeast > kMaxCount) {
+            _numWeights = numLeast;
             return;
         }
-        _indices.resize(_firsts.back());
-        for (Index pFace = 0; pFace < pLevel.GetNumFaces(); ++pFace) {
-            uniteFace(pLevel, pSupports, pFace, sources);
-            sources.CopySorted(_indices.data() + _firsts[pFace]);
-        }
-        for (Index pVert = 0; pVert < pLevel.GetNumVertices(); ++pVert) {
-            uniteVertex(pLevel, pSupports, mask, pVert, sources);
-            addCount(sources.GetSize(), 1);
-        }
-    }
-
-    void FillVertexLists(TopologyLevel const &pLevel, LevelSupports const &pSupports,
-                         RefinementMask const &mask) {
-        _indices.resize(_firsts.back());
-        UnionBuilder sources(_numSources);
-        for (Index pVert = 0; pVert < pLevel.GetNumVertices(); ++pVert) {
-            uniteVertex(pLevel, pSupports, mask, pVert, sources);
-            sources.CopySorted(_indices.data() + _firsts[_numParentFaces + pVert]);
+        _lists.Append(_numVVertices, [&](UnionBuilder &sources, Index pVert) {
+            auto const weights = mask.GetVertexMask(pLevel, pVert);
+            sources.Add(pSupports.OfVertex(pLevel, pVert));
+            for (int i = 0; i < weights.numNeighbors; ++i) {
+                sources.Add(pSupports.OfVertex(pLevel, weights.neighbors[i]));
+            }
+            if (weights.faceWeight > 0) {
+                for (Index pFace : pLevel.GetVertexFaces(pVert)) {
+                    sources.Add(OfParentFace(pFace));
+                }
+            }
+        });
+        for (Index pVert = 0; pVert < _numVVertices; ++pVert) {
+            _numWeights += OfParentVertex(pVert).size();
         }
     }
 
     // The support of all F-vertices of a face of the parent level, and of the V-vertex of a vertex.
-    ConstIndexArray OfParentFace(Index pFace) const { return list(pFace); }
-    ConstIndexArray OfParentVertex(Index pVert) const { return list(_numParentFaces + pVert); }
+    ConstIndexArray OfParentFace(Index pFace) const { return _lists[pFace]; }
+    ConstIndexArray OfParentVertex(Index pVert) const { return _lists[_numParentFaces + pVert]; }
 
     // The support of a vertex of the level itself, which is given.
     ConstIndexArray OfVertex(TopologyLevel const &level, Index vert) const {
-        if (_isIdentity) {
-            return ConstIndexArray(&_indices[vert], 1);
+        if (!_sources.empty()) {
+            return ConstIndexArray(&_sources[vert], 1);
         }
-        Index const numVVertices = Index(_firsts.size() - 1) - _numParentFaces;
-        return vert < numVVertices ? OfParentVertex(vert) : OfParentFace(fFaceOf(level, vert));
+        return vert < _numVVertices ? OfParentVertex(vert) : OfParentFace(fFaceOf(level, vert));
     }
 
-    Index GetNumSources() const { return _numSources; }
     // Sum of the sizes of the supports of all vertices of the level.
     std::int64_t GetNumWeights() const { return _numWeights; }
 
 private:
+    // A lower bound: the support of a smooth V-vertex is at least that of each of its faces.
+    std::int64_t countLeastVertexWeights(TopologyLevel const &pLevel,
+                                         RefinementMask const &mask) const {
+        std::int64_t count = 0;
+        if (_numWeights < kMaxCount / 8) {
+            return count; // far from the limit: not worth a look at every vertex
+        }
+        for (Index pVert = 0; pVert < _numVVertices; ++pVert) {
+            int most = 0;
+            if (mask.GetVertexMask(pLevel, pVert).faceWeight > 0) {
+                for (Index pFace : pLevel.GetVertexFaces(pVert)) {
+                    most = std::max(most, OfParentFace(pFace).size());
+                }
+            }
+            count += most;
+        }
+        return count;
+    }
+
     // The F-face around an F-vertex has the index of the parent face, less than any E-face.
     static Index fFaceOf(TopologyLevel const &level, Index fVertex) {
         ConstIndexArray const faces = level.GetVertexFaces(fVertex);
         return *std::min_element(faces.begin(), faces.end());
     }
 
-    ConstIndexArray list(std::size_t i) const {
-        return ConstIndexArray(_indices.data() + _firsts[i], int(_firsts[i + 1] - _firsts[i]));
-    }
-
-    // A list that so many stencils share.
-    void addCount(int size, int numStencils) {
-        _firsts.push_back(_firsts.back() + size);
-        _numWeights += std::int64_t(size) * numStencils;
-    }
-
-    static void uniteFace(TopologyLevel const &pLevel, LevelSupports const &pSupports, Index pFace,
-                          UnionBuilder &sources) {
-        sources.Begin();
-        for (Index pVert : pLevel.GetFaceVertices(pFace)) {
-            sources.Add(pSupports.OfVertex(pLevel, pVert));
-        }
-    }
-    void uniteVertex(TopologyLevel const &pLevel, LevelSupports const &pSupports,
-                     RefinementMask const &mask, Index pVert, UnionBuilder &sources) const {
-        auto const weights = mask.GetVertexMask(pLevel, pVert);
-        sources.Begin();
-        sources.Add(pSupports.OfVertex(pLevel, pVert));
-        for (int i = 0; i < weights.numNeighbors; ++i) {
-            sources.Add(pSupports.OfVertex(pLevel, weights.neighbors[i]));
-        }
-        if (weights.faceWeight > 0) {
-            for (Index pFace : pLevel.GetVertexFaces(pVert)) {
-                sources.Add(OfParentFace(pFace));
-            }
-        }
-    }
-
-    bool _isIdentity = true;
-    Index _numSources;
+    std::vector<Index> _sources; // of a level that is its own source
     Index _numParentFaces = 0;
+    Index _numVVertices = 0;
     std::int64_t _numWeights = 0;
-    std::vector<std::size_t> _firsts = {0}; // of the lists: parent faces, then parent vertices
-    std::vector<Index> _indices;
+    SupportLists _lists; // of parent faces, then of parent vertices
 };
 
 template <typename REAL>
@@ -207,6 +263,9 @@ void fillControlRows(LevelRows<REAL> const &rows, Index numControlVertices) {
 
 // Writes the stencils of the level that refinement makes of pLevel, given those of pLevel (none:
 // its vertices are sources, as pSupports says).
+//
+// Sums are formed in double, in an order that the topology fixes, and rounded once, so that the
+// weights of a stencil sum to 1 as well as REAL can.
 template <typename REAL>
 class LevelBuilder {
 public:
@@ -214,51 +273,68 @@ public:
                  LevelSupports const &supports, RefinementMask const &mask,
                  LevelRows<REAL> const *pRows, LevelRows<REAL> const &rows)
         : _pLevel(pLevel), _indexing(pLevel.GetChildIndexing()), _pSupports(pSupports),
-          _supports(supports), _mask(mask), _pRows(pRows), _rows(rows),
-          _position(supports.GetNumSources()) {}
+          _supports(supports), _mask(mask), _pRows(pRows), _rows(rows) {}
 
-    void Fill(Index firstOffset) {
+    // numSources is more than any index in a stencil.
+    void Fill(Index numSources, Index firstOffset) {
         fillSizesAndOffsets(firstOffset);
-        for (Index pFace = 0; pFace < _pLevel.GetNumFaces(); ++pFace) {
-            fillFace(pFace);
-        }
-        for (Index pVert = 0; pVert < _pLevel.GetNumVertices(); ++pVert) {
-            fillVertex(pVert);
-        }
+        auto const makeScratch = [numSources] { return Scratch(numSources); };
+        internal::ParallelForRange(_pLevel.GetNumFaces(), makeScratch,
+                                   [this](Scratch &scratch, Index begin, Index end) {
+                                       for (Index pFace = begin; pFace < end; ++pFace) {
+                                           fillFace(pFace, scratch);
+                                       }
+                                   });
+        internal::ParallelForRange(_pLevel.GetNumVertices(), makeScratch,
+                                   [this](Scratch &scratch, Index begin, Index end) {
+                                       for (Index pVert = begin; pVert < end; ++pVert) {
+                                           fillVertex(pVert, scratch);
+                                       }
+                                   });
     }
 
 private:
-    void fillSizesAndOffsets(Index firstOffset);
-    void fillFace(Index pFace);
-    void fillVertex(Index pVert);
+    // What one thread works on.
+    struct Scratch {
+        explicit Scratch(Index numSources) : position(numSources) {}
 
-    // Where each source of the support stands in it.
-    void locate(ConstIndexArray support) {
-        for (int k = 0; k < support.size(); ++k) {
-            _position[support[k]] = k;
+        // Where each source of the support stands in it.
+        void Locate(ConstIndexArray support) {
+            for (int k = 0; k < support.size(); ++k) {
+                position[support[k]] = k;
+            }
         }
-    }
 
-    // Adds weight times the stencil of a row to a dense row over the located support.  Sums are in
-    // double and rounded once, so that the weights of a stencil sum to 1 as well as REAL can.
-    void addRow(LevelRows<REAL> const &rows, Index row, double weight, double *dense) const {
+        std::vector<int> position;       // by source
+        std::vector<double> mask;        // of a corner, see RefinementMask
+        std::vector<double> parentBlock; // dense stencils of a face's vertices over its support
+        std::vector<double> row;         // one dense stencil
+    };
+
+    void fillSizesAndOffsets(Index firstOffset);
+    void fillFace(Index pFace, Scratch &scratch) const;
+    void fillVertex(Index pVert, Scratch &scratch) const;
+
+    // Adds weight times the stencil of a row to a dense row over the located support.
+    static void addRow(LevelRows<REAL> const &rows, Index row, double weight,
+                       Scratch const &scratch, double *dense) {
         Index const *indices = rows.indices + rows.offsets[row];
         REAL const *weights = rows.weights + rows.offsets[row];
         for (int k = 0; k < rows.sizes[row]; ++k) {
-            dense[_position[indices[k]]] += weight * double(weights[k]);
+            dense[scratch.position[indices[k]]] += weight * double(weights[k]);
         }
     }
-    void storeRow(ConstIndexArray support, Index row) const {
-        std::copy(support.begin(), support.end(), _rows.indices + _rows.offsets[row]);
-        std::transform(_row.begin(), _row.end(), _rows.weights + _rows.offsets[row],
-                       [](double weight) { return REAL(weight); });
-    }
-    void addParent(Index pVert, double weight, double *dense) const {
+    void addParent(Index pVert, double weight, Scratch const &scratch, double *dense) const {
         if (_pRows) {
-            addRow(*_pRows, pVert, weight, dense);
+            addRow(*_pRows, pVert, weight, scratch, dense);
         } else {
-            dense[_position[_pSupports.OfVertex(_pLevel, pVert)[0]]] += weight;
+            dense[scratch.position[_pSupports.OfVertex(_pLevel, pVert)[0]]] += weight;
         }
+    }
+    void storeRow(ConstIndexArray support, std::vector<double> const &dense, Index row) const {
+        std::copy(support.begin(), support.end(), _rows.indices + _rows.offsets[row]);
+        std::transform(dense.begin(), dense.end(), _rows.weights + _rows.offsets[row],
+                       [](double weight) { return REAL(weight); });
     }
 
     TopologyLevel const &_pLevel;
@@ -268,23 +344,18 @@ private:
     RefinementMask const &_mask;
     LevelRows<REAL> const *_pRows;
     LevelRows<REAL> const _rows;
-
-    std::vector<int> _position; // by source
-    std::vector<double> _scratch;
-    std::vector<double> _parentBlock; // dense stencils of a face's vertices over the face's support
-    std::vector<double> _row;         // one dense stencil
 };
 
 template <typename REAL>
 void LevelBuilder<REAL>::fillSizesAndOffsets(Index firstOffset) {
-    for (Index pVert = 0; pVert < _pLevel.GetNumVertices(); ++pVert) {
+    internal::ParallelFor(_pLevel.GetNumVertices(), [this](Index pVert) {
         _rows.sizes[_indexing.GetVertexChildVertex(pVert)] = _supports.OfParentVertex(pVert).size();
-    }
-    for (Index pFace = 0; pFace < _pLevel.GetNumFaces(); ++pFace) {
+    });
+    internal::ParallelFor(_pLevel.GetNumFaces(), [this](Index pFace) {
         Index const first = _indexing.GetCornerChildVertex(_pLevel.GetFaceFirstCorner(pFace));
         std::fill_n(_rows.sizes + first, _pLevel.GetFaceVertices(pFace).size(),
                     _supports.OfParentFace(pFace).size());
-    }
+    });
     Index offset = firstOffset;
     Index const numVertices = _indexing.GetCornerChildVertex(_pLevel.GetNumFaceVertices());
     for (Index cVert = 0; cVert < numVertices; ++cVert) {
@@ -295,47 +366,53 @@ void LevelBuilder<REAL>::fillSizesAndOffsets(Index firstOffset) {
 
 // The stencils of a face's F-vertices are the face mask times the stencils of its vertices.
 template <typename REAL>
-void LevelBuilder<REAL>::fillFace(Index pFace) {
+void LevelBuilder<REAL>::fillFace(Index pFace, Scratch &scratch) const {
     ConstIndexArray const pVerts = _pLevel.GetFaceVertices(pFace);
     ConstIndexArray const support = _supports.OfParentFace(pFace);
     std::size_t const width = support.size();
-    locate(support);
-    _parentBlock.assign(pVerts.size() * width, 0.0);
+    scratch.Locate(support);
+    scratch.parentBlock.assign(pVerts.size() * width, 0.0);
     for (int j = 0; j < pVerts.size(); ++j) {
-        addParent(pVerts[j], 1.0, _parentBlock.data() + j * width);
+        addParent(pVerts[j], 1.0, scratch, scratch.parentBlock.data() + j * width);
     }
+    scratch.row.resize(width);
+    double *const row = scratch.row.data();
     for (int i = 0; i < pVerts.size(); ++i) {
         Index const corner = _pLevel.GetFaceFirstCorner(pFace) + i;
-        double const *mask = _mask.GetFaceVertexWeights(_pLevel, pFace, i, _scratch);
-        _row.assign(width, 0.0);
-        for (int j = 0; j < pVerts.size(); ++j) {
-            double const *parent = _parentBlock.data() + j * width;
+        double const *mask = _mask.GetFaceVertexWeights(_pLevel, pFace, i, scratch.mask);
+        double const *parent = scratch.parentBlock.data();
+        for (std::size_t k = 0; k < width; ++k) {
+            row[k] = mask[0] * parent[k];
+        }
+        for (int j = 1; j < pVerts.size(); ++j) {
+            parent += width;
             for (std::size_t k = 0; k < width; ++k) {
-                _row[k] += mask[j] * parent[k];
+                row[k] += mask[j] * parent[k];
             }
         }
-        storeRow(support, _indexing.GetCornerChildVertex(corner));
+        storeRow(support, scratch.row, _indexing.GetCornerChildVertex(corner));
     }
 }
 
 template <typename REAL>
-void LevelBuilder<REAL>::fillVertex(Index pVert) {
+void LevelBuilder<REAL>::fillVertex(Index pVert, Scratch &scratch) const {
     ConstIndexArray const support = _supports.OfParentVertex(pVert);
-    locate(support);
-    _row.assign(support.size(), 0.0);
+    scratch.Locate(support);
+    scratch.row.assign(support.size(), 0.0);
+    double *const row = scratch.row.data();
 
     auto const mask = _mask.GetVertexMask(_pLevel, pVert);
-    addParent(pVert, mask.vertexWeight, _row.data());
+    addParent(pVert, mask.vertexWeight, scratch, row);
     for (int i = 0; i < mask.numNeighbors; ++i) {
-        addParent(mask.neighbors[i], mask.neighborWeights[i], _row.data());
+        addParent(mask.neighbors[i], mask.neighborWeights[i], scratch, row);
     }
     if (mask.faceWeight > 0) {
         for (int i = 0; i < _pLevel.GetVertexFaces(pVert).size(); ++i) {
             Index const corner = _pLevel.GetVertexCorner(pVert, i);
-            addRow(_rows, _indexing.GetCornerChildVertex(corner), mask.faceWeight, _row.data());
+            addRow(_rows, _indexing.GetCornerChildVertex(corner), mask.faceWeight, scratch, row);
         }
     }
-    storeRow(support, _indexing.GetVertexChildVertex(pVert));
+    storeRow(support, scratch.row, _indexing.GetVertexChildVertex(pVert));
 }
 
 // Which levels of which mesh the options ask for.
@@ -365,16 +442,17 @@ struct Plan {
     }
     // A level whose vertices are their own sources; of values, those that the user has.
     LevelSupports GetSources(int level) const {
-        Index const numSources = GetNumVertices(level);
         if (channel >= 0 && level == 0) {
             internal::Buffer<Index> const &values =
                 refiner.GetLevel(0).GetTopology().fvarLevels[channel]->valuesOfVertices;
-            return LevelSupports(numSources, std::vector<Index>(values.begin(), values.end()));
+            return LevelSupports(std::vector<Index>(values.begin(), values.end()));
         }
-        std::vector<Index> sources(numSources);
+        std::vector<Index> sources(GetNumVertices(level));
         std::iota(sources.begin(), sources.end(), 0);
-        return LevelSupports(numSources, std::move(sources));
+        return LevelSupports(std::move(sources));
     }
+    // How many sources the stencils of a level have to choose from.
+    Index GetNumSources(int level) const { return GetNumVertices(factorize ? 0 : level - 1); }
 
     // Whether the stencils of a level are made from those of the level before.
     bool HasParentStencils(int level) const { return factorize && level > firstBuilt; }
@@ -436,7 +514,6 @@ Status buildSupports(Plan const &plan, RefinementMask const &mask, SymbolicTable
         if (!status.IsOk()) {
             return status;
         }
-        supports.FillVertexLists(pLevel, pSupports, mask);
         result.levels.push_back(std::move(supports));
     }
     return Status();
@@ -469,7 +546,7 @@ std::unique_ptr<WritableTable<REAL>> buildTable(Plan const &plan, RefinementMask
         LevelRows<REAL> const rows = isStored ? table->GetRows(nextStencil) : current->GetRows(0);
         LevelBuilder<REAL>(pLevel, symbolic.ParentsOf(plan, level), supports, mask,
                            plan.HasParentStencils(level) ? &pRows : nullptr, rows)
-            .Fill(isStored ? nextOffset : 0);
+            .Fill(plan.GetNumSources(level), isStored ? nextOffset : 0);
         pRows = rows;
         if (isStored) {
             nextStencil += numStencils;
