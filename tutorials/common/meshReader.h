@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TUTORIALS_MESH_READER_H
+#define OPENSUBDIVHEX_TUTORIALS_MESH_READER_H
+
+#include "mesh.h"
+
+#include <string>
+
+namespace OpenSubdivHex::Tutorials {
+
+/// \brief Reads the positions and faces of an OBJ, OFF or PLY file (PLY in text or binary).
+///
+/// Faces may have any number of corners.  Nothing is dropped, split, merged or repaired: vertices
+/// and faces are those of the file, in its order, or the file is refused.  Attributes (normals,
+/// texture coordinates, colours) are skipped.  Whether the faces make a surface is not looked at;
+/// that is TopologyRefinerFactory's task.
+///
+/// Throws FileError, which names line, vertex or face, for anything it cannot read as it stands:
+/// coordinates that are no finite number, indices out of range, faces of fewer than three corners,
+/// less or more content than announced, statements it does not know, no face at all.
+Mesh ReadMesh(std::string const &path);
+
+namespace internal {
+
+/// The readers of the formats.  \p content is the content of the file \p path and is changed.
+Mesh ReadObj(std::string const &path, std::string *content);
+Mesh ReadOff(std::string const &path, std::string *content);
+Mesh ReadPly(std::string const &path, std::string *content);
+
+} // namespace internal
+} // namespace OpenSubdivHex::Tutorials
+
+#endif

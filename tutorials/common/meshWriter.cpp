@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meshWriter.h"
+
+#include "fileError.h"
+#include "meshFormat.h"
+#include "outputFile.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+
+namespace OpenSubdivHex::Tutorials {
+
+namespace {
+
+/// Enough for one number and the character before or after it.
+constexpr std::size_t kMaxNumber = 32;
+
+template <typename T>
+char *printNumber(char *out, T value) {
+    return std::to_chars(out, out + kMaxNumber, value).ptr;
+}
+
+/// Writes "x y z\n".
+void printPosition(float const *position, char *out, OutputFile &file) {
+    for (int i = 0; i < 3; ++i) {
+        out = printNumber(out, position[i]);
+        *out++ = i < 2 ? ' ' : '\n';
+    }
+    file.Advance(out);
+}
+
+/// Writes " v0 v1 ... \n", each vertex plus \p offset.
+void printVertices(int const *vertices, int size, int offset, OutputFile &file) {
+    for (int i = 0; i < size; ++i) {
+        char *out = file.Reserve(kMaxNumber);
+        *out++ = ' ';
+        file.Advance(printNumber(out, std::int64_t(vertices[i]) + offset));
+    }
+    file.Write("\n");
+}
+
+void writeObj(Mesh const &mesh, OutputFile &file) {
+    for (int v = 0; v < mesh.GetNumVertices(); ++v) {
+        char *out = file.Reserve(4 * kMaxNumber);
+        *out++ = 'v';
+        *out++ = ' ';
+        printPosition(&mesh.positions[3 * std::size_t(v)], out, file);
+    }
+    int const *vertices = mesh.faceVertices.data();
+    for (int size : mesh.faceSizes) {
+        file.Write("f");
+        printVertices(vertices, size, 1, file);
+        vertices += size;
+    }
+}
+
+void writeOff(Mesh const &mesh, OutputFile &file) {
+    file.Write("OFF\n" + std::to_string(mesh.GetNumVertices()) + " " +
+               std::to_string(mesh.GetNumFaces()) + " 0\n");
+    for (int v = 0; v < mesh.GetNumVertices(); ++v) {
+        printPosition(&mesh.positions[3 * std::size_t(v)], file.Reserve(4 * kMaxNumber), file);
+    }
+    int const *vertices = mesh.faceVertices.data();
+    for (int size : mesh.faceSizes) {
+        file.Advance(printNumber(file.Reserve(kMaxNumber), size));
+        printVertices(vertices, size, 0, file);
+        vertices += size;
+    }
+}
+
+/// Appends the 4 bytes of \p value, lowest first, whatever the machine's order.
+template <typename T>
+char *putBytes(char *out, T value) {
+    static_assert(sizeof(T) == 4);
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    for (int i = 0; i < 4; ++i) {
+        *out++ = char(bits >> (8 * i) & 0xff);
+    }
+    return out;
+}
+
+void writePly(Mesh const &mesh, OutputFile &file) {
+    // One byte for the number of corners is what every reader takes, where it is enough.
+    int const maxSize = mesh.faceSizes.empty()
+                            ? 0
+                            : *std::max_element(mesh.faceSizes.begin(), mesh.faceSizes.end());
+    bool const hasShortFaces = maxSize < 256;
+    file.Write("ply\nformat binary_little_endian 1.0\nelement vertex " +
+               std::to_string(mesh.GetNumVertices()) +
+               "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+               std::to_string(mesh.GetNumFaces()) + "\nproperty list " +
+               (hasShortFaces ? "uchar" : "int") + " int vertex_indices\nend_header\n");
+    for (float value : mesh.positions) {
+        file.Advance(putBytes(file.Reserve(4), value));
+    }
+    int const *vertices = mesh.faceVertices.data();
+    for (int size : mesh.faceSizes) {
+        char *out = file.Reserve(4);
+        if (hasShortFaces) {
+            *out++ = char(size);
+        } else {
+            out = putBytes(out, size);
+        }
+        file.Advance(out);
+        for (int i = 0; i < size; ++i) {
+            file.Advance(putBytes(file.Reserve(4), vertices[i]));
+        }
+        vertices += size;
+    }
+}
+
+} // namespace
+
+void WriteMesh(Mesh const &mesh, std::string const &path) {
+    std::optional<MeshFormat> const format = FindMeshFormat(path);
+    if (!format) {
+        throw FileError(path, std::string("is not a ") + kMeshExtensions + " file");
+    }
+    OutputFile file(path);
+    switch (*format) {
+    case MeshFormat::Obj:
+        writeObj(mesh, file);
+        break;
+    case MeshFormat::Off:
+        writeOff(mesh, file);
+        break;
+    case MeshFormat::Ply:
+        writePly(mesh, file);
+        break;
+    }
+    file.Commit();
+}
+
+} // namespace OpenSubdivHex::Tutorials

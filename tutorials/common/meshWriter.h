@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TUTORIALS_MESH_WRITER_H
+#define OPENSUBDIVHEX_TUTORIALS_MESH_WRITER_H
+
+#include "mesh.h"
+
+#include <string>
+
+namespace OpenSubdivHex::Tutorials {
+
+/// \brief Writes \p mesh in the format that the extension of \p path names: OBJ and OFF as text,
+/// PLY in little-endian binary.
+///
+/// Text has as many digits as it takes to read the same floats again.  The file appears whole or
+/// not at all.  Throws FileError.
+void WriteMesh(Mesh const &mesh, std::string const &path);
+
+} // namespace OpenSubdivHex::Tutorials
+
+#endif

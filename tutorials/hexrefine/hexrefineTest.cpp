@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Runs the program hexrefine as its users do.
+#include "far_ext/topologyRefinerFactory.h"
+#include "tutorials/common/meshReader.h"
+#include "tutorials/common/meshWriter.h"
+#include "tutorials/common/shapes.h"
+#include "tutorials/common/testFolder.h"
+#include "tutorials/common/topologyDescriptor.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdlib>
+
+#ifdef __unix__
+#include <sys/wait.h>
+#endif
+
+#ifdef __has_feature
+#if __has_feature(address_sanitizer)
+#define HAS_ADDRESS_SANITIZER
+#endif
+#endif
+
+namespace OpenSubdivHex::Tutorials {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Result {
+    int status;
+    std::string out;
+    std::string error;
+};
+
+class Hexrefine : public TestFolder {
+protected:
+    Result run(std::string const &arguments, std::string const &before = "") const {
+        std::string const out = getPath("stdout");
+        std::string const error = getPath("stderr");
+        int status = std::system((before + "\"" HEXREFINE_PROGRAM "\" " + arguments + " >\"" + out +
+                                  "\" 2>\"" + error + "\"")
+                                     .c_str());
+#ifdef __unix__
+        status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+#endif
+        Result result{status, getContent(out), getContent(error)};
+        std::filesystem::remove(out);
+        std::filesystem::remove(error);
+        return result;
+    }
+
+    std::string makeCubeFile() const {
+        WriteMesh(MakeCube(), getPath("cube.obj"));
+        return getPath("cube.obj");
+    }
+
+    /// Expects exit status 1, one line on stderr that begins with the file, and no output.
+    void expectFailure(std::string const &arguments, std::string const &path,
+                       std::string const &cause, std::string const &before = "") const {
+        Result const result = run(arguments, before);
+        EXPECT_EQ(result.status, 1) << arguments;
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(result.error.rfind("hexrefine: " + path + ": ", 0), 0u) << result.error;
+        EXPECT_NE(result.error.find(cause), std::string::npos) << result.error;
+        EXPECT_EQ(result.error.find('\n'), result.error.size() - 1) << result.error;
+    }
+
+    void expectBadUsage(std::string const &arguments, std::string const &cause) const {
+        Result const result = run(arguments);
+        EXPECT_EQ(result.status, 2) << arguments;
+        EXPECT_EQ(result.out, "") << arguments;
+        EXPECT_NE(result.error.find(cause), std::string::npos) << result.error;
+    }
+};
+
+/// Whether the faces make a closed, manifold, consistently oriented surface.
+void expectClosed(Mesh const &mesh) {
+    FarExt::Status status;
+    auto const refiner =
+        FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), Sdc::Options(), &status);
+    ASSERT_TRUE(refiner) << status.GetMessage();
+    EXPECT_EQ(refiner->GetLevel(0).GetNumBoundaryEdges(), 0);
+    EXPECT_TRUE(refiner->GetLevel(0).Validate(&status)) << status.GetMessage();
+}
+
+} // namespace
+
+TEST_F(Hexrefine, PrintsHelpAndVersion) {
+    Result const help = run("--help");
+    EXPECT_EQ(help.status, 0);
+    for (char const *option : {"INPUT", "-l,--level", "-o,--output", "--mask", "--scheme",
+                               "--boundary", "--evaluator", "--stats", "--quiet", "--version"}) {
+        EXPECT_NE(help.out.find(option), std::string::npos) << option;
+    }
+    EXPECT_EQ(run("--version").out, "hexrefine " HEXREFINE_VERSION "\n");
+}
+
+TEST_F(Hexrefine, RefinesCube) {
+    makeCubeFile();
+    Result const result = run(getPath("cube.obj") + " -l 3 -o " + getPath("out.off"));
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.error, "");
+    EXPECT_NE(result.out.find("512         768         258"), std::string::npos) << result.out;
+    Mesh const mesh = ReadMesh(getPath("out.off"));
+    EXPECT_EQ(mesh.GetNumVertices(), 512);
+    EXPECT_EQ(mesh.GetNumFaces(), 258);
+    expectClosed(mesh);
+}
+
+TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
+    std::string const input = makeCubeFile();
+    Result const result = run(input + " -l 2 --mask cosine --stats -");
+    EXPECT_EQ(result.status, 0);
+    Json const json = Json::parse(result.out);
+    std::vector<std::string> keys;
+    for (auto const &item : json.items()) {
+        keys.push_back(item.key());
+    }
+    EXPECT_EQ(keys, (std::vector<std::string>{"scheme", "mask", "boundary", "evaluator", "input",
+                                              "levels", "milliseconds", "stencils", "weights",
+                                              "peakMemoryBytes"}));
+    EXPECT_EQ(json["scheme"], "hex");
+    EXPECT_EQ(json["mask"], "cosine");
+    EXPECT_EQ(json["boundary"], "none");
+    EXPECT_EQ(json["evaluator"], "stencil-cpu");
+    EXPECT_EQ(json["input"], input);
+    EXPECT_EQ(json["levels"].dump(),
+              R"([{"level":0,"vertices":8,"edges":12,"faces":6,"corners":24,"boundaryEdges":0,)"
+              R"("facesBySize":{"4":6}},)"
+              R"({"level":1,"vertices":32,"edges":48,"faces":18,"corners":96,"boundaryEdges":0,)"
+              R"("facesBySize":{"4":6,"6":12}},)"
+              R"({"level":2,"vertices":128,"edges":192,"faces":66,"corners":384,)"
+              R"("boundaryEdges":0,"facesBySize":{"4":6,"6":60}}])");
+    for (char const *phase : {"read", "validate", "refine", "stencils", "evaluate", "write"}) {
+        EXPECT_GE(json["milliseconds"][phase].get<double>(), 0) << phase;
+    }
+    EXPECT_EQ(json["stencils"], 128);
+    EXPECT_GT(json["weights"].get<int>(), 128);
+    EXPECT_GT(json["peakMemoryBytes"].get<double>(), 1e6);
+    EXPECT_EQ(listFiles(), std::vector<std::string>{"cube.obj"});
+}
+
+TEST_F(Hexrefine, WritesStatisticsToFile) {
+    std::string const input = makeCubeFile();
+    Result const result = run(input + " -l 1 --quiet --stats " + getPath("stats.json"));
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.out + result.error, "");
+    EXPECT_EQ(Json::parse(getContent(getPath("stats.json")))["levels"].size(), 2u);
+    EXPECT_EQ(listFiles(), (std::vector<std::string>{"cube.obj", "stats.json"}));
+}
+
+TEST_F(Hexrefine, LevelZeroCopies) {
+    for (char const *evaluator : {"stencil-cpu", "primvar"}) {
+        Result const result = run(std::string(LANTERN_FILE) + " -l 0 --quiet --evaluator " +
+                                  evaluator + " -o " + getPath("copy.ply"));
+        EXPECT_EQ(result.status, 0) << result.error;
+        Mesh const input = ReadMesh(LANTERN_FILE);
+        Mesh const copy = ReadMesh(getPath("copy.ply"));
+        EXPECT_EQ(copy.positions, input.positions);
+        EXPECT_EQ(copy.faceSizes, input.faceSizes);
+        EXPECT_EQ(copy.faceVertices, input.faceVertices);
+    }
+}
+
+TEST_F(Hexrefine, EvaluatorsAgree) {
+    std::vector<std::string> evaluators = {"primvar", "stencil-cpu"};
+#ifdef HEXREFINE_HAS_OPENMP
+    evaluators.emplace_back("stencil-omp");
+#endif
+    for (char const *mask : {"average", "cosine", "smooth"}) {
+        std::vector<Mesh> meshes;
+        for (std::string const &evaluator : evaluators) {
+            Result const result = run(std::string(LANTERN_FILE) + " -l 3 --quiet --mask " + mask +
+                                      " --evaluator " + evaluator + " -o " + getPath("out.ply"));
+            ASSERT_EQ(result.status, 0) << result.error;
+            meshes.push_back(ReadMesh(getPath("out.ply")));
+            EXPECT_EQ(meshes.back().faceVertices, meshes[0].faceVertices);
+            ASSERT_EQ(meshes.back().positions.size(), meshes[0].positions.size());
+            for (std::size_t i = 0; i < meshes[0].positions.size(); ++i) {
+                ASSERT_NEAR(meshes.back().positions[i], meshes[0].positions[i], 1e-5) << evaluator;
+            }
+        }
+        expectClosed(meshes[0]);
+    }
+}
+
+TEST_F(Hexrefine, LanternIsClosedAndOfFourFaceSizes) {
+    Mesh const lantern = ReadMesh(LANTERN_FILE);
+    expectClosed(lantern);
+    Json const json = Json::parse(run(std::string(LANTERN_FILE) + " -l 4 --stats -").out);
+    EXPECT_EQ(json["levels"][0]["facesBySize"].size(), 4u);
+    EXPECT_GT(json["levels"][4]["vertices"].get<int>(), 100000);
+}
+
+TEST_F(Hexrefine, RefinesSpot) {
+    std::string const folder = OPENSUBDIVHEX_MESHES_DIR;
+    if (folder.empty()) {
+        GTEST_SKIP() << "OPENSUBDIVHEX_MESHES_DIR is not set";
+    }
+    Result const result = run(folder + "/spot.obj -l 3 --stats - -o " + getPath("spot3.obj"));
+    ASSERT_EQ(result.status, 0) << result.error;
+    Json const last = Json::parse(result.out)["levels"][3];
+    EXPECT_EQ(last["vertices"], 2930 + 2 * 8784 * 21);
+    EXPECT_EQ(last["faces"], 5856 + 8784 * 21);
+    EXPECT_EQ(last["boundaryEdges"], 0);
+    Mesh const mesh = ReadMesh(getPath("spot3.obj"));
+    EXPECT_EQ(mesh.GetNumVertices(), 371858);
+    EXPECT_EQ(mesh.GetNumFaces(), 190320);
+    expectClosed(mesh);
+}
+
+TEST_F(Hexrefine, RefusesBadUsage) {
+    std::string const input = makeCubeFile();
+    expectBadUsage("", "INPUT");
+    expectBadUsage(input + " --level -1", "not a number of steps");
+    expectBadUsage(input + " -l two", "not a number of steps");
+    expectBadUsage(input + " -l 2.5", "not a number of steps");
+    expectBadUsage(input + " -l 99999999999", "not a number of steps");
+    expectBadUsage(input + " -o out.stl", "out.stl");
+    expectBadUsage(input + " -o out", "out");
+    expectBadUsage(input + " --mask best", "best");
+    expectBadUsage(input + " --scheme loop", "loop");
+    expectBadUsage(input + " --boundary edge", "edge");
+    expectBadUsage(input + " --evaluator gpu", "gpu");
+    expectBadUsage(input + " --unknown", "--unknown");
+    expectBadUsage(input + " " + input, "");
+#ifndef HEXREFINE_HAS_OPENMP
+    expectBadUsage(input + " --evaluator stencil-omp", "without OpenMP");
+#endif
+    EXPECT_EQ(listFiles(), std::vector<std::string>{"cube.obj"});
+}
+
+TEST_F(Hexrefine, RefusesBadInput) {
+    std::string const output = " -o " + getPath("out.obj");
+    expectFailure(getPath("missing.obj") + output, getPath("missing.obj"), "No such file");
+    std::string const vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    std::string path = makeFile("index.obj", vertices + "f 1 2 9\n");
+    expectFailure(path + output, path, "line 5: vertex index 9");
+    path = makeFile("flipped.obj", vertices + "f 1 2 3\nf 1 2 4\n");
+    expectFailure(path + output, path, "edge");
+    path = makeFile("mesh.stl", "solid\n");
+    expectFailure(path + output, path, "is not a");
+    path = makeCubeFile();
+    expectFailure(path + output + " -l 20", path, "level 14");
+    EXPECT_FALSE(std::filesystem::exists(getPath("out.obj")));
+}
+
+TEST_F(Hexrefine, FailedOutputLeavesNothing) {
+    std::string const input = makeCubeFile();
+    expectFailure(input + " -o " + getPath("missing/out.obj"), getPath("missing/out.obj"), "");
+    expectFailure(input + " --stats " + getPath("missing/stats"), getPath("missing/stats"), "");
+#ifdef __unix__
+    // A full disk; ulimit counts in blocks of 512 bytes.
+    expectFailure(input + " -l 6 -o " + getPath("out.obj"), getPath("out.obj"), "cannot be written",
+                  "ulimit -f 8; trap '' XFSZ; ");
+#endif
+#ifdef __linux__
+    EXPECT_EQ(run(input + " --stats /dev/full").status, 1);
+#endif
+    EXPECT_EQ(listFiles(), std::vector<std::string>{"cube.obj"});
+}
+
+// AddressSanitizer reserves more memory than the limit before the program begins.
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(HAS_ADDRESS_SANITIZER)
+TEST_F(Hexrefine, NamesLackOfMemory) {
+    std::string const input = makeCubeFile();
+    expectFailure(input + " -l 11 -o " + getPath("out.obj"), input,
+                  "not enough memory for level 11", "ulimit -v 500000; ");
+    EXPECT_EQ(listFiles(), std::vector<std::string>{"cube.obj"});
+}
+#endif
+
+} // namespace OpenSubdivHex::Tutorials
