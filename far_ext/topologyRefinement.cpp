@@ -33,8 +33,9 @@ struct FaceEdge {
 // Fills a child level.  All that a component makes is written by that component alone, to places
 // that are known in advance, so that components can be taken in any order and in parallel.
 //
-// Without a boundary all places are closed-form: HAS_BOUNDARY leaves out what is for boundaries.
-template <bool HAS_BOUNDARY>
+// IS_IRREGULAR is for levels with boundaries or non-manifold vertices; without, all places are
+// closed-form.
+template <bool IS_IRREGULAR>
 class Refinement {
 public:
     Refinement(LevelTopology const &parent, LevelTopology &child)
@@ -72,7 +73,7 @@ private:
     void fillRelationsOfVertex(Index pVert);
 
     bool isBoundary(Index pEdge) const {
-        if constexpr (HAS_BOUNDARY) {
+        if constexpr (IS_IRREGULAR) {
             return _p.IsBoundary(pEdge);
         }
         static_cast<void>(pEdge);
@@ -94,7 +95,7 @@ private:
     // The edge from a corner to the next, seen from the face.
     FaceEdge edgeFrom(Index pFace, int size, Index pCorner) const {
         Index const pEdge = _p.faceEdges[pCorner];
-        if constexpr (HAS_BOUNDARY) {
+        if constexpr (IS_IRREGULAR) {
             Index const eFace = _p.GetEdgeChildFace(pEdge);
             Index const first = eFace < 0 ? Far::INDEX_INVALID : _c.faceFirstCorner[eFace];
             if (isBoundary(pEdge)) {
@@ -165,14 +166,14 @@ private:
     HexIndexing const _indexing;
 };
 
-template <bool HAS_BOUNDARY>
-void Refinement<HAS_BOUNDARY>::fillFaceOffsets() {
+template <bool IS_IRREGULAR>
+void Refinement<IS_IRREGULAR>::fillFaceOffsets() {
     _c.faceFirstCorner.Resize(std::size_t(_c.numFaces) + 1);
     ParallelFor(_p.numFaces, [this](Index pFace) {
         _c.faceFirstCorner[_indexing.GetFaceChildFace(pFace)] =
             _indexing.GetFaceChildFirstCorner(_p.faceFirstCorner[pFace]);
     });
-    if constexpr (HAS_BOUNDARY) {
+    if constexpr (IS_IRREGULAR) {
         Index numBBefore = 0;
         Index numBoundaryBefore = 0;
         for (Index pEdge = 0; pEdge < _p.numEdges; ++pEdge) {
@@ -195,20 +196,20 @@ void Refinement<HAS_BOUNDARY>::fillFaceOffsets() {
 
 // Every corner writes its own corner of the F-face and its own side of its edge's E-face; that of
 // a boundary edge has no other side, so its end vertex is written as well.
-template <bool HAS_BOUNDARY>
-void Refinement<HAS_BOUNDARY>::fillFaceVerticesOf(Index pFace) {
+template <bool IS_IRREGULAR>
+void Refinement<IS_IRREGULAR>::fillFaceVerticesOf(Index pFace) {
     forEachCorner(
         pFace, [this](FaceEdge const &, FaceEdge const &edge, Index, Index pCorner, Index next) {
             Index const fVertex = _indexing.GetCornerChildVertex(pCorner);
             _c.faceVerts[_indexing.GetFaceChildFirstCorner(pCorner)] = fVertex;
-            if (HAS_BOUNDARY && !edge.HasEFace()) {
+            if (IS_IRREGULAR && !edge.HasEFace()) {
                 return;
             }
             Index *verts = _c.faceVerts.data() + edge.firstCorner;
             verts[edge.side->startVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[pCorner]);
             verts[edge.side->startFVertex] = fVertex;
             verts[edge.side->endFVertex] = _indexing.GetCornerChildVertex(next);
-            if (HAS_BOUNDARY && edge.isBoundary) {
+            if (IS_IRREGULAR && edge.isBoundary) {
                 verts[edge.side->endVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[next]);
             }
         });
@@ -220,8 +221,8 @@ void Refinement<HAS_BOUNDARY>::fillFaceVerticesOf(Index pFace) {
 // An edge whose E-face is missing is a boundary: the edge of the F-face is a B edge then, and the
 // spokes at its ends are A edges, each directed as its one face runs; the F-vertices at its ends
 // have two faces, others have three.
-template <bool HAS_BOUNDARY>
-void Refinement<HAS_BOUNDARY>::fillRelationsOfFace(Index pFace) {
+template <bool IS_IRREGULAR>
+void Refinement<IS_IRREGULAR>::fillRelationsOfFace(Index pFace) {
     Index const cFace = _indexing.GetFaceChildFace(pFace);
     Index const first = _p.faceFirstCorner[pFace];
     std::size_t face = _c.vertFirstFace[_indexing.GetCornerChildVertex(first)];
@@ -235,8 +236,8 @@ void Refinement<HAS_BOUNDARY>::fillRelationsOfFace(Index pFace) {
         Index const prevFEdge = _indexing.GetCornerChildEdge(prev);
         Index const spoke = _indexing.GetCornerChildSpoke(pCorner);
         LocalIndex const local = LocalIndex(pCorner - first);
-        bool const hasOut = !HAS_BOUNDARY || outEdge.HasEFace();
-        bool const hasIn = !HAS_BOUNDARY || inEdge.HasEFace();
+        bool const hasOut = !IS_IRREGULAR || outEdge.HasEFace();
+        bool const hasIn = !IS_IRREGULAR || inEdge.HasEFace();
 
         _c.faceEdges[_indexing.GetFaceChildFirstCorner(pCorner)] = fEdge;
         if (hasOut) {
@@ -294,8 +295,8 @@ void Refinement<HAS_BOUNDARY>::fillRelationsOfFace(Index pFace) {
 // Around a V-vertex the spokes take the place of the parent's faces and the E-faces that of its
 // edges.  Where a fan of faces ends in a boundary edge with an E-face, that one's boundary edge
 // comes first or last.
-template <bool HAS_BOUNDARY>
-void Refinement<HAS_BOUNDARY>::fillRelationsOfVertex(Index pVert) {
+template <bool IS_IRREGULAR>
+void Refinement<IS_IRREGULAR>::fillRelationsOfVertex(Index pVert) {
     Index const cVert = _indexing.GetVertexChildVertex(pVert);
     std::size_t face = _c.vertFirstFace[cVert];
     std::size_t edge = _c.vertFirstEdge[cVert];
@@ -313,7 +314,7 @@ void Refinement<HAS_BOUNDARY>::fillRelationsOfVertex(Index pVert) {
         Index const pFace = _p.vertFaces[i];
         Index const pCorner = _p.faceFirstCorner[pFace] + _p.vertFaceLocals[i];
         Index const spoke = _indexing.GetCornerChildSpoke(pCorner);
-        if constexpr (HAS_BOUNDARY) {
+        if constexpr (IS_IRREGULAR) {
             auto const [inEdge, outEdge] = edgesAt(pFace, pCorner);
             if (outEdge.isBoundary && outEdge.HasEFace()) {
                 addEdge(_c.faceEdges[outEdge.firstCorner + kBoundaryEFaceEdge], 0);
@@ -338,11 +339,11 @@ void Refinement<HAS_BOUNDARY>::fillRelationsOfVertex(Index pVert) {
 
 // Where the faces and edges of each vertex begin: those of V-vertices, and of each parent face's
 // first F-vertex; the others follow from it.
-template <bool HAS_BOUNDARY>
-void Refinement<HAS_BOUNDARY>::fillVertexOffsets() {
+template <bool IS_IRREGULAR>
+void Refinement<IS_IRREGULAR>::fillVertexOffsets() {
     Index numFaces = 0;
     Index numEdges = 0;
-    if constexpr (HAS_BOUNDARY) {
+    if constexpr (IS_IRREGULAR) {
         for (Index pVert = 0; pVert < _p.numVertices; ++pVert) {
             Index const cVert = _indexing.GetVertexChildVertex(pVert);
             _c.vertFirstFace[cVert] = numFaces;
@@ -387,8 +388,8 @@ void Refinement<HAS_BOUNDARY>::fillVertexOffsets() {
     _c.vertFirstEdge[_c.numVertices] = 2 * _c.numEdges;
 }
 
-template <bool HAS_BOUNDARY>
-void Refinement<HAS_BOUNDARY>::fillBoundaries() {
+template <bool IS_IRREGULAR>
+void Refinement<IS_IRREGULAR>::fillBoundaries() {
     std::size_t const numHalfFaces = _p.halfFaces.size();
     std::size_t const numBoundaryEFaces = _p.boundaryEdges.size() - numHalfFaces;
     _c.boundaryEdges.Resize(3 * numHalfFaces + numBoundaryEFaces);
@@ -421,9 +422,9 @@ void Refinement<HAS_BOUNDARY>::fillBoundaries() {
     });
 }
 
-template <bool HAS_BOUNDARY>
+template <bool IS_IRREGULAR>
 void fillLevel(LevelTopology const &parent, bool fullTopology, LevelTopology &child) {
-    Refinement<HAS_BOUNDARY> refinement(parent, child);
+    Refinement<IS_IRREGULAR> refinement(parent, child);
     refinement.FillFaceVertices();
     if (fullTopology) {
         refinement.FillRelations();
@@ -503,7 +504,7 @@ void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTop
     parent.child = &child;
     fillChildRelations(parent);
 
-    if (parent.boundaryEdges.empty()) {
+    if (parent.boundaryEdges.empty() && parent.nonManifoldVerts.empty()) {
         fillLevel<false>(parent, fullTopology, child);
     } else {
         fillLevel<true>(parent, fullTopology, child);
