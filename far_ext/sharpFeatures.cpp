@@ -12,59 +12,107 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 
+// What is met on the way around a vertex: its faces, and between them edges and diagonals.
+struct RingItem {
+    bool isFace;
+    Index corner;    // of a face; INDEX_INVALID for half a hexagon
+    Index neighbor;  // at the other end of an edge or diagonal
+    bool isLong;     // a diagonal or a B boundary
+    float sharpness; // of an edge or diagonal; 0 for smooth ones
+};
+
+RingItem faceItem(Index corner) { return {true, corner, Far::INDEX_INVALID, false, 0}; }
+
+RingItem edgeItem(LevelTopology const &level, Index edge, Index neighbor) {
+    Index const kind = level.edgeFaces[2 * std::size_t(edge) + 1];
+    float sharpness = level.GetEdgeSharpness(edge);
+    if (kind < 0) {
+        sharpness = kind == kFreeBoundary ? 0 : Crease::SHARPNESS_INFINITE;
+    }
+    return {false, Far::INDEX_INVALID, neighbor, kind == kSharpBoundaryB, sharpness};
+}
+
+bool isSharp(RingItem const &item) { return Crease::IsSharp(item.sharpness); }
+
+// The faces around a vertex that are joined by edges, counter-clockwise: from boundary to boundary
+// or, when closed, all around, from the edge before the first face to the last face.
+struct Fan {
+    std::vector<RingItem> items;
+    bool isClosed;
+};
+
+// The fan that begins with the face at position i of the vertex's faces; returns where the next one
+// begins.
+Index gatherFan(LevelTopology const &level, Index vert, Index i, Fan &fan) {
+    fan.items.clear();
+    fan.isClosed = false;
+    Index firstEdge = Far::INDEX_INVALID;
+    for (; i < level.vertFirstFace[vert + 1]; ++i) {
+        Index const face = level.vertFaces[i];
+        Index const first = level.faceFirstCorner[face];
+        int const size = level.faceFirstCorner[face + 1] - first;
+        int const local = level.vertFaceLocals[i];
+        Index const next = first + (local + 1) % size;
+        Index const prev = first + (local + size - 1) % size;
+        Index const outEdge = level.faceEdges[first + local];
+        Index const inEdge = level.faceEdges[prev];
+        if (firstEdge == Far::INDEX_INVALID) {
+            firstEdge = outEdge;
+        }
+        fan.items.push_back(edgeItem(level, outEdge, level.faceVerts[next]));
+        float const diagonal = level.GetDiagonalSharpness(face);
+        if ((local == kDiagonalStart || local == kDiagonalEnd) && Crease::IsSharp(diagonal)) {
+            Index const end = first + kDiagonalStart + kDiagonalEnd - local;
+            fan.items.push_back(faceItem(Far::INDEX_INVALID));
+            fan.items.push_back({false, Far::INDEX_INVALID, level.faceVerts[end], true, diagonal});
+            fan.items.push_back(faceItem(Far::INDEX_INVALID));
+        } else {
+            bool const isHalf = level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
+            fan.items.push_back(faceItem(isHalf ? Far::INDEX_INVALID : first + local));
+        }
+        if (level.IsBoundary(inEdge)) {
+            fan.items.push_back(edgeItem(level, inEdge, level.faceVerts[prev]));
+            return i + 1;
+        }
+        if (inEdge == firstEdge) {
+            fan.isClosed = true;
+            return i + 1;
+        }
+    }
+    return i;
+}
+
+// Calls function(fan) for the fans of a vertex.
+template <typename FUNCTION>
+void forEachFan(LevelTopology const &level, Index vert, FUNCTION function) {
+    Fan fan;
+    for (Index i = level.vertFirstFace[vert]; i < level.vertFirstFace[vert + 1];) {
+        i = gatherFan(level, vert, i, fan);
+        function(fan);
+    }
+}
+
 // The sharp edges that meet in a vertex: boundaries, crease edges and crease diagonals.
 struct SharpEdges {
     std::vector<Index> neighbors;
     std::vector<bool> isLong; // a diagonal or a B boundary
     std::vector<float> sharpness;
 
-    void Clear() {
-        neighbors.clear();
-        isLong.clear();
-        sharpness.clear();
-    }
-    void Add(Index neighbor, bool isLongEdge, float edgeSharpness) {
-        neighbors.push_back(neighbor);
-        isLong.push_back(isLongEdge);
-        sharpness.push_back(edgeSharpness);
-    }
     int GetSize() const { return int(neighbors.size()); }
 };
 
-void gatherBoundary(LevelTopology const &level, Index edge, Index neighbor, SharpEdges &result) {
-    Index const kind = level.edgeFaces[2 * std::size_t(edge) + 1];
-    if (kind == kSharpBoundaryA || kind == kSharpBoundaryB) {
-        result.Add(neighbor, kind == kSharpBoundaryB, Crease::SHARPNESS_INFINITE);
-    }
-}
-
-// In the order of the vertex's faces; an interior edge is seen from the side that starts here.
-void gatherSharpEdges(LevelTopology const &level, Index vert, SharpEdges &result) {
-    result.Clear();
-    for (Index i = level.vertFirstFace[vert]; i < level.vertFirstFace[vert + 1]; ++i) {
-        Index const face = level.vertFaces[i];
-        Index const first = level.faceFirstCorner[face];
-        int const size = level.faceFirstCorner[face + 1] - first;
-        int const local = level.vertFaceLocals[i];
-        int const next = (local + 1) % size;
-        int const prev = (local + size - 1) % size;
-        Index const outEdge = level.faceEdges[first + local];
-        Index const inEdge = level.faceEdges[first + prev];
-        Index const nextVert = level.faceVerts[first + next];
-        if (level.IsBoundary(outEdge)) {
-            gatherBoundary(level, outEdge, nextVert, result);
-        } else if (Crease::IsSharp(level.GetEdgeSharpness(outEdge))) {
-            result.Add(nextVert, false, level.GetEdgeSharpness(outEdge));
+SharpEdges gatherSharpEdges(LevelTopology const &level, Index vert) {
+    SharpEdges result;
+    forEachFan(level, vert, [&](Fan const &fan) {
+        for (RingItem const &item : fan.items) {
+            if (isSharp(item)) {
+                result.neighbors.push_back(item.neighbor);
+                result.isLong.push_back(item.isLong);
+                result.sharpness.push_back(item.sharpness);
+            }
         }
-        if (level.IsBoundary(inEdge)) {
-            gatherBoundary(level, inEdge, level.faceVerts[first + prev], result);
-        }
-        bool const onDiagonal = local == kDiagonalStart || local == kDiagonalEnd;
-        if (onDiagonal && Crease::IsSharp(level.GetDiagonalSharpness(face))) {
-            int const end = kDiagonalStart + kDiagonalEnd - local;
-            result.Add(level.faceVerts[first + end], true, level.GetDiagonalSharpness(face));
-        }
-    }
+    });
+    return result;
 }
 
 // The vertices that may need a rule of their own, ascending.
@@ -158,74 +206,19 @@ SharpVertex blend(SharpVertex const &parent, SharpVertex const &child, double pa
     return result;
 }
 
-// What is met on the way around a vertex: a corner, or between two of them an edge or a diagonal.
-struct RingItem {
-    Index corner;    // INDEX_INVALID for an edge or a diagonal, and for half a hexagon
-    bool isFace;     // a corner or half a hexagon
-    bool isLong;     // a diagonal or a B boundary
-    float sharpness; // of an edge or a diagonal; 0 for smooth ones
-};
-
-// The fan of faces that begins with the vertex's i'th face, in counter-clockwise order; returns the
-// number of its faces.
-Index gatherFan(LevelTopology const &level, Index vert, Index i, std::vector<RingItem> &ring) {
-    ring.clear();
-    auto addEdge = [&](Index edge) {
-        Index const kind = level.edgeFaces[2 * std::size_t(edge) + 1];
-        float const sharpness = kind >= 0
-                                    ? level.GetEdgeSharpness(edge)
-                                    : (kind == kFreeBoundary ? 0 : Crease::SHARPNESS_INFINITE);
-        ring.push_back({Far::INDEX_INVALID, false, kind == kSharpBoundaryB, sharpness});
-    };
-    Index const begin = level.vertFirstFace[vert];
-    Index const end = level.vertFirstFace[vert + 1];
-    Index firstEdge = Far::INDEX_INVALID;
-    for (Index k = begin + i; k < end; ++k) {
-        Index const face = level.vertFaces[k];
-        Index const first = level.faceFirstCorner[face];
-        int const size = level.faceFirstCorner[face + 1] - first;
-        int const local = level.vertFaceLocals[k];
-        Index const outEdge = level.faceEdges[first + local];
-        Index const inEdge = level.faceEdges[first + (local + size - 1) % size];
-        if (firstEdge == Far::INDEX_INVALID) {
-            firstEdge = outEdge;
-        }
-        addEdge(outEdge);
-        bool const onDiagonal = local == kDiagonalStart || local == kDiagonalEnd;
-        float const diagonal = level.GetDiagonalSharpness(face);
-        if (onDiagonal && Crease::IsSharp(diagonal)) {
-            ring.push_back({Far::INDEX_INVALID, true, false, 0});
-            ring.push_back({Far::INDEX_INVALID, false, true, diagonal});
-            ring.push_back({Far::INDEX_INVALID, true, false, 0});
-        } else {
-            bool const onLongEdge =
-                level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
-            ring.push_back({onLongEdge ? Far::INDEX_INVALID : first + local, true, false, 0});
-        }
-        if (level.IsBoundary(inEdge)) {
-            addEdge(inEdge);
-            return k - begin - i + 1;
-        }
-        if (inEdge == firstEdge) {
-            // A closed fan begins and ends with one of its sharp edges.
-            auto const sharp = std::find_if(ring.begin(), ring.end(), [](RingItem const &item) {
-                return Crease::IsSharp(item.sharpness);
-            });
-            std::rotate(ring.begin(), sharp, ring.end());
-            ring.push_back(ring.front());
-            return k - begin - i + 1;
-        }
-    }
-    return end - begin - i;
-}
-
 // Adds the corners of wide sectors between two sharp edges of a fan.
-void addSectorCorners(std::vector<RingItem> const &ring, std::vector<SectorCorner> &result) {
-    auto isSharp = [](RingItem const &item) { return Crease::IsSharp(item.sharpness); };
-    auto start = std::find_if(ring.begin(), ring.end(), isSharp);
-    while (start != ring.end()) {
-        auto const end = std::find_if(start + 1, ring.end(), isSharp);
-        if (end == ring.end()) {
+void addSectorCorners(Fan &fan, std::vector<SectorCorner> &result) {
+    std::vector<RingItem> &items = fan.items;
+    auto start = std::find_if(items.begin(), items.end(), isSharp);
+    if (fan.isClosed && start != items.end()) {
+        // All around, from a sharp edge back to it.
+        std::rotate(items.begin(), start, items.end());
+        items.push_back(items.front());
+        start = items.begin();
+    }
+    while (start != items.end()) {
+        auto const end = std::find_if(start + 1, items.end(), isSharp);
+        if (end == items.end()) {
             return;
         }
         auto const numFaces =
@@ -233,11 +226,9 @@ void addSectorCorners(std::vector<RingItem> const &ring, std::vector<SectorCorne
         float const size =
             float(numFaces) - 0.5f * float(start->isLong) - 0.5f * float(end->isLong);
         float const weight = std::min({1.0f, start->sharpness, end->sharpness});
-        if (size >= kMinShrunkSector) {
-            for (auto item = start; item != end; ++item) {
-                if (item->corner != Far::INDEX_INVALID) {
-                    result.push_back({item->corner, size, weight});
-                }
+        for (auto item = start; item != end && size >= kMinShrunkSector; ++item) {
+            if (item->corner != Far::INDEX_INVALID) {
+                result.push_back({item->corner, size, weight});
             }
         }
         start = end;
@@ -248,20 +239,15 @@ void addSectorCorners(std::vector<RingItem> const &ring, std::vector<SectorCorne
 
 void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
     Crease const creasing(sdcOptions);
-    SharpEdges edges;
     std::vector<float> childSharpness;
-    std::vector<RingItem> ring;
     level.sharpVerts.clear();
     level.sectorCorners.clear();
     for (Index vert : findSharpVertices(level)) {
         int const numFaces = level.vertFirstFace[vert + 1] - level.vertFirstFace[vert];
         float const vertSharpness = level.GetVertexSharpness(vert);
-        gatherSharpEdges(level, vert, edges);
+        SharpEdges const edges = gatherSharpEdges(level, vert);
         if (edges.GetSize() >= 2) {
-            for (Index i = 0; i < numFaces;) {
-                i += gatherFan(level, vert, i, ring);
-                addSectorCorners(ring, level.sectorCorners);
-            }
+            forEachFan(level, vert, [&](Fan &fan) { addSectorCorners(fan, level.sectorCorners); });
         }
         bool const isNonManifold = contains(level.nonManifoldVerts, vert);
         if (isNonManifold && !Crease::IsSharp(vertSharpness) && edges.GetSize() >= 2) {
@@ -306,18 +292,18 @@ public:
         : _level(level), _creasing(sdcOptions) {}
 
     // Of a part of the edge that ends in the vertex.
-    float AtVertex(float sharpness, Index vert) {
+    float AtVertex(float sharpness, Index vert) const {
         if (_creasing.IsUniform()) {
             return Along(sharpness);
         }
-        gatherSharpEdges(_level, vert, _edges);
-        return _creasing.SubdivideEdgeSharpnessAtVertex(sharpness, _edges.GetSize(),
-                                                        _edges.sharpness.data());
+        SharpEdges const edges = gatherSharpEdges(_level, vert);
+        return _creasing.SubdivideEdgeSharpnessAtVertex(sharpness, edges.GetSize(),
+                                                        edges.sharpness.data());
     }
     // Of a part of the edge that ends in neither vertex.
     float Along(float sharpness) const { return _creasing.SubdivideUniformSharpness(sharpness); }
     // Of the whole edge: the mean of both ends.
-    float Between(float sharpness, Index vert0, Index vert1) {
+    float Between(float sharpness, Index vert0, Index vert1) const {
         if (Crease::IsInfinite(sharpness)) {
             return sharpness;
         }
@@ -327,7 +313,6 @@ public:
 private:
     LevelTopology const &_level;
     Crease const _creasing;
-    SharpEdges _edges;
 };
 
 void fillZero(Buffer<float> &array, std::size_t size) {
@@ -342,7 +327,8 @@ void dropIfSmooth(Buffer<float> &array) {
     }
 }
 
-void refineDiagonals(LevelTopology const &parent, SharpnessRefiner &refiner, LevelTopology &child) {
+void refineDiagonals(LevelTopology const &parent, SharpnessRefiner const &refiner,
+                     LevelTopology &child) {
     fillZero(child.diagonalSharpness, child.numFaces);
     for (std::size_t face = 0; face < parent.diagonalSharpness.size(); ++face) {
         child.diagonalSharpness[parent.ChildIndexing().GetFaceChildFace(Index(face))] =
@@ -358,7 +344,8 @@ void refineDiagonals(LevelTopology const &parent, SharpnessRefiner &refiner, Lev
     dropIfSmooth(child.diagonalSharpness);
 }
 
-void refineEdges(LevelTopology const &parent, SharpnessRefiner &refiner, LevelTopology &child) {
+void refineEdges(LevelTopology const &parent, SharpnessRefiner const &refiner,
+                 LevelTopology &child) {
     if (parent.diagonalSharpness.empty()) {
         return;
     }
@@ -401,7 +388,7 @@ void RefineTags(LevelTopology const &parent, Sdc::Options sdcOptions, LevelTopol
     child.faceHoles.Resize(0);
     child.nonManifoldVerts = parent.nonManifoldVerts;
 
-    SharpnessRefiner refiner(parent, sdcOptions);
+    SharpnessRefiner const refiner(parent, sdcOptions);
     if (!parent.edgeSharpness.empty() || !parent.diagonalSharpness.empty()) {
         refineDiagonals(parent, refiner, child);
         if (child.hasFullTopology) {
