@@ -101,14 +101,21 @@ struct SharpEdges {
     int GetSize() const { return int(neighbors.size()); }
 };
 
+// Where three or more sheets meet along a crease, each fan has a boundary to either side, all with
+// the same curve: those of the first fan stand for all.
 SharpEdges gatherSharpEdges(LevelTopology const &level, Index vert) {
     SharpEdges result;
+    bool hasBoundary = false;
     forEachFan(level, vert, [&](Fan const &fan) {
+        bool const isOtherSheet = !fan.isClosed && hasBoundary;
         for (RingItem const &item : fan.items) {
-            if (isSharp(item)) {
+            bool const isBoundary =
+                !fan.isClosed && (&item == &fan.items.front() || &item == &fan.items.back());
+            if (isSharp(item) && !(isBoundary && isOtherSheet)) {
                 result.neighbors.push_back(item.neighbor);
                 result.isLong.push_back(item.isLong);
                 result.sharpness.push_back(item.sharpness);
+                hasBoundary |= isBoundary;
             }
         }
     });
@@ -146,10 +153,6 @@ std::vector<Index> findSharpVertices(LevelTopology const &level) {
     std::sort(verts.begin(), verts.end());
     verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
     return verts;
-}
-
-bool contains(std::vector<Index> const &ascending, Index index) {
-    return std::binary_search(ascending.begin(), ascending.end(), index);
 }
 
 SharpVertex smoothMask(Index vert, int numFaces) {
@@ -248,14 +251,6 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
         SharpEdges const edges = gatherSharpEdges(level, vert);
         if (edges.GetSize() >= 2) {
             forEachFan(level, vert, [&](Fan &fan) { addSectorCorners(fan, level.sectorCorners); });
-        }
-        bool const isNonManifold = contains(level.nonManifoldVerts, vert);
-        if (isNonManifold && !Crease::IsSharp(vertSharpness) && edges.GetSize() >= 2) {
-            // A crease along which three or more sheets meet: all of them see the same curve, that
-            // of the boundary of the first.
-            int const pair[2] = {0, 1};
-            level.sharpVerts.push_back(creaseMask(vert, edges, pair));
-            continue;
         }
         Crease::Rule const rule = creasing.DetermineVertexVertexRule(vertSharpness, edges.GetSize(),
                                                                      edges.sharpness.data());

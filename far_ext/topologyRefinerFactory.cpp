@@ -267,7 +267,7 @@ Status Importer::importEdges() {
         if (numCorners[edge] == 0) {
             return invalid(ComponentType::Edge, edge, "edge " + str(edge) + " has no face");
         }
-        if (numCorners[edge] == 1 && !isLoop) {
+        if (numCorners[edge] == 1 && !isLoop && !_base.IsEdgeNonManifold(edge)) {
             sides.corners[1] = boundary;
             continue;
         }

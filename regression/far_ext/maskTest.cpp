@@ -18,10 +18,9 @@ namespace {
 
 double const kPi = std::acos(-1.0);
 
-template <typename REAL = double>
-std::vector<REAL> faceMask(FaceMask mask, int n,
-                           Interpolation interpolation = Interpolation::Vertex) {
-    std::vector<REAL> weights(n);
+std::vector<double> faceMask(FaceMask mask, int n,
+                             Interpolation interpolation = Interpolation::Vertex) {
+    std::vector<double> weights(n);
     FarExt::ComputeFaceVertexMask(mask, interpolation, n, weights.data());
     return weights;
 }
@@ -108,12 +107,10 @@ TEST(Mask, NonNegativeSymmetricSumOne) {
         for (Interpolation interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
             for (int n = 3; n <= 400; ++n) {
                 std::vector<double> const weights = faceMask(mask, n, interpolation);
-                std::vector<float> const floats = faceMask<float>(mask, n, interpolation);
                 double sum = 0;
                 for (int j = 0; j < n; ++j) {
                     ASSERT_GE(weights[j], 0) << n << " " << j;
                     ASSERT_EQ(weights[j], weights[(n - j) % n]) << n << " " << j;
-                    ASSERT_EQ(floats[j], float(weights[j])) << n << " " << j;
                     sum += weights[j];
                 }
                 ASSERT_NEAR(sum, 1, 1e-13) << n;
@@ -160,12 +157,65 @@ TEST(Mask, Varying) {
 
 TEST(Mask, VertexMask) {
     for (int k = 0; k <= 400; ++k) {
-        auto const vertex = FarExt::ComputeVertexVertexMask<double>(Interpolation::Vertex, k);
+        auto const vertex = FarExt::ComputeVertexVertexMask(Interpolation::Vertex, k);
         EXPECT_EQ(vertex.vertexWeight, 1.0 / (k + 1));
         EXPECT_EQ(vertex.faceWeight, 1.0 / (k + 1));
-        auto const varying = FarExt::ComputeVertexVertexMask<float>(Interpolation::Varying, k);
-        EXPECT_EQ(varying.vertexWeight, 1.0f);
-        EXPECT_EQ(varying.faceWeight, 0.0f);
+        auto const varying = FarExt::ComputeVertexVertexMask(Interpolation::Varying, k);
+        EXPECT_EQ(varying.vertexWeight, 1);
+        EXPECT_EQ(varying.faceWeight, 0);
+    }
+}
+
+TEST(Mask, HalfFaceByHand) {
+    // Cosine, n = 6, (11 4 2 1 2 4)/24 on the hexagon V, Q* = (3V + W)/2 - P, P* = (V + 3W)/2 - Q,
+    // W, Q, P.  For Q: 11 Q + 4 (W + P) + 2 (V + P*) + Q*
+    //   = V (2 + 1 + 3/2) + W (4 + 3 + 1/2) + Q (11 - 2) + P (4 - 1).
+    double weights[4][4];
+    FarExt::ComputeHalfFaceVertexMask(FaceMask::Cosine, Interpolation::Vertex, &weights[0][0]);
+    double const expected[4][4] = {
+        {18, 6, 0, 0}, {6, 18, 0, 0}, {4.5, 7.5, 9, 3}, {7.5, 4.5, 3, 9}};
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) {
+            EXPECT_DOUBLE_EQ(weights[i][j], expected[i][j] / 24) << i << " " << j;
+        }
+    }
+}
+
+TEST(Mask, HalfFacesReproduceLinearFunctions) {
+    // A half of the regular hexagon: V = (-1, 0), W = (1, 0), Q and P above.
+    double const x[4] = {-1, 1, 0.5, -0.5};
+    double const y[4] = {0, 0, std::sqrt(0.75), std::sqrt(0.75)};
+    for (FaceMask mask : {FaceMask::Average, FaceMask::Cosine, FaceMask::Smooth}) {
+        for (Interpolation interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
+            double weights[4][4];
+            FarExt::ComputeHalfFaceVertexMask(mask, interpolation, &weights[0][0]);
+            std::vector<double> const hexagon = faceMask(mask, 6, interpolation);
+            // The hexagon's mask scales about its centre.
+            double const scale = hexagon[0] + hexagon[1] - hexagon[2] - hexagon[3];
+            for (int i = 0; i < 4; ++i) {
+                double sum = 0, sumX = 0, sumY = 0;
+                for (int j = 0; j < 4; ++j) {
+                    EXPECT_GE(weights[i][j], 0);
+                    sum += weights[i][j];
+                    sumX += weights[i][j] * x[j];
+                    sumY += weights[i][j] * y[j];
+                }
+                EXPECT_NEAR(sum, 1, 1e-15);
+                EXPECT_NEAR(sumX, (i < 2 ? 0.5 : scale) * x[i], 1e-15);
+                EXPECT_NEAR(sumY, scale * y[i], 1e-15);
+            }
+        }
+    }
+}
+
+TEST(Mask, SectorShrink) {
+    for (int k = 3; k <= 40; ++k) {
+        double const c = std::cos(kPi / k);
+        EXPECT_NEAR(FarExt::ComputeSectorShrink(FaceMask::Average, k), 1 / (0.98 + 0.305 * c),
+                    1e-15);
+        for (FaceMask mask : {FaceMask::Cosine, FaceMask::Smooth}) {
+            EXPECT_NEAR(FarExt::ComputeSectorShrink(mask, k), 1 / (1.31 + 0.515 * c), 1e-15);
+        }
     }
 }
 

@@ -34,12 +34,13 @@ char const *ToString(ReferenceMask mask) {
 }
 
 std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(Shape const &shape, ReferenceMask mask,
-                                                       int level) {
+                                                       int level, Sdc::Options sdcOptions) {
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions.faceMask = ToFaceMask(mask);
     FarExt::Status status;
+    ShapeDescriptor const descriptor(shape);
     auto refiner =
-        FarExt::TopologyRefinerFactory::Create(*CreateFarRefiner(shape), options, &status);
+        FarExt::TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status);
     if (!refiner) {
         throw std::runtime_error(shape.name + ": " + status.GetMessage());
     }

@@ -20,7 +20,8 @@ char const *ToString(ReferenceMask mask);
 
 /// The library's refiner of a shape, with all relations in its last level too.
 std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(Shape const &shape, ReferenceMask mask,
-                                                       int level);
+                                                       int level,
+                                                       Sdc::Options options = Sdc::Options());
 
 /// The positions of a shape, a row per vertex.
 ReferenceValues GetPositions(Shape const &shape);

@@ -181,14 +181,6 @@ TEST_F(StatusTest, VertexOutOfRange) {
         {StatusCode::InvalidTopology, ComponentType::Face, 2, {"face 2", "vertex -7"}});
 }
 
-TEST_F(StatusTest, RepeatedVertex) {
-    expectRefused(makeShape(5, {{0, 1, 2}, {2, 1, 3, 1}}),
-                  {StatusCode::InvalidTopology,
-                   ComponentType::Face,
-                   1,
-                   {"face 1", "vertex 1", "more than once"}});
-}
-
 TEST_F(StatusTest, InconsistentOrientation) {
     Shape const shape = makeShape(4, {{0, 1, 2}, {1, 2, 3}});
     int edge = -1;
@@ -202,64 +194,89 @@ TEST_F(StatusTest, InconsistentOrientation) {
                           {"faces 0 and 1", "vertices 1 and 2", "same direction"}});
 }
 
-TEST_F(StatusTest, NonManifoldEdge) {
-    Shape const shape = makeShape(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
-    int edge = -1;
-    {
-        auto const base = CreateFarRefiner(shape);
-        edge = base->GetLevel(0).FindEdge(0, 1);
-    }
-    expectRefused(shape, {StatusCode::Unsupported,
-                          ComponentType::Edge,
-                          edge,
-                          {"non-manifold", "vertices 0 and 1", "3 faces"}});
-}
-
-TEST_F(StatusTest, NonManifoldVertex) {
-    expectRefused(
-        makeShape(5, {{0, 1, 2}, {3, 4, 2}}),
-        {StatusCode::Unsupported, ComponentType::Vertex, 2, {"vertex 2", "non-manifold"}});
-}
-
-TEST_F(StatusTest, NonManifoldShapesAreRefused) {
+TEST_F(StatusTest, EveryShapeAndBoundaryRuleIsTaken) {
     for (Shape const &shape : GetShapes()) {
-        ShapeDescriptor const descriptor(shape);
-        Status status;
-        auto const refiner =
-            TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), &status);
-        EXPECT_EQ(refiner != nullptr, shape.manifold) << shape.name << ": " << status.GetMessage();
+        for (auto rule : {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
+                          Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+            Sdc::Options options;
+            options.SetVtxBoundaryInterpolation(rule);
+            ShapeDescriptor const descriptor(shape);
+            Status status;
+            auto const refiner = TopologyRefinerFactory::Create(descriptor.Get(), options, &status);
+            ASSERT_TRUE(refiner) << shape.name << ": " << status.GetMessage();
+            EXPECT_TRUE(status.IsOk());
+            EXPECT_EQ(refiner->GetSchemeOptions().GetVtxBoundaryInterpolation(), rule);
+        }
     }
 }
 
-TEST_F(StatusTest, BoundaryRules) {
-    for (auto rule :
-         {Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
-        Sdc::Options options;
-        options.SetVtxBoundaryInterpolation(rule);
-        expectRefused(GetShape("quadGrid"),
-                      {StatusCode::Unsupported, ComponentType::None, -1, {"VTX_BOUNDARY_NONE"}},
-                      options);
+TEST_F(StatusTest, CreaseThatIsNoEdge) {
+    Shape shape = makeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
+    shape.creaseVertexPairs = {2, 3, 0, 2};
+    shape.creaseSharpness = {2.5f, 10};
+    expectDescriptorRefused(
+        shape,
+        {StatusCode::InvalidTopology, ComponentType::Vertex, 0, {"crease", "vertices 0 and 2"}});
+    shape.creaseVertexPairs = {2, 3, 4, 4};
+    expectDescriptorRefused(
+        shape,
+        {StatusCode::InvalidTopology, ComponentType::Vertex, 4, {"crease", "vertices 4 and 4"}});
+}
+
+TEST_F(StatusTest, CreaseOutOfRange) {
+    Shape shape = makeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
+    for (int vertex : {-1, 5}) {
+        for (std::vector<int> const &pair : {std::vector<int>{2, vertex}, {vertex, 2}}) {
+            shape.creaseVertexPairs = {2, 3, pair[0], pair[1]};
+            shape.creaseSharpness = {2.5f, 10};
+            expectDescriptorRefused(
+                shape, {StatusCode::InvalidTopology,
+                        ComponentType::Vertex,
+                        vertex,
+                        {"crease 1", "refers to " + std::to_string(vertex), "0 to 4"}});
+        }
     }
 }
 
-TEST_F(StatusTest, Creases) {
-    Shape shape = GetShape("cube");
-    shape.creaseVertexPairs = {shape.faceVertices[5], shape.faceVertices[6]};
-    shape.creaseSharpness = {2.5f};
-    int edge = -1;
-    {
-        auto const base = CreateFarRefiner(shape);
-        edge = base->GetLevel(0).FindEdge(shape.faceVertices[5], shape.faceVertices[6]);
+TEST_F(StatusTest, CornerOutOfRange) {
+    Shape shape = makeShape(4, {{0, 1, 2, 3}});
+    for (int vertex : {-2, 4}) {
+        shape.cornerVertices = {0, vertex};
+        shape.cornerSharpness = {1, 2};
+        expectDescriptorRefused(shape,
+                                {StatusCode::InvalidTopology,
+                                 ComponentType::Vertex,
+                                 vertex,
+                                 {"corner 1", "refers to " + std::to_string(vertex), "0 to 3"}});
     }
-    expectRefused(shape, {StatusCode::Unsupported, ComponentType::Edge, edge, {"crease", "2.5"}});
 }
 
-TEST_F(StatusTest, Corners) {
-    Shape shape = GetShape("cube");
-    shape.cornerVertices = {5};
-    shape.cornerSharpness = {1.5f};
-    expectRefused(
-        shape, {StatusCode::Unsupported, ComponentType::Vertex, 5, {"vertex 5", "corner", "1.5"}});
+TEST_F(StatusTest, HoleOutOfRange) {
+    Shape shape = makeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
+    for (int face : {-1, 2}) {
+        shape.holeFaces = {0, face};
+        expectDescriptorRefused(shape, {StatusCode::InvalidTopology,
+                                        ComponentType::Face,
+                                        face,
+                                        {"hole 1", "refers to " + std::to_string(face), "0 to 1"}});
+    }
+}
+
+TEST_F(StatusTest, FaceVaryingValueOutOfRange) {
+    Shape shape = makeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
+    shape.fvarChannels.resize(2);
+    for (FVarChannel &channel : shape.fvarChannels) {
+        channel.values.resize(2 * 7);
+        channel.valueIndices = {0, 1, 2, 3, 4, 5, 6};
+    }
+    for (int value : {-1, 7}) {
+        shape.fvarChannels[1].valueIndices[4] = value;
+        expectDescriptorRefused(
+            shape, {StatusCode::InvalidTopology,
+                    ComponentType::None,
+                    value,
+                    {"corner 4", "channel 1", "refers to " + std::to_string(value), "0 to 6"}});
+    }
 }
 
 TEST_F(StatusTest, NegativeRefinementLevel) {

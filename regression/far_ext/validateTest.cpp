@@ -35,7 +35,9 @@ std::unique_ptr<LevelTopology> copyLevel(TopologyLevel const &level) {
     copy->numEdges = level.GetNumEdges();
     copy->numFaces = level.GetNumFaces();
     copy->numCorners = level.GetNumFaceVertices();
-    copy->numBoundaryEdges = level.GetNumBoundaryEdges();
+    copy->numFreeBoundaries = level.GetTopology().numFreeBoundaries;
+    copy->numSharpBoundariesA = level.GetTopology().numSharpBoundariesA;
+    copy->numSharpBoundariesB = level.GetTopology().numSharpBoundariesB;
     copy->depth = level.GetDepth();
     copy->hasFullTopology = true;
 
@@ -55,8 +57,14 @@ std::unique_ptr<LevelTopology> copyLevel(TopologyLevel const &level) {
         append(edgeFaceLocals, level.GetEdgeFaceLocalIndices(e));
         if (level.IsEdgeBoundary(e)) {
             boundaryEdges.push_back(e);
-            edgeFaces.push_back(Far::INDEX_INVALID);
+            edgeFaces.push_back(level.GetTopology().edgeFaces[2 * std::size_t(e) + 1]);
             edgeFaceLocals.push_back(0);
+        }
+    }
+    Indices halfFaces;
+    for (int f = 0; f < level.GetNumFaces(); ++f) {
+        if (level.IsFaceHalf(f)) {
+            halfFaces.push_back(f);
         }
     }
     Indices vertFirstFace{0}, vertFaces, vertFirstEdge{0}, vertEdges;
@@ -76,6 +84,7 @@ std::unique_ptr<LevelTopology> copyLevel(TopologyLevel const &level) {
     assign(copy->edgeFaces, edgeFaces);
     assign(copy->edgeFaceLocals, edgeFaceLocals);
     assign(copy->boundaryEdges, boundaryEdges);
+    assign(copy->halfFaces, halfFaces);
     assign(copy->vertFirstFace, vertFirstFace);
     assign(copy->vertFaces, vertFaces);
     assign(copy->vertFaceLocals, vertFaceLocals);
@@ -83,6 +92,20 @@ std::unique_ptr<LevelTopology> copyLevel(TopologyLevel const &level) {
     assign(copy->vertEdges, vertEdges);
     assign(copy->vertEdgeLocals, vertEdgeLocals);
     return copy;
+}
+
+/// Leaves the face-vertices alone, as in a last level.
+void clearRelations(LevelTopology &level) {
+    level.hasFullTopology = false;
+    for (Buffer<Far::Index> *array : {&level.faceEdges, &level.edgeVerts, &level.edgeFaces,
+                                      &level.boundaryEdges, &level.halfFaces, &level.vertFirstFace,
+                                      &level.vertFaces, &level.vertFirstEdge, &level.vertEdges}) {
+        array->Resize(0);
+    }
+    for (Buffer<Far::LocalIndex> *array :
+         {&level.edgeFaceLocals, &level.vertFaceLocals, &level.vertEdgeLocals}) {
+        array->Resize(0);
+    }
 }
 
 bool isValid(LevelTopology const &topology, Status *status = nullptr) {
@@ -98,7 +121,11 @@ void expectEveryChangeIsFound(LevelTopology const &topology, Buffer<T> &buffer, 
             continue;
         }
         T const original = buffer[i];
+        // Negative entries tell kinds of boundary; which of them is a tag.
         for (int wrong : {int(original) + 1, int(original) - 1, 60000}) {
+            if (int(original) < 0 && wrong < 0) {
+                continue;
+            }
             buffer[i] = T(wrong);
             Status status;
             EXPECT_FALSE(isValid(topology, &status))
@@ -120,7 +147,7 @@ void expectEveryChangeIsFound(LevelTopology const &topology, Buffer<T> &buffer, 
 void expectEveryChangeIsFound(LevelTopology &topology) {
     auto const always = [](std::size_t) { return true; };
     // The place of the second face of a boundary edge has no meaning.
-    auto const hasFace = [&](std::size_t i) { return topology.edgeFaces[i] != Far::INDEX_INVALID; };
+    auto const hasFace = [&](std::size_t i) { return topology.edgeFaces[i] >= 0; };
     expectEveryChangeIsFound(topology, topology.faceFirstCorner, "faceFirstCorner", always);
     expectEveryChangeIsFound(topology, topology.faceVerts, "faceVerts", always);
     expectEveryChangeIsFound(topology, topology.faceEdges, "faceEdges", always);
@@ -141,12 +168,16 @@ void expectEveryChangeIsFound(LevelTopology &topology) {
 TEST(Validate, FindsEveryWrongEntry) {
     for (char const *name : {"tetrahedron", "quadGrid", "mixedPatch", "closedAndOpen"}) {
         SCOPED_TRACE(name);
-        auto const refiner = CreateRefiner(GetShape(name), ReferenceMask::Average, 1);
-        for (int level = 0; level <= 1; ++level) {
-            SCOPED_TRACE("level " + std::to_string(level));
-            auto const topology = copyLevel(refiner->GetLevel(level));
-            ASSERT_TRUE(isValid(*topology));
-            expectEveryChangeIsFound(*topology);
+        for (auto rule : {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}) {
+            Sdc::Options options;
+            options.SetVtxBoundaryInterpolation(rule);
+            auto const refiner = CreateRefiner(GetShape(name), ReferenceMask::Average, 1, options);
+            for (int level = 0; level <= 1; ++level) {
+                SCOPED_TRACE("level " + std::to_string(level));
+                auto const topology = copyLevel(refiner->GetLevel(level));
+                ASSERT_TRUE(isValid(*topology));
+                expectEveryChangeIsFound(*topology);
+            }
         }
     }
 }
@@ -154,7 +185,7 @@ TEST(Validate, FindsEveryWrongEntry) {
 TEST(Validate, FindsWrongFaceVerticesWithoutOtherRelations) {
     auto const refiner = CreateRefiner(GetShape("quadGrid"), ReferenceMask::Average, 0);
     auto const topology = copyLevel(refiner->GetLevel(0));
-    topology->ClearRelations();
+    clearRelations(*topology);
     ASSERT_TRUE(isValid(*topology));
     for (int corner = 0; corner < topology->numCorners; ++corner) {
         Far::Index const original = topology->faceVerts[corner];
@@ -177,7 +208,8 @@ TEST(Validate, FindsFacesThatAreNotTheParents) {
     auto const parent = copyLevel(refiner->GetLevel(0));
     auto const child = copyLevel(refiner->GetLevel(1));
     child->parent = parent.get();
-    child->ClearRelations();
+    parent->child = child.get();
+    clearRelations(*child);
     ASSERT_TRUE(isValid(*child));
     for (int f = 0; f < child->numFaces; ++f) {
         // Another valid start of the same face is another numbering, so it is wrong too.

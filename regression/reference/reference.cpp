@@ -81,20 +81,6 @@ Point smoothPoint(std::vector<Point> const &face, int i) {
     return sum;
 }
 
-Point varyingPoint(std::vector<Point> const &face, int i) { return (face[i] + centroid(face)) / 2; }
-
-Point newPoint(ReferenceMask mask, std::vector<Point> const &face, int i) {
-    switch (mask) {
-    case ReferenceMask::Average:
-        return averagePoint(face, i);
-    case ReferenceMask::Cosine:
-        return cosinePoint(face, i);
-    case ReferenceMask::Smooth:
-        return smoothPoint(face, i);
-    }
-    throw std::invalid_argument("reference: no such mask");
-}
-
 /// The number that Refine() gave to the new vertex of each corner, by halfedge.
 std::vector<VertexHandle> numberFVertices(ReferenceMesh const &mesh) {
     std::vector<VertexHandle> fVertices(mesh.n_halfedges());
@@ -217,6 +203,23 @@ ReferenceMesh MakeReferenceMesh(std::vector<double> const &positions,
     return mesh;
 }
 
+Eigen::RowVectorXd NewPoint(ReferenceMask mask, std::vector<Eigen::RowVectorXd> const &face,
+                            int i) {
+    switch (mask) {
+    case ReferenceMask::Average:
+        return averagePoint(face, i);
+    case ReferenceMask::Cosine:
+        return cosinePoint(face, i);
+    case ReferenceMask::Smooth:
+        return smoothPoint(face, i);
+    }
+    throw std::invalid_argument("reference: no such mask");
+}
+
+Eigen::RowVectorXd NewVaryingPoint(std::vector<Eigen::RowVectorXd> const &face, int i) {
+    return (face[i] + centroid(face)) / 2;
+}
+
 ReferenceValues GetPoints(ReferenceMesh const &mesh) {
     ReferenceValues points(mesh.n_vertices(), 3);
     for (VertexHandle v : mesh.vertices()) {
@@ -256,7 +259,7 @@ ReferenceValues Interpolate(ReferenceMesh const &mesh, ReferenceLevel const &chi
     ReferenceValues result(child.vertexOrigins.size(), values.cols());
     std::vector<VertexHandle> const fVertices = numberFVertices(mesh);
     auto const makePoint = [mask](std::vector<Point> const &face, int i) {
-        return newPoint(mask, face, i);
+        return NewPoint(mask, face, i);
     };
     makeFVertices(mesh, values, fVertices, makePoint, result);
     std::size_t const numFVertices = countCorners(mesh);
@@ -270,7 +273,7 @@ ReferenceValues Interpolate(ReferenceMesh const &mesh, ReferenceLevel const &chi
 ReferenceValues InterpolateVarying(ReferenceMesh const &mesh, ReferenceLevel const &child,
                                    ReferenceValues const &values) {
     ReferenceValues result(child.vertexOrigins.size(), values.cols());
-    makeFVertices(mesh, values, numberFVertices(mesh), varyingPoint, result);
+    makeFVertices(mesh, values, numberFVertices(mesh), NewVaryingPoint, result);
     std::size_t const numFVertices = countCorners(mesh);
     for (VertexHandle v : mesh.vertices()) {
         result.row(vVertex(numFVertices, v).idx()) = values.row(v.idx());

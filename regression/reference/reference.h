@@ -68,6 +68,12 @@ ReferenceValues Interpolate(ReferenceMesh const &mesh, ReferenceLevel const &chi
 ReferenceValues InterpolateVarying(ReferenceMesh const &mesh, ReferenceLevel const &child,
                                    ReferenceValues const &values);
 
+/// The new point beside corner \p i of a face, from the values at the face's corners.
+Eigen::RowVectorXd NewPoint(ReferenceMask mask, std::vector<Eigen::RowVectorXd> const &face, int i);
+
+/// The same for linear interpolation.
+Eigen::RowVectorXd NewVaryingPoint(std::vector<Eigen::RowVectorXd> const &face, int i);
+
 /// The points of a mesh as values of width 3.
 ReferenceValues GetPoints(ReferenceMesh const &mesh);
 

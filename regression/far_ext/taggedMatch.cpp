@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "taggedMatch.h"
+
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <opensubdiv/vtr/fvarLevel.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::TopologyLevel;
+
+namespace {
+
+/// Corner arrays as Far turns them for left-handed faces: the first corner of each stays.
+std::vector<int> rightHanded(Shape const &shape, std::vector<int> corners) {
+    auto first = corners.begin();
+    for (int size : shape.faceSizes) {
+        if (shape.leftHanded) {
+            std::reverse(first + 1, first + size);
+        }
+        first += size;
+    }
+    return corners;
+}
+
+/// Far's own tags tell which values its FVarLinearInterpolation keeps in place.
+std::vector<float> valueSharpness(Far::TopologyRefiner const &base, int channel,
+                                  std::vector<float> const &vertexSharpness) {
+    Far::TopologyLevel const &level = base.GetLevel(0);
+    OpenSubdiv::Vtr::internal::FVarLevel const &values = base.getLevel(0).getFVarLevel(channel);
+    std::vector<float> sharpness(level.GetNumFVarValues(channel), 0.0f);
+    if (values.isLinear()) {
+        return sharpness;
+    }
+    for (int v = 0; v < level.GetNumVertices(); ++v) {
+        auto const indices = values.getVertexValues(v);
+        auto const tags = values.getVertexValueTags(v);
+        for (int i = 0; i < indices.size(); ++i) {
+            float own = vertexSharpness[v];
+            if (tags[i].isMismatch() && !tags[i].isSemiSharp()) {
+                own = tags[i].isInfSharp() ? kInfiniteSharpness : 0;
+            }
+            sharpness[indices[i]] = std::max(sharpness[indices[i]], own);
+        }
+    }
+    return sharpness;
+}
+
+} // namespace
+
+TaggedMatch::TaggedMatch(Shape const &shape, FarExt::TopologyRefiner const &refiner, int channel)
+    : _refiner(refiner), _channel(channel) {
+    makeBase(shape);
+    for (int level = 0; level <= refiner.GetMaxLevel(); ++level) {
+        if (level > 0) {
+            _levels.push_back(Refine(_levels.back()));
+        }
+        if (!matchFaces(level) || !matchVertices(level) || !matchEdges(level)) {
+            return;
+        }
+    }
+}
+
+void TaggedMatch::makeBase(Shape const &shape) {
+    Sdc::Options const options = _refiner.GetSchemeOptions();
+    auto const farBase = CreateFarRefiner(shape, options);
+    Far::TopologyLevel const &farLevel = farBase->GetLevel(0);
+    TaggedBase base;
+    base.numVertices = shape.GetNumVertices();
+    base.faceSizes = shape.faceSizes;
+    base.faceVertices = rightHanded(shape, shape.faceVertices);
+    base.creasePairs = shape.creaseVertexPairs;
+    base.creaseSharpness = shape.creaseSharpness;
+    base.holes = shape.holeFaces;
+    auto const boundary = options.GetVtxBoundaryInterpolation();
+    base.freeBoundaries = boundary == Sdc::Options::VTX_BOUNDARY_NONE;
+    base.chaikin = options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
+    base.vertexSharpness.resize(base.numVertices);
+    for (std::size_t i = 0; i < shape.cornerVertices.size(); ++i) {
+        base.vertexSharpness[shape.cornerVertices[i]] = shape.cornerSharpness[i];
+    }
+    std::vector<int> numFaces(base.numVertices);
+    for (int v : base.faceVertices) {
+        ++numFaces[v];
+    }
+    for (int v = 0; v < base.numVertices; ++v) {
+        base.nonManifoldVertices.push_back(farLevel.IsVertexNonManifold(v));
+        bool const isCorner =
+            boundary == Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER && numFaces[v] == 1;
+        bool const isPinned = base.nonManifoldVertices[v] && farLevel.IsVertexInfSharp(v);
+        if (isPinned || isCorner) {
+            base.vertexSharpness[v] = kInfiniteSharpness;
+        }
+    }
+    _levels.push_back(MakeTaggedMesh(base));
+    if (_channel >= 0) {
+        TaggedMesh const mesh = _levels[0];
+        _levels[0] = MakeValueMesh(
+            mesh, rightHanded(shape, shape.fvarChannels[_channel].valueIndices),
+            valueSharpness(*farBase, _channel, base.vertexSharpness), _valuesOfVertices);
+    }
+}
+
+bool TaggedMatch::fail(int level, std::string const &cause) {
+    _error = "level " + std::to_string(level) + ": " + cause;
+    return false;
+}
+
+TaggedMatch::Place TaggedMatch::placeOf(TaggedMesh::FaceOrigin const &origin,
+                                        TopologyLevel const &pLevel, int level) const {
+    std::vector<Place> const &pPlaces = _places[level - 1];
+    if (origin.face >= 0) {
+        Place place = pPlaces[origin.face];
+        place.face = pLevel.GetFaceChildFaces(place.face)[0];
+        return place;
+    }
+    // The order that INDEXING.md tells: an E-face begins where its edge's first face does.
+    TaggedMesh::Edge const &edge = _levels[level - 1].edges[origin.edge];
+    TaggedMesh::Side const side = edge.sides[origin.side];
+    Place const &pPlace = pPlaces[side.face];
+    int const corner = pPlace.corners[side.place];
+    int const libraryEdge = pLevel.GetFaceEdges(pPlace.face)[corner];
+    bool const isFirst = pLevel.GetEdgeFaces(libraryEdge)[0] == pPlace.face &&
+                         pLevel.GetEdgeFaceLocalIndices(libraryEdge)[0] == corner;
+    Place place;
+    place.face = pLevel.GetEdgeChildFace(libraryEdge);
+    if (pLevel.IsEdgeBoundary(libraryEdge)) {
+        place.corners = {0, 1, 2, 3};
+    } else if (edge.sides.size() == 2 && edge.sharpness <= 0) {
+        place.corners = {0, 1, 2, 3, 4, 5};
+        if (!isFirst) {
+            std::rotate(place.corners.begin(), place.corners.begin() + 3, place.corners.end());
+        }
+    } else {
+        place.corners = isFirst ? std::vector<int>{0, 3, 4, 5} : std::vector<int>{3, 0, 1, 2};
+    }
+    return place;
+}
+
+bool TaggedMatch::matchFaces(int level) {
+    TaggedMesh const &mesh = _levels[level];
+    TopologyLevel const &library = _refiner.GetLevel(level);
+    std::vector<Place> places(mesh.faces.size());
+    std::vector<std::vector<int>> covered(library.GetNumFaces());
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+        TaggedMesh::Face const &face = mesh.faces[f];
+        Place &place = places[f];
+        if (level == 0) {
+            place.face = int(f);
+            place.corners.resize(face.vertices.size());
+            std::iota(place.corners.begin(), place.corners.end(), 0);
+        } else {
+            TaggedMesh::FaceOrigin const &origin = mesh.faceOrigins[f];
+            TopologyLevel const &pLevel = _refiner.GetLevel(level - 1);
+            place = placeOf(origin, pLevel, level);
+            if (origin.mergedWith >= 0) {
+                Place const other = placeOf(mesh.mergedOrigins[origin.mergedWith], pLevel, level);
+                if (other.face != place.face || place.corners.size() != 4) {
+                    return fail(level, "halves of two faces");
+                }
+                place.corners = {place.corners[0], other.corners[2], other.corners[3],
+                                 place.corners[1], place.corners[2], place.corners[3]};
+            }
+        }
+        std::string const name = "face " + std::to_string(place.face);
+        if (place.face < 0 || place.face >= library.GetNumFaces() ||
+            place.corners.size() != face.vertices.size()) {
+            return fail(level, name + " is not the face");
+        }
+        int const size = library.GetFaceVertices(place.face).size();
+        bool const isWhole = int(place.corners.size()) == size;
+        std::vector<int> &all = covered[place.face];
+        if (!isWhole && !face.isHalf) {
+            return fail(level, name + " is not whole");
+        }
+        if (_channel < 0 && (library.IsFaceHalf(place.face) != (isWhole && face.isHalf) ||
+                             library.IsFaceHole(place.face) != face.isHole)) {
+            return fail(level, name + " has other tags");
+        }
+        if (_channel >= 0 && library.IsFaceFVarSplit(place.face, _channel) !=
+                                 (!isWhole && mesh.edges[face.edges[0]].sides.size() == 1)) {
+            return fail(level, name + " is split differently");
+        }
+        all.insert(all.end(), place.corners.begin(), place.corners.end());
+    }
+    for (int f = 0; f < library.GetNumFaces(); ++f) {
+        std::vector<int> expected(library.GetFaceVertices(f).size());
+        std::iota(expected.begin(), expected.end(), 0);
+        if (covered[f].size() != expected.size()) {
+            expected.insert(expected.end(), {0, 3}); // halves share the line
+        }
+        std::sort(covered[f].begin(), covered[f].end());
+        std::sort(expected.begin(), expected.end());
+        if (covered[f] != expected) {
+            return fail(level, "face " + std::to_string(f) + " is not covered once");
+        }
+    }
+    _places.push_back(std::move(places));
+    return true;
+}
+
+bool TaggedMatch::matchVertices(int level) {
+    TaggedMesh const &mesh = _levels[level];
+    TopologyLevel const &library = _refiner.GetLevel(level);
+    std::vector<int> vertices(mesh.vertices.size(), -1);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+        Place const &place = _places[level][f];
+        for (std::size_t i = 0; i < place.corners.size(); ++i) {
+            int actual = -1;
+            if (_channel < 0) {
+                actual = library.GetFaceVertices(place.face)[place.corners[i]];
+            } else if (library.IsFaceFVarSplit(place.face, _channel)) {
+                int const half = place.corners[0] == 0 ? 0 : 1;
+                actual = library.GetFaceFVarValues(place.face, _channel, half)[int(i)];
+            } else {
+                actual = library.GetFaceFVarValues(place.face, _channel)[place.corners[i]];
+            }
+            int &vertex = vertices[mesh.faces[f].vertices[i]];
+            if (vertex >= 0 && vertex != actual) {
+                return fail(level, "vertices " + std::to_string(vertex) + " and " +
+                                       std::to_string(actual) + " are one");
+            }
+            vertex = actual;
+        }
+    }
+    if (_channel >= 0 && level == 0) {
+        if (vertices != _valuesOfVertices) {
+            return fail(level, "other values");
+        }
+        _vertices.push_back(std::move(vertices));
+        return true;
+    }
+    // Vertices without faces keep their number.
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        if (vertices[v] < 0) {
+            vertices[v] = level == 0 ? int(v) : _vertices[level - 1][mesh.vertexOrigins[v].vertex];
+        }
+    }
+    std::set<int> const all(vertices.begin(), vertices.end());
+    int const count = _channel < 0 ? library.GetNumVertices() : library.GetNumFVarValues(_channel);
+    if (all.size() != vertices.size()) {
+        return fail(level, "several vertices are one");
+    }
+    // Values that no corner has are no vertices of the reference.
+    if (*all.begin() < 0 || *all.rbegin() >= count || (_channel < 0 && int(all.size()) != count)) {
+        return fail(level, "the number of vertices differs");
+    }
+    if (_channel < 0) {
+        for (std::size_t v = 0; v < vertices.size(); ++v) {
+            if (library.GetVertexSharpness(vertices[v]) != mesh.vertices[v].sharpness) {
+                return fail(level, "vertex " + std::to_string(vertices[v]) + " is as sharp as " +
+                                       std::to_string(library.GetVertexSharpness(vertices[v])));
+            }
+            static Sdc::Crease::Rule const kRules[] = {
+                Sdc::Crease::RULE_SMOOTH, Sdc::Crease::RULE_DART, Sdc::Crease::RULE_CREASE,
+                Sdc::Crease::RULE_CORNER};
+            Sdc::Crease::Rule const rule = library.GetVertexRule(vertices[v]);
+            if (rule != kRules[int(GetRule(mesh, int(v)))]) {
+                return fail(level, "vertex " + std::to_string(vertices[v]) + " has rule " +
+                                       std::to_string(rule));
+            }
+        }
+    }
+    _vertices.push_back(std::move(vertices));
+    return true;
+}
+
+bool TaggedMatch::matchEdges(int level) {
+    if (_channel >= 0) {
+        return true;
+    }
+    TaggedMesh const &mesh = _levels[level];
+    TopologyLevel const &library = _refiner.GetLevel(level);
+    std::set<int> edges;
+    std::set<int> cutFaces;
+    for (TaggedMesh::Edge const &edge : mesh.edges) {
+        Place const &place = _places[level][edge.sides[0].face];
+        if (edge.isLong && edge.sides.size() == 2) {
+            cutFaces.insert(place.face);
+            if (library.GetFaceDiagonalSharpness(place.face) != edge.sharpness) {
+                return fail(level,
+                            "diagonal of face " + std::to_string(place.face) + " is as sharp as " +
+                                std::to_string(library.GetFaceDiagonalSharpness(place.face)));
+            }
+            continue;
+        }
+        std::set<int> own;
+        for (TaggedMesh::Side side : edge.sides) {
+            Place const &sidePlace = _places[level][side.face];
+            own.insert(library.GetFaceEdges(sidePlace.face)[sidePlace.corners[side.place]]);
+        }
+        int const e = *own.begin();
+        std::string const name = "edge " + std::to_string(e);
+        if (own.size() != 1 || !edges.insert(e).second ||
+            library.GetEdgeFaces(e).size() != int(edge.sides.size())) {
+            return fail(level, name + " joins other faces");
+        }
+        if (library.GetEdgeSharpness(e) != edge.sharpness) {
+            return fail(level, name + " is as sharp as " +
+                                   std::to_string(library.GetEdgeSharpness(e)) + ", not " +
+                                   std::to_string(edge.sharpness));
+        }
+    }
+    if (int(edges.size()) != library.GetNumEdges()) {
+        return fail(level, "the number of edges differs");
+    }
+    for (int f = 0; f < library.GetNumFaces(); ++f) {
+        if (library.GetFaceDiagonalSharpness(f) > 0 && cutFaces.count(f) == 0) {
+            return fail(level, "face " + std::to_string(f) + " has a diagonal");
+        }
+    }
+    return true;
+}
+
+template <typename STEP>
+std::vector<ReferenceValues> TaggedMatch::interpolate(ReferenceValues const &base,
+                                                      STEP const &step) const {
+    ReferenceValues values = base;
+    if (_channel >= 0) {
+        values.resize(Eigen::Index(_valuesOfVertices.size()), base.cols());
+        for (std::size_t v = 0; v < _valuesOfVertices.size(); ++v) {
+            values.row(Eigen::Index(v)) = base.row(_valuesOfVertices[v]);
+        }
+    }
+    std::vector<ReferenceValues> result{base};
+    for (int level = 1; level <= GetMaxLevel(); ++level) {
+        values = step(_levels[level - 1], _levels[level], values);
+        TopologyLevel const &library = _refiner.GetLevel(level);
+        // Rows of values that no corner has stay unknown.
+        int const count =
+            _channel < 0 ? library.GetNumVertices() : library.GetNumFVarValues(_channel);
+        result.push_back(ReferenceValues::Constant(count, base.cols(), std::nan("")));
+        for (Eigen::Index i = 0; i < values.rows(); ++i) {
+            result.back().row(_vertices[level][i]) = values.row(i);
+        }
+    }
+    return result;
+}
+
+std::vector<ReferenceValues> TaggedMatch::InterpolateAll(ReferenceMask mask,
+                                                         ReferenceValues const &base) const {
+    return interpolate(base, [mask](TaggedMesh const &parent, TaggedMesh const &child,
+                                    ReferenceValues const &values) {
+        return Interpolate(parent, child, mask, values);
+    });
+}
+
+std::vector<ReferenceValues> TaggedMatch::InterpolateVaryingAll(ReferenceValues const &base) const {
+    return interpolate(
+        base, [](TaggedMesh const &parent, TaggedMesh const &child, ReferenceValues const &values) {
+            return InterpolateVarying(parent, child, values);
+        });
+}
+
+} // namespace OpenSubdivHex::Regression

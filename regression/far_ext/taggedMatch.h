@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_FAR_EXT_TAGGED_MATCH_H
+#define OPENSUBDIVHEX_REGRESSION_FAR_EXT_TAGGED_MATCH_H
+
+#include "far_ext/topologyRefiner.h"
+#include "regression/reference/taggedReference.h"
+#include "regression/shapes/shapes.h"
+
+#include <string>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+/// \brief A shape with its tags, or one of its face-varying channels, refined by the reference, and
+/// which of the library's components its components are.
+///
+/// The matching follows what faces were made from and the documented order of their vertices; that
+/// it is one to one shows that both have the same topology.
+class TaggedMatch {
+public:
+    /// Matches the levels of \p refiner, all with full topology; \p channel is negative for the
+    /// mesh itself.  Failures are reported by GetError().
+    TaggedMatch(Shape const &shape, FarExt::TopologyRefiner const &refiner, int channel = -1);
+
+    /// Empty when every component has its partner, and the same tags.
+    std::string const &GetError() const { return _error; }
+
+    int GetMaxLevel() const { return int(_levels.size()) - 1; }
+    TaggedMesh const &GetMesh(int level) const { return _levels[level]; }
+
+    /// Values of all levels from those of the base, rows in the library's order.
+    std::vector<ReferenceValues> InterpolateAll(ReferenceMask mask,
+                                                ReferenceValues const &base) const;
+    std::vector<ReferenceValues> InterpolateVaryingAll(ReferenceValues const &base) const;
+
+private:
+    /// The face of the library that a face is, or is half of, and its corners there.
+    struct Place {
+        int face = -1;
+        std::vector<int> corners;
+    };
+
+    void makeBase(Shape const &shape);
+    Place placeOf(TaggedMesh::FaceOrigin const &origin, FarExt::TopologyLevel const &pLevel,
+                  int level) const;
+    bool matchFaces(int level);
+    bool matchVertices(int level);
+    bool matchEdges(int level);
+    bool fail(int level, std::string const &cause);
+    template <typename STEP>
+    std::vector<ReferenceValues> interpolate(ReferenceValues const &base, STEP const &step) const;
+
+    FarExt::TopologyRefiner const &_refiner;
+    int _channel;
+    std::vector<TaggedMesh> _levels;
+    std::vector<std::vector<Place>> _places;
+    std::vector<std::vector<int>> _vertices; ///< the library's, of the mesh or of the values
+    std::vector<int> _valuesOfVertices;      ///< of a channel at level 0
+    std::string _error;
+};
+
+} // namespace OpenSubdivHex::Regression
+
+#endif

@@ -1,0 +1,744 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "taggedReference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+using Point = Eigen::RowVectorXd;
+using Side = TaggedMesh::Side;
+using Edge = TaggedMesh::Edge;
+using Face = TaggedMesh::Face;
+
+bool isInfinite(float sharpness) { return sharpness >= kInfiniteSharpness; }
+bool isSemiSharp(float sharpness) { return sharpness > 0 && !isInfinite(sharpness); }
+
+float decremented(float sharpness) {
+    return isInfinite(sharpness) ? sharpness : std::max(0.0f, sharpness - 1);
+}
+
+/// Sides of a new mesh, gathered edge by edge; fills Face::edges and Vertex::corners.
+void connect(TaggedMesh &mesh) {
+    for (Face &face : mesh.faces) {
+        face.edges.assign(face.vertices.size(), -1);
+    }
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        for (Side side : mesh.edges[e].sides) {
+            mesh.faces[side.face].edges[side.place] = int(e);
+        }
+    }
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+        for (std::size_t i = 0; i < mesh.faces[f].vertices.size(); ++i) {
+            mesh.vertices[mesh.faces[f].vertices[i]].corners.push_back({int(f), int(i)});
+        }
+    }
+}
+
+int previousPlace(Face const &face, int place) {
+    return (place + int(face.vertices.size()) - 1) % int(face.vertices.size());
+}
+
+Side nextSide(TaggedMesh const &mesh, Side side) {
+    return {side.face, (side.place + 1) % int(mesh.faces[side.face].vertices.size())};
+}
+
+/// A sharp edge as seen from one of its ends.
+struct SharpEdge {
+    int edge;
+    int neighbor;
+    bool isLong;
+    float sharpness;
+};
+
+/// The sharp edges that end in a vertex: of an edge with two sides only one leaves the vertex.
+std::vector<SharpEdge> sharpEdges(TaggedMesh const &mesh, int vertex) {
+    std::vector<SharpEdge> result;
+    for (Side corner : mesh.vertices[vertex].corners) {
+        Face const &face = mesh.faces[corner.face];
+        int const out = face.edges[corner.place];
+        int const before = previousPlace(face, corner.place);
+        int const in = face.edges[before];
+        auto add = [&](int e, int neighbor) {
+            Edge const &edge = mesh.edges[e];
+            if (edge.sharpness > 0) {
+                result.push_back({e, neighbor, edge.isLong, edge.sharpness});
+            }
+        };
+        add(out, mesh.GetEnd(corner));
+        if (mesh.edges[in].sides.size() == 1) {
+            add(in, face.vertices[before]);
+        }
+    }
+    return result;
+}
+
+/// Of a sharp edge after one step, at the vertex where it ends.
+float childSharpness(TaggedMesh const &mesh, std::vector<SharpEdge> const &around,
+                     float sharpness) {
+    if (!mesh.chaikin || !isSemiSharp(sharpness)) {
+        return decremented(sharpness);
+    }
+    float sum = 0;
+    int count = 0;
+    for (SharpEdge const &edge : around) {
+        if (isSemiSharp(edge.sharpness)) {
+            sum += edge.sharpness;
+            ++count;
+        }
+    }
+    if (count < 2) {
+        return decremented(sharpness);
+    }
+    float const others = (sum - sharpness) / float(count - 1);
+    return std::max(0.0f, 0.75f * sharpness + 0.25f * others - 1);
+}
+
+float childSharpness(TaggedMesh const &mesh, int vertex, float sharpness) {
+    return childSharpness(mesh, sharpEdges(mesh, vertex), sharpness);
+}
+
+TaggedRule ruleOf(float vertexSharpness, std::size_t numSharpEdges) {
+    if (vertexSharpness > 0 || numSharpEdges > 2) {
+        return TaggedRule::Corner;
+    }
+    TaggedRule const rules[] = {TaggedRule::Smooth, TaggedRule::Dart, TaggedRule::Crease};
+    return rules[numSharpEdges];
+}
+
+/// Where three and more sheets meet along a line, each has a boundary along it in either direction,
+/// all with the same points: those of one sheet count, and creases that meet them.
+std::vector<SharpEdge> withoutOtherSheets(TaggedMesh const &mesh, int vertex,
+                                          std::vector<SharpEdge> const &edges) {
+    if (!mesh.vertices[vertex].isNonManifold) {
+        return edges;
+    }
+    auto isBoundary = [&](int edge) { return mesh.edges[edge].sides.size() == 1; };
+    std::vector<SharpEdge> lines;
+    for (SharpEdge const &edge : edges) {
+        if (!isBoundary(edge.edge)) {
+            lines.push_back(edge);
+        }
+    }
+    for (Side corner : mesh.vertices[vertex].corners) {
+        int const out = mesh.faces[corner.face].edges[corner.place];
+        if (!isBoundary(out)) {
+            continue;
+        }
+        // Around the sheet to its other boundary.
+        int in = -1;
+        while (true) {
+            Face const &face = mesh.faces[corner.face];
+            int const before = previousPlace(face, corner.place);
+            in = face.edges[before];
+            Edge const &edge = mesh.edges[in];
+            if (isBoundary(in)) {
+                break;
+            }
+            bool const isFirst = edge.sides[0].face == corner.face && edge.sides[0].place == before;
+            corner = edge.sides[isFirst ? 1 : 0];
+        }
+        for (SharpEdge const &edge : edges) {
+            if (edge.edge == out || edge.edge == in) {
+                lines.push_back(edge);
+            }
+        }
+        break;
+    }
+    return lines;
+}
+
+/// The two ends of an edge, the smaller first.
+std::pair<int, int> pairOf(int v, int w) { return {std::min(v, w), std::max(v, w)}; }
+
+} // namespace
+
+TaggedMesh MakeTaggedMesh(TaggedBase const &base) {
+    TaggedMesh mesh;
+    mesh.chaikin = base.chaikin;
+    mesh.vertices.resize(base.numVertices);
+    for (int v = 0; v < base.numVertices; ++v) {
+        mesh.vertices[v].sharpness = base.vertexSharpness[v];
+        mesh.vertices[v].isNonManifold = base.nonManifoldVertices[v];
+    }
+    std::map<std::pair<int, int>, std::vector<Side>> sides;
+    auto vertex = base.faceVertices.begin();
+    for (int size : base.faceSizes) {
+        Face face;
+        face.vertices.assign(vertex, vertex + size);
+        vertex += size;
+        for (int i = 0; i < size; ++i) {
+            sides[pairOf(face.vertices[i], face.vertices[(i + 1) % size])].push_back(
+                {int(mesh.faces.size()), i});
+        }
+        mesh.faces.push_back(face);
+    }
+    for (int face : base.holes) {
+        mesh.faces[face].isHole = true;
+    }
+    std::map<std::pair<int, int>, float> creases;
+    for (std::size_t i = 0; i < base.creaseSharpness.size(); ++i) {
+        creases[pairOf(base.creasePairs[2 * i], base.creasePairs[2 * i + 1])] =
+            base.creaseSharpness[i];
+    }
+    for (auto const &[ends, edgeSides] : sides) {
+        bool const isLoop = ends.first == ends.second;
+        if (edgeSides.size() == 1 && !isLoop) {
+            Edge edge;
+            edge.sides = edgeSides;
+            edge.isFree = base.freeBoundaries;
+            edge.sharpness = edge.isFree ? 0 : kInfiniteSharpness;
+            mesh.edges.push_back(edge);
+        } else if (edgeSides.size() == 2 && !isLoop && edgeSides[0].face != edgeSides[1].face) {
+            Edge edge;
+            edge.sides = edgeSides;
+            auto const crease = creases.find(ends);
+            edge.sharpness = crease == creases.end() ? 0 : crease->second;
+            mesh.edges.push_back(edge);
+        } else {
+            for (Side side : edgeSides) {
+                Edge edge;
+                edge.sides.push_back(side);
+                edge.sharpness = kInfiniteSharpness;
+                mesh.edges.push_back(edge);
+            }
+        }
+    }
+    connect(mesh);
+    return mesh;
+}
+
+TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIndices,
+                         std::vector<float> const &valueSharpness,
+                         std::vector<int> &valuesOfVertices) {
+    std::vector<int> firstCorner;
+    int numCorners = 0;
+    for (Face const &face : mesh.faces) {
+        firstCorner.push_back(numCorners);
+        numCorners += int(face.vertices.size());
+    }
+    auto cornerOf = [&](Side side) { return firstCorner[side.face] + side.place; };
+
+    // Corners that meet across an edge that is not cut are the same vertex.
+    std::vector<int> vertexOf(numCorners);
+    std::iota(vertexOf.begin(), vertexOf.end(), 0);
+    auto find = [&](int corner) {
+        while (vertexOf[corner] != corner) {
+            corner = vertexOf[corner];
+        }
+        return corner;
+    };
+    TaggedMesh result;
+    result.chaikin = mesh.chaikin;
+    result.faces = mesh.faces;
+    for (Edge const &edge : mesh.edges) {
+        if (edge.sides.size() == 1) {
+            result.edges.push_back(edge);
+            continue;
+        }
+        int const start0 = cornerOf(edge.sides[0]);
+        int const end0 = cornerOf(nextSide(mesh, edge.sides[0]));
+        int const start1 = cornerOf(edge.sides[1]);
+        int const end1 = cornerOf(nextSide(mesh, edge.sides[1]));
+        if (valueIndices[start0] == valueIndices[end1] &&
+            valueIndices[end0] == valueIndices[start1]) {
+            result.edges.push_back(edge);
+            vertexOf[find(start0)] = find(end1);
+            vertexOf[find(end0)] = find(start1);
+            continue;
+        }
+        for (Side side : edge.sides) {
+            Edge seam;
+            seam.sides.push_back(side);
+            seam.sharpness = kInfiniteSharpness;
+            result.edges.push_back(seam);
+        }
+    }
+    std::map<int, int> vertices;
+    valuesOfVertices.clear();
+    for (std::size_t f = 0; f < result.faces.size(); ++f) {
+        for (std::size_t i = 0; i < result.faces[f].vertices.size(); ++i) {
+            int const corner = firstCorner[f] + int(i);
+            auto const [place, isNew] =
+                vertices.try_emplace(find(corner), int(valuesOfVertices.size()));
+            if (isNew) {
+                valuesOfVertices.push_back(valueIndices[corner]);
+            }
+            result.faces[f].vertices[i] = place->second;
+        }
+    }
+    result.vertices.resize(valuesOfVertices.size());
+    for (std::size_t v = 0; v < valuesOfVertices.size(); ++v) {
+        result.vertices[v].sharpness = valueSharpness[valuesOfVertices[v]];
+    }
+    connect(result);
+    // A seam that ends in a boundary of the paper's rule has no curve to follow.
+    for (TaggedMesh::Vertex &vertex : result.vertices) {
+        bool meetsFree = false;
+        bool meetsSharp = false;
+        for (Side corner : vertex.corners) {
+            Face const &face = result.faces[corner.face];
+            for (int place : {corner.place, previousPlace(face, corner.place)}) {
+                Edge const &edge = result.edges[face.edges[place]];
+                if (edge.sides.size() == 1) {
+                    (edge.isFree ? meetsFree : meetsSharp) = true;
+                }
+            }
+        }
+        if (meetsFree && meetsSharp) {
+            vertex.sharpness = kInfiniteSharpness;
+        }
+    }
+    return result;
+}
+
+namespace {
+
+/// Builds the child of a mesh, first with all half faces apart.
+class Refinement {
+public:
+    explicit Refinement(TaggedMesh const &parent) : _parent(parent) {
+        _child.chaikin = parent.chaikin;
+    }
+
+    TaggedMesh Run() {
+        makeVertices();
+        makeFFaces();
+        makeEFaces();
+        joinSides();
+        mergeSmoothHalves();
+        connect(_child);
+        return std::move(_child);
+    }
+
+private:
+    void makeVertices();
+    void makeFFaces();
+    void makeEFaces();
+    void joinSides();
+    void mergeSmoothHalves();
+
+    int addFace(std::vector<int> vertices, bool isHalf, bool isHole,
+                TaggedMesh::FaceOrigin origin) {
+        Face face;
+        face.vertices = std::move(vertices);
+        face.isHalf = isHalf;
+        face.isHole = isHole;
+        _child.faces.push_back(face);
+        _child.faceOrigins.push_back(origin);
+        return int(_child.faces.size()) - 1;
+    }
+
+    int fVertex(Side corner) const { return _child.fVertices[corner.face][corner.place]; }
+    int numParentVertices() const { return int(_parent.vertices.size()); }
+
+    TaggedMesh const &_parent;
+    TaggedMesh _child;
+    std::set<std::pair<int, int>> _placed; ///< face and place of sides that have their edge
+};
+
+void Refinement::makeVertices() {
+    for (int v = 0; v < numParentVertices(); ++v) {
+        TaggedMesh::Vertex vertex;
+        vertex.sharpness = decremented(_parent.vertices[v].sharpness);
+        vertex.isNonManifold = _parent.vertices[v].isNonManifold;
+        _child.vertices.push_back(vertex);
+        _child.vertexOrigins.push_back({v, -1, -1});
+    }
+    // Both halves of a hexagon have the same points on the line between them; they run it in
+    // opposite directions.
+    std::map<std::pair<int, int>, int> onLines;
+    for (std::size_t f = 0; f < _parent.faces.size(); ++f) {
+        Face const &face = _parent.faces[f];
+        _child.fVertices.emplace_back();
+        for (int i = 0; i < int(face.vertices.size()); ++i) {
+            int vertex = int(_child.vertices.size());
+            if (face.isHalf && i < 2) {
+                bool const isFirst = _parent.edges[face.edges[0]].sides[0].face == int(f);
+                vertex =
+                    onLines.try_emplace({face.edges[0], isFirst ? i : 1 - i}, vertex).first->second;
+            }
+            _child.fVertices.back().push_back(vertex);
+            if (vertex == int(_child.vertices.size())) {
+                _child.vertices.emplace_back();
+                _child.vertexOrigins.push_back({face.vertices[i], int(f), i});
+            }
+        }
+    }
+}
+
+void Refinement::makeFFaces() {
+    for (std::size_t f = 0; f < _parent.faces.size(); ++f) {
+        TaggedMesh::FaceOrigin origin;
+        origin.face = int(f);
+        addFace(_child.fVertices[f], _parent.faces[f].isHalf, _parent.faces[f].isHole, origin);
+    }
+    for (Edge const &edge : _parent.edges) {
+        if (edge.isLong) {
+            Edge child;
+            for (Side side : edge.sides) {
+                child.sides.push_back({side.face, 0});
+                _placed.insert({side.face, 0});
+            }
+            child.isLong = true;
+            child.sharpness = decremented(edge.sharpness);
+            _child.edges.push_back(child);
+        }
+    }
+}
+
+void Refinement::makeEFaces() {
+    for (std::size_t e = 0; e < _parent.edges.size(); ++e) {
+        Edge const &edge = _parent.edges[e];
+        if (edge.isLong) {
+            continue;
+        }
+        bool const isHole = std::all_of(edge.sides.begin(), edge.sides.end(),
+                                        [&](Side side) { return _parent.faces[side.face].isHole; });
+        TaggedMesh::FaceOrigin origin;
+        origin.edge = int(e);
+        int const v0 = _parent.GetStart(edge.sides[0]);
+        int const v1 = _parent.GetEnd(edge.sides[0]);
+        int const a0 = fVertex(edge.sides[0]);
+        int const a1 = fVertex(nextSide(_parent, edge.sides[0]));
+        if (edge.sides.size() == 2 && edge.sharpness <= 0) {
+            int const b1 = fVertex(edge.sides[1]);
+            int const b0 = fVertex(nextSide(_parent, edge.sides[1]));
+            addFace({v0, b0, b1, v1, a1, a0}, false, isHole, origin);
+            continue;
+        }
+        // Half a hexagon for each side; their common edge is the line.
+        Edge child;
+        for (int s = 0; s < int(edge.sides.size()); ++s) {
+            Side const side = edge.sides[s];
+            origin.side = s;
+            int const face = addFace({_parent.GetStart(side), _parent.GetEnd(side),
+                                      fVertex(nextSide(_parent, side)), fVertex(side)},
+                                     !edge.isFree, isHole, origin);
+            child.sides.push_back({face, 0});
+            _placed.insert({face, 0});
+        }
+        child.isFree = edge.isFree;
+        child.isLong = !edge.isFree;
+        child.sharpness = isInfinite(edge.sharpness)
+                              ? edge.sharpness
+                              : 0.5f * (childSharpness(_parent, v0, edge.sharpness) +
+                                        childSharpness(_parent, v1, edge.sharpness));
+        if (edge.isFree) {
+            child.sharpness = 0;
+        }
+        _child.edges.push_back(child);
+    }
+}
+
+/// All other edges end in a new vertex, so that their ends tell them apart.
+void Refinement::joinSides() {
+    std::map<std::pair<int, int>, std::vector<Side>> sides;
+    for (std::size_t f = 0; f < _child.faces.size(); ++f) {
+        std::vector<int> const &vertices = _child.faces[f].vertices;
+        for (int i = 0; i < int(vertices.size()); ++i) {
+            if (_placed.count({int(f), i}) == 0) {
+                sides[pairOf(vertices[i], vertices[(i + 1) % vertices.size()])].push_back(
+                    {int(f), i});
+            }
+        }
+    }
+    for (auto const &[ends, edgeSides] : sides) {
+        Edge edge;
+        edge.sides = edgeSides;
+        // The end of a line: from an old vertex to the new one on the line.
+        TaggedMesh::VertexOrigin const &origin = _child.vertexOrigins[ends.second];
+        if (ends.first < numParentVertices() && _parent.faces[origin.face].isHalf &&
+            origin.place < 2) {
+            Edge const &line = _parent.edges[_parent.faces[origin.face].edges[0]];
+            edge.sharpness = childSharpness(_parent, ends.first, line.sharpness);
+        }
+        _child.edges.push_back(edge);
+    }
+}
+
+void Refinement::mergeSmoothHalves() {
+    std::vector<int> replacedBy(_child.faces.size(), -1);
+    std::vector<int> placesInHexagon[2] = {{0, 3, 4, 5}, {3, 0, 1, 2}};
+    std::vector<int> halfOf(_child.faces.size(), 0);
+    std::vector<Edge> edges;
+    for (Edge const &edge : _child.edges) {
+        if (!edge.isLong || edge.sides.size() == 1 || edge.sharpness > 0) {
+            edges.push_back(edge);
+            continue;
+        }
+        int const first = edge.sides[0].face;
+        int const second = edge.sides[1].face;
+        std::vector<int> const a = _child.faces[first].vertices;
+        std::vector<int> const b = _child.faces[second].vertices;
+        _child.faces[first].vertices = {a[0], b[2], b[3], a[1], a[2], a[3]};
+        _child.faces[first].isHalf = false;
+        _child.faceOrigins[first].mergedWith = int(_child.mergedOrigins.size());
+        _child.mergedOrigins.push_back(_child.faceOrigins[second]);
+        replacedBy[second] = first;
+        replacedBy[first] = first;
+        halfOf[second] = 1;
+    }
+    // Numbers without those that are gone.
+    std::vector<int> numbers(_child.faces.size(), -1);
+    std::vector<Face> faces;
+    std::vector<TaggedMesh::FaceOrigin> origins;
+    for (std::size_t f = 0; f < _child.faces.size(); ++f) {
+        if (replacedBy[f] < 0 || replacedBy[f] == int(f)) {
+            numbers[f] = int(faces.size());
+            faces.push_back(_child.faces[f]);
+            origins.push_back(_child.faceOrigins[f]);
+        }
+    }
+    for (Edge &edge : edges) {
+        for (Side &side : edge.sides) {
+            if (replacedBy[side.face] >= 0) {
+                side.place = placesInHexagon[halfOf[side.face]][side.place];
+                side.face = replacedBy[side.face];
+            }
+            side.face = numbers[side.face];
+        }
+    }
+    _child.faces = std::move(faces);
+    _child.faceOrigins = std::move(origins);
+    _child.edges = std::move(edges);
+}
+
+/// How far new points in wide sectors are drawn to the vertex, by face and place.
+using Pulls = std::map<std::pair<int, int>, double>;
+
+/// The factor of a sector of \p size faces: P = factor * mask + (1 - factor) V.
+double sectorFactor(ReferenceMask mask, double size) {
+    double const c = std::cos(std::acos(-1.0) / size);
+    return mask == ReferenceMask::Average ? 1 / (0.98 + 0.305 * c) : 1 / (1.31 + 0.515 * c);
+}
+
+Pulls findPulls(TaggedMesh const &mesh, ReferenceMask mask) {
+    Pulls pulls;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        if (sharpEdges(mesh, int(v)).size() < 2) {
+            continue;
+        }
+        for (Side start : mesh.vertices[v].corners) {
+            Face const &startFace = mesh.faces[start.face];
+            Edge const &startEdge = mesh.edges[startFace.edges[start.place]];
+            if (startEdge.sharpness <= 0) {
+                continue;
+            }
+            // Counter-clockwise from one sharp edge to the next.
+            std::vector<Side> corners;
+            double size = 0;
+            Side corner = start;
+            Edge const *edge = nullptr;
+            while (true) {
+                Face const &face = mesh.faces[corner.face];
+                corners.push_back(corner);
+                size += face.isHalf && corner.place < 2 ? 0.5 : 1;
+                int const before = previousPlace(face, corner.place);
+                edge = &mesh.edges[face.edges[before]];
+                if (edge->sharpness > 0 || edge->sides.size() == 1) {
+                    break;
+                }
+                bool const isFirst =
+                    edge->sides[0].face == corner.face && edge->sides[0].place == before;
+                corner = edge->sides[isFirst ? 1 : 0];
+            }
+            if (edge->sharpness <= 0 || size < 3) {
+                continue;
+            }
+            double const sharp =
+                std::min({1.0, double(startEdge.sharpness), double(edge->sharpness)});
+            for (Side pulled : corners) {
+                if (!mesh.faces[pulled.face].isHalf) {
+                    pulls[{pulled.face, pulled.place}] = sharp * (1 - sectorFactor(mask, size));
+                }
+            }
+        }
+    }
+    return pulls;
+}
+
+class Interpolation {
+public:
+    Interpolation(TaggedMesh const &mesh, TaggedMesh const &child, ReferenceMask mask,
+                  bool isVarying, ReferenceValues const &values)
+        : _mesh(mesh), _child(child), _mask(mask), _isVarying(isVarying), _values(values),
+          _result(child.vertexOrigins.size(), values.cols()) {}
+
+    ReferenceValues Run() {
+        Pulls const pulls = _isVarying ? Pulls() : findPulls(_mesh, _mask);
+        for (std::size_t v = 0; v < _child.vertexOrigins.size(); ++v) {
+            TaggedMesh::VertexOrigin const &origin = _child.vertexOrigins[v];
+            if (origin.face < 0) {
+                continue;
+            }
+            Point point = cornerPoint({origin.face, origin.place});
+            auto const pull = pulls.find({origin.face, origin.place});
+            if (pull != pulls.end()) {
+                point += pull->second * (_values.row(origin.vertex) - point);
+            }
+            _result.row(Eigen::Index(v)) = point;
+        }
+        for (std::size_t v = 0; v < _mesh.vertices.size(); ++v) {
+            _result.row(Eigen::Index(v)) =
+                _isVarying ? Point(_values.row(Eigen::Index(v))) : movedVertex(int(v));
+        }
+        return std::move(_result);
+    }
+
+private:
+    Point maskPoint(std::vector<Point> const &face, int i) const {
+        return _isVarying ? NewVaryingPoint(face, i) : NewPoint(_mask, face, i);
+    }
+
+    std::vector<Point> pointsOf(std::vector<int> const &vertices) const {
+        std::vector<Point> points;
+        for (int v : vertices) {
+            points.push_back(_values.row(v));
+        }
+        return points;
+    }
+
+    Point cornerPoint(Side corner) const {
+        Face const &face = _mesh.faces[corner.face];
+        if (!face.isHalf) {
+            return maskPoint(pointsOf(face.vertices), corner.place);
+        }
+        Edge const &line = _mesh.edges[face.edges[0]];
+        if (line.sides.size() == 1) {
+            return halfPoint(face, corner.place);
+        }
+        // The hexagon that the two halves make: V, R, S, W, Q, P.
+        bool const isFirst = line.sides[0].face == corner.face;
+        Face const &other = _mesh.faces[line.sides[isFirst ? 1 : 0].face];
+        std::vector<int> const &own = face.vertices;
+        std::vector<Point> const hexagon =
+            pointsOf({own[0], other.vertices[2], other.vertices[3], own[1], own[2], own[3]});
+        int const places[] = {0, 3, 4, 5};
+        Point const smooth = maskPoint(hexagon, places[corner.place]);
+        double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
+        return sharp * halfPoint(face, corner.place) + (1 - sharp) * smooth;
+    }
+
+    Point halfPoint(Face const &face, int place) const {
+        std::vector<Point> const points = pointsOf(face.vertices);
+        Point const &v = points[0];
+        Point const &w = points[1];
+        Point const &q = points[2];
+        Point const &p = points[3];
+        if (place == 0) {
+            return (3 * v + w) / 4;
+        }
+        if (place == 1) {
+            return (v + 3 * w) / 4;
+        }
+        Point const qGhost = (3 * v + w) / 2 - p;
+        Point const pGhost = (v + 3 * w) / 2 - q;
+        return maskPoint({v, qGhost, pGhost, w, q, p}, place == 2 ? 4 : 5);
+    }
+
+    Point smoothVertex(int v) const {
+        std::set<int> around;
+        for (Side corner : _mesh.vertices[v].corners) {
+            around.insert(_child.fVertices[corner.face][corner.place]);
+        }
+        Point sum = _values.row(v);
+        for (int vertex : around) {
+            sum += _result.row(vertex);
+        }
+        return sum / double(around.size() + 1);
+    }
+
+    Point creaseVertex(int v, SharpEdge a, SharpEdge b) const {
+        Point const vertex = _values.row(v);
+        Point const atA = _values.row(a.neighbor);
+        Point const atB = _values.row(b.neighbor);
+        if (a.isLong && b.isLong) {
+            return (26 * vertex + 3 * atA + 3 * atB) / 32;
+        }
+        if (!a.isLong && !b.isLong) {
+            return (6 * vertex + atA + atB) / 8;
+        }
+        return a.isLong ? Point((5 * vertex + atA + 2 * atB) / 8)
+                        : Point((5 * vertex + 2 * atA + atB) / 8);
+    }
+
+    Point vertexByRule(int v, TaggedRule rule, std::vector<SharpEdge> const &edges) const {
+        switch (rule) {
+        case TaggedRule::Corner:
+            return _values.row(v);
+        case TaggedRule::Crease:
+            return creaseVertex(v, edges[0], edges[1]);
+        case TaggedRule::Smooth:
+        case TaggedRule::Dart:
+            break;
+        }
+        return smoothVertex(v);
+    }
+
+    Point movedVertex(int v) const {
+        std::vector<SharpEdge> const all = sharpEdges(_mesh, v);
+        std::vector<SharpEdge> const lines = withoutOtherSheets(_mesh, v, all);
+        float const sharpness = _mesh.vertices[v].sharpness;
+        float const childVertexSharpness = decremented(sharpness);
+        TaggedRule const rule = ruleOf(sharpness, lines.size());
+        Point const point = vertexByRule(v, rule, lines);
+
+        // What gets smooth with this step counts by what is left of it.
+        float sum = 0;
+        int count = 0;
+        if (sharpness > 0 && childVertexSharpness <= 0) {
+            sum += sharpness;
+            ++count;
+        }
+        std::vector<SharpEdge> left;
+        for (SharpEdge const &line : lines) {
+            if (childSharpness(_mesh, all, line.sharpness) > 0) {
+                left.push_back(line);
+            } else {
+                sum += line.sharpness;
+                ++count;
+            }
+        }
+        TaggedRule const childRule = ruleOf(childVertexSharpness, left.size());
+        if (childRule == rule || count == 0) {
+            return point;
+        }
+        double const weight = std::min(1.0f, sum / float(count));
+        return weight * point + (1 - weight) * vertexByRule(v, childRule, left);
+    }
+
+    TaggedMesh const &_mesh;
+    TaggedMesh const &_child;
+    ReferenceMask _mask;
+    bool _isVarying;
+    ReferenceValues const &_values;
+    ReferenceValues _result;
+};
+
+} // namespace
+
+TaggedMesh Refine(TaggedMesh const &mesh) { return Refinement(mesh).Run(); }
+
+TaggedRule GetRule(TaggedMesh const &mesh, int vertex) {
+    return ruleOf(mesh.vertices[vertex].sharpness,
+                  withoutOtherSheets(mesh, vertex, sharpEdges(mesh, vertex)).size());
+}
+
+ReferenceValues Interpolate(TaggedMesh const &mesh, TaggedMesh const &child, ReferenceMask mask,
+                            ReferenceValues const &values) {
+    return Interpolation(mesh, child, mask, false, values).Run();
+}
+
+ReferenceValues InterpolateVarying(TaggedMesh const &mesh, TaggedMesh const &child,
+                                   ReferenceValues const &values) {
+    return Interpolation(mesh, child, ReferenceMask::Average, true, values).Run();
+}
+
+} // namespace OpenSubdivHex::Regression

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_REFERENCE_TAGGED_REFERENCE_H
+#define OPENSUBDIVHEX_REGRESSION_REFERENCE_TAGGED_REFERENCE_H
+
+#include "reference.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+/// Sharpness from which on an edge or vertex stays sharp for ever.
+inline constexpr float kInfiniteSharpness = 10;
+
+/// \brief A mesh with boundaries, creases, corners, holes and flaws, of which DESIGN.md sections 3
+/// and 4 are taken at their word: a sharp line goes along edges.
+///
+/// So a hexagon that a crease crosses is two half faces, glued along a *long* edge, until the crease
+/// is smooth; a half face at a sharp boundary has a long edge without another side.  Edges name
+/// their sides, so that several may join the same two vertices.
+struct TaggedMesh {
+    struct Face {
+        std::vector<int> vertices;
+        std::vector<int> edges; ///< edge i from vertex i to vertex i + 1
+        bool isHalf = false;    ///< half a hexagon, edge 0 the long one
+        bool isHole = false;
+    };
+    /// Where a face runs along an edge: from its corner \p place to the next.
+    struct Side {
+        int face;
+        int place;
+    };
+    struct Edge {
+        std::vector<Side> sides; ///< one of a boundary, two of an interior edge
+        bool isLong = false;     ///< phase B
+        bool isFree = false;     ///< a boundary that follows the paper's rule
+        float sharpness = 0;     ///< infinite for boundaries that are not free
+    };
+    struct Vertex {
+        float sharpness = 0;
+        bool isNonManifold = false;
+        std::vector<Side> corners; ///< faces of the vertex, and where it is in them
+    };
+    /// What a vertex was made from: an old vertex, or the corner of a face.
+    struct VertexOrigin {
+        int vertex = -1;
+        int face = -1;
+        int place = -1;
+    };
+    /// \brief What a face was made from: a face, or an edge seen from one of its sides.  A hexagon
+    /// made for an edge has the side that its first vertices start on.
+    struct FaceOrigin {
+        int face = -1;
+        int edge = -1;
+        int side = 0;
+        int mergedWith = -1; ///< of two half faces that became one, the origin of the other
+    };
+
+    std::vector<Face> faces;
+    std::vector<Edge> edges;
+    std::vector<Vertex> vertices;
+    bool chaikin = false;
+
+    // Of a refined mesh.
+    std::vector<VertexOrigin> vertexOrigins;
+    std::vector<std::vector<int>> fVertices; ///< the new vertex of each corner of each parent face
+    std::vector<FaceOrigin> faceOrigins;
+    std::vector<FaceOrigin> mergedOrigins; ///< see FaceOrigin::mergedWith
+
+    int GetStart(Side side) const { return faces[side.face].vertices[side.place]; }
+    int GetEnd(Side side) const {
+        std::vector<int> const &face = faces[side.face].vertices;
+        return face[(side.place + 1) % face.size()];
+    }
+};
+
+/// \brief What a base mesh carries.
+struct TaggedBase {
+    int numVertices = 0;
+    std::vector<int> faceSizes;
+    std::vector<int> faceVertices;
+    std::vector<int> creasePairs;
+    std::vector<float> creaseSharpness;
+    std::vector<float> vertexSharpness;    ///< by vertex; infinite for those that are to stay
+    std::vector<bool> nonManifoldVertices; ///< by vertex
+    std::vector<int> holes;
+    bool freeBoundaries = false; ///< the paper's rule for boundaries
+    bool chaikin = false;
+};
+
+/// \brief The mesh of a base.  An edge that is no boundary and does not join two faces that run it
+/// in opposite directions comes apart into a sharp boundary for each face.
+TaggedMesh MakeTaggedMesh(TaggedBase const &base);
+
+/// \brief A face-varying channel as a mesh: that of \p mesh, cut where the values on both sides of
+/// an edge differ.  Each fan of faces that share a value is a vertex.
+///
+/// \param valueIndices     value of each corner, face by face
+/// \param valueSharpness   infinite for values that stay
+/// \param valuesOfVertices gets the value of each vertex of the result
+TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIndices,
+                         std::vector<float> const &valueSharpness,
+                         std::vector<int> &valuesOfVertices);
+
+/// One step: topology and tags.
+TaggedMesh Refine(TaggedMesh const &mesh);
+
+/// How many sharp edges make which rule.
+enum class TaggedRule { Smooth, Dart, Crease, Corner };
+TaggedRule GetRule(TaggedMesh const &mesh, int vertex);
+
+/// Values of Refine(mesh) from those of \p mesh, a row per vertex.
+ReferenceValues Interpolate(TaggedMesh const &mesh, TaggedMesh const &child, ReferenceMask mask,
+                            ReferenceValues const &values);
+/// Linear, without regard to creases.
+ReferenceValues InterpolateVarying(TaggedMesh const &mesh, TaggedMesh const &child,
+                                   ReferenceValues const &values);
+
+} // namespace OpenSubdivHex::Regression
+
+#endif
