@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Mesh files: what is written is what is read, and what cannot be read as it stands is refused.
-#include "fileError.h"
-#include "meshReader.h"
+#include "meshFileFixture.h"
 #include "meshWriter.h"
 #include "outputFile.h"
 #include "shapes.h"
-#include "testFolder.h"
 
 #include <cmath>
 #include <cstring>
@@ -22,46 +20,6 @@
 namespace OpenSubdivHex::Tutorials {
 
 namespace {
-
-class MeshFile : public TestFolder {
-protected:
-    /// Expects that the file is refused with one line: its path, and then \p cause somewhere.
-    void expectRefused(std::string const &path, std::string const &cause) const {
-        try {
-            Mesh const mesh = ReadMesh(path);
-            ADD_FAILURE() << path << " was read, with " << mesh.GetNumFaces() << " faces";
-        } catch (FileError const &error) {
-            std::string const message = error.what();
-            EXPECT_EQ(message.rfind(path + ": ", 0), 0u) << message;
-            EXPECT_NE(message.find(cause), std::string::npos) << message;
-            EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-        }
-    }
-    void expectRefused(std::string const &name, std::string const &content,
-                       std::string const &cause) const {
-        SCOPED_TRACE(content.substr(0, 400));
-        expectRefused(makeFile(name, content), cause);
-    }
-
-    void expectFaces(std::string const &name, std::string const &content, int numVertices,
-                     std::vector<int> const &faceSizes,
-                     std::vector<int> const &faceVertices) const {
-        SCOPED_TRACE(content);
-        Mesh const mesh = ReadMesh(makeFile(name, content));
-        EXPECT_EQ(mesh.GetNumVertices(), numVertices);
-        EXPECT_EQ(mesh.faceSizes, faceSizes);
-        EXPECT_EQ(mesh.faceVertices, faceVertices);
-    }
-};
-
-void expectEqual(Mesh const &a, Mesh const &b) {
-    EXPECT_EQ(a.faceSizes, b.faceSizes);
-    EXPECT_EQ(a.faceVertices, b.faceVertices);
-    ASSERT_EQ(a.positions.size(), b.positions.size());
-    for (std::size_t i = 0; i < a.positions.size(); ++i) {
-        ASSERT_EQ(a.positions[i], b.positions[i]) << "coordinate " << i;
-    }
-}
 
 /// One triangle, one quad, one pentagon, one hexagon and one face of \p size corners, over
 /// vertices whose coordinates use all bits of a float.  Edges with many faces, repeated faces and
@@ -160,7 +118,8 @@ TEST_F(MeshFile, WritesWhatItSays) {
 TEST_F(MeshFile, ReadsObj) {
     std::string const vertices = "v 0 0 0\nv 1 0 0 1\nv +1.5e0 1 0\nv .5 1. 0 1 0 0\n";
     expectFaces("a.obj", vertices + "f 1 2 3 4\n", 4, {4}, {0, 1, 2, 3});
-    expectFaces("a.obj", vertices + "f 1/1/1 2//2 3/3 4", 4, {4}, {0, 1, 2, 3});
+    expectFaces("a.obj", "vt 0 0\nvn 0 0 1\n" + vertices + "f 1/1/1 2/1/1 3/-1/-1 4/1/1", 4, {4},
+                {0, 1, 2, 3});
     expectFaces("a.obj", vertices + "f -4 -3 -1\nf 1 2 -2\n", 4, {3, 3}, {0, 1, 3, 0, 1, 2});
     expectFaces("a.obj", "v 1e-50 -1e-300 0\nf 1 1 1\n", 1, {3}, {0, 0, 0});
     expectFaces("a.obj", "f 1 2 3\n" + vertices, 4, {3}, {0, 1, 2});
@@ -191,7 +150,7 @@ TEST_F(MeshFile, RefusesBadObj) {
     expectRefused("a.obj", "v 0 1e39 0\n", "line 1: '1e39'");
     expectRefused("a.obj", "v 0 1e999 0\n", "line 1: '1e999'");
     expectRefused("a.obj", "\r\n\\\nv 0 0\n", "line 2: a vertex needs three coordinates");
-    expectRefused("a.obj", vertices + "t crease 2/1/0 0 1 2.0\n", "line 4: statement 't'");
+    expectRefused("a.obj", vertices + "curv 0 1 2\n", "line 4: statement 'curv'");
     expectRefused("a.obj", std::string("v 0 0 0\0\n", 9), "is not text");
     expectRefused("a.obj", "\x7f\x45LF \x01\x02 garbage", "statement");
     expectRefused("a.obj", vertices + "f 1 2 3\nf 1", "line 5: a face needs three corners");

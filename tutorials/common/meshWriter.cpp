@@ -23,36 +23,72 @@ char *printNumber(char *out, T value) {
 }
 
 /// Writes "x y z\n".
-void printPosition(float const *position, char *out, OutputFile &file) {
-    for (int i = 0; i < 3; ++i) {
-        out = printNumber(out, position[i]);
-        *out++ = i < 2 ? ' ' : '\n';
+void printNumbers(float const *numbers, int count, char *out, OutputFile &file) {
+    for (int i = 0; i < count; ++i) {
+        out = printNumber(out, numbers[i]);
+        *out++ = i < count - 1 ? ' ' : '\n';
     }
     file.Advance(out);
 }
 
-/// Writes " v0 v1 ... \n", each vertex plus \p offset.
-void printVertices(int const *vertices, int size, int offset, OutputFile &file) {
+/// Writes " v0 v1 ... \n".
+void printVertices(int const *vertices, int size, OutputFile &file) {
     for (int i = 0; i < size; ++i) {
         char *out = file.Reserve(kMaxNumber);
         *out++ = ' ';
-        file.Advance(printNumber(out, std::int64_t(vertices[i]) + offset));
+        file.Advance(printNumber(out, vertices[i]));
     }
     file.Write("\n");
 }
 
-void writeObj(Mesh const &mesh, OutputFile &file) {
-    for (int v = 0; v < mesh.GetNumVertices(); ++v) {
+/// Writes a line for each \p width numbers, "KEYWORD x y z\n".
+void printObjValues(std::string_view keyword, std::vector<float> const &values, int width,
+                    OutputFile &file) {
+    for (std::size_t i = 0; i < values.size(); i += std::size_t(width)) {
         char *out = file.Reserve(4 * kMaxNumber);
-        *out++ = 'v';
+        out = std::copy(keyword.begin(), keyword.end(), out);
         *out++ = ' ';
-        printPosition(&mesh.positions[3 * std::size_t(v)], out, file);
+        printNumbers(&values[i], width, out, file);
     }
-    int const *vertices = mesh.faceVertices.data();
+}
+
+/// Writes " v", " v/t", " v//n" or " v/t/n", counted from 1; the values are null where there are
+/// none.
+void printObjCorner(int vertex, int const *uv, int const *normal, OutputFile &file) {
+    char *out = file.Reserve(4 * kMaxNumber);
+    *out++ = ' ';
+    out = printNumber(out, std::int64_t(vertex) + 1);
+    if (uv || normal) {
+        *out++ = '/';
+    }
+    if (uv) {
+        out = printNumber(out, std::int64_t(*uv) + 1);
+    }
+    if (normal) {
+        *out++ = '/';
+        out = printNumber(out, std::int64_t(*normal) + 1);
+    }
+    file.Advance(out);
+}
+
+void writeObj(Mesh const &mesh, OutputFile &file) {
+    printObjValues("v", mesh.positions, 3, file);
+    int const *uv = nullptr;
+    int const *normal = nullptr;
+    for (FVarChannel const &channel : mesh.channels) {
+        bool const isUv = channel.kind == FVarKind::Uv;
+        printObjValues(isUv ? "vt" : "vn", channel.values, channel.width, file);
+        (isUv ? uv : normal) = channel.faceValues.data();
+    }
+    int const *vertex = mesh.faceVertices.data();
     for (int size : mesh.faceSizes) {
         file.Write("f");
-        printVertices(vertices, size, 1, file);
-        vertices += size;
+        for (int i = 0; i < size; ++i) {
+            printObjCorner(*vertex++, uv, normal, file);
+            uv = uv ? uv + 1 : nullptr;
+            normal = normal ? normal + 1 : nullptr;
+        }
+        file.Write("\n");
     }
 }
 
@@ -60,12 +96,12 @@ void writeOff(Mesh const &mesh, OutputFile &file) {
     file.Write("OFF\n" + std::to_string(mesh.GetNumVertices()) + " " +
                std::to_string(mesh.GetNumFaces()) + " 0\n");
     for (int v = 0; v < mesh.GetNumVertices(); ++v) {
-        printPosition(&mesh.positions[3 * std::size_t(v)], file.Reserve(4 * kMaxNumber), file);
+        printNumbers(&mesh.positions[3 * std::size_t(v)], 3, file.Reserve(4 * kMaxNumber), file);
     }
     int const *vertices = mesh.faceVertices.data();
     for (int size : mesh.faceSizes) {
         file.Advance(printNumber(file.Reserve(kMaxNumber), size));
-        printVertices(vertices, size, 0, file);
+        printVertices(vertices, size, file);
         vertices += size;
     }
 }
@@ -113,6 +149,8 @@ void writePly(Mesh const &mesh, OutputFile &file) {
 }
 
 } // namespace
+
+bool HasChannels(std::string const &path) { return FindMeshFormat(path) == MeshFormat::Obj; }
 
 void WriteMesh(Mesh const &mesh, std::string const &path) {
     std::optional<MeshFormat> const format = FindMeshFormat(path);

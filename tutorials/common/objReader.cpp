@@ -2,6 +2,7 @@
 #include "fileError.h"
 #include "meshReader.h"
 #include "meshText.h"
+#include "objTags.h"
 
 #include <tiny_obj_loader.h>
 
@@ -14,11 +15,10 @@ namespace OpenSubdivHex::Tutorials::internal {
 
 namespace {
 
-/// Statements that say nothing about positions and faces.
-constexpr std::array<std::string_view, 19> kSkippedStatements = {
-    "vt",         "vn",        "vp",     "g",   "o",     "s",        "mg",
-    "usemtl",     "mtllib",    "usemap", "lod", "bevel", "c_interp", "d_interp",
-    "shadow_obj", "trace_obj", "l",      "p",   "maplib"};
+/// Statements that say nothing about what Mesh holds.
+constexpr std::array<std::string_view, 17> kSkippedStatements = {
+    "vp",    "g",        "o",        "s",          "mg",        "usemtl", "mtllib", "usemap", "lod",
+    "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj", "l",      "p",      "maplib"};
 
 /// Joins lines that end in a backslash with the next, keeping the number of lines.
 void joinContinuedLines(std::string *text) {
@@ -43,42 +43,97 @@ void joinContinuedLines(std::string *text) {
     *text = std::move(joined);
 }
 
-/// Whether \p word is `v`, `v/t`, `v//n` or `v/t/n` with ints.
-bool isCorner(std::string_view word) {
-    int index = 0;
-    std::size_t const slash = word.find('/');
-    if (!ParseInt(word.substr(0, slash), &index)) {
-        return false;
-    }
-    if (slash == std::string_view::npos) {
-        return true;
-    }
-    std::string_view const rest = word.substr(slash + 1);
-    std::size_t const slash2 = rest.find('/');
-    if (slash2 == std::string_view::npos) {
-        return ParseInt(rest, &index);
-    }
-    return (slash2 == 0 || ParseInt(rest.substr(0, slash2), &index)) &&
-           ParseInt(rest.substr(slash2 + 1), &index);
-}
+/// What the corners of faces have beside their vertices.
+struct Attribute {
+    FVarKind kind;
+    char const *name;
+    std::size_t minNumbers;      ///< that a value needs, of 3
+    std::vector<float> values{}; ///< x y z of each
+    std::vector<int> faceValues{};
+    int numValuesSoFar = 0;
+    int firstFaceWith = -1;
+    int firstFaceWithout = -1;
+
+    int GetNumValues() const { return int(values.size() / 3); }
+};
 
 /// The file as tinyobj's callbacks give it, beside what they do not give.
 struct ObjContent {
     std::string const &path;
-    Mesh mesh;
-    std::vector<int> faceLines;
+    Mesh mesh{};
+    std::vector<int> faceLines{};
     int numVerticesSoFar = 0;
+    Attribute uvs{FVarKind::Uv, "texture coordinate", 1};
+    Attribute normals{FVarKind::Normal, "normal", 3};
+    ObjTagReader tags{path};
 
     [[noreturn]] void Refuse(int line, std::string const &cause) const {
         throw FileError(path, "line " + std::to_string(line) + ": " + cause);
     }
-    [[noreturn]] void RefuseIndex(std::size_t face, int index) const {
-        Refuse(faceLines[face], "vertex index " + std::to_string(index) + " is out of range");
+    [[noreturn]] void RefuseIndex(int line, char const *name, int index) const {
+        Refuse(line, std::string(name) + " index " + std::to_string(index) + " is out of range");
+    }
+
+    /// The index, from 0, of what a corner of the face that comes next names as \p index: counted
+    /// from 1, or back from the last one so far.
+    int Resolve(char const *name, int index, int numSoFar, int numTotal) const {
+        int const result = index > 0 ? index - 1 : numSoFar + index;
+        if (index == 0 || result < 0 || result >= numTotal) {
+            RefuseIndex(faceLines[mesh.faceSizes.size()], name, index);
+        }
+        return result;
     }
 };
 
+/// Refuses \p word unless it is `v`, `v/t`, `v//n` or `v/t/n` with ints, t and n not 0.
+void checkCorner(ObjContent const &content, int line, std::string_view word) {
+    std::string_view rest = word;
+    for (int i = 0; i < 3; ++i) {
+        std::size_t const slash = i < 2 ? rest.find('/') : std::string_view::npos;
+        std::string_view const number = rest.substr(0, slash);
+        int index = 0;
+        bool const isLeftOut = i == 1 && number.empty() && slash != std::string_view::npos;
+        if (!isLeftOut && !ParseInt(number, &index)) {
+            content.Refuse(line, "'" + std::string(word) + "' is not a vertex of a face");
+        }
+        if (i > 0 && !isLeftOut && index == 0) {
+            // Tinyobj gives 0 for what is left out, too.
+            content.RefuseIndex(line, i == 1 ? content.uvs.name : content.normals.name, 0);
+        }
+        if (slash == std::string_view::npos) {
+            return;
+        }
+        rest.remove_prefix(slash + 1);
+    }
+}
+
+/// Refuses \p words unless they are finite numbers, and appends the first three to \p values, with
+/// 0 for those that are missing.
+void readNumbers(ObjContent const &content, int line, std::vector<std::string_view> const &words,
+                 std::vector<float> *values) {
+    for (std::size_t i = 0; i < std::max(words.size(), std::size_t(3)); ++i) {
+        float value = 0;
+        if (i < words.size() && !ParseFiniteFloat(words[i], &value)) {
+            content.Refuse(line, "'" + std::string(words[i]) + "' is not a finite number");
+        }
+        if (i < 3) {
+            values->push_back(value);
+        }
+    }
+}
+
+void readAttribute(ObjContent const &content, int line, std::vector<std::string_view> const &words,
+                   Attribute *attribute) {
+    if (words.size() < attribute->minNumbers || words.size() > 3) {
+        content.Refuse(line, std::string("a ") + attribute->name + " needs " +
+                                 (attribute->minNumbers == 3 ? "three" : "one to three") +
+                                 " numbers, this one has " + std::to_string(words.size()));
+    }
+    readNumbers(content, line, words, &attribute->values);
+}
+
 /// \brief Refuses what tinyobj would read as something else without a word, and fills in the
-/// positions and the lines of the faces.
+/// numbers, the tags and the lines of the faces.
 ///
 /// Tinyobj takes a number that it cannot parse, or that is missing, as 0, rounds some numbers to
 /// a neighbour of the nearest float, and skips statements that it does not know.
@@ -91,26 +146,22 @@ void readStatements(std::string_view text, ObjContent *content) {
             if (words.size() < 3) {
                 content->Refuse(line, "a vertex needs three coordinates");
             }
-            for (std::size_t i = 0; i < words.size(); ++i) {
-                float value = 0;
-                if (!ParseFiniteFloat(words[i], &value)) {
-                    content->Refuse(line, "'" + std::string(words[i]) + "' is not a finite number");
-                }
-                if (i < 3) {
-                    content->mesh.positions.push_back(value);
-                }
-            }
+            readNumbers(*content, line, words, &content->mesh.positions);
+        } else if (statement == "vt") {
+            readAttribute(*content, line, words, &content->uvs);
+        } else if (statement == "vn") {
+            readAttribute(*content, line, words, &content->normals);
         } else if (statement == "f") {
             for (std::string_view word : words) {
-                if (!isCorner(word)) {
-                    content->Refuse(line, "'" + std::string(word) + "' is not a vertex of a face");
-                }
+                checkCorner(*content, line, word);
             }
             if (words.size() < 3) {
                 content->Refuse(line, "a face needs three corners, this one has " +
                                           std::to_string(words.size()));
             }
             content->faceLines.push_back(line);
+        } else if (statement == "t") {
+            content->tags.Read(line, rest);
         } else if (!statement.empty() &&
                    std::find(kSkippedStatements.begin(), kSkippedStatements.end(), statement) ==
                        kSkippedStatements.end()) {
@@ -123,19 +174,74 @@ void readStatements(std::string_view text, ObjContent *content) {
 void countVertex(void *data, float, float, float, float) {
     ++static_cast<ObjContent *>(data)->numVerticesSoFar;
 }
+void countUv(void *data, float, float, float) {
+    ++static_cast<ObjContent *>(data)->uvs.numValuesSoFar;
+}
+void countNormal(void *data, float, float, float) {
+    ++static_cast<ObjContent *>(data)->normals.numValuesSoFar;
+}
+
+/// Either all corners of all faces have the attribute, or none.
+void addFaceValues(ObjContent const &content, tinyobj::index_t const *corners, int numCorners,
+                   int tinyobj::index_t::*index, Attribute *attribute) {
+    int const face = content.mesh.GetNumFaces();
+    for (int i = 0; i < numCorners; ++i) {
+        bool const hasValue = corners[i].*index != 0;
+        int &first = hasValue ? attribute->firstFaceWith : attribute->firstFaceWithout;
+        first = first < 0 ? face : first;
+        if (attribute->firstFaceWith >= 0 && attribute->firstFaceWithout >= 0) {
+            int const other =
+                content
+                    .faceLines[hasValue ? attribute->firstFaceWithout : attribute->firstFaceWith];
+            content.Refuse(content.faceLines[face],
+                           std::string("a corner has ") + (hasValue ? "a " : "no ") +
+                               attribute->name + ", one in line " + std::to_string(other) +
+                               (hasValue ? " has none" : " has one"));
+        }
+        if (hasValue) {
+            attribute->faceValues.push_back(content.Resolve(attribute->name, corners[i].*index,
+                                                            attribute->numValuesSoFar,
+                                                            attribute->GetNumValues()));
+        }
+    }
+}
 
 void addFace(void *data, tinyobj::index_t *corners, int numCorners) {
     ObjContent &content = *static_cast<ObjContent *>(data);
+    Mesh &mesh = content.mesh;
     for (int i = 0; i < numCorners; ++i) {
-        // Counted from 1, or back from the last vertex so far.
-        int const index = corners[i].vertex_index;
-        int const vertex = index > 0 ? index - 1 : content.numVerticesSoFar + index;
-        if (index == 0 || vertex < 0 || vertex >= content.mesh.GetNumVertices()) {
-            content.RefuseIndex(content.mesh.faceSizes.size(), index);
-        }
-        content.mesh.faceVertices.push_back(vertex);
+        mesh.faceVertices.push_back(content.Resolve(
+            "vertex", corners[i].vertex_index, content.numVerticesSoFar, mesh.GetNumVertices()));
     }
-    content.mesh.faceSizes.push_back(numCorners);
+    addFaceValues(content, corners, numCorners, &tinyobj::index_t::texcoord_index, &content.uvs);
+    addFaceValues(content, corners, numCorners, &tinyobj::index_t::normal_index, &content.normals);
+    mesh.faceSizes.push_back(numCorners);
+}
+
+/// Texture coordinates become two numbers wide, unless the third is used.
+void addChannel(Attribute *attribute, Mesh *mesh) {
+    if (attribute->faceValues.empty()) {
+        return;
+    }
+    FVarChannel channel;
+    channel.kind = attribute->kind;
+    channel.width = 3;
+    channel.values = std::move(attribute->values);
+    channel.faceValues = std::move(attribute->faceValues);
+    std::vector<float> &values = channel.values;
+    bool isFlat = attribute->kind == FVarKind::Uv;
+    for (std::size_t i = 2; i < values.size(); i += 3) {
+        isFlat = isFlat && values[i] == 0;
+    }
+    if (isFlat) {
+        channel.width = 2;
+        for (std::size_t i = 0; i < values.size() / 3; ++i) {
+            values[2 * i] = values[3 * i];
+            values[2 * i + 1] = values[3 * i + 1];
+        }
+        values.resize(values.size() / 3 * 2);
+    }
+    mesh->channels.push_back(std::move(channel));
 }
 
 } // namespace
@@ -144,13 +250,15 @@ Mesh ReadObj(std::string const &path, std::string *content) {
     NormalizeText(path, content);
     BlankComments(content);
     joinContinuedLines(content);
-    ObjContent obj{path, {}, {}};
+    ObjContent obj{path};
     readStatements(*content, &obj);
 
     // The callbacks give the corners of a face as they stand.  LoadObj does not: it keeps the
     // number of corners in 8 bits.
     tinyobj::callback_t callbacks;
     callbacks.vertex_cb = &countVertex;
+    callbacks.texcoord_cb = &countUv;
+    callbacks.normal_cb = &countNormal;
     callbacks.index_cb = &addFace;
     std::istringstream stream(*content);
     std::string warning;
@@ -159,9 +267,14 @@ Mesh ReadObj(std::string const &path, std::string *content) {
         throw FileError(path, "cannot be parsed: " + error.substr(0, error.find('\n')));
     }
     if (obj.numVerticesSoFar != obj.mesh.GetNumVertices() ||
+        obj.uvs.numValuesSoFar != obj.uvs.GetNumValues() ||
+        obj.normals.numValuesSoFar != obj.normals.GetNumValues() ||
         obj.mesh.faceSizes.size() != obj.faceLines.size()) {
-        throw FileError(path, "cannot be parsed: vertices or faces were skipped");
+        throw FileError(path, "cannot be parsed: vertices, values or faces were skipped");
     }
+    addChannel(&obj.uvs, &obj.mesh);
+    addChannel(&obj.normals, &obj.mesh);
+    obj.tags.Finish(&obj.mesh);
     return std::move(obj.mesh);
 }
 

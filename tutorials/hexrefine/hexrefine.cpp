@@ -4,24 +4,21 @@
 //
 // Mesh file -> Far::TopologyDescriptor -> FarExt::TopologyRefiner -> Far::StencilTable -> Osd
 // evaluator -> mesh file.
-#include "far_ext/primvarRefiner.h"
-#include "far_ext/stencilTableFactory.h"
+#include "creaseAngle.h"
+#include "evaluation.h"
 #include "far_ext/topologyRefinerFactory.h"
+#include "levelMesh.h"
 #include "progress.h"
+#include "ruleNames.h"
 #include "statistics.h"
+#include "tagText.h"
 #include "tutorials/common/fileError.h"
 #include "tutorials/common/meshFormat.h"
 #include "tutorials/common/meshReader.h"
 #include "tutorials/common/meshText.h"
 #include "tutorials/common/meshWriter.h"
 #include "tutorials/common/outputFile.h"
-#include "tutorials/common/point.h"
 #include "tutorials/common/topologyDescriptor.h"
-
-#include <opensubdiv/osd/cpuEvaluator.h>
-#ifdef HEXREFINE_HAS_OPENMP
-#include <opensubdiv/osd/ompEvaluator.h>
-#endif
 
 #include <CLI/CLI.hpp>
 
@@ -34,8 +31,6 @@ namespace OpenSubdivHex::Tutorials {
 
 namespace {
 
-namespace Osd = OpenSubdiv::Osd;
-
 enum ExitCode { kSuccess = 0, kFailure = 1, kBadUsage = 2 };
 
 struct Arguments {
@@ -44,9 +39,12 @@ struct Arguments {
     std::string output;
     std::string mask = "average";
     std::string scheme = "hex";
-    std::string boundary = "none";
+    std::optional<std::string> boundary;
+    std::optional<double> creaseAngle;
+    std::optional<std::string> fvarInterpolation;
     std::string evaluator = "stencil-cpu";
     std::string stats;
+    bool printsTags = false;
     bool isQuiet = false;
 };
 
@@ -73,7 +71,9 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         })
         ->capture_default_str();
     app.add_option("-o,--output", arguments->output,
-                   "File for the last level: .obj, .off or .ply (binary); none: nothing is written")
+                   "File for the last level: .obj, .off or .ply (binary); none: nothing is "
+                   "written. Only .obj files get texture coordinates and normals: a hexagon that a "
+                   "seam crosses is written as two quads. Holes are left out")
         ->check([](std::string const &path) {
             return FindMeshFormat(path) ? std::string()
                                         : "'" + path + "' is not a " + kMeshExtensions + " file";
@@ -87,11 +87,28 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->check(CLI::IsMember({"hex"}))
         ->capture_default_str();
     app.add_option("--boundary", arguments->boundary,
-                   "Rule for boundaries: none is the paper's, the border moves inward")
-        ->check(CLI::IsMember({"none"}))
-        ->capture_default_str();
+                   "Rule for boundaries, before that of the file: none is the paper's, the border "
+                   "moves inward; else it becomes a smooth curve, with corners where vertices have "
+                   "one face")
+        ->check(CLI::IsMember(kBoundaryNames))
+        ->default_str("the file's, or none");
+    app.add_option("--crease-angle", arguments->creaseAngle,
+                   "Makes infinitely sharp creases of the edges between faces whose normals differ "
+                   "by more than so many degrees, 0 to 180; other creases are those of the file")
+        ->check([](std::string const &word) {
+            float angle = 0;
+            return std::string(ParseFiniteFloat(word, &angle) && angle >= 0 && angle <= 180
+                                   ? ""
+                                   : "'" + word + "' is not an angle from 0 to 180");
+        })
+        ->type_name("DEG");
+    app.add_option("--fvar-interpolation", arguments->fvarInterpolation,
+                   "Where texture coordinates and normals are interpolated linearly, before what "
+                   "the file says; all is everywhere")
+        ->check(CLI::IsMember(kFVarInterpolationNames))
+        ->default_str("the file's, or all");
     app.add_option("--evaluator", arguments->evaluator,
-                   "How positions are computed: from a stencil table with one thread or with "
+                   "How values are computed: from a stencil table with one thread or with "
                    "OpenMP, or level by level without a table")
         ->check(CLI::IsMember({"stencil-cpu", "stencil-omp", "primvar"}))
         ->check([](std::string const &evaluator) {
@@ -107,7 +124,14 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->capture_default_str();
     app.add_option("--stats", arguments->stats, "File for statistics as JSON; - is standard output")
         ->type_name("FILE|-");
+    app.add_flag("--tags", arguments->printsTags,
+                 "Print creases, corners, holes, rules and channels, as lines for an .obj file");
     app.add_flag("--quiet", arguments->isQuiet, "Print no summary and show no progress");
+    app.callback([arguments] {
+        if (arguments->printsTags && arguments->stats == "-") {
+            throw CLI::ValidationError("--tags", "standard output is taken by --stats -");
+        }
+    });
     app.set_version_flag("--version", "hexrefine " HEXREFINE_VERSION);
     app.footer("Exit status: 0 success, 1 bad input or failed output, 2 bad usage.");
 }
@@ -118,70 +142,81 @@ FarExt::FaceMask findMask(std::string const &name) {
                               : FarExt::FaceMask::Average;
 }
 
+/// The rules: those of the command line, else those of the file, else the paper's boundary and
+/// what Sdc::Options has.
+Sdc::Options chooseOptions(Arguments const &arguments, MeshTags const &tags) {
+    Sdc::Options options;
+    auto boundary = tags.boundary.value_or(Sdc::Options::VTX_BOUNDARY_NONE);
+    if (arguments.boundary) {
+        boundary = FindRule<decltype(boundary)>(kBoundaryNames, *arguments.boundary);
+    }
+    auto fvarInterpolation = tags.fvarInterpolation.value_or(options.GetFVarLinearInterpolation());
+    if (arguments.fvarInterpolation) {
+        fvarInterpolation = FindRule<decltype(fvarInterpolation)>(kFVarInterpolationNames,
+                                                                  *arguments.fvarInterpolation);
+    }
+    options.SetVtxBoundaryInterpolation(boundary);
+    options.SetFVarLinearInterpolation(fvarInterpolation);
+    options.SetCreasingMethod(tags.creasingMethod.value_or(options.GetCreasingMethod()));
+    return options;
+}
+
 /// The base mesh as the library takes it, validated.
-std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Arguments const &arguments,
-                                                       Mesh const &mesh) {
-    Sdc::Options sdcOptions;
-    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
+std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Arguments const &arguments, Mesh const &mesh,
+                                                       Sdc::Options sdcOptions) {
+    Far::TopologyDescriptor descriptor = DescribeTopology(mesh);
+    auto const channels = DescribeChannels(mesh);
+    descriptor.numFVarChannels = int(channels.size());
+    descriptor.fvarChannels = channels.data();
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions.faceMask = findMask(arguments.mask);
     FarExt::Status status;
-    auto refiner = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), sdcOptions,
-                                                          options, &status);
+    auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options, &status);
     if (!refiner) {
         throw FileError(arguments.input, status.GetMessage());
     }
     return refiner;
 }
 
-static_assert(sizeof(Point) == 3 * sizeof(float), "read as an array of floats");
-
-/// Positions of the last level, level by level.
-std::vector<float> evaluateLevels(FarExt::TopologyRefiner const &refiner,
-                                  std::vector<float> const &basePositions) {
-    FarExt::PrimvarRefiner const primvarRefiner(refiner);
-    std::vector<float> source = basePositions;
-    for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
-        std::vector<float> positions(3 * std::size_t(refiner.GetLevel(level).GetNumVertices()));
-        auto *const destination = reinterpret_cast<Point *>(positions.data());
-        primvarRefiner.Interpolate(level, reinterpret_cast<Point const *>(source.data()),
-                                   destination);
-        source = std::move(positions);
+/// The data of \p mesh.
+std::vector<Primvar> findPrimvars(Mesh *mesh) {
+    std::vector<Primvar> primvars = {{3, -1, &mesh->positions}};
+    for (FVarChannel &channel : mesh->channels) {
+        primvars.push_back({channel.width, int(&channel - mesh->channels.data()), &channel.values});
     }
-    return source;
+    return primvars;
 }
 
-/// Positions of the last level from a table that holds that level alone.
-std::vector<float> evaluateStencils(Far::StencilTable const &table, std::string const &evaluator,
-                                    std::vector<float> const &basePositions) {
-    std::vector<float> positions(3 * std::size_t(table.GetNumStencils()));
-    Osd::BufferDescriptor const desc(0, 3, 3);
-    auto evaluate = [&](auto const &evaluateRange) {
-        evaluateRange(basePositions.data(), desc, positions.data(), desc, table.GetSizes().data(),
-                      table.GetOffsets().data(), table.GetControlIndices().data(),
-                      table.GetWeights().data(), 0, table.GetNumStencils());
-    };
-#ifdef HEXREFINE_HAS_OPENMP
-    if (evaluator == "stencil-omp") {
-        evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
-        return positions;
+/// Replaces the values of \p mesh by those of the last level.
+void evaluate(Arguments const &arguments, FarExt::TopologyRefiner const &refiner, Mesh *mesh,
+              Progress &progress, Statistics *statistics) {
+    auto &milliseconds = statistics->milliseconds;
+    for (Primvar const &primvar : findPrimvars(mesh)) {
+        if (arguments.evaluator == "primvar") {
+            milliseconds.evaluate +=
+                measure(progress, "evaluating", [&] { EvaluateLevels(refiner, primvar); });
+            continue;
+        }
+        std::unique_ptr<Far::StencilTable const> table;
+        milliseconds.stencils += measure(progress, "building stencils", [&] {
+            FarExt::Status status;
+            table = CreateStencils(refiner, primvar, &status);
+            if (!table) {
+                throw FileError(arguments.input, status.GetMessage());
+            }
+        });
+        if (primvar.fvarChannel < 0) {
+            statistics->stencils = table->GetNumStencils();
+            statistics->weights = std::int64_t(table->GetWeights().size());
+        }
+        milliseconds.evaluate += measure(progress, "evaluating", [&] {
+            EvaluateStencils(*table, arguments.evaluator, primvar);
+        });
     }
-#else
-    static_cast<void>(evaluator);
-#endif
-    evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
-    return positions;
-}
-
-void copyFaces(FarExt::TopologyLevel const &level, Mesh *mesh) {
-    mesh->faceSizes.clear();
-    mesh->faceSizes.reserve(level.GetNumFaces());
-    mesh->faceVertices.clear();
-    mesh->faceVertices.reserve(level.GetNumFaceVertices());
-    for (int f = 0; f < level.GetNumFaces(); ++f) {
-        Far::ConstIndexArray const vertices = level.GetFaceVertices(f);
-        mesh->faceSizes.push_back(vertices.size());
-        mesh->faceVertices.insert(mesh->faceVertices.end(), vertices.begin(), vertices.end());
+    for (FVarChannel &channel : mesh->channels) {
+        if (channel.kind == FVarKind::Normal) {
+            Normalize(&channel.values);
+        }
     }
 }
 
@@ -206,10 +241,10 @@ void run(Arguments const &arguments) {
     Statistics statistics;
     statistics.scheme = arguments.scheme;
     statistics.mask = arguments.mask;
-    statistics.boundary = arguments.boundary;
     statistics.evaluator = arguments.evaluator;
     statistics.input = arguments.input;
     auto &milliseconds = statistics.milliseconds;
+    std::string tagText;
     {
         Progress progress(!arguments.isQuiet && Progress::IsTerminal());
 
@@ -217,8 +252,24 @@ void run(Arguments const &arguments) {
         milliseconds.read = measure(progress, "reading", [&] { mesh = ReadMesh(arguments.input); });
 
         std::unique_ptr<FarExt::TopologyRefiner> refiner;
-        milliseconds.validate =
-            measure(progress, "validating", [&] { refiner = createRefiner(arguments, mesh); });
+        milliseconds.validate = measure(progress, "validating", [&] {
+            if (arguments.creaseAngle) {
+                AddCreases(*arguments.creaseAngle, &mesh);
+            }
+            Sdc::Options const sdcOptions = chooseOptions(arguments, mesh.tags);
+            tagText = arguments.printsTags ? FormatTags(mesh, sdcOptions) : "";
+            if (!arguments.output.empty() && !HasChannels(arguments.output)) {
+                for (FVarChannel const &channel : mesh.channels) {
+                    statistics.channelsLeftOut.push_back(GetChannelName(channel.kind));
+                }
+                mesh.channels.clear();
+            }
+            refiner = createRefiner(arguments, mesh, sdcOptions);
+            statistics.boundary = kBoundaryNames[sdcOptions.GetVtxBoundaryInterpolation()];
+            statistics.creasingMethod = kCreasingMethodNames[sdcOptions.GetCreasingMethod()];
+            statistics.fvarInterpolation =
+                kFVarInterpolationNames[sdcOptions.GetFVarLinearInterpolation()];
+        });
 
         milliseconds.refine = measure(progress, "refining", [&] {
             FarExt::Status status;
@@ -227,37 +278,26 @@ void run(Arguments const &arguments) {
             }
         });
         statistics.levels = CountLevels(*refiner);
+        statistics.creases = mesh.tags.GetNumCreases();
+        statistics.corners = mesh.tags.GetNumCorners();
+        statistics.holes = CountHoles(*refiner);
+        statistics.channels = CountChannels(*refiner, mesh);
 
-        if (arguments.evaluator == "primvar") {
-            milliseconds.evaluate = measure(progress, "evaluating", [&] {
-                mesh.positions = evaluateLevels(*refiner, mesh.positions);
-            });
-        } else if (arguments.level > 0) {
-            std::unique_ptr<Far::StencilTable const> table;
-            milliseconds.stencils = measure(progress, "building stencils", [&] {
-                FarExt::StencilTableFactory::Options options;
-                options.generateIntermediateLevels = false;
-                FarExt::Status status;
-                table = FarExt::StencilTableFactory::Create(*refiner, options, &status);
-                if (!table) {
-                    throw FileError(arguments.input, status.GetMessage());
-                }
-            });
-            statistics.stencils = table->GetNumStencils();
-            statistics.weights = std::int64_t(table->GetWeights().size());
-            milliseconds.evaluate = measure(progress, "evaluating", [&] {
-                mesh.positions = evaluateStencils(*table, arguments.evaluator, mesh.positions);
-            });
+        if (arguments.level > 0) {
+            evaluate(arguments, *refiner, &mesh, progress, &statistics);
         }
 
         if (!arguments.output.empty()) {
             milliseconds.write = measure(progress, "writing", [&] {
-                copyFaces(refiner->GetLevel(arguments.level), &mesh);
+                CopyFaces(refiner->GetLevel(arguments.level), &mesh);
                 WriteMesh(mesh, arguments.output);
             });
         }
     }
 
+    if (arguments.printsTags) {
+        print(tagText);
+    }
     if (!arguments.stats.empty()) {
         writeStatistics(statistics, arguments.stats);
     }

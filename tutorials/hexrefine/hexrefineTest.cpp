@@ -1,21 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Runs the program hexrefine as its users do.
-#include "far_ext/topologyRefinerFactory.h"
-#include "tutorials/common/meshReader.h"
-#include "tutorials/common/meshWriter.h"
-#include "tutorials/common/shapes.h"
-#include "tutorials/common/testFolder.h"
-#include "tutorials/common/topologyDescriptor.h"
-
-#include <nlohmann/json.hpp>
-
-#include <cmath>
-#include <cstdlib>
-
-#ifdef __unix__
-#include <sys/wait.h>
-#endif
+#include "programFixture.h"
 
 #ifdef __has_feature
 #if __has_feature(address_sanitizer)
@@ -25,74 +11,12 @@
 
 namespace OpenSubdivHex::Tutorials {
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-struct Result {
-    int status;
-    std::string out;
-    std::string error;
-};
-
-class Hexrefine : public TestFolder {
-protected:
-    Result run(std::string const &arguments, std::string const &before = "") const {
-        std::string const out = getPath("stdout");
-        std::string const error = getPath("stderr");
-        int status = std::system((before + "\"" HEXREFINE_PROGRAM "\" " + arguments + " >\"" + out +
-                                  "\" 2>\"" + error + "\"")
-                                     .c_str());
-#ifdef __unix__
-        status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-#endif
-        Result result{status, getContent(out), getContent(error)};
-        std::filesystem::remove(out);
-        std::filesystem::remove(error);
-        return result;
-    }
-
-    std::string makeCubeFile() const {
-        WriteMesh(MakeCube(), getPath("cube.obj"));
-        return getPath("cube.obj");
-    }
-
-    /// Expects exit status 1, one line on stderr that begins with the file, and no output.
-    void expectFailure(std::string const &arguments, std::string const &path,
-                       std::string const &cause, std::string const &before = "") const {
-        Result const result = run(arguments, before);
-        EXPECT_EQ(result.status, 1) << arguments;
-        EXPECT_EQ(result.out, "");
-        EXPECT_EQ(result.error.rfind("hexrefine: " + path + ": ", 0), 0u) << result.error;
-        EXPECT_NE(result.error.find(cause), std::string::npos) << result.error;
-        EXPECT_EQ(result.error.find('\n'), result.error.size() - 1) << result.error;
-    }
-
-    void expectBadUsage(std::string const &arguments, std::string const &cause) const {
-        Result const result = run(arguments);
-        EXPECT_EQ(result.status, 2) << arguments;
-        EXPECT_EQ(result.out, "") << arguments;
-        EXPECT_NE(result.error.find(cause), std::string::npos) << result.error;
-    }
-};
-
-/// Whether the faces make a closed, manifold, consistently oriented surface.
-void expectClosed(Mesh const &mesh) {
-    FarExt::Status status;
-    auto const refiner =
-        FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), Sdc::Options(), &status);
-    ASSERT_TRUE(refiner) << status.GetMessage();
-    EXPECT_EQ(refiner->GetLevel(0).GetNumBoundaryEdges(), 0);
-    EXPECT_TRUE(refiner->GetLevel(0).Validate(&status)) << status.GetMessage();
-}
-
-} // namespace
-
 TEST_F(Hexrefine, PrintsHelpAndVersion) {
     Result const help = run("--help");
     EXPECT_EQ(help.status, 0);
     for (char const *option : {"INPUT", "-l,--level", "-o,--output", "--mask", "--scheme",
-                               "--boundary", "--evaluator", "--stats", "--quiet", "--version"}) {
+                               "--boundary", "--crease-angle", "--fvar-interpolation", "--tags",
+                               "--evaluator", "--stats", "--quiet", "--version"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
     EXPECT_EQ(run("--version").out, "hexrefine " HEXREFINE_VERSION "\n");
@@ -121,7 +45,9 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
     }
     EXPECT_EQ(keys, (std::vector<std::string>{"scheme", "mask", "boundary", "evaluator", "input",
                                               "levels", "milliseconds", "stencils", "weights",
-                                              "peakMemoryBytes"}));
+                                              "peakMemoryBytes", "creasingMethod", "creases",
+                                              "corners", "holes", "fvarInterpolation",
+                                              "fvarChannels", "fvarChannelsLeftOut"}));
     EXPECT_EQ(json["scheme"], "hex");
     EXPECT_EQ(json["mask"], "cosine");
     EXPECT_EQ(json["boundary"], "none");
@@ -140,6 +66,13 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
     EXPECT_EQ(json["stencils"], 128);
     EXPECT_GT(json["weights"].get<int>(), 128);
     EXPECT_GT(json["peakMemoryBytes"].get<double>(), 1e6);
+    EXPECT_EQ(json["creasingMethod"], "uniform");
+    EXPECT_EQ(json["creases"], 0);
+    EXPECT_EQ(json["corners"], 0);
+    EXPECT_EQ(json["holes"].dump(), "[0,0,0]");
+    EXPECT_EQ(json["fvarInterpolation"], "all");
+    EXPECT_EQ(json["fvarChannels"].dump(), "[]");
+    EXPECT_EQ(json["fvarChannelsLeftOut"].dump(), "[]");
     EXPECT_EQ(listFiles(), std::vector<std::string>{"cube.obj"});
 }
 
@@ -195,23 +128,6 @@ TEST_F(Hexrefine, LanternIsClosedAndOfFourFaceSizes) {
     EXPECT_GT(json["levels"][4]["vertices"].get<int>(), 100000);
 }
 
-TEST_F(Hexrefine, RefinesSpot) {
-    std::string const folder = OPENSUBDIVHEX_MESHES_DIR;
-    if (folder.empty()) {
-        GTEST_SKIP() << "OPENSUBDIVHEX_MESHES_DIR is not set";
-    }
-    Result const result = run(folder + "/spot.obj -l 3 --stats - -o " + getPath("spot3.obj"));
-    ASSERT_EQ(result.status, 0) << result.error;
-    Json const last = Json::parse(result.out)["levels"][3];
-    EXPECT_EQ(last["vertices"], 2930 + 2 * 8784 * 21);
-    EXPECT_EQ(last["faces"], 5856 + 8784 * 21);
-    EXPECT_EQ(last["boundaryEdges"], 0);
-    Mesh const mesh = ReadMesh(getPath("spot3.obj"));
-    EXPECT_EQ(mesh.GetNumVertices(), 371858);
-    EXPECT_EQ(mesh.GetNumFaces(), 190320);
-    expectClosed(mesh);
-}
-
 TEST_F(Hexrefine, RefusesBadUsage) {
     std::string const input = makeCubeFile();
     expectBadUsage("", "INPUT");
@@ -224,6 +140,11 @@ TEST_F(Hexrefine, RefusesBadUsage) {
     expectBadUsage(input + " --mask best", "best");
     expectBadUsage(input + " --scheme loop", "loop");
     expectBadUsage(input + " --boundary edge", "edge");
+    for (char const *angle : {"-1", "181", "nan", "right", "90x"}) {
+        expectBadUsage(input + " --crease-angle " + angle, "is not an angle from 0 to 180");
+    }
+    expectBadUsage(input + " --fvar-interpolation linear", "linear");
+    expectBadUsage(input + " --tags --stats -", "standard output is taken");
     expectBadUsage(input + " --evaluator gpu", "gpu");
     expectBadUsage(input + " --unknown", "--unknown");
     expectBadUsage(input + " " + input, "");
@@ -241,6 +162,10 @@ TEST_F(Hexrefine, RefusesBadInput) {
     expectFailure(path + output, path, "line 5: vertex index 9");
     path = makeFile("flipped.obj", vertices + "f 1 2 3\nf 1 2 4\n");
     expectFailure(path + output, path, "edge");
+    path = makeFile("tag.obj", vertices + "f 1 2 3\nt crease 2/1/0 0 3 1\n");
+    expectFailure(path + output, path, "line 6: no face has an edge");
+    path = makeFile("uv.obj", vertices + "vt 0 0\nf 1/1 2/1 3/1\nf 1 3 4\n");
+    expectFailure(path + output, path, "line 7: a corner has no texture coordinate");
     path = makeFile("mesh.stl", "solid\n");
     expectFailure(path + output, path, "is not a");
     path = makeCubeFile();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "statistics.h"
 
+#include "tagText.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
@@ -23,6 +25,32 @@ std::vector<LevelStatistics> CountLevels(FarExt::TopologyRefiner const &refiner)
                           level.GetNumFaceVertices(), level.GetNumBoundaryEdges(), facesBySize});
     }
     return levels;
+}
+
+std::vector<int> CountHoles(FarExt::TopologyRefiner const &refiner) {
+    std::vector<int> holes;
+    for (int i = 0; i < refiner.GetNumLevels(); ++i) {
+        FarExt::TopologyLevel const &level = refiner.GetLevel(i);
+        holes.push_back(0);
+        for (int f = 0; f < level.GetNumFaces(); ++f) {
+            holes.back() += level.IsFaceHole(f) ? 1 : 0;
+        }
+    }
+    return holes;
+}
+
+std::vector<ChannelStatistics> CountChannels(FarExt::TopologyRefiner const &refiner,
+                                             Mesh const &mesh) {
+    std::vector<ChannelStatistics> channels;
+    for (FVarChannel const &channel : mesh.channels) {
+        std::vector<int> values;
+        values.reserve(refiner.GetNumLevels());
+        for (int i = 0; i < refiner.GetNumLevels(); ++i) {
+            values.push_back(refiner.GetLevel(i).GetNumFVarValues(int(channels.size())));
+        }
+        channels.push_back({GetChannelName(channel.kind), channel.width, values});
+    }
+    return channels;
 }
 
 std::int64_t GetPeakMemoryBytes() {
@@ -56,6 +84,11 @@ std::string FormatJson(Statistics const &statistics) {
                           {"boundaryEdges", level.boundaryEdges},
                           {"facesBySize", facesBySize}});
     }
+    Json channels = Json::array();
+    for (ChannelStatistics const &channel : statistics.channels) {
+        channels.push_back(
+            {{"name", channel.name}, {"width", channel.width}, {"values", channel.values}});
+    }
     auto const &milliseconds = statistics.milliseconds;
     Json const json = {{"scheme", statistics.scheme},
                        {"mask", statistics.mask},
@@ -72,7 +105,14 @@ std::string FormatJson(Statistics const &statistics) {
                          {"write", milliseconds.write}}},
                        {"stencils", statistics.stencils},
                        {"weights", statistics.weights},
-                       {"peakMemoryBytes", GetPeakMemoryBytes()}};
+                       {"peakMemoryBytes", GetPeakMemoryBytes()},
+                       {"creasingMethod", statistics.creasingMethod},
+                       {"creases", statistics.creases},
+                       {"corners", statistics.corners},
+                       {"holes", statistics.holes},
+                       {"fvarInterpolation", statistics.fvarInterpolation},
+                       {"fvarChannels", channels},
+                       {"fvarChannelsLeftOut", statistics.channelsLeftOut}};
     // A path need not be UTF-8, JSON must be.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -84,6 +124,28 @@ std::string format(char const *pattern, ARGS... args) {
     char line[256];
     std::snprintf(line, sizeof line, pattern, args...);
     return line;
+}
+
+/// A line for each thing that there is.
+std::string formatTags(Statistics const &statistics) {
+    std::string lines;
+    if (statistics.creases > 0 || statistics.corners > 0) {
+        lines += format("%d creases (%s), %d corners\n", statistics.creases,
+                        statistics.creasingMethod.c_str(), statistics.corners);
+    }
+    if (!statistics.holes.empty() && statistics.holes[0] > 0) {
+        lines += format("%d holes; without them the last level has %d faces\n", statistics.holes[0],
+                        statistics.levels.back().faces - statistics.holes.back());
+    }
+    for (ChannelStatistics const &channel : statistics.channels) {
+        lines += format("channel %s: %d values, %d in the last level, linear interpolation %s\n",
+                        channel.name.c_str(), channel.values.front(), channel.values.back(),
+                        statistics.fvarInterpolation.c_str());
+    }
+    for (std::string const &channel : statistics.channelsLeftOut) {
+        lines += "channel " + channel + ": left out, only .obj files hold it\n";
+    }
+    return lines;
 }
 
 } // namespace
@@ -102,7 +164,7 @@ std::string FormatSummary(Statistics const &statistics) {
         }
         summary += "\n";
     }
-    summary += "\n";
+    summary += "\n" + formatTags(statistics);
     if (statistics.stencils > 0) {
         summary += format("%d stencils, %lld weights\n", statistics.stencils,
                           static_cast<long long>(statistics.weights));

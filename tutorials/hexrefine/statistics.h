@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_TUTORIALS_STATISTICS_H
 
 #include "far_ext/topologyRefiner.h"
+#include "tutorials/common/mesh.h"
 
 #include <cstdint>
 #include <map>
@@ -21,6 +22,13 @@ struct LevelStatistics {
     std::map<int, int> facesBySize; ///< number of faces by number of corners
 };
 
+/// The sizes of a face-varying channel.
+struct ChannelStatistics {
+    std::string name;
+    int width;               ///< numbers per value
+    std::vector<int> values; ///< number of values by level
+};
+
 /// \brief What a run of hexrefine did: the content of `--stats`.
 struct Statistics {
     std::string scheme;
@@ -37,11 +45,26 @@ struct Statistics {
         double evaluate = 0;
         double write = 0;
     } milliseconds;
-    int stencils = 0;
-    std::int64_t weights = 0;
+    int stencils = 0;         ///< for positions
+    std::int64_t weights = 0; ///< of these stencils
+
+    // The rules as used, and what they were used on.
+    std::string creasingMethod;
+    std::string fvarInterpolation;
+    int creases = 0;
+    int corners = 0;
+    std::vector<int> holes;                   ///< number of faces that are holes by level
+    std::vector<ChannelStatistics> channels;  ///< that were refined
+    std::vector<std::string> channelsLeftOut; ///< that the output's format has no place for
 };
 
 std::vector<LevelStatistics> CountLevels(FarExt::TopologyRefiner const &refiner);
+
+std::vector<int> CountHoles(FarExt::TopologyRefiner const &refiner);
+
+/// The channels of \p refiner, which are those of \p mesh.
+std::vector<ChannelStatistics> CountChannels(FarExt::TopologyRefiner const &refiner,
+                                             Mesh const &mesh);
 
 /// The most memory that this process has had so far; 0 where the system does not tell.
 std::int64_t GetPeakMemoryBytes();

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_CPU_EVALUATOR_H
+#define OPENSUBDIVHEX_OSD_EXT_CPU_EVALUATOR_H
+
+#include "stencilEvaluator.h"
+
+namespace OpenSubdivHex::OsdExt {
+
+/// \brief Evaluates stencils on the calling thread, in ascending order: a faster
+/// Osd::CpuEvaluator.  See StencilEvaluator for its functions, SimdLevel for the instructions that
+/// it uses.
+class CpuEvaluator : public StencilEvaluator<CpuEvaluator> {
+    friend class StencilEvaluator<CpuEvaluator>;
+    static void run(internal::StencilTask const &task, int begin, int end);
+};
+
+} // namespace OpenSubdivHex::OsdExt
+
+#endif

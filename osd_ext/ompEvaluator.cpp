@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ompEvaluator.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+namespace OpenSubdivHex::OsdExt {
+namespace {
+
+/// Stencils that a thread takes at a time: enough that starting on them costs nothing beside them,
+/// few enough that the threads end together.
+constexpr std::int64_t kMinBatch = 256;
+constexpr std::int64_t kMaxBatch = 4096;
+constexpr int kBatchesPerThread = 16;
+
+#ifdef _OPENMP
+int getMaxThreads() { return omp_get_max_threads(); }
+#else
+int getMaxThreads() { return 1; }
+#endif
+
+} // namespace
+
+bool OmpEvaluator::IsParallel() {
+#ifdef _OPENMP
+    return true;
+#else
+    return false;
+#endif
+}
+
+void OmpEvaluator::run(internal::StencilTask const &task, int begin, int end) {
+    internal::StencilKernel const kernel = internal::GetStencilKernel();
+    std::int64_t const numStencils = std::int64_t(end) - begin;
+    std::int64_t const numThreads = getMaxThreads();
+    int const batchSize =
+        int(std::clamp(numStencils / (numThreads * kBatchesPerThread), kMinBatch, kMaxBatch));
+    int const numBatches = int((numStencils + batchSize - 1) / batchSize);
+    if (numThreads == 1 || numBatches == 1) {
+        kernel(task, begin, end, internal::FindFirstWeight(task.rows, begin));
+        return;
+    }
+
+    std::vector<std::size_t> firstWeights;
+    if (!task.rows.offsets) {
+        firstWeights.reserve(std::size_t(numBatches));
+        std::size_t first = internal::FindFirstWeight(task.rows, begin);
+        for (int i = begin; i < end; ++i) {
+            if ((i - begin) % batchSize == 0) {
+                firstWeights.push_back(first);
+            }
+            first += std::size_t(task.rows.sizes[i]);
+        }
+    }
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic)
+#endif
+    for (int batch = 0; batch < numBatches; ++batch) {
+        int const batchBegin = begin + batch * batchSize;
+        int const batchEnd = int(std::min<std::int64_t>(end, std::int64_t(batchBegin) + batchSize));
+        std::size_t const first = firstWeights.empty() ? 0 : firstWeights[std::size_t(batch)];
+        kernel(task, batchBegin, batchEnd, first);
+    }
+}
+
+} // namespace OpenSubdivHex::OsdExt

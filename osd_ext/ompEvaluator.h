@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_OMP_EVALUATOR_H
+#define OPENSUBDIVHEX_OSD_EXT_OMP_EVALUATOR_H
+
+#include "stencilEvaluator.h"
+
+namespace OpenSubdivHex::OsdExt {
+
+/// \brief Evaluates stencils on the threads of OpenMP, as many as omp_set_num_threads() and
+/// OMP_NUM_THREADS say: a faster Osd::OmpEvaluator.  See StencilEvaluator for its functions,
+/// SimdLevel for the instructions that it uses.
+///
+/// Results are those of CpuEvaluator, bit for bit.  Ranges of few stencils are evaluated on the
+/// calling thread.
+///
+/// The class is there without OpenMP, too, so that no program need ask: it then does what
+/// CpuEvaluator does, and IsParallel() is false.
+class OmpEvaluator : public StencilEvaluator<OmpEvaluator> {
+public:
+    /// Whether this library was built with OpenMP.
+    static bool IsParallel();
+
+private:
+    friend class StencilEvaluator<OmpEvaluator>;
+    static void run(internal::StencilTask const &task, int begin, int end);
+};
+
+} // namespace OpenSubdivHex::OsdExt
+
+#endif

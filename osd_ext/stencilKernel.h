@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_STENCIL_KERNEL_H
+#define OPENSUBDIVHEX_OSD_EXT_STENCIL_KERNEL_H
+
+#include <opensubdiv/osd/bufferDescriptor.h>
+
+#include <cstddef>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+/// \brief A set of weights and where their sums go: the value or one of its derivatives.
+struct StencilOutput {
+    float *dst;
+    OpenSubdiv::Osd::BufferDescriptor desc;
+    float const *weights;
+};
+
+/// \brief The stencils of a table, as StencilEvaluator takes them.
+struct StencilRows {
+    int const *sizes;
+    int const *offsets; ///< may be null
+    int const *indices;
+};
+
+/// \brief One evaluation: what the drivers split and the kernels compute.
+///
+/// Element i of an output becomes the sum of its weights of stencil i times the source elements.
+struct StencilTask {
+    static constexpr int kMaxOutputs = 6;
+
+    struct Output {
+        float *dst = nullptr; ///< element 0: the descriptor's offset is applied
+        std::ptrdiff_t stride = 0;
+        float const *weights = nullptr; ///< as many as indices
+    };
+
+    float const *src = nullptr; ///< element 0: the descriptor's offset is applied
+    std::ptrdiff_t srcStride = 0;
+    int length = 0; ///< floats per element, of the source and of all outputs
+
+    StencilRows rows{};
+
+    int numOutputs = 0;
+    Output outputs[kMaxOutputs];
+};
+
+/// \brief Makes \p task of the arguments of an evaluator for stencils [start, end).
+/// \return  whether StencilEvaluator, which says when it is false, can evaluate them
+bool MakeStencilTask(float const *src, OpenSubdiv::Osd::BufferDescriptor const &srcDesc,
+                     StencilOutput const *outputs, int numOutputs, StencilRows const &rows,
+                     int start, int end, StencilTask *task);
+
+/// Where the indices of stencil \p stencil start.
+std::size_t FindFirstWeight(StencilRows const &rows, int stencil);
+
+/// \brief Evaluates stencils [begin, end) in ascending order.
+///
+/// \param firstWeight  where the indices of stencil \p begin start; not read if there are offsets
+using StencilKernel = void (*)(StencilTask const &task, int begin, int end,
+                               std::size_t firstWeight);
+
+/// @name The kernels, one per SimdLevel
+/// All are instances of stencilKernelTemplate.h.
+/// @{
+void EvalStencilsPortable(StencilTask const &task, int begin, int end, std::size_t firstWeight);
+void EvalStencilsAvx2(StencilTask const &task, int begin, int end, std::size_t firstWeight);
+void EvalStencilsAvx512(StencilTask const &task, int begin, int end, std::size_t firstWeight);
+/// @}
+
+/// The kernel of the SimdLevel in use.
+StencilKernel GetStencilKernel();
+
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation.h"
+
+#include "far_ext/primvarRefiner.h"
+#include "far_ext/stencilTableFactory.h"
+
+#include <opensubdiv/osd/cpuEvaluator.h>
+#ifdef HEXREFINE_HAS_OPENMP
+#include <opensubdiv/osd/ompEvaluator.h>
+#endif
+
+#include <cmath>
+
+namespace OpenSubdivHex::Tutorials {
+
+namespace {
+
+namespace Far = OpenSubdiv::Far;
+namespace Osd = OpenSubdiv::Osd;
+
+/// What the primvar refiner adds up.
+template <int WIDTH>
+struct Value {
+    float numbers[WIDTH];
+
+    void Clear() {
+        for (float &number : numbers) {
+            number = 0;
+        }
+    }
+    void AddWithWeight(Value const &value, float weight) {
+        for (int i = 0; i < WIDTH; ++i) {
+            numbers[i] += weight * value.numbers[i];
+        }
+    }
+};
+
+template <int WIDTH>
+void evaluateLevels(FarExt::TopologyRefiner const &refiner, Primvar const &primvar) {
+    static_assert(sizeof(Value<WIDTH>) == WIDTH * sizeof(float), "read as an array of floats");
+    FarExt::PrimvarRefiner const primvarRefiner(refiner);
+    for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
+        FarExt::TopologyLevel const &topology = refiner.GetLevel(level);
+        bool const isFaceVarying = primvar.fvarChannel >= 0;
+        int const numValues = isFaceVarying ? topology.GetNumFVarValues(primvar.fvarChannel)
+                                            : topology.GetNumVertices();
+        std::vector<float> values(WIDTH * std::size_t(numValues));
+        auto const *const source = reinterpret_cast<Value<WIDTH> const *>(primvar.values->data());
+        auto *const destination = reinterpret_cast<Value<WIDTH> *>(values.data());
+        if (isFaceVarying) {
+            primvarRefiner.InterpolateFaceVarying(level, source, destination, primvar.fvarChannel);
+        } else {
+            primvarRefiner.Interpolate(level, source, destination);
+        }
+        *primvar.values = std::move(values);
+    }
+}
+
+} // namespace
+
+void EvaluateLevels(FarExt::TopologyRefiner const &refiner, Primvar const &primvar) {
+    if (primvar.width == 2) {
+        evaluateLevels<2>(refiner, primvar);
+    } else {
+        evaluateLevels<3>(refiner, primvar);
+    }
+}
+
+std::unique_ptr<Far::StencilTable const> CreateStencils(FarExt::TopologyRefiner const &refiner,
+                                                        Primvar const &primvar,
+                                                        FarExt::Status *status) {
+    FarExt::StencilTableFactory::Options options;
+    options.generateIntermediateLevels = false;
+    if (primvar.fvarChannel >= 0) {
+        options.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
+        options.fvarChannel = primvar.fvarChannel;
+    }
+    return FarExt::StencilTableFactory::Create(refiner, options, status);
+}
+
+void EvaluateStencils(Far::StencilTable const &table, std::string const &evaluator,
+                      Primvar const &primvar) {
+    int const width = primvar.width;
+    std::vector<float> values(std::size_t(width) * std::size_t(table.GetNumStencils()));
+    Osd::BufferDescriptor const desc(0, width, width);
+    auto evaluate = [&](auto const &evaluateRange) {
+        evaluateRange(primvar.values->data(), desc, values.data(), desc, table.GetSizes().data(),
+                      table.GetOffsets().data(), table.GetControlIndices().data(),
+                      table.GetWeights().data(), 0, table.GetNumStencils());
+        *primvar.values = std::move(values);
+    };
+#ifdef HEXREFINE_HAS_OPENMP
+    if (evaluator == "stencil-omp") {
+        evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
+        return;
+    }
+#else
+    static_cast<void>(evaluator);
+#endif
+    evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
+}
+
+void Normalize(std::vector<float> *vectors) {
+    for (std::size_t i = 0; i + 2 < vectors->size(); i += 3) {
+        float *const vector = vectors->data() + i;
+        double const length = std::hypot(double(vector[0]), double(vector[1]), double(vector[2]));
+        for (int k = 0; k < 3 && length > 0; ++k) {
+            vector[k] = float(vector[k] / length);
+        }
+    }
+}
+
+} // namespace OpenSubdivHex::Tutorials
