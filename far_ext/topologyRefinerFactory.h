@@ -24,7 +24,7 @@ public:
     /// channels.  Boundary, crease and face-varying rules are those of base.GetSchemeOptions().
     ///
     /// Non-manifold edges and vertices are infinitely sharp, as in Far.  With VTX_BOUNDARY_NONE
-    /// boundaries follow the paper's rule, and holes beside a boundary are not taken over, since Far
+    /// all boundaries follow the paper's rule, whatever sharpness they have, and holes beside a boundary are not taken over, since Far
     /// tags all faces there as holes.
     ///
     /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices,

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pngFile.h"
+
+#include "fileError.h"
+#include "outputFile.h"
+
+#include <png.h>
+
+namespace OpenSubdivHex::Tutorials {
+
+void WritePng(Image const &image, std::string const &path) {
+    png_image png = {};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = png_uint_32(image.width);
+    png.height = png_uint_32(image.height);
+    png.format = PNG_FORMAT_RGB;
+
+    std::string content(PNG_IMAGE_PNG_SIZE_MAX(png), '\0');
+    png_alloc_size_t size = content.size();
+    if (!png_image_write_to_memory(&png, content.data(), &size, 0, image.pixels.data(), 0,
+                                   nullptr)) {
+        throw FileError(path, std::string("cannot be made: ") + png.message);
+    }
+    content.resize(size);
+
+    OutputFile file(path);
+    file.Write(content);
+    file.Commit();
+}
+
+} // namespace OpenSubdivHex::Tutorials

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TUTORIALS_PNG_FILE_H
+#define OPENSUBDIVHEX_TUTORIALS_PNG_FILE_H
+
+#include "image.h"
+
+#include <string>
+
+namespace OpenSubdivHex::Tutorials {
+
+/// Writes \p image, all or nothing.  Throws FileError.
+void WritePng(Image const &image, std::string const &path);
+
+} // namespace OpenSubdivHex::Tutorials
+
+#endif

@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Tutorial description:
+//
+//     A renderer with hexagonal subdivision surfaces, on Embree's ray tracing kernels.
+//
+//     What a renderer does at load time is in the constructor of Panel: the refiner, the stencil
+//     table, the buffers and the triangle indices, all made once.  What it does for each frame is in
+//     Panel::Update: it evaluates the table for the frame's control positions and hands the refined
+//     triangles to the ray tracer.  The rest of this file is about options; the pictures themselves
+//     are made in tutorials/common (scene.h, renderer.h).
+//
+#include "far_ext/stencilTableFactory.h"
+#include "far_ext/topologyRefinerFactory.h"
+#include "osd_ext/stencilEvaluation.h"
+#include "tutorials/common/fileError.h"
+#include "tutorials/common/meshReader.h"
+#include "tutorials/common/meshText.h"
+#include "tutorials/common/pngFile.h"
+#include "tutorials/common/renderer.h"
+#include "tutorials/common/topologyDescriptor.h"
+
+#include <opensubdiv/osd/cpuEvaluator.h>
+#include <opensubdiv/osd/cpuVertexBuffer.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <new>
+
+namespace OpenSubdivHex::Tutorials {
+
+namespace {
+
+constexpr char kName[] = "osd_ext_2_1_render";
+
+enum ExitCode { kSuccess = 0, kFailure = 1, kBadUsage = 2 };
+
+// What may differ from one panel of a picture to the next.
+struct PanelSettings {
+    int level = 4;
+    FarExt::FaceMask mask = FarExt::FaceMask::Smooth;
+    Sdc::Options::VtxBoundaryInterpolation boundary = Sdc::Options::VTX_BOUNDARY_NONE;
+    bool hasWireframe = false;
+    bool isTinted = false;
+    bool isFlat = false;
+    bool isZebra = false;
+    bool hasCage = false;
+    bool hidesSurface = false;
+};
+
+struct Arguments {
+    std::string input;
+    std::string output;
+    PanelSettings settings;
+    std::vector<std::string> panelTexts;
+    std::vector<PanelSettings> panels;
+    int numColumns = 0; // 0: all panels in one row
+    std::string size = "1000x750";
+    int width = 0;
+    int height = 0;
+    int numSamples = 16;
+    float lineWidth = RenderOptions().lineWidth;
+    std::vector<float> camera = {30, 20};
+    bool hasNoGround = false;
+    int numFrames = 0;
+    std::string animation = "turntable";
+
+    int GetNumPanels() const { return int(panels.size()); }
+    int GetNumColumns() const {
+        return numColumns > 0 ? std::min(numColumns, GetNumPanels()) : GetNumPanels();
+    }
+    int GetNumRows() const { return (GetNumPanels() + GetNumColumns() - 1) / GetNumColumns(); }
+    View GetView() const { return {camera[0], camera[1], camera.size() > 2 ? camera[2] : 1.0f}; }
+};
+
+void addPanelOptions(CLI::App &app, PanelSettings *settings) {
+    app.add_option("-l,--level", settings->level, "Number of refinement steps")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--mask", settings->mask, "Mask of the face points: average, cosine or smooth")
+        ->transform(CLI::Transformer(
+            std::map<std::string, FarExt::FaceMask>{{"average", FarExt::FaceMask::Average},
+                                                    {"cosine", FarExt::FaceMask::Cosine},
+                                                    {"smooth", FarExt::FaceMask::Smooth}}))
+        ->type_name("NAME")
+        ->default_str("smooth");
+    app.add_option("--boundary", settings->boundary,
+                   "Rule for boundaries: none, edge-only or edge-and-corner")
+        ->transform(CLI::Transformer(std::map<std::string, Sdc::Options::VtxBoundaryInterpolation>{
+            {"none", Sdc::Options::VTX_BOUNDARY_NONE},
+            {"edge-only", Sdc::Options::VTX_BOUNDARY_EDGE_ONLY},
+            {"edge-and-corner", Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}}))
+        ->type_name("NAME")
+        ->default_str("none");
+    app.add_flag("--wireframe", settings->hasWireframe, "Draw the edges of the refined polygons");
+    app.add_flag("--tint", settings->isTinted,
+                 "Draw polygons that are no hexagons in a colour of their own");
+    CLI::Option *const flat =
+        app.add_flag("--flat", settings->isFlat, "Light each polygon by one normal");
+    app.add_flag("--zebra", settings->isZebra, "Draw reflection lines, which show smoothness")
+        ->excludes(flat);
+    app.add_flag("--cage", settings->hasCage, "Draw the edges of the control mesh as rods");
+    app.add_flag("--hide-surface", settings->hidesSurface, "Do not draw the surface");
+}
+
+void addOptions(CLI::App &app, Arguments *arguments) {
+    app.add_option("INPUT", arguments->input, "Control mesh: .obj, .off or .ply")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("-o,--output", arguments->output,
+                   "Picture to write; with --frames, OUT.png makes OUT_0001.png and so on")
+        ->check([](std::string const &path) {
+            return std::filesystem::path(path).extension() == ".png"
+                       ? std::string()
+                       : "'" + path + "' is not a .png file";
+        })
+        ->type_name("FILE")
+        ->required();
+    addPanelOptions(app, &arguments->settings);
+    app.add_option("--panel", arguments->panelTexts,
+                   "Panel of the picture; repeat it for more, side by side.  SETTINGS are "
+                   "those of the options from --level to --hide-surface that differ, as in "
+                   "level=2,wireframe,mask=cosine")
+        ->type_name("SETTINGS")
+        ->allow_extra_args(false);
+    app.add_option("--columns", arguments->numColumns, "Panels in a row (default: all)")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--size", arguments->size, "Size of the picture in pixels")
+        ->check([arguments](std::string const &text) {
+            std::size_t const cross = text.find('x');
+            constexpr int kMaxSize = 20000;
+            bool const isSize = cross != std::string::npos &&
+                                ParseInt(text.substr(0, cross), &arguments->width) &&
+                                ParseInt(text.substr(cross + 1), &arguments->height) &&
+                                std::min(arguments->width, arguments->height) > 0 &&
+                                std::max(arguments->width, arguments->height) <= kMaxSize;
+            return isSize ? std::string() : "'" + text + "' is not WIDTHxHEIGHT";
+        })
+        ->type_name("WxH")
+        ->force_callback()
+        ->capture_default_str();
+    app.add_option("--samples", arguments->numSamples, "Samples per pixel")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    app.add_option("--line-width", arguments->lineWidth, "Width of the wireframe in pixels")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option("--camera", arguments->camera,
+                   "Where the camera stands, in degrees around the mesh and above the horizon, and "
+                   "a factor to enlarge")
+        ->delimiter(',')
+        ->expected(2, 3)
+        ->type_name("AZIMUTH,ELEVATION[,ZOOM]")
+        ->default_str("30,20");
+    app.add_flag("--no-ground", arguments->hasNoGround, "No ground for shadows to fall on");
+    app.add_option("--frames", arguments->numFrames, "Number of pictures of an animation")
+        ->check(CLI::Range(1, 9999));
+    app.add_option("--animate", arguments->animation,
+                   "What moves: the camera around the mesh, or the control mesh")
+        ->check(CLI::IsMember({"turntable", "twist"}))
+        ->capture_default_str();
+    app.footer("Exit status: 0 success, 1 bad input or failed output, 2 bad usage.");
+}
+
+// What concerns several options together; throws CLI::ValidationError.
+void checkArguments(Arguments const &arguments) {
+    View const view = arguments.GetView();
+    if (std::abs(view.elevation) > 90) {
+        throw CLI::ValidationError("--camera", CLI::detail::to_string(view.elevation) +
+                                                   " is not between -90 and 90 degrees");
+    }
+    if (!(view.zoom > 0)) {
+        throw CLI::ValidationError("--camera", "the zoom factor is not positive");
+    }
+    if (arguments.width < arguments.GetNumColumns() || arguments.height < arguments.GetNumRows()) {
+        throw CLI::ValidationError("--size", arguments.size + " is too small for the panels");
+    }
+}
+
+// The settings of a panel: those of the whole picture and what \p text says.
+PanelSettings parsePanel(std::string const &text, PanelSettings settings) {
+    CLI::App app("", "--panel " + text);
+    app.set_help_flag();
+    addPanelOptions(app, &settings);
+    std::vector<std::string> options; // CLI11 takes them from the back
+    for (std::string const &setting : CLI::detail::split(text, ',')) {
+        options.insert(options.begin(), "--" + setting);
+    }
+    app.parse(options);
+    return settings;
+}
+
+// Least and largest coordinates.
+std::pair<Vec3, Vec3> findBounds(std::vector<float> const &positions) {
+    Vec3 low = GetVec3(positions.data(), 0);
+    Vec3 high = low;
+    for (int i = 1; i < int(positions.size() / 3); ++i) {
+        Vec3 const point = GetVec3(positions.data(), i);
+        low = {std::min(low.x, point.x), std::min(low.y, point.y), std::min(low.z, point.z)};
+        high = {std::max(high.x, point.x), std::max(high.y, point.y), std::max(high.z, point.z)};
+    }
+    return {low, high};
+}
+
+// The control positions at a time between 0 and 1, when they are as at 0 again: twisted and bent,
+// the more so the higher a vertex lies.
+std::vector<float> twist(std::vector<float> const &positions, float time) {
+    auto const [low, high] = findBounds(positions);
+    float const height = std::max(high.y - low.y, 1e-20f);
+    float const wave = std::sin(6.2831853f * time);
+    std::vector<float> twisted;
+    for (int i = 0; i < int(positions.size() / 3); ++i) {
+        Vec3 const point = GetVec3(positions.data(), i);
+        float const part = (point.y - low.y) / height;
+        Vec3 const turned = RotateAroundVertical(point, 70 * wave * part, 0.5f * (low + high));
+        twisted.insert(twisted.end(),
+                       {turned.x + 0.25f * height * wave * part * part, turned.y, turned.z});
+    }
+    return twisted;
+}
+
+double getMilliseconds(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+        .count();
+}
+
+// The control mesh, refined and looked at in one way.
+class Panel {
+public:
+    // Throws FileError.
+    Panel(Mesh const &mesh, PanelSettings const &settings, std::string const &input)
+        : _settings(settings) {
+        auto const start = std::chrono::steady_clock::now();
+        Sdc::Options sdcOptions;
+        sdcOptions.SetVtxBoundaryInterpolation(settings.boundary);
+        FarExt::TopologyRefinerFactory::Options refinerOptions;
+        refinerOptions.schemeOptions.faceMask = settings.mask;
+        FarExt::Status status;
+        _refiner = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), sdcOptions,
+                                                          refinerOptions, &status);
+        if (!_refiner || !_refiner->RefineUniform(settings.level, &status)) {
+            throw FileError(input, status.GetMessage());
+        }
+        FarExt::TopologyLevel const &level = _refiner->GetLevel(settings.level);
+        if (settings.level > 0) {
+            FarExt::StencilTableFactory::Options tableOptions;
+            tableOptions.generateIntermediateLevels = false;
+            _table = FarExt::StencilTableFactory::Create(*_refiner, tableOptions, &status);
+            if (!_table) {
+                throw FileError(input, status.GetMessage());
+            }
+            _controlBuffer.reset(Osd::CpuVertexBuffer::Create(3, mesh.GetNumVertices()));
+            _refinedBuffer.reset(Osd::CpuVertexBuffer::Create(3, level.GetNumVertices()));
+        }
+        _surface = std::make_unique<Surface>(level);
+        auto const [low, high] = findBounds(mesh.positions);
+        _rodRadius = 0.005f * Length(high - low);
+        std::printf("level %d: %d vertices, %d triangles, made in %.0f ms\n", settings.level,
+                    level.GetNumVertices(), _surface->GetTriangles().GetNumTriangles(),
+                    getMilliseconds(start));
+    }
+
+    // Makes the scene of a frame from its control positions.
+    void Update(std::vector<float> const &positions) {
+        if (_table) {
+            _controlBuffer->UpdateData(positions.data(), 0, _controlBuffer->GetNumVertices());
+            OsdExt::EvalStencils<Osd::CpuEvaluator>(*_table, _controlBuffer.get(),
+                                                    _refinedBuffer.get());
+            _surface->SetPositions(_refinedBuffer->BindCpuBuffer());
+        } else {
+            _surface->SetPositions(positions.data());
+        }
+        _scene.Build(_settings.hidesSurface ? nullptr : _surface.get(),
+                     _settings.hasCage ? findRods(positions) : std::vector<float>(), _rodRadius);
+    }
+
+    Image Draw(Camera const &camera, RenderOptions options, int width, int height) const {
+        options.hasWireframe = _settings.hasWireframe;
+        options.isTinted = _settings.isTinted;
+        options.look = _settings.isZebra  ? SurfaceLook::Zebra
+                       : _settings.isFlat ? SurfaceLook::Flat
+                                          : SurfaceLook::Smooth;
+        return Render(_scene, camera, options, width, height);
+    }
+
+private:
+    // Both ends of each edge of the control mesh.
+    std::vector<float> findRods(std::vector<float> const &positions) const {
+        FarExt::TopologyLevel const &base = _refiner->GetLevel(0);
+        std::vector<float> ends;
+        for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
+            for (int vertex : base.GetEdgeVertices(edge)) {
+                auto const position = positions.begin() + 3 * std::ptrdiff_t(vertex);
+                ends.insert(ends.end(), position, position + 3);
+            }
+        }
+        return ends;
+    }
+
+    PanelSettings const _settings;
+    std::unique_ptr<FarExt::TopologyRefiner> _refiner;
+    std::unique_ptr<Far::StencilTable const> _table; // null for level 0
+    std::unique_ptr<Osd::CpuVertexBuffer> _controlBuffer;
+    std::unique_ptr<Osd::CpuVertexBuffer> _refinedBuffer;
+    std::unique_ptr<Surface> _surface;
+    float _rodRadius = 0;
+    Scene _scene;
+};
+
+// OUT.png, or OUT_0001.png for the first of several frames.
+std::string findFramePath(Arguments const &arguments, int frame) {
+    if (arguments.numFrames == 0) {
+        return arguments.output;
+    }
+    char number[16];
+    std::snprintf(number, sizeof number, "_%04d", frame + 1);
+    std::filesystem::path const path(arguments.output);
+    std::filesystem::path result = path;
+    return result.replace_filename(path.stem().string() + number + ".png").string();
+}
+
+// Throws FileError, std::bad_alloc and std::runtime_error.
+void run(Arguments const &arguments) {
+    Mesh const mesh = ReadMesh(arguments.input);
+    std::vector<std::unique_ptr<Panel>> panels;
+    for (PanelSettings const &settings : arguments.panels) {
+        panels.push_back(std::make_unique<Panel>(mesh, settings, arguments.input));
+    }
+
+    int const numFrames = std::max(arguments.numFrames, 1);
+    bool const isTurntable = arguments.animation == "turntable";
+    auto const getTime = [&](int frame) { return float(frame) / float(numFrames); };
+    auto const getPositions = [&](int frame) {
+        return isTurntable || frame == 0 ? mesh.positions : twist(mesh.positions, getTime(frame));
+    };
+    auto const [low, high] = findBounds(mesh.positions);
+    Vec3 const center = 0.5f * (low + high);
+
+    // One camera that sees the control mesh whole in every frame.
+    std::vector<float> points;
+    for (int frame = 0; frame < numFrames; ++frame) {
+        std::vector<float> const positions = getPositions(frame);
+        float const degrees = isTurntable ? -360 * getTime(frame) : 0;
+        for (int i = 0; i < mesh.GetNumVertices(); ++i) {
+            Vec3 const point = RotateAroundVertical(GetVec3(positions.data(), i), degrees, center);
+            points.insert(points.end(), {point.x, point.y, point.z});
+        }
+    }
+    int const numColumns = arguments.GetNumColumns();
+    int const numRows = arguments.GetNumRows();
+    Camera const firstCamera(arguments.GetView(), points,
+                             float(arguments.width) * float(numRows) /
+                                 (float(arguments.height) * float(numColumns)));
+
+    RenderOptions options;
+    options.numSamples = arguments.numSamples;
+    options.lineWidth = arguments.lineWidth;
+    options.hasGround = !arguments.hasNoGround;
+    for (int frame = 0; frame < numFrames; ++frame) {
+        Camera camera = firstCamera;
+        if (isTurntable) {
+            camera.Orbit(360 * getTime(frame), center);
+        }
+        double updateTime = 0;
+        double renderTime = 0;
+        Image picture(arguments.width, arguments.height);
+        for (int i = 0; i < arguments.GetNumPanels(); ++i) {
+            if (frame == 0 || !isTurntable) {
+                auto const start = std::chrono::steady_clock::now();
+                panels[i]->Update(getPositions(frame));
+                updateTime += getMilliseconds(start);
+            }
+            auto const start = std::chrono::steady_clock::now();
+            // Panels differ by a pixel where they do not divide the picture evenly.
+            int const column = i % numColumns;
+            int const row = i / numColumns;
+            int const left = column * arguments.width / numColumns;
+            int const top = row * arguments.height / numRows;
+            int const right = (column + 1) * arguments.width / numColumns;
+            int const bottom = (row + 1) * arguments.height / numRows;
+            PasteImage(panels[i]->Draw(camera, options, right - left, bottom - top), left, top,
+                       &picture);
+            renderTime += getMilliseconds(start);
+        }
+        std::string const path = findFramePath(arguments, frame);
+        WritePng(picture, path);
+        std::printf("wrote %s: evaluated in %.0f ms, rendered in %.0f ms\n", path.c_str(),
+                    updateTime, renderTime);
+    }
+}
+
+} // namespace
+
+} // namespace OpenSubdivHex::Tutorials
+
+int main(int argc, char **argv) {
+    using namespace OpenSubdivHex::Tutorials;
+
+    Arguments arguments;
+    CLI::App app("Renders a polygon mesh, refined with the hexagonal subdivision scheme.", kName);
+    addOptions(app, &arguments);
+    try {
+        app.parse(argc, argv);
+        for (std::string const &text : arguments.panelTexts) {
+            arguments.panels.push_back(parsePanel(text, arguments.settings));
+        }
+        if (arguments.panels.empty()) {
+            arguments.panels.push_back(arguments.settings);
+        }
+        checkArguments(arguments);
+    } catch (CLI::ParseError const &error) {
+        return app.exit(error) == 0 ? kSuccess : kBadUsage;
+    }
+    try {
+        run(arguments);
+    } catch (FileError const &error) {
+        std::cerr << kName << ": " << error.what() << "\n";
+        return kFailure;
+    } catch (std::bad_alloc const &) {
+        std::cerr << kName << ": " << arguments.input << ": not enough memory\n";
+        return kFailure;
+    } catch (std::runtime_error const &error) {
+        std::cerr << kName << ": " << arguments.input << ": " << error.what() << "\n";
+        return kFailure;
+    }
+    return kSuccess;
+}
