@@ -24,8 +24,8 @@ public:
     /// channels.  Boundary, crease and face-varying rules are those of base.GetSchemeOptions().
     ///
     /// Non-manifold edges and vertices are infinitely sharp, as in Far.  With VTX_BOUNDARY_NONE
-    /// all boundaries follow the paper's rule, whatever sharpness they have, and holes beside a boundary are not taken over, since Far
-    /// tags all faces there as holes.
+    /// all boundaries follow the paper's rule, whatever sharpness they have, and holes beside a
+    /// boundary are not taken over, since Far tags all faces there as holes.
     ///
     /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices,
     ///          two faces that run an edge in the same direction) or TooLarge.
