@@ -25,6 +25,7 @@ public:
     void Resize(std::size_t size) {
         if (size > _capacity) {
             _data.reset();
+            _size = _capacity = 0;
             _data.reset(static_cast<T *>(AllocateArray(size * sizeof(T))));
             _capacity = size;
         }

@@ -33,15 +33,15 @@ inline constexpr Far::LocalIndex kBoundaryEFaceEdge = 0;
 
 /// \brief Where sharp features stand in the faces they cross.
 ///
-/// The E-face of a crease edge v0-v1 is cut along the diagonal v0'-v1', its corners 0 and 3; that of
-/// a sharp boundary edge is a half-hexagon whose long side, its edge 0, lies on the boundary.
+/// The E-face of a crease edge v0-v1 is cut along the diagonal v0'-v1', its corners 0 and 3; that
+/// of a sharp boundary edge is a half-hexagon whose long side, its edge 0, lies on the boundary.
 /// F-faces inherit both in the same place.
 inline constexpr int kDiagonalStart = 0;
 inline constexpr int kDiagonalEnd = 3;
 inline constexpr int kHalfFaceLongEdge = 0;
 
-/// The corners of the two halves of a hexagon that a crease or a face-varying seam crosses: half 0 is
-/// on the side of the first face of the parent edge.
+/// The corners of the two halves of a hexagon that a crease or a face-varying seam crosses: half 0
+/// is on the side of the first face of the parent edge.
 inline constexpr int kHexagonHalves[2][4] = {{0, 3, 4, 5}, {3, 0, 1, 2}};
 
 /// \brief The closed-form numbering of a child level in terms of its parent: see INDEXING.md.

@@ -36,8 +36,8 @@ void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, do
 /// a sharp boundary or crease: row i has the weights of the four vertices for the F-vertex of
 /// corner i.
 ///
-/// On the long side P_V = (3 V + W)/4.  The other two corners follow the mask of the hexagon that is
-/// completed by the ghosts Q* = (3 V + W)/2 - P and P* = (V + 3 W)/2 - Q, in the order
+/// On the long side P_V = (3 V + W)/4.  The other two corners follow the mask of the hexagon that
+/// is completed by the ghosts Q* = (3 V + W)/2 - P and P* = (V + 3 W)/2 - Q, in the order
 /// V, Q*, P*, W, Q, P; the weights come out non-negative.
 void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, double *weights);
 

@@ -5,6 +5,8 @@
 #include "status.h"
 
 #include <algorithm>
+#include <exception>
+#include <optional>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -20,22 +22,46 @@ inline Far::Index GetNumParallelRanges(Far::Index count) {
 ///
 /// The ranges do not depend on the number of threads.  Calls must write to places of their own, and
 /// leave nothing in the state that another range could see: then the result does not depend on it
-/// either.
+/// either.  What a call throws is thrown again, once all have ended.
 template <typename MAKE_STATE, typename FUNCTION>
 void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function) {
     Far::Index const numRanges = GetNumParallelRanges(count);
+    // An exception must not leave a parallel region: the first is kept and thrown behind it.
+    std::exception_ptr exception;
+    auto const keepException = [&exception] {
+#ifdef _OPENMP
+#pragma omp critical(OpenSubdivHexParallelException)
+#endif
+        if (!exception) {
+            exception = std::current_exception();
+        }
+    };
 #ifdef _OPENMP
 #pragma omp parallel if (numRanges > 4)
 #endif
     {
-        auto state = makeState();
+        std::optional<decltype(makeState())> state;
+        try {
+            state.emplace(makeState());
+        } catch (...) {
+            keepException();
+        }
 #ifdef _OPENMP
 #pragma omp for schedule(dynamic, 2)
 #endif
         for (Far::Index range = 0; range < numRanges; ++range) {
             Far::Index const begin = range * kParallelRange;
-            function(state, begin, begin + std::min(count - begin, kParallelRange));
+            try {
+                if (state) {
+                    function(*state, begin, begin + std::min(count - begin, kParallelRange));
+                }
+            } catch (...) {
+                keepException();
+            }
         }
+    }
+    if (exception) {
+        std::rethrow_exception(exception);
     }
 }
 

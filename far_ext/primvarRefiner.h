@@ -24,6 +24,7 @@ namespace OpenSubdivHex::FarExt {
 template <typename REAL>
 class PrimvarRefinerReal {
 public:
+    /// Keeps a reference to \p refiner.
     explicit PrimvarRefinerReal(TopologyRefiner const &refiner)
         : _refiner(refiner), _vertexMask(refiner.GetLevel(0), faceMask(), Interpolation::Vertex),
           _varyingMask(refiner.GetLevel(0), faceMask(), Interpolation::Varying) {}
@@ -37,7 +38,8 @@ public:
         interpolate(_refiner.GetLevel(level - 1), _vertexMask, src, dst);
     }
 
-    /// \brief Varying data: linear, V' = V and P = (V + centroid)/2.
+    /// \brief Varying data: linear, V' = V and P = (V + centroid)/2, for half faces the centroid of
+    /// the whole hexagon; on a sharp boundary P = (3 V + W)/4.
     template <class T, class U>
     void InterpolateVarying(int level, T const &src, U &dst) const {
         interpolate(_refiner.GetLevel(level - 1), _varyingMask, src, dst);
@@ -75,7 +77,7 @@ private:
     // The values of level 0 as seen from the vertices of its value mesh.
     template <class T>
     struct ValuesOfVertices {
-        auto const &operator[](Far::Index vert) const { return src[values[vert]]; }
+        decltype(auto) operator[](Far::Index vert) const { return src[values[vert]]; }
         T const &src;
         Far::Index const *values;
     };

@@ -16,7 +16,8 @@ namespace OpenSubdivHex::FarExt::internal {
 /// \p child has its relations; without full topology only the tags of faces are made.
 void RefineTags(LevelTopology const &parent, Sdc::Options sdcOptions, LevelTopology &child);
 
-/// \brief Fills level.sharpVerts and level.sectorCorners from the level's boundaries and tags, with Sdc::Crease's rules.
+/// \brief Fills level.sharpVerts and level.sectorCorners from the level's boundaries and tags, with
+/// Sdc::Crease's rules.
 ///
 /// Where a vertex meets a crease or a sharp boundary, its sharp edges are crease edges and sharp
 /// boundaries (phase A, one unit long in the lattice) and diagonals and B boundaries (two units

@@ -371,12 +371,25 @@ void LevelBuilder<REAL>::fillFace(Index pFace, Scratch &scratch) const {
     ConstIndexArray const support = _supports.OfParentFace(pFace);
     std::size_t const width = support.size();
     scratch.Locate(support);
+    scratch.row.resize(width);
+    double *const row = scratch.row.data();
+    if (!_pRows) {
+        // The vertices are sources themselves: the mask is the stencil.
+        for (int i = 0; i < pVerts.size(); ++i) {
+            Index const corner = _pLevel.GetFaceFirstCorner(pFace) + i;
+            double const *mask = _mask.GetFaceVertexWeights(_pLevel, pFace, i, scratch.mask);
+            std::fill_n(row, width, 0.0);
+            for (int j = 0; j < pVerts.size(); ++j) {
+                addParent(pVerts[j], mask[j], scratch, row);
+            }
+            storeRow(support, scratch.row, _indexing.GetCornerChildVertex(corner));
+        }
+        return;
+    }
     scratch.parentBlock.assign(pVerts.size() * width, 0.0);
     for (int j = 0; j < pVerts.size(); ++j) {
         addParent(pVerts[j], 1.0, scratch, scratch.parentBlock.data() + j * width);
     }
-    scratch.row.resize(width);
-    double *const row = scratch.row.data();
     for (int i = 0; i < pVerts.size(); ++i) {
         Index const corner = _pLevel.GetFaceFirstCorner(pFace) + i;
         double const *mask = _mask.GetFaceVertexWeights(_pLevel, pFace, i, scratch.mask);

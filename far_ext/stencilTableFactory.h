@@ -57,8 +57,9 @@ public:
     /// The table has its exact size: no spare capacity, as many weights as indices, offsets filled.
     /// The indices of a stencil ascend; weights are non-negative and sum to 1.
     ///
-    /// \return  null on failure: InvalidArgument (negative maxLevel, channel out of range) or TooLarge (more than
-    ///          2^31 - 1 stencils or weights up to the level that the status names).
+    /// \return  null on failure: InvalidArgument (negative maxLevel, channel out of range) or
+    ///          TooLarge (more than 2^31 - 1 stencils or weights up to the level that the status
+    ///          names).
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,
                                                Status *status = nullptr);
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner,

@@ -295,7 +295,7 @@ private:
     bool checkFFaces();
     bool checkEFaces();
 
-    TopologyLevel const &_level;
+    TopologyLevel const _level;
     LevelTopology const &_topology;
     Status _status;
 };
@@ -517,8 +517,21 @@ bool Validator::checkEFaces() {
 
 bool TopologyLevel::Validate(Status *status) const {
     Validator validator(*this, *_topology);
-    validator.Run();
-    return internal::Report(validator.GetStatus(), status);
+    Status result = validator.Run() ? Status() : validator.GetStatus();
+    for (std::size_t channel = 0; channel < _topology->fvarLevels.size() && result.IsOk();
+         ++channel) {
+        // Values are the vertices of a mesh of their own; level 0 may have values without faces
+        // and, in place of shared values, more vertices than values.
+        LevelTopology const &values = _topology->fvarLevels[channel]->topology;
+        Validator valueValidator(TopologyLevel(&values), values);
+        if (!valueValidator.Run()) {
+            Status const &cause = valueValidator.GetStatus();
+            result = Status(cause.GetCode(), ComponentType::None, Far::INDEX_INVALID,
+                            "face-varying channel " + std::to_string(channel) + ": " +
+                                cause.GetMessage());
+        }
+    }
+    return internal::Report(result, status);
 }
 
 } // namespace OpenSubdivHex::FarExt

@@ -20,8 +20,8 @@ enum class FaceKind {
 /// INDEXING.md states the numbering and the order inside each relation.
 ///
 /// The last level has only face-vertices unless UniformOptions::fullTopologyInLastLevel was set:
-/// its other relations are then empty arrays and its edge and vertex queries are not answered
-/// (HasFullTopology() tells).
+/// its other relations are then empty arrays, and queries of edges and vertices, IsFaceHalf and the
+/// face-varying match queries are not answered (HasFullTopology() tells).
 class TopologyLevel {
 public:
     using Index = Far::Index;
@@ -77,8 +77,8 @@ public:
 
     /// @name Topological properties, as in Far::TopologyLevel
     /// @{
-    /// Of level 0: whether the base edge had other than two faces that run it in opposite directions,
-    /// or one.  Such an edge is taken apart into one boundary edge per face: INDEXING.md.
+    /// Of level 0: whether the base edge had other than one face, or two that run it in opposite
+    /// directions.  Such an edge is taken apart into one boundary edge per face: INDEXING.md.
     bool IsEdgeNonManifold(Index e) const;
     /// Whether the faces of the vertex form more than one fan, or it lies on a non-manifold edge.
     bool IsVertexNonManifold(Index v) const;
@@ -170,8 +170,8 @@ public:
     Index GetEdgeChildVertex(Index) const { return Far::INDEX_INVALID; }
     /// @}
 
-    /// \brief Checks every invariant of the level by direct search, the order around vertices and
-    /// the relation to the parent level included.
+    /// \brief Checks every invariant of the level's topology by direct search, the order around
+    /// vertices and the relation to the parent level included, also of the face-varying channels.
     ///
     /// \return  whether all hold; \p status names the first component that breaks one.
     bool Validate(Status *status = nullptr) const;

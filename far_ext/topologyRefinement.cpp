@@ -109,8 +109,7 @@ private:
                 isSideA(pFace, size, pCorner, pEdge) ? &kEFaceSideA : &kEFaceSideB, false};
     }
 
-    // Calls function(edge, pCorner, next, prev) with the edge that ends at a corner and the one that
-    // starts there, for all corners of a face.
+    // Calls function(inEdge, outEdge, prev, pCorner, next) for all corners of a face.
     template <typename FUNCTION>
     void forEachCorner(Index pFace, FUNCTION function) const {
         Index const first = _p.faceFirstCorner[pFace];
@@ -501,7 +500,6 @@ void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTop
     child.numSharpBoundariesB = Index(sizes.sharpBoundariesB);
     child.hasFullTopology = fullTopology;
 
-    parent.child = &child;
     fillChildRelations(parent);
 
     if (parent.boundaryEdges.empty() && parent.nonManifoldVerts.empty()) {
@@ -516,6 +514,8 @@ void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTop
     if (fullTopology) {
         ComputeSharpMasks(sdcOptions, child);
     }
+    // Last, so that a parent has no child that is only half made.
+    parent.child = &child;
 }
 
 } // namespace OpenSubdivHex::FarExt::internal
