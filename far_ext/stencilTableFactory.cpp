@@ -321,14 +321,17 @@ private:
         Index const *indices = rows.indices + rows.offsets[row];
         REAL const *weights = rows.weights + rows.offsets[row];
         for (int k = 0; k < rows.sizes[row]; ++k) {
-            dense[scratch.position[indices[k]]] += weight * double(weights[k]);
+            double &entry = dense[scratch.position[indices[k]]];
+            entry += weight * double(weights[k]);
         }
     }
     void addParent(Index pVert, double weight, Scratch const &scratch, double *dense) const {
         if (_pRows) {
             addRow(*_pRows, pVert, weight, scratch, dense);
         } else {
-            dense[scratch.position[_pSupports.OfVertex(_pLevel, pVert)[0]]] += weight;
+            Index const source = _pSupports.OfVertex(_pLevel, pVert)[0];
+            double &entry = dense[scratch.position[source]];
+            entry += weight;
         }
     }
     void storeRow(ConstIndexArray support, std::vector<double> const &dense, Index row) const {
