@@ -118,7 +118,7 @@ bool meetsFreeBoundary(LevelTopology const &level, Index vert, bool &meetsSharp)
 } // namespace
 
 void BuildFVarLevel(LevelTopology const &mesh, Index numValues,
-                    std::vector<Index> const &faceValues, std::vector<float> const &valueSharpness,
+                    std::vector<Index> const &faceValues, std::vector<float> const &sharpness,
                     Sdc::Options sdcOptions, FVarLevel &channel) {
     LevelTopology &level = channel.topology;
     channel.numValues = numValues;
@@ -152,12 +152,16 @@ void BuildFVarLevel(LevelTopology const &mesh, Index numValues,
         }
     }
     level.vertSharpness.Resize(level.numVertices);
+    std::fill_n(level.vertSharpness.data(), level.numVertices, Sdc::Crease::SHARPNESS_SMOOTH);
+    for (Index corner = 0; corner < level.numCorners; ++corner) {
+        level.vertSharpness[level.faceVerts[corner]] = sharpness[corner];
+    }
     for (Index vert = 0; vert < level.numVertices; ++vert) {
         // Where a seam meets a boundary that follows the paper's rule no curve goes on: a corner.
         bool meetsSharp;
-        bool const endsSeam = meetsFreeBoundary(level, vert, meetsSharp) && meetsSharp;
-        level.vertSharpness[vert] = endsSeam ? Sdc::Crease::SHARPNESS_INFINITE
-                                             : valueSharpness[channel.valuesOfVertices[vert]];
+        if (meetsFreeBoundary(level, vert, meetsSharp) && meetsSharp) {
+            level.vertSharpness[vert] = Sdc::Crease::SHARPNESS_INFINITE;
+        }
     }
     ComputeSharpMasks(sdcOptions, level);
 }

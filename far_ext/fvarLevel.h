@@ -55,12 +55,11 @@ struct FVarLevel {
 /// \brief Makes the value mesh of a channel of \p mesh, a level 0.
 ///
 /// \param faceValues     value of each corner of the mesh
-/// \param valueSharpness sharpness by value: infinite for one that is to stay, else that of the
-///                       vertex
+/// \param sharpness      of the value of each corner, the same around a vertex for the same value:
+///                       infinite for one that is to stay, else that of the vertex
 void BuildFVarLevel(LevelTopology const &mesh, Far::Index numValues,
-                    std::vector<Far::Index> const &faceValues,
-                    std::vector<float> const &valueSharpness, Sdc::Options sdcOptions,
-                    FVarLevel &channel);
+                    std::vector<Far::Index> const &faceValues, std::vector<float> const &sharpness,
+                    Sdc::Options sdcOptions, FVarLevel &channel);
 
 /// \brief Refines the channel \p pChannel of \p pMesh along with it, to \p cChannel.
 void RefineFVarLevel(LevelTopology const &pMesh, FVarLevel &pChannel, Sdc::Options sdcOptions,

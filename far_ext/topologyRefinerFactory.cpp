@@ -370,17 +370,22 @@ void Importer::importChannel(int channel) {
         ConstIndexArray const values = _base.GetFaceFVarValues(face, channel);
         faceValues.insert(faceValues.end(), values.begin(), values.end());
     }
-    std::vector<float> sharpness(_base.GetNumFVarValues(channel), 0.0f);
+    // By corner, since every vertex that a value is shared by has its own rule.
+    std::vector<float> sharpness(_level->numCorners, 0.0f);
     for (Index vert = 0; vert < _level->numVertices && !fvar.isLinear(); ++vert) {
-        ConstIndexArray const values = fvar.getVertexValues(vert);
+        ConstIndexArray const faces = _base.GetVertexFaces(vert);
         auto const tags = fvar.getVertexValueTags(vert);
-        for (int i = 0; i < values.size(); ++i) {
+        auto const siblings = fvar.getVertexFaceSiblings(vert);
+        for (int i = 0; i < faces.size(); ++i) {
+            auto const tag = tags[siblings[i]];
             float valueSharpness = _base.GetVertexSharpness(vert);
-            if (tags[i].isMismatch() && !tags[i].isSemiSharp()) {
-                valueSharpness = tags[i].isInfSharp() ? Sdc::Crease::SHARPNESS_INFINITE
-                                                      : Sdc::Crease::SHARPNESS_SMOOTH;
+            if (tag.isMismatch() && !tag.isSemiSharp()) {
+                valueSharpness = tag.isInfSharp() ? Sdc::Crease::SHARPNESS_INFINITE
+                                                  : Sdc::Crease::SHARPNESS_SMOOTH;
             }
-            sharpness[values[i]] = std::max(sharpness[values[i]], valueSharpness);
+            Index const corner =
+                _level->faceFirstCorner[faces[i]] + _base.GetVertexFaceLocalIndices(vert)[i];
+            sharpness[corner] = valueSharpness;
         }
     }
     Sdc::Options options = _baseRefiner.GetSchemeOptions();
