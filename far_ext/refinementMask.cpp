@@ -88,8 +88,7 @@ auto RefinementMask::GetVertexMask(TopologyLevel const &level, Index vert) const
                                    ? level.GetTopology().FindSharpVertex(vert)
                                    : nullptr;
     if (!sharp) {
-        VertexVertexMask const mask =
-            ComputeVertexVertexMask(_interpolation, level.GetVertexFaces(vert).size());
+        VertexVertexMask const mask = GetPlainVertexMask(level.GetVertexFaces(vert).size());
         return {mask.vertexWeight, mask.faceWeight, 0, {}, {}};
     }
     VertexMask mask = {sharp->vertexWeight, sharp->faceWeight, 0, {}, {}};
@@ -100,6 +99,37 @@ auto RefinementMask::GetVertexMask(TopologyLevel const &level, Index vert) const
         }
     }
     return mask;
+}
+
+std::vector<Far::Index> RefinementMask::FindFeatureFaces(TopologyLevel const &level) const {
+    LevelTopology const &topology = level.GetTopology();
+    std::vector<Index> faces(topology.halfFaces.begin(), topology.halfFaces.end());
+    if (_interpolation == Interpolation::Varying) {
+        return faces;
+    }
+    for (std::size_t face = 0; face < topology.diagonalSharpness.size(); ++face) {
+        if (Sdc::Crease::IsSharp(topology.diagonalSharpness[face])) {
+            faces.push_back(Index(face));
+        }
+    }
+    for (SectorCorner const &sector : topology.sectorCorners) {
+        Index const *const next = std::upper_bound(topology.faceFirstCorner.begin(),
+                                                   topology.faceFirstCorner.end(), sector.corner);
+        faces.push_back(Index(next - topology.faceFirstCorner.begin()) - 1);
+    }
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+}
+
+std::vector<Far::Index> RefinementMask::FindFeatureVertices(TopologyLevel const &level) const {
+    std::vector<Index> verts;
+    if (_interpolation == Interpolation::Vertex) {
+        for (SharpVertex const &sharp : level.GetTopology().sharpVerts) {
+            verts.push_back(sharp.vert);
+        }
+    }
+    return verts;
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -35,6 +35,21 @@ public:
 
     VertexMask GetVertexMask(TopologyLevel const &level, Index vert) const;
 
+    /// @name The plain majority and the rest
+    /// All faces of a size have the same weights, and all vertices with as many faces the same mask
+    /// without neighbors, but for those that a feature gives others.
+    /// @{
+
+    /// The weights of corner 0 of a plain face; those of corner i lie i steps further around.
+    double const *GetPlainFaceWeights(int faceSize) const { return smoothWeights(faceSize, 0); }
+    VertexVertexMask GetPlainVertexMask(int numFaces) const {
+        return ComputeVertexVertexMask(_interpolation, numFaces);
+    }
+    /// All faces and vertices that are not plain, and perhaps some that are; ascending.
+    std::vector<Index> FindFeatureFaces(TopologyLevel const &level) const;
+    std::vector<Index> FindFeatureVertices(TopologyLevel const &level) const;
+    /// @}
+
 private:
     double const *smoothWeights(int faceSize, int corner) const {
         // The mask stands twice in a row, so that every rotation of it is contiguous.

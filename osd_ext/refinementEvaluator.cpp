@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinementEvaluator.h"
+
+#include "far_ext/fvarLevel.h"
+#include "far_ext/parallel.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace OpenSubdivHex::OsdExt {
+
+using Far::Index;
+using FarExt::ComponentType;
+using FarExt::Status;
+using FarExt::StatusCode;
+using FarExt::TopologyLevel;
+using FarExt::TopologyRefiner;
+using FarExt::internal::FVarLevel;
+
+namespace {
+
+Status invalidArgument(std::string const &message) {
+    return Status(StatusCode::InvalidArgument, ComponentType::None, Far::INDEX_INVALID, message);
+}
+
+// The meshes that are refined, by level: those of the refiner, or the value meshes of a channel.
+std::vector<TopologyLevel> getMeshes(TopologyRefiner const &refiner,
+                                     RefinementEvaluator::Options options) {
+    std::vector<TopologyLevel> meshes;
+    for (int level = 0; level < refiner.GetNumLevels(); ++level) {
+        TopologyLevel const &mesh = refiner.GetLevel(level);
+        if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING) {
+            meshes.emplace_back(
+                &mesh.GetTopology().fvarLevels[std::size_t(options.fvarChannel)]->topology);
+        } else {
+            meshes.push_back(mesh);
+        }
+    }
+    return meshes;
+}
+
+FarExt::Interpolation getInterpolation(TopologyRefiner const &refiner,
+                                       RefinementEvaluator::Options options) {
+    bool const isLinear =
+        options.interpolationMode == FarExt::INTERPOLATE_VARYING ||
+        (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING &&
+         refiner.GetFVarLinearInterpolation(options.fvarChannel) == Sdc::Options::FVAR_LINEAR_ALL);
+    return isLinear ? FarExt::Interpolation::Varying : FarExt::Interpolation::Vertex;
+}
+
+void copyElements(internal::Elements<float const> src, int length, Index count,
+                  Index const *sources, internal::Elements<float> dst) {
+    FarExt::internal::ParallelFor(count, [&](Index i) {
+        std::copy_n(src.data + (sources ? sources[i] : i) * src.stride, length,
+                    dst.data + i * dst.stride);
+    });
+}
+
+} // namespace
+
+std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner const &refiner,
+                                                                 Options options, Status *status) {
+    Status result;
+    if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING &&
+        (options.fvarChannel < 0 || options.fvarChannel >= refiner.GetNumFVarChannels())) {
+        result = invalidArgument("there is no face-varying channel " +
+                                 std::to_string(options.fvarChannel) + " among the refiner's " +
+                                 std::to_string(refiner.GetNumFVarChannels()));
+    }
+    if (!FarExt::internal::Report(result, status)) {
+        return nullptr;
+    }
+    return std::unique_ptr<RefinementEvaluator>(new RefinementEvaluator(refiner, options));
+}
+
+RefinementEvaluator::RefinementEvaluator(TopologyRefiner const &refiner, Options options)
+    : _refiner(refiner) {
+    std::vector<TopologyLevel> const meshes = getMeshes(refiner, options);
+    FarExt::internal::RefinementMask const mask(meshes[0], refiner.GetHexSchemeOptions().faceMask,
+                                                getInterpolation(refiner, options));
+    _steps.resize(meshes.size() - 1);
+    int maxValence = 1;
+    std::vector<Index> faceOrder(std::size_t(meshes[0].GetNumFaces()));
+    std::iota(faceOrder.begin(), faceOrder.end(), 0);
+    for (std::size_t level = 0; level < _steps.size(); ++level) {
+        if (level > 0) {
+            faceOrder = internal::RefineFaceOrder(meshes[level - 1], faceOrder);
+        }
+        internal::MakeRefinementStep(mask, meshes[level], faceOrder, _steps[level]);
+        maxValence = std::max(maxValence, _steps[level].maxValence);
+    }
+    _masks = internal::MakePlainMasks(mask, meshes[0], maxValence);
+
+    for (TopologyLevel const &mesh : meshes) {
+        _numElements.push_back(mesh.GetNumVertices());
+    }
+    if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING) {
+        FVarLevel const &values =
+            *refiner.GetLevel(0).GetTopology().fvarLevels[std::size_t(options.fvarChannel)];
+        _numElements[0] = values.numValues;
+        if (values.numValues != values.topology.numVertices) {
+            _valuesOfVertices = &values.valuesOfVertices;
+        }
+    }
+}
+
+std::int64_t RefinementEvaluator::GetNumElementsAllLevels() const {
+    return std::accumulate(_numElements.begin() + 1, _numElements.end(), std::int64_t(0));
+}
+
+Status RefinementEvaluator::check(float const *src, Osd::BufferDescriptor const &srcDesc,
+                                  float const *dst, Osd::BufferDescriptor const &dstDesc, int level,
+                                  std::int64_t numWritten) const {
+    if (_refiner.GetMaxLevel() != GetMaxLevel()) {
+        return invalidArgument("the refiner has refined again since the evaluator was made");
+    }
+    if (level < 0 || level > GetMaxLevel()) {
+        return Status(StatusCode::InvalidArgument, ComponentType::Level, level,
+                      "level " + std::to_string(level) + " is not between 0 and " +
+                          std::to_string(GetMaxLevel()));
+    }
+    if (numWritten > 0 && (!src || !dst)) {
+        return invalidArgument(std::string("the ") + (src ? "destination" : "source") + " is null");
+    }
+    if (srcDesc.length < 1 || srcDesc.length != dstDesc.length) {
+        return invalidArgument("the lengths of source and destination are " +
+                               std::to_string(srcDesc.length) + " and " +
+                               std::to_string(dstDesc.length) + ": not the same, or less than 1");
+    }
+    for (Osd::BufferDescriptor const *desc : {&srcDesc, &dstDesc}) {
+        if (desc->stride < desc->length || desc->offset < 0) {
+            return invalidArgument("a descriptor has stride " + std::to_string(desc->stride) +
+                                   " for length " + std::to_string(desc->length) + " and offset " +
+                                   std::to_string(desc->offset));
+        }
+    }
+    return Status();
+}
+
+// The control values by vertex of the mesh of level 0.
+auto RefinementEvaluator::toVertices(Source src, int length) -> Source {
+    if (!_valuesOfVertices) {
+        return src;
+    }
+    std::size_t const numVertices = _valuesOfVertices->size();
+    _controlValues.Resize(numVertices * std::size_t(length));
+    copyElements(src, length, Index(numVertices), _valuesOfVertices->data(),
+                 {_controlValues.data(), length});
+    return {_controlValues.data(), length};
+}
+
+bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc,
+                                   float *dst, Osd::BufferDescriptor const &dstDesc, int level,
+                                   Status *status) {
+    bool const isLevel = level >= 0 && level <= GetMaxLevel();
+    std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
+    if (!FarExt::internal::Report(check(src, srcDesc, dst, dstDesc, level, numWritten), status)) {
+        return false;
+    }
+    int const length = srcDesc.length;
+    Source values = {src + srcDesc.offset, srcDesc.stride};
+    Destination const result = {dst + dstDesc.offset, dstDesc.stride};
+    if (level == 0) {
+        copyElements(values, length, GetNumElements(0), nullptr, result);
+        return true;
+    }
+    values = toVertices(values, length);
+    for (int step = 0; step < level; ++step) {
+        Destination next = result;
+        if (step + 1 < level) {
+            FarExt::internal::Buffer<float> &scratch = _scratch[step % 2];
+            scratch.Resize(std::size_t(GetNumElements(step + 1)) * std::size_t(length));
+            next = {scratch.data(), length};
+        }
+        internal::RefineElements(_masks, _steps[std::size_t(step)], length, values, next);
+        values = {next.data, next.stride};
+    }
+    return true;
+}
+
+bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc,
+                                            float *dst, Osd::BufferDescriptor const &dstDesc,
+                                            Status *status) {
+    if (!FarExt::internal::Report(
+            check(src, srcDesc, dst, dstDesc, GetMaxLevel(), GetNumElementsAllLevels()), status)) {
+        return false;
+    }
+    int const length = srcDesc.length;
+    Source values = toVertices({src + srcDesc.offset, srcDesc.stride}, length);
+    Destination next = {dst + dstDesc.offset, dstDesc.stride};
+    for (int step = 0; step < GetMaxLevel(); ++step) {
+        internal::RefineElements(_masks, _steps[std::size_t(step)], length, values, next);
+        values = {next.data, next.stride};
+        next.data += GetNumElements(step + 1) * next.stride;
+    }
+    return true;
+}
+
+} // namespace OpenSubdivHex::OsdExt

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_EVALUATOR_H
+#define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_EVALUATOR_H
+
+#include "refinementKernel.h"
+
+#include "far_ext/stencilTableFactory.h"
+#include "far_ext/topologyRefiner.h"
+
+#include <opensubdiv/osd/bufferDescriptor.h>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace OpenSubdivHex {
+
+namespace Osd = OpenSubdiv::Osd;
+
+namespace OsdExt {
+
+/// \brief Computes the primvars of refined levels straight from the control values, level by level,
+/// without a stencil table: the fastest way to refine a whole mesh again and again.
+///
+/// Values are those that a FarExt::StencilTable of the same refiner gives, with all rules for
+/// boundaries, creases, corners and face-varying seams, up to the rounding of floats (1e-6 of the
+/// largest control value).
+///
+/// \code
+///     auto const evaluator = RefinementEvaluator::Create(refiner);
+///     Osd::BufferDescriptor const desc(0, 3, 3);
+///     for each frame:
+///         evaluator->Evaluate(controlPositions, desc, positions, desc, refiner.GetMaxLevel());
+/// \endcode
+///
+/// **Elements.** Element j of a buffer is the \c length floats from <tt>offset + j * stride</tt> on,
+/// computed in 64 bits.  Nothing else is read or written, not even beside them.
+///
+/// **Aliasing.** Source and destination may be one buffer, as long as no float is both read and
+/// written: the destination may lie behind the source, or beside it in each stride.
+///
+/// **Threads.** The work runs on the threads of OpenMP, where the library was built with it, as
+/// many as omp_set_num_threads() and OMP_NUM_THREADS say.  Results are the same, bit for bit, for
+/// any number of threads, stride and offset, one level or all.  An evaluator keeps the levels below
+/// the one that was asked for, in memory that only the first frame takes: it must not be used by
+/// two threads at once.  Several evaluators may share a refiner.
+///
+/// **Lifetime.** The evaluator refers to the refiner, and is valid until that refines again or is
+/// destroyed.
+class RefinementEvaluator {
+    /// So that a pointer to floats is not taken for one to a buffer.
+    template <class BUFFER>
+    using IfBuffer = decltype(std::declval<BUFFER &>().BindCpuBuffer());
+
+public:
+    /// \brief What is evaluated, spelled as in FarExt::StencilTableFactory.
+    struct Options {
+        FarExt::StencilMode interpolationMode = FarExt::INTERPOLATE_VERTEX;
+        int fvarChannel = 0; ///< for INTERPOLATE_FACE_VARYING, whose elements are the values
+    };
+
+    /// \brief Prepares for the levels that \p refiner has.  Takes about 10 bytes per element of
+    /// levels 1 ... GetMaxLevel(), and the time of some frames.
+    ///
+    /// \return  null with StatusCode::InvalidArgument for a channel that is not there
+    static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
+                                                       Options options,
+                                                       FarExt::Status *status = nullptr);
+    static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
+                                                       FarExt::Status *status = nullptr) {
+        return Create(refiner, Options(), status);
+    }
+
+    FarExt::TopologyRefiner const &GetTopologyRefiner() const { return _refiner; }
+
+    /// The last level that can be evaluated, that of the refiner.
+    int GetMaxLevel() const { return int(_numElements.size()) - 1; }
+    /// Elements of a level: its vertices or face-varying values.  Those of level 0 are the source.
+    int GetNumElements(int level) const { return _numElements[std::size_t(level)]; }
+    /// Elements of levels 1 ... GetMaxLevel() together.
+    std::int64_t GetNumElementsAllLevels() const;
+
+    /// \brief Writes the values of one level to elements [0, GetNumElements(level)) of \p dst.
+    ///
+    /// \param src    control values, GetNumElements(0), without the offset of \p srcDesc
+    /// \param dst    without the offset of \p dstDesc
+    /// \param level  0 ... GetMaxLevel(); 0 copies the control values
+    ///
+    /// \return  false with StatusCode::InvalidArgument, and nothing written, if
+    ///           - \p level is out of range, or the refiner has another number of levels now,
+    ///           - the lengths of the descriptors differ, or are less than 1,
+    ///           - a stride is less than the length, or an offset is negative,
+    ///           - \p src or \p dst is null, unless there is nothing to write.
+    bool Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                  Osd::BufferDescriptor const &dstDesc, int level,
+                  FarExt::Status *status = nullptr);
+
+    /// \brief Writes the values of levels 1 ... GetMaxLevel() to elements
+    /// [0, GetNumElementsAllLevels()), level behind level: the order of a stencil table with
+    /// intermediate levels.  Fails as Evaluate does.
+    bool EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                           Osd::BufferDescriptor const &dstDesc, FarExt::Status *status = nullptr);
+
+    /// @name With buffers
+    /// Whose function BindCpuBuffer() returns a float pointer, such as Osd::CpuVertexBuffer.  A
+    /// buffer that is null fails as a null pointer does.
+    /// @{
+    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
+    bool Evaluate(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
+                  DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc, int level,
+                  FarExt::Status *status = nullptr) {
+        return Evaluate(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, level, status);
+    }
+    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
+    bool EvaluateAllLevels(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
+                           DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc,
+                           FarExt::Status *status = nullptr) {
+        return EvaluateAllLevels(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, status);
+    }
+    /// @}
+
+private:
+    using Source = internal::Elements<float const>;
+    using Destination = internal::Elements<float>;
+
+    RefinementEvaluator(FarExt::TopologyRefiner const &refiner, Options options);
+
+    template <class BUFFER>
+    static float *bind(BUFFER *buffer) {
+        return buffer ? buffer->BindCpuBuffer() : nullptr;
+    }
+
+    FarExt::Status check(float const *src, Osd::BufferDescriptor const &srcDesc, float const *dst,
+                         Osd::BufferDescriptor const &dstDesc, int level,
+                         std::int64_t numWritten) const;
+    Source toVertices(Source src, int length);
+
+    FarExt::TopologyRefiner const &_refiner;
+    internal::PlainMasks _masks;
+    std::vector<internal::RefinementStep> _steps; ///< by level of the parent
+    std::vector<int> _numElements;                ///< by level
+
+    /// Of a face-varying channel some of whose values several vertices of its value mesh share: the
+    /// value of each, see FarExt::internal::FVarLevel.
+    FarExt::internal::Buffer<Far::Index> const *_valuesOfVertices = nullptr;
+
+    FarExt::internal::Buffer<float> _controlValues; ///< by vertex of that value mesh
+    FarExt::internal::Buffer<float> _scratch[2];    ///< levels below the one asked for
+};
+
+} // namespace OsdExt
+} // namespace OpenSubdivHex
+
+#endif
