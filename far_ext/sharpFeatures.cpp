@@ -156,8 +156,8 @@ std::vector<Index> findSharpVertices(LevelTopology const &level) {
 }
 
 SharpVertex smoothMask(Index vert, int numFaces) {
-    double const weight = 1.0 / (numFaces + 1);
-    return {vert, Crease::RULE_SMOOTH, weight, weight, {vert, vert}, {0, 0}};
+    VertexVertexMask const mask = ComputeVertexVertexMask(Interpolation::Vertex, numFaces);
+    return {vert, Crease::RULE_SMOOTH, mask.vertexWeight, mask.faceWeight, {vert, vert}, {0, 0}};
 }
 
 SharpVertex cornerMask(Index vert) {
