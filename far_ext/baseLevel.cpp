@@ -2,6 +2,7 @@
 #include "baseLevel.h"
 
 #include <algorithm>
+#include <set>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -27,11 +28,6 @@ private:
     void buildVertices();
     void appendFan(Index startCorner);
 
-    Index prevCorner(Index corner) const {
-        Index const face = _faceOfCorner[corner];
-        bool const isFirst = corner == _level.faceFirstCorner[face];
-        return (isFirst ? _level.faceFirstCorner[face + 1] : corner) - 1;
-    }
     LocalIndex local(Index corner) const {
         return LocalIndex(corner - _level.faceFirstCorner[_faceOfCorner[corner]]);
     }
@@ -42,15 +38,15 @@ private:
     }
     // The corners of the same vertex in the next face around it, counter-clockwise and clockwise;
     // negative across a boundary.
-    Index nextAround(Index corner) const { return otherSide(prevCorner(corner)); }
+    Index nextAround(Index corner) const {
+        return otherSide(_level.GetPrevCorner(_faceOfCorner[corner], corner));
+    }
     Index prevAround(Index corner) const {
         Index const other = otherSide(corner);
         if (other < 0) {
             return other;
         }
-        Index const face = _faceOfCorner[other];
-        bool const isLast = other + 1 == _level.faceFirstCorner[face + 1];
-        return isLast ? _level.faceFirstCorner[face] : other + 1;
+        return _level.GetNextCorner(_faceOfCorner[other], other);
     }
 
     std::vector<EdgeSides> const &_edges;
@@ -77,13 +73,13 @@ void BaseLevelBuilder::buildEdges() {
     _level.edgeFaceLocals.Resize(2 * _edges.size());
     _level.numFreeBoundaries = 0;
     _level.numSharpBoundariesA = 0;
+    _level.numSharpBoundariesB = 0;
     std::vector<Index> boundaryEdges;
     for (std::size_t edge = 0; edge < _edges.size(); ++edge) {
         Index const corner = _edges[edge].corners[0];
         Index const other = _edges[edge].corners[1];
         Index const face = _faceOfCorner[corner];
-        bool const isLast = corner + 1 == _level.faceFirstCorner[face + 1];
-        Index const next = isLast ? _level.faceFirstCorner[face] : corner + 1;
+        Index const next = _level.GetNextCorner(face, corner);
         _level.edgeVerts[2 * edge] = _level.faceVerts[corner];
         _level.edgeVerts[2 * edge + 1] = _level.faceVerts[next];
         _level.edgeFaces[2 * edge] = face;
@@ -93,7 +89,9 @@ void BaseLevelBuilder::buildEdges() {
             _level.edgeFaces[2 * edge + 1] = other;
             _level.edgeFaceLocals[2 * edge + 1] = 0;
             boundaryEdges.push_back(Index(edge));
-            ++(other == kFreeBoundary ? _level.numFreeBoundaries : _level.numSharpBoundariesA);
+            ++(other == kFreeBoundary     ? _level.numFreeBoundaries
+               : other == kSharpBoundaryA ? _level.numSharpBoundariesA
+                                          : _level.numSharpBoundariesB);
         } else {
             _level.edgeFaces[2 * edge + 1] = _faceOfCorner[other];
             _level.edgeFaceLocals[2 * edge + 1] = local(other);
@@ -166,7 +164,7 @@ void BaseLevelBuilder::appendFan(Index startCorner) {
             return;
         }
         if (next < 0) {
-            Index const prev = prevCorner(corner);
+            Index const prev = _level.GetPrevCorner(_faceOfCorner[corner], corner);
             addEdge(_level.faceEdges[prev], false, prev);
             return;
         }
@@ -178,6 +176,17 @@ void BaseLevelBuilder::appendFan(Index startCorner) {
 
 void BuildBaseLevel(std::vector<EdgeSides> const &edges, LevelTopology &level) {
     level.hasFullTopology = true;
+    level.isHexagonal = false;
+    std::set<Index> sizes;
+    Index lastSize = 0;
+    for (Index face = 0; face < level.numFaces; ++face) {
+        Index const size = level.faceFirstCorner[face + 1] - level.faceFirstCorner[face];
+        if (size != lastSize) {
+            sizes.insert(size);
+            lastSize = size;
+        }
+    }
+    level.faceSizes.assign(sizes.begin(), sizes.end());
     BaseLevelBuilder(edges, level).Build();
 }
 

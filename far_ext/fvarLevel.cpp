@@ -4,6 +4,7 @@
 #include "baseLevel.h"
 #include "sharpFeatures.h"
 #include "topologyRefinement.h"
+#include "vertexFan.h"
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -15,21 +16,6 @@ namespace {
 
 using Far::Index;
 
-// The corners where the two sides of an edge of the mesh begin, the second negative at a boundary.
-EdgeSides sidesOf(LevelTopology const &mesh, Index edge) {
-    EdgeSides sides;
-    for (int side = 0; side < 2; ++side) {
-        std::size_t const k = 2 * std::size_t(edge) + side;
-        Index const face = mesh.edgeFaces[k];
-        sides.corners[side] = face < 0 ? face : mesh.faceFirstCorner[face] + mesh.edgeFaceLocals[k];
-    }
-    return sides;
-}
-
-Index nextCorner(LevelTopology const &mesh, Index face, Index corner) {
-    return corner + 1 == mesh.faceFirstCorner[face + 1] ? mesh.faceFirstCorner[face] : corner + 1;
-}
-
 // The edges of the value mesh: an edge of the mesh whose sides differ in a value falls into two.
 // meshEdges gets the mesh edge that each comes from.
 std::vector<EdgeSides> cutSeams(LevelTopology const &mesh, std::vector<Index> const &faceValues,
@@ -38,12 +24,11 @@ std::vector<EdgeSides> cutSeams(LevelTopology const &mesh, std::vector<Index> co
     std::vector<EdgeSides> secondSides;
     std::vector<Index> secondMeshEdges;
     for (Index edge = 0; edge < mesh.numEdges; ++edge) {
-        EdgeSides sides = sidesOf(mesh, edge);
+        EdgeSides sides = {{mesh.GetSideCorner(edge, 0), mesh.GetSideCorner(edge, 1)}};
         if (sides.corners[1] >= 0) {
-            Index const next0 =
-                nextCorner(mesh, mesh.edgeFaces[2 * std::size_t(edge)], sides.corners[0]);
-            Index const next1 =
-                nextCorner(mesh, mesh.edgeFaces[2 * std::size_t(edge) + 1], sides.corners[1]);
+            std::size_t const k = 2 * std::size_t(edge);
+            Index const next0 = mesh.GetNextCorner(mesh.edgeFaces[k], sides.corners[0]);
+            Index const next1 = mesh.GetNextCorner(mesh.edgeFaces[k + 1], sides.corners[1]);
             if (faceValues[sides.corners[0]] != faceValues[next1] ||
                 faceValues[sides.corners[1]] != faceValues[next0]) {
                 secondSides.push_back({{sides.corners[1], kSharpBoundaryA}});
@@ -68,31 +53,15 @@ void splitFans(FVarLevel &channel, std::vector<EdgeSides> const &edges) {
         valuesOfVertices[value] = value;
     }
     for (Index vert = 0; vert < channel.numValues; ++vert) {
-        Index fanVert = vert;
-        bool isFirstFan = true;
-        Index lastInEdge = Far::INDEX_INVALID;
-        Index fanOutEdge = Far::INDEX_INVALID;
-        for (Index i = level.vertFirstFace[vert]; i < level.vertFirstFace[vert + 1]; ++i) {
-            Index const face = level.vertFaces[i];
-            Index const first = level.faceFirstCorner[face];
-            int const size = level.faceFirstCorner[face + 1] - first;
-            Index const corner = first + level.vertFaceLocals[i];
-            Index const outEdge = level.faceEdges[corner];
-            Index const inEdge =
-                level.faceEdges[first + (level.vertFaceLocals[i] + size - 1) % size];
-            bool const goesOn =
-                lastInEdge == outEdge && !level.IsBoundary(outEdge) && lastInEdge != fanOutEdge;
-            if (!goesOn) {
-                if (!isFirstFan) {
-                    fanVert = Index(valuesOfVertices.size());
-                    valuesOfVertices.push_back(vert);
-                }
-                isFirstFan = false;
-                fanOutEdge = outEdge;
+        ForEachFan(level, vert, [&](VertexFan const &fan) {
+            if (fan.begin == level.vertFirstFace[vert]) {
+                return;
             }
-            level.faceVerts[corner] = fanVert;
-            lastInEdge = inEdge;
-        }
+            for (Index i = fan.begin; i < fan.end; ++i) {
+                level.faceVerts[level.GetVertexCorner(i)] = Index(valuesOfVertices.size());
+            }
+            valuesOfVertices.push_back(vert);
+        });
     }
     channel.valuesOfVertices.Resize(valuesOfVertices.size());
     std::copy(valuesOfVertices.begin(), valuesOfVertices.end(), channel.valuesOfVertices.data());
@@ -166,17 +135,46 @@ void BuildFVarLevel(LevelTopology const &mesh, Index numValues,
     ComputeSharpMasks(sdcOptions, level);
 }
 
-void RefineFVarLevel(LevelTopology const &pMesh, FVarLevel &pChannel, Sdc::Options sdcOptions,
-                     bool fullTopology, FVarLevel &cChannel) {
-    RefineTopology(pChannel.topology, sdcOptions, fullTopology, cChannel.topology);
+namespace {
+
+// A V-face has the F-vertices of corners that no other V-face has.  No seam crosses these faces.
+void relateVFaces(LevelTopology const &pMesh, LevelTopology const &cMesh, FVarLevel const &pChannel,
+                  FVarLevel &cChannel) {
+    if (cMesh.numVFaces == 0) {
+        return;
+    }
+    LevelTopology const &pValues = pChannel.topology;
+    LevelTopology const &cValues = cChannel.topology;
+    std::vector<Index> vFaceOfCorner(pValues.numCorners, Far::INDEX_INVALID);
+    for (Index face = cValues.numFaces - cValues.numVFaces; face < cValues.numFaces; ++face) {
+        Index const lastVert = cValues.faceVerts[cValues.faceFirstCorner[face + 1] - 1];
+        vFaceOfCorner[pValues.GetChildVertexCorner(lastVert)] = face;
+    }
+    std::vector<Index> vFaceOfMeshCorner(pMesh.numCorners);
+    for (Index face = 0; face < pMesh.numFaces; ++face) {
+        Index const first = pMesh.faceFirstCorner[face];
+        Index const size = pMesh.faceFirstCorner[face + 1] - first;
+        for (Index i = 0; i < size && !pChannel.FindSplitFace(face); ++i) {
+            vFaceOfMeshCorner[first + i] =
+                vFaceOfCorner[pValues.faceFirstCorner[pChannel.valueFaces[face]] + i];
+        }
+    }
+    for (Index face = cMesh.numFaces - cMesh.numVFaces; face < cMesh.numFaces; ++face) {
+        Index const lastVert = cMesh.faceVerts[cMesh.faceFirstCorner[face + 1] - 1];
+        cChannel.valueFaces[face] = vFaceOfMeshCorner[pMesh.GetChildVertexCorner(lastVert)];
+    }
+}
+
+} // namespace
+
+void RelateFVarLevels(LevelTopology const &pMesh, LevelTopology const &cMesh,
+                      FVarLevel const &pChannel, FVarLevel &cChannel) {
     cChannel.linearInterpolation = pChannel.linearInterpolation;
     cChannel.numValues = cChannel.topology.numVertices;
 
     LevelTopology const &pValues = pChannel.topology;
     LevelTopology const &cValues = cChannel.topology;
-    HexIndexing const indexing = pMesh.ChildIndexing();
-    std::size_t const numBEdges = pMesh.halfFaces.size();
-    cChannel.valueFaces.Resize(std::size_t(pMesh.numFaces) + pMesh.numEdges - numBEdges);
+    cChannel.valueFaces.Resize(cMesh.numFaces);
     cChannel.splitFaces.clear();
 
     auto addSplitFace = [&](Index cFace, Index first, Index second) {
@@ -191,13 +189,12 @@ void RefineFVarLevel(LevelTopology const &pMesh, FVarLevel &pChannel, Sdc::Optio
     };
 
     for (Index pFace = 0; pFace < pMesh.numFaces; ++pFace) {
-        cChannel.valueFaces[indexing.GetFaceChildFace(pFace)] =
-            pValues.ChildIndexing().GetFaceChildFace(pChannel.valueFaces[pFace]);
+        cChannel.valueFaces[pMesh.faceChildFaces[pFace]] =
+            pValues.faceChildFaces[pChannel.valueFaces[pFace]];
     }
     for (FVarLevel::SplitFace const &split : pChannel.splitFaces) {
-        addSplitFace(indexing.GetFaceChildFace(split.face),
-                     pValues.ChildIndexing().GetFaceChildFace(split.valueFaces[0]),
-                     pValues.ChildIndexing().GetFaceChildFace(split.valueFaces[1]));
+        addSplitFace(pMesh.faceChildFaces[split.face], pValues.faceChildFaces[split.valueFaces[0]],
+                     pValues.faceChildFaces[split.valueFaces[1]]);
     }
     for (Index pEdge = 0; pEdge < pMesh.numEdges; ++pEdge) {
         Index const cFace = pMesh.GetEdgeChildFace(pEdge);
@@ -216,6 +213,7 @@ void RefineFVarLevel(LevelTopology const &pMesh, FVarLevel &pChannel, Sdc::Optio
             }
         }
     }
+    relateVFaces(pMesh, cMesh, pChannel, cChannel);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

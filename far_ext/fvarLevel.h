@@ -61,9 +61,10 @@ void BuildFVarLevel(LevelTopology const &mesh, Far::Index numValues,
                     std::vector<Far::Index> const &faceValues, std::vector<float> const &sharpness,
                     Sdc::Options sdcOptions, FVarLevel &channel);
 
-/// \brief Refines the channel \p pChannel of \p pMesh along with it, to \p cChannel.
-void RefineFVarLevel(LevelTopology const &pMesh, FVarLevel &pChannel, Sdc::Options sdcOptions,
-                     bool fullTopology, FVarLevel &cChannel);
+/// \brief Relates \p cChannel, whose value mesh was refined from that of \p pChannel by the same
+/// step as \p cMesh from \p pMesh, to its mesh.
+void RelateFVarLevels(LevelTopology const &pMesh, LevelTopology const &cMesh,
+                      FVarLevel const &pChannel, FVarLevel &cChannel);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

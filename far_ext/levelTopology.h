@@ -57,7 +57,39 @@ struct LevelTopology {
     LevelTopology();
     ~LevelTopology();
 
+    /// The numbering of a child that the hexagonal step makes.
     HexIndexing ChildIndexing() const { return HexIndexing(numVertices, numFaces, numCorners); }
+
+    /// @name Children, of a level that was refined by any step
+    /// @{
+    /// INDEX_INVALID when the step makes no V-vertex of it.
+    Index GetVertexChildVertex(Index v) const {
+        return vertChildVerts.empty() ? v : vertChildVerts[v];
+    }
+    /// The inverse: the vertex that V-vertex \p cVert, below numVVertices, was made of.
+    Index GetVVertexParent(Index cVert) const {
+        return vVertexParents.empty() ? cVert : vVertexParents[cVert];
+    }
+    Index GetCornerChildVertex(Index corner) const { return numVVertices + corner; }
+    Index GetChildVertexCorner(Index cVert) const { return cVert - numVVertices; }
+    /// @}
+
+    /// The corners before and after a corner of a face.
+    Index GetPrevCorner(Index f, Index corner) const {
+        return (corner == faceFirstCorner[f] ? faceFirstCorner[f + 1] : corner) - 1;
+    }
+    Index GetNextCorner(Index f, Index corner) const {
+        return corner + 1 == faceFirstCorner[f + 1] ? faceFirstCorner[f] : corner + 1;
+    }
+    /// The corner of a vertex in the face at position \p k of vertFaces.
+    Index GetVertexCorner(Index k) const {
+        return faceFirstCorner[vertFaces[k]] + vertFaceLocals[k];
+    }
+    /// The corner where side \p side of an edge starts; a BoundaryKind, negative, where there is none.
+    Index GetSideCorner(Index e, int side) const {
+        std::size_t const k = 2 * std::size_t(e) + std::size_t(side);
+        return edgeFaces[k] < 0 ? edgeFaces[k] : faceFirstCorner[edgeFaces[k]] + edgeFaceLocals[k];
+    }
 
     bool IsBoundary(Index e) const { return edgeFaces[2 * std::size_t(e) + 1] < 0; }
     bool IsSharpBoundaryB(Index e) const {
@@ -110,6 +142,8 @@ struct LevelTopology {
     Index numSharpBoundariesA = 0;
     Index numSharpBoundariesB = 0;
 
+    /// Whether the hexagonal step made the level: see kEFaceSideA for the order in its E-faces.
+    bool isHexagonal = false;
     /// False when only the face-vertices were made (the last level, unless asked for more).
     bool hasFullTopology = false;
 
@@ -130,8 +164,15 @@ struct LevelTopology {
     Buffer<Index> vertEdges;
     Buffer<LocalIndex> vertEdgeLocals; ///< 0 or 1: the vertex's place in each of its edges
 
-    Buffer<Index> faceChildFaces; ///< numFaces, of a level that was refined
+    // Children, of a level that was refined.
+    Index numVVertices = 0;       ///< vertices of the child that were made of vertices
+    Buffer<Index> vertChildVerts; ///< numVertices; empty when V-vertices have their parent's index
+    Buffer<Index> vVertexParents; ///< numVVertices, ascending; empty likewise
+    Buffer<Index> faceChildFaces; ///< numFaces
     Buffer<Index> edgeChildFaces; ///< numEdges; empty when every edge makes an E-face
+
+    Index numVFaces = 0;          ///< the last faces of the level, made for vertices of its parent
+    std::vector<Index> faceSizes; ///< ascending; all that occur in the level, perhaps more
 
     // Tags; each array is empty in a level that has none of its kind.
     Buffer<float> edgeSharpness;     ///< numEdges, of interior edges

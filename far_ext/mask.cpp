@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mask.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace OpenSubdivHex::FarExt {
@@ -75,6 +76,11 @@ void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, doubl
             weights[4 * i + j] = double(rows[i][j]);
         }
     }
+}
+
+void ComputeTriHexMask(int n, double *weights) {
+    std::fill_n(weights, n, 1.0 / (3.0 * n));
+    weights[0] = weights[1] = (n + 1) / (3.0 * n);
 }
 
 double ComputeSectorShrink(FaceMask mask, double sectorSize) {

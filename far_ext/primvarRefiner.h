@@ -25,9 +25,7 @@ template <typename REAL>
 class PrimvarRefinerReal {
 public:
     /// Keeps a reference to \p refiner.
-    explicit PrimvarRefinerReal(TopologyRefiner const &refiner)
-        : _refiner(refiner), _vertexMask(refiner.GetLevel(0), faceMask(), Interpolation::Vertex),
-          _varyingMask(refiner.GetLevel(0), faceMask(), Interpolation::Varying) {}
+    explicit PrimvarRefinerReal(TopologyRefiner const &refiner) : _refiner(refiner) {}
 
     TopologyRefiner const &GetTopologyRefiner() const { return _refiner; }
 
@@ -35,14 +33,14 @@ public:
     /// of the scheme.  1 <= level <= GetMaxLevel().
     template <class T, class U>
     void Interpolate(int level, T const &src, U &dst) const {
-        interpolate(_refiner.GetLevel(level - 1), _vertexMask, src, dst);
+        interpolate(_refiner.GetLevel(level - 1), Interpolation::Vertex, src, dst);
     }
 
     /// \brief Varying data: linear, V' = V and P = (V + centroid)/2, for half faces the centroid of
     /// the whole hexagon; on a sharp boundary P = (3 V + W)/4.
     template <class T, class U>
     void InterpolateVarying(int level, T const &src, U &dst) const {
-        interpolate(_refiner.GetLevel(level - 1), _varyingMask, src, dst);
+        interpolate(_refiner.GetLevel(level - 1), Interpolation::Varying, src, dst);
     }
 
     /// \brief Face-uniform data: dst[f] is a copy of src[GetFaceParentFace(f)], for an E-face the
@@ -61,15 +59,15 @@ public:
     void InterpolateFaceVarying(int level, T const &src, U &dst, int channel = 0) const {
         internal::FVarLevel const &pChannel =
             *_refiner.GetLevel(level - 1).GetTopology().fvarLevels[channel];
-        internal::RefinementMask const &mask =
-            pChannel.linearInterpolation == Sdc::Options::FVAR_LINEAR_ALL ? _varyingMask
-                                                                          : _vertexMask;
+        Interpolation const interpolation =
+            pChannel.linearInterpolation == Sdc::Options::FVAR_LINEAR_ALL ? Interpolation::Varying
+                                                                          : Interpolation::Vertex;
         TopologyLevel const pValues(&pChannel.topology);
         if (level == 1) {
             ValuesOfVertices<T> const values{src, pChannel.valuesOfVertices.data()};
-            interpolate(pValues, mask, values, dst);
+            interpolate(pValues, interpolation, values, dst);
         } else {
-            interpolate(pValues, mask, src, dst);
+            interpolate(pValues, interpolation, src, dst);
         }
     }
 
@@ -82,31 +80,27 @@ private:
         Far::Index const *values;
     };
 
-    FaceMask faceMask() const { return _refiner.GetHexSchemeOptions().faceMask; }
-
     template <class T, class U>
-    void interpolate(TopologyLevel const &pLevel, internal::RefinementMask const &mask,
-                     T const &src, U &dst) const;
+    void interpolate(TopologyLevel const &pLevel, Interpolation interpolation, T const &src,
+                     U &dst) const;
 
     TopologyRefiner const &_refiner;
-    internal::RefinementMask _vertexMask;
-    internal::RefinementMask _varyingMask;
 };
 
 template <typename REAL>
 template <class T, class U>
-void PrimvarRefinerReal<REAL>::interpolate(TopologyLevel const &pLevel,
-                                           internal::RefinementMask const &mask, T const &src,
-                                           U &dst) const {
-    HexIndexing const indexing = pLevel.GetChildIndexing();
+void PrimvarRefinerReal<REAL>::interpolate(TopologyLevel const &pLevel, Interpolation interpolation,
+                                           T const &src, U &dst) const {
+    internal::LevelTopology const &topology = pLevel.GetTopology();
+    internal::RefinementMask const mask(pLevel, _refiner.GetHexSchemeOptions(), interpolation);
     std::vector<double> scratch;
 
     for (Far::Index pFace = 0; pFace < pLevel.GetNumFaces(); ++pFace) {
         Far::ConstIndexArray const pVerts = pLevel.GetFaceVertices(pFace);
         for (int i = 0; i < pVerts.size(); ++i) {
             Far::Index const corner = pLevel.GetFaceFirstCorner(pFace) + i;
-            double const *weights = mask.GetFaceVertexWeights(pLevel, pFace, i, scratch);
-            auto &&point = dst[indexing.GetCornerChildVertex(corner)];
+            double const *weights = mask.GetFaceVertexWeights(pFace, i, scratch);
+            auto &&point = dst[topology.GetCornerChildVertex(corner)];
             point.Clear();
             for (int j = 0; j < pVerts.size(); ++j) {
                 if (weights[j] > 0) {
@@ -115,9 +109,10 @@ void PrimvarRefinerReal<REAL>::interpolate(TopologyLevel const &pLevel,
             }
         }
     }
-    for (Far::Index pVert = 0; pVert < pLevel.GetNumVertices(); ++pVert) {
-        auto const weights = mask.GetVertexMask(pLevel, pVert);
-        auto &&point = dst[indexing.GetVertexChildVertex(pVert)];
+    for (Far::Index cVert = 0; cVert < topology.numVVertices; ++cVert) {
+        Far::Index const pVert = topology.GetVVertexParent(cVert);
+        auto const weights = mask.GetVertexMask(pVert);
+        auto &&point = dst[cVert];
         point.Clear();
         point.AddWithWeight(src[pVert], REAL(weights.vertexWeight));
         for (int i = 0; i < weights.numNeighbors; ++i) {
@@ -126,7 +121,7 @@ void PrimvarRefinerReal<REAL>::interpolate(TopologyLevel const &pLevel,
         if (weights.faceWeight > 0) {
             for (int i = 0; i < pLevel.GetVertexFaces(pVert).size(); ++i) {
                 Far::Index const corner = pLevel.GetVertexCorner(pVert, i);
-                point.AddWithWeight(dst[indexing.GetCornerChildVertex(corner)],
+                point.AddWithWeight(dst[topology.GetCornerChildVertex(corner)],
                                     REAL(weights.faceWeight));
             }
         }

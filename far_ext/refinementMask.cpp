@@ -2,29 +2,31 @@
 #include "refinementMask.h"
 
 #include <algorithm>
-#include <set>
 
 namespace OpenSubdivHex::FarExt::internal {
 
-RefinementMask::RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask,
+RefinementMask::RefinementMask(TopologyLevel const &pLevel, SchemeOptions schemeOptions,
                                Interpolation interpolation)
-    : _faceMask(faceMask), _interpolation(interpolation) {
-    // F-faces keep the size of their parent, so all sizes are those of the base and of E-faces.
-    constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
-    constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
-    std::set<int> sizes = {kHexagon, kTrapezoid};
-    for (Index face = 0; face < baseLevel.GetNumFaces(); ++face) {
-        sizes.insert(baseLevel.GetFaceVertices(face).size());
-    }
-    _faceMasks.resize(*sizes.rbegin() + 1);
-    for (int size : sizes) {
+    : _level(pLevel), _faceMask(schemeOptions.faceMask), _interpolation(interpolation) {
+    SchemeType const scheme = schemeOptions.GetSchemeOfLevel(pLevel.GetDepth() + 1);
+    LevelTopology const &topology = pLevel.GetTopology();
+    _hasFeatures = scheme == SchemeType::Hexagonal && topology.HasFeatures();
+
+    _faceMasks.resize(topology.faceSizes.empty() ? 0 : topology.faceSizes.back() + 1);
+    for (Index size : topology.faceSizes) {
         std::vector<double> &mask = _faceMasks[size];
         mask.resize(2 * std::size_t(size));
-        ComputeFaceVertexMask(faceMask, interpolation, size, mask.data());
+        if (scheme == SchemeType::TriHex) {
+            ComputeTriHexMask(size, mask.data());
+        } else {
+            ComputeFaceVertexMask(_faceMask, interpolation, size, mask.data());
+        }
         std::copy_n(mask.begin(), size, mask.begin() + size);
     }
 
-    ComputeHalfFaceVertexMask(faceMask, interpolation, &_halfFaceWeights[0][0]);
+    constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
+    constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
+    ComputeHalfFaceVertexMask(_faceMask, interpolation, &_halfFaceWeights[0][0]);
     // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
     // V and W are the ends of the diagonal, Q and P the two vertices between them.
     std::fill_n(&_diagonalWeights[0][0], kHexagon * kHexagon, 0.0);
@@ -37,25 +39,23 @@ RefinementMask::RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask
     }
 }
 
-double const *RefinementMask::GetFaceVertexWeights(TopologyLevel const &level, Index face,
-                                                   int corner, std::vector<double> &scratch) const {
-    if (level.GetTopology().HasFeatures()) {
-        return featureWeights(level, face, corner, scratch);
-    }
-    return smoothWeights(level.GetFaceVertices(face).size(), corner);
+double const *RefinementMask::GetFaceVertexWeights(Index face, int corner,
+                                                   std::vector<double> &scratch) const {
+    return _hasFeatures ? featureWeights(face, corner, scratch)
+                        : smoothWeights(_level.GetFaceVertices(face).size(), corner);
 }
 
-double const *RefinementMask::featureWeights(TopologyLevel const &level, Index face, int corner,
+double const *RefinementMask::featureWeights(Index face, int corner,
                                              std::vector<double> &scratch) const {
-    int const size = level.GetFaceVertices(face).size();
-    if (level.IsFaceHalf(face)) {
+    int const size = _level.GetFaceVertices(face).size();
+    if (_level.IsFaceHalf(face)) {
         return _halfFaceWeights[corner];
     }
     double const *smooth = smoothWeights(size, corner);
     if (_interpolation == Interpolation::Varying) {
         return smooth;
     }
-    if (float const sharpness = level.GetFaceDiagonalSharpness(face);
+    if (float const sharpness = _level.GetFaceDiagonalSharpness(face);
         Sdc::Crease::IsSharp(sharpness)) {
         double const *sharp = _diagonalWeights[corner];
         if (sharpness >= 1) {
@@ -69,7 +69,7 @@ double const *RefinementMask::featureWeights(TopologyLevel const &level, Index f
         return scratch.data();
     }
     SectorCorner const *sector =
-        level.GetTopology().FindSectorCorner(level.GetFaceFirstCorner(face) + corner);
+        _level.GetTopology().FindSectorCorner(_level.GetFaceFirstCorner(face) + corner);
     if (sector) {
         double const towards =
             sector->weight * (1 - ComputeSectorShrink(_faceMask, sector->sectorSize));
@@ -83,12 +83,12 @@ double const *RefinementMask::featureWeights(TopologyLevel const &level, Index f
     return smooth;
 }
 
-auto RefinementMask::GetVertexMask(TopologyLevel const &level, Index vert) const -> VertexMask {
+auto RefinementMask::GetVertexMask(Index vert) const -> VertexMask {
     SharpVertex const *sharp = _interpolation == Interpolation::Vertex
-                                   ? level.GetTopology().FindSharpVertex(vert)
+                                   ? _level.GetTopology().FindSharpVertex(vert)
                                    : nullptr;
     if (!sharp) {
-        VertexVertexMask const mask = GetPlainVertexMask(level.GetVertexFaces(vert).size());
+        VertexVertexMask const mask = GetPlainVertexMask(_level.GetVertexFaces(vert).size());
         return {mask.vertexWeight, mask.faceWeight, 0, {}, {}};
     }
     VertexMask mask = {sharp->vertexWeight, sharp->faceWeight, 0, {}, {}};
@@ -101,8 +101,11 @@ auto RefinementMask::GetVertexMask(TopologyLevel const &level, Index vert) const
     return mask;
 }
 
-std::vector<Far::Index> RefinementMask::FindFeatureFaces(TopologyLevel const &level) const {
-    LevelTopology const &topology = level.GetTopology();
+std::vector<Far::Index> RefinementMask::FindFeatureFaces() const {
+    LevelTopology const &topology = _level.GetTopology();
+    if (!_hasFeatures) {
+        return {};
+    }
     std::vector<Index> faces(topology.halfFaces.begin(), topology.halfFaces.end());
     if (_interpolation == Interpolation::Varying) {
         return faces;
@@ -122,10 +125,10 @@ std::vector<Far::Index> RefinementMask::FindFeatureFaces(TopologyLevel const &le
     return faces;
 }
 
-std::vector<Far::Index> RefinementMask::FindFeatureVertices(TopologyLevel const &level) const {
+std::vector<Far::Index> RefinementMask::FindFeatureVertices() const {
     std::vector<Index> verts;
     if (_interpolation == Interpolation::Vertex) {
-        for (SharpVertex const &sharp : level.GetTopology().sharpVerts) {
+        for (SharpVertex const &sharp : _level.GetTopology().sharpVerts) {
             verts.push_back(sharp.vert);
         }
     }

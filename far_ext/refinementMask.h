@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_REFINEMENT_MASK_H
 #define OPENSUBDIVHEX_FAR_EXT_REFINEMENT_MASK_H
 
-#include "mask.h"
+#include "schemeOptions.h"
 #include "topologyLevel.h"
 
 #include <vector>
@@ -25,15 +25,15 @@ public:
         double neighborWeights[2];
     };
 
-    /// Makes masks for faces of the sizes that \p baseLevel and its refinements have.
-    RefinementMask(TopologyLevel const &baseLevel, FaceMask faceMask, Interpolation interpolation);
+    /// Makes the masks of the step from \p pLevel, to which it refers, to its child.
+    RefinementMask(TopologyLevel const &pLevel, SchemeOptions schemeOptions,
+                   Interpolation interpolation);
 
     /// Weights of the vertices of \p face, in their order, for the F-vertex of its corner number
     /// \p corner.  The result is valid until \p scratch is used again.
-    double const *GetFaceVertexWeights(TopologyLevel const &level, Index face, int corner,
-                                       std::vector<double> &scratch) const;
+    double const *GetFaceVertexWeights(Index face, int corner, std::vector<double> &scratch) const;
 
-    VertexMask GetVertexMask(TopologyLevel const &level, Index vert) const;
+    VertexMask GetVertexMask(Index vert) const;
 
     /// @name The plain majority and the rest
     /// All faces of a size have the same weights, and all vertices with as many faces the same mask
@@ -46,8 +46,8 @@ public:
         return ComputeVertexVertexMask(_interpolation, numFaces);
     }
     /// All faces and vertices that are not plain, and perhaps some that are; ascending.
-    std::vector<Index> FindFeatureFaces(TopologyLevel const &level) const;
-    std::vector<Index> FindFeatureVertices(TopologyLevel const &level) const;
+    std::vector<Index> FindFeatureFaces() const;
+    std::vector<Index> FindFeatureVertices() const;
     /// @}
 
 private:
@@ -56,10 +56,11 @@ private:
         return _faceMasks[faceSize].data() + faceSize - corner;
     }
 
-    double const *featureWeights(TopologyLevel const &level, Index face, int corner,
-                                 std::vector<double> &scratch) const;
+    double const *featureWeights(Index face, int corner, std::vector<double> &scratch) const;
 
+    TopologyLevel const _level;
     FaceMask _faceMask;
+    bool _hasFeatures;
     Interpolation _interpolation;
     std::vector<std::vector<double>> _faceMasks; ///< by face size
 

@@ -2,6 +2,7 @@
 #include "sharpFeatures.h"
 
 #include "mask.h"
+#include "vertexFan.h"
 
 #include <algorithm>
 
@@ -34,62 +35,49 @@ RingItem edgeItem(LevelTopology const &level, Index edge, Index neighbor) {
 
 bool isSharp(RingItem const &item) { return Crease::IsSharp(item.sharpness); }
 
-// The faces around a vertex that are joined by edges, counter-clockwise: from boundary to boundary
-// or, when closed, all around, from the edge before the first face to the last face.
-struct Fan {
+// The items of a fan of faces, counter-clockwise: from boundary to boundary or, when closed, from the
+// edge before the first face to the last face.
+struct FanItems {
     std::vector<RingItem> items;
     bool isClosed;
 };
 
-// The fan that begins with the face at position i of the vertex's faces; returns where the next one
-// begins.
-Index gatherFan(LevelTopology const &level, Index vert, Index i, Fan &fan) {
+void gatherItems(LevelTopology const &level, VertexFan const &range, FanItems &fan) {
     fan.items.clear();
-    fan.isClosed = false;
-    Index firstEdge = Far::INDEX_INVALID;
-    for (; i < level.vertFirstFace[vert + 1]; ++i) {
+    fan.isClosed = range.isClosed;
+    for (Index i = range.begin; i < range.end; ++i) {
         Index const face = level.vertFaces[i];
-        Index const first = level.faceFirstCorner[face];
-        int const size = level.faceFirstCorner[face + 1] - first;
         int const local = level.vertFaceLocals[i];
-        Index const next = first + (local + 1) % size;
-        Index const prev = first + (local + size - 1) % size;
-        Index const outEdge = level.faceEdges[first + local];
+        Index const corner = level.GetVertexCorner(i);
+        Index const next = level.GetNextCorner(face, corner);
+        Index const prev = level.GetPrevCorner(face, corner);
+        Index const outEdge = level.faceEdges[corner];
         Index const inEdge = level.faceEdges[prev];
-        if (firstEdge == Far::INDEX_INVALID) {
-            firstEdge = outEdge;
-        }
         fan.items.push_back(edgeItem(level, outEdge, level.faceVerts[next]));
         float const diagonal = level.GetDiagonalSharpness(face);
         if ((local == kDiagonalStart || local == kDiagonalEnd) && Crease::IsSharp(diagonal)) {
-            Index const end = first + kDiagonalStart + kDiagonalEnd - local;
+            Index const end = corner - local + kDiagonalStart + kDiagonalEnd - local;
             fan.items.push_back(faceItem(Far::INDEX_INVALID));
             fan.items.push_back({false, Far::INDEX_INVALID, level.faceVerts[end], true, diagonal});
             fan.items.push_back(faceItem(Far::INDEX_INVALID));
         } else {
             bool const isHalf = level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
-            fan.items.push_back(faceItem(isHalf ? Far::INDEX_INVALID : first + local));
+            fan.items.push_back(faceItem(isHalf ? Far::INDEX_INVALID : corner));
         }
-        if (level.IsBoundary(inEdge)) {
+        if (i + 1 == range.end && !range.isClosed) {
             fan.items.push_back(edgeItem(level, inEdge, level.faceVerts[prev]));
-            return i + 1;
-        }
-        if (inEdge == firstEdge) {
-            fan.isClosed = true;
-            return i + 1;
         }
     }
-    return i;
 }
 
-// Calls function(fan) for the fans of a vertex.
+// Calls function(items) for the fans of a vertex.
 template <typename FUNCTION>
-void forEachFan(LevelTopology const &level, Index vert, FUNCTION function) {
-    Fan fan;
-    for (Index i = level.vertFirstFace[vert]; i < level.vertFirstFace[vert + 1];) {
-        i = gatherFan(level, vert, i, fan);
+void forEachFanItems(LevelTopology const &level, Index vert, FUNCTION function) {
+    FanItems fan;
+    ForEachFan(level, vert, [&](VertexFan const &range) {
+        gatherItems(level, range, fan);
         function(fan);
-    }
+    });
 }
 
 // The sharp edges that meet in a vertex: boundaries, crease edges and crease diagonals.
@@ -106,7 +94,7 @@ struct SharpEdges {
 SharpEdges gatherSharpEdges(LevelTopology const &level, Index vert) {
     SharpEdges result;
     bool hasBoundary = false;
-    forEachFan(level, vert, [&](Fan const &fan) {
+    forEachFanItems(level, vert, [&](FanItems const &fan) {
         bool const isOtherSheet = !fan.isClosed && hasBoundary;
         for (RingItem const &item : fan.items) {
             bool const isBoundary =
@@ -210,7 +198,7 @@ SharpVertex blend(SharpVertex const &parent, SharpVertex const &child, double pa
 }
 
 // Adds the corners of wide sectors between two sharp edges of a fan.
-void addSectorCorners(Fan &fan, std::vector<SectorCorner> &result) {
+void addSectorCorners(FanItems &fan, std::vector<SectorCorner> &result) {
     std::vector<RingItem> &items = fan.items;
     auto start = std::find_if(items.begin(), items.end(), isSharp);
     if (fan.isClosed && start != items.end()) {
@@ -250,7 +238,8 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
         float const vertSharpness = level.GetVertexSharpness(vert);
         SharpEdges const edges = gatherSharpEdges(level, vert);
         if (edges.GetSize() >= 2) {
-            forEachFan(level, vert, [&](Fan &fan) { addSectorCorners(fan, level.sectorCorners); });
+            forEachFanItems(level, vert,
+                            [&](FanItems &fan) { addSectorCorners(fan, level.sectorCorners); });
         }
         Crease::Rule const rule = creasing.DetermineVertexVertexRule(vertSharpness, edges.GetSize(),
                                                                      edges.sharpness.data());
@@ -326,7 +315,7 @@ void refineDiagonals(LevelTopology const &parent, SharpnessRefiner const &refine
                      LevelTopology &child) {
     fillZero(child.diagonalSharpness, child.numFaces);
     for (std::size_t face = 0; face < parent.diagonalSharpness.size(); ++face) {
-        child.diagonalSharpness[parent.ChildIndexing().GetFaceChildFace(Index(face))] =
+        child.diagonalSharpness[parent.faceChildFaces[face]] =
             refiner.Along(parent.diagonalSharpness[face]);
     }
     for (std::size_t edge = 0; edge < parent.edgeSharpness.size(); ++edge) {
@@ -337,6 +326,33 @@ void refineDiagonals(LevelTopology const &parent, SharpnessRefiner const &refine
         }
     }
     dropIfSmooth(child.diagonalSharpness);
+}
+
+// The sharp vertices of level 0 and their children are the first of their level.
+void refineVertices(LevelTopology const &parent, SharpnessRefiner const &refiner,
+                    LevelTopology &child) {
+    child.vertSharpness.Resize(parent.vertSharpness.size());
+    std::size_t size = 0;
+    for (std::size_t vert = 0; vert < parent.vertSharpness.size(); ++vert) {
+        if (parent.GetVertexChildVertex(Index(vert)) != Far::INDEX_INVALID) {
+            child.vertSharpness[size++] = refiner.Along(parent.vertSharpness[vert]);
+        }
+    }
+    child.vertSharpness.Resize(size);
+    dropIfSmooth(child.vertSharpness);
+}
+
+// The child edge from the V-vertex to the F-vertex of a corner.
+Index findSpoke(LevelTopology const &parent, Index corner, LevelTopology const &child) {
+    Index const vVertex = parent.GetVertexChildVertex(parent.faceVerts[corner]);
+    Index const fVertex = parent.GetCornerChildVertex(corner);
+    for (Index i = child.vertFirstEdge[fVertex]; i < child.vertFirstEdge[fVertex + 1]; ++i) {
+        Index const edge = child.vertEdges[i];
+        if (child.edgeVerts[2 * std::size_t(edge) + 1 - child.vertEdgeLocals[i]] == vVertex) {
+            return edge;
+        }
+    }
+    return Far::INDEX_INVALID;
 }
 
 void refineEdges(LevelTopology const &parent, SharpnessRefiner const &refiner,
@@ -352,8 +368,8 @@ void refineEdges(LevelTopology const &parent, SharpnessRefiner const &refiner,
         }
         for (int local : {kDiagonalStart, kDiagonalEnd}) {
             Index const corner = parent.faceFirstCorner[face] + local;
-            child.edgeSharpness[parent.ChildIndexing().GetCornerChildSpoke(corner)] =
-                refiner.AtVertex(sharpness, parent.faceVerts[corner]);
+            Index const spoke = findSpoke(parent, corner, child);
+            child.edgeSharpness[spoke] = refiner.AtVertex(sharpness, parent.faceVerts[corner]);
         }
     }
     dropIfSmooth(child.edgeSharpness);
@@ -362,7 +378,7 @@ void refineEdges(LevelTopology const &parent, SharpnessRefiner const &refiner,
 void refineHoles(LevelTopology const &parent, LevelTopology &child) {
     child.faceHoles.Resize(child.numFaces);
     for (Index face = 0; face < parent.numFaces; ++face) {
-        child.faceHoles[parent.ChildIndexing().GetFaceChildFace(face)] = parent.faceHoles[face];
+        child.faceHoles[parent.faceChildFaces[face]] = parent.faceHoles[face];
     }
     for (Index edge = 0; edge < parent.numEdges; ++edge) {
         if (Index const cFace = parent.GetEdgeChildFace(edge); cFace != Far::INDEX_INVALID) {
@@ -370,6 +386,21 @@ void refineHoles(LevelTopology const &parent, LevelTopology &child) {
             Index const face1 = parent.edgeFaces[2 * std::size_t(edge) + 1];
             child.faceHoles[cFace] =
                 parent.faceHoles[face0] && (face1 < 0 || parent.faceHoles[face1]);
+        }
+    }
+    // A V-face has F-vertices of faces around one vertex: a hole when all of these are.
+    std::vector<Index> faceOfCorner(parent.numCorners);
+    for (Index face = 0; face < parent.numFaces && child.numVFaces > 0; ++face) {
+        std::fill(faceOfCorner.begin() + parent.faceFirstCorner[face],
+                  faceOfCorner.begin() + parent.faceFirstCorner[face + 1], face);
+    }
+    for (Index cFace = child.numFaces - child.numVFaces; cFace < child.numFaces; ++cFace) {
+        child.faceHoles[cFace] = true;
+        for (Index k = child.faceFirstCorner[cFace]; k < child.faceFirstCorner[cFace + 1]; ++k) {
+            if (Index const cVert = child.faceVerts[k]; cVert >= parent.numVVertices) {
+                Index const pFace = faceOfCorner[parent.GetChildVertexCorner(cVert)];
+                child.faceHoles[cFace] &= parent.faceHoles[pFace];
+            }
         }
     }
 }
@@ -381,7 +412,12 @@ void RefineTags(LevelTopology const &parent, Sdc::Options sdcOptions, LevelTopol
     child.diagonalSharpness.Resize(0);
     child.vertSharpness.Resize(0);
     child.faceHoles.Resize(0);
-    child.nonManifoldVerts = parent.nonManifoldVerts;
+    child.nonManifoldVerts.clear();
+    for (Index vert : parent.nonManifoldVerts) {
+        if (Index const cVert = parent.GetVertexChildVertex(vert); cVert != Far::INDEX_INVALID) {
+            child.nonManifoldVerts.push_back(cVert);
+        }
+    }
 
     SharpnessRefiner const refiner(parent, sdcOptions);
     if (!parent.edgeSharpness.empty() || !parent.diagonalSharpness.empty()) {
@@ -391,11 +427,7 @@ void RefineTags(LevelTopology const &parent, Sdc::Options sdcOptions, LevelTopol
         }
     }
     if (!parent.vertSharpness.empty()) {
-        child.vertSharpness.Resize(parent.vertSharpness.size());
-        std::transform(parent.vertSharpness.begin(), parent.vertSharpness.end(),
-                       child.vertSharpness.data(),
-                       [&](float sharpness) { return refiner.Along(sharpness); });
-        dropIfSmooth(child.vertSharpness);
+        refineVertices(parent, refiner, child);
     }
     if (!parent.faceHoles.empty()) {
         refineHoles(parent, child);

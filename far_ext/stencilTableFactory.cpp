@@ -171,7 +171,7 @@ public:
     // The lists of V-vertices are not made when GetNumWeights exceeds what fits without them.
     LevelSupports(TopologyLevel const &pLevel, LevelSupports const &pSupports,
                   RefinementMask const &mask)
-        : _numParentFaces(pLevel.GetNumFaces()), _numVVertices(pLevel.GetNumVertices()) {
+        : _numParentFaces(pLevel.GetNumFaces()), _numVVertices(pLevel.GetTopology().numVVertices) {
         _lists.Append(_numParentFaces, [&](UnionBuilder &sources, Index pFace) {
             for (Index pVert : pLevel.GetFaceVertices(pFace)) {
                 sources.Add(pSupports.OfVertex(pLevel, pVert));
@@ -186,8 +186,9 @@ public:
             _numWeights = numLeast;
             return;
         }
-        _lists.Append(_numVVertices, [&](UnionBuilder &sources, Index pVert) {
-            auto const weights = mask.GetVertexMask(pLevel, pVert);
+        _lists.Append(_numVVertices, [&](UnionBuilder &sources, Index cVert) {
+            Index const pVert = pLevel.GetTopology().GetVVertexParent(cVert);
+            auto const weights = mask.GetVertexMask(pVert);
             sources.Add(pSupports.OfVertex(pLevel, pVert));
             for (int i = 0; i < weights.numNeighbors; ++i) {
                 sources.Add(pSupports.OfVertex(pLevel, weights.neighbors[i]));
@@ -198,21 +199,21 @@ public:
                 }
             }
         });
-        for (Index pVert = 0; pVert < _numVVertices; ++pVert) {
-            _numWeights += OfParentVertex(pVert).size();
+        for (Index cVert = 0; cVert < _numVVertices; ++cVert) {
+            _numWeights += OfVVertex(cVert).size();
         }
     }
 
-    // The support of all F-vertices of a face of the parent level, and of the V-vertex of a vertex.
+    // The support of all F-vertices of a face of the parent level, and of a V-vertex.
     ConstIndexArray OfParentFace(Index pFace) const { return _lists[pFace]; }
-    ConstIndexArray OfParentVertex(Index pVert) const { return _lists[_numParentFaces + pVert]; }
+    ConstIndexArray OfVVertex(Index cVert) const { return _lists[_numParentFaces + cVert]; }
 
     // The support of a vertex of the level itself, which is given.
     ConstIndexArray OfVertex(TopologyLevel const &level, Index vert) const {
         if (!_sources.empty()) {
             return ConstIndexArray(&_sources[vert], 1);
         }
-        return vert < _numVVertices ? OfParentVertex(vert) : OfParentFace(fFaceOf(level, vert));
+        return vert < _numVVertices ? OfVVertex(vert) : OfParentFace(fFaceOf(level, vert));
     }
 
     // Sum of the sizes of the supports of all vertices of the level.
@@ -226,9 +227,10 @@ private:
         if (_numWeights < kMaxCount / 8) {
             return count; // far from the limit: not worth a look at every vertex
         }
-        for (Index pVert = 0; pVert < _numVVertices; ++pVert) {
+        for (Index cVert = 0; cVert < _numVVertices; ++cVert) {
+            Index const pVert = pLevel.GetTopology().GetVVertexParent(cVert);
             int most = 0;
-            if (mask.GetVertexMask(pLevel, pVert).faceWeight > 0) {
+            if (mask.GetVertexMask(pVert).faceWeight > 0) {
                 for (Index pFace : pLevel.GetVertexFaces(pVert)) {
                     most = std::max(most, OfParentFace(pFace).size());
                 }
@@ -272,7 +274,7 @@ public:
     LevelBuilder(TopologyLevel const &pLevel, LevelSupports const &pSupports,
                  LevelSupports const &supports, RefinementMask const &mask,
                  LevelRows<REAL> const *pRows, LevelRows<REAL> const &rows)
-        : _pLevel(pLevel), _indexing(pLevel.GetChildIndexing()), _pSupports(pSupports),
+        : _pLevel(pLevel), _pTopology(pLevel.GetTopology()), _pSupports(pSupports),
           _supports(supports), _mask(mask), _pRows(pRows), _rows(rows) {}
 
     // numSources is more than any index in a stencil.
@@ -285,10 +287,10 @@ public:
                                            fillFace(pFace, scratch);
                                        }
                                    });
-        internal::ParallelForRange(_pLevel.GetNumVertices(), makeScratch,
+        internal::ParallelForRange(_pTopology.numVVertices, makeScratch,
                                    [this](Scratch &scratch, Index begin, Index end) {
-                                       for (Index pVert = begin; pVert < end; ++pVert) {
-                                           fillVertex(pVert, scratch);
+                                       for (Index cVert = begin; cVert < end; ++cVert) {
+                                           fillVVertex(cVert, scratch);
                                        }
                                    });
     }
@@ -313,7 +315,7 @@ private:
 
     void fillSizesAndOffsets(Index firstOffset);
     void fillFace(Index pFace, Scratch &scratch) const;
-    void fillVertex(Index pVert, Scratch &scratch) const;
+    void fillVVertex(Index cVert, Scratch &scratch) const;
 
     // Adds weight times the stencil of a row to a dense row over the located support.
     // clang-tidy 14 does not see the write, whose factors depend on REAL.
@@ -341,7 +343,7 @@ private:
     }
 
     TopologyLevel const &_pLevel;
-    HexIndexing const _indexing;
+    internal::LevelTopology const &_pTopology;
     LevelSupports const &_pSupports;
     LevelSupports const &_supports;
     RefinementMask const &_mask;
@@ -351,16 +353,16 @@ private:
 
 template <typename REAL>
 void LevelBuilder<REAL>::fillSizesAndOffsets(Index firstOffset) {
-    internal::ParallelFor(_pLevel.GetNumVertices(), [this](Index pVert) {
-        _rows.sizes[_indexing.GetVertexChildVertex(pVert)] = _supports.OfParentVertex(pVert).size();
+    internal::ParallelFor(_pTopology.numVVertices, [this](Index cVert) {
+        _rows.sizes[cVert] = _supports.OfVVertex(cVert).size();
     });
     internal::ParallelFor(_pLevel.GetNumFaces(), [this](Index pFace) {
-        Index const first = _indexing.GetCornerChildVertex(_pLevel.GetFaceFirstCorner(pFace));
+        Index const first = _pTopology.GetCornerChildVertex(_pLevel.GetFaceFirstCorner(pFace));
         std::fill_n(_rows.sizes + first, _pLevel.GetFaceVertices(pFace).size(),
                     _supports.OfParentFace(pFace).size());
     });
     Index offset = firstOffset;
-    Index const numVertices = _indexing.GetCornerChildVertex(_pLevel.GetNumFaceVertices());
+    Index const numVertices = _pTopology.GetCornerChildVertex(_pLevel.GetNumFaceVertices());
     for (Index cVert = 0; cVert < numVertices; ++cVert) {
         _rows.offsets[cVert] = offset;
         offset += _rows.sizes[cVert];
@@ -380,12 +382,12 @@ void LevelBuilder<REAL>::fillFace(Index pFace, Scratch &scratch) const {
         // The vertices are sources themselves: the mask is the stencil.
         for (int i = 0; i < pVerts.size(); ++i) {
             Index const corner = _pLevel.GetFaceFirstCorner(pFace) + i;
-            double const *mask = _mask.GetFaceVertexWeights(_pLevel, pFace, i, scratch.mask);
+            double const *mask = _mask.GetFaceVertexWeights(pFace, i, scratch.mask);
             std::fill_n(row, width, 0.0);
             for (int j = 0; j < pVerts.size(); ++j) {
                 addParent(pVerts[j], mask[j], scratch, row);
             }
-            storeRow(support, scratch.row, _indexing.GetCornerChildVertex(corner));
+            storeRow(support, scratch.row, _pTopology.GetCornerChildVertex(corner));
         }
         return;
     }
@@ -395,7 +397,7 @@ void LevelBuilder<REAL>::fillFace(Index pFace, Scratch &scratch) const {
     }
     for (int i = 0; i < pVerts.size(); ++i) {
         Index const corner = _pLevel.GetFaceFirstCorner(pFace) + i;
-        double const *mask = _mask.GetFaceVertexWeights(_pLevel, pFace, i, scratch.mask);
+        double const *mask = _mask.GetFaceVertexWeights(pFace, i, scratch.mask);
         double const *parent = scratch.parentBlock.data();
         for (std::size_t k = 0; k < width; ++k) {
             row[k] = mask[0] * parent[k];
@@ -406,18 +408,19 @@ void LevelBuilder<REAL>::fillFace(Index pFace, Scratch &scratch) const {
                 row[k] += mask[j] * parent[k];
             }
         }
-        storeRow(support, scratch.row, _indexing.GetCornerChildVertex(corner));
+        storeRow(support, scratch.row, _pTopology.GetCornerChildVertex(corner));
     }
 }
 
 template <typename REAL>
-void LevelBuilder<REAL>::fillVertex(Index pVert, Scratch &scratch) const {
-    ConstIndexArray const support = _supports.OfParentVertex(pVert);
+void LevelBuilder<REAL>::fillVVertex(Index cVert, Scratch &scratch) const {
+    Index const pVert = _pTopology.GetVVertexParent(cVert);
+    ConstIndexArray const support = _supports.OfVVertex(cVert);
     scratch.Locate(support);
     scratch.row.assign(support.size(), 0.0);
     double *const row = scratch.row.data();
 
-    auto const mask = _mask.GetVertexMask(_pLevel, pVert);
+    auto const mask = _mask.GetVertexMask(pVert);
     addParent(pVert, mask.vertexWeight, scratch, row);
     for (int i = 0; i < mask.numNeighbors; ++i) {
         addParent(mask.neighbors[i], mask.neighborWeights[i], scratch, row);
@@ -425,10 +428,10 @@ void LevelBuilder<REAL>::fillVertex(Index pVert, Scratch &scratch) const {
     if (mask.faceWeight > 0) {
         for (int i = 0; i < _pLevel.GetVertexFaces(pVert).size(); ++i) {
             Index const corner = _pLevel.GetVertexCorner(pVert, i);
-            addRow(_rows, _indexing.GetCornerChildVertex(corner), mask.faceWeight, scratch, row);
+            addRow(_rows, _pTopology.GetCornerChildVertex(corner), mask.faceWeight, scratch, row);
         }
     }
-    storeRow(support, scratch.row, _indexing.GetVertexChildVertex(pVert));
+    storeRow(support, scratch.row, cVert);
 }
 
 // Which levels of which mesh the options ask for.
@@ -466,6 +469,10 @@ struct Plan {
         std::vector<Index> sources(GetNumVertices(level));
         std::iota(sources.begin(), sources.end(), 0);
         return LevelSupports(std::move(sources));
+    }
+    // The masks of the step that makes a level.
+    RefinementMask GetMask(int level) const {
+        return RefinementMask(GetLevel(level - 1), refiner.GetHexSchemeOptions(), interpolation);
     }
     // How many sources the stencils of a level have to choose from.
     Index GetNumSources(int level) const { return GetNumVertices(factorize ? 0 : level - 1); }
@@ -508,7 +515,7 @@ struct SymbolicTable {
     std::int64_t numWeights = 0;
 };
 
-Status buildSupports(Plan const &plan, RefinementMask const &mask, SymbolicTable &result) {
+Status buildSupports(Plan const &plan, SymbolicTable &result) {
     result.numStencils = plan.numControlStencils;
     result.numWeights = plan.numControlStencils;
     for (int level = plan.firstBuilt; level <= plan.lastLevel; ++level) {
@@ -517,7 +524,7 @@ Status buildSupports(Plan const &plan, RefinementMask const &mask, SymbolicTable
             result.sources.push_back(plan.GetSources(level - 1));
         }
         LevelSupports const &pSupports = result.ParentsOf(plan, level);
-        LevelSupports supports(pLevel, pSupports, mask);
+        LevelSupports supports(pLevel, pSupports, plan.GetMask(level));
         std::int64_t const numLevelWeights = supports.GetNumWeights();
         if (level >= plan.firstStored) {
             result.numStencils += plan.GetNumVertices(level);
@@ -536,8 +543,7 @@ Status buildSupports(Plan const &plan, RefinementMask const &mask, SymbolicTable
 }
 
 template <typename REAL>
-std::unique_ptr<WritableTable<REAL>> buildTable(Plan const &plan, RefinementMask const &mask,
-                                                SymbolicTable const &symbolic) {
+std::unique_ptr<WritableTable<REAL>> buildTable(Plan const &plan, SymbolicTable const &symbolic) {
     Index const numControlVertices = plan.GetNumVertices(0);
     auto table = std::make_unique<WritableTable<REAL>>(numControlVertices, symbolic.numStencils,
                                                        symbolic.numWeights);
@@ -560,6 +566,7 @@ std::unique_ptr<WritableTable<REAL>> buildTable(Plan const &plan, RefinementMask
                 std::make_unique<WritableTable<REAL>>(numControlVertices, numStencils, numWeights);
         }
         LevelRows<REAL> const rows = isStored ? table->GetRows(nextStencil) : current->GetRows(0);
+        RefinementMask const mask = plan.GetMask(level);
         LevelBuilder<REAL>(pLevel, symbolic.ParentsOf(plan, level), supports, mask,
                            plan.HasParentStencils(level) ? &pRows : nullptr, rows)
             .Fill(plan.GetNumSources(level), isStored ? nextOffset : 0);
@@ -597,13 +604,11 @@ auto StencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Optio
         return nullptr;
     }
     Plan const plan(refiner, options);
-    RefinementMask const mask(refiner.GetLevel(0), refiner.GetHexSchemeOptions().faceMask,
-                              plan.interpolation);
     SymbolicTable symbolic;
-    if (!internal::Report(buildSupports(plan, mask, symbolic), status)) {
+    if (!internal::Report(buildSupports(plan, symbolic), status)) {
         return nullptr;
     }
-    return buildTable<REAL>(plan, mask, symbolic);
+    return buildTable<REAL>(plan, symbolic);
 }
 
 template class StencilTableFactoryReal<float>;

@@ -168,17 +168,35 @@ FaceKind TopologyLevel::GetFaceKind(Index f) const {
     if (!_topology->parent) {
         return FaceKind::Base;
     }
-    return _topology->parent->ChildIndexing().IsFaceFromEdge(f) ? FaceKind::Edge : FaceKind::Face;
+    if (f < _topology->parent->numFaces) {
+        return FaceKind::Face;
+    }
+    return f < _topology->numFaces - _topology->numVFaces ? FaceKind::Edge : FaceKind::Vertex;
 }
+
+namespace {
+
+// The corner of the parent that the last vertex of a face was made of: of an E-face, that where the
+// first face of its edge runs along it; of a V-face, one at its vertex.
+Index parentCornerOf(LevelTopology const &topology, Index f) {
+    Index const lastVert = topology.faceVerts[topology.faceFirstCorner[f + 1] - 1];
+    return topology.parent->GetChildVertexCorner(lastVert);
+}
+
+} // namespace
 
 Index TopologyLevel::GetFaceParentEdge(Index f) const {
     if (GetFaceKind(f) != FaceKind::Edge) {
         return Far::INDEX_INVALID;
     }
-    // The last vertex of an E-face comes from the corner where the edge's first face runs along it.
-    LevelTopology const &parent = *_topology->parent;
-    Index const lastVert = _topology->faceVerts[_topology->faceFirstCorner[f + 1] - 1];
-    return parent.faceEdges[parent.ChildIndexing().GetChildVertexCorner(lastVert)];
+    return _topology->parent->faceEdges[parentCornerOf(*_topology, f)];
+}
+
+Index TopologyLevel::GetFaceParentVertex(Index f) const {
+    if (GetFaceKind(f) != FaceKind::Vertex) {
+        return Far::INDEX_INVALID;
+    }
+    return _topology->parent->faceVerts[parentCornerOf(*_topology, f)];
 }
 
 Index TopologyLevel::GetFaceParentFace(Index f) const {
@@ -187,6 +205,15 @@ Index TopologyLevel::GetFaceParentFace(Index f) const {
         return f;
     case FaceKind::Edge:
         return _topology->parent->edgeFaces[2 * std::size_t(GetFaceParentEdge(f))];
+    case FaceKind::Vertex: {
+        TopologyLevel const parent(_topology->parent);
+        Index const vert = GetFaceParentVertex(f);
+        int i = 0;
+        while (parent.GetVertexCorner(vert, i) != parentCornerOf(*_topology, f)) {
+            ++i;
+        }
+        return parent.GetVertexFaces(vert)[i];
+    }
     case FaceKind::Base:
         break;
     }
@@ -211,18 +238,18 @@ Far::ConstIndexArray TopologyLevel::GetFaceChildVertices(Index f) const {
     if (!_topology->child) {
         return ConstIndexArray();
     }
-    return TopologyLevel(_topology->child).GetFaceVertices(GetChildIndexing().GetFaceChildFace(f));
+    return TopologyLevel(_topology->child).GetFaceVertices(_topology->faceChildFaces[f]);
 }
 
 Far::ConstIndexArray TopologyLevel::GetFaceChildEdges(Index f) const {
     if (!_topology->child) {
         return ConstIndexArray();
     }
-    return TopologyLevel(_topology->child).GetFaceEdges(GetChildIndexing().GetFaceChildFace(f));
+    return TopologyLevel(_topology->child).GetFaceEdges(_topology->faceChildFaces[f]);
 }
 
 Far::ConstIndexArray TopologyLevel::GetEdgeChildEdges(Index e) const {
-    if (!_topology->child || !IsEdgeBoundary(e) || _topology->IsSharpBoundaryB(e)) {
+    if (!_topology->child || !IsEdgeBoundary(e) || GetEdgeChildFace(e) == Far::INDEX_INVALID) {
         return ConstIndexArray();
     }
     ConstIndexArray const edges = TopologyLevel(_topology->child).GetFaceEdges(GetEdgeChildFace(e));
@@ -234,7 +261,7 @@ Index TopologyLevel::GetEdgeChildFace(Index e) const {
 }
 
 Index TopologyLevel::GetVertexChildVertex(Index v) const {
-    return _topology->child ? GetChildIndexing().GetVertexChildVertex(v) : Far::INDEX_INVALID;
+    return _topology->child ? _topology->GetVertexChildVertex(v) : Far::INDEX_INVALID;
 }
 
 namespace {
@@ -249,7 +276,7 @@ public:
         return checkSizes() && checkFaces() &&
                (!_topology.hasFullTopology ||
                 (checkFaceEdges() && checkEdges() && checkVertices())) &&
-               (!_topology.parent || (checkFFaces() && checkEFaces()));
+               (!_topology.parent || (checkFFaces() && checkEFaces() && checkVFaces()));
     }
 
     Status const &GetStatus() const { return _status; }
@@ -294,6 +321,7 @@ private:
     bool checkVertices();
     bool checkFFaces();
     bool checkEFaces();
+    bool checkVFaces();
 
     TopologyLevel const _level;
     LevelTopology const &_topology;
@@ -461,15 +489,14 @@ bool Validator::checkVertices() {
 }
 
 bool Validator::checkFFaces() {
-    TopologyLevel const parent(_topology.parent);
-    HexIndexing const indexing = parent.GetChildIndexing();
-    for (Index pFace = 0; pFace < parent.GetNumFaces(); ++pFace) {
-        Index const cFace = indexing.GetFaceChildFace(pFace);
+    LevelTopology const &parent = *_topology.parent;
+    for (Index pFace = 0; pFace < parent.numFaces; ++pFace) {
+        Index const cFace = parent.faceChildFaces[pFace];
         Far::ConstIndexArray const verts = _level.GetFaceVertices(cFace);
-        bool good = verts.size() == parent.GetFaceVertices(pFace).size();
+        Index const first = parent.faceFirstCorner[pFace];
+        bool good = verts.size() == parent.faceFirstCorner[pFace + 1] - first;
         for (int i = 0; good && i < verts.size(); ++i) {
-            Index const corner = parent.GetFaceFirstCorner(pFace) + i;
-            good = verts[i] == indexing.GetCornerChildVertex(corner);
+            good = verts[i] == parent.GetCornerChildVertex(first + i);
         }
         if (!require(good, ComponentType::Face, cFace, "not the F-face of its parent")) {
             return false;
@@ -479,34 +506,68 @@ bool Validator::checkFFaces() {
 }
 
 bool Validator::checkEFaces() {
-    TopologyLevel const parent(_topology.parent);
-    HexIndexing const indexing = parent.GetChildIndexing();
+    LevelTopology const &topology = *_topology.parent;
+    TopologyLevel const parent(&topology);
     std::vector<Index> expected;
     for (Index pEdge = 0; pEdge < parent.GetNumEdges(); ++pEdge) {
-        // V-vertex, then the two F-vertices of the face on the far side, for each end.
+        Index const cFace = parent.GetEdgeChildFace(pEdge);
+        if (cFace == Far::INDEX_INVALID) {
+            continue;
+        }
+        // V-vertex, unless the edge makes a quad of its F-vertices alone, then the two F-vertices
+        // of the face on the far side, for each end.
         expected.clear();
+        Far::ConstIndexArray const actual = _level.GetFaceVertices(cFace);
         Far::ConstIndexArray const verts = parent.GetEdgeVertices(pEdge);
         Far::ConstIndexArray const faces = parent.GetEdgeFaces(pEdge);
         Far::ConstLocalIndexArray const locals = parent.GetEdgeFaceLocalIndices(pEdge);
+        bool const isQuad = faces.size() == 2 && actual.size() == 4;
         for (int side = 0; side < 2; ++side) {
-            expected.push_back(indexing.GetVertexChildVertex(verts[side]));
+            if (!isQuad) {
+                expected.push_back(topology.GetVertexChildVertex(verts[side]));
+            }
             if (faces.size() == 1 && side == 0) {
                 continue;
             }
             int const far = (faces.size() == 2) ? 1 - side : 0;
             int const size = parent.GetFaceVertices(faces[far]).size();
             Index const first = parent.GetFaceFirstCorner(faces[far]);
-            expected.push_back(indexing.GetCornerChildVertex(first + (locals[far] + 1) % size));
-            expected.push_back(indexing.GetCornerChildVertex(first + locals[far]));
+            expected.push_back(topology.GetCornerChildVertex(first + (locals[far] + 1) % size));
+            expected.push_back(topology.GetCornerChildVertex(first + locals[far]));
         }
-        Index const cFace = parent.GetEdgeChildFace(pEdge);
-        if (cFace == Far::INDEX_INVALID) {
-            continue;
-        }
-        Far::ConstIndexArray const actual = _level.GetFaceVertices(cFace);
         bool const good = actual.size() == int(expected.size()) &&
                           std::equal(expected.begin(), expected.end(), actual.begin());
         if (!require(good, ComponentType::Face, cFace, "not the E-face of its parent edge")) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// A V-face has its V-vertex first or not at all, and F-vertices of faces around its vertex: those of
+// corners there or, in tri-hex, of the corners before.
+bool Validator::checkVFaces() {
+    LevelTopology const &topology = *_topology.parent;
+    TopologyLevel const parent(&topology);
+    for (Index cFace = _topology.numFaces - _topology.numVFaces; cFace < _topology.numFaces;
+         ++cFace) {
+        Far::ConstIndexArray const verts = _level.GetFaceVertices(cFace);
+        bool good = verts[verts.size() - 1] >= topology.numVVertices;
+        Index const vert = good ? _level.GetFaceParentVertex(cFace) : Far::INDEX_INVALID;
+        for (int i = 0; good && i < verts.size(); ++i) {
+            if (verts[i] < topology.numVVertices) {
+                good = i == 0 && topology.GetVertexChildVertex(vert) == verts[i];
+                continue;
+            }
+            Index const corner = topology.GetChildVertexCorner(verts[i]);
+            Far::ConstIndexArray const faces = parent.GetVertexFaces(vert);
+            good = false;
+            for (int j = 0; j < faces.size(); ++j) {
+                Index const atVertex = parent.GetVertexCorner(vert, j);
+                good |= corner == atVertex || corner == topology.GetPrevCorner(faces[j], atVertex);
+            }
+        }
+        if (!require(good, ComponentType::Face, cFace, "not a V-face of its parent vertex")) {
             return false;
         }
     }

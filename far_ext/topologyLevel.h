@@ -8,9 +8,10 @@ namespace OpenSubdivHex::FarExt {
 
 /// \brief What a face of a refined level was made from.
 enum class FaceKind {
-    Base, ///< a face of level 0
-    Face, ///< F-face: the smaller copy of a parent face, with as many sides
-    Edge  ///< E-face: the hexagon of a parent edge (a quad along a boundary)
+    Base,  ///< a face of level 0
+    Face,  ///< F-face: the smaller copy of a parent face, with as many sides
+    Edge,  ///< E-face: the hexagon of a parent edge (a quad along a boundary, or of a flat edge)
+    Vertex ///< V-face: made for a parent vertex by a scheme or option that makes such faces
 };
 
 /// \brief Read access to one level of a refined mesh, with the names and types of
@@ -139,15 +140,18 @@ public:
     /// @{
     /// How the face was made.
     FaceKind GetFaceKind(Index f) const;
-    /// The face of level 0 that this face lies in; for an E-face, that of the first face of its
-    /// parent edge.
+    /// The face of level 0 that this face lies in; for other faces than F-faces, that of their
+    /// parent face.
     Index GetFaceBaseFace(Index f) const;
-    /// The parent face of an F-face; for an E-face, the first face of its parent edge.
+    /// The parent face of an F-face; for an E-face, the first face of its parent edge; for a V-face,
+    /// that of its last F-vertex.
     Index GetFaceParentFace(Index f) const;
     /// The parent edge of an E-face, INDEX_INVALID for other faces.
     Index GetFaceParentEdge(Index f) const;
+    /// The parent vertex of a V-face, INDEX_INVALID for other faces.
+    Index GetFaceParentVertex(Index f) const;
 
-    /// The numbering of the next level, made or not.
+    /// The numbering of the next level, made or not, when the hexagonal step makes it.
     HexIndexing GetChildIndexing() const { return _topology->ChildIndexing(); }
 
     /// The F-face of a face: one element.  Empty in a level that was not refined, as are the
@@ -160,9 +164,9 @@ public:
     /// The edge of the E-face of a boundary edge that is on the boundary again; other edges have
     /// none, a B edge because its children belong to its vertices and its face.
     ConstIndexArray GetEdgeChildEdges(Index e) const;
-    /// The E-face of an edge; INDEX_INVALID for a B edge of a sharp boundary, which makes none.
+    /// The E-face of an edge; INDEX_INVALID for one that makes none, as a B edge of a sharp boundary.
     Index GetEdgeChildFace(Index e) const;
-    /// The V-vertex of a vertex.
+    /// The V-vertex of a vertex; INDEX_INVALID for one that makes none.
     Index GetVertexChildVertex(Index v) const;
     /// INDEX_INVALID: a face has one child vertex per corner (GetFaceChildVertices) ...
     Index GetFaceChildVertex(Index) const { return Far::INDEX_INVALID; }

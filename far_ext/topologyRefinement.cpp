@@ -81,7 +81,7 @@ private:
     }
 
     bool isSideA(Index pFace, int size, Index pCorner, Index pEdge) const {
-        if (!_p.parent) {
+        if (!_p.isHexagonal) {
             return _p.edgeFaces[2 * std::size_t(pEdge)] == pFace;
         }
         if (!_p.parent->ChildIndexing().IsFaceFromEdge(pFace)) {
@@ -432,6 +432,9 @@ void fillLevel(LevelTopology const &parent, bool fullTopology, LevelTopology &ch
 
 // The relations that only a refined level has: to its children.
 void fillChildRelations(LevelTopology &parent) {
+    parent.numVVertices = parent.numVertices;
+    parent.vertChildVerts.Resize(0);
+    parent.vVertexParents.Resize(0);
     HexIndexing const indexing = parent.ChildIndexing();
     parent.faceChildFaces.Resize(parent.numFaces);
     ParallelFor(parent.numFaces, [&](Index pFace) {
@@ -485,9 +488,8 @@ LevelSizes GetChildSizes(LevelSizes const &p) {
             p.sharpBoundariesA + p.sharpBoundariesB};
 }
 
-void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTopology,
-                    LevelTopology &child) {
-    LevelSizes const sizes = GetChildSizes(GetSizes(parent));
+void BeginLevel(LevelSizes const &sizes, bool fullTopology, LevelTopology const &parent,
+                LevelTopology &child) {
     child.depth = parent.depth + 1;
     child.parent = &parent;
     child.child = nullptr;
@@ -499,23 +501,40 @@ void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTop
     child.numSharpBoundariesA = Index(sizes.sharpBoundariesA);
     child.numSharpBoundariesB = Index(sizes.sharpBoundariesB);
     child.hasFullTopology = fullTopology;
+}
 
+void EndLevel(Sdc::Options sdcOptions, LevelTopology &parent, LevelTopology &child) {
+    if (!child.hasFullTopology) {
+        clearRelations(child);
+    }
+    RefineTags(parent, sdcOptions, child);
+    if (child.hasFullTopology) {
+        ComputeSharpMasks(sdcOptions, child);
+    }
+    // Last, so that a parent has no child that is only half made.
+    parent.child = &child;
+}
+
+void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTopology,
+                    LevelTopology &child) {
+    BeginLevel(GetChildSizes(GetSizes(parent)), fullTopology, parent, child);
+    child.isHexagonal = true;
+    child.numVFaces = 0;
+    child.faceSizes = parent.faceSizes;
+    for (int size : {HexIndexing::kNumBoundaryEFaceCorners, HexIndexing::kNumEFaceCorners}) {
+        auto const place =
+            std::lower_bound(child.faceSizes.begin(), child.faceSizes.end(), Index(size));
+        if (place == child.faceSizes.end() || *place != size) {
+            child.faceSizes.insert(place, size);
+        }
+    }
     fillChildRelations(parent);
-
     if (parent.boundaryEdges.empty() && parent.nonManifoldVerts.empty()) {
         fillLevel<false>(parent, fullTopology, child);
     } else {
         fillLevel<true>(parent, fullTopology, child);
     }
-    if (!fullTopology) {
-        clearRelations(child);
-    }
-    RefineTags(parent, sdcOptions, child);
-    if (fullTopology) {
-        ComputeSharpMasks(sdcOptions, child);
-    }
-    // Last, so that a parent has no child that is only half made.
-    parent.child = &child;
+    EndLevel(sdcOptions, parent, child);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

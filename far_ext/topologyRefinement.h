@@ -24,7 +24,15 @@ LevelSizes GetSizes(LevelTopology const &level);
 /// The sizes of the level that refinement makes of a level of \p parent sizes.
 LevelSizes GetChildSizes(LevelSizes const &parent);
 
-/// \brief Makes \p child the refinement of \p parent: topology, tags and, with \p fullTopology, the
+/// \brief Begins \p child, a level of \p sizes, by any step from \p parent: sets its counts.
+void BeginLevel(LevelSizes const &sizes, bool fullTopology, LevelTopology const &parent,
+                LevelTopology &child);
+
+/// \brief Ends \p child, which has its topology: adds its tags and, with full topology, the masks of
+/// its sharp vertices; else removes the relations of an earlier level that had them.
+void EndLevel(Sdc::Options sdcOptions, LevelTopology &parent, LevelTopology &child);
+
+/// \brief Makes \p child the hexagonal refinement of \p parent: topology, tags and, with \p fullTopology, the
 /// masks of its sharp vertices.  Its sizes must fit 32 bits.  Without \p fullTopology only the
 /// face-vertices and the tags of faces are made.
 void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTopology,

@@ -2,56 +2,29 @@
 #include "topologyRefiner.h"
 
 #include "fvarLevel.h"
+#include "polygonRefinement.h"
+#include "sizeChecker.h"
 #include "topologyRefinement.h"
 
-#include <limits>
+#include <deque>
 
 namespace OpenSubdivHex::FarExt {
 
 using internal::LevelSizes;
 using internal::LevelTopology;
+using internal::SizeChecker;
 
 namespace {
 
-constexpr std::int64_t kMaxCount = std::numeric_limits<Far::Index>::max();
-
-struct Count {
-    char const *name;
-    std::int64_t value;
-};
-
-Status tooLarge(int level, Count const &count, std::string const &where) {
-    return Status(StatusCode::TooLarge, ComponentType::Level, level,
-                  "level " + std::to_string(level) + " would have " + std::to_string(count.value) +
-                      " " + count.name + where +
-                      ", more than the 2147483647 that 32-bit indices reach");
-}
-
-// Checks the sizes of all levels and their sums; the first level that exceeds 32 bits ends it, so
-// that 64 bits suffice.
-Status checkSizes(LevelTopology const &base, int refinementLevel, std::string const &where) {
-    LevelSizes sizes = internal::GetSizes(base);
-    LevelSizes total = sizes;
-    for (int level = 1; level <= refinementLevel; ++level) {
-        sizes = internal::GetChildSizes(sizes);
-        total.vertices += sizes.vertices;
-        total.edges += sizes.edges;
-        total.faces += sizes.faces;
-        total.corners += sizes.corners;
-        // The edge-vertices are the longest array.
-        for (Count const &count :
-             {Count{"vertices", sizes.vertices}, Count{"edges", sizes.edges},
-              Count{"faces", sizes.faces}, Count{"face-vertices", sizes.corners},
-              Count{"edge-vertices", 2 * sizes.edges}}) {
-            if (count.value > kMaxCount) {
-                return tooLarge(level, count, where);
-            }
-        }
-        for (Count const &count :
-             {Count{"vertices", total.vertices}, Count{"edges", total.edges},
-              Count{"faces", total.faces}, Count{"face-vertices", total.corners}}) {
-            if (count.value > kMaxCount) {
-                return tooLarge(level, count, where + " together with the levels before");
+// Checks the sizes of levels that hexagonal steps make, all known from those of the base.
+Status checkSizes(LevelTopology const &base, std::vector<SizeChecker> checkers,
+                  int refinementLevel) {
+    for (std::size_t i = 0; i < checkers.size(); ++i) {
+        LevelSizes sizes = internal::GetSizes(i == 0 ? base : base.fvarLevels[i - 1]->topology);
+        for (int level = 1; level <= refinementLevel; ++level) {
+            sizes = internal::GetChildSizes(sizes);
+            if (Status status = checkers[i].Add(sizes); !status.IsOk()) {
+                return status;
             }
         }
     }
@@ -69,6 +42,14 @@ TopologyRefiner::TopologyRefiner(std::unique_ptr<LevelTopology> baseLevel, Sdc::
 
 TopologyRefiner::~TopologyRefiner() = default;
 
+Status TopologyRefiner::checkLevel(int refinementLevel) {
+    if (refinementLevel >= 0) {
+        return Status();
+    }
+    return Status(StatusCode::InvalidArgument, ComponentType::Level, refinementLevel,
+                  "refinement level " + std::to_string(refinementLevel) + " is negative");
+}
+
 void TopologyRefiner::setNumLevels(int numLevels) {
     _levels.clear();
     for (int level = 0; level < numLevels; ++level) {
@@ -77,48 +58,104 @@ void TopologyRefiner::setNumLevels(int numLevels) {
     _topologies[numLevels - 1]->child = nullptr;
 }
 
+std::vector<SizeChecker> TopologyRefiner::makeSizeCheckers() const {
+    LevelTopology const &base = *_topologies[0];
+    std::vector<SizeChecker> result = {SizeChecker(internal::GetSizes(base), "")};
+    for (std::size_t channel = 0; channel < base.fvarLevels.size(); ++channel) {
+        result.emplace_back(internal::GetSizes(base.fvarLevels[channel]->topology),
+                            " in face-varying channel " + std::to_string(channel));
+    }
+    return result;
+}
+
+LevelTopology &TopologyRefiner::getLevelToFill(int level) {
+    if (int(_topologies.size()) == level) {
+        _topologies.push_back(std::make_unique<LevelTopology>());
+    }
+    LevelTopology &child = *_topologies[level];
+    child.fvarLevels.resize(_topologies[0]->fvarLevels.size());
+    for (std::unique_ptr<internal::FVarLevel> &channel : child.fvarLevels) {
+        if (!channel) {
+            channel = std::make_unique<internal::FVarLevel>();
+        }
+    }
+    return child;
+}
+
+Status TopologyRefiner::refineHexagonally(int level, bool fullTopology,
+                                          std::vector<SizeChecker> &checkers) {
+    LevelTopology &parent = *_topologies[level - 1];
+    Status const status = checkers[0].Add(internal::GetChildSizes(internal::GetSizes(parent)));
+    if (!status.IsOk()) {
+        return status;
+    }
+    LevelTopology &child = getLevelToFill(level);
+    internal::RefineTopology(parent, _sdcOptions, fullTopology, child);
+    for (std::size_t channel = 0; channel < child.fvarLevels.size(); ++channel) {
+        internal::FVarLevel &pChannel = *parent.fvarLevels[channel];
+        internal::FVarLevel &cChannel = *child.fvarLevels[channel];
+        internal::RefineTopology(pChannel.topology, _sdcOptions, fullTopology, cChannel.topology);
+        internal::RelateFVarLevels(parent, child, pChannel, cChannel);
+    }
+    return Status();
+}
+
+Status TopologyRefiner::refineToPolygons(int level, bool fullTopology,
+                                         internal::PolygonRules const &rules,
+                                         std::vector<SizeChecker> &checkers) {
+    LevelTopology &parent = *_topologies[level - 1];
+    std::deque<internal::PolygonStep> steps;
+    steps.emplace_back(parent, rules, _sdcOptions);
+    for (std::unique_ptr<internal::FVarLevel> const &pChannel : parent.fvarLevels) {
+        steps.emplace_back(pChannel->topology,
+                           internal::GetRulesOfChannel(parent, rules, *pChannel), _sdcOptions);
+    }
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (Status status = checkers[i].Add(steps[i].GetSizes()); !status.IsOk()) {
+            return status;
+        }
+    }
+    LevelTopology &child = getLevelToFill(level);
+    steps[0].Refine(fullTopology, child);
+    for (std::size_t channel = 0; channel < child.fvarLevels.size(); ++channel) {
+        internal::FVarLevel &cChannel = *child.fvarLevels[channel];
+        steps[channel + 1].Refine(fullTopology, cChannel.topology);
+        internal::RelateFVarLevels(parent, child, *parent.fvarLevels[channel], cChannel);
+    }
+    return Status();
+}
+
 bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
     int const refinementLevel = options.refinementLevel;
-    if (refinementLevel < 0) {
-        return internal::Report(
-            Status(StatusCode::InvalidArgument, ComponentType::Level, refinementLevel,
-                   "refinement level " + std::to_string(refinementLevel) + " is negative"),
-            status);
+    Status result = checkLevel(refinementLevel);
+    if (result.IsOk() && _schemeOptions.IsHexagonal()) {
+        result = checkSizes(*_topologies[0], makeSizeCheckers(), refinementLevel);
     }
-    LevelTopology const &base = *_topologies[0];
-    Status sizes = checkSizes(base, refinementLevel, "");
-    for (std::size_t channel = 0; channel < base.fvarLevels.size() && sizes.IsOk(); ++channel) {
-        sizes = checkSizes(base.fvarLevels[channel]->topology, refinementLevel,
-                           " in face-varying channel " + std::to_string(channel));
-    }
-    if (!sizes.IsOk()) {
-        return internal::Report(sizes, status);
+    if (!result.IsOk()) {
+        return internal::Report(result, status);
     }
     Unrefine();
-    for (int level = 1; level <= refinementLevel; ++level) {
-        if (int(_topologies.size()) == level) {
-            _topologies.push_back(std::make_unique<LevelTopology>());
-        }
+    std::vector<SizeChecker> checkers = makeSizeCheckers();
+    for (int level = 1; level <= refinementLevel && result.IsOk(); ++level) {
         bool const fullTopology = level < refinementLevel || options.fullTopologyInLastLevel;
-        LevelTopology &parent = *_topologies[level - 1];
-        LevelTopology &child = *_topologies[level];
-        internal::RefineTopology(parent, _sdcOptions, fullTopology, child);
-        child.fvarLevels.resize(parent.fvarLevels.size());
-        for (std::size_t channel = 0; channel < child.fvarLevels.size(); ++channel) {
-            if (!child.fvarLevels[channel]) {
-                child.fvarLevels[channel] = std::make_unique<internal::FVarLevel>();
-            }
-            internal::RefineFVarLevel(parent, *parent.fvarLevels[channel], _sdcOptions,
-                                      fullTopology, *child.fvarLevels[channel]);
-        }
+        internal::PolygonRules rules;
+        rules.scheme = _schemeOptions.GetSchemeOfLevel(level);
+        result = rules.scheme == SchemeType::Hexagonal
+                     ? refineHexagonally(level, fullTopology, checkers)
+                     : refineToPolygons(level, fullTopology, rules, checkers);
     }
-    setNumLevels(refinementLevel + 1);
-    _uniformOptions = options;
-    return internal::Report(Status(), status);
+    if (result.IsOk()) {
+        setNumLevels(refinementLevel + 1);
+        _uniformOptions = options;
+    } else {
+        Unrefine();
+    }
+    return internal::Report(result, status);
 }
 
 void TopologyRefiner::Unrefine() {
     setNumLevels(1);
+    _isUniform = true;
     _uniformOptions = UniformOptions(0);
 }
 

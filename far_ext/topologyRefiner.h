@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_TOPOLOGY_REFINER_H
 #define OPENSUBDIVHEX_FAR_EXT_TOPOLOGY_REFINER_H
 
-#include "mask.h"
+#include "schemeOptions.h"
 #include "topologyLevel.h"
 
 #include <opensubdiv/sdc/options.h>
@@ -12,10 +12,10 @@
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief What distinguishes one hexagonal scheme from another.
-struct SchemeOptions {
-    FaceMask faceMask = FaceMask::Average;
-};
+namespace internal {
+struct PolygonRules;
+class SizeChecker;
+} // namespace internal
 
 /// \brief The topology of a mesh and of its hexagonal refinements, level by level.
 ///
@@ -37,7 +37,8 @@ public:
 
     int GetNumLevels() const { return int(_levels.size()); }
     int GetMaxLevel() const { return GetNumLevels() - 1; }
-    bool IsUniform() const { return true; }
+    /// False after RefineCoplanar.
+    bool IsUniform() const { return _isUniform; }
 
     /// Whether the base has faces tagged as holes.
     bool HasHoles() const { return !_topologies[0]->faceHoles.empty(); }
@@ -71,22 +72,65 @@ public:
     /// \return  false with StatusCode::InvalidArgument for a negative level, and with
     ///          StatusCode::TooLarge, which names the level and the count, when a size or the sum
     ///          of a size over the levels exceeds 2^31 - 1.  No memory is taken then and the
-    ///          levels are as before.
+    ///          levels are as before.  The sizes of other schemes than Hexagonal are known only
+    ///          level by level: there the base alone is left.
     bool RefineUniform(UniformOptions options, Status *status = nullptr);
 
     /// The options of the last successful RefineUniform.
     UniformOptions GetUniformOptions() const { return _uniformOptions; }
 
+    /// \brief Options of RefineCoplanar.
+    struct CoplanarOptions {
+        CoplanarOptions(int level) : refinementLevel(level) {}
+
+        int refinementLevel;         ///< number of refinement steps, 0 or more
+        double angleTolerance = 0.1; ///< largest angle in degrees between normals taken as equal
+        /// Whether polygons at the vertices close the gaps between the faces; false is the paper's
+        /// literal form, in which they stay open.
+        bool closeGaps = true;
+        bool fullTopologyInLastLevel = false; ///< as in UniformOptions
+    };
+
+    /// \brief Refines as the paper's stage 3 says: edges between faces of the same normal make
+    /// quads, others hexagons.  Replaces earlier refinements.
+    ///
+    /// The faces are those of the rest pose, which the masks refine along; they fix the topology,
+    /// and tables and primvars work for any other pose as ever.  The normal of a face is that of its
+    /// polygon's vector area, planar or not; a face of no area has none.  Edges at boundaries,
+    /// creases, crease diagonals, sharp and non-manifold vertices and face-varying seams always make
+    /// hexagons.  INDEXING.md has the numbering.
+    ///
+    /// \param restPositions  x, y, z of the GetLevel(0).GetNumVertices() vertices of level 0
+    /// \return  false with StatusCode::InvalidArgument for a negative level, an angle that is not
+    ///          between 0 and 180, a coordinate that is not finite (its vertex is named) or a null
+    ///          pointer; Unsupported for other schemes than Hexagonal; the levels are then as
+    ///          before.  False with TooLarge as RefineUniform; then the base alone is left.
+    bool RefineCoplanar(float const *restPositions, CoplanarOptions options,
+                        Status *status = nullptr);
+    bool RefineCoplanar(double const *restPositions, CoplanarOptions options,
+                        Status *status = nullptr);
+
     /// Removes all levels but the base; their memory is kept for the next refinement.
     void Unrefine();
 
 private:
+    static Status checkLevel(int refinementLevel);
+
+    std::vector<internal::SizeChecker> makeSizeCheckers() const;
+    internal::LevelTopology &getLevelToFill(int level);
+    Status refineHexagonally(int level, bool fullTopology,
+                             std::vector<internal::SizeChecker> &checkers);
+    Status refineToPolygons(int level, bool fullTopology, internal::PolygonRules const &rules,
+                            std::vector<internal::SizeChecker> &checkers);
+    template <typename REAL>
+    bool refineCoplanar(REAL const *restPositions, CoplanarOptions const &options, Status *status);
     void setNumLevels(int numLevels);
     int total(int (TopologyLevel::*count)() const) const;
 
     Sdc::Options _sdcOptions;
     SchemeOptions _schemeOptions;
     UniformOptions _uniformOptions{0};
+    bool _isUniform = true;
     /// Arrays of all levels ever made (the memory is reused), the first _levels.size() in use.
     std::vector<std::unique_ptr<internal::LevelTopology>> _topologies;
     std::vector<TopologyLevel> _levels;

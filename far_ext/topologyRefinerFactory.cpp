@@ -395,12 +395,51 @@ void Importer::importChannel(int channel) {
                              options, *_level->fvarLevels.back());
 }
 
+// Schemes without rules for sharp features and seams take none.
+Status checkScheme(SchemeOptions schemeOptions, LevelTopology const &level) {
+    auto const unsupported = [](ComponentType component, Index index, std::string const &what) {
+        return Status(StatusCode::Unsupported, component, index,
+                      what + ", which only the hexagonal scheme has rules for");
+    };
+    if (schemeOptions.IsHexagonal()) {
+        return Status();
+    }
+    if (!level.nonManifoldEdges.empty()) {
+        Index const edge = level.nonManifoldEdges[0];
+        return unsupported(ComponentType::Edge, edge,
+                           "edge " + std::to_string(edge) + " is non-manifold");
+    }
+    for (Index edge = 0; edge < level.numEdges; ++edge) {
+        if (Sdc::Crease::IsSharp(level.GetEdgeSharpness(edge))) {
+            return unsupported(ComponentType::Edge, edge,
+                               "edge " + std::to_string(edge) + " is a crease");
+        }
+    }
+    for (Index vert = 0; vert < level.numVertices; ++vert) {
+        // Borders are dropped, and Far takes vertices without faces for sharp.
+        bool const isInterior = level.vertFirstFace[vert] < level.vertFirstFace[vert + 1] &&
+                                !TopologyLevel(&level).IsVertexBoundary(vert);
+        if (isInterior && Sdc::Crease::IsSharp(level.GetVertexSharpness(vert))) {
+            return unsupported(ComponentType::Vertex, vert,
+                               "vertex " + std::to_string(vert) + " is a sharp corner");
+        }
+    }
+    if (!level.fvarLevels.empty()) {
+        return unsupported(ComponentType::None, Far::INDEX_INVALID,
+                           "the mesh has face-varying channels");
+    }
+    return Status();
+}
+
 std::unique_ptr<TopologyRefiner> create(Far::TopologyRefiner const &base, bool const *isHole,
                                         TopologyRefinerFactory::Options options, Status *status) {
     Status result = checkFaces(base.GetLevel(0));
     std::unique_ptr<LevelTopology> level;
     if (result.IsOk()) {
         level = Importer(base, isHole).Import(result);
+    }
+    if (result.IsOk()) {
+        result = checkScheme(options.schemeOptions, *level);
     }
     if (!internal::Report(result, status)) {
         return nullptr;

@@ -28,8 +28,9 @@ public:
     /// boundary are not taken over, since Far tags all faces there as holes.
     ///
     /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices,
-    ///          two faces that run an edge in the same direction, an edge without a face) or
-    ///          TooLarge.
+    ///          two faces that run an edge in the same direction, an edge without a face), TooLarge,
+    ///          or Unsupported (creases, interior corners, non-manifold edges or face-varying
+    ///          channels with other steps than hexagonal ones).
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    Options options, Status *status = nullptr);
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,

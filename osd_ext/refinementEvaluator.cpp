@@ -77,20 +77,17 @@ std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner
 RefinementEvaluator::RefinementEvaluator(TopologyRefiner const &refiner, Options options)
     : _refiner(refiner) {
     std::vector<TopologyLevel> const meshes = getMeshes(refiner, options);
-    FarExt::internal::RefinementMask const mask(meshes[0], refiner.GetHexSchemeOptions().faceMask,
-                                                getInterpolation(refiner, options));
     _steps.resize(meshes.size() - 1);
-    int maxValence = 1;
     std::vector<Index> faceOrder(std::size_t(meshes[0].GetNumFaces()));
     std::iota(faceOrder.begin(), faceOrder.end(), 0);
     for (std::size_t level = 0; level < _steps.size(); ++level) {
         if (level > 0) {
             faceOrder = internal::RefineFaceOrder(meshes[level - 1], faceOrder);
         }
+        FarExt::internal::RefinementMask const mask(meshes[level], refiner.GetHexSchemeOptions(),
+                                                    getInterpolation(refiner, options));
         internal::MakeRefinementStep(mask, meshes[level], faceOrder, _steps[level]);
-        maxValence = std::max(maxValence, _steps[level].maxValence);
     }
-    _masks = internal::MakePlainMasks(mask, meshes[0], maxValence);
 
     for (TopologyLevel const &mesh : meshes) {
         _numElements.push_back(mesh.GetNumVertices());
@@ -173,7 +170,7 @@ bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const
             scratch.Resize(std::size_t(GetNumElements(step + 1)) * std::size_t(length));
             next = {scratch.data(), length};
         }
-        internal::RefineElements(_masks, _steps[std::size_t(step)], length, values, next);
+        internal::RefineElements(_steps[std::size_t(step)], length, values, next);
         values = {next.data, next.stride};
     }
     return true;
@@ -190,7 +187,7 @@ bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescrip
     Source values = toVertices({src + srcDesc.offset, srcDesc.stride}, length);
     Destination next = {dst + dstDesc.offset, dstDesc.stride};
     for (int step = 0; step < GetMaxLevel(); ++step) {
-        internal::RefineElements(_masks, _steps[std::size_t(step)], length, values, next);
+        internal::RefineElements(_steps[std::size_t(step)], length, values, next);
         values = {next.data, next.stride};
         next.data += GetNumElements(step + 1) * next.stride;
     }

@@ -137,7 +137,6 @@ private:
     Source toVertices(Source src, int length);
 
     FarExt::TopologyRefiner const &_refiner;
-    internal::PlainMasks _masks;
     std::vector<internal::RefinementStep> _steps; ///< by level of the parent
     std::vector<int> _numElements;                ///< by level
 

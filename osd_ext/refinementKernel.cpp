@@ -126,14 +126,13 @@ struct Access {
 
 // One refinement of some of the floats of all elements.
 struct Task {
-    PlainMasks const &masks;
     RefinementStep const &step;
     Elements<float const> src;
     Elements<float> dst;
 
     // The F-vertices, by corner.
     Elements<float> FVertices() const {
-        return {dst.data + std::ptrdiff_t(step.numVertices) * dst.stride, dst.stride};
+        return {dst.data + std::ptrdiff_t(step.numVVertices) * dst.stride, dst.stride};
     }
 };
 
@@ -212,8 +211,8 @@ void refinePlainFaces(Task const &task, Index const *begin, Index const *end) {
         int const size = begin[1];
         Index const *const verts = begin + kRecordHead;
         begin = verts + size;
-        PlainFaceMask const &mask = task.masks.faces[std::size_t(size)];
-        switch (size) {
+        PlainFaceMask const &mask = task.step.masks.faces[std::size_t(size)];
+        switch (mask.weights.empty() ? size : 0) {
         case 3:
             refineUnrolledFace<ACCESS, 3, false>(mask, task.src, verts, dst, corner);
             break;
@@ -244,7 +243,7 @@ void refinePlainFaces(Task const &task, Index const *begin, Index const *end) {
 template <class ACCESS>
 void refinePlainVertices(Task const &task, Index const *begin, Index const *end) {
     Elements<float const> const fVertices = asConst(task.FVertices());
-    float const *const inverses = task.masks.verticesInverse.data();
+    float const *const inverses = task.step.masks.verticesInverse.data();
     while (begin < end) {
         Index const vert = begin[0];
         int const numFaces = begin[1];
@@ -282,7 +281,7 @@ void refineWeightedVertex(Task const &task, WeightedVertex const &vertex) {
         }
         point = point + spread(vertex.faceWeight) * sum;
     }
-    ACCESS::StoreExactly(task.dst, vertex.vert, point);
+    ACCESS::StoreExactly(task.dst, vertex.child, point);
 }
 
 template <class ACCESS>
@@ -362,13 +361,14 @@ void runKernel(Task const &task, int length, Groups<ITEM> const &groups, int gro
 PlainFaceMask makePlainFaceMask(double const *weights, int size) {
     PlainFaceMask mask;
     bool const hasOpposite = size == kMaxUnrolledSize;
+    bool isOrdinary = weights[1] == weights[size - 1];
     for (int j = 2; j <= size - 2; ++j) {
-        bool const isOpposite = hasOpposite && j == size / 2;
-        if (weights[j] != weights[2] && !isOpposite) {
-            mask.weights.assign(weights, weights + size);
-            mask.weights.insert(mask.weights.end(), weights, weights + size);
-            return mask;
-        }
+        isOrdinary &= weights[j] == weights[2] || (hasOpposite && j == size / 2);
+    }
+    if (!isOrdinary) {
+        mask.weights.assign(weights, weights + size);
+        mask.weights.insert(mask.weights.end(), weights, weights + size);
+        return mask;
     }
     double const all = weights[size > kMinPlainSize ? 2 : 1];
     mask.self = float(weights[0] - all);
@@ -471,7 +471,7 @@ void sortUnique(std::vector<Index> &indices) {
 
 // The faces that need weights of their own, or exact access (see RefinementStep).
 std::vector<Index> findWeightedFaces(RefinementMask const &mask, TopologyLevel const &parent) {
-    std::vector<Index> faces = mask.FindFeatureFaces(parent);
+    std::vector<Index> faces = mask.FindFeatureFaces();
     if (parent.GetNumVertices() > 0) {
         for (Index const face : parent.GetVertexFaces(parent.GetNumVertices() - 1)) {
             if (parent.GetFaceVertices(face).size() <= kMaxUnrolledSize) {
@@ -484,14 +484,20 @@ std::vector<Index> findWeightedFaces(RefinementMask const &mask, TopologyLevel c
 }
 
 std::vector<Index> findWeightedVertices(RefinementMask const &mask, TopologyLevel const &parent) {
-    std::vector<Index> verts = mask.FindFeatureVertices(parent);
-    if (parent.GetNumVertices() > 0) {
-        verts.push_back(parent.GetNumVertices() - 1);
+    LevelTopology const &topology = parent.GetTopology();
+    if (!topology.vVertexParents.empty()) {
+        // All, since those that are plain keep their index.
+        return std::vector<Index>(topology.vVertexParents.begin(), topology.vVertexParents.end());
     }
-    if (parent.GetNumFaceVertices() > 0) {
-        verts.push_back(parent.GetTopology().faceVerts[parent.GetNumFaceVertices() - 1]);
+    std::vector<Index> verts;
+    if (topology.numVVertices > 0) {
+        verts = mask.FindFeatureVertices();
+        verts.push_back(topology.numVertices - 1);
+        if (topology.numCorners > 0) {
+            verts.push_back(topology.faceVerts[topology.numCorners - 1]);
+        }
+        sortUnique(verts);
     }
-    sortUnique(verts);
     return verts;
 }
 
@@ -507,7 +513,7 @@ void makeFaces(RefinementMask const &mask, TopologyLevel const &parent, std::vec
         weighted.push_back(
             {parent.GetFaceFirstCorner(face), size, verts.begin(), step.faceWeights.size()});
         for (int corner = 0; corner < size; ++corner) {
-            double const *const weights = mask.GetFaceVertexWeights(parent, face, corner, scratch);
+            double const *const weights = mask.GetFaceVertexWeights(face, corner, scratch);
             step.faceWeights.insert(step.faceWeights.end(), weights, weights + size);
         }
     }
@@ -536,8 +542,9 @@ void makeVertices(RefinementMask const &mask, TopologyLevel const &parent,
     std::vector<Index> const indices = findWeightedVertices(mask, parent);
     std::vector<WeightedVertex> weighted;
     for (Index const vert : indices) {
-        RefinementMask::VertexMask const weights = mask.GetVertexMask(parent, vert);
+        RefinementMask::VertexMask const weights = mask.GetVertexMask(vert);
         WeightedVertex vertex = {vert,
+                                 parent.GetTopology().GetVertexChildVertex(vert),
                                  numFacesOf(vert),
                                  step.weightedCorners.size(),
                                  float(weights.vertexWeight),
@@ -557,6 +564,9 @@ void makeVertices(RefinementMask const &mask, TopologyLevel const &parent,
     for (Index const vert : indices) {
         groupOfVertex[std::size_t(vert)] = kNoGroup;
     }
+    if (parent.GetTopology().numVVertices < parent.GetNumVertices()) {
+        std::fill(groupOfVertex.begin(), groupOfVertex.end(), kNoGroup);
+    }
     step.plainVertices = makeGroups<Index>(
         groupOfVertex, numGroups, [&](Index vert) { return kRecordHead + numFacesOf(vert); },
         [&](Index vert, Index *record) {
@@ -570,36 +580,32 @@ void makeVertices(RefinementMask const &mask, TopologyLevel const &parent,
 
 } // namespace
 
-PlainMasks MakePlainMasks(RefinementMask const &mask, TopologyLevel const &baseLevel,
-                          int maxValence) {
+namespace {
+
+PlainMasks makePlainMasks(RefinementMask const &mask, TopologyLevel const &parent) {
     PlainMasks masks;
+    int maxValence = 0;
+    for (Index vert = 0; vert < parent.GetNumVertices(); ++vert) {
+        maxValence = std::max(maxValence, parent.GetVertexFaces(vert).size());
+    }
     for (int numFaces = 0; numFaces <= maxValence; ++numFaces) {
         FarExt::VertexVertexMask const vertexMask = mask.GetPlainVertexMask(numFaces);
         masks.verticesInverse.push_back(float(vertexMask.vertexWeight));
     }
-    auto addSize = [&](int size) {
-        masks.faces.resize(std::max(masks.faces.size(), std::size_t(size) + 1));
-        PlainFaceMask &faceMask = masks.faces[std::size_t(size)];
-        if (faceMask.self == 0 && faceMask.weights.empty()) {
-            faceMask = makePlainFaceMask(mask.GetPlainFaceWeights(size), size);
-        }
-    };
-    addSize(FarExt::HexIndexing::kNumEFaceCorners);
-    addSize(FarExt::HexIndexing::kNumBoundaryEFaceCorners);
-    for (Index face = 0; face < baseLevel.GetNumFaces(); ++face) {
-        addSize(baseLevel.GetFaceVertices(face).size());
+    for (Index const size : parent.GetTopology().faceSizes) {
+        masks.faces.resize(std::size_t(size) + 1);
+        masks.faces[std::size_t(size)] = makePlainFaceMask(mask.GetPlainFaceWeights(size), size);
     }
     return masks;
 }
 
+} // namespace
+
 void MakeRefinementStep(RefinementMask const &mask, TopologyLevel const &parent,
                         std::vector<Index> const &faceOrder, RefinementStep &step) {
     LevelTopology const &topology = parent.GetTopology();
-    step.numVertices = topology.numVertices;
-    step.maxValence = 0;
-    for (Index vert = 0; vert < topology.numVertices; ++vert) {
-        step.maxValence = std::max(step.maxValence, parent.GetVertexFaces(vert).size());
-    }
+    step.numVVertices = topology.numVVertices;
+    step.masks = makePlainMasks(mask, parent);
     int numTiles;
     int numVertexGroups;
     std::vector<int> tileOfFace = makeFaceTiles(topology, faceOrder, &numTiles);
@@ -613,9 +619,23 @@ std::vector<Index> RefineFaceOrder(TopologyLevel const &parent,
                                    std::vector<Index> const &faceOrder) {
     LevelTopology const &topology = parent.GetTopology();
     std::vector<Index> result;
-    result.reserve(std::size_t(topology.numFaces) + std::size_t(topology.numEdges));
+    TopologyLevel const child(topology.child);
+    Index const numVFaces = child.GetTopology().numVFaces;
+    Index const firstVFace = child.GetNumFaces() - numVFaces;
+    // The V-faces by their parent faces.
+    std::vector<int> parentOfVFace;
+    parentOfVFace.reserve(std::size_t(numVFaces));
+    for (Index i = 0; i < numVFaces; ++i) {
+        parentOfVFace.push_back(child.GetFaceParentFace(firstVFace + i));
+    }
+    Groups<Index> const vFaces = makeGroups<Index>(
+        parentOfVFace, topology.numFaces, [](Index) { return 1; },
+        [firstVFace](Index i, Index *face) { *face = firstVFace + i; });
+
+    result.reserve(std::size_t(child.GetNumFaces()));
     for (Index const face : faceOrder) {
-        result.push_back(topology.ChildIndexing().GetFaceChildFace(face));
+        result.push_back(topology.faceChildFaces[std::size_t(face)]);
+        result.insert(result.end(), vFaces.Begin(face), vFaces.End(face));
         for (Index const edge : parent.GetFaceEdges(face)) {
             Index const cFace = topology.GetEdgeChildFace(edge);
             if (cFace != Far::INDEX_INVALID && topology.edgeFaces[2 * std::size_t(edge)] == face) {
@@ -626,9 +646,9 @@ std::vector<Index> RefineFaceOrder(TopologyLevel const &parent,
     return result;
 }
 
-void RefineElements(PlainMasks const &masks, RefinementStep const &step, int length,
-                    Elements<float const> src, Elements<float> dst) {
-    Task const task = {masks, step, src, dst};
+void RefineElements(RefinementStep const &step, int length, Elements<float const> src,
+                    Elements<float> dst) {
+    Task const task = {step, src, dst};
     int const numTiles = step.plainFaces.GetNumGroups();
     int const numVertexGroups = step.plainVertices.GetNumGroups();
 #ifdef _OPENMP

@@ -28,7 +28,7 @@ struct PlainFaceMask {
     std::vector<float> weights;
 };
 
-/// \brief The masks that the plain faces and vertices of all levels share.
+/// \brief The masks that the plain faces and vertices of a level share.
 struct PlainMasks {
     std::vector<PlainFaceMask> faces;   ///< by size; sizes that do not occur are not filled
     std::vector<float> verticesInverse; ///< by number of faces: V' = inverse (V + sum of P)
@@ -45,6 +45,7 @@ struct WeightedFace {
 /// \brief A vertex with weights of its own.
 struct WeightedVertex {
     Far::Index vert;
+    Far::Index child; ///< in the level that is made
     int numFaces;
     std::size_t firstCorner; ///< position in weightedCorners
     float vertexWeight;
@@ -64,7 +65,7 @@ struct Groups {
     ITEM const *End(int group) const { return Begin(group + 1); }
 };
 
-/// \brief One refinement step: all that it needs but the plain masks.
+/// \brief One refinement step: all that it needs.
 ///
 /// The faces are grouped into tiles, so that the new points of a tile are still in the cache when
 /// the vertices between its faces are averaged: benchmark refinementEvaluation/quad5, 1.3 times as
@@ -75,8 +76,8 @@ struct Groups {
 /// whose F-vertex is the last: what plain faces and vertices read may be read in packets that reach
 /// into the element behind.
 struct RefinementStep {
-    Far::Index numVertices = 0; ///< of the parent: F-vertices follow in the child
-    int maxValence = 0;         ///< the most faces that a vertex has
+    PlainMasks masks;
+    Far::Index numVVertices = 0; ///< F-vertices follow in the child
 
     // By tile.
     Groups<Far::Index> plainFaces; ///< records: first corner, number of vertices, vertices
@@ -88,11 +89,6 @@ struct RefinementStep {
     Groups<WeightedVertex> weightedVertices;
     std::vector<Far::Index> weightedCorners; ///< of weighted vertices in their faces
 };
-
-/// Makes the masks for \p baseLevel and its refinements, whose vertices have up to \p maxValence
-/// faces each, 1 or more.
-PlainMasks MakePlainMasks(FarExt::internal::RefinementMask const &mask,
-                          FarExt::TopologyLevel const &baseLevel, int maxValence);
 
 /// Makes \p step for the refinement of \p parent, with tiles of faces that follow each other in
 /// \p faceOrder.
@@ -116,8 +112,8 @@ struct Elements {
 ///
 /// The order of the arithmetic depends on the topology alone: the result has the same bits for any
 /// number of threads, length, stride and place.
-void RefineElements(PlainMasks const &masks, RefinementStep const &step, int length,
-                    Elements<float const> src, Elements<float> dst);
+void RefineElements(RefinementStep const &step, int length, Elements<float const> src,
+                    Elements<float> dst);
 
 } // namespace OsdExt::internal
 } // namespace OpenSubdivHex

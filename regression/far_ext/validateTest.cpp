@@ -40,6 +40,9 @@ std::unique_ptr<LevelTopology> copyLevel(TopologyLevel const &level) {
     copy->numSharpBoundariesB = level.GetTopology().numSharpBoundariesB;
     copy->depth = level.GetDepth();
     copy->hasFullTopology = true;
+    copy->isHexagonal = level.GetTopology().isHexagonal;
+    copy->numVVertices = level.GetTopology().numVVertices;
+    copy->numVFaces = level.GetTopology().numVFaces;
 
     using Indices = std::vector<Far::Index>;
     using LocalIndices = std::vector<Far::LocalIndex>;
@@ -61,6 +64,8 @@ std::unique_ptr<LevelTopology> copyLevel(TopologyLevel const &level) {
             edgeFaceLocals.push_back(0);
         }
     }
+    Indices const faceChildFaces(level.GetTopology().faceChildFaces.begin(),
+                                 level.GetTopology().faceChildFaces.end());
     Indices halfFaces;
     for (int f = 0; f < level.GetNumFaces(); ++f) {
         if (level.IsFaceHalf(f)) {
@@ -91,6 +96,7 @@ std::unique_ptr<LevelTopology> copyLevel(TopologyLevel const &level) {
     assign(copy->vertFirstEdge, vertFirstEdge);
     assign(copy->vertEdges, vertEdges);
     assign(copy->vertEdgeLocals, vertEdgeLocals);
+    assign(copy->faceChildFaces, faceChildFaces);
     return copy;
 }
 

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fvarLevel.h"
+#include "polygonRefinement.h"
+#include "primvarRefiner.h"
+#include "sizeChecker.h"
+
+#include <cmath>
+
+namespace OpenSubdivHex::FarExt {
+
+using Far::Index;
+using internal::FVarLevel;
+using internal::LevelTopology;
+using Sdc::Crease;
+
+namespace {
+
+struct Vector {
+    void Clear() { *this = Vector(); }
+    void AddWithWeight(Vector const &other, double weight) {
+        x += weight * other.x;
+        y += weight * other.y;
+        z += weight * other.z;
+    }
+
+    double x = 0;
+    double y = 0;
+    double z = 0;
+};
+
+Vector operator-(Vector const &a, Vector const &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+double dot(Vector const &a, Vector const &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double length(Vector const &a) { return std::sqrt(dot(a, a)); }
+Vector cross(Vector const &a, Vector const &b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// The vector area of a face, twice; zero when it is nothing but rounding errors.
+Vector faceNormal(TopologyLevel const &level, Index face, std::vector<Vector> const &positions) {
+    constexpr double kRounding = 1e-12;
+    Far::ConstIndexArray const verts = level.GetFaceVertices(face);
+    Vector const &origin = positions[verts[0]];
+    Vector normal;
+    double size = 0;
+    for (int i = 1; i + 1 < verts.size(); ++i) {
+        Vector const side0 = positions[verts[i]] - origin;
+        Vector const side1 = positions[verts[i + 1]] - origin;
+        normal.AddWithWeight(cross(side0, side1), 1);
+        size += dot(side0, side0) + dot(side1, side1);
+    }
+    return length(normal) > kRounding * size ? normal : Vector();
+}
+
+bool isParallel(Vector const &normal0, Vector const &normal1, double angleTolerance) {
+    constexpr double kDegrees = 180 / 3.14159265358979323846;
+    double const angle = std::atan2(length(cross(normal0, normal1)), dot(normal0, normal1));
+    return length(normal0) > 0 && length(normal1) > 0 && angle * kDegrees <= angleTolerance;
+}
+
+// Whether a feature wants the hexagon of an interior edge.
+bool hasFeature(TopologyLevel const &level, Index edge) {
+    auto const faces = level.GetEdgeFaces(edge);
+    auto const verts = level.GetEdgeVertices(edge);
+    auto const isFeatureFace = [&](Index face) {
+        return level.IsFaceHalf(face) || Crease::IsSharp(level.GetFaceDiagonalSharpness(face));
+    };
+    auto const isFeatureVertex = [&](Index vert) {
+        return level.IsVertexNonManifold(vert) || Crease::IsSharp(level.GetVertexSharpness(vert));
+    };
+    bool isSeam = false;
+    for (int channel = 0; channel < level.GetNumFVarChannels(); ++channel) {
+        isSeam |= !level.DoesEdgeFVarTopologyMatch(edge, channel) ||
+                  level.IsFaceFVarSplit(faces[0], channel) ||
+                  level.IsFaceFVarSplit(faces[1], channel);
+    }
+    return isSeam || Crease::IsSharp(level.GetEdgeSharpness(edge)) || isFeatureFace(faces[0]) ||
+           isFeatureFace(faces[1]) || isFeatureVertex(verts[0]) || isFeatureVertex(verts[1]);
+}
+
+std::vector<unsigned char> findFlatEdges(TopologyLevel const &level,
+                                         std::vector<Vector> const &positions,
+                                         double angleTolerance) {
+    std::vector<Vector> normals(level.GetNumFaces());
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        normals[face] = faceNormal(level, face, positions);
+    }
+    std::vector<unsigned char> result(level.GetNumEdges());
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        if (!level.IsEdgeBoundary(edge) && !hasFeature(level, edge)) {
+            auto const faces = level.GetEdgeFaces(edge);
+            result[edge] = isParallel(normals[faces[0]], normals[faces[1]], angleTolerance);
+        }
+    }
+    return result;
+}
+
+Status checkArguments(bool hasPositions, double angleTolerance, SchemeOptions schemeOptions) {
+    auto const failure = [](StatusCode code, std::string message) {
+        return Status(code, ComponentType::None, Far::INDEX_INVALID, std::move(message));
+    };
+    if (!schemeOptions.IsHexagonal()) {
+        return failure(StatusCode::Unsupported,
+                       "refinement by coplanar faces is for the hexagonal scheme alone");
+    }
+    if (!hasPositions) {
+        return failure(StatusCode::InvalidArgument, "the rest positions are null");
+    }
+    if (!(0 <= angleTolerance && angleTolerance <= 180)) {
+        return failure(StatusCode::InvalidArgument, "the angle tolerance " +
+                                                        std::to_string(angleTolerance) +
+                                                        " is not between 0 and 180 degrees");
+    }
+    return Status();
+}
+
+template <typename REAL>
+Status importPositions(REAL const *restPositions, Index numVertices, std::vector<Vector> &result) {
+    result.resize(numVertices);
+    for (Index vert = 0; vert < numVertices; ++vert) {
+        REAL const *position = restPositions + 3 * std::size_t(vert);
+        result[vert] = {double(position[0]), double(position[1]), double(position[2])};
+        if (!std::isfinite(length(result[vert]))) {
+            return Status(StatusCode::InvalidArgument, ComponentType::Vertex, vert,
+                          "the rest position of vertex " + std::to_string(vert) +
+                              " is not finite, or too far away");
+        }
+    }
+    return Status();
+}
+
+} // namespace
+
+template <typename REAL>
+bool TopologyRefiner::refineCoplanar(REAL const *restPositions, CoplanarOptions const &options,
+                                     Status *status) {
+    std::vector<Vector> positions;
+    Status result = checkLevel(options.refinementLevel);
+    if (result.IsOk()) {
+        result = checkArguments(restPositions, options.angleTolerance, _schemeOptions);
+    }
+    if (result.IsOk()) {
+        result = importPositions(restPositions, GetLevel(0).GetNumVertices(), positions);
+    }
+    if (!result.IsOk()) {
+        return internal::Report(result, status);
+    }
+    Unrefine();
+    std::vector<internal::SizeChecker> checkers = makeSizeCheckers();
+    for (int level = 1; level <= options.refinementLevel; ++level) {
+        internal::PolygonRules rules;
+        rules.flatEdges = findFlatEdges(GetLevel(level - 1), positions, options.angleTolerance);
+        rules.closeGaps = options.closeGaps;
+        bool const isLast = level == options.refinementLevel;
+        result =
+            refineToPolygons(level, !isLast || options.fullTopologyInLastLevel, rules, checkers);
+        if (!result.IsOk()) {
+            Unrefine();
+            return internal::Report(result, status);
+        }
+        setNumLevels(level + 1);
+        if (!isLast) {
+            std::vector<Vector> refined(GetLevel(level).GetNumVertices());
+            PrimvarRefinerReal<double>(*this).Interpolate(level, positions, refined);
+            positions.swap(refined);
+        }
+    }
+    _isUniform = false;
+    return internal::Report(Status(), status);
+}
+
+bool TopologyRefiner::RefineCoplanar(float const *restPositions, CoplanarOptions options,
+                                     Status *status) {
+    return refineCoplanar(restPositions, options, status);
+}
+
+bool TopologyRefiner::RefineCoplanar(double const *restPositions, CoplanarOptions options,
+                                     Status *status) {
+    return refineCoplanar(restPositions, options, status);
+}
+
+} // namespace OpenSubdivHex::FarExt
