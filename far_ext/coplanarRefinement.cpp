@@ -9,8 +9,6 @@
 namespace OpenSubdivHex::FarExt {
 
 using Far::Index;
-using internal::FVarLevel;
-using internal::LevelTopology;
 using Sdc::Crease;
 
 namespace {

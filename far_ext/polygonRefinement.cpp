@@ -104,8 +104,8 @@ void PolygonStep::planFan(Index pVert, VertexFan const &fan) {
     Index const size = fan.end - fan.begin;
     if (vVertex == Far::INDEX_INVALID) {
         if (fan.isClosed && size == 2 && !isTriHex()) {
-            _digons.push_back({endAt(_parent.GetVertexCorner(fan.begin)),
-                               endAt(_parent.GetVertexCorner(fan.begin + 1))});
+            _digons.emplace_back(endAt(_parent.GetVertexCorner(fan.begin)),
+                                 endAt(_parent.GetVertexCorner(fan.begin + 1)));
         } else if (fan.isClosed && _rules.closeGaps) {
             addVFace(vVertex, fan, fan.begin, size);
         }

@@ -85,7 +85,7 @@ LevelTopology &TopologyRefiner::getLevelToFill(int level) {
 Status TopologyRefiner::refineHexagonally(int level, bool fullTopology,
                                           std::vector<SizeChecker> &checkers) {
     LevelTopology &parent = *_topologies[level - 1];
-    Status const status = checkers[0].Add(internal::GetChildSizes(internal::GetSizes(parent)));
+    Status status = checkers[0].Add(internal::GetChildSizes(internal::GetSizes(parent)));
     if (!status.IsOk()) {
         return status;
     }
