@@ -12,7 +12,7 @@
 namespace OpenSubdivHex::OsdExt {
 namespace {
 
-/// Stencils that a thread takes at a time: enough that starting on them costs nothing beside them,
+/// Stencils, or blocks of them, that a thread takes at a time: enough that starting on them costs nothing beside them,
 /// few enough that the threads end together.
 constexpr std::int64_t kMinBatch = 256;
 constexpr std::int64_t kMaxBatch = 4096;
@@ -47,7 +47,7 @@ void OmpEvaluator::run(internal::StencilTask const &task, int begin, int end) {
     }
 
     std::vector<std::size_t> firstWeights;
-    if (!task.rows.offsets) {
+    if (!task.rows.HasPlaces()) {
         firstWeights.reserve(std::size_t(numBatches));
         std::size_t first = internal::FindFirstWeight(task.rows, begin);
         for (int i = begin; i < end; ++i) {

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_STENCIL_EVALUATOR_H
 #define OPENSUBDIVHEX_OSD_EXT_STENCIL_EVALUATOR_H
 
-#include "stencilKernel.h"
+#include "compactStencilTable.h"
 
 #include <opensubdiv/osd/bufferDescriptor.h>
 
@@ -21,7 +21,7 @@ namespace OsdExt {
 /// Osd::Mesh and EvalStencilsInPlace, accept them.  There are no EvalPatches functions.
 ///
 /// **Tables.** Any Far::StencilTable or Far::LimitStencilTable, of this library or of OpenSubdiv,
-/// or a class with their functions.  Offsets may be missing, as Far's option generateOffsets
+/// or a class with their functions, and CompactStencilTable.  Offsets may be missing, as Far's option generateOffsets
 /// suggests: stencils then follow each other without gaps, and OmpEvaluator and ranges that do not
 /// start at 0 cost a pass over the sizes.
 ///
@@ -68,6 +68,18 @@ public:
         return stencilTable &&
                evalTable(srcBuffer, srcDesc, *stencilTable,
                          {bind(dstBuffer, dstDesc, *stencilTable, stencilTable->GetWeights())});
+    }
+
+    /// The same of a table in blocks.
+    template <class SRC_BUFFER, class DST_BUFFER>
+    static bool
+    EvalStencils(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,
+                 Osd::BufferDescriptor const &dstDesc, CompactStencilTable const *stencilTable,
+                 EVALUATOR const * /*instance*/ = nullptr, void * /*deviceContext*/ = nullptr) {
+        return stencilTable && eval(srcBuffer ? srcBuffer->BindCpuBuffer() : nullptr, srcDesc,
+                                    {{dstBuffer ? dstBuffer->BindCpuBuffer() : nullptr, dstDesc,
+                                      stencilTable->_weights.data()}},
+                                    stencilTable->getRows(), 0, stencilTable->GetNumBlocks());
     }
 
     /// The same with first derivatives, which Far::LimitStencilTable has.
@@ -123,7 +135,8 @@ public:
                              float *dst, Osd::BufferDescriptor const &dstDesc,       //
                              int const *sizes, int const *offsets, int const *indices,
                              float const *weights, int start, int end) {
-        return eval(src, srcDesc, {{dst, dstDesc, weights}}, {sizes, offsets, indices}, start, end);
+        return eval(src, srcDesc, {{dst, dstDesc, weights}}, {sizes, offsets, indices, nullptr},
+                    start, end);
     }
 
     /// The same with first derivatives.
@@ -136,7 +149,7 @@ public:
                              int start, int end) {
         return eval(src, srcDesc,
                     {{dst, dstDesc, weights}, {du, duDesc, duWeights}, {dv, dvDesc, dvWeights}},
-                    {sizes, offsets, indices}, start, end);
+                    {sizes, offsets, indices, nullptr}, start, end);
     }
 
     /// The same with first and second derivatives.
@@ -158,7 +171,7 @@ public:
                      {duu, duuDesc, duuWeights},
                      {duv, duvDesc, duvWeights},
                      {dvv, dvvDesc, dvvWeights}},
-                    {sizes, offsets, indices}, start, end);
+                    {sizes, offsets, indices, nullptr}, start, end);
     }
     // NOLINTEND(readability-non-const-parameter)
     /// @}
@@ -185,7 +198,7 @@ private:
         bool const hasOffsets = table.GetOffsets().size() >= std::size_t(numStencils);
         return eval(srcBuffer ? srcBuffer->BindCpuBuffer() : nullptr, srcDesc, outputs,
                     {table.GetSizes().data(), hasOffsets ? table.GetOffsets().data() : nullptr,
-                     table.GetControlIndices().data()},
+                     table.GetControlIndices().data(), nullptr},
                     0, numStencils);
     }
 

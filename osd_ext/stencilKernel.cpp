@@ -24,7 +24,7 @@ bool MakeStencilTask(float const *src, Osd::BufferDescriptor const &srcDesc,
     if (!isValid || start >= end) {
         return isValid;
     }
-    isValid = start >= 0 && src && rows.sizes;
+    isValid = start >= 0 && src && (rows.sizes || rows.blocks);
     for (int i = 0; i < numOutputs; ++i) {
         // Without indices all stencils are empty.
         isValid = isValid && outputs[i].dst && (outputs[i].weights || !rows.indices);
@@ -45,8 +45,8 @@ bool MakeStencilTask(float const *src, Osd::BufferDescriptor const &srcDesc,
 }
 
 std::size_t FindFirstWeight(StencilRows const &rows, int stencil) {
-    if (rows.offsets) {
-        return std::size_t(rows.offsets[stencil]);
+    if (rows.HasPlaces()) {
+        return 0;
     }
     std::size_t result = 0;
     for (int i = 0; i < stencil; ++i) {

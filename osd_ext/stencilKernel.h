@@ -15,11 +15,24 @@ struct StencilOutput {
     float const *weights;
 };
 
-/// \brief The stencils of a table, as StencilEvaluator takes them.
+/// \brief Stencils in a row that share a list of indices: see CompactStencilTable.
+struct StencilBlock {
+    int firstStencil;
+    int numStencils; ///< StencilTask::kMaxRows at most
+    int size;        ///< indices
+    int firstIndex;
+    int firstWeight; ///< those of all its stencils follow each other
+};
+
+/// \brief The stencils of a table: as StencilEvaluator takes them or, if there are blocks, in these.
 struct StencilRows {
+    /// Whether the weights of a stencil are found without a look at those before it.
+    bool HasPlaces() const { return offsets || blocks; }
+
     int const *sizes;
     int const *offsets; ///< may be null
     int const *indices;
+    StencilBlock const *blocks = nullptr; ///< sizes and offsets are not read then
 };
 
 /// \brief One evaluation: what the drivers split and the kernels compute.
@@ -27,11 +40,13 @@ struct StencilRows {
 /// Element i of an output becomes the sum of its weights of stencil i times the source elements.
 struct StencilTask {
     static constexpr int kMaxOutputs = 6;
+    /// Sums that a kernel forms at a time: outputs of a stencil, or stencils of one output.
+    static constexpr int kMaxRows = kMaxOutputs;
 
     struct Output {
         float *dst = nullptr; ///< element 0: the descriptor's offset is applied
         std::ptrdiff_t stride = 0;
-        float const *weights = nullptr; ///< as many as indices
+        float const *weights = nullptr; ///< as many as indices or, in blocks, per stencil
     };
 
     float const *src = nullptr; ///< element 0: the descriptor's offset is applied
@@ -44,18 +59,18 @@ struct StencilTask {
     Output outputs[kMaxOutputs];
 };
 
-/// \brief Makes \p task of the arguments of an evaluator for stencils [start, end).
+/// \brief Makes \p task of the arguments of an evaluator for stencils, or blocks, [start, end).
 /// \return  whether StencilEvaluator, which says when it is false, can evaluate them
 bool MakeStencilTask(float const *src, OpenSubdiv::Osd::BufferDescriptor const &srcDesc,
                      StencilOutput const *outputs, int numOutputs, StencilRows const &rows,
                      int start, int end, StencilTask *task);
 
-/// Where the indices of stencil \p stencil start.
+/// Where the indices of stencil \p stencil start; 0 when it need not be known.
 std::size_t FindFirstWeight(StencilRows const &rows, int stencil);
 
-/// \brief Evaluates stencils [begin, end) in ascending order.
+/// \brief Evaluates stencils, or blocks of them, [begin, end) in ascending order.
 ///
-/// \param firstWeight  where the indices of stencil \p begin start; not read if there are offsets
+/// \param firstWeight  where the indices of stencil \p begin start; read if !rows.HasPlaces() alone
 using StencilKernel = void (*)(StencilTask const &task, int begin, int end,
                                std::size_t firstWeight);
 

@@ -174,8 +174,30 @@ OPENSUBDIVHEX_INLINE void prefetchAhead([[maybe_unused]] ENTRY const *entries,
 }
 
 template <class SIMD, int LENGTH>
+void evalBlocks(StencilTask const &task, int begin, int end) {
+    StencilTask::Output const &output = task.outputs[0];
+    float const *weights[StencilTask::kMaxRows];
+    float *dst[StencilTask::kMaxRows];
+    for (int i = begin; i < end; ++i) {
+        StencilBlock const &block = task.rows.blocks[i];
+        int const *const indices = task.rows.indices + block.firstIndex;
+        std::size_t const size = std::size_t(block.size);
+        for (int row = 0; row < block.numStencils; ++row) {
+            weights[row] = output.weights + block.firstWeight + std::size_t(row) * size;
+            dst[row] = output.dst + (std::ptrdiff_t(block.firstStencil) + row) * output.stride;
+        }
+        prefetchAhead(indices, size);
+        prefetchAhead(weights[0], std::size_t(block.numStencils) * size);
+        sumElements<SIMD, LENGTH>(task, indices, block.size, block.numStencils, weights, dst);
+    }
+}
+
+template <class SIMD, int LENGTH>
 void evalStencils(StencilTask const &task, int begin, int end, std::size_t firstWeight) {
-    constexpr int kMaxRows = StencilTask::kMaxOutputs;
+    if (task.rows.blocks) {
+        return evalBlocks<SIMD, LENGTH>(task, begin, end);
+    }
+    constexpr int kMaxRows = StencilTask::kMaxRows;
     StencilTask::Output const *const outputs = task.outputs;
     int const *const sizes = task.rows.sizes;
     int const *const offsets = task.rows.offsets;

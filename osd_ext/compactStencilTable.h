@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_COMPACT_STENCIL_TABLE_H
+#define OPENSUBDIVHEX_OSD_EXT_COMPACT_STENCIL_TABLE_H
+
+#include "stencilKernel.h"
+
+#include <opensubdiv/far/stencilTable.h>
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex {
+
+namespace Far = OpenSubdiv::Far;
+
+namespace OsdExt {
+
+/// \brief A stencil table in blocks: stencils that follow each other and have the same indices, as
+/// those of the corners of a face do, share one list of them.
+///
+/// Evaluated by CpuEvaluator and OmpEvaluator, with the results of the table that it was made from,
+/// bit for bit.  For tables of the hexagonal scheme it takes 0.62 to 0.65 of the memory, and
+/// evaluation is 1.2 to 1.6 times as fast on one thread (benchmark evaluation).  A table whose
+/// stencils share no lists, as those of Catmull-Clark, gets larger.
+///
+/// It is this library's own: other evaluators, on GPUs for one, take the Far::StencilTable.
+class CompactStencilTable {
+public:
+    /// Makes the table of the stencils of \p table, which is not needed afterwards.
+    static std::unique_ptr<CompactStencilTable const> Create(Far::StencilTable const &table);
+
+    int GetNumStencils() const { return _numStencils; }
+    int GetNumControlVertices() const { return _numControlVertices; }
+    int GetNumBlocks() const { return int(_blocks.size()); }
+    /// Of all arrays.
+    std::size_t GetNumBytes() const;
+
+private:
+    template <class EVALUATOR>
+    friend class StencilEvaluator;
+
+    CompactStencilTable() = default;
+
+    internal::StencilRows getRows() const {
+        return {nullptr, nullptr, _indices.data(), _blocks.data()};
+    }
+
+    int _numStencils = 0;
+    int _numControlVertices = 0;
+    std::vector<internal::StencilBlock> _blocks;
+    std::vector<int> _indices;
+    std::vector<float> _weights;
+};
+
+} // namespace OsdExt
+} // namespace OpenSubdivHex
+
+#endif
