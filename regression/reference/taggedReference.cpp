@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "taggedReference.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -162,6 +164,7 @@ std::pair<int, int> pairOf(int v, int w) { return {std::min(v, w), std::max(v, w
 TaggedMesh MakeTaggedMesh(TaggedBase const &base) {
     TaggedMesh mesh;
     mesh.chaikin = base.chaikin;
+    mesh.freeBoundaries = base.freeBoundaries;
     mesh.vertices.resize(base.numVertices);
     for (int v = 0; v < base.numVertices; ++v) {
         mesh.vertices[v].sharpness = base.vertexSharpness[v];
@@ -236,6 +239,7 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
     };
     TaggedMesh result;
     result.chaikin = mesh.chaikin;
+    result.freeBoundaries = mesh.freeBoundaries;
     result.faces = mesh.faces;
     for (Edge const &edge : mesh.edges) {
         if (edge.sides.size() == 1) {
@@ -300,17 +304,66 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
 
 namespace {
 
+/// Faces of a vertex that follow one another counter-clockwise.
+struct Fan {
+    std::vector<Side> corners;
+    bool isClosed;
+};
+
+std::vector<Fan> findFans(TaggedMesh const &mesh, int vertex) {
+    using Place = std::pair<int, int>;
+    // The corner behind the edge that comes in to a corner.
+    auto nextAround = [&](Side corner) {
+        Face const &face = mesh.faces[corner.face];
+        int const before = previousPlace(face, corner.place);
+        Edge const &edge = mesh.edges[face.edges[before]];
+        if (edge.sides.size() == 1) {
+            return Side{-1, -1};
+        }
+        bool const isFirst = edge.sides[0].face == corner.face && edge.sides[0].place == before;
+        return edge.sides[isFirst ? 1 : 0];
+    };
+    std::vector<Fan> fans;
+    std::set<Place> done;
+    auto add = [&](Side start) {
+        Fan fan{{}, false};
+        Side corner = start;
+        while (corner.face >= 0 && done.insert({corner.face, corner.place}).second) {
+            fan.corners.push_back(corner);
+            corner = nextAround(corner);
+        }
+        fan.isClosed = corner.face >= 0;
+        if (!fan.corners.empty()) {
+            fans.push_back(fan);
+        }
+    };
+    for (Side corner : mesh.vertices[vertex].corners) {
+        if (mesh.edges[mesh.faces[corner.face].edges[corner.place]].sides.size() == 1) {
+            add(corner);
+        }
+    }
+    for (Side corner : mesh.vertices[vertex].corners) {
+        add(corner);
+    }
+    return fans;
+}
+
 /// Builds the child of a mesh, first with all half faces apart.
 class Refinement {
 public:
-    explicit Refinement(TaggedMesh const &parent) : _parent(parent) {
+    Refinement(TaggedMesh const &parent, ReferenceStep const &step) : _parent(parent), _step(step) {
         _child.chaikin = parent.chaikin;
+        _child.freeBoundaries = parent.freeBoundaries;
+        _child.madeBy = step.scheme;
     }
 
     TaggedMesh Run() {
         makeVertices();
         makeFFaces();
-        makeEFaces();
+        if (_step.scheme != ReferenceScheme::TriHex) {
+            makeEFaces();
+        }
+        makeVFaces();
         joinSides();
         mergeSmoothHalves();
         connect(_child);
@@ -321,6 +374,9 @@ private:
     void makeVertices();
     void makeFFaces();
     void makeEFaces();
+    void makeVFaces();
+    void makeFanFaces(int vertex, Fan const &fan);
+    void addVFace(int vertex, std::vector<int> vertices, std::vector<Side> const &corners);
     void joinSides();
     void mergeSmoothHalves();
 
@@ -336,15 +392,40 @@ private:
     }
 
     int fVertex(Side corner) const { return _child.fVertices[corner.face][corner.place]; }
-    int numParentVertices() const { return int(_parent.vertices.size()); }
+    int vVertex(int vertex) const { return _child.vVertices[vertex]; }
+
+    bool isHexagonal() const { return _step.scheme == ReferenceScheme::Hexagonal; }
+    /// Whether the edge that comes in to a corner makes a quad.
+    bool isFlatBefore(Side corner) const {
+        Face const &face = _parent.faces[corner.face];
+        return isFlat(face.edges[previousPlace(face, corner.place)]);
+    }
+    bool isFlat(int edge) const {
+        return !isHexagonal() || (!_step.flatEdges.empty() && _step.flatEdges[edge]);
+    }
+    /// Whether no face but flat ones is around the vertex.
+    bool isFlatFan(Fan const &fan) const {
+        return fan.isClosed && std::all_of(fan.corners.begin(), fan.corners.end(),
+                                           [&](Side corner) { return isFlatBefore(corner); });
+    }
+    bool isKept(int vertex) const {
+        std::vector<Fan> const fans = findFans(_parent, vertex);
+        return isHexagonal() && (fans.size() != 1 || !isFlatFan(fans[0]));
+    }
 
     TaggedMesh const &_parent;
+    ReferenceStep const &_step;
     TaggedMesh _child;
     std::set<std::pair<int, int>> _placed; ///< face and place of sides that have their edge
 };
 
 void Refinement::makeVertices() {
-    for (int v = 0; v < numParentVertices(); ++v) {
+    for (int v = 0; v < int(_parent.vertices.size()); ++v) {
+        if (!isKept(v)) {
+            _child.vVertices.push_back(-1);
+            continue;
+        }
+        _child.vVertices.push_back(int(_child.vertices.size()));
         TaggedMesh::Vertex vertex;
         vertex.sharpness = decremented(_parent.vertices[v].sharpness);
         vertex.isNonManifold = _parent.vertices[v].isNonManifold;
@@ -396,7 +477,7 @@ void Refinement::makeFFaces() {
 void Refinement::makeEFaces() {
     for (std::size_t e = 0; e < _parent.edges.size(); ++e) {
         Edge const &edge = _parent.edges[e];
-        if (edge.isLong) {
+        if (edge.isLong || (!isHexagonal() && edge.sides.size() == 1)) {
             continue;
         }
         bool const isHole = std::all_of(edge.sides.begin(), edge.sides.end(),
@@ -410,7 +491,11 @@ void Refinement::makeEFaces() {
         if (edge.sides.size() == 2 && edge.sharpness <= 0) {
             int const b1 = fVertex(edge.sides[1]);
             int const b0 = fVertex(nextSide(_parent, edge.sides[1]));
-            addFace({v0, b0, b1, v1, a1, a0}, false, isHole, origin);
+            if (isFlat(int(e))) {
+                addFace({b0, b1, a1, a0}, false, isHole, origin);
+            } else {
+                addFace({vVertex(v0), b0, b1, vVertex(v1), a1, a0}, false, isHole, origin);
+            }
             continue;
         }
         // Half a hexagon for each side; their common edge is the line.
@@ -418,9 +503,10 @@ void Refinement::makeEFaces() {
         for (int s = 0; s < int(edge.sides.size()); ++s) {
             Side const side = edge.sides[s];
             origin.side = s;
-            int const face = addFace({_parent.GetStart(side), _parent.GetEnd(side),
-                                      fVertex(nextSide(_parent, side)), fVertex(side)},
-                                     !edge.isFree, isHole, origin);
+            int const face =
+                addFace({vVertex(_parent.GetStart(side)), vVertex(_parent.GetEnd(side)),
+                         fVertex(nextSide(_parent, side)), fVertex(side)},
+                        !edge.isFree, isHole, origin);
             child.sides.push_back({face, 0});
             _placed.insert({face, 0});
         }
@@ -435,6 +521,71 @@ void Refinement::makeEFaces() {
         }
         _child.edges.push_back(child);
     }
+}
+
+void Refinement::makeVFaces() {
+    bool const isCoplanar = isHexagonal() && !_step.flatEdges.empty();
+    if ((isHexagonal() && !isCoplanar) || !_step.closeGaps) {
+        return;
+    }
+    for (int v = 0; v < int(_parent.vertices.size()); ++v) {
+        for (Fan const &fan : findFans(_parent, v)) {
+            makeFanFaces(v, fan);
+        }
+    }
+}
+
+void Refinement::makeFanFaces(int vertex, Fan const &fan) {
+    int const size = int(fan.corners.size());
+    if (_step.scheme == ReferenceScheme::TriHex) {
+        std::vector<int> vertices;
+        for (Side corner : fan.corners) {
+            Face const &face = _parent.faces[corner.face];
+            vertices.push_back(fVertex(corner));
+            vertices.push_back(fVertex({corner.face, previousPlace(face, corner.place)}));
+        }
+        if (fan.isClosed) {
+            addVFace(vertex, vertices, fan.corners);
+        }
+        return;
+    }
+    std::vector<int> points;
+    for (Side corner : fan.corners) {
+        points.push_back(fVertex(corner));
+    }
+    if (isFlatFan(fan)) {
+        if (size > 2) {
+            addVFace(vertex, points, fan.corners);
+        }
+        return;
+    }
+    if (!isHexagonal()) {
+        return;
+    }
+    // From the first face of each run, behind an edge that is not flat, to its last.
+    for (int first = 0; first < size; ++first) {
+        bool const isFirst =
+            (first == 0 && !fan.isClosed) || !isFlatBefore(fan.corners[(first + size - 1) % size]);
+        std::vector<int> vertices{vVertex(vertex), points[first]};
+        std::vector<Side> corners{fan.corners[first]};
+        int last = first;
+        while (isFirst && isFlatBefore(fan.corners[last])) {
+            last = (last + 1) % size;
+            vertices.push_back(points[last]);
+            corners.push_back(fan.corners[last]);
+        }
+        if (vertices.size() > 2) {
+            addVFace(vertex, vertices, corners);
+        }
+    }
+}
+
+void Refinement::addVFace(int vertex, std::vector<int> vertices, std::vector<Side> const &corners) {
+    bool const isHole = std::all_of(corners.begin(), corners.end(),
+                                    [&](Side corner) { return _parent.faces[corner.face].isHole; });
+    TaggedMesh::FaceOrigin origin;
+    origin.vertex = vertex;
+    addFace(std::move(vertices), false, isHole, origin);
 }
 
 /// All other edges end in a new vertex, so that their ends tell them apart.
@@ -453,11 +604,14 @@ void Refinement::joinSides() {
         Edge edge;
         edge.sides = edgeSides;
         // The end of a line: from an old vertex to the new one on the line.
+        TaggedMesh::VertexOrigin const &start = _child.vertexOrigins[ends.first];
         TaggedMesh::VertexOrigin const &origin = _child.vertexOrigins[ends.second];
-        if (ends.first < numParentVertices() && _parent.faces[origin.face].isHalf &&
-            origin.place < 2) {
+        if (start.face < 0 && _parent.faces[origin.face].isHalf && origin.place < 2) {
             Edge const &line = _parent.edges[_parent.faces[origin.face].edges[0]];
-            edge.sharpness = childSharpness(_parent, ends.first, line.sharpness);
+            edge.sharpness = childSharpness(_parent, start.vertex, line.sharpness);
+        } else if (edgeSides.size() == 1) {
+            edge.isFree = _parent.freeBoundaries;
+            edge.sharpness = edge.isFree ? 0 : kInfiniteSharpness;
         }
         _child.edges.push_back(edge);
     }
@@ -572,7 +726,8 @@ public:
           _result(child.vertexOrigins.size(), values.cols()) {}
 
     ReferenceValues Run() {
-        Pulls const pulls = _isVarying ? Pulls() : findPulls(_mesh, _mask);
+        bool const isPlain = _isVarying || _child.madeBy != ReferenceScheme::Hexagonal;
+        Pulls const pulls = isPlain ? Pulls() : findPulls(_mesh, _mask);
         for (std::size_t v = 0; v < _child.vertexOrigins.size(); ++v) {
             TaggedMesh::VertexOrigin const &origin = _child.vertexOrigins[v];
             if (origin.face < 0) {
@@ -586,8 +741,10 @@ public:
             _result.row(Eigen::Index(v)) = point;
         }
         for (std::size_t v = 0; v < _mesh.vertices.size(); ++v) {
-            _result.row(Eigen::Index(v)) =
-                _isVarying ? Point(_values.row(Eigen::Index(v))) : movedVertex(int(v));
+            if (_child.vVertices[v] >= 0) {
+                _result.row(_child.vVertices[v]) =
+                    _isVarying ? Point(_values.row(Eigen::Index(v))) : movedVertex(int(v));
+            }
         }
         return std::move(_result);
     }
@@ -607,6 +764,9 @@ private:
 
     Point cornerPoint(Side corner) const {
         Face const &face = _mesh.faces[corner.face];
+        if (_child.madeBy == ReferenceScheme::TriHex) {
+            return edgePoint(pointsOf(face.vertices), corner.place);
+        }
         if (!face.isHalf) {
             return maskPoint(pointsOf(face.vertices), corner.place);
         }
@@ -624,6 +784,15 @@ private:
         Point const smooth = maskPoint(hexagon, places[corner.place]);
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
         return sharp * halfPoint(face, corner.place) + (1 - sharp) * smooth;
+    }
+
+    /// Beside the edge that starts at a corner.
+    static Point edgePoint(std::vector<Point> const &face, int place) {
+        Point centroid = Point::Zero(face[0].size());
+        for (Point const &point : face) {
+            centroid += point / double(face.size());
+        }
+        return (face[place] + face[(place + 1) % face.size()] + centroid) / 3;
     }
 
     Point halfPoint(Face const &face, int place) const {
@@ -724,7 +893,45 @@ private:
 
 } // namespace
 
-TaggedMesh Refine(TaggedMesh const &mesh) { return Refinement(mesh).Run(); }
+TaggedMesh Refine(TaggedMesh const &mesh, ReferenceStep const &step) {
+    return Refinement(mesh, step).Run();
+}
+
+std::vector<bool> FindFlatEdges(TaggedMesh const &mesh, ReferenceValues const &positions,
+                                double angleTolerance) {
+    std::vector<Eigen::Vector3d> normals;
+    for (Face const &face : mesh.faces) {
+        Eigen::Vector3d const origin = positions.row(face.vertices[0]);
+        Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+        for (std::size_t i = 0; i < face.vertices.size(); ++i) {
+            std::size_t const next = (i + 1) % face.vertices.size();
+            Eigen::Vector3d const p = positions.row(face.vertices[i]);
+            Eigen::Vector3d const q = positions.row(face.vertices[next]);
+            normal += (p - origin).cross(q - origin);
+        }
+        normals.push_back(normal);
+    }
+    auto isTagged = [&](int v) {
+        return mesh.vertices[v].sharpness > 0 || mesh.vertices[v].isNonManifold;
+    };
+    std::vector<bool> result;
+    for (Edge const &edge : mesh.edges) {
+        bool isFlat = edge.sides.size() == 2 && edge.sharpness <= 0 &&
+                      !isTagged(mesh.GetStart(edge.sides[0])) &&
+                      !isTagged(mesh.GetEnd(edge.sides[0]));
+        for (Side side : edge.sides) {
+            isFlat = isFlat && !mesh.faces[side.face].isHalf && normals[side.face].norm() > 0;
+        }
+        if (isFlat) {
+            Eigen::Vector3d const &a = normals[edge.sides[0].face];
+            Eigen::Vector3d const &b = normals[edge.sides[1].face];
+            double const angle = std::atan2(a.cross(b).norm(), a.dot(b));
+            isFlat = angle <= angleTolerance * std::acos(-1.0) / 180;
+        }
+        result.push_back(isFlat);
+    }
+    return result;
+}
 
 TaggedRule GetRule(TaggedMesh const &mesh, int vertex) {
     return ruleOf(mesh.vertices[vertex].sharpness,

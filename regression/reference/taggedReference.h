@@ -11,8 +11,11 @@ namespace OpenSubdivHex::Regression {
 /// Sharpness from which on an edge or vertex stays sharp for ever.
 inline constexpr float kInfiniteSharpness = 10;
 
+/// The schemes of DESIGN.md sections 2 and 6.
+enum class ReferenceScheme { Hexagonal, DooSabin, TriHex };
+
 /// \brief A mesh with boundaries, creases, corners, holes and flaws, of which DESIGN.md sections 3
-/// and 4 are taken at their word: a sharp line goes along edges.
+/// to 6 are taken at their word: a sharp line goes along edges.
 ///
 /// So a hexagon that a crease crosses is two half faces, glued along a *long* edge, until the crease
 /// is smooth; a half face at a sharp boundary has a long edge without another side.  Edges name
@@ -46,11 +49,12 @@ struct TaggedMesh {
         int face = -1;
         int place = -1;
     };
-    /// \brief What a face was made from: a face, or an edge seen from one of its sides.  A hexagon
-    /// made for an edge has the side that its first vertices start on.
+    /// \brief What a face was made from: a face, an edge seen from one of its sides, or a vertex.  A
+    /// hexagon made for an edge has the side that its first vertices start on.
     struct FaceOrigin {
         int face = -1;
         int edge = -1;
+        int vertex = -1;
         int side = 0;
         int mergedWith = -1; ///< of two half faces that became one, the origin of the other
     };
@@ -59,9 +63,12 @@ struct TaggedMesh {
     std::vector<Edge> edges;
     std::vector<Vertex> vertices;
     bool chaikin = false;
+    bool freeBoundaries = false; ///< boundaries that a step makes follow the paper's rule
 
     // Of a refined mesh.
+    ReferenceScheme madeBy = ReferenceScheme::Hexagonal;
     std::vector<VertexOrigin> vertexOrigins;
+    std::vector<int> vVertices;              ///< the child of each parent vertex, or -1
     std::vector<std::vector<int>> fVertices; ///< the new vertex of each corner of each parent face
     std::vector<FaceOrigin> faceOrigins;
     std::vector<FaceOrigin> mergedOrigins; ///< see FaceOrigin::mergedWith
@@ -101,8 +108,24 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
                          std::vector<float> const &valueSharpness,
                          std::vector<int> &valuesOfVertices);
 
-/// One step: topology and tags.
-TaggedMesh Refine(TaggedMesh const &mesh);
+/// How a mesh is refined once.
+struct ReferenceStep {
+    ReferenceScheme scheme = ReferenceScheme::Hexagonal;
+    /// By edge, of a hexagonal step: edges that make a quad of the four points beside them, as
+    /// those of faces with the same normal do in the paper's stage 3.  Empty: none.
+    std::vector<bool> flatEdges;
+    bool closeGaps = true; ///< whether polygons close the gaps that quads leave around vertices
+};
+
+/// \brief One step: topology and tags.  Schemes but the hexagonal one drop the faces of boundary
+/// edges and boundary vertices.  A vertex between two faces whose polygon would have two sides makes
+/// none: the quads at either side of it meet.
+TaggedMesh Refine(TaggedMesh const &mesh, ReferenceStep const &step = ReferenceStep());
+
+/// \brief By edge: whether its two faces have normals that make an angle of at most
+/// \p angleTolerance degrees, and it lies beside no tag, half face or flaw of the mesh.
+std::vector<bool> FindFlatEdges(TaggedMesh const &mesh, ReferenceValues const &positions,
+                                double angleTolerance);
 
 /// How many sharp edges make which rule.
 enum class TaggedRule { Smooth, Dart, Crease, Corner };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shapes.h"
+#include "flatShapes.h"
 #include "meshOperations.h"
 #include "shapeDescriptor.h"
 
@@ -70,6 +71,18 @@ TEST(Shapes, NamesAreUnique) {
     }
     EXPECT_GE(names.size(), 39u);
     EXPECT_THROW(GetShape("no such shape"), std::out_of_range);
+}
+
+TEST(Shapes, FlatShapesAreClosedAndOutward) {
+    for (Shape const &shape : GetFlatShapes()) {
+        SCOPED_TRACE(shape.name);
+        EXPECT_TRUE(shape.closed && shape.manifold);
+        EXPECT_TRUE(IsManifold(shape));
+        EXPECT_EQ(CountBoundaryEdges(shape), 0);
+        EXPECT_EQ(shape.GetNumVertices() - countEdges(shape) + shape.GetNumFaces(), 2);
+    }
+    EXPECT_NEAR(volume(MakeBox(3, 2, 1)), 6 * 6, 1e-12);
+    EXPECT_NEAR(volume(MakePrism(4, 3, 2)), 6 * 4, 1e-12);
 }
 
 TEST(Shapes, ArraysAgreeInSize) {
