@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Boundaries, tags, flaws and face-varying channels: every feature shape against the reference.
-#include "referenceMatch.h"
-#include "taggedMatch.h"
-#include "valueLevels.h"
+#include "expectations.h"
 
-#include "far_ext/stencilTableFactory.h"
 #include "regression/shapes/featureShapes.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace OpenSubdivHex::Regression {
-
-using FarExt::TopologyRefiner;
 
 namespace {
 
@@ -29,110 +21,23 @@ constexpr Sdc::Options::FVarLinearInterpolation kLinearInterpolations[] = {
     Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
     Sdc::Options::FVAR_LINEAR_BOUNDARIES,    Sdc::Options::FVAR_LINEAR_ALL};
 
-/// What is the same up to the arithmetic of one row of weights.
-template <typename REAL>
-constexpr double kTolerance = sizeof(REAL) == 8 ? 1e-12 : 2e-6;
-
-/// Rows that the reference does not know (values that no corner has) are skipped.
-void expectEqual(std::vector<ReferenceValues> const &actual,
-                 std::vector<ReferenceValues> const &expected, double tolerance) {
-    ASSERT_EQ(actual.size(), expected.size());
-    double const allowed = tolerance * std::max(1.0, GetSize(expected[0]));
-    for (std::size_t level = 0; level < expected.size(); ++level) {
-        ASSERT_EQ(actual[level].rows(), expected[level].rows());
-        for (Eigen::Index i = 0; i < expected[level].rows(); ++i) {
-            if (!std::isnan(expected[level](i, 0))) {
-                ASSERT_LE((actual[level].row(i) - expected[level].row(i)).cwiseAbs().maxCoeff(),
-                          allowed)
-                    << "level " << level << ", row " << i;
-            }
-        }
-    }
-}
-
-/// Checks a stencil table of one mode for some of its flags: by combination number.
-template <typename REAL>
-void expectTable(TopologyRefiner const &refiner, std::vector<ReferenceValues> const &levels,
-                 FarExt::StencilMode mode, int channel, int flags) {
-    using Factory = FarExt::StencilTableFactoryReal<REAL>;
-    typename Factory::Options options;
-    options.interpolationMode = mode;
-    options.fvarChannel = channel;
-    options.generateControlVerts = (flags & 1) != 0;
-    options.generateIntermediateLevels = (flags & 2) != 0;
-    options.factorizeIntermediateLevels = (flags & 4) != 0;
-    SCOPED_TRACE(testing::Message() << "mode " << mode << ", flags " << flags);
-    FarExt::Status status;
-    auto const table = Factory::Create(refiner, options, &status);
-    ASSERT_TRUE(table) << status.GetMessage();
-    double const allowed = kTolerance<REAL> * std::max(1.0, GetSize(levels[0]));
-    int stencil = 0;
-    int const last = int(levels.size()) - 1;
-    for (int level = options.generateControlVerts ? 0 : 1; level <= last; ++level) {
-        if (level > 0 && level < last && !options.generateIntermediateLevels) {
-            continue;
-        }
-        bool const fromBase = level == 0 || options.factorizeIntermediateLevels;
-        ReferenceValues const &sources = levels[fromBase ? 0 : level - 1];
-        for (Eigen::Index row = 0; row < levels[level].rows(); ++row, ++stencil) {
-            ASSERT_LT(stencil, table->GetNumStencils());
-            Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(sources.cols());
-            int const offset = table->GetOffsets()[stencil];
-            for (int k = 0; k < table->GetSizes()[stencil]; ++k) {
-                int const index = table->GetControlIndices()[offset + k];
-                ASSERT_LT(index, sources.rows());
-                sum += double(table->GetWeights()[offset + k]) * sources.row(index);
-            }
-            if (!std::isnan(levels[level](row, 0))) {
-                ASSERT_LE((sum - levels[level].row(row)).cwiseAbs().maxCoeff(), allowed)
-                    << "level " << level << ", row " << row;
-            }
-        }
-    }
-    ASSERT_EQ(stencil, table->GetNumStencils());
-}
-
-/// All tables of a mode when the mesh is small, else one in float and one in double.
-void expectTables(TopologyRefiner const &refiner, std::vector<ReferenceValues> const &levels,
-                  FarExt::StencilMode mode, int channel, int seed) {
-    for (int flags = 0; flags < 8; ++flags) {
-        if (levels[0].rows() < 60 ? flags % 2 == seed % 2 : flags == 6) {
-            ASSERT_NO_FATAL_FAILURE(expectTable<double>(refiner, levels, mode, channel, flags));
-            ASSERT_NO_FATAL_FAILURE(expectTable<float>(refiner, levels, mode, channel, flags));
-        }
-    }
-}
-
 void expectMeshEqual(Shape const &shape, Sdc::Options options, int numLevels) {
     auto const topology = CreateRefiner(shape, ReferenceMask::Average, numLevels, options);
     TaggedMatch const match(shape, *topology);
     ASSERT_EQ(match.GetError(), "");
-    for (int level = 0; level <= numLevels; ++level) {
-        FarExt::Status status;
-        ASSERT_TRUE(topology->GetLevel(level).Validate(&status)) << status.GetMessage();
-    }
+    ASSERT_NO_FATAL_FAILURE(ExpectValid(*topology));
     ReferenceValues const positions = GetPositions(shape);
     for (ReferenceMask mask : kMasks) {
         SCOPED_TRACE(ToString(mask));
         auto const refiner = CreateRefiner(shape, mask, numLevels, options);
-        auto const expected = match.InterpolateAll(mask, positions);
-        ASSERT_NO_FATAL_FAILURE(
-            expectEqual(InterpolateLevels(*refiner, positions), expected, kTolerance<double>));
-        ASSERT_NO_FATAL_FAILURE(expectEqual(InterpolateLevels<float>(*refiner, positions), expected,
-                                            kTolerance<float>));
-        ASSERT_NO_FATAL_FAILURE(
-            expectTables(*refiner, expected, FarExt::INTERPOLATE_VERTEX, 0, int(mask)));
+        ASSERT_NO_FATAL_FAILURE(ExpectVertexValuesEqual(*refiner, match, mask, positions));
     }
-    auto const varying = match.InterpolateVaryingAll(positions);
-    ASSERT_NO_FATAL_FAILURE(expectEqual(InterpolateLevels(*topology, positions, ValueKind::Varying),
-                                        varying, kTolerance<double>));
-    ASSERT_NO_FATAL_FAILURE(expectTables(*topology, varying, FarExt::INTERPOLATE_VARYING, 0, 1));
+    ASSERT_NO_FATAL_FAILURE(ExpectVaryingValuesEqual(*topology, match, positions));
 }
 
 void expectChannelEqual(Shape const &shape, Sdc::Options options, int channel, int numLevels) {
     SCOPED_TRACE(testing::Message()
                  << "channel " << channel << ", linear " << options.GetFVarLinearInterpolation());
-    bool const isLinear = options.GetFVarLinearInterpolation() == Sdc::Options::FVAR_LINEAR_ALL;
     auto const topology = CreateRefiner(shape, ReferenceMask::Average, numLevels, options);
     ASSERT_EQ(topology->GetFVarLinearInterpolation(channel), options.GetFVarLinearInterpolation());
     TaggedMatch const match(shape, *topology, channel);
@@ -141,15 +46,7 @@ void expectChannelEqual(Shape const &shape, Sdc::Options options, int channel, i
     for (ReferenceMask mask : kMasks) {
         SCOPED_TRACE(ToString(mask));
         auto const refiner = CreateRefiner(shape, mask, numLevels, options);
-        auto const expected =
-            isLinear ? match.InterpolateVaryingAll(values) : match.InterpolateAll(mask, values);
-        ASSERT_NO_FATAL_FAILURE(
-            expectEqual(InterpolateLevels(*refiner, values, ValueKind::FaceVarying, channel),
-                        expected, kTolerance<double>));
-        ASSERT_NO_FATAL_FAILURE(expectTable<double>(
-            *refiner, expected, FarExt::INTERPOLATE_FACE_VARYING, channel, 6 + channel % 2));
-        ASSERT_NO_FATAL_FAILURE(
-            expectTable<float>(*refiner, expected, FarExt::INTERPOLATE_FACE_VARYING, channel, 4));
+        ASSERT_NO_FATAL_FAILURE(ExpectChannelValuesEqual(*refiner, match, mask, values, channel));
     }
 }
 

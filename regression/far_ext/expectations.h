@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the tests expect of the values that a refiner computes.  Each of these functions fails the
+// running test with a fatal failure.
+#ifndef OPENSUBDIVHEX_REGRESSION_FAR_EXT_EXPECTATIONS_H
+#define OPENSUBDIVHEX_REGRESSION_FAR_EXT_EXPECTATIONS_H
+
+#include "referenceMatch.h"
+#include "taggedMatch.h"
+#include "valueLevels.h"
+
+#include "far_ext/stencilTableFactory.h"
+
+namespace OpenSubdivHex::Regression {
+
+/// What is the same up to the arithmetic of one row of weights.
+template <typename REAL>
+inline constexpr double kRowTolerance = sizeof(REAL) == 8 ? 1e-12 : 2e-6;
+
+/// Every level passes its own checks.
+void ExpectValid(FarExt::TopologyRefiner const &refiner);
+
+/// Rows that the reference does not know (values that no corner has) are skipped.
+void ExpectLevelsEqual(std::vector<ReferenceValues> const &actual,
+                       std::vector<ReferenceValues> const &expected, double tolerance);
+
+/// \brief The stencils of one mode applied to their sources give \p levels.
+/// \param flags  bits of generateControlVerts, generateIntermediateLevels and
+///               factorizeIntermediateLevels
+template <typename REAL>
+void ExpectTable(FarExt::TopologyRefiner const &refiner, std::vector<ReferenceValues> const &levels,
+                 FarExt::StencilMode mode, int channel, int flags);
+
+/// Vertex data of \p refiner, which has \p mask: refined primvars and stencil tables of both
+/// precisions against the reference.
+void ExpectVertexValuesEqual(FarExt::TopologyRefiner const &refiner, TaggedMatch const &match,
+                             ReferenceMask mask, ReferenceValues const &base);
+
+/// The same for varying data.
+void ExpectVaryingValuesEqual(FarExt::TopologyRefiner const &refiner, TaggedMatch const &match,
+                              ReferenceValues const &base);
+
+/// The same for the face-varying channel that \p match is of.
+void ExpectChannelValuesEqual(FarExt::TopologyRefiner const &refiner, TaggedMatch const &match,
+                              ReferenceMask mask, ReferenceValues const &base, int channel);
+
+} // namespace OpenSubdivHex::Regression
+
+#endif
