@@ -180,6 +180,7 @@ struct LevelTopology {
     Buffer<float> vertSharpness;     ///< of the vertices of level 0, the only ones that have any
     Buffer<unsigned char> faceHoles; ///< numFaces
     std::vector<Index> nonManifoldVerts; ///< ascending
+    std::vector<Index> partedVerts; ///< those that the gaps of an open refinement part into fans
     std::vector<Index> nonManifoldEdges; ///< ascending; of level 0 alone
 
     std::vector<SharpVertex> sharpVerts; ///< ascending; all vertices with a rule but RULE_SMOOTH

@@ -28,18 +28,25 @@ PolygonRules GetRulesOfChannel(LevelTopology const &mesh, PolygonRules const &ru
 class PolygonStep::Builder {
 public:
     // An edge that only one face has will be a boundary of the kind given.
-    Builder(LevelSizes const &sizes, BoundaryKind boundaryKind)
-        : _edges(std::size_t(sizes.edges), EdgeSides{{Far::INDEX_INVALID, boundaryKind}}) {
+    Builder(LevelSizes const &sizes, Index numVVertices, BoundaryKind boundaryKind)
+        : _numVVertices(numVVertices),
+          _edges(std::size_t(sizes.edges), EdgeSides{{Far::INDEX_INVALID, boundaryKind}}) {
         _faceFirstCorner.reserve(std::size_t(sizes.faces) + 1);
         _faceVerts.reserve(std::size_t(sizes.corners));
     }
 
     void BeginFace() { _faceFirstCorner.push_back(Index(_faceVerts.size())); }
-    // Adds a vertex to the face begun last, and the edge from there to the next one.
+    // Adds a vertex to the face begun last, and the edge from there to the next one.  The first side
+    // of a spoke runs from its V-vertex, as in the hexagonal step; that of another edge is the first
+    // to come.  So both sides are the same in the mesh and in its channels, whose faces come in
+    // another order.
     void AddCorner(Index vert, Index edge) {
         EdgeSides &sides = _edges[std::size_t(edge)];
         bool const isSecond = sides.corners[0] != Far::INDEX_INVALID;
         sides.corners[isSecond ? 1 : 0] = Index(_faceVerts.size());
+        if (isSecond && vert < _numVVertices) {
+            std::swap(sides.corners[0], sides.corners[1]);
+        }
         _faceVerts.push_back(vert);
     }
     void SetBoundaryKind(Index edge, BoundaryKind kind) {
@@ -57,6 +64,7 @@ public:
     }
 
 private:
+    Index _numVVertices;
     std::vector<Index> _faceFirstCorner;
     std::vector<Index> _faceVerts;
     std::vector<EdgeSides> _edges;
@@ -356,18 +364,20 @@ void findHalfFaces(LevelTopology &level) {
     std::copy(halfFaces.begin(), halfFaces.end(), level.halfFaces.data());
 }
 
-// Vertices whose faces the gaps of an open refinement have parted.
-void addOpenVertices(LevelTopology &level) {
-    std::vector<Index> &verts = level.nonManifoldVerts;
-    for (Index vert = 0; vert < level.numVertices; ++vert) {
+// The vertices whose faces the gaps of an open refinement have parted, now or in a level before.
+void findPartedVertices(LevelTopology const &parent, LevelTopology &child) {
+    auto const contains = [](std::vector<Index> const &verts, Index vert) {
+        return std::binary_search(verts.begin(), verts.end(), vert);
+    };
+    for (Index cVert = 0; cVert < parent.numVVertices; ++cVert) {
+        Index const pVert = parent.GetVVertexParent(cVert);
         int numFans = 0;
-        ForEachFan(level, vert, [&](VertexFan const &) { ++numFans; });
-        if (numFans > 1) {
-            verts.push_back(vert);
+        ForEachFan(child, cVert, [&](VertexFan const &) { ++numFans; });
+        bool const wasOne = !contains(parent.nonManifoldVerts, pVert);
+        if (numFans > 1 && (wasOne || contains(parent.partedVerts, pVert))) {
+            child.partedVerts.push_back(cVert);
         }
     }
-    std::sort(verts.begin(), verts.end());
-    verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
 }
 
 } // namespace
@@ -379,16 +389,16 @@ void PolygonStep::Refine(bool fullTopology, LevelTopology &child) {
     BeginLevel(_sizes, fullTopology, _parent, child);
     child.isHexagonal = false;
     child.numVFaces = Index(_vFaces.size());
-    Builder builder(_sizes, isFree ? kFreeBoundary : kSharpBoundaryA);
+    Builder builder(_sizes, _parent.numVVertices, isFree ? kFreeBoundary : kSharpBoundaryA);
     buildFaces(builder);
     builder.StoreFaces(child);
     BuildBaseLevel(builder.GetEdges(), child);
     findHalfFaces(child);
+    if (isHexagonal() && !_rules.closeGaps) {
+        findPartedVertices(_parent, child);
+    }
     child.hasFullTopology = fullTopology;
     EndLevel(_sdcOptions, _parent, child);
-    if (fullTopology && isHexagonal() && !_rules.closeGaps) {
-        addOpenVertices(child);
-    }
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -90,12 +90,14 @@ struct SharpEdges {
 };
 
 // Where three or more sheets meet along a crease, each fan has a boundary to either side, all with
-// the same curve: those of the first fan stand for all.
+// the same curve: those of the first fan stand for all.  The fans of a parted vertex are one sheet.
 SharpEdges gatherSharpEdges(LevelTopology const &level, Index vert) {
     SharpEdges result;
+    bool const isParted =
+        std::binary_search(level.partedVerts.begin(), level.partedVerts.end(), vert);
     bool hasBoundary = false;
     forEachFanItems(level, vert, [&](FanItems const &fan) {
-        bool const isOtherSheet = !fan.isClosed && hasBoundary;
+        bool const isOtherSheet = !isParted && !fan.isClosed && hasBoundary;
         for (RingItem const &item : fan.items) {
             bool const isBoundary =
                 !fan.isClosed && (&item == &fan.items.front() || &item == &fan.items.back());
@@ -418,6 +420,10 @@ void RefineTags(LevelTopology const &parent, Sdc::Options sdcOptions, LevelTopol
             child.nonManifoldVerts.push_back(cVert);
         }
     }
+    std::vector<Index> &verts = child.nonManifoldVerts;
+    verts.insert(verts.end(), child.partedVerts.begin(), child.partedVerts.end());
+    std::sort(verts.begin(), verts.end());
+    verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
 
     SharpnessRefiner const refiner(parent, sdcOptions);
     if (!parent.edgeSharpness.empty() || !parent.diagonalSharpness.empty()) {

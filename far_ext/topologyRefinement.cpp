@@ -500,6 +500,7 @@ void BeginLevel(LevelSizes const &sizes, bool fullTopology, LevelTopology const 
     child.numFreeBoundaries = Index(sizes.freeBoundaries);
     child.numSharpBoundariesA = Index(sizes.sharpBoundariesA);
     child.numSharpBoundariesB = Index(sizes.sharpBoundariesB);
+    child.partedVerts.clear();
     child.hasFullTopology = fullTopology;
 }
 
