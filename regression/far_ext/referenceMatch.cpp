@@ -34,8 +34,10 @@ char const *ToString(ReferenceMask mask) {
 }
 
 std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(Shape const &shape, ReferenceMask mask,
-                                                       int level, Sdc::Options sdcOptions) {
+                                                       int level, Sdc::Options sdcOptions,
+                                                       FarExt::SchemeOptions schemeOptions) {
     FarExt::TopologyRefinerFactory::Options options;
+    options.schemeOptions = schemeOptions;
     options.schemeOptions.faceMask = ToFaceMask(mask);
     FarExt::Status status;
     ShapeDescriptor const descriptor(shape);

@@ -18,10 +18,12 @@ inline constexpr ReferenceMask kMasks[] = {ReferenceMask::Average, ReferenceMask
 FarExt::FaceMask ToFaceMask(ReferenceMask mask);
 char const *ToString(ReferenceMask mask);
 
-/// The library's refiner of a shape, with all relations in its last level too.
-std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(Shape const &shape, ReferenceMask mask,
-                                                       int level,
-                                                       Sdc::Options options = Sdc::Options());
+/// The library's refiner of a shape, with all relations in its last level too; \p mask takes the
+/// place of that of \p schemeOptions.
+std::unique_ptr<FarExt::TopologyRefiner>
+CreateRefiner(Shape const &shape, ReferenceMask mask, int level,
+              Sdc::Options options = Sdc::Options(),
+              FarExt::SchemeOptions schemeOptions = FarExt::SchemeOptions());
 
 /// The positions of a shape, a row per vertex.
 ReferenceValues GetPositions(Shape const &shape);

@@ -53,12 +53,13 @@ std::vector<float> valueSharpness(Far::TopologyRefiner const &base, int channel,
 
 } // namespace
 
-TaggedMatch::TaggedMatch(Shape const &shape, FarExt::TopologyRefiner const &refiner, int channel)
-    : _refiner(refiner), _channel(channel) {
+TaggedMatch::TaggedMatch(Shape const &shape, FarExt::TopologyRefiner const &refiner, int channel,
+                         bool closeGaps)
+    : _refiner(refiner), _channel(channel), _closeGaps(closeGaps) {
     makeBase(shape);
     for (int level = 0; level <= refiner.GetMaxLevel(); ++level) {
         if (level > 0) {
-            _levels.push_back(Refine(_levels.back()));
+            _levels.push_back(Refine(_levels.back(), makeStep(level)));
         }
         if (!matchFaces(level) || !matchVertices(level) || !matchEdges(level)) {
             return;
@@ -111,6 +112,104 @@ bool TaggedMatch::fail(int level, std::string const &cause) {
     return false;
 }
 
+int TaggedMatch::GetLibraryEdge(int level, TaggedMesh::Edge const &edge) const {
+    if (edge.isLong && edge.sides.size() == 2) {
+        return -1;
+    }
+    Place const &place = _places[level][edge.sides[0].face];
+    int const corner = place.corners[edge.sides[0].place];
+    return _refiner.GetLevel(level).GetFaceEdges(place.face)[corner];
+}
+
+ReferenceStep TaggedMatch::makeStep(int level) const {
+    ReferenceStep step;
+    switch (_refiner.GetHexSchemeOptions().GetSchemeOfLevel(level)) {
+    case FarExt::SchemeType::Hexagonal:
+        step.scheme = ReferenceScheme::Hexagonal;
+        break;
+    case FarExt::SchemeType::DooSabin:
+        step.scheme = ReferenceScheme::DooSabin;
+        break;
+    case FarExt::SchemeType::TriHex:
+        step.scheme = ReferenceScheme::TriHex;
+        break;
+    }
+    if (_refiner.IsUniform()) {
+        return step;
+    }
+    step.closeGaps = _closeGaps;
+    TopologyLevel const &pLevel = _refiner.GetLevel(level - 1);
+    for (TaggedMesh::Edge const &edge : _levels[level - 1].edges) {
+        int const libraryEdge = GetLibraryEdge(level - 1, edge);
+        bool isFlat = false;
+        if (libraryEdge >= 0 && !pLevel.IsEdgeBoundary(libraryEdge)) {
+            int const face = pLevel.GetEdgeChildFace(libraryEdge);
+            isFlat = face >= 0 && _refiner.GetLevel(level).GetFaceVertices(face).size() == 4;
+        }
+        step.flatEdges.push_back(isFlat);
+    }
+    return step;
+}
+
+TaggedMatch::VFaces TaggedMatch::findVFaces(int level) const {
+    TopologyLevel const &library = _refiner.GetLevel(level);
+    int const firstFVertex = _refiner.GetLevel(level - 1).GetFaceChildVertices(0)[0];
+    VFaces vFaces;
+    for (int f = 0; f < library.GetNumFaces(); ++f) {
+        if (library.GetFaceKind(f) == FarExt::FaceKind::Vertex) {
+            std::vector<int> fVertices;
+            for (int v : library.GetFaceVertices(f)) {
+                if (v >= firstFVertex) {
+                    fVertices.push_back(v);
+                }
+            }
+            std::sort(fVertices.begin(), fVertices.end());
+            vFaces.emplace(fVertices, f);
+        }
+    }
+    return vFaces;
+}
+
+TaggedMatch::Place TaggedMatch::placeOfVFace(TaggedMesh::Face const &face, VFaces const &vFaces,
+                                             int level) const {
+    TopologyLevel const &pLevel = _refiner.GetLevel(level - 1);
+    // The library's vertex of each corner; negative for a V-vertex.
+    std::vector<int> vertices;
+    std::vector<int> key;
+    for (int v : face.vertices) {
+        TaggedMesh::VertexOrigin const &origin = _levels[level].vertexOrigins[v];
+        vertices.push_back(-1);
+        if (origin.face >= 0) {
+            Place const &pPlace = _places[level - 1][origin.face];
+            vertices.back() =
+                pLevel.GetFaceChildVertices(pPlace.face)[pPlace.corners[origin.place]];
+            key.push_back(vertices.back());
+        }
+    }
+    std::sort(key.begin(), key.end());
+    auto const found = vFaces.find(key);
+    Place place;
+    if (found == vFaces.end()) {
+        return place;
+    }
+    place.face = found->second;
+    auto const actual = _refiner.GetLevel(level).GetFaceVertices(place.face);
+    int const size = actual.size();
+    for (int first = 0; first < size && size == int(vertices.size()); ++first) {
+        bool isSame = true;
+        for (int i = 0; i < size; ++i) {
+            isSame = isSame && (vertices[i] < 0 || vertices[i] == actual[(first + i) % size]);
+        }
+        if (isSame) {
+            place.corners.resize(size);
+            std::iota(place.corners.begin(), place.corners.end(), 0);
+            std::rotate(place.corners.begin(), place.corners.begin() + first, place.corners.end());
+            break;
+        }
+    }
+    return place;
+}
+
 TaggedMatch::Place TaggedMatch::placeOf(TaggedMesh::FaceOrigin const &origin,
                                         TopologyLevel const &pLevel, int level) const {
     std::vector<Place> const &pPlaces = _places[level - 1];
@@ -129,8 +228,14 @@ TaggedMatch::Place TaggedMatch::placeOf(TaggedMesh::FaceOrigin const &origin,
                          pLevel.GetEdgeFaceLocalIndices(libraryEdge)[0] == corner;
     Place place;
     place.face = pLevel.GetEdgeChildFace(libraryEdge);
+    if (place.face < 0) {
+        return place;
+    }
+    bool const isQuad = _refiner.GetLevel(level).GetFaceVertices(place.face).size() == 4;
     if (pLevel.IsEdgeBoundary(libraryEdge)) {
         place.corners = {0, 1, 2, 3};
+    } else if (isQuad) {
+        place.corners = isFirst ? std::vector<int>{0, 1, 2, 3} : std::vector<int>{2, 3, 0, 1};
     } else if (edge.sides.size() == 2 && edge.sharpness <= 0) {
         place.corners = {0, 1, 2, 3, 4, 5};
         if (!isFirst) {
@@ -147,6 +252,7 @@ bool TaggedMatch::matchFaces(int level) {
     TopologyLevel const &library = _refiner.GetLevel(level);
     std::vector<Place> places(mesh.faces.size());
     std::vector<std::vector<int>> covered(library.GetNumFaces());
+    VFaces const vFaces = level == 0 ? VFaces() : findVFaces(level);
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
         TaggedMesh::Face const &face = mesh.faces[f];
         Place &place = places[f];
@@ -154,6 +260,8 @@ bool TaggedMatch::matchFaces(int level) {
             place.face = int(f);
             place.corners.resize(face.vertices.size());
             std::iota(place.corners.begin(), place.corners.end(), 0);
+        } else if (mesh.faceOrigins[f].vertex >= 0) {
+            place = placeOfVFace(face, vFaces, level);
         } else {
             TaggedMesh::FaceOrigin const &origin = mesh.faceOrigins[f];
             TopologyLevel const &pLevel = _refiner.GetLevel(level - 1);
@@ -235,10 +343,12 @@ bool TaggedMatch::matchVertices(int level) {
         _vertices.push_back(std::move(vertices));
         return true;
     }
-    // Vertices without faces keep their number.
+    // Vertices without faces.
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         if (vertices[v] < 0) {
-            vertices[v] = level == 0 ? int(v) : _vertices[level - 1][mesh.vertexOrigins[v].vertex];
+            vertices[v] = level == 0 ? int(v)
+                                     : _refiner.GetLevel(level - 1).GetVertexChildVertex(
+                                           _vertices[level - 1][mesh.vertexOrigins[v].vertex]);
         }
     }
     std::set<int> const all(vertices.begin(), vertices.end());

@@ -6,6 +6,7 @@
 #include "regression/reference/taggedReference.h"
 #include "regression/shapes/shapes.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,13 +21,19 @@ class TaggedMatch {
 public:
     /// Matches the levels of \p refiner, all with full topology; \p channel is negative for the
     /// mesh itself.  Failures are reported by GetError().
-    TaggedMatch(Shape const &shape, FarExt::TopologyRefiner const &refiner, int channel = -1);
+    ///
+    /// Of a coplanar refinement the edges that make quads are read off the library's levels;
+    /// \p closeGaps is its option.
+    TaggedMatch(Shape const &shape, FarExt::TopologyRefiner const &refiner, int channel = -1,
+                bool closeGaps = true);
 
     /// Empty when every component has its partner, and the same tags.
     std::string const &GetError() const { return _error; }
 
     int GetMaxLevel() const { return int(_levels.size()) - 1; }
     TaggedMesh const &GetMesh(int level) const { return _levels[level]; }
+    /// The library's number of an edge of a level's mesh; negative for a diagonal, which has none.
+    int GetLibraryEdge(int level, TaggedMesh::Edge const &edge) const;
 
     /// Values of all levels from those of the base, rows in the library's order.
     std::vector<ReferenceValues> InterpolateAll(ReferenceMask mask,
@@ -40,7 +47,13 @@ private:
         std::vector<int> corners;
     };
 
+    /// The library's V-faces, by their F-vertices in ascending order.
+    using VFaces = std::map<std::vector<int>, int>;
+
     void makeBase(Shape const &shape);
+    ReferenceStep makeStep(int level) const;
+    VFaces findVFaces(int level) const;
+    Place placeOfVFace(TaggedMesh::Face const &face, VFaces const &vFaces, int level) const;
     Place placeOf(TaggedMesh::FaceOrigin const &origin, FarExt::TopologyLevel const &pLevel,
                   int level) const;
     bool matchFaces(int level);
@@ -52,6 +65,7 @@ private:
 
     FarExt::TopologyRefiner const &_refiner;
     int _channel;
+    bool _closeGaps;
     std::vector<TaggedMesh> _levels;
     std::vector<std::vector<Place>> _places;
     std::vector<std::vector<int>> _vertices; ///< the library's, of the mesh or of the values

@@ -118,7 +118,7 @@ TaggedRule ruleOf(float vertexSharpness, std::size_t numSharpEdges) {
 /// all with the same points: those of one sheet count, and creases that meet them.
 std::vector<SharpEdge> withoutOtherSheets(TaggedMesh const &mesh, int vertex,
                                           std::vector<SharpEdge> const &edges) {
-    if (!mesh.vertices[vertex].isNonManifold) {
+    if (!mesh.vertices[vertex].isNonManifold || mesh.vertices[vertex].isParted) {
         return edges;
     }
     auto isBoundary = [&](int edge) { return mesh.edges[edge].sides.size() == 1; };
@@ -367,6 +367,9 @@ public:
         joinSides();
         mergeSmoothHalves();
         connect(_child);
+        if (!_step.closeGaps) {
+            tagPartedVertices();
+        }
         return std::move(_child);
     }
 
@@ -379,6 +382,7 @@ private:
     void addVFace(int vertex, std::vector<int> vertices, std::vector<Side> const &corners);
     void joinSides();
     void mergeSmoothHalves();
+    void tagPartedVertices();
 
     int addFace(std::vector<int> vertices, bool isHalf, bool isHole,
                 TaggedMesh::FaceOrigin origin) {
@@ -429,6 +433,7 @@ void Refinement::makeVertices() {
         TaggedMesh::Vertex vertex;
         vertex.sharpness = decremented(_parent.vertices[v].sharpness);
         vertex.isNonManifold = _parent.vertices[v].isNonManifold;
+        vertex.isParted = _parent.vertices[v].isParted;
         _child.vertices.push_back(vertex);
         _child.vertexOrigins.push_back({v, -1, -1});
     }
@@ -610,7 +615,7 @@ void Refinement::joinSides() {
             Edge const &line = _parent.edges[_parent.faces[origin.face].edges[0]];
             edge.sharpness = childSharpness(_parent, start.vertex, line.sharpness);
         } else if (edgeSides.size() == 1) {
-            edge.isFree = _parent.freeBoundaries;
+            edge.isFree = isHexagonal() || _parent.freeBoundaries;
             edge.sharpness = edge.isFree ? 0 : kInfiniteSharpness;
         }
         _child.edges.push_back(edge);
@@ -662,6 +667,17 @@ void Refinement::mergeSmoothHalves() {
     _child.faces = std::move(faces);
     _child.faceOrigins = std::move(origins);
     _child.edges = std::move(edges);
+}
+
+/// Gaps part the faces of a vertex into several fans.
+void Refinement::tagPartedVertices() {
+    for (std::size_t v = 0; v < _child.vertices.size(); ++v) {
+        TaggedMesh::Vertex &vertex = _child.vertices[v];
+        if (!vertex.isNonManifold && findFans(_child, int(v)).size() > 1) {
+            vertex.isNonManifold = true;
+            vertex.isParted = true;
+        }
+    }
 }
 
 /// How far new points in wide sectors are drawn to the vertex, by face and place.
@@ -903,13 +919,16 @@ std::vector<bool> FindFlatEdges(TaggedMesh const &mesh, ReferenceValues const &p
     for (Face const &face : mesh.faces) {
         Eigen::Vector3d const origin = positions.row(face.vertices[0]);
         Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+        double size = 0;
         for (std::size_t i = 0; i < face.vertices.size(); ++i) {
             std::size_t const next = (i + 1) % face.vertices.size();
             Eigen::Vector3d const p = positions.row(face.vertices[i]);
             Eigen::Vector3d const q = positions.row(face.vertices[next]);
             normal += (p - origin).cross(q - origin);
+            size += (q - p).squaredNorm();
         }
-        normals.push_back(normal);
+        // A face without area has no normal, rounding errors aside.
+        normals.push_back(normal.norm() > 1e-12 * size ? normal : Eigen::Vector3d::Zero());
     }
     auto isTagged = [&](int v) {
         return mesh.vertices[v].sharpness > 0 || mesh.vertices[v].isNonManifold;

@@ -41,6 +41,7 @@ struct TaggedMesh {
     struct Vertex {
         float sharpness = 0;
         bool isNonManifold = false;
+        bool isParted = false;     ///< into several fans, by gaps that a step left open
         std::vector<Side> corners; ///< faces of the vertex, and where it is in them
     };
     /// What a vertex was made from: an old vertex, or the corner of a face.
@@ -63,7 +64,7 @@ struct TaggedMesh {
     std::vector<Edge> edges;
     std::vector<Vertex> vertices;
     bool chaikin = false;
-    bool freeBoundaries = false; ///< boundaries that a step makes follow the paper's rule
+    bool freeBoundaries = false; ///< boundaries that other schemes cut follow the paper's rule
 
     // Of a refined mesh.
     ReferenceScheme madeBy = ReferenceScheme::Hexagonal;
@@ -114,7 +115,9 @@ struct ReferenceStep {
     /// By edge, of a hexagonal step: edges that make a quad of the four points beside them, as
     /// those of faces with the same normal do in the paper's stage 3.  Empty: none.
     std::vector<bool> flatEdges;
-    bool closeGaps = true; ///< whether polygons close the gaps that quads leave around vertices
+    /// Whether polygons close the gaps that quads leave around vertices.  The borders of gaps follow
+    /// the paper's rule.
+    bool closeGaps = true;
 };
 
 /// \brief One step: topology and tags.  Schemes but the hexagonal one drop the faces of boundary
