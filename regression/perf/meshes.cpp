@@ -54,4 +54,26 @@ Shape MakeTriangleMesh() { return makeTorus("triangle", 64, 40, true); }
 
 Shape MakeHexMesh() { return MakeDual("hex", MakeTriangleMesh()); }
 
+Shape MakeSmallQuadMesh() { return makeTorus("small quad", 24, 16, false); }
+
+double CountEdges(Shape const &shape) { return shape.GetNumCorners() / 2.0; }
+
+// After the first step all faces are quads: F' = C, then F' = 4F, and V' = V + F + E.
+double CountCatmarkVertices(Shape const &shape, int level) {
+    double numVertices = shape.GetNumVertices();
+    double numFaces = shape.GetNumFaces();
+    double numEdges = CountEdges(shape);
+    for (int i = 0; i < level; ++i) {
+        numVertices += numFaces + numEdges;
+        numFaces = i == 0 ? shape.GetNumCorners() : 4 * numFaces;
+        numEdges = 2 * numFaces;
+    }
+    return numVertices;
+}
+
+// One vertex per corner, V' = 2E, and E' = 4E.
+double CountDooSabinVertices(Shape const &shape, int level) {
+    return level == 0 ? shape.GetNumVertices() : 2 * CountEdges(shape) * std::pow(4.0, level - 1);
+}
+
 } // namespace OpenSubdivHex::Regression

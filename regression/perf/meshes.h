@@ -8,10 +8,20 @@ namespace OpenSubdivHex::Regression {
 
 /// \brief The base meshes of the benchmarks: tori, larger than the shapes of the tests.
 /// @{
-Shape MakeQuadMesh();     ///< 1,536 quads
-Shape MakeTriangleMesh(); ///< 5,120 triangles
-Shape MakeHexMesh();      ///< 2,560 hexagons
+Shape MakeQuadMesh();      ///< 1,536 quads
+Shape MakeTriangleMesh();  ///< 5,120 triangles
+Shape MakeHexMesh();       ///< 2,560 hexagons
+Shape MakeSmallQuadMesh(); ///< 384 quads, for many levels
 /// @}
+
+/// The number of edges of a closed shape.
+double CountEdges(Shape const &shape);
+
+/// The vertices of a closed shape after \p level steps of Catmull-Clark.
+double CountCatmarkVertices(Shape const &shape, int level);
+
+/// The same for Doo-Sabin.
+double CountDooSabinVertices(Shape const &shape, int level);
 
 } // namespace OpenSubdivHex::Regression
 

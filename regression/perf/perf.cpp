@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// perf: this library against its peers, in the same run.
+#include "report.h"
+#include "suite.h"
+
+#include <CLI/CLI.hpp>
+
+#include <fstream>
+#include <iostream>
+#include <regex>
+
+namespace OpenSubdivHex::Regression {
+namespace {
+
+bool writeFile(std::string const &path, std::string const &text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) {
+        std::cerr << "perf: " << path << ": cannot be written\n";
+        return false;
+    }
+    return true;
+}
+
+} // namespace
+} // namespace OpenSubdivHex::Regression
+
+int main(int argc, char **argv) {
+    using namespace OpenSubdivHex::Regression;
+
+    Suite::Options options;
+    std::string jsonPath;
+    std::string markdownPath;
+    std::string command = "perf";
+    CLI::App app("Compares OpenSubdivHex with Far, Osd, OpenMesh and CGAL.", "perf");
+    app.add_flag("--quick", options.isQuick, "Tiny sizes and one turn: to see that all runs");
+    app.add_option(
+           "--filter", options.filter,
+           "Regular expression: only benchmarks whose names, WORK/MESH/SIZE/MEMORY, have it")
+        ->check([](std::string const &word) {
+            try {
+                static_cast<void>(std::regex(word));
+            } catch (std::regex_error const &) {
+                return "'" + word + "' is not a regular expression";
+            }
+            return std::string();
+        });
+    app.add_option("--turns", options.numTurns, "Turns of large sizes; small ones have three times")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    app.add_option("--json", jsonPath, "File for the results as JSON")->type_name("FILE");
+    app.add_option("--markdown", markdownPath, "File for the printed text")->type_name("FILE");
+    app.add_option("--command", command, "Command to name in the results")->group("");
+    CLI11_PARSE(app, argc, argv);
+
+    Suite suite(options);
+    AddCopyBenchmarks(suite);
+    AddTopologyBenchmarks(suite);
+    AddPositionBenchmarks(suite);
+    AddStencilTableBenchmarks(suite);
+    AddEvaluationBenchmarks(suite);
+    AddTableFreeBenchmarks(suite);
+    AddGrowthBenchmarks(suite);
+    bool isComplete = suite.Run();
+
+    Environment environment = DescribeEnvironment();
+    environment.emplace_back("command", "`" + command + "`");
+    std::string const markdown = FormatMarkdown(suite, environment);
+    std::cout << markdown << std::flush;
+    if (!markdownPath.empty()) {
+        isComplete = writeFile(markdownPath, markdown) && isComplete;
+    }
+    if (!jsonPath.empty()) {
+        isComplete = writeFile(jsonPath, FormatJson(suite, environment)) && isComplete;
+    }
+    if (!isComplete) {
+        std::cerr << "perf: not complete, see above\n";
+    }
+    return isComplete ? 0 : 1;
+}

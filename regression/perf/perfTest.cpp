@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Runs all benchmarks at tiny sizes and looks for every figure in the results; speed is not tested.
+#include "rows.h"
+
+#include "osd_ext/ompEvaluator.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace OpenSubdivHex::Regression {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string readFile(std::string const &path) {
+    std::ostringstream content;
+    content << std::ifstream(path).rdbuf();
+    return content.str();
+}
+
+bool isMeasurable(std::string const &row) {
+    bool const needsThreads = row.find("-2") != std::string::npos;
+    bool const needsCgal = row == "positions-cgal";
+#ifdef PERF_HAS_CGAL
+    bool const hasCgal = true;
+#else
+    bool const hasCgal = false;
+#endif
+#ifdef OPENSUBDIV_HAS_OPENMP
+    bool const hasOmpEvaluator = true;
+#else
+    bool const hasOmpEvaluator = row.rfind("evaluation-2-length", 0) != 0;
+#endif
+    return (!needsThreads || OsdExt::OmpEvaluator::IsParallel()) && (!needsCgal || hasCgal) &&
+           hasOmpEvaluator;
+}
+
+TEST(Perf, VerdictsFollowTheBounds) {
+    Row const ratio{"ratio", "", "", 5, 10};
+    EXPECT_EQ(GetVerdict(ratio, 4.99), "below");
+    EXPECT_EQ(GetVerdict(ratio, 5), "at least");
+    EXPECT_EQ(GetVerdict(ratio, 9.99), "at least");
+    EXPECT_EQ(GetVerdict(ratio, 10), "aim");
+    EXPECT_EQ(GetVerdict(ratio, std::nan("")), "below");
+    Row const limit{"limit", "", "", 1.4, 1.15, true};
+    EXPECT_EQ(GetVerdict(limit, 1.41), "below");
+    EXPECT_EQ(GetVerdict(limit, 1.4), "at least");
+    EXPECT_EQ(GetVerdict(limit, 1.15), "aim");
+    EXPECT_EQ(GetVerdict(limit, std::nan("")), "below");
+}
+
+TEST(Perf, RowsHaveNamesOfTheirOwn) {
+    std::set<std::string> names;
+    for (Row const &row : GetRows()) {
+        EXPECT_TRUE(names.insert(row.name).second) << row.name;
+        EXPECT_TRUE(row.isLimit ? row.aim <= row.atLeast : row.aim >= row.atLeast) << row.name;
+    }
+    EXPECT_THROW(GetRow("topology"), std::out_of_range);
+}
+
+TEST(Perf, QuickRunHasEveryFigure) {
+    std::string const folder = testing::TempDir() + "perfTest";
+    std::filesystem::create_directories(folder);
+    std::string const jsonPath = folder + "/results.json";
+    std::string const markdownPath = folder + "/results.md";
+    ASSERT_EQ(
+        std::system(("\"" PERF_PROGRAM "\" --quick --json \"" + jsonPath + "\" --markdown \"" +
+                     markdownPath + "\" >\"" + folder + "/out\" 2>\"" + folder + "/log\"")
+                        .c_str()),
+        0)
+        << readFile(folder + "/log");
+    std::string const markdown = readFile(markdownPath);
+    EXPECT_EQ(markdown, readFile(folder + "/out"));
+    Json const json = Json::parse(readFile(jsonPath));
+
+    ASSERT_EQ(json["rows"].size(), GetRows().size());
+    for (std::size_t i = 0; i < GetRows().size(); ++i) {
+        Row const &row = GetRows()[i];
+        Json const &entry = json["rows"][i];
+        EXPECT_EQ(entry["name"], row.name);
+        EXPECT_EQ(entry["atLeast"], row.atLeast);
+        EXPECT_EQ(entry["aim"], row.aim);
+        EXPECT_NE(markdown.find("| " + row.work + " "), std::string::npos) << row.name;
+        if (!isMeasurable(row.name)) {
+            EXPECT_TRUE(entry["figures"].empty()) << row.name;
+            continue;
+        }
+        std::set<std::string> settings;
+        for (Json const &figure : entry["figures"]) {
+            settings.insert(figure["mesh"].get<std::string>() + " " +
+                            figure["size"].get<std::string>() + " " +
+                            figure["memory"].get<std::string>());
+            // The peak of a tiny table may lie within pages that were there before.
+            bool const isMeasured = figure["figure"].is_number();
+            ASSERT_TRUE(isMeasured || row.name == "table-peak") << row.name << figure;
+            if (isMeasured) {
+                EXPECT_GT(figure["figure"], 0) << row.name << figure;
+                EXPECT_EQ(figure["verdict"], GetVerdict(row, figure["figure"])) << row.name;
+            }
+        }
+        bool const isResident = settings.count("quad small resident") > 0;
+        for (std::string const mesh : {"quad", "triangle", "hexagon"}) {
+            for (std::string const size : {"small", "large"}) {
+                std::string const meshSize = std::string(mesh).append(" ").append(size);
+                if (isResident) {
+                    EXPECT_EQ(settings.count(meshSize + " resident"), 1u) << row.name;
+                } else {
+                    EXPECT_EQ(settings.count(meshSize + " default"), 1u) << row.name;
+#ifdef __GLIBC__
+                    EXPECT_EQ(settings.count(meshSize + " warm"), row.isLimit ? 0u : 1u)
+                        << row.name;
+#endif
+                }
+            }
+        }
+    }
+
+    std::set<std::string> growths;
+    bool isCopyMeasured = false;
+    for (Json const &cost : json["costs"]) {
+        EXPECT_GT(cost["nanoseconds"], 0) << cost;
+        EXPECT_GT(cost["shareOfCopyBandwidth"], 0) << cost;
+        isCopyMeasured = isCopyMeasured || cost["work"] == "copy";
+        std::string const size = cost["size"];
+        if (size.rfind("level", 0) == 0) {
+            growths.insert(cost["work"].get<std::string>() + " " + size);
+        }
+    }
+    EXPECT_TRUE(isCopyMeasured);
+    EXPECT_EQ(growths.size(), 8u);
+}
+
+TEST(Perf, RefusesBadUsage) {
+    for (std::string const arguments : {"--turns 0", "--turns x", "--unknown", "--filter '('"}) {
+        EXPECT_NE(
+            std::system(("\"" PERF_PROGRAM "\" --quick " + arguments + " >/dev/null 2>&1").c_str()),
+            0)
+            << arguments;
+    }
+}
+
+} // namespace
+} // namespace OpenSubdivHex::Regression

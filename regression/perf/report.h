@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_PERF_REPORT_H
+#define OPENSUBDIVHEX_REGRESSION_PERF_REPORT_H
+
+#include "suite.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+/// Names and values, e.g. of the processor and of the versions of the peers.
+using Environment = std::vector<std::pair<std::string, std::string>>;
+
+/// The machine, the build and the peers.
+Environment DescribeEnvironment();
+
+/// All results as Markdown: the rows with their verdicts, the costs, and how costs grow.
+std::string FormatMarkdown(Suite const &suite, Environment const &environment);
+
+/// The same as JSON.
+std::string FormatJson(Suite const &suite, Environment const &environment);
+
+} // namespace OpenSubdivHex::Regression
+
+#endif

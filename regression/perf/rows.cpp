@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rows.h"
+
+#include <stdexcept>
+
+namespace OpenSubdivHex::Regression {
+
+std::vector<Row> const &GetRows() {
+    static std::vector<Row> const kRows = [] {
+        std::string const refine = "Far::TopologyRefiner::RefineUniform";
+        std::vector<Row> result = {
+            {"topology-full", "topology, full incidence at the last level, 1 thread",
+             refine + ", fullTopologyInLastLevel", 5, 10},
+            {"topology-faces", "topology, face-vertices at the last level, 1 thread", refine, 8,
+             15},
+            {"positions-cgal", "topology and positions, 1 thread",
+             "CGAL DooSabin_subdivision, Surface_mesh", 15, 30},
+            {"positions-openmesh", "topology and positions, 1 thread", "OpenMesh CatmullClarkT", 12,
+             30},
+            {"table-1", "stencil table, per weight, 1 thread", "Far::StencilTableFactory", 5, 8},
+            {"table-2", "stencil table, per weight, 2 threads", "Far::StencilTableFactory", 9, 15},
+            {"table-peak", "stencil table: peak memory over its size",
+             "none; in brackets Far::StencilTableFactory", 1.4, 1.15, true}};
+        struct Length {
+            int length;
+            double atLeast;
+            double aim;
+        };
+        for (auto const &[length, atLeast, aim] : {Length{3, 6, 8}, {4, 2.5, 3.5}, {8, 4.5, 6}}) {
+            std::string const suffix = "length" + std::to_string(length);
+            std::string const work = "evaluation, length " + std::to_string(length);
+            result.push_back(
+                {"evaluation-1-" + suffix, work + ", 1 thread", "Osd::CpuEvaluator", atLeast, aim});
+            result.push_back({"evaluation-2-" + suffix, work + ", 2 threads",
+                              "Osd::OmpEvaluator, 2 threads", 12, 25});
+            result.push_back(
+                {"evaluation-2-cpu-" + suffix, work + ", 2 threads", "Osd::CpuEvaluator", 12, 25});
+            result.push_back({"evaluation-2-own-" + suffix, work + ", 2 threads",
+                              "the same with 1 thread", 1.8, 1.8});
+        }
+        result.push_back({"table-free-1", "table-free evaluation of all levels, 1 thread",
+                          "own best table, 1 thread", 3, 5});
+        result.push_back({"table-free-2", "table-free evaluation of all levels, 2 threads",
+                          "own best table, 2 threads", 3, 5});
+        result.push_back({"evaluation-catmark",
+                          "evaluation of OpenSubdiv's Catmull-Clark table, length 3, 1 thread",
+                          "Osd::CpuEvaluator", 5, 8});
+        return result;
+    }();
+    return kRows;
+}
+
+Row const &GetRow(std::string const &name) {
+    for (Row const &row : GetRows()) {
+        if (row.name == name) {
+            return row;
+        }
+    }
+    throw std::out_of_range("no row " + name);
+}
+
+std::string GetVerdict(Row const &row, double figure) {
+    auto const meets = [&](double bound) {
+        return row.isLimit ? figure <= bound : figure >= bound;
+    };
+    return meets(row.aim) ? "aim" : meets(row.atLeast) ? "at least" : "below";
+}
+
+} // namespace OpenSubdivHex::Regression

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_PERF_ROWS_H
+#define OPENSUBDIVHEX_REGRESSION_PERF_ROWS_H
+
+#include <string>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+/// \brief A promise: by what factor this library is to be faster than a peer in the same run.
+struct Row {
+    std::string name; ///< unique, without spaces
+    std::string work;
+    std::string peer;
+    double atLeast;
+    double aim;
+    bool isLimit = false; ///< figures must not exceed the bounds, instead of reaching them
+};
+
+/// All rows, in the order in which they are printed.
+std::vector<Row> const &GetRows();
+
+/// The row of that name; throws std::out_of_range if there is none.
+Row const &GetRow(std::string const &name);
+
+/// \brief Which of the bounds \p figure meets: "aim", "at least" or "below".  A figure that is NaN
+/// is below, and where the bounds are limits, "at least" is to be read as "at most".
+std::string GetVerdict(Row const &row, double figure);
+
+} // namespace OpenSubdivHex::Regression
+
+#endif

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Stencil tables of the last level against those that Far makes of Catmull-Clark on the same mesh:
+// nanoseconds per weight, and the peak memory of a build over the size of its table.
+#include "makers.h"
+#include "memory.h"
+#include "suite.h"
+
+namespace OpenSubdivHex::Regression {
+namespace {
+
+template <typename MAKE>
+double measurePeak(MAKE make) {
+    Table table;
+    double const peak = MeasurePeakBytes([&] { table = make(); });
+    Require(table != nullptr, "no table");
+    return peak / GetNumBytes(*table);
+}
+
+} // namespace
+
+void AddStencilTableBenchmarks(Suite &suite) {
+    for (BenchMesh const &mesh : suite.GetMeshes()) {
+        suite.AddMeasurement({"table-peak", "", mesh, Memory::Default}, "table-peak", [=] {
+            auto const refiner = MakeRefined(mesh);
+            auto const farRefiner = MakeFarRefined(mesh);
+            SetNumThreads(1);
+            return std::pair(measurePeak([&] { return MakeTable(*refiner); }),
+                             measurePeak([&] { return MakeFarTable(*farRefiner); }));
+        });
+    }
+    for (Memory memory : {Memory::Default, Memory::Warm}) {
+        for (BenchMesh const &mesh : suite.GetMeshes()) {
+            suite.AddContest({"table", "weight", mesh, memory}, [=] {
+                std::shared_ptr<FarExt::TopologyRefiner> const refiner = MakeRefined(mesh);
+                std::shared_ptr<Far::TopologyRefiner> const farRefiner = MakeFarRefined(mesh);
+                Contest contest{
+                    {MakeTableContestant(refiner, 1), MakeFarTableContestant(farRefiner)},
+                    {{"table-1", 0, {1}}}};
+                if (HasThreads()) {
+                    contest.contestants.push_back(MakeTableContestant(refiner, 2));
+                    contest.pairings.push_back({"table-2", 2, {1}});
+                }
+                return contest;
+            });
+        }
+    }
+}
+
+} // namespace OpenSubdivHex::Regression
