@@ -14,96 +14,159 @@ namespace OpenSubdivHex::Tutorials {
 
 namespace {
 
-/// Enough for one number and the character before or after it.
-constexpr std::size_t kMaxNumber = 32;
+/// Enough for a float or an index and the character before or after it.
+constexpr std::size_t kMaxNumber = 16;
+
+/// Items that are printed at a time, by one thread.
+constexpr std::size_t kRangeSize = 4096;
+/// Ranges whose text is kept until it is written.
+constexpr std::size_t kNumRanges = 32;
+
+/// \brief Prints \p count items in parallel, and writes them in order.
+///
+/// \param getMaxSize  most characters of items [begin, end)
+/// \param print       prints items [begin, end) to a place for so many, and gives its end
+template <typename GET_MAX_SIZE, typename PRINT>
+void writeItems(std::size_t count, GET_MAX_SIZE getMaxSize, PRINT print, OutputFile &file) {
+    std::vector<char> texts[kNumRanges];
+    std::size_t sizes[kNumRanges];
+    for (std::size_t first = 0; first < count; first += kNumRanges * kRangeSize) {
+        std::size_t const numRanges =
+            std::min(kNumRanges, (count - first + kRangeSize - 1) / kRangeSize);
+        auto const getBegin = [&](std::size_t range) {
+            return std::min(first + range * kRangeSize, count);
+        };
+        for (std::size_t i = 0; i < numRanges; ++i) {
+            std::size_t const size = getMaxSize(getBegin(i), getBegin(i + 1));
+            texts[i].resize(std::max(size, texts[i].size()));
+        }
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic)
+#endif
+        for (int i = 0; i < int(numRanges); ++i) {
+            char *const text = texts[i].data();
+            char const *const end =
+                print(getBegin(std::size_t(i)), getBegin(std::size_t(i) + 1), text);
+            sizes[i] = std::size_t(end - text);
+        }
+        for (std::size_t i = 0; i < numRanges; ++i) {
+            file.Write({texts[i].data(), sizes[i]});
+        }
+    }
+}
 
 template <typename T>
 char *printNumber(char *out, T value) {
     return std::to_chars(out, out + kMaxNumber, value).ptr;
 }
 
-/// Writes "x y z\n".
-void printNumbers(float const *numbers, int count, char *out, OutputFile &file) {
-    for (int i = 0; i < count; ++i) {
-        out = printNumber(out, numbers[i]);
-        *out++ = i < count - 1 ? ' ' : '\n';
-    }
-    file.Advance(out);
+char *printWord(char *out, std::string_view word) {
+    return std::copy(word.begin(), word.end(), out);
 }
 
-/// Writes " v0 v1 ... \n".
-void printVertices(int const *vertices, int size, OutputFile &file) {
-    for (int i = 0; i < size; ++i) {
-        char *out = file.Reserve(kMaxNumber);
-        *out++ = ' ';
-        file.Advance(printNumber(out, vertices[i]));
-    }
-    file.Write("\n");
+/// Writes a line for each \p width numbers, "KEYWORD x y z\n", the keyword with its space.
+void writeValues(std::string_view keyword, std::vector<float> const &values, int width,
+                 OutputFile &file) {
+    auto const print = [&](std::size_t begin, std::size_t end, char *out) {
+        float const *value = values.data() + begin * std::size_t(width);
+        for (std::size_t i = begin; i < end; ++i) {
+            out = printWord(out, keyword);
+            for (int k = 0; k < width; ++k) {
+                out = printNumber(out, *value++);
+                *out++ = k < width - 1 ? ' ' : '\n';
+            }
+        }
+        return out;
+    };
+    std::size_t const maxSize = keyword.size() + std::size_t(width) * kMaxNumber;
+    writeItems(
+        values.size() / std::size_t(width),
+        [=](std::size_t begin, std::size_t end) { return (end - begin) * maxSize; }, print, file);
 }
 
-/// Writes a line for each \p width numbers, "KEYWORD x y z\n".
-void printObjValues(std::string_view keyword, std::vector<float> const &values, int width,
-                    OutputFile &file) {
-    for (std::size_t i = 0; i < values.size(); i += std::size_t(width)) {
-        char *out = file.Reserve(4 * kMaxNumber);
-        out = std::copy(keyword.begin(), keyword.end(), out);
-        *out++ = ' ';
-        printNumbers(&values[i], width, out, file);
+/// \brief Prints all faces in parallel.
+///
+/// \param maxFace,maxCorner  most characters for a face, beside those for each of its corners
+/// \param printFace          prints a face: its size, its first corner, and where to
+template <typename PRINT_FACE>
+void writeFaces(Mesh const &mesh, std::size_t maxFace, std::size_t maxCorner, PRINT_FACE printFace,
+                OutputFile &file) {
+    std::size_t const numFaces = mesh.faceSizes.size();
+    std::vector<std::size_t> firstCorners; // of ranges, and the number of corners
+    std::size_t corner = 0;
+    for (std::size_t face = 0; face < numFaces; ++face) {
+        if (face % kRangeSize == 0) {
+            firstCorners.push_back(corner);
+        }
+        corner += std::size_t(mesh.faceSizes[face]);
     }
-}
-
-/// Writes " v", " v/t", " v//n" or " v/t/n", counted from 1; the values are null where there are
-/// none.
-void printObjCorner(int vertex, int const *uv, int const *normal, OutputFile &file) {
-    char *out = file.Reserve(4 * kMaxNumber);
-    *out++ = ' ';
-    out = printNumber(out, std::int64_t(vertex) + 1);
-    if (uv || normal) {
-        *out++ = '/';
-    }
-    if (uv) {
-        out = printNumber(out, std::int64_t(*uv) + 1);
-    }
-    if (normal) {
-        *out++ = '/';
-        out = printNumber(out, std::int64_t(*normal) + 1);
-    }
-    file.Advance(out);
+    firstCorners.push_back(corner);
+    auto const getMaxSize = [&](std::size_t begin, std::size_t end) {
+        std::size_t const range = begin / kRangeSize;
+        return (end - begin) * maxFace +
+               (firstCorners[range + 1] - firstCorners[range]) * maxCorner;
+    };
+    auto const print = [&](std::size_t begin, std::size_t end, char *out) {
+        std::size_t firstCorner = firstCorners[begin / kRangeSize];
+        for (std::size_t face = begin; face < end; ++face) {
+            int const size = mesh.faceSizes[face];
+            out = printFace(size, firstCorner, out);
+            firstCorner += std::size_t(size);
+        }
+        return out;
+    };
+    writeItems(numFaces, getMaxSize, print, file);
 }
 
 void writeObj(Mesh const &mesh, OutputFile &file) {
-    printObjValues("v", mesh.positions, 3, file);
-    int const *uv = nullptr;
-    int const *normal = nullptr;
+    writeValues("v ", mesh.positions, 3, file);
+    int const *uvs = nullptr;
+    int const *normals = nullptr;
     for (FVarChannel const &channel : mesh.channels) {
         bool const isUv = channel.kind == FVarKind::Uv;
-        printObjValues(isUv ? "vt" : "vn", channel.values, channel.width, file);
-        (isUv ? uv : normal) = channel.faceValues.data();
+        writeValues(isUv ? "vt " : "vn ", channel.values, channel.width, file);
+        (isUv ? uvs : normals) = channel.faceValues.data();
     }
-    int const *vertex = mesh.faceVertices.data();
-    for (int size : mesh.faceSizes) {
-        file.Write("f");
-        for (int i = 0; i < size; ++i) {
-            printObjCorner(*vertex++, uv, normal, file);
-            uv = uv ? uv + 1 : nullptr;
-            normal = normal ? normal + 1 : nullptr;
+    // Indices count from 1: "f v ...", "f v/t ...", "f v//n ..." or "f v/t/n ...".
+    auto const printIndex = [](char *out, int index) {
+        return printNumber(out, std::int64_t(index) + 1);
+    };
+    auto const printFace = [&](int size, std::size_t firstCorner, char *out) {
+        *out++ = 'f';
+        for (std::size_t i = firstCorner; i < firstCorner + std::size_t(size); ++i) {
+            *out++ = ' ';
+            out = printIndex(out, mesh.faceVertices[i]);
+            if (uvs || normals) {
+                *out++ = '/';
+            }
+            if (uvs) {
+                out = printIndex(out, uvs[i]);
+            }
+            if (normals) {
+                *out++ = '/';
+                out = printIndex(out, normals[i]);
+            }
         }
-        file.Write("\n");
-    }
+        *out++ = '\n';
+        return out;
+    };
+    writeFaces(mesh, 2, 3 * kMaxNumber, printFace, file);
 }
 
 void writeOff(Mesh const &mesh, OutputFile &file) {
     file.Write("OFF\n" + std::to_string(mesh.GetNumVertices()) + " " +
                std::to_string(mesh.GetNumFaces()) + " 0\n");
-    for (int v = 0; v < mesh.GetNumVertices(); ++v) {
-        printNumbers(&mesh.positions[3 * std::size_t(v)], 3, file.Reserve(4 * kMaxNumber), file);
-    }
-    int const *vertices = mesh.faceVertices.data();
-    for (int size : mesh.faceSizes) {
-        file.Advance(printNumber(file.Reserve(kMaxNumber), size));
-        printVertices(vertices, size, file);
-        vertices += size;
-    }
+    writeValues("", mesh.positions, 3, file);
+    auto const printFace = [&](int size, std::size_t firstCorner, char *out) {
+        out = printNumber(out, size);
+        for (std::size_t i = firstCorner; i < firstCorner + std::size_t(size); ++i) {
+            *out++ = ' ';
+            out = printNumber(out, mesh.faceVertices[i]);
+        }
+        *out++ = '\n';
+        return out;
+    };
+    writeFaces(mesh, kMaxNumber + 1, kMaxNumber, printFace, file);
 }
 
 /// Appends the 4 bytes of \p value, lowest first, whatever the machine's order.
@@ -129,23 +192,27 @@ void writePly(Mesh const &mesh, OutputFile &file) {
                "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
                std::to_string(mesh.GetNumFaces()) + "\nproperty list " +
                (hasShortFaces ? "uchar" : "int") + " int vertex_indices\nend_header\n");
-    for (float value : mesh.positions) {
-        file.Advance(putBytes(file.Reserve(4), value));
-    }
-    int const *vertices = mesh.faceVertices.data();
-    for (int size : mesh.faceSizes) {
-        char *out = file.Reserve(4);
+    auto const printPositions = [&](std::size_t begin, std::size_t end, char *out) {
+        for (std::size_t i = begin; i < end; ++i) {
+            out = putBytes(out, mesh.positions[i]);
+        }
+        return out;
+    };
+    writeItems(
+        mesh.positions.size(), [](std::size_t begin, std::size_t end) { return 4 * (end - begin); },
+        printPositions, file);
+    auto const printFace = [&](int size, std::size_t firstCorner, char *out) {
         if (hasShortFaces) {
             *out++ = char(size);
         } else {
             out = putBytes(out, size);
         }
-        file.Advance(out);
-        for (int i = 0; i < size; ++i) {
-            file.Advance(putBytes(file.Reserve(4), vertices[i]));
+        for (std::size_t i = firstCorner; i < firstCorner + std::size_t(size); ++i) {
+            out = putBytes(out, mesh.faceVertices[i]);
         }
-        vertices += size;
-    }
+        return out;
+    };
+    writeFaces(mesh, 4, 4, printFace, file);
 }
 
 } // namespace

@@ -3,21 +3,13 @@
 
 #include "fileError.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 
 namespace OpenSubdivHex::Tutorials {
 
-namespace {
-
-constexpr std::size_t kBufferSize = std::size_t(1) << 20;
-
-} // namespace
-
-OutputFile::OutputFile(std::string const &path)
-    : _path(path), _targetPath(path), _buffer(kBufferSize) {
+OutputFile::OutputFile(std::string const &path) : _path(path), _targetPath(path) {
     namespace fs = std::filesystem;
     std::error_code error;
     if (fs::is_directory(path, error)) {
@@ -52,17 +44,13 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::Write(std::string_view content) {
-    while (!content.empty()) {
-        std::size_t const size = std::min(content.size(), kMaxReserve);
-        char *const room = Reserve(size);
-        std::memcpy(room, content.data(), size);
-        Advance(room + size);
-        content.remove_prefix(size);
+    errno = 0;
+    if (std::fwrite(content.data(), 1, content.size(), _file) != content.size()) {
+        refuse();
     }
 }
 
 void OutputFile::Commit() {
-    flush();
     std::FILE *const file = _file;
     _file = nullptr;
     bool const isClosed = std::fclose(file) == 0;
@@ -78,14 +66,6 @@ void OutputFile::Commit() {
     } else if (!isClosed) {
         refuse();
     }
-}
-
-void OutputFile::flush() {
-    errno = 0;
-    if (std::fwrite(_buffer.data(), 1, _used, _file) != _used) {
-        refuse();
-    }
-    _used = 0;
 }
 
 void OutputFile::refuse() const {

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace OpenSubdivHex::Tutorials {
 
@@ -22,32 +21,18 @@ public:
     OutputFile(OutputFile const &) = delete;
     OutputFile &operator=(OutputFile const &) = delete;
 
+    /// Writes at once: contents should be large.
     void Write(std::string_view content);
-
-    /// Room for \p size characters, at most kMaxReserve, of which Advance() takes some.
-    char *Reserve(std::size_t size) {
-        if (_buffer.size() - _used < size) {
-            flush();
-        }
-        return _buffer.data() + _used;
-    }
-    /// Takes what was written from Reserve() up to \p end.
-    void Advance(char const *end) { _used = std::size_t(end - _buffer.data()); }
-
-    static constexpr std::size_t kMaxReserve = 4096;
 
     void Commit();
 
 private:
-    void flush();
     [[noreturn]] void refuse() const;
 
     std::string _path;          ///< as given, for messages
     std::string _targetPath;    ///< links resolved
     std::string _temporaryPath; ///< empty: the target is written directly
     std::FILE *_file = nullptr;
-    std::vector<char> _buffer;
-    std::size_t _used = 0;
 };
 
 } // namespace OpenSubdivHex::Tutorials

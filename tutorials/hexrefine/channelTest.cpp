@@ -110,7 +110,9 @@ TEST_F(HexrefineChannel, LinearInterpolationRules) {
         std::string const tag =
             "t facevaryinginterpolateboundary 1/0/0 " + std::to_string(rule.value) + "\n";
         expectRefined(makeCross() + option, rule.value);
-        expectRefined(makeCross() + option + " --evaluator primvar", rule.value);
+        for (char const *evaluator : {"primvar", "stencil", "stencil-cpu"}) {
+            expectRefined(makeCross() + option + " --evaluator " + evaluator, rule.value);
+        }
         expectRefined(makeCross(tag), rule.value);
         // The command line comes before the file.
         expectRefined(makeCross("t facevaryinginterpolateboundary 1/0/0 4\n") + option, rule.value);

@@ -3,6 +3,8 @@
 
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/stencilTableFactory.h"
+#include "osd_ext/ompEvaluator.h"
+#include "osd_ext/refinementEvaluator.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #ifdef HEXREFINE_HAS_OPENMP
@@ -56,14 +58,44 @@ void evaluateLevels(FarExt::TopologyRefiner const &refiner, Primvar const &primv
     }
 }
 
+bool evaluateRefinement(FarExt::TopologyRefiner const &refiner, Primvar const &primvar,
+                        FarExt::Status *status) {
+    OsdExt::RefinementEvaluator::Options options;
+    if (primvar.fvarChannel >= 0) {
+        options.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
+        options.fvarChannel = primvar.fvarChannel;
+    }
+    auto const evaluator = OsdExt::RefinementEvaluator::Create(refiner, options, status);
+    if (!evaluator) {
+        return false;
+    }
+    int const level = evaluator->GetMaxLevel();
+    int const width = primvar.width;
+    std::vector<float> values(std::size_t(width) * std::size_t(evaluator->GetNumElements(level)));
+    Osd::BufferDescriptor const desc(0, width, width);
+    bool const isEvaluated =
+        evaluator->Evaluate(primvar.values->data(), desc, values.data(), desc, level, status);
+    *primvar.values = std::move(values);
+    return isEvaluated;
+}
+
 } // namespace
 
-void EvaluateLevels(FarExt::TopologyRefiner const &refiner, Primvar const &primvar) {
+bool NeedsStencils(std::string const &evaluator) {
+    return evaluator == kStencil || evaluator == kStencilCpu || evaluator == kStencilOmp;
+}
+
+bool EvaluateLevels(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
+                    Primvar const &primvar, FarExt::Status *status) {
+    if (evaluator == kRefinement) {
+        return evaluateRefinement(refiner, primvar, status);
+    }
     if (primvar.width == 2) {
         evaluateLevels<2>(refiner, primvar);
     } else {
         evaluateLevels<3>(refiner, primvar);
     }
+    return true;
 }
 
 std::unique_ptr<Far::StencilTable const> CreateStencils(FarExt::TopologyRefiner const &refiner,
@@ -89,13 +121,15 @@ void EvaluateStencils(Far::StencilTable const &table, std::string const &evaluat
                       table.GetWeights().data(), 0, table.GetNumStencils());
         *primvar.values = std::move(values);
     };
+    if (evaluator == kStencil) {
+        evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });
+        return;
+    }
 #ifdef HEXREFINE_HAS_OPENMP
-    if (evaluator == "stencil-omp") {
+    if (evaluator == kStencilOmp) {
         evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
         return;
     }
-#else
-    static_cast<void>(evaluator);
 #endif
     evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
 }

@@ -19,9 +19,23 @@ struct Primvar {
     std::vector<float> *values = nullptr;
 };
 
-/// \brief Replaces \p primvar's values by those of the refiner's last level, level by level.
-/// Its width is 2 or 3.
-void EvaluateLevels(FarExt::TopologyRefiner const &refiner, Primvar const &primvar);
+/// \brief The values of --evaluator.
+/// @{
+inline constexpr char kRefinement[] = "refinement";  ///< OsdExt::RefinementEvaluator
+inline constexpr char kStencil[] = "stencil";        ///< OsdExt::OmpEvaluator
+inline constexpr char kStencilCpu[] = "stencil-cpu"; ///< Osd::CpuEvaluator
+inline constexpr char kStencilOmp[] = "stencil-omp"; ///< Osd::OmpEvaluator
+inline constexpr char kPrimvar[] = "primvar";        ///< FarExt::PrimvarRefiner
+/// @}
+
+/// Whether \p evaluator takes a stencil table.
+bool NeedsStencils(std::string const &evaluator);
+
+/// \brief Replaces \p primvar's values by those of the refiner's last level, without a table.
+/// \param evaluator  refinement, or primvar for a width of 2 or 3
+/// \return           false with a status, as from RefinementEvaluator
+bool EvaluateLevels(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
+                    Primvar const &primvar, FarExt::Status *status);
 
 /// The table that holds the last level of \p primvar alone; null with a status, as from
 /// StencilTableFactory.
@@ -30,7 +44,7 @@ CreateStencils(FarExt::TopologyRefiner const &refiner, Primvar const &primvar,
                FarExt::Status *status);
 
 /// \brief Replaces \p primvar's values by those that \p table, from CreateStencils, makes of them.
-/// \param evaluator  stencil-cpu or stencil-omp
+/// \param evaluator  one that takes a table
 void EvaluateStencils(OpenSubdiv::Far::StencilTable const &table, std::string const &evaluator,
                       Primvar const &primvar);
 

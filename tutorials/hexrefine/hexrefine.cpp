@@ -2,8 +2,8 @@
 //
 // hexrefine: refines a polygon mesh with the hexagonal scheme and writes the result.
 //
-// Mesh file -> Far::TopologyDescriptor -> FarExt::TopologyRefiner -> Far::StencilTable -> Osd
-// evaluator -> mesh file.
+// Mesh file -> Far::TopologyDescriptor -> FarExt::TopologyRefiner -> OsdExt::RefinementEvaluator,
+// or Far::StencilTable and an evaluator -> mesh file.
 #include "creaseAngle.h"
 #include "evaluation.h"
 #include "far_ext/topologyRefinerFactory.h"
@@ -21,6 +21,10 @@
 #include "tutorials/common/topologyDescriptor.h"
 
 #include <CLI/CLI.hpp>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 #include <chrono>
 #include <cstdio>
@@ -42,7 +46,8 @@ struct Arguments {
     std::optional<std::string> boundary;
     std::optional<double> creaseAngle;
     std::optional<std::string> fvarInterpolation;
-    std::string evaluator = "stencil-cpu";
+    std::string evaluator = kRefinement;
+    std::optional<int> numThreads;
     std::string stats;
     bool printsTags = false;
     bool isQuiet = false;
@@ -108,20 +113,36 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->check(CLI::IsMember(kFVarInterpolationNames))
         ->default_str("the file's, or all");
     app.add_option("--evaluator", arguments->evaluator,
-                   "How values are computed: from a stencil table with one thread or with "
-                   "OpenMP, or level by level without a table")
-        ->check(CLI::IsMember({"stencil-cpu", "stencil-omp", "primvar"}))
+                   "How values are computed. refinement: level by level without a table, the "
+                   "fastest; stencil: from a stencil table; stencil-cpu, stencil-omp: from a table "
+                   "by OpenSubdiv's evaluators; primvar: level by level by the primvar refiner")
+        ->check(CLI::IsMember({kRefinement, kStencil, kStencilCpu, kStencilOmp, kPrimvar}))
         ->check([](std::string const &evaluator) {
 #ifdef HEXREFINE_HAS_OPENMP
             static_cast<void>(evaluator);
             return std::string();
 #else
-            return std::string(evaluator == "stencil-omp"
+            return std::string(evaluator == kStencilOmp
                                    ? "stencil-omp is not in this program, built without OpenMP"
                                    : "");
 #endif
         })
         ->capture_default_str();
+    app.add_option("--threads", arguments->numThreads,
+                   "Number of threads, 1 to 1024; the result does not depend on it")
+        ->check([](std::string const &word) {
+            int numThreads = 0;
+            if (!ParseInt(word, &numThreads) || numThreads < 1 || numThreads > 1024) {
+                return "'" + word + "' is not a number of threads, 1 to 1024";
+            }
+#ifndef _OPENMP
+            if (numThreads > 1) {
+                return std::string("this program has one thread, it was built without OpenMP");
+            }
+#endif
+            return std::string();
+        })
+        ->default_str("those of OpenMP: OMP_NUM_THREADS, or all processors");
     app.add_option("--stats", arguments->stats, "File for statistics as JSON; - is standard output")
         ->type_name("FILE|-");
     app.add_flag("--tags", arguments->printsTags,
@@ -192,18 +213,22 @@ void evaluate(Arguments const &arguments, FarExt::TopologyRefiner const &refiner
               Progress &progress, Statistics *statistics) {
     auto &milliseconds = statistics->milliseconds;
     for (Primvar const &primvar : findPrimvars(mesh)) {
-        if (arguments.evaluator == "primvar") {
-            milliseconds.evaluate +=
-                measure(progress, "evaluating", [&] { EvaluateLevels(refiner, primvar); });
+        FarExt::Status status;
+        auto const require = [&](bool isDone) {
+            if (!isDone) {
+                throw FileError(arguments.input, status.GetMessage());
+            }
+        };
+        if (!NeedsStencils(arguments.evaluator)) {
+            milliseconds.evaluate += measure(progress, "evaluating", [&] {
+                require(EvaluateLevels(refiner, arguments.evaluator, primvar, &status));
+            });
             continue;
         }
         std::unique_ptr<Far::StencilTable const> table;
         milliseconds.stencils += measure(progress, "building stencils", [&] {
-            FarExt::Status status;
             table = CreateStencils(refiner, primvar, &status);
-            if (!table) {
-                throw FileError(arguments.input, status.GetMessage());
-            }
+            require(table != nullptr);
         });
         if (primvar.fvarChannel < 0) {
             statistics->stencils = table->GetNumStencils();
@@ -323,6 +348,11 @@ int main(int argc, char **argv) {
     } catch (CLI::ParseError const &error) {
         return app.exit(error) == 0 ? kSuccess : kBadUsage;
     }
+#ifdef _OPENMP
+    if (arguments.numThreads) {
+        omp_set_num_threads(*arguments.numThreads);
+    }
+#endif
     try {
         run(arguments);
     } catch (FileError const &error) {

@@ -16,7 +16,7 @@ TEST_F(Hexrefine, PrintsHelpAndVersion) {
     EXPECT_EQ(help.status, 0);
     for (char const *option : {"INPUT", "-l,--level", "-o,--output", "--mask", "--scheme",
                                "--boundary", "--crease-angle", "--fvar-interpolation", "--tags",
-                               "--evaluator", "--stats", "--quiet", "--version"}) {
+                               "--evaluator", "--threads", "--stats", "--quiet", "--version"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
     EXPECT_EQ(run("--version").out, "hexrefine " HEXREFINE_VERSION "\n");
@@ -36,7 +36,7 @@ TEST_F(Hexrefine, RefinesCube) {
 
 TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
     std::string const input = makeCubeFile();
-    Result const result = run(input + " -l 2 --mask cosine --stats -");
+    Result const result = run(input + " -l 2 --mask cosine --evaluator stencil --stats -");
     EXPECT_EQ(result.status, 0);
     Json const json = Json::parse(result.out);
     std::vector<std::string> keys;
@@ -51,7 +51,7 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
     EXPECT_EQ(json["scheme"], "hex");
     EXPECT_EQ(json["mask"], "cosine");
     EXPECT_EQ(json["boundary"], "none");
-    EXPECT_EQ(json["evaluator"], "stencil-cpu");
+    EXPECT_EQ(json["evaluator"], "stencil");
     EXPECT_EQ(json["input"], input);
     EXPECT_EQ(json["levels"].dump(),
               R"([{"level":0,"vertices":8,"edges":12,"faces":6,"corners":24,"boundaryEdges":0,)"
@@ -74,6 +74,11 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
     EXPECT_EQ(json["fvarChannels"].dump(), "[]");
     EXPECT_EQ(json["fvarChannelsLeftOut"].dump(), "[]");
     EXPECT_EQ(listFiles(), std::vector<std::string>{"cube.obj"});
+
+    Json const byDefault = Json::parse(run(input + " --stats -").out);
+    EXPECT_EQ(byDefault["evaluator"], "refinement");
+    EXPECT_EQ(byDefault["stencils"], 0);
+    EXPECT_EQ(byDefault["weights"], 0);
 }
 
 TEST_F(Hexrefine, WritesStatisticsToFile) {
@@ -86,7 +91,7 @@ TEST_F(Hexrefine, WritesStatisticsToFile) {
 }
 
 TEST_F(Hexrefine, LevelZeroCopies) {
-    for (char const *evaluator : {"stencil-cpu", "primvar"}) {
+    for (char const *evaluator : {"refinement", "stencil", "stencil-cpu", "primvar"}) {
         Result const result = run(std::string(LANTERN_FILE) + " -l 0 --quiet --evaluator " +
                                   evaluator + " -o " + getPath("copy.ply"));
         EXPECT_EQ(result.status, 0) << result.error;
@@ -98,14 +103,19 @@ TEST_F(Hexrefine, LevelZeroCopies) {
     }
 }
 
-TEST_F(Hexrefine, EvaluatorsAgree) {
-    std::vector<std::string> evaluators = {"primvar", "stencil-cpu"};
+/// The names of --evaluator in this program.
+std::vector<std::string> getEvaluators() {
+    return {"refinement", "stencil", "stencil-cpu",
 #ifdef HEXREFINE_HAS_OPENMP
-    evaluators.emplace_back("stencil-omp");
+            "stencil-omp",
 #endif
+            "primvar"};
+}
+
+TEST_F(Hexrefine, EvaluatorsAgree) {
     for (char const *mask : {"average", "cosine", "smooth"}) {
         std::vector<Mesh> meshes;
-        for (std::string const &evaluator : evaluators) {
+        for (std::string const &evaluator : getEvaluators()) {
             Result const result = run(std::string(LANTERN_FILE) + " -l 3 --quiet --mask " + mask +
                                       " --evaluator " + evaluator + " -o " + getPath("out.ply"));
             ASSERT_EQ(result.status, 0) << result.error;
@@ -117,6 +127,34 @@ TEST_F(Hexrefine, EvaluatorsAgree) {
             }
         }
         expectClosed(meshes[0]);
+    }
+}
+
+TEST_F(Hexrefine, ThreadsDoNotChangeTheOutput) {
+#ifdef _OPENMP
+    std::vector<std::string> const numbers = {"1", "2", "3"};
+#else
+    std::vector<std::string> const numbers = {"1"};
+#endif
+    std::string const input = std::string(LANTERN_FILE) + " -l 4 --quiet";
+    for (char const *name : {"out.obj", "out.off", "out.ply"}) {
+        std::string const output = " -o " + getPath(name);
+        ASSERT_EQ(run(input + output).status, 0);
+        std::string const expected = getContent(getPath(name));
+        for (std::string const &number : numbers) {
+            Result const result = run(input + output + " --threads " + number);
+            ASSERT_EQ(result.status, 0) << result.error;
+            EXPECT_TRUE(getContent(getPath(name)) == expected) << name << number;
+        }
+    }
+    for (std::string const &evaluator : getEvaluators()) {
+        std::string const options = " --evaluator " + evaluator + " -o " + getPath("out.ply");
+        ASSERT_EQ(run(input + options + " --threads 1").status, 0);
+        std::string const expected = getContent(getPath("out.ply"));
+        for (std::string const &number : numbers) {
+            ASSERT_EQ(run(input + options + " --threads " + number).status, 0);
+            EXPECT_TRUE(getContent(getPath("out.ply")) == expected) << evaluator << number;
+        }
     }
 }
 
@@ -146,6 +184,12 @@ TEST_F(Hexrefine, RefusesBadUsage) {
     expectBadUsage(input + " --fvar-interpolation linear", "linear");
     expectBadUsage(input + " --tags --stats -", "standard output is taken");
     expectBadUsage(input + " --evaluator gpu", "gpu");
+    for (char const *number : {"0", "-1", "1025", "2.5", "two", "99999999999"}) {
+        expectBadUsage(input + " --threads " + number, "is not a number of threads, 1 to 1024");
+    }
+#ifndef _OPENMP
+    expectBadUsage(input + " --threads 2", "has one thread");
+#endif
     expectBadUsage(input + " --unknown", "--unknown");
     expectBadUsage(input + " " + input, "");
 #ifndef HEXREFINE_HAS_OPENMP
