@@ -8,6 +8,7 @@
 #include "evaluation.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "levelMesh.h"
+#include "picture.h"
 #include "progress.h"
 #include "ruleNames.h"
 #include "statistics.h"
@@ -48,6 +49,7 @@ struct Arguments {
     std::optional<std::string> fvarInterpolation;
     std::string evaluator = kRefinement;
     std::optional<int> numThreads;
+    std::string png;
     std::string stats;
     bool printsTags = false;
     bool isQuiet = false;
@@ -143,6 +145,11 @@ void addOptions(CLI::App &app, Arguments *arguments) {
             return std::string();
         })
         ->default_str("those of OpenMP: OMP_NUM_THREADS, or all processors");
+    app.add_option("--png", arguments->png, "File for a ray traced picture of the last level")
+        ->check([](std::string const &) {
+            return std::string(HasRenderer() ? "" : "this program was built without Embree");
+        })
+        ->type_name("FILE");
     app.add_option("--stats", arguments->stats, "File for statistics as JSON; - is standard output")
         ->type_name("FILE|-");
     app.add_flag("--tags", arguments->printsTags,
@@ -318,6 +325,11 @@ void run(Arguments const &arguments) {
                 WriteMesh(mesh, arguments.output);
             });
         }
+        if (!arguments.png.empty()) {
+            milliseconds.render = measure(progress, "rendering", [&] {
+                WritePicture(refiner->GetLevel(arguments.level), mesh.positions, arguments.png);
+            });
+        }
     }
 
     if (arguments.printsTags) {
@@ -328,7 +340,8 @@ void run(Arguments const &arguments) {
     }
     if (!arguments.isQuiet && arguments.stats != "-") {
         print(FormatSummary(statistics) +
-              (arguments.output.empty() ? "" : "wrote " + arguments.output + "\n"));
+              (arguments.output.empty() ? "" : "wrote " + arguments.output + "\n") +
+              (arguments.png.empty() ? "" : "wrote " + arguments.png + "\n"));
     }
 }
 

@@ -60,7 +60,8 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
               R"("facesBySize":{"4":6,"6":12}},)"
               R"({"level":2,"vertices":128,"edges":192,"faces":66,"corners":384,)"
               R"("boundaryEdges":0,"facesBySize":{"4":6,"6":60}}])");
-    for (char const *phase : {"read", "validate", "refine", "stencils", "evaluate", "write"}) {
+    for (char const *phase :
+         {"read", "validate", "refine", "stencils", "evaluate", "write", "render"}) {
         EXPECT_GE(json["milliseconds"][phase].get<double>(), 0) << phase;
     }
     EXPECT_EQ(json["stencils"], 128);
@@ -231,6 +232,28 @@ TEST_F(Hexrefine, FailedOutputLeavesNothing) {
 #endif
     EXPECT_EQ(listFiles(), std::vector<std::string>{"cube.obj"});
 }
+
+#ifdef HEXREFINE_HAS_RENDERER
+TEST_F(Hexrefine, MakesAPicture) {
+    std::string const path = getPath("cube.png");
+    Result const result = run(makeCubeFile() + " -l 2 --png " + path);
+    EXPECT_EQ(result.status, 0) << result.error;
+    EXPECT_NE(result.out.find("wrote " + path), std::string::npos) << result.out;
+    // The signature, and the width and height in the header, which comes first.
+    std::string const content = getContent(path);
+    EXPECT_EQ(content.substr(0, 8), "\x89PNG\r\n\x1a\n");
+    EXPECT_EQ(content.substr(16, 8), std::string("\0\0\x03\x20\0\0\x02\x58", 8));
+    // A picture of nothing would be a smooth background, and compress to much less.
+    EXPECT_GT(content.size(), 50000u);
+
+    expectFailure(makeCubeFile() + " --png " + getPath("none/cube.png"), getPath("none/cube.png"),
+                  "");
+}
+#else
+TEST_F(Hexrefine, RefusesPicturesWithoutTheRenderer) {
+    expectBadUsage(makeCubeFile() + " --png " + getPath("cube.png"), "without Embree");
+}
+#endif
 
 // AddressSanitizer reserves more memory than the limit before the program begins.
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(HAS_ADDRESS_SANITIZER)

@@ -102,7 +102,8 @@ std::string FormatJson(Statistics const &statistics) {
                          {"refine", milliseconds.refine},
                          {"stencils", milliseconds.stencils},
                          {"evaluate", milliseconds.evaluate},
-                         {"write", milliseconds.write}}},
+                         {"write", milliseconds.write},
+                         {"render", milliseconds.render}}},
                        {"stencils", statistics.stencils},
                        {"weights", statistics.weights},
                        {"peakMemoryBytes", GetPeakMemoryBytes()},
@@ -170,9 +171,10 @@ std::string FormatSummary(Statistics const &statistics) {
                           static_cast<long long>(statistics.weights));
     }
     auto const &ms = statistics.milliseconds;
-    summary += format("ms: read %.1f, validate %.1f, refine %.1f, stencils %.1f, evaluate %.1f, "
-                      "write %.1f\n",
-                      ms.read, ms.validate, ms.refine, ms.stencils, ms.evaluate, ms.write);
+    summary +=
+        format("ms: read %.1f, validate %.1f, refine %.1f, stencils %.1f, evaluate %.1f, "
+               "write %.1f, render %.1f\n",
+               ms.read, ms.validate, ms.refine, ms.stencils, ms.evaluate, ms.write, ms.render);
     if (std::int64_t const bytes = GetPeakMemoryBytes()) {
         summary += format("peak memory %.1f MiB\n", double(bytes) / (1024 * 1024));
     }

@@ -44,6 +44,7 @@ struct Statistics {
         double stencils = 0; ///< building the table
         double evaluate = 0;
         double write = 0;
+        double render = 0;
     } milliseconds;
     int stencils = 0;         ///< for positions
     std::int64_t weights = 0; ///< of these stencils

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture.h"
+
+#include "tutorials/common/fileError.h"
+
+#ifdef HEXREFINE_HAS_RENDERER
+#include "tutorials/common/pngFile.h"
+#include "tutorials/common/renderer.h"
+#endif
+
+namespace OpenSubdivHex::Tutorials {
+
+#ifdef HEXREFINE_HAS_RENDERER
+
+bool HasRenderer() { return true; }
+
+void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> const &positions,
+                  std::string const &path) {
+    constexpr int kWidth = 800;
+    constexpr int kHeight = 600;
+    Surface surface(level);
+    surface.SetPositions(positions.data());
+    Scene scene;
+    scene.Build(&surface, {}, 0);
+    Camera const camera(View(), positions, float(kWidth) / kHeight);
+    WritePng(Render(scene, camera, RenderOptions(), kWidth, kHeight), path);
+}
+
+#else
+
+bool HasRenderer() { return false; }
+
+void WritePicture(FarExt::TopologyLevel const &, std::vector<float> const &,
+                  std::string const &path) {
+    throw FileError(path, "cannot be made: this program was built without Embree and libpng");
+}
+
+#endif
+
+} // namespace OpenSubdivHex::Tutorials

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TUTORIALS_PICTURE_H
+#define OPENSUBDIVHEX_TUTORIALS_PICTURE_H
+
+#include "far_ext/topologyLevel.h"
+
+#include <string>
+#include <vector>
+
+namespace OpenSubdivHex::Tutorials {
+
+/// Whether this program has the renderer, which needs Embree and libpng.
+bool HasRenderer();
+
+/// \brief Ray traces a level and writes the picture, 800 x 600 pixels, to \p path.
+///
+/// \param positions  x y z of each vertex of the level
+///
+/// Throws FileError.
+void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> const &positions,
+                  std::string const &path);
+
+} // namespace OpenSubdivHex::Tutorials
+
+#endif
