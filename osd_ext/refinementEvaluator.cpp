@@ -78,17 +78,15 @@ RefinementEvaluator::RefinementEvaluator(TopologyRefiner const &refiner, Options
     : _refiner(refiner) {
     std::vector<TopologyLevel> const meshes = getMeshes(refiner, options);
     _steps.resize(meshes.size() - 1);
-    std::vector<Index> faceOrder(std::size_t(meshes[0].GetNumFaces()));
-    std::iota(faceOrder.begin(), faceOrder.end(), 0);
+    internal::TileMap tileMap(meshes[0]);
     for (std::size_t level = 0; level < _steps.size(); ++level) {
         if (level > 0) {
-            faceOrder = internal::RefineFaceOrder(meshes[level - 1], faceOrder);
+            tileMap.Refine(meshes[level - 1]);
         }
         FarExt::internal::RefinementMask const mask(meshes[level], refiner.GetHexSchemeOptions(),
                                                     getInterpolation(refiner, options));
-        internal::MakeRefinementStep(mask, meshes[level], faceOrder, _steps[level]);
+        internal::MakeRefinementStep(mask, meshes[level], tileMap, _steps[level]);
     }
-
     for (TopologyLevel const &mesh : meshes) {
         _numElements.push_back(mesh.GetNumVertices());
     }

@@ -25,8 +25,9 @@ constexpr Index kMaxTileCorners = 131072;
 constexpr Index kTilesPerLevel = 16;
 /// Vertices that a thread takes at a time of those between the tiles.
 constexpr int kVertexBatch = 1024;
-/// Indices before the vertices of a face or the corners of a vertex in a record.
-constexpr int kRecordHead = 2;
+/// Tiles that a TileMap distinguishes, and the least faces of the level that they are made of.
+constexpr Index kNumMapTiles = 1024;
+constexpr Index kMinMapFaces = 4 * kNumMapTiles;
 
 constexpr int kPacket = 4;
 constexpr int kPacketPair = 8;
@@ -204,13 +205,15 @@ void refineWeightedFace(float const *weights, std::ptrdiff_t rowStep,
 }
 
 template <class ACCESS>
-void refinePlainFaces(Task const &task, Index const *begin, Index const *end) {
+void refinePlainFaces(Task const &task, IndexRun run) {
     Elements<float> const dst = task.FVertices();
-    while (begin < end) {
-        Index const corner = begin[0];
-        int const size = begin[1];
-        Index const *const verts = begin + kRecordHead;
-        begin = verts + size;
+    LevelTopology const &parent = *task.step.parent;
+    Index const *const firstCorners = parent.faceFirstCorner.data();
+    Index corner = firstCorners[run.begin];
+    for (Index face = run.begin; face < run.end; ++face) {
+        Index const *const verts = parent.faceVerts.data() + corner;
+        Index const nextCorner = firstCorners[face + 1];
+        int const size = nextCorner - corner;
         PlainFaceMask const &mask = task.step.masks.faces[std::size_t(size)];
         switch (mask.weights.empty() ? size : 0) {
         case 3:
@@ -237,18 +240,24 @@ void refinePlainFaces(Task const &task, Index const *begin, Index const *end) {
                                            dst, corner);
             }
         }
+        corner = nextCorner;
     }
 }
 
 template <class ACCESS>
-void refinePlainVertices(Task const &task, Index const *begin, Index const *end) {
+void refinePlainVertices(Task const &task, IndexRun run) {
+    if (!task.step.masks.averagesFaces) {
+        for (Index vert = run.begin; vert < run.end; ++vert) {
+            ACCESS::StoreExactly(task.dst, vert, ACCESS::LoadExactly(task.src, vert));
+        }
+        return;
+    }
     Elements<float const> const fVertices = asConst(task.FVertices());
     float const *const inverses = task.step.masks.verticesInverse.data();
-    while (begin < end) {
-        Index const vert = begin[0];
-        int const numFaces = begin[1];
-        Index const *const corners = begin + kRecordHead;
-        begin = corners + numFaces;
+    Index const *const firstFaces = task.step.parent->vertFirstFace.data();
+    Index const *corners = task.step.vertCorners.data() + firstFaces[run.begin];
+    for (Index vert = run.begin; vert < run.end; ++vert) {
+        int const numFaces = firstFaces[vert + 1] - firstFaces[vert];
         auto sum = ACCESS::Load(task.src, vert);
         if (numFaces == 3) {
             sum = sum + ACCESS::Load(fVertices, corners[0]);
@@ -259,6 +268,7 @@ void refinePlainVertices(Task const &task, Index const *begin, Index const *end)
                 sum = sum + ACCESS::Load(fVertices, corners[i]);
             }
         }
+        corners += numFaces;
         ACCESS::StoreExactly(task.dst, vert, spread(inverses[numFaces]) * sum);
     }
 }
@@ -272,12 +282,13 @@ void refineWeightedVertex(Task const &task, WeightedVertex const &vertex) {
                                 ACCESS::LoadExactly(task.src, vertex.neighbors[i]);
         }
     }
-    if (vertex.faceWeight != 0 && vertex.numFaces > 0) {
+    Index const *const firstFace = task.step.parent->vertFirstFace.data() + vertex.vert;
+    if (vertex.faceWeight != 0 && firstFace[0] < firstFace[1]) {
         Elements<float const> const fVertices = asConst(task.FVertices());
-        Index const *const corners = task.step.weightedCorners.data() + vertex.firstCorner;
-        auto sum = ACCESS::LoadExactly(fVertices, corners[0]);
-        for (int i = 1; i < vertex.numFaces; ++i) {
-            sum = sum + ACCESS::LoadExactly(fVertices, corners[i]);
+        Index const *const corners = task.step.vertCorners.data();
+        auto sum = ACCESS::LoadExactly(fVertices, corners[firstFace[0]]);
+        for (Index k = firstFace[0] + 1; k < firstFace[1]; ++k) {
+            sum = sum + ACCESS::LoadExactly(fVertices, corners[k]);
         }
         point = point + spread(vertex.faceWeight) * sum;
     }
@@ -286,8 +297,10 @@ void refineWeightedVertex(Task const &task, WeightedVertex const &vertex) {
 
 template <class ACCESS>
 struct FaceKernel {
-    static void Run(Task const &task, Index const *begin, Index const *end) {
-        refinePlainFaces<ACCESS>(task, begin, end);
+    static void Run(Task const &task, IndexRun const *begin, IndexRun const *end) {
+        for (; begin < end; ++begin) {
+            refinePlainFaces<ACCESS>(task, *begin);
+        }
     }
     static void Run(Task const &task, WeightedFace const *begin, WeightedFace const *end) {
         for (; begin < end; ++begin) {
@@ -299,8 +312,10 @@ struct FaceKernel {
 };
 template <class ACCESS>
 struct VertexKernel {
-    static void Run(Task const &task, Index const *begin, Index const *end) {
-        refinePlainVertices<ACCESS>(task, begin, end);
+    static void Run(Task const &task, IndexRun const *begin, IndexRun const *end) {
+        for (; begin < end; ++begin) {
+            refinePlainVertices<ACCESS>(task, *begin);
+        }
     }
     static void Run(Task const &task, WeightedVertex const *begin, WeightedVertex const *end) {
         for (; begin < end; ++begin) {
@@ -380,77 +395,68 @@ PlainFaceMask makePlainFaceMask(double const *weights, int size) {
 
 constexpr int kNoGroup = -1;
 
-// Sorts records into groups, in the order in which they stand.  Number i has sizeAt(i) items, which
-// writeAt(i, items) makes; those of group kNoGroup are left out.
-template <class ITEM, class SIZE_AT, class WRITE_AT>
-Groups<ITEM> makeGroups(std::vector<int> const &groupOf, int numGroups, SIZE_AT sizeAt,
-                        WRITE_AT writeAt) {
+// Sorts items into groups, in the order in which they stand: number i is in group groupOf[i].
+template <class ITEM>
+Groups<ITEM> makeGroups(std::vector<ITEM> const &items, std::vector<int> const &groupOf,
+                        int numGroups) {
     Groups<ITEM> groups;
     groups.firsts.assign(std::size_t(numGroups) + 1, 0);
-    for (std::size_t i = 0; i < groupOf.size(); ++i) {
-        if (groupOf[i] != kNoGroup) {
-            groups.firsts[std::size_t(groupOf[i]) + 1] += std::size_t(sizeAt(Index(i)));
-        }
+    for (int const group : groupOf) {
+        ++groups.firsts[std::size_t(group) + 1];
     }
     std::partial_sum(groups.firsts.begin(), groups.firsts.end(), groups.firsts.begin());
-    groups.items.Resize(groups.firsts.back());
+    groups.items.Resize(items.size());
     std::vector<std::size_t> next = groups.firsts;
-    for (std::size_t i = 0; i < groupOf.size(); ++i) {
-        if (groupOf[i] != kNoGroup) {
-            std::size_t &first = next[std::size_t(groupOf[i])];
-            writeAt(Index(i), groups.items.data() + first);
-            first += std::size_t(sizeAt(Index(i)));
-        }
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        groups.items[next[std::size_t(groupOf[i])]++] = items[i];
     }
     return groups;
 }
 
-// Groups of one item for each of the indices.
+// The same for items that stand for some of all indices, whose groups are given.
 template <class ITEM>
-Groups<ITEM> makeItemGroups(std::vector<ITEM> const &items, std::vector<Index> const &indices,
-                            std::vector<int> const &groupOfIndex, int numGroups) {
+Groups<ITEM> makeGroups(std::vector<ITEM> const &items, std::vector<Index> const &indices,
+                        std::vector<int> const &groupOfIndex, int numGroups) {
     std::vector<int> groupOf;
     groupOf.reserve(indices.size());
     for (Index const index : indices) {
         groupOf.push_back(groupOfIndex[std::size_t(index)]);
     }
-    return makeGroups<ITEM>(
-        groupOf, numGroups, [](Index) { return 1; },
-        [&](Index i, ITEM *item) { *item = items[std::size_t(i)]; });
+    return makeGroups(items, groupOf, numGroups);
 }
 
-// The tile of each face, by cutting faceOrder into pieces.
-std::vector<int> makeFaceTiles(LevelTopology const &parent, std::vector<Index> const &faceOrder,
-                               int *numTiles) {
-    Index const numTileCorners =
-        std::clamp(parent.numCorners / kTilesPerLevel, kMinTileCorners, kMaxTileCorners);
-    std::vector<int> tileOfFace(std::size_t(parent.numFaces));
-    int tile = 0;
-    Index numCorners = 0;
-    for (Index const face : faceOrder) {
-        if (numCorners >= numTileCorners) {
-            ++tile;
-            numCorners = 0;
+// The runs of indices of a group, for all groups; without those of kNoGroup.
+Groups<IndexRun> makeRuns(std::vector<int> const &groupOf, int numGroups) {
+    std::vector<IndexRun> runs;
+    std::vector<int> groupOfRun;
+    for (std::size_t begin = 0; begin < groupOf.size();) {
+        std::size_t end = begin + 1;
+        while (end < groupOf.size() && groupOf[end] == groupOf[begin]) {
+            ++end;
         }
-        tileOfFace[std::size_t(face)] = tile;
-        numCorners += parent.faceFirstCorner[face + 1] - parent.faceFirstCorner[face];
+        if (groupOf[begin] != kNoGroup) {
+            runs.push_back({Index(begin), Index(end)});
+            groupOfRun.push_back(groupOf[begin]);
+        }
+        begin = end;
     }
-    *numTiles = tile + 1;
-    return tileOfFace;
+    return makeGroups(runs, groupOfRun, numGroups);
 }
 
 // The tile that all faces of a vertex are in; batches from numTiles on for vertices without one.
 std::vector<int> makeVertexGroups(LevelTopology const &parent, std::vector<int> const &tileOfFace,
                                   int numTiles, int *numGroups) {
-    std::vector<int> groupOfVertex(std::size_t(parent.numVertices), kNoGroup);
+    std::vector<int> groupOfVertex(std::size_t(parent.numVertices));
     FarExt::internal::ParallelFor(parent.numVertices, [&](Index vert) {
+        int &group = groupOfVertex[std::size_t(vert)];
+        group = kNoGroup;
         Index const *const begin = parent.vertFaces.data() + parent.vertFirstFace[vert];
         Index const *const end = parent.vertFaces.data() + parent.vertFirstFace[vert + 1];
         if (begin != end) {
             int const first = tileOfFace[std::size_t(*begin)];
             if (std::all_of(begin, end,
                             [&](Index face) { return tileOfFace[std::size_t(face)] == first; })) {
-                groupOfVertex[std::size_t(vert)] = first;
+                group = first;
             }
         }
     });
@@ -517,36 +523,29 @@ void makeFaces(RefinementMask const &mask, TopologyLevel const &parent, std::vec
             step.faceWeights.insert(step.faceWeights.end(), weights, weights + size);
         }
     }
-    step.weightedFaces = makeItemGroups(weighted, indices, tileOfFace, numTiles);
+    step.weightedFaces = makeGroups(weighted, indices, tileOfFace, numTiles);
     for (Index const face : indices) {
         tileOfFace[std::size_t(face)] = kNoGroup;
     }
-    step.plainFaces = makeGroups<Index>(
-        tileOfFace, numTiles,
-        [&](Index face) { return kRecordHead + parent.GetFaceVertices(face).size(); },
-        [&](Index face, Index *record) {
-            Far::ConstIndexArray const verts = parent.GetFaceVertices(face);
-            record[0] = parent.GetFaceFirstCorner(face);
-            record[1] = verts.size();
-            std::copy(verts.begin(), verts.end(), record + kRecordHead);
-        });
+    step.plainFaces = makeRuns(tileOfFace, numTiles);
 }
 
 // The same for the vertices.
 void makeVertices(RefinementMask const &mask, TopologyLevel const &parent,
                   std::vector<int> groupOfVertex, int numGroups, RefinementStep &step) {
-    bool const haveFaces = mask.GetPlainVertexMask(1).faceWeight != 0; // else all vertices stay
-    auto numFacesOf = [&](Index vert) {
-        return haveFaces ? parent.GetVertexFaces(vert).size() : 0;
-    };
+    LevelTopology const &topology = parent.GetTopology();
+    if (step.masks.averagesFaces) {
+        step.vertCorners.Resize(topology.vertFaces.size());
+        FarExt::internal::ParallelFor(topology.numCorners, [&](Index k) {
+            step.vertCorners[std::size_t(k)] = topology.GetVertexCorner(k);
+        });
+    }
     std::vector<Index> const indices = findWeightedVertices(mask, parent);
     std::vector<WeightedVertex> weighted;
     for (Index const vert : indices) {
         RefinementMask::VertexMask const weights = mask.GetVertexMask(vert);
         WeightedVertex vertex = {vert,
-                                 parent.GetTopology().GetVertexChildVertex(vert),
-                                 numFacesOf(vert),
-                                 step.weightedCorners.size(),
+                                 topology.GetVertexChildVertex(vert),
                                  float(weights.vertexWeight),
                                  float(weights.faceWeight),
                                  {vert, vert},
@@ -555,32 +554,17 @@ void makeVertices(RefinementMask const &mask, TopologyLevel const &parent,
             vertex.neighbors[i] = weights.neighbors[i];
             vertex.neighborWeights[i] = float(weights.neighborWeights[i]);
         }
-        for (int i = 0; i < vertex.numFaces; ++i) {
-            step.weightedCorners.push_back(parent.GetVertexCorner(vert, i));
-        }
         weighted.push_back(vertex);
     }
-    step.weightedVertices = makeItemGroups(weighted, indices, groupOfVertex, numGroups);
+    step.weightedVertices = makeGroups(weighted, indices, groupOfVertex, numGroups);
     for (Index const vert : indices) {
         groupOfVertex[std::size_t(vert)] = kNoGroup;
     }
-    if (parent.GetTopology().numVVertices < parent.GetNumVertices()) {
+    if (topology.numVVertices < topology.numVertices) {
         std::fill(groupOfVertex.begin(), groupOfVertex.end(), kNoGroup);
     }
-    step.plainVertices = makeGroups<Index>(
-        groupOfVertex, numGroups, [&](Index vert) { return kRecordHead + numFacesOf(vert); },
-        [&](Index vert, Index *record) {
-            record[0] = vert;
-            record[1] = numFacesOf(vert);
-            for (int i = 0; i < record[1]; ++i) {
-                record[kRecordHead + i] = parent.GetVertexCorner(vert, i);
-            }
-        });
+    step.plainVertices = makeRuns(groupOfVertex, numGroups);
 }
-
-} // namespace
-
-namespace {
 
 PlainMasks makePlainMasks(RefinementMask const &mask, TopologyLevel const &parent) {
     PlainMasks masks;
@@ -592,6 +576,7 @@ PlainMasks makePlainMasks(RefinementMask const &mask, TopologyLevel const &paren
         FarExt::VertexVertexMask const vertexMask = mask.GetPlainVertexMask(numFaces);
         masks.verticesInverse.push_back(float(vertexMask.vertexWeight));
     }
+    masks.averagesFaces = mask.GetPlainVertexMask(1).faceWeight != 0;
     for (Index const size : parent.GetTopology().faceSizes) {
         masks.faces.resize(std::size_t(size) + 1);
         masks.faces[std::size_t(size)] = makePlainFaceMask(mask.GetPlainFaceWeights(size), size);
@@ -601,49 +586,98 @@ PlainMasks makePlainMasks(RefinementMask const &mask, TopologyLevel const &paren
 
 } // namespace
 
+TileMap::TileMap(TopologyLevel const &base) : _faceOrder(std::size_t(base.GetNumFaces())) {
+    std::iota(_faceOrder.begin(), _faceOrder.end(), 0);
+    makeTiles(base);
+}
+
+// Cuts the order of the faces into pieces of as many corners each, if there are enough faces.
+void TileMap::makeTiles(TopologyLevel const &level) {
+    if (level.GetNumFaces() < kMinMapFaces) {
+        return;
+    }
+    _tileOfFace.resize(_faceOrder.size());
+    std::int64_t numCorners = 0;
+    for (Index const face : _faceOrder) {
+        _tileOfFace[std::size_t(face)] =
+            std::uint16_t(numCorners * kNumMapTiles / level.GetNumFaceVertices());
+        numCorners += level.GetFaceVertices(face).size();
+    }
+    _faceOrder = {};
+}
+
+void TileMap::Refine(TopologyLevel const &parent) {
+    LevelTopology const &topology = parent.GetTopology();
+    TopologyLevel const child(topology.child);
+    Index const firstVFace = child.GetNumFaces() - child.GetTopology().numVFaces;
+    if (!_tileOfFace.empty()) {
+        // Each face is where its parent is.
+        std::vector<std::uint16_t> tiles(std::size_t(child.GetNumFaces()));
+        std::copy(_tileOfFace.begin(), _tileOfFace.end(), tiles.begin());
+        FarExt::internal::ParallelFor(topology.numEdges, [&](Index edge) {
+            if (Index const cFace = topology.GetEdgeChildFace(edge); cFace != Far::INDEX_INVALID) {
+                Index const pFace = topology.edgeFaces[2 * std::size_t(edge)];
+                tiles[std::size_t(cFace)] = _tileOfFace[std::size_t(pFace)];
+            }
+        });
+        for (Index cFace = firstVFace; cFace < child.GetNumFaces(); ++cFace) {
+            tiles[std::size_t(cFace)] = _tileOfFace[std::size_t(child.GetFaceParentFace(cFace))];
+        }
+        _tileOfFace.swap(tiles);
+        return;
+    }
+    // In the order, each face is replaced by its children.
+    std::vector<std::vector<Index>> vFacesOf(std::size_t(topology.numFaces));
+    for (Index cFace = firstVFace; cFace < child.GetNumFaces(); ++cFace) {
+        vFacesOf[std::size_t(child.GetFaceParentFace(cFace))].push_back(cFace);
+    }
+    std::vector<Index> order;
+    order.reserve(std::size_t(child.GetNumFaces()));
+    for (Index const face : _faceOrder) {
+        order.push_back(topology.faceChildFaces[std::size_t(face)]);
+        for (Index const edge : parent.GetFaceEdges(face)) {
+            Index const cFace = topology.GetEdgeChildFace(edge);
+            if (cFace != Far::INDEX_INVALID && topology.edgeFaces[2 * std::size_t(edge)] == face) {
+                order.push_back(cFace);
+            }
+        }
+        std::vector<Index> const &vFaces = vFacesOf[std::size_t(face)];
+        order.insert(order.end(), vFaces.begin(), vFaces.end());
+    }
+    _faceOrder.swap(order);
+    makeTiles(child);
+}
+
+std::vector<int> TileMap::GetTiles(int numTiles) const {
+    if (_tileOfFace.empty()) {
+        std::vector<int> result(_faceOrder.size());
+        for (std::size_t i = 0; i < _faceOrder.size(); ++i) {
+            result[std::size_t(_faceOrder[i])] = int(i * std::size_t(numTiles) / _faceOrder.size());
+        }
+        return result;
+    }
+    std::vector<int> result(_tileOfFace.size());
+    FarExt::internal::ParallelFor(Index(result.size()), [&](Index face) {
+        result[std::size_t(face)] = _tileOfFace[std::size_t(face)] * numTiles / int(kNumMapTiles);
+    });
+    return result;
+}
+
 void MakeRefinementStep(RefinementMask const &mask, TopologyLevel const &parent,
-                        std::vector<Index> const &faceOrder, RefinementStep &step) {
+                        TileMap const &tileMap, RefinementStep &step) {
     LevelTopology const &topology = parent.GetTopology();
     step.numVVertices = topology.numVVertices;
     step.masks = makePlainMasks(mask, parent);
-    int numTiles;
+    step.parent = &topology;
+    Index const numTileCorners =
+        std::clamp(topology.numCorners / kTilesPerLevel, kMinTileCorners, kMaxTileCorners);
+    int const numTiles = std::min(topology.numCorners / numTileCorners + 1, kNumMapTiles);
+    std::vector<int> tileOfFace = tileMap.GetTiles(numTiles);
     int numVertexGroups;
-    std::vector<int> tileOfFace = makeFaceTiles(topology, faceOrder, &numTiles);
     std::vector<int> groupOfVertex =
         makeVertexGroups(topology, tileOfFace, numTiles, &numVertexGroups);
     makeFaces(mask, parent, std::move(tileOfFace), numTiles, step);
     makeVertices(mask, parent, std::move(groupOfVertex), numVertexGroups, step);
-}
-
-std::vector<Index> RefineFaceOrder(TopologyLevel const &parent,
-                                   std::vector<Index> const &faceOrder) {
-    LevelTopology const &topology = parent.GetTopology();
-    std::vector<Index> result;
-    TopologyLevel const child(topology.child);
-    Index const numVFaces = child.GetTopology().numVFaces;
-    Index const firstVFace = child.GetNumFaces() - numVFaces;
-    // The V-faces by their parent faces.
-    std::vector<int> parentOfVFace;
-    parentOfVFace.reserve(std::size_t(numVFaces));
-    for (Index i = 0; i < numVFaces; ++i) {
-        parentOfVFace.push_back(child.GetFaceParentFace(firstVFace + i));
-    }
-    Groups<Index> const vFaces = makeGroups<Index>(
-        parentOfVFace, topology.numFaces, [](Index) { return 1; },
-        [firstVFace](Index i, Index *face) { *face = firstVFace + i; });
-
-    result.reserve(std::size_t(child.GetNumFaces()));
-    for (Index const face : faceOrder) {
-        result.push_back(topology.faceChildFaces[std::size_t(face)]);
-        result.insert(result.end(), vFaces.Begin(face), vFaces.End(face));
-        for (Index const edge : parent.GetFaceEdges(face)) {
-            Index const cFace = topology.GetEdgeChildFace(edge);
-            if (cFace != Far::INDEX_INVALID && topology.edgeFaces[2 * std::size_t(edge)] == face) {
-                result.push_back(cFace);
-            }
-        }
-    }
-    return result;
 }
 
 void RefineElements(RefinementStep const &step, int length, Elements<float const> src,

@@ -5,6 +5,7 @@
 #include "far_ext/refinementMask.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace OpenSubdivHex {
@@ -32,6 +33,7 @@ struct PlainFaceMask {
 struct PlainMasks {
     std::vector<PlainFaceMask> faces;   ///< by size; sizes that do not occur are not filled
     std::vector<float> verticesInverse; ///< by number of faces: V' = inverse (V + sum of P)
+    bool averagesFaces = true;          ///< else V' = V
 };
 
 /// \brief A face with weights of its own: a row for each corner.
@@ -46,8 +48,6 @@ struct WeightedFace {
 struct WeightedVertex {
     Far::Index vert;
     Far::Index child; ///< in the level that is made
-    int numFaces;
-    std::size_t firstCorner; ///< position in weightedCorners
     float vertexWeight;
     float faceWeight;
     Far::Index neighbors[2];
@@ -65,12 +65,17 @@ struct Groups {
     ITEM const *End(int group) const { return Begin(group + 1); }
 };
 
-/// \brief One refinement step: all that it needs.
+/// \brief Components [begin, end).
+struct IndexRun {
+    Far::Index begin;
+    Far::Index end;
+};
+
+/// \brief One refinement step: all that it needs.  Refers to the topology of the parent.
 ///
 /// The faces are grouped into tiles, so that the new points of a tile are still in the cache when
-/// the vertices between its faces are averaged: benchmark refinementEvaluation/quad5, 1.3 times as
-/// fast for length 3, 1.7 times for length 8.  What is plain stands in records that are read from
-/// first to last.
+/// the vertices between its faces are averaged: benchmark table-free, 1.3 times as fast for length
+/// 3, 1.7 times for length 8.
 ///
 /// The last vertex of the level is never plain, nor are its faces of 3 to 6 sides and the vertex
 /// whose F-vertex is the last: what plain faces and vertices read may be read in packets that reach
@@ -78,28 +83,46 @@ struct Groups {
 struct RefinementStep {
     PlainMasks masks;
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
+    FarExt::internal::LevelTopology const *parent = nullptr;
 
     // By tile.
-    Groups<Far::Index> plainFaces; ///< records: first corner, number of vertices, vertices
+    Groups<IndexRun> plainFaces;
     Groups<WeightedFace> weightedFaces;
     std::vector<float> faceWeights;
 
     // By tile, if all faces of a vertex are in it; the other vertices follow in batches.
-    Groups<Far::Index> plainVertices; ///< records: vertex, number of faces, its corners in them
+    Groups<IndexRun> plainVertices;
     Groups<WeightedVertex> weightedVertices;
-    std::vector<Far::Index> weightedCorners; ///< of weighted vertices in their faces
+    /// Of each vertex in each of its faces: parallel to the parent's vertFaces.
+    FarExt::internal::Buffer<Far::Index> vertCorners;
 };
 
-/// Makes \p step for the refinement of \p parent, with tiles of faces that follow each other in
-/// \p faceOrder.
-void MakeRefinementStep(FarExt::internal::RefinementMask const &mask,
-                        FarExt::TopologyLevel const &parent,
-                        std::vector<Far::Index> const &faceOrder, RefinementStep &step);
+/// \brief Parts of a mesh, each near in space: the tile of each face of a level, at any level.
+///
+/// They are made of the faces of a level, as soon as there are enough of them; the faces of the
+/// levels before have none.
+class TileMap {
+public:
+    /// Those of level 0, whose faces are taken for near in space when they are near in their order.
+    explicit TileMap(FarExt::TopologyLevel const &base);
 
-/// Of the order \p faceOrder of the faces of \p parent makes one for its child level, in which faces
-/// that are near in the order are near in space, too: each face is replaced by its children.
-std::vector<Far::Index> RefineFaceOrder(FarExt::TopologyLevel const &parent,
-                                        std::vector<Far::Index> const &faceOrder);
+    /// Goes on from \p parent to its child.
+    void Refine(FarExt::TopologyLevel const &parent);
+
+    /// The tile of each face of the level, below \p numTiles; ascending in space.
+    std::vector<int> GetTiles(int numTiles) const;
+
+private:
+    void makeTiles(FarExt::TopologyLevel const &level);
+
+    std::vector<Far::Index> _faceOrder; ///< until there are tiles
+    std::vector<std::uint16_t> _tileOfFace;
+};
+
+/// Makes \p step for the refinement of \p parent.
+void MakeRefinementStep(FarExt::internal::RefinementMask const &mask,
+                        FarExt::TopologyLevel const &parent, TileMap const &tileMap,
+                        RefinementStep &step);
 
 /// \brief Elements of \c length floats, \c stride floats apart.
 template <class FLOAT>
