@@ -155,6 +155,7 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
 
 void TopologyRefiner::Unrefine() {
     setNumLevels(1);
+    ++_numRefinements;
     _isUniform = true;
     _uniformOptions = UniformOptions(0);
 }

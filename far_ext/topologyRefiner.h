@@ -110,6 +110,10 @@ public:
     bool RefineCoplanar(double const *restPositions, CoplanarOptions options,
                         Status *status = nullptr);
 
+    /// How often levels were made or removed.  What refers to levels, as OsdExt's
+    /// RefinementEvaluator does, is out of date when this has changed.
+    int GetNumRefinements() const { return _numRefinements; }
+
     /// Removes all levels but the base; their memory is kept for the next refinement.
     void Unrefine();
 
@@ -131,6 +135,7 @@ private:
     SchemeOptions _schemeOptions;
     UniformOptions _uniformOptions{0};
     bool _isUniform = true;
+    int _numRefinements = 0;
     /// Arrays of all levels ever made (the memory is reused), the first _levels.size() in use.
     std::vector<std::unique_ptr<internal::LevelTopology>> _topologies;
     std::vector<TopologyLevel> _levels;

@@ -75,7 +75,7 @@ std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner
 }
 
 RefinementEvaluator::RefinementEvaluator(TopologyRefiner const &refiner, Options options)
-    : _refiner(refiner) {
+    : _refiner(refiner), _numRefinements(refiner.GetNumRefinements()) {
     std::vector<TopologyLevel> const meshes = getMeshes(refiner, options);
     _steps.resize(meshes.size() - 1);
     internal::TileMap tileMap(meshes[0]);
@@ -107,7 +107,7 @@ std::int64_t RefinementEvaluator::GetNumElementsAllLevels() const {
 Status RefinementEvaluator::check(float const *src, Osd::BufferDescriptor const &srcDesc,
                                   float const *dst, Osd::BufferDescriptor const &dstDesc, int level,
                                   std::int64_t numWritten) const {
-    if (_refiner.GetMaxLevel() != GetMaxLevel()) {
+    if (_refiner.GetNumRefinements() != _numRefinements) {
         return invalidArgument("the refiner has refined again since the evaluator was made");
     }
     if (level < 0 || level > GetMaxLevel()) {

@@ -60,8 +60,8 @@ public:
         int fvarChannel = 0; ///< for INTERPOLATE_FACE_VARYING, whose elements are the values
     };
 
-    /// \brief Prepares for the levels that \p refiner has.  Takes about 10 bytes per element of
-    /// levels 1 ... GetMaxLevel(), and the time of some frames.
+    /// \brief Prepares for the levels that \p refiner has.  Takes about 4 bytes per element of
+    /// levels 1 ... GetMaxLevel(), and the time of one or two frames.
     ///
     /// \return  null with StatusCode::InvalidArgument for a channel that is not there
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
@@ -137,6 +137,7 @@ private:
     Source toVertices(Source src, int length);
 
     FarExt::TopologyRefiner const &_refiner;
+    int _numRefinements; ///< of the refiner, when the evaluator was made
     std::vector<internal::RefinementStep> _steps; ///< by level of the parent
     std::vector<int> _numElements;                ///< by level
 

@@ -523,10 +523,13 @@ TEST(RefinementEvaluator, RefusesWhatItCannotEvaluate) {
     EXPECT_TRUE(status.IsOk());
 
     dst = before;
-    ASSERT_TRUE(refiner->RefineUniform(1));
-    status = FarExt::Status();
-    expectRefused(evaluator->Evaluate(src.data(), packed(3), dst.data(), packed(3), 1, &status),
-                  status);
+    // Also with as many levels as before.
+    for (int const level : {1, 2}) {
+        ASSERT_TRUE(refiner->RefineUniform(level));
+        status = FarExt::Status();
+        expectRefused(evaluator->Evaluate(src.data(), packed(3), dst.data(), packed(3), 1, &status),
+                      status);
+    }
 }
 
 TEST(RefinementEvaluator, RefusesChannelsThatAreNotThere) {
