@@ -137,7 +137,7 @@ private:
     Source toVertices(Source src, int length);
 
     FarExt::TopologyRefiner const &_refiner;
-    int _numRefinements; ///< of the refiner, when the evaluator was made
+    int _numRefinements;                          ///< of the refiner, when the evaluator was made
     std::vector<internal::RefinementStep> _steps; ///< by level of the parent
     std::vector<int> _numElements;                ///< by level
 
