@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace OpenSubdivHex::Regression {
@@ -80,6 +82,7 @@ void expectMeshEqual(Shape const &shape, ReferenceMask mask, Sdc::Options sdcOpt
     TaggedMatch const match(shape, *refiner, -1, options.closeGaps);
     ASSERT_EQ(match.GetError(), "");
     ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
+    ASSERT_NO_FATAL_FAILURE(ExpectNumbering(*refiner));
     ReferenceValues const positions = GetPositions(shape);
     if (shape.fvarChannels.empty()) {
         ASSERT_NO_FATAL_FAILURE(
@@ -373,6 +376,7 @@ TEST(Coplanar, LastLevelNeedsFaceVerticesOnly) {
         EXPECT_FALSE(refiner->GetLevel(2).HasFullTopology());
         ASSERT_NO_FATAL_FAILURE(expectSameFaces(*refiner, *full));
         ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
+        ASSERT_NO_FATAL_FAILURE(ExpectNumbering(*refiner));
         EXPECT_EQ(FarExt::StencilTableFactory::Create(*refiner)->GetWeights(),
                   FarExt::StencilTableFactory::Create(*full)->GetWeights());
     }

@@ -4,7 +4,7 @@
 #include "referenceMatch.h"
 
 #include "far_ext/stencilTableFactory.h"
-#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/flatShapes.h"
 
 #include <gtest/gtest.h>
 
@@ -32,17 +32,17 @@ struct Result {
     }
 };
 
-Result compute(Shape const &shape, int numThreads) {
+void setNumThreads(int numThreads) {
 #ifdef _OPENMP
     omp_set_num_threads(numThreads);
 #else
     static_cast<void>(numThreads);
 #endif
-    Sdc::Options options;
-    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 5, options);
+}
+
+Result gather(FarExt::TopologyRefiner const &refiner) {
     Result result;
-    FarExt::TopologyLevel const &level = refiner->GetLevel(5);
+    FarExt::TopologyLevel const &level = refiner.GetLevel(refiner.GetMaxLevel());
     for (int v = 0; v < level.GetNumVertices(); ++v) {
         result.relations.push_back(copy(level.GetVertexFaces(v)));
         result.relations.push_back(copy(level.GetVertexEdges(v)));
@@ -51,10 +51,22 @@ Result compute(Shape const &shape, int numThreads) {
         result.relations.push_back(copy(level.GetFaceVertices(f)));
         result.relations.push_back(copy(level.GetFaceEdges(f)));
     }
-    auto const table = FarExt::StencilTableFactory::Create(*refiner);
+    auto const table = FarExt::StencilTableFactory::Create(refiner);
     result.indices = table->GetControlIndices();
     result.weights = table->GetWeights();
     return result;
+}
+
+/// create() gives a refined refiner.
+template <typename CREATE>
+void expectSameBits(CREATE const &create) {
+    setNumThreads(1);
+    Result const expected = gather(*create());
+    for (int numThreads : {2, 3, 8}) {
+        SCOPED_TRACE(std::to_string(numThreads) + " threads");
+        setNumThreads(numThreads);
+        ASSERT_TRUE(gather(*create()) == expected);
+    }
 }
 
 } // namespace
@@ -63,12 +75,40 @@ Result compute(Shape const &shape, int numThreads) {
 TEST(Determinism, SameBitsForAnyNumberOfThreads) {
     for (char const *name : {"dodecahedron", "quadGrid"}) {
         SCOPED_TRACE(name);
-        Shape const &shape = GetShape(name);
-        Result const expected = compute(shape, 1);
-        for (int numThreads : {2, 3, 8}) {
-            SCOPED_TRACE(std::to_string(numThreads) + " threads");
-            ASSERT_TRUE(compute(shape, numThreads) == expected);
-        }
+        expectSameBits([&] {
+            Sdc::Options options;
+            options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+            return CreateRefiner(GetShape(name), ReferenceMask::Smooth, 5, options);
+        });
+    }
+}
+
+TEST(Determinism, SameBitsOfOtherSchemes) {
+    FarExt::SchemeOptions const schemes[] = {
+        {FarExt::FaceMask::Smooth, FarExt::SchemeType::DooSabin, false},
+        {FarExt::FaceMask::Smooth, FarExt::SchemeType::TriHex, false},
+        {FarExt::FaceMask::Smooth, FarExt::SchemeType::Hexagonal, true}};
+    for (FarExt::SchemeOptions const &scheme : schemes) {
+        SCOPED_TRACE(testing::Message()
+                     << "scheme " << int(scheme.schemeType) << ", first " << scheme.triHexFirst);
+        expectSameBits([&] {
+            return CreateRefiner(GetShape("quadGrid"), ReferenceMask::Smooth, 5, Sdc::Options(),
+                                 scheme);
+        });
+    }
+}
+
+TEST(Determinism, SameBitsOfCoplanarRefinement) {
+    Shape const box = MakeBox(3, 4, 5);
+    for (bool closeGaps : {true, false}) {
+        expectSameBits([&] {
+            auto refiner = CreateRefiner(box, ReferenceMask::Smooth, 0);
+            FarExt::TopologyRefiner::CoplanarOptions options(4);
+            options.closeGaps = closeGaps;
+            options.fullTopologyInLastLevel = true;
+            EXPECT_TRUE(refiner->RefineCoplanar(box.positions.data(), options));
+            return refiner;
+        });
     }
 }
 

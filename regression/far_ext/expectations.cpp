@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace OpenSubdivHex::Regression {
 
+using FarExt::FaceKind;
+using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
 
 namespace {
@@ -23,7 +26,152 @@ void expectTables(TopologyRefiner const &refiner, std::vector<ReferenceValues> c
     }
 }
 
+/// The numbers of the children of one level.
+class NumberingCheck {
+public:
+    NumberingCheck(TopologyLevel const &parent, TopologyLevel const &child)
+        : _parent(parent), _child(child) {}
+
+    void Run() {
+        ASSERT_NO_FATAL_FAILURE(expectVertices());
+        ASSERT_NO_FATAL_FAILURE(expectFFaces());
+        ASSERT_NO_FATAL_FAILURE(expectEFaces());
+        ASSERT_NO_FATAL_FAILURE(expectVFaces());
+        if (_child.HasFullTopology()) {
+            ASSERT_NO_FATAL_FAILURE(expectEdges());
+        }
+    }
+
+private:
+    int fVertex(int corner) const { return _numVVertices + corner; }
+    /// The corner where side \p side of an edge starts, or ends.
+    int sideCorner(int edge, int side, bool atEnd) const {
+        int const face = _parent.GetEdgeFaces(edge)[side];
+        int const place = _parent.GetEdgeFaceLocalIndices(edge)[side] + (atEnd ? 1 : 0);
+        return _parent.GetFaceFirstCorner(face) + place % _parent.GetFaceVertices(face).size();
+    }
+
+    void expectVertices() {
+        for (int v = 0; v < _parent.GetNumVertices(); ++v) {
+            int const child = _parent.GetVertexChildVertex(v);
+            if (child != Far::INDEX_INVALID) {
+                ASSERT_EQ(child, _numVVertices++);
+            }
+        }
+        ASSERT_EQ(_child.GetNumVertices(), _numVVertices + _parent.GetNumFaceVertices());
+    }
+
+    void expectFFaces() {
+        for (int f = 0; f < _parent.GetNumFaces(); ++f) {
+            ASSERT_EQ(_parent.GetFaceChildFaces(f).size(), 1);
+            ASSERT_EQ(_parent.GetFaceChildFaces(f)[0], f);
+            ASSERT_EQ(_child.GetFaceKind(f), FaceKind::Face);
+            ASSERT_EQ(_child.GetFaceParentFace(f), f);
+            auto const vertices = _parent.GetFaceChildVertices(f);
+            ASSERT_EQ(vertices.size(), _parent.GetFaceVertices(f).size());
+            for (int i = 0; i < vertices.size(); ++i) {
+                ASSERT_EQ(vertices[i], fVertex(_parent.GetFaceFirstCorner(f) + i));
+            }
+        }
+        _numFaces = _parent.GetNumFaces();
+    }
+
+    void expectEFaces() {
+        for (int e = 0; e < _parent.GetNumEdges(); ++e) {
+            int const child = _parent.GetEdgeChildFace(e);
+            if (child != Far::INDEX_INVALID) {
+                ASSERT_EQ(child, _numFaces++);
+                ASSERT_EQ(_child.GetFaceKind(child), FaceKind::Edge);
+                ASSERT_EQ(_child.GetFaceParentEdge(child), e);
+                ASSERT_EQ(_child.GetFaceParentVertex(child), Far::INDEX_INVALID);
+                ASSERT_EQ(_child.GetFaceParentFace(child), _parent.GetEdgeFaces(e)[0]);
+            }
+        }
+    }
+
+    void expectVFaces() {
+        int previous = 0;
+        for (int f = _numFaces; f < _child.GetNumFaces(); ++f) {
+            ASSERT_EQ(_child.GetFaceKind(f), FaceKind::Vertex);
+            int const vertex = _child.GetFaceParentVertex(f);
+            ASSERT_GE(vertex, previous);
+            previous = vertex;
+            ASSERT_EQ(_child.GetFaceParentEdge(f), Far::INDEX_INVALID);
+            auto const vertices = _child.GetFaceVertices(f);
+            int const place = _parent.GetVertexFaces(vertex).FindIndex(_child.GetFaceParentFace(f));
+            ASSERT_GE(place, 0);
+            ASSERT_EQ(vertices[vertices.size() - 1],
+                      fVertex(_parent.GetVertexCorner(vertex, place)));
+        }
+    }
+
+    /// Those of F-faces, spokes, and those of the edges.
+    void expectEdges() {
+        int numEdges = _parent.GetNumFaceVertices();
+        for (int f = 0; f < _parent.GetNumFaces(); ++f) {
+            auto const edges = _parent.GetFaceChildEdges(f);
+            for (int i = 0; i < edges.size(); ++i) {
+                ASSERT_EQ(edges[i], _parent.GetFaceFirstCorner(f) + i);
+            }
+        }
+        for (int f = 0; f < _parent.GetNumFaces(); ++f) {
+            auto const vertices = _parent.GetFaceVertices(f);
+            for (int i = 0; i < vertices.size(); ++i) {
+                int const vVertex = _parent.GetVertexChildVertex(vertices[i]);
+                int const edge =
+                    vVertex < 0 ? -1 : _child.FindEdge(vVertex, _parent.GetFaceChildVertices(f)[i]);
+                if (edge >= 0) {
+                    ASSERT_EQ(edge, numEdges++);
+                }
+            }
+        }
+        for (int e = 0; e < _parent.GetNumEdges(); ++e) {
+            auto const children = _parent.GetEdgeChildEdges(e);
+            if (_parent.IsEdgeBoundary(e)) {
+                if (!children.empty()) {
+                    ASSERT_EQ(children[0], numEdges++);
+                }
+                continue;
+            }
+            for (bool atEnd : {false, true}) {
+                // In tri-hex the F-vertices of both faces belong to the edge.
+                bool const isTriHex = _parent.GetEdgeChildFace(e) == Far::INDEX_INVALID;
+                int const edge = _child.FindEdge(fVertex(sideCorner(e, 0, atEnd && !isTriHex)),
+                                                 fVertex(sideCorner(e, 1, !atEnd && !isTriHex)));
+                // Less where two quads share it.
+                if (edge >= numEdges) {
+                    ASSERT_EQ(edge, numEdges++);
+                }
+            }
+        }
+        ASSERT_EQ(_child.GetNumEdges(), numEdges);
+    }
+
+    TopologyLevel const &_parent;
+    TopologyLevel const &_child;
+    int _numVVertices = 0;
+    int _numFaces = 0;
+};
+
 } // namespace
+
+void ExpectNumbering(TopologyRefiner const &refiner) {
+    FarExt::PrimvarRefiner const primvarRefiner(refiner);
+    std::vector<int> baseFaces(refiner.GetLevel(0).GetNumFaces());
+    std::iota(baseFaces.begin(), baseFaces.end(), 0);
+    for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
+        SCOPED_TRACE(testing::Message() << "level " << level);
+        TopologyLevel const &child = refiner.GetLevel(level);
+        ASSERT_NO_FATAL_FAILURE(NumberingCheck(refiner.GetLevel(level - 1), child).Run());
+        std::vector<int> childBaseFaces(child.GetNumFaces());
+        primvarRefiner.InterpolateFaceUniform(level, baseFaces, childBaseFaces);
+        for (int f = 0; f < child.GetNumFaces(); ++f) {
+            ASSERT_EQ(childBaseFaces[f], baseFaces[child.GetFaceParentFace(f)]);
+            ASSERT_EQ(childBaseFaces[f], child.GetFaceBaseFace(f));
+        }
+        baseFaces = std::move(childBaseFaces);
+    }
+}
 
 void ExpectValid(TopologyRefiner const &refiner) {
     for (int level = 0; level <= refiner.GetMaxLevel(); ++level) {

@@ -20,6 +20,10 @@ inline constexpr double kRowTolerance = sizeof(REAL) == 8 ? 1e-12 : 2e-6;
 /// Every level passes its own checks.
 void ExpectValid(FarExt::TopologyRefiner const &refiner);
 
+/// \brief Children have the numbers that INDEXING.md gives them, whatever step makes them, and know
+/// their parents; face-uniform data follows the parents.
+void ExpectNumbering(FarExt::TopologyRefiner const &refiner);
+
 /// Rows that the reference does not know (values that no corner has) are skipped.
 void ExpectLevelsEqual(std::vector<ReferenceValues> const &actual,
                        std::vector<ReferenceValues> const &expected, double tolerance);

@@ -8,12 +8,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace OpenSubdivHex::Regression {
 
-using FarExt::FaceKind;
 using FarExt::SchemeOptions;
 using FarExt::SchemeType;
 using FarExt::TopologyLevel;
+using FarExt::TopologyRefiner;
 
 namespace {
 
@@ -32,9 +34,9 @@ constexpr Sdc::Options::VtxBoundaryInterpolation kBoundaries[] = {
     Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
     Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
 
-std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Shape const &shape, ReferenceMask mask,
-                                                       NamedScheme const &scheme, int level,
-                                                       Sdc::Options options = Sdc::Options()) {
+std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, ReferenceMask mask,
+                                               NamedScheme const &scheme, int level,
+                                               Sdc::Options options = Sdc::Options()) {
     SchemeOptions schemeOptions;
     schemeOptions.schemeType = scheme.schemeType;
     schemeOptions.triHexFirst = scheme.triHexFirst;
@@ -66,24 +68,113 @@ void forEach(CHECK const &check) {
     }
 }
 
+/// Everything of all levels equals the reference.
+void expectEqual(Shape const &shape, NamedScheme const &scheme, Sdc::Options options,
+                 int numLevels) {
+    auto const topology = createRefiner(shape, ReferenceMask::Average, scheme, numLevels, options);
+    TaggedMatch const match(shape, *topology);
+    ASSERT_EQ(match.GetError(), "");
+    ASSERT_NO_FATAL_FAILURE(ExpectValid(*topology));
+    ASSERT_NO_FATAL_FAILURE(ExpectNumbering(*topology));
+    ReferenceValues const positions = GetPositions(shape);
+    for (ReferenceMask mask : kMasks) {
+        SCOPED_TRACE(ToString(mask));
+        auto const refiner = createRefiner(shape, mask, scheme, numLevels, options);
+        ASSERT_NO_FATAL_FAILURE(ExpectVertexValuesEqual(*refiner, match, mask, positions));
+    }
+    ASSERT_NO_FATAL_FAILURE(ExpectVaryingValuesEqual(*topology, match, positions));
+}
+
 } // namespace
 
 TEST(Scheme, EqualsReference) {
     forEach([](Shape const &shape, NamedScheme const &scheme, Sdc::Options options) {
-        int const numLevels = GetTestLevel(shape, 3, 6000);
-        auto const topology =
-            createRefiner(shape, ReferenceMask::Average, scheme, numLevels, options);
-        TaggedMatch const match(shape, *topology);
-        ASSERT_EQ(match.GetError(), "");
-        ASSERT_NO_FATAL_FAILURE(ExpectValid(*topology));
-        ReferenceValues const positions = GetPositions(shape);
-        for (ReferenceMask mask : kMasks) {
-            SCOPED_TRACE(ToString(mask));
-            auto const refiner = createRefiner(shape, mask, scheme, numLevels, options);
-            ASSERT_NO_FATAL_FAILURE(ExpectVertexValuesEqual(*refiner, match, mask, positions));
-        }
-        ASSERT_NO_FATAL_FAILURE(ExpectVaryingValuesEqual(*topology, match, positions));
+        expectEqual(shape, scheme, options, GetTestLevel(shape, 3, 6000));
     });
+}
+
+TEST(Scheme, HolesAndTurnedFacesEqualReference) {
+    for (char const *name : {"holesInside", "cubeWithHole", "leftHanded", "bowTie"}) {
+        Shape shape = GetFeatureShape(name);
+        shape.fvarChannels.clear();
+        shape.creaseVertexPairs.clear();
+        shape.creaseSharpness.clear();
+        for (NamedScheme const &scheme : kSchemes) {
+            SCOPED_TRACE(std::string(name) + ", " + scheme.name);
+            ASSERT_NO_FATAL_FAILURE(expectEqual(shape, scheme, Sdc::Options(), 3));
+        }
+    }
+}
+
+TEST(Scheme, TriHexFirstGivesThreeFacesToEveryVertex) {
+    for (Shape shape : GetManifoldShapes()) {
+        SCOPED_TRACE(shape.name);
+        shape.fvarChannels.clear();
+        auto const refiner =
+            createRefiner(shape, ReferenceMask::Smooth, kSchemes[2], GetTestLevel(shape, 3, 6000));
+        for (int level = 1; level <= refiner->GetMaxLevel(); ++level) {
+            TopologyLevel const &topology = refiner->GetLevel(level);
+            for (int v = 0; v < topology.GetNumVertices(); ++v) {
+                if (!topology.IsVertexBoundary(v)) {
+                    ASSERT_EQ(topology.GetVertexFaces(v).size(), 3);
+                }
+            }
+        }
+    }
+}
+
+TEST(Scheme, Counts) {
+    // The cube: 8 vertices, 12 edges, 6 faces, 24 corners.
+    Shape const &cube = GetShape("cube");
+    std::vector<std::array<int, 3>> const expected[] = {
+        {{24, 48, 26}, {96, 192, 98}},
+        {{24, 36, 14}, {72, 108, 38}},
+        {{24, 36, 14}, {96, 144, 50}},
+        {{24, 36, 14}, {72, 144, 74}},
+    };
+    for (int scheme = 0; scheme < 4; ++scheme) {
+        SCOPED_TRACE(kSchemes[scheme].name);
+        auto const refiner = createRefiner(cube, ReferenceMask::Average, kSchemes[scheme], 2);
+        for (int level = 1; level <= 2; ++level) {
+            TopologyLevel const &topology = refiner->GetLevel(level);
+            EXPECT_EQ((std::array<int, 3>{topology.GetNumVertices(), topology.GetNumEdges(),
+                                          topology.GetNumFaces()}),
+                      expected[scheme][level - 1]);
+        }
+    }
+}
+
+TEST(Scheme, RefinesAgain) {
+    Shape const &shape = GetShape("truncatedCube");
+    for (NamedScheme const &scheme : kSchemes) {
+        SCOPED_TRACE(scheme.name);
+        auto const refiner = createRefiner(shape, ReferenceMask::Smooth, scheme, 3);
+        TopologyRefiner::UniformOptions options(2);
+        options.fullTopologyInLastLevel = true;
+        ASSERT_TRUE(refiner->RefineUniform(options));
+        TaggedMatch const match(shape, *refiner);
+        ASSERT_EQ(match.GetError(), "");
+        ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
+        ASSERT_NO_FATAL_FAILURE(
+            ExpectVertexValuesEqual(*refiner, match, ReferenceMask::Smooth, GetPositions(shape)));
+    }
+}
+
+TEST(Scheme, LastLevelNeedsFaceVerticesOnly) {
+    Shape const &shape = GetShape("mixedPatch");
+    for (NamedScheme const &scheme : kSchemes) {
+        SCOPED_TRACE(scheme.name);
+        auto const full = createRefiner(shape, ReferenceMask::Smooth, scheme, 2);
+        TaggedMatch const match(shape, *full);
+        ASSERT_EQ(match.GetError(), "");
+        auto const refiner = createRefiner(shape, ReferenceMask::Smooth, scheme, 2);
+        ASSERT_TRUE(refiner->RefineUniform(2));
+        EXPECT_FALSE(refiner->GetLevel(2).HasFullTopology());
+        ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
+        ASSERT_NO_FATAL_FAILURE(ExpectNumbering(*refiner));
+        ASSERT_NO_FATAL_FAILURE(
+            ExpectVertexValuesEqual(*refiner, match, ReferenceMask::Smooth, GetPositions(shape)));
+    }
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -4,17 +4,24 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 namespace OpenSubdivHex::Regression {
 
 using FarExt::ComponentType;
+using FarExt::SchemeOptions;
 using FarExt::Status;
 using FarExt::StatusCode;
 using FarExt::TopologyRefiner;
 using FarExt::TopologyRefinerFactory;
 
 namespace {
+
+SchemeOptions const kOtherSchemes[] = {
+    {FarExt::FaceMask::Average, FarExt::SchemeType::DooSabin, false},
+    {FarExt::FaceMask::Average, FarExt::SchemeType::TriHex, false},
+    {FarExt::FaceMask::Average, FarExt::SchemeType::Hexagonal, true}};
 
 std::string lastError;
 int numErrors = 0;
@@ -85,6 +92,25 @@ protected:
         EXPECT_EQ(numErrors, 1);
         EXPECT_EQ(lastError, status.GetMessage());
         FarExt::SetErrorCallback(nullptr);
+    }
+
+    /// Every scheme but the hexagonal one refuses the shape.
+    void expectRefusedByOtherSchemes(Shape const &shape, Refusal const &expected) {
+        auto const base = CreateFarRefiner(shape);
+        ASSERT_TRUE(base);
+        ShapeDescriptor const descriptor(shape);
+        for (SchemeOptions const &scheme : kOtherSchemes) {
+            TopologyRefinerFactory::Options options;
+            options.schemeOptions = scheme;
+            Status status;
+            EXPECT_FALSE(
+                TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options, &status));
+            expectRefusal(status, expected);
+            status = Status();
+            EXPECT_FALSE(TopologyRefinerFactory::Create(*base, options, &status));
+            expectRefusal(status, expected);
+        }
+        EXPECT_TRUE(TopologyRefinerFactory::Create(*base));
     }
 
     void expectRefused(Shape const &shape, Refusal const &expected,
@@ -305,6 +331,130 @@ TEST_F(StatusTest, TooManyLevels) {
         EXPECT_EQ(refiner->GetUniformOptions().refinementLevel, 2);
         EXPECT_EQ(refiner->GetLevel(2).GetNumVertices(), 128);
         EXPECT_TRUE(refiner->GetLevel(1).Validate());
+    }
+}
+
+TEST_F(StatusTest, OtherSchemesRefuseFeatures) {
+    Shape const plain = makeShape(7, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}});
+    auto const findEdge = [](Shape const &shape, int v, int w) {
+        return CreateFarRefiner(shape)->GetLevel(0).FindEdge(v, w);
+    };
+    Shape creased = plain;
+    creased.creaseVertexPairs = {0, 3};
+    creased.creaseSharpness = {0.5f};
+    int const crease = findEdge(creased, 0, 3);
+    expectRefusedByOtherSchemes(creased,
+                                {StatusCode::Unsupported,
+                                 ComponentType::Edge,
+                                 crease,
+                                 {"edge " + std::to_string(crease), "crease", "hexagonal"}});
+    Shape corner = plain;
+    corner.cornerVertices = {0};
+    corner.cornerSharpness = {1.5f};
+    expectRefusedByOtherSchemes(
+        corner, {StatusCode::Unsupported, ComponentType::Vertex, 0, {"vertex 0", "corner"}});
+    Shape textured = plain;
+    textured.fvarChannels.resize(1);
+    textured.fvarChannels[0].values.resize(2 * 12);
+    textured.fvarChannels[0].valueIndices.resize(12);
+    expectRefusedByOtherSchemes(
+        textured, {StatusCode::Unsupported, ComponentType::None, -1, {"face-varying"}});
+    Shape const fin = makeShape(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+    int const edge = findEdge(fin, 0, 1);
+    expectRefusedByOtherSchemes(fin, {StatusCode::Unsupported,
+                                      ComponentType::Edge,
+                                      edge,
+                                      {"edge " + std::to_string(edge), "non-manifold"}});
+}
+
+TEST_F(StatusTest, OtherSchemesTakeSharpBorders) {
+    // Corners at the border are dropped with it.
+    Shape shape = makeShape(4, {{0, 1, 2, 3}});
+    shape.cornerVertices = {1};
+    shape.cornerSharpness = {10};
+    Sdc::Options sdcOptions;
+    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    ShapeDescriptor const descriptor(shape);
+    for (SchemeOptions const &scheme : kOtherSchemes) {
+        TopologyRefinerFactory::Options options;
+        options.schemeOptions = scheme;
+        Status status;
+        auto const refiner =
+            TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status);
+        ASSERT_TRUE(refiner) << status.GetMessage();
+        EXPECT_EQ(refiner->GetHexSchemeOptions().schemeType, scheme.schemeType);
+        EXPECT_EQ(refiner->GetHexSchemeOptions().triHexFirst, scheme.triHexFirst);
+        EXPECT_TRUE(refiner->RefineUniform(2));
+    }
+}
+
+TEST_F(StatusTest, CoplanarArguments) {
+    Shape const &cube = GetShape("cube");
+    ShapeDescriptor const descriptor(cube);
+    auto const refiner = TopologyRefinerFactory::Create(descriptor.Get());
+    ASSERT_TRUE(refiner->RefineUniform(2));
+    auto const expectCoplanarRefused = [&](double const *positions,
+                                           TopologyRefiner::CoplanarOptions options,
+                                           Refusal const &expected) {
+        Status status;
+        EXPECT_FALSE(refiner->RefineCoplanar(positions, options, &status));
+        expectRefusal(status, expected);
+        // The levels are as before.
+        EXPECT_EQ(refiner->GetMaxLevel(), 2);
+        EXPECT_TRUE(refiner->IsUniform());
+        EXPECT_EQ(refiner->GetLevel(2).GetNumVertices(), 128);
+        EXPECT_TRUE(refiner->GetLevel(1).Validate());
+    };
+    TopologyRefiner::CoplanarOptions const good(1);
+    expectCoplanarRefused(cube.positions.data(), TopologyRefiner::CoplanarOptions(-2),
+                          {StatusCode::InvalidArgument, ComponentType::Level, -2, {"-2"}});
+    expectCoplanarRefused(nullptr, good,
+                          {StatusCode::InvalidArgument, ComponentType::None, -1, {"null"}});
+    for (double tolerance : {-0.5, 180.5, std::nan(""), double(INFINITY)}) {
+        TopologyRefiner::CoplanarOptions options(1);
+        options.angleTolerance = tolerance;
+        expectCoplanarRefused(
+            cube.positions.data(), options,
+            {StatusCode::InvalidArgument, ComponentType::None, -1, {"angle", "180"}});
+    }
+    for (double coordinate : {std::nan(""), double(INFINITY), -double(INFINITY), 1e300}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            std::vector<double> positions = cube.positions;
+            positions[3 * 5 + axis] = coordinate;
+            expectCoplanarRefused(
+                positions.data(), good,
+                {StatusCode::InvalidArgument, ComponentType::Vertex, 5, {"vertex 5", "finite"}});
+        }
+    }
+    std::vector<float> positions(cube.positions.begin(), cube.positions.end());
+    positions[23] = NAN;
+    Status status;
+    EXPECT_FALSE(refiner->RefineCoplanar(positions.data(), good, &status));
+    expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::Vertex, 7, {"vertex 7"}});
+    EXPECT_TRUE(refiner->RefineCoplanar(cube.positions.data(), good, &status));
+    EXPECT_TRUE(status.IsOk());
+    EXPECT_FALSE(refiner->IsUniform());
+    EXPECT_TRUE(refiner->RefineCoplanar(cube.positions.data(), 0));
+    EXPECT_EQ(refiner->GetMaxLevel(), 0);
+}
+
+TEST_F(StatusTest, OtherSchemesRefuseCoplanarRefinement) {
+    Shape const &cube = GetShape("cube");
+    ShapeDescriptor const descriptor(cube);
+    for (SchemeOptions const &scheme : kOtherSchemes) {
+        TopologyRefinerFactory::Options options;
+        options.schemeOptions = scheme;
+        auto const refiner =
+            TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
+        ASSERT_TRUE(refiner && refiner->RefineUniform(1));
+        Status status;
+        EXPECT_FALSE(refiner->RefineCoplanar(cube.positions.data(), 1, &status));
+        expectRefusal(
+            status, {StatusCode::Unsupported, ComponentType::None, -1, {"coplanar", "hexagonal"}});
+        EXPECT_EQ(refiner->GetMaxLevel(), 1);
+        EXPECT_FALSE(refiner->RefineUniform(-1, &status));
+        expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::Level, -1, {"-1"}});
+        EXPECT_EQ(refiner->GetMaxLevel(), 1);
     }
 }
 

@@ -9,6 +9,7 @@
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/refinementEvaluator.h"
 #include "regression/shapes/featureShapes.h"
+#include "regression/shapes/flatShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/osd/cpuVertexBuffer.h>
@@ -42,10 +43,11 @@ constexpr double kTolerance = 1e-6;
 constexpr float kGuard = -12345.678f;
 
 /// Without the relations of the last level, which nobody may read.
-std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, FaceMask mask, int level,
+std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape,
+                                               FarExt::SchemeOptions schemeOptions, int level,
                                                Sdc::Options sdcOptions = Sdc::Options()) {
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = mask;
+    options.schemeOptions = schemeOptions;
     FarExt::Status status;
     ShapeDescriptor const descriptor(shape);
     auto refiner =
@@ -54,6 +56,13 @@ std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, FaceMask mask
         throw std::runtime_error(shape.name + ": " + status.GetMessage());
     }
     return refiner;
+}
+
+std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, FaceMask mask, int level,
+                                               Sdc::Options sdcOptions = Sdc::Options()) {
+    FarExt::SchemeOptions schemeOptions;
+    schemeOptions.faceMask = mask;
+    return createRefiner(shape, schemeOptions, level, sdcOptions);
 }
 
 std::unique_ptr<RefinementEvaluator> createEvaluator(TopologyRefiner const &refiner,
@@ -274,6 +283,53 @@ TEST(RefinementEvaluator, EqualsTablesOfFaceVaryingChannels) {
             }
         }
     });
+}
+
+TEST(RefinementEvaluator, EqualsTablesOfOtherSchemes) {
+    int seed = 0;
+    std::vector<Shape> shapes = GetManifoldShapes();
+    shapes.insert(shapes.end(), GetFlatShapes().begin(), GetFlatShapes().end());
+    for (Shape &shape : shapes) {
+        shape.fvarChannels.clear();
+        for (auto const schemeType : {FarExt::SchemeType::DooSabin, FarExt::SchemeType::TriHex,
+                                      FarExt::SchemeType::Hexagonal}) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", scheme " << int(schemeType));
+            FarExt::SchemeOptions schemeOptions;
+            schemeOptions.faceMask = kMasks[seed % 3];
+            schemeOptions.schemeType = schemeType;
+            schemeOptions.triHexFirst = schemeType == FarExt::SchemeType::Hexagonal;
+            auto const refiner = createRefiner(shape, schemeOptions, GetTestLevel(shape, 3, 2500));
+            ASSERT_NO_FATAL_FAILURE(
+                expectEqualsTable(*refiner, FarExt::INTERPOLATE_VERTEX, 0, 1 + seed++ % 5));
+            ASSERT_NO_FATAL_FAILURE(
+                expectEqualsTable(*refiner, FarExt::INTERPOLATE_VARYING, 0, 1 + seed % 5));
+        }
+    }
+}
+
+TEST(RefinementEvaluator, EqualsTablesOfCoplanarRefinements) {
+    std::vector<Shape> shapes = GetFeatureShapes();
+    shapes.insert(shapes.end(), GetFlatShapes().begin(), GetFlatShapes().end());
+    int seed = 0;
+    for (Shape const &shape : shapes) {
+        SCOPED_TRACE(shape.name);
+        Sdc::Options sdcOptions;
+        sdcOptions.SetVtxBoundaryInterpolation(kBoundaries[seed % 3]);
+        sdcOptions.SetFVarLinearInterpolation(kLinearInterpolations[seed % 6]);
+        auto const refiner = createRefiner(shape, kMasks[seed % 3], 0, sdcOptions);
+        TopologyRefiner::CoplanarOptions options(GetTestLevel(shape, 3, 2500));
+        options.angleTolerance = 30;
+        options.closeGaps = seed % 2 == 0;
+        ASSERT_TRUE(refiner->RefineCoplanar(shape.positions.data(), options));
+        ASSERT_NO_FATAL_FAILURE(
+            expectEqualsTable(*refiner, FarExt::INTERPOLATE_VERTEX, 0, 1 + seed++ % 5));
+        ASSERT_NO_FATAL_FAILURE(
+            expectEqualsTable(*refiner, FarExt::INTERPOLATE_VARYING, 0, 1 + seed % 5));
+        for (int channel = 0; channel < int(shape.fvarChannels.size()); ++channel) {
+            ASSERT_NO_FATAL_FAILURE(expectEqualsTable(*refiner, FarExt::INTERPOLATE_FACE_VARYING,
+                                                      channel, 1 + seed % 5));
+        }
+    }
 }
 
 TEST(RefinementEvaluator, EqualsTablesForEveryLengthAndLevel) {
