@@ -44,6 +44,10 @@ struct Arguments {
     std::string output;
     std::string mask = "average";
     std::string scheme = "hex";
+    bool isTriHexFirst = false;
+    bool isCoplanar = false;
+    double tolerance = FarExt::TopologyRefiner::CoplanarOptions(0).angleTolerance;
+    bool hasOpenGaps = false;
     std::optional<std::string> boundary;
     std::optional<double> creaseAngle;
     std::optional<std::string> fvarInterpolation;
@@ -63,6 +67,36 @@ double measure(Progress &progress, std::string const &phase, WORK &&work) {
     work();
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
         .count();
+}
+
+std::string checkAngle(std::string const &word) {
+    float angle = 0;
+    return ParseFiniteFloat(word, &angle) && angle >= 0 && angle <= 180
+               ? ""
+               : "'" + word + "' is not an angle from 0 to 180";
+}
+
+void addSchemeOptions(CLI::App &app, Arguments *arguments) {
+    app.add_option("--scheme", arguments->scheme,
+                   "Subdivision scheme; hex is short for hexagonal. The others drop border faces "
+                   "and take neither creases, corners, texture coordinates nor normals")
+        ->check(CLI::IsMember({"hex", "hexagonal", "doo-sabin", "tri-hex"}))
+        ->capture_default_str();
+    app.add_flag("--tri-hex-first", arguments->isTriHexFirst,
+                 "Begin with one tri-hex step, after which every vertex has three faces");
+    auto *const coplanar =
+        app.add_flag("--coplanar", arguments->isCoplanar,
+                     "Make quads instead of hexagons of edges between faces with the same normal, "
+                     "and polygons that close the gaps beside them");
+    app.add_option("--tolerance", arguments->tolerance,
+                   "Largest angle in degrees, 0 to 180, between normals that --coplanar takes for "
+                   "the same")
+        ->check(checkAngle)
+        ->type_name("DEG")
+        ->needs(coplanar)
+        ->capture_default_str();
+    app.add_flag("--open-gaps", arguments->hasOpenGaps, "Leave the gaps of --coplanar open")
+        ->needs(coplanar);
 }
 
 void addOptions(CLI::App &app, Arguments *arguments) {
@@ -90,9 +124,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                    "Mask of the face points: average is the paper's, smooth is the smoothest")
         ->check(CLI::IsMember({"average", "cosine", "smooth"}))
         ->capture_default_str();
-    app.add_option("--scheme", arguments->scheme, "Subdivision scheme")
-        ->check(CLI::IsMember({"hex"}))
-        ->capture_default_str();
+    addSchemeOptions(app, arguments);
     app.add_option("--boundary", arguments->boundary,
                    "Rule for boundaries, before that of the file: none is the paper's, the border "
                    "moves inward; else it becomes a smooth curve, with corners where vertices have "
@@ -102,12 +134,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
     app.add_option("--crease-angle", arguments->creaseAngle,
                    "Makes infinitely sharp creases of the edges between faces whose normals differ "
                    "by more than so many degrees, 0 to 180; other creases are those of the file")
-        ->check([](std::string const &word) {
-            float angle = 0;
-            return std::string(ParseFiniteFloat(word, &angle) && angle >= 0 && angle <= 180
-                                   ? ""
-                                   : "'" + word + "' is not an angle from 0 to 180");
-        })
+        ->check(checkAngle)
         ->type_name("DEG");
     app.add_option("--fvar-interpolation", arguments->fvarInterpolation,
                    "Where texture coordinates and normals are interpolated linearly, before what "
@@ -159,6 +186,12 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         if (arguments->printsTags && arguments->stats == "-") {
             throw CLI::ValidationError("--tags", "standard output is taken by --stats -");
         }
+        if (arguments->scheme == "hexagonal") {
+            arguments->scheme = "hex";
+        }
+        if (arguments->isCoplanar && (arguments->scheme != "hex" || arguments->isTriHexFirst)) {
+            throw CLI::ValidationError("--coplanar", "is for the hexagonal scheme alone");
+        }
     });
     app.set_version_flag("--version", "hexrefine " HEXREFINE_VERSION);
     app.footer("Exit status: 0 success, 1 bad input or failed output, 2 bad usage.");
@@ -168,6 +201,16 @@ FarExt::FaceMask findMask(std::string const &name) {
     return name == "cosine"   ? FarExt::FaceMask::Cosine
            : name == "smooth" ? FarExt::FaceMask::Smooth
                               : FarExt::FaceMask::Average;
+}
+
+FarExt::SchemeOptions findSchemeOptions(Arguments const &arguments) {
+    FarExt::SchemeOptions options;
+    options.faceMask = findMask(arguments.mask);
+    options.schemeType = arguments.scheme == "doo-sabin" ? FarExt::SchemeType::DooSabin
+                         : arguments.scheme == "tri-hex" ? FarExt::SchemeType::TriHex
+                                                         : FarExt::SchemeType::Hexagonal;
+    options.triHexFirst = arguments.isTriHexFirst;
+    return options;
 }
 
 /// The rules: those of the command line, else those of the file, else the paper's boundary and
@@ -197,13 +240,27 @@ std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Arguments const &argument
     descriptor.numFVarChannels = int(channels.size());
     descriptor.fvarChannels = channels.data();
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = findMask(arguments.mask);
+    options.schemeOptions = findSchemeOptions(arguments);
     FarExt::Status status;
     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options, &status);
     if (!refiner) {
         throw FileError(arguments.input, status.GetMessage());
     }
     return refiner;
+}
+
+/// To the last level; the positions of \p mesh are the rest pose.
+void refine(Arguments const &arguments, Mesh const &mesh, FarExt::TopologyRefiner *refiner) {
+    FarExt::Status status;
+    FarExt::TopologyRefiner::CoplanarOptions options(arguments.level);
+    options.angleTolerance = arguments.tolerance;
+    options.closeGaps = !arguments.hasOpenGaps;
+    bool const isDone = arguments.isCoplanar
+                            ? refiner->RefineCoplanar(mesh.positions.data(), options, &status)
+                            : refiner->RefineUniform(arguments.level, &status);
+    if (!isDone) {
+        throw FileError(arguments.input, status.GetMessage());
+    }
 }
 
 /// The data of \p mesh.
@@ -272,6 +329,10 @@ void writeStatistics(Statistics const &statistics, std::string const &path) {
 void run(Arguments const &arguments) {
     Statistics statistics;
     statistics.scheme = arguments.scheme;
+    statistics.isTriHexFirst = arguments.isTriHexFirst;
+    if (arguments.isCoplanar) {
+        statistics.coplanar = {arguments.tolerance, arguments.hasOpenGaps};
+    }
     statistics.mask = arguments.mask;
     statistics.evaluator = arguments.evaluator;
     statistics.input = arguments.input;
@@ -303,12 +364,8 @@ void run(Arguments const &arguments) {
                 kFVarInterpolationNames[sdcOptions.GetFVarLinearInterpolation()];
         });
 
-        milliseconds.refine = measure(progress, "refining", [&] {
-            FarExt::Status status;
-            if (!refiner->RefineUniform(arguments.level, &status)) {
-                throw FileError(arguments.input, status.GetMessage());
-            }
-        });
+        milliseconds.refine =
+            measure(progress, "refining", [&] { refine(arguments, mesh, refiner.get()); });
         statistics.levels = CountLevels(*refiner);
         statistics.creases = mesh.tags.GetNumCreases();
         statistics.corners = mesh.tags.GetNumCorners();

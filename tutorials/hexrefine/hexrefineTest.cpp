@@ -15,6 +15,7 @@ TEST_F(Hexrefine, PrintsHelpAndVersion) {
     Result const help = run("--help");
     EXPECT_EQ(help.status, 0);
     for (char const *option : {"INPUT", "-l,--level", "-o,--output", "--mask", "--scheme",
+                               "--tri-hex-first", "--coplanar", "--tolerance", "--open-gaps",
                                "--boundary", "--crease-angle", "--fvar-interpolation", "--tags",
                                "--evaluator", "--threads", "--stats", "--quiet", "--version"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
@@ -43,12 +44,14 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
     for (auto const &item : json.items()) {
         keys.push_back(item.key());
     }
-    EXPECT_EQ(keys, (std::vector<std::string>{"scheme", "mask", "boundary", "evaluator", "input",
-                                              "levels", "milliseconds", "stencils", "weights",
-                                              "peakMemoryBytes", "creasingMethod", "creases",
-                                              "corners", "holes", "fvarInterpolation",
-                                              "fvarChannels", "fvarChannelsLeftOut"}));
+    EXPECT_EQ(keys, (std::vector<std::string>{
+                        "scheme", "mask", "boundary", "evaluator", "input", "levels",
+                        "milliseconds", "stencils", "weights", "peakMemoryBytes", "creasingMethod",
+                        "creases", "corners", "holes", "fvarInterpolation", "fvarChannels",
+                        "fvarChannelsLeftOut", "triHexFirst", "coplanar"}));
     EXPECT_EQ(json["scheme"], "hex");
+    EXPECT_EQ(json["triHexFirst"], false);
+    EXPECT_TRUE(json["coplanar"].is_null());
     EXPECT_EQ(json["mask"], "cosine");
     EXPECT_EQ(json["boundary"], "none");
     EXPECT_EQ(json["evaluator"], "stencil");
@@ -80,6 +83,87 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
     EXPECT_EQ(byDefault["evaluator"], "refinement");
     EXPECT_EQ(byDefault["stencils"], 0);
     EXPECT_EQ(byDefault["weights"], 0);
+}
+
+TEST_F(Hexrefine, RefinesByOtherSchemes) {
+    std::string const input = makeCubeFile();
+    struct Case {
+        char const *arguments;
+        int numVertices, numFaces; ///< at level 2, of 8 vertices, 12 edges, 6 faces
+    };
+    for (Case const &expected : {Case{"--scheme hexagonal", 128, 66},
+                                 {"--scheme hex", 128, 66},
+                                 {"--scheme doo-sabin", 96, 98},
+                                 {"--scheme tri-hex", 72, 38},
+                                 {"--tri-hex-first", 96, 50},
+                                 {"--scheme doo-sabin --tri-hex-first", 72, 74}}) {
+        SCOPED_TRACE(expected.arguments);
+        std::vector<float> positions;
+        for (char const *evaluator : {"refinement", "stencil", "primvar"}) {
+            Result const result = run(input + " -l 2 " + expected.arguments + " --evaluator " +
+                                      evaluator + " -o " + getPath("out.ply"));
+            EXPECT_EQ(result.status, 0) << result.error;
+            Mesh const mesh = ReadMesh(getPath("out.ply"));
+            EXPECT_EQ(mesh.GetNumVertices(), expected.numVertices);
+            EXPECT_EQ(mesh.GetNumFaces(), expected.numFaces);
+            expectClosed(mesh);
+            positions = positions.empty() ? mesh.positions : positions;
+            ASSERT_EQ(mesh.positions.size(), positions.size());
+            for (std::size_t i = 0; i < positions.size(); ++i) {
+                ASSERT_NEAR(mesh.positions[i], positions[i], 1e-6);
+            }
+        }
+    }
+    Json const json = Json::parse(run(input + " --scheme tri-hex --tri-hex-first --stats -").out);
+    EXPECT_EQ(json["scheme"], "tri-hex");
+    EXPECT_EQ(json["triHexFirst"], true);
+    EXPECT_NE(run(input + " --scheme doo-sabin").out.find("scheme doo-sabin, mask"),
+              std::string::npos);
+}
+
+TEST_F(Hexrefine, RefinesCoplanarFaces) {
+    // A quad of the cube cut in four; all else as it was.
+    std::string const input =
+        makeFile("cut.obj", "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\n"
+                            "v -1 1 1\nv 1 1 1\nv 0 0 1\nv 0 -1 1\nv 1 0 1\nv 0 1 1\nv -1 0 1\n"
+                            "f 1 3 4 2\nf 1 2 6 10 5\nf 2 4 8 11 6\nf 4 3 7 12 8\nf 3 1 5 13 7\n"
+                            "f 5 10 9 13\nf 10 6 11 9\nf 9 11 8 12\nf 13 9 12 7\n");
+    // V = 13, E = 20, F = 9 and C = 40: 4 edges are flat, all of which meet in the middle, and end
+    // in a vertex with one run each.
+    std::string const output = getPath("out.off");
+    EXPECT_EQ(run(input + " --coplanar -o " + output).status, 0);
+    Mesh mesh = ReadMesh(output);
+    EXPECT_EQ(mesh.GetNumVertices(), 13 - 1 + 40);
+    EXPECT_EQ(mesh.GetNumFaces(), 9 + 20 + 4 + 1);
+    expectClosed(mesh);
+    Result const open = run(input + " --coplanar --open-gaps --tolerance 1.5 -o " + output);
+    EXPECT_EQ(open.status, 0);
+    EXPECT_NE(open.out.find("scheme hex, coplanar within 1.5 degrees, gaps open, mask"),
+              std::string::npos)
+        << open.out;
+    EXPECT_EQ(ReadMesh(output).GetNumFaces(), 9 + 20);
+    // All edges: Doo-Sabin.
+    EXPECT_EQ(run(input + " --coplanar --tolerance 91 -o " + output).status, 0);
+    mesh = ReadMesh(output);
+    EXPECT_EQ(run(input + " --scheme doo-sabin -o " + output).status, 0);
+    EXPECT_EQ(mesh.positions, ReadMesh(output).positions);
+    EXPECT_EQ(mesh.faceVertices, ReadMesh(output).faceVertices);
+    Json const json = Json::parse(run(input + " --coplanar --stats -").out);
+    EXPECT_EQ(json["coplanar"].dump(), R"({"tolerance":0.1,"openGaps":false})");
+    EXPECT_EQ(json["levels"][1]["faces"], 34);
+}
+
+TEST_F(Hexrefine, OtherSchemesRefuseFeatures) {
+    std::string const cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    std::string path = makeFile("uv.obj", cube + "vt 0 0\nf 1/1 2/1 3/1 4/1\n");
+    expectFailure(path + " --scheme doo-sabin", path, "face-varying");
+    // Without them where the output has no place for them.
+    EXPECT_EQ(run(path + " --scheme doo-sabin -o " + getPath("out.ply")).status, 0);
+    path = makeFile("crease.obj", cube + "v 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 2 5 6 3\n"
+                                         "t crease 2/1/0 1 2 3\n");
+    expectFailure(path + " --scheme tri-hex", path, "is a crease");
+    expectFailure(path + " --tri-hex-first", path, "is a crease");
+    EXPECT_EQ(run(path).status, 0);
 }
 
 TEST_F(Hexrefine, WritesStatisticsToFile) {
@@ -178,6 +262,13 @@ TEST_F(Hexrefine, RefusesBadUsage) {
     expectBadUsage(input + " -o out", "out");
     expectBadUsage(input + " --mask best", "best");
     expectBadUsage(input + " --scheme loop", "loop");
+    expectBadUsage(input + " --scheme doo-sabin --coplanar", "hexagonal");
+    expectBadUsage(input + " --tri-hex-first --coplanar", "hexagonal");
+    expectBadUsage(input + " --tolerance 1", "--coplanar");
+    expectBadUsage(input + " --open-gaps", "--coplanar");
+    for (char const *angle : {"-1", "181", "nan", "1x"}) {
+        expectBadUsage(input + " --coplanar --tolerance " + angle, "is not an angle from 0 to 180");
+    }
     expectBadUsage(input + " --boundary edge", "edge");
     for (char const *angle : {"-1", "181", "nan", "right", "90x"}) {
         expectBadUsage(input + " --crease-angle " + angle, "is not an angle from 0 to 180");

@@ -89,6 +89,11 @@ std::string FormatJson(Statistics const &statistics) {
         channels.push_back(
             {{"name", channel.name}, {"width", channel.width}, {"values", channel.values}});
     }
+    Json coplanar;
+    if (statistics.coplanar) {
+        coplanar = {{"tolerance", statistics.coplanar->tolerance},
+                    {"openGaps", statistics.coplanar->hasOpenGaps}};
+    }
     auto const &milliseconds = statistics.milliseconds;
     Json const json = {{"scheme", statistics.scheme},
                        {"mask", statistics.mask},
@@ -113,7 +118,9 @@ std::string FormatJson(Statistics const &statistics) {
                        {"holes", statistics.holes},
                        {"fvarInterpolation", statistics.fvarInterpolation},
                        {"fvarChannels", channels},
-                       {"fvarChannelsLeftOut", statistics.channelsLeftOut}};
+                       {"fvarChannelsLeftOut", statistics.channelsLeftOut},
+                       {"triHexFirst", statistics.isTriHexFirst},
+                       {"coplanar", coplanar}};
     // A path need not be UTF-8, JSON must be.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -125,6 +132,18 @@ std::string format(char const *pattern, ARGS... args) {
     char line[256];
     std::snprintf(line, sizeof line, pattern, args...);
     return line;
+}
+
+std::string formatScheme(Statistics const &statistics) {
+    std::string text = statistics.scheme;
+    if (statistics.isTriHexFirst) {
+        text += " after a tri-hex step";
+    }
+    if (statistics.coplanar) {
+        text += format(", coplanar within %g degrees", statistics.coplanar->tolerance);
+        text += statistics.coplanar->hasOpenGaps ? ", gaps open" : "";
+    }
+    return text;
 }
 
 /// A line for each thing that there is.
@@ -152,7 +171,7 @@ std::string formatTags(Statistics const &statistics) {
 } // namespace
 
 std::string FormatSummary(Statistics const &statistics) {
-    std::string summary = statistics.input + ": scheme " + statistics.scheme + ", mask " +
+    std::string summary = statistics.input + ": scheme " + formatScheme(statistics) + ", mask " +
                           statistics.mask + ", boundary " + statistics.boundary + ", evaluator " +
                           statistics.evaluator + "\n\n" +
                           "level    vertices       edges       faces    boundary  faces by size\n";

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,17 @@ struct ChannelStatistics {
     std::vector<int> values; ///< number of values by level
 };
 
+/// How coplanar faces were refined.
+struct CoplanarStatistics {
+    double tolerance; ///< in degrees
+    bool hasOpenGaps;
+};
+
 /// \brief What a run of hexrefine did: the content of `--stats`.
 struct Statistics {
     std::string scheme;
+    bool isTriHexFirst = false;
+    std::optional<CoplanarStatistics> coplanar;
     std::string mask;
     std::string boundary;
     std::string evaluator;
