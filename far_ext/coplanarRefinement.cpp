@@ -111,6 +111,21 @@ Status checkArguments(bool hasPositions, double angleTolerance, SchemeOptions sc
     return Status();
 }
 
+// On a closed mesh every edge makes four edges at least.
+Status checkSizes(internal::LevelTopology const &base,
+                  TopologyRefiner::CoplanarOptions const &options) {
+    internal::LevelSizes sizes = {};
+    internal::SizeChecker checker(sizes, " or more");
+    Status status;
+    sizes.edges = base.boundaryEdges.empty() && options.closeGaps ? base.numEdges : 0;
+    for (int level = 1; level <= options.refinementLevel && sizes.edges > 0 && status.IsOk();
+         ++level) {
+        sizes.edges *= 4;
+        status = checker.Add(sizes);
+    }
+    return status;
+}
+
 template <typename REAL>
 Status importPositions(REAL const *restPositions, Index numVertices, std::vector<Vector> &result) {
     result.resize(numVertices);
@@ -138,6 +153,9 @@ bool TopologyRefiner::refineCoplanar(REAL const *restPositions, CoplanarOptions 
     }
     if (result.IsOk()) {
         result = importPositions(restPositions, GetLevel(0).GetNumVertices(), positions);
+    }
+    if (result.IsOk()) {
+        result = checkSizes(GetLevel(0).GetTopology(), options);
     }
     if (!result.IsOk()) {
         return internal::Report(result, status);

@@ -5,6 +5,7 @@
 #include "polygonRefinement.h"
 #include "sizeChecker.h"
 #include "topologyRefinement.h"
+#include "vertexFan.h"
 
 #include <deque>
 
@@ -16,12 +17,12 @@ using internal::SizeChecker;
 
 namespace {
 
-// Checks the sizes of levels that hexagonal steps make, all known from those of the base.
-Status checkSizes(LevelTopology const &base, std::vector<SizeChecker> checkers,
-                  int refinementLevel) {
+// Checks the sizes of the levels that hexagonal steps make from a level, all known from its own.
+Status checkHexagonalSizes(LevelTopology const &pLevel, std::vector<SizeChecker> checkers,
+                           int refinementLevel) {
     for (std::size_t i = 0; i < checkers.size(); ++i) {
-        LevelSizes sizes = internal::GetSizes(i == 0 ? base : base.fvarLevels[i - 1]->topology);
-        for (int level = 1; level <= refinementLevel; ++level) {
+        LevelSizes sizes = internal::GetSizes(i == 0 ? pLevel : pLevel.fvarLevels[i - 1]->topology);
+        for (int level = pLevel.depth + 1; level <= refinementLevel; ++level) {
             sizes = internal::GetChildSizes(sizes);
             if (Status status = checkers[i].Add(sizes); !status.IsOk()) {
                 return status;
@@ -29,6 +30,85 @@ Status checkSizes(LevelTopology const &base, std::vector<SizeChecker> checkers,
         }
     }
     return Status();
+}
+
+// What tells the sizes of the levels of other schemes.
+struct SchemeSizes {
+    LevelSizes sizes;
+    std::int64_t interiorEdges;
+    std::int64_t closedVertices; // with faces all around
+    std::int64_t closedCorners;  // of these faces
+    std::int64_t digons;         // closed vertices with two faces
+
+    bool IsClosed() const { return interiorEdges == sizes.edges; }
+};
+
+SchemeSizes getSchemeSizes(LevelTopology const &level) {
+    SchemeSizes result = {internal::GetSizes(level), 0, 0, 0, 0};
+    result.interiorEdges = level.numEdges - std::int64_t(level.boundaryEdges.size());
+    for (Far::Index vert = 0; vert < level.numVertices; ++vert) {
+        internal::ForEachFan(level, vert, [&](internal::VertexFan const &fan) {
+            result.closedVertices += fan.isClosed;
+            result.closedCorners += fan.isClosed ? fan.end - fan.begin : 0;
+            result.digons += fan.isClosed && fan.end - fan.begin == 2;
+        });
+    }
+    return result;
+}
+
+// A quad per interior edge, a V-face per closed vertex but for digons, where two quads share an edge.
+// The F-vertices of V-faces are closed, with four faces each, those of digons with three.
+SchemeSizes getDooSabinSizes(SchemeSizes const &p) {
+    std::int64_t const vFaces = p.closedVertices - p.digons;
+    std::int64_t const vFaceCorners = p.closedCorners - 2 * p.digons;
+    SchemeSizes result = {};
+    result.sizes.vertices = p.sizes.corners;
+    result.sizes.edges = p.sizes.corners + 2 * p.interiorEdges - p.digons;
+    result.sizes.faces = p.sizes.faces + p.interiorEdges + vFaces;
+    result.sizes.corners = p.sizes.corners + 4 * p.interiorEdges + vFaceCorners;
+    result.interiorEdges = 2 * p.interiorEdges + vFaceCorners + p.digons;
+    result.closedVertices = vFaceCorners + 2 * p.digons;
+    result.closedCorners = 4 * vFaceCorners + 3 * 2 * p.digons;
+    return result;
+}
+
+// Of a closed level: a V-face per vertex, of two F-vertices for each of its faces.
+SchemeSizes getTriHexSizes(SchemeSizes const &p) {
+    SchemeSizes result = {};
+    result.sizes.vertices = p.sizes.corners;
+    result.sizes.edges = p.sizes.corners + p.sizes.edges;
+    result.sizes.faces = p.sizes.faces + p.closedVertices;
+    result.sizes.corners = 3 * p.sizes.corners;
+    result.interiorEdges = result.sizes.edges;
+    result.closedVertices = result.sizes.vertices;
+    result.closedCorners = result.sizes.corners;
+    return result;
+}
+
+SchemeSizes getHexagonalSizes(SchemeSizes const &p) {
+    SchemeSizes result = {};
+    result.sizes = internal::GetChildSizes(p.sizes);
+    result.interiorEdges = result.sizes.edges;
+    return result;
+}
+
+// Checks the sizes of all levels of other schemes, as far as they are known beforehand: of borders
+// Doo-Sabin's alone.
+Status checkSchemeSizes(LevelTopology const &base, SchemeOptions schemeOptions, SizeChecker checker,
+                        int refinementLevel) {
+    SchemeSizes sizes = getSchemeSizes(base);
+    Status status;
+    for (int level = 1; level <= refinementLevel && status.IsOk(); ++level) {
+        SchemeType const scheme = schemeOptions.GetSchemeOfLevel(level);
+        if (scheme != SchemeType::DooSabin && !sizes.IsClosed()) {
+            break;
+        }
+        sizes = scheme == SchemeType::DooSabin ? getDooSabinSizes(sizes)
+                : scheme == SchemeType::TriHex ? getTriHexSizes(sizes)
+                                               : getHexagonalSizes(sizes);
+        status = checker.Add(sizes.sizes);
+    }
+    return status;
 }
 
 } // namespace
@@ -128,8 +208,11 @@ Status TopologyRefiner::refineToPolygons(int level, bool fullTopology,
 bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
     int const refinementLevel = options.refinementLevel;
     Status result = checkLevel(refinementLevel);
-    if (result.IsOk() && _schemeOptions.IsHexagonal()) {
-        result = checkSizes(*_topologies[0], makeSizeCheckers(), refinementLevel);
+    if (result.IsOk()) {
+        result = _schemeOptions.IsHexagonal()
+                     ? checkHexagonalSizes(*_topologies[0], makeSizeCheckers(), refinementLevel)
+                     : checkSchemeSizes(*_topologies[0], _schemeOptions, makeSizeCheckers()[0],
+                                        refinementLevel);
     }
     if (!result.IsOk()) {
         return internal::Report(result, status);
@@ -140,6 +223,13 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
         bool const fullTopology = level < refinementLevel || options.fullTopologyInLastLevel;
         internal::PolygonRules rules;
         rules.scheme = _schemeOptions.GetSchemeOfLevel(level);
+        if (level == 2 && rules.scheme == SchemeType::Hexagonal) {
+            // All sizes are known by now, of borders too.
+            result = checkHexagonalSizes(*_topologies[1], checkers, refinementLevel);
+            if (!result.IsOk()) {
+                break;
+            }
+        }
         result = rules.scheme == SchemeType::Hexagonal
                      ? refineHexagonally(level, fullTopology, checkers)
                      : refineToPolygons(level, fullTopology, rules, checkers);

@@ -72,8 +72,8 @@ public:
     /// \return  false with StatusCode::InvalidArgument for a negative level, and with
     ///          StatusCode::TooLarge, which names the level and the count, when a size or the sum
     ///          of a size over the levels exceeds 2^31 - 1.  No memory is taken then and the
-    ///          levels are as before.  The sizes of other schemes than Hexagonal are known only
-    ///          level by level: there the base alone is left.
+    ///          levels are as before.  With borders the sizes of a tri-hex step and what follows are
+    ///          known only once it is made: there the base alone is left.
     bool RefineUniform(UniformOptions options, Status *status = nullptr);
 
     /// The options of the last successful RefineUniform.

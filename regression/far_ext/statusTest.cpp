@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 namespace OpenSubdivHex::Regression {
@@ -34,7 +35,9 @@ void recordError(Far::ErrorType, char const *message) {
 Shape makeShape(int numVertices, std::vector<std::vector<int>> const &faces) {
     Shape shape;
     for (int v = 0; v < numVertices; ++v) {
-        shape.positions.insert(shape.positions.end(), {1.0 * v, 1.0 * v * v, 1.0 / (v + 1)});
+        for (double coordinate : {1.0 * v, 1.0 * v * v, 1.0 / (v + 1)}) {
+            shape.positions.push_back(coordinate);
+        }
     }
     for (std::vector<int> const &face : faces) {
         shape.faceSizes.push_back(int(face.size()));
@@ -456,6 +459,101 @@ TEST_F(StatusTest, OtherSchemesRefuseCoplanarRefinement) {
         expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::Level, -1, {"-1"}});
         EXPECT_EQ(refiner->GetMaxLevel(), 1);
     }
+}
+
+TEST_F(StatusTest, TooManyLevelsOfOtherSchemes) {
+    // Edges of the cube: 12 4^L with Doo-Sabin; a tri-hex step first makes 36 of 12.  With tri-hex
+    // it has 24 3^L face-vertices.
+    struct Case {
+        SchemeOptions scheme;
+        int level;
+        std::string count;
+    };
+    Case const cases[] = {{kOtherSchemes[0], 14, "3221225472 edges"},
+                          {kOtherSchemes[1], 17, "3099363912 face-vertices"},
+                          {kOtherSchemes[2], 14, "2415919104 edges"}};
+    Shape const &cube = GetShape("cube");
+    ShapeDescriptor const descriptor(cube);
+    for (Case const &expected : cases) {
+        TopologyRefinerFactory::Options options;
+        options.schemeOptions = expected.scheme;
+        auto const refiner =
+            TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
+        ASSERT_TRUE(refiner->RefineUniform(2));
+        int const numVertices = refiner->GetLevel(2).GetNumVertices();
+        for (int level : {expected.level, 1000000}) {
+            Status status;
+            EXPECT_FALSE(refiner->RefineUniform(level, &status));
+            expectRefusal(status, {StatusCode::TooLarge,
+                                   ComponentType::Level,
+                                   expected.level,
+                                   {"level " + std::to_string(expected.level), expected.count}});
+            EXPECT_EQ(refiner->GetMaxLevel(), 2);
+            EXPECT_EQ(refiner->GetLevel(2).GetNumVertices(), numVertices);
+        }
+    }
+    auto const refiner = TopologyRefinerFactory::Create(descriptor.Get());
+    Status status;
+    EXPECT_FALSE(refiner->RefineCoplanar(cube.positions.data(), 100, &status));
+    expectRefusal(status,
+                  {StatusCode::TooLarge, ComponentType::Level, 14, {"level 14", "or more"}});
+}
+
+TEST_F(StatusTest, TooManyLevelsSeenFromAnyLevel) {
+    // The refusals of a mesh and of its own refinement as a base name the same sizes, so that these
+    // are right however many levels lie between.
+    auto const create = [](Shape const &shape, SchemeOptions const &scheme) {
+        TopologyRefinerFactory::Options options;
+        options.schemeOptions = scheme;
+        ShapeDescriptor const descriptor(shape);
+        return TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
+    };
+    auto const refuse = [](TopologyRefiner &refiner) {
+        Status status;
+        EXPECT_FALSE(refiner.RefineUniform(100, &status));
+        EXPECT_EQ(status.GetCode(), StatusCode::TooLarge);
+        return status;
+    };
+    // All that are chosen have too many face-vertices, those of the levels before included.
+    std::string const kCount = "face-vertices together with the levels before";
+    auto const readCount = [](Status const &status) {
+        std::string const before = "would have ";
+        std::size_t const place = status.GetMessage().find(before) + before.size();
+        return std::stoll(status.GetMessage().substr(place));
+    };
+    SchemeOptions const dooSabin = kOtherSchemes[0];
+    SchemeOptions const triHex = kOtherSchemes[1];
+    struct Case {
+        char const *name;
+        SchemeOptions scheme;
+    };
+    for (Case const &test :
+         {Case{"mixedPatch", dooSabin}, Case{"quadGrid", dooSabin}, Case{"closedAndOpen", dooSabin},
+          Case{"dihedron5", dooSabin}, Case{"prism5", dooSabin}, Case{"tetrahedron", triHex}}) {
+        SCOPED_TRACE(test.name);
+        auto const refiner = create(GetShape(test.name), test.scheme);
+        Status const expected = refuse(*refiner);
+        int const lastLevel = expected.GetComponentIndex();
+        ASSERT_NE(expected.GetMessage().find(kCount), std::string::npos) << expected.GetMessage();
+        std::int64_t count = readCount(expected);
+        for (int level : {1, 2, 3}) {
+            ASSERT_TRUE(refiner->RefineUniform(level));
+            FarExt::TopologyLevel const &topology = refiner->GetLevel(level);
+            std::vector<std::vector<int>> faces;
+            for (int f = 0; f < topology.GetNumFaces(); ++f) {
+                auto const vertices = topology.GetFaceVertices(f);
+                faces.emplace_back(vertices.begin(), vertices.end());
+            }
+            auto const other = create(makeShape(topology.GetNumVertices(), faces), test.scheme);
+            ASSERT_TRUE(other);
+            Status const actual = refuse(*other);
+            EXPECT_EQ(actual.GetComponentIndex(), lastLevel - level);
+            count -= refiner->GetLevel(level - 1).GetNumFaceVertices();
+            EXPECT_EQ(readCount(actual), count);
+        }
+    }
+    // With borders the sizes are known after the tri-hex step.
+    EXPECT_NE(refuse(*create(GetShape("mixedPatch"), kOtherSchemes[2])).GetMessage(), "");
 }
 
 TEST_F(StatusTest, CallbackCanBeTakenBack) {
