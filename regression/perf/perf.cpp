@@ -55,8 +55,11 @@ int main(int argc, char **argv) {
     app.add_option("--command", command, "Command to name in the results")->group("");
     CLI11_PARSE(app, argc, argv);
 
+    Environment environment = DescribeEnvironment();
+    environment.emplace_back("command", "`" + command + "`");
     Suite suite(options);
     AddCopyBenchmarks(suite);
+    AddPhaseBenchmarks(suite);
     AddTopologyBenchmarks(suite);
     AddPositionBenchmarks(suite);
     AddStencilTableBenchmarks(suite);
@@ -65,8 +68,6 @@ int main(int argc, char **argv) {
     AddGrowthBenchmarks(suite);
     bool isComplete = suite.Run();
 
-    Environment environment = DescribeEnvironment();
-    environment.emplace_back("command", "`" + command + "`");
     std::string const markdown = FormatMarkdown(suite, environment);
     std::cout << markdown << std::flush;
     if (!markdownPath.empty()) {

@@ -99,11 +99,12 @@ TEST(Perf, QuickRunHasEveryFigure) {
             settings.insert(figure["mesh"].get<std::string>() + " " +
                             figure["size"].get<std::string>() + " " +
                             figure["memory"].get<std::string>());
-            // The peak of a tiny table may lie within pages that were there before.
+            // A tiny table may lie on pages that were there before, and not all systems tell.
+            bool const isPeak = row.name == "table-peak";
             bool const isMeasured = figure["figure"].is_number();
-            ASSERT_TRUE(isMeasured || row.name == "table-peak") << row.name << figure;
+            ASSERT_TRUE(isMeasured || isPeak) << row.name << figure;
             if (isMeasured) {
-                EXPECT_GT(figure["figure"], 0) << row.name << figure;
+                EXPECT_TRUE(figure["figure"] > 0 || isPeak) << row.name << figure;
                 EXPECT_EQ(figure["verdict"], GetVerdict(row, figure["figure"])) << row.name;
             }
         }

@@ -22,20 +22,32 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The value in a file of lines "NAME : VALUE"; or its first line, if \p name is empty.
-std::string readValue(char const *path, std::string const &name) {
+/// What is behind the first of \p separators in the first line that begins with \p begin,
+/// without spaces and quotes around.
+std::string readValue(char const *path, std::string const &begin, char const *separators) {
     std::ifstream file(path);
     std::string line;
     while (std::getline(file, line)) {
-        std::size_t const colon = line.find(": ");
-        if (name.empty()) {
-            return line;
-        }
-        if (line.compare(0, name.size(), name) == 0 && colon != std::string::npos) {
-            return line.substr(colon + 2);
+        std::size_t const first = line.find_first_of(separators);
+        if (line.compare(0, begin.size(), begin) == 0 && first != std::string::npos) {
+            line = line.substr(std::min(line.find_first_not_of(" \"", first + 1), line.size()));
+            return line.substr(0, line.find_last_not_of(" \"") + 1);
         }
     }
     return "unknown";
+}
+
+/// "madvise" and the like.
+std::string getHugePages() {
+    std::string const modes = readValue("/sys/kernel/mm/transparent_hugepage/enabled", "", "[");
+    return modes.substr(0, modes.find(']'));
+}
+
+/// Of the last minute; above 0 others were at work.
+std::string getLoadAverage() {
+    std::string load = "unknown";
+    std::ifstream("/proc/loadavg") >> load;
+    return load;
 }
 
 std::string getDate() {
@@ -317,11 +329,12 @@ Json toJson(double value) { return std::isnan(value) ? Json() : Json(value); }
 
 Environment DescribeEnvironment() {
     return {{"date", getDate()},
-            {"processor", readValue("/proc/cpuinfo", "model name")},
+            {"processor", readValue("/proc/cpuinfo", "model name", ":")},
             {"cores", std::to_string(std::thread::hardware_concurrency())},
             {"instructions of the evaluators", getSimdLevel()},
-            {"huge pages", readValue("/sys/kernel/mm/transparent_hugepage/enabled", "")},
-            {"system", readValue("/proc/version", "")},
+            {"load average", getLoadAverage()},
+            {"huge pages", getHugePages()},
+            {"system", readValue("/etc/os-release", "PRETTY_NAME", "=")},
             {"compiler", getCompiler()},
             {"OpenSubdiv", std::to_string(OPENSUBDIV_VERSION_MAJOR) + "." +
                                std::to_string(OPENSUBDIV_VERSION_MINOR) + "." +
@@ -338,8 +351,9 @@ std::string FormatMarkdown(Suite const &suite, Environment const &environment) {
     }
     for (int numThreads : {1, 2}) {
         if (double const bandwidth = getCopyBandwidth(suite, numThreads); bandwidth > 0) {
-            text << "- copy bandwidth, threads: " << numThreads << ": "
-                 << formatNumber(bandwidth / 1e9) << " GB/s\n";
+            text << "- copy bandwidth, " << numThreads
+                 << (numThreads > 1 ? " threads: " : " thread: ") << formatNumber(bandwidth / 1e9)
+                 << " GB/s\n";
         }
     }
     text << kRatiosIntroduction << formatRows(suite) << kCostsIntroduction << formatCosts(suite)

@@ -13,7 +13,7 @@ namespace OpenSubdivHex::Regression {
 /// Names and values, e.g. of the processor and of the versions of the peers.
 using Environment = std::vector<std::pair<std::string, std::string>>;
 
-/// The machine, the build and the peers.
+/// The machine, how busy it is, the build and the peers.
 Environment DescribeEnvironment();
 
 /// All results as Markdown: the rows with their verdicts, the costs, and how costs grow.

@@ -7,20 +7,18 @@ namespace OpenSubdivHex::Regression {
 
 std::vector<Row> const &GetRows() {
     static std::vector<Row> const kRows = [] {
-        std::string const refine = "Far::TopologyRefiner::RefineUniform";
         std::vector<Row> result = {
-            {"topology-full", "topology, full incidence at the last level, 1 thread",
-             refine + ", fullTopologyInLastLevel", 5, 10},
-            {"topology-faces", "topology, face-vertices at the last level, 1 thread", refine, 8,
-             15},
-            {"positions-cgal", "topology and positions, 1 thread",
-             "CGAL DooSabin_subdivision, Surface_mesh", 15, 30},
+            {"topology-full", "topology, full last level, 1 thread",
+             "Far::TopologyRefiner, full last level", 5, 10},
+            {"topology-faces", "topology, face-vertices, 1 thread", "Far::TopologyRefiner", 8, 15},
+            {"positions-cgal", "topology and positions, 1 thread", "CGAL DooSabin_subdivision", 15,
+             30},
             {"positions-openmesh", "topology and positions, 1 thread", "OpenMesh CatmullClarkT", 12,
              30},
-            {"table-1", "stencil table, per weight, 1 thread", "Far::StencilTableFactory", 5, 8},
-            {"table-2", "stencil table, per weight, 2 threads", "Far::StencilTableFactory", 9, 15},
-            {"table-peak", "stencil table: peak memory over its size",
-             "none; in brackets Far::StencilTableFactory", 1.4, 1.15, true}};
+            {"table-1", "table, per weight, 1 thread", "Far::StencilTableFactory", 5, 8},
+            {"table-2", "table, per weight, 2 threads", "Far::StencilTableFactory", 9, 15},
+            {"table-peak", "peak memory / size of the table", "(Far::StencilTableFactory)", 1.4,
+             1.15, true}};
         struct Length {
             int length;
             double atLeast;
@@ -35,15 +33,14 @@ std::vector<Row> const &GetRows() {
                               "Osd::OmpEvaluator, 2 threads", 12, 25});
             result.push_back(
                 {"evaluation-2-cpu-" + suffix, work + ", 2 threads", "Osd::CpuEvaluator", 12, 25});
-            result.push_back({"evaluation-2-own-" + suffix, work + ", 2 threads",
-                              "the same with 1 thread", 1.8, 1.8});
+            result.push_back(
+                {"evaluation-2-own-" + suffix, work + ", 2 threads", "own, 1 thread", 1.8, 1.8});
         }
-        result.push_back({"table-free-1", "table-free evaluation of all levels, 1 thread",
-                          "own best table, 1 thread", 3, 5});
-        result.push_back({"table-free-2", "table-free evaluation of all levels, 2 threads",
+        result.push_back(
+            {"table-free-1", "table-free, all levels, 1 thread", "own best table", 3, 5});
+        result.push_back({"table-free-2", "table-free, all levels, 2 threads",
                           "own best table, 2 threads", 3, 5});
-        result.push_back({"evaluation-catmark",
-                          "evaluation of OpenSubdiv's Catmull-Clark table, length 3, 1 thread",
+        result.push_back({"evaluation-catmark", "Far's Catmull-Clark table, length 3",
                           "Osd::CpuEvaluator", 5, 8});
         return result;
     }();

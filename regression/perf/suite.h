@@ -118,6 +118,7 @@ private:
 /// @name The benchmarks, added to a suite
 /// @{
 void AddCopyBenchmarks(Suite &suite);
+void AddPhaseBenchmarks(Suite &suite);
 void AddTopologyBenchmarks(Suite &suite);
 void AddPositionBenchmarks(Suite &suite);
 void AddStencilTableBenchmarks(Suite &suite);
