@@ -112,6 +112,10 @@ struct LevelTopology {
 
     /// False when only the face-vertices were made (the last level, unless asked for more).
     bool hasFullTopology = false;
+    /// Whether the hexagonal step made the level: the sides of its E-faces' edges are known then.
+    bool isHexagonal = false;
+
+    Buffer<std::byte> memory; ///< of the arrays that refinement makes
 
     Buffer<Index> faceFirstCorner; ///< numFaces + 1 positions in faceVerts and faceEdges
     Buffer<Index> faceVerts;       ///< numCorners
@@ -130,7 +134,8 @@ struct LevelTopology {
     Buffer<Index> vertEdges;
     Buffer<LocalIndex> vertEdgeLocals; ///< 0 or 1: the vertex's place in each of its edges
 
-    Buffer<Index> faceChildFaces; ///< numFaces, of a level that was refined
+    // Of a level that was refined, and in the memory of its child.
+    Buffer<Index> faceChildFaces; ///< numFaces
     Buffer<Index> edgeChildFaces; ///< numEdges; empty when every edge makes an E-face
 
     // Tags; each array is empty in a level that has none of its kind.

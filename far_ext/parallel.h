@@ -65,17 +65,23 @@ void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function)
     }
 }
 
-/// Calls function(i) for 0 <= i < count in the same way.
+/// Calls function(begin, end) in the same way, for ranges without a state.
 template <typename FUNCTION>
-void ParallelFor(Far::Index count, FUNCTION function) {
+void ParallelForRange(Far::Index count, FUNCTION function) {
     struct Nothing {};
     ParallelForRange(
         count, [] { return Nothing(); },
-        [&](Nothing, Far::Index begin, Far::Index end) {
-            for (Far::Index i = begin; i < end; ++i) {
-                function(i);
-            }
-        });
+        [&](Nothing, Far::Index begin, Far::Index end) { function(begin, end); });
+}
+
+/// Calls function(i) for 0 <= i < count in the same way.
+template <typename FUNCTION>
+void ParallelFor(Far::Index count, FUNCTION function) {
+    ParallelForRange(count, [&](Far::Index begin, Far::Index end) {
+        for (Far::Index i = begin; i < end; ++i) {
+            function(i);
+        }
+    });
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -13,136 +13,157 @@ namespace {
 using Index = Far::Index;
 using LocalIndex = Far::LocalIndex;
 
-// Which corners of an E-face run along the first side of their edge; known without a look at the
-// edge, as the order of its vertices is always the same.
-constexpr bool kEFaceCornerIsSideA[HexIndexing::kNumEFaceCorners] = {true, false, false,
-                                                                     true, false, false};
-constexpr bool kBoundaryEFaceCornerIsSideA[HexIndexing::kNumBoundaryEFaceCorners] = {true, true,
-                                                                                     false, false};
+// The side of its edges that an interior E-face is, by corner; known without a look at the edge, as
+// the hexagonal step always gives the vertices of an edge the same order.
+constexpr EFaceSide const *kSidesOfEFace[HexIndexing::kNumEFaceCorners] = {
+    &kEFaceSideA, &kEFaceSideB, &kEFaceSideB, &kEFaceSideA, &kEFaceSideB, &kEFaceSideB};
 
 // An edge as one of its faces sees it.
 struct FaceEdge {
     bool HasEFace() const { return eFace != Far::INDEX_INVALID; }
 
-    Index eFace;       // INDEX_INVALID for a B edge, which makes none
-    Index firstCorner; // of the E-face
+    Index eFace; // INDEX_INVALID for a B edge, which makes none
     EFaceSide const *side;
     bool isBoundary;
 };
 
+// A corner with its neighbours in the face and the edges that end and start there.
+struct FaceCorner {
+    Index face;
+    LocalIndex local; // its place in the face
+    Index prev;
+    Index corner;
+    Index next;
+    FaceEdge inEdge;
+    FaceEdge outEdge;
+};
+
+// Where the faces and edges of a vertex begin in the arrays of all vertices.
+struct VertexOffsets {
+    Index face;
+    Index edge;
+};
+
+void sortUnique(std::vector<Index> &indices) {
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
+// Takes [begin, end) apart at the indices that are listed, ascending: calls regular(begin, end, n)
+// for the runs between them and listed(index, n) for those themselves, in order; n of the listed
+// indices come before.
+template <typename LIST, typename REGULAR, typename LISTED>
+void forEachRun(Index begin, Index end, LIST const &list, REGULAR regular, LISTED listed) {
+    auto next = std::lower_bound(list.begin(), list.end(), begin);
+    while (begin < end) {
+        Index const numBefore = Index(next - list.begin());
+        Index const runEnd = next == list.end() ? end : std::min(*next, end);
+        if (begin < runEnd) {
+            regular(begin, runEnd, numBefore);
+        }
+        if (runEnd < end) {
+            listed(runEnd, numBefore);
+            ++next;
+        }
+        begin = runEnd + 1;
+    }
+}
+
 // Fills a child level.  All that a component makes is written by that component alone, to places
-// that are known in advance, so that components can be taken in any order and in parallel.
+// that are known in advance, so that components can be taken in any order and in parallel; and it
+// lies together, so that memory is written from front to back.
 //
-// IS_IRREGULAR is for levels with boundaries or non-manifold vertices; without, all places are
-// closed-form.
-template <bool IS_IRREGULAR>
+// Few components meet a boundary or a non-manifold vertex.  They are listed; between them all
+// places are closed-form but for shifts that are the same from one listed component to the next.
 class Refinement {
 public:
     Refinement(LevelTopology const &parent, LevelTopology &child)
         : _p(parent), _c(child), _indexing(parent.ChildIndexing()) {}
 
-    void FillFaceVertices() {
-        fillFaceOffsets();
-        _c.faceVerts.Resize(_c.numCorners);
-        ParallelFor(_p.numFaces, [this](Index pFace) { fillFaceVerticesOf(pFace); });
-    }
-
-    void FillRelations() {
-        _c.faceEdges.Resize(_c.numCorners);
-        _c.edgeVerts.Resize(2 * std::size_t(_c.numEdges));
-        _c.edgeFaces.Resize(2 * std::size_t(_c.numEdges));
-        _c.edgeFaceLocals.Resize(2 * std::size_t(_c.numEdges));
-        _c.vertFirstFace.Resize(std::size_t(_c.numVertices) + 1);
-        _c.vertFirstEdge.Resize(std::size_t(_c.numVertices) + 1);
-        _c.vertFaces.Resize(_c.numCorners);
-        _c.vertFaceLocals.Resize(_c.numCorners);
-        _c.vertEdges.Resize(2 * std::size_t(_c.numEdges));
-        _c.vertEdgeLocals.Resize(2 * std::size_t(_c.numEdges));
+    // Face-vertices alone.
+    void FillFaces() { fillFaces<false>(); }
+    // All relations.
+    void FillAll() {
+        listOpenFaces();
+        listOpenVertices();
+        fillFaces<true>();
         fillBoundaries();
-        fillVertexOffsets();
-        ParallelFor(_p.numFaces, [this](Index pFace) { fillRelationsOfFace(pFace); });
-        ParallelFor(_p.numVertices, [this](Index pVert) { fillRelationsOfVertex(pVert); });
+        ParallelForRange(_p.numFaces, [this](Index begin, Index end) {
+            forEachRun(
+                begin, end, _openFaces,
+                [this](Index runBegin, Index runEnd, Index) { fillClosedFaces(runBegin, runEnd); },
+                [this](Index pFace, Index) { fillOpenFace(pFace); });
+        });
+        ParallelForRange(_p.numVertices, [this](Index begin, Index end) {
+            forEachRun(
+                begin, end, _openVerts,
+                [this](Index runBegin, Index runEnd, Index numOpenBefore) {
+                    fillClosedVertices(runBegin, runEnd, numOpenBefore);
+                },
+                [this](Index pVert, Index numOpenBefore) {
+                    fillOpenVertex(pVert, numOpenBefore);
+                });
+        });
+        _c.vertFirstFace[_c.numVertices] = _c.numCorners;
+        _c.vertFirstEdge[_c.numVertices] = 2 * _c.numEdges;
     }
 
 private:
-    void fillFaceOffsets();
-    void fillVertexOffsets();
+    void listOpenFaces();
+    void listOpenVertices();
+    template <bool FULL>
+    void fillFaces();
+    template <bool FULL>
+    void fillEFaces(Index begin, Index end, Index numBoundaryBefore);
+    template <bool FULL>
+    void fillBoundaryEFace(Index pEdge, Index numBoundaryBefore);
     void fillBoundaries();
-    void fillFaceVerticesOf(Index pFace);
-    void fillRelationsOfFace(Index pFace);
-    void fillRelationsOfVertex(Index pVert);
+    void fillClosedFaces(Index begin, Index end);
+    template <typename SIDE>
+    void fillClosedFace(Index pFace, SIDE getSide, Index numHalfBefore);
+    void fillHexagon(Index pFace, Index first, Index numHalfBefore);
+    void fillOpenFace(Index pFace);
+    template <bool IS_OPEN>
+    void fillCorner(FaceCorner const &corner, VertexOffsets &vertex);
+    void fillClosedVertices(Index begin, Index end, Index numOpenBefore);
+    void fillOpenVertex(Index pVert, Index numOpenBefore);
 
-    bool isBoundary(Index pEdge) const {
-        if constexpr (IS_IRREGULAR) {
-            return _p.IsBoundary(pEdge);
-        }
-        static_cast<void>(pEdge);
-        return false;
+    FaceEdge closedEdge(Index pCorner, EFaceSide const *side) const {
+        return {_p.GetEdgeChildFace(_p.faceEdges[pCorner]), side, false};
     }
-
-    bool isSideA(Index pFace, int size, Index pCorner, Index pEdge) const {
-        if (!_p.parent) {
-            return _p.edgeFaces[2 * std::size_t(pEdge)] == pFace;
-        }
-        if (!_p.parent->ChildIndexing().IsFaceFromEdge(pFace)) {
-            return true;
-        }
-        Index const local = pCorner - _p.faceFirstCorner[pFace];
-        return size == HexIndexing::kNumEFaceCorners ? kEFaceCornerIsSideA[local]
-                                                     : kBoundaryEFaceCornerIsSideA[local];
-    }
-
     // The edge from a corner to the next, seen from the face.
-    FaceEdge edgeFrom(Index pFace, int size, Index pCorner) const {
+    FaceEdge edgeFrom(Index pFace, Index pCorner) const {
         Index const pEdge = _p.faceEdges[pCorner];
-        if constexpr (IS_IRREGULAR) {
-            Index const eFace = _p.GetEdgeChildFace(pEdge);
-            Index const first = eFace < 0 ? Far::INDEX_INVALID : _c.faceFirstCorner[eFace];
-            if (isBoundary(pEdge)) {
-                return {eFace, first, &kBoundaryEFaceSide, true};
-            }
-            return {eFace, first,
-                    isSideA(pFace, size, pCorner, pEdge) ? &kEFaceSideA : &kEFaceSideB, false};
+        if (_p.IsBoundary(pEdge)) {
+            return {_p.GetEdgeChildFace(pEdge), &kBoundaryEFaceSide, true};
         }
-        return {_indexing.GetEdgeChildFace(pEdge, 0),
-                _indexing.GetEdgeChildFirstCorner(pEdge, 0, 0),
-                isSideA(pFace, size, pCorner, pEdge) ? &kEFaceSideA : &kEFaceSideB, false};
+        bool const isSideA = _p.edgeFaces[2 * std::size_t(pEdge)] == pFace;
+        return closedEdge(pCorner, isSideA ? &kEFaceSideA : &kEFaceSideB);
     }
-
-    // Calls function(inEdge, outEdge, prev, pCorner, next) for all corners of a face.
-    template <typename FUNCTION>
-    void forEachCorner(Index pFace, FUNCTION function) const {
+    FaceCorner cornerOf(Index pFace, LocalIndex local) const {
         Index const first = _p.faceFirstCorner[pFace];
         Index const last = _p.faceFirstCorner[pFace + 1] - 1;
-        int const size = last - first + 1;
-        FaceEdge inEdge = edgeFrom(pFace, size, last);
-        Index prev = last;
-        for (Index pCorner = first; pCorner <= last; ++pCorner) {
-            FaceEdge const outEdge = edgeFrom(pFace, size, pCorner);
-            function(inEdge, outEdge, prev, pCorner, pCorner == last ? first : pCorner + 1);
-            inEdge = outEdge;
-            prev = pCorner;
-        }
+        Index const corner = first + local;
+        Index const prev = corner == first ? last : corner - 1;
+        Index const next = corner == last ? first : corner + 1;
+        return {pFace, local, prev, corner, next, edgeFrom(pFace, prev), edgeFrom(pFace, corner)};
+    }
+    Index numHalfFacesBefore(Index pFace) const {
+        return Index(std::lower_bound(_p.halfFaces.begin(), _p.halfFaces.end(), pFace) -
+                     _p.halfFaces.begin());
     }
 
-    // The edges of a face that end and start at a corner.
-    std::pair<FaceEdge, FaceEdge> edgesAt(Index pFace, Index pCorner) const {
-        Index const first = _p.faceFirstCorner[pFace];
-        Index const last = _p.faceFirstCorner[pFace + 1] - 1;
-        int const size = last - first + 1;
-        return {edgeFrom(pFace, size, pCorner == first ? last : pCorner - 1),
-                edgeFrom(pFace, size, pCorner)};
+    // A V-vertex has as many faces and edges as its parent, unless that is open.
+    VertexOffsets vVertexOffsets(Index pVert, Index numOpenBefore) const {
+        VertexOffsets const &shift = _vVertexShifts[numOpenBefore];
+        return {_p.vertFirstFace[pVert] + shift.face, _p.vertFirstEdge[pVert] + shift.edge};
     }
-
-    // Calls function(pEdge, rank) for the boundary edges that make an E-face.
-    template <typename FUNCTION>
-    void forEachBoundaryEFace(FUNCTION function) const {
-        Index rank = 0;
-        for (Index pEdge : _p.boundaryEdges) {
-            if (!_p.IsSharpBoundaryB(pEdge)) {
-                function(pEdge, rank++);
-            }
-        }
+    // F-vertices have three faces and edges, but for two in each half face that have two faces.
+    VertexOffsets fVertexOffsets(Index pCorner, Index numHalfBefore) const {
+        Index const numHalfFaces = Index(_p.halfFaces.size());
+        Index const numRemaining = 3 * (_p.numCorners - pCorner);
+        return {_c.numCorners - numRemaining + 2 * (numHalfFaces - numHalfBefore),
+                2 * _c.numEdges - numRemaining};
     }
 
     void setEdge(Index cEdge, Index vert0, Index vert1, Index face0, Index face1, LocalIndex local0,
@@ -159,240 +180,323 @@ private:
                          LocalIndex local) {
         setEdge(cEdge, vert0, vert1, face, kind, local, 0);
     }
+    void addVertexEdge(VertexOffsets &vertex, Index cEdge, LocalIndex local) {
+        _c.vertEdges[vertex.edge] = cEdge;
+        _c.vertEdgeLocals[vertex.edge++] = local;
+    }
+    void addVertexFace(VertexOffsets &vertex, Index cFace, LocalIndex local) {
+        _c.vertFaces[vertex.face] = cFace;
+        _c.vertFaceLocals[vertex.face++] = local;
+    }
 
     LevelTopology const &_p;
     LevelTopology &_c;
     HexIndexing const _indexing;
+
+    std::vector<Index> _openFaces; // have a boundary edge
+    std::vector<Index> _openVerts; // on a boundary, or non-manifold
+    // How far the offsets of V-vertices lie behind those of their parents, when n of the open
+    // vertices come before.
+    std::vector<VertexOffsets> _vVertexShifts;
 };
 
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillFaceOffsets() {
-    _c.faceFirstCorner.Resize(std::size_t(_c.numFaces) + 1);
+void Refinement::listOpenFaces() {
+    for (Index pEdge : _p.boundaryEdges) {
+        _openFaces.push_back(_p.edgeFaces[2 * std::size_t(pEdge)]);
+    }
+    sortUnique(_openFaces);
+}
+
+// Where a fan of faces ends in a boundary edge with an E-face, its V-vertex has the E-face's
+// boundary edge besides the spokes, and as many faces as there are E-faces.
+void Refinement::listOpenVertices() {
+    _openVerts = _p.nonManifoldVerts;
+    for (Index pEdge : _p.boundaryEdges) {
+        std::size_t const k = 2 * std::size_t(pEdge);
+        _openVerts.insert(_openVerts.end(), {_p.edgeVerts[k], _p.edgeVerts[k + 1]});
+    }
+    sortUnique(_openVerts);
+    VertexOffsets shift = {0, 0};
+    _vVertexShifts.reserve(_openVerts.size() + 1);
+    _vVertexShifts.push_back(shift);
+    for (Index pVert : _openVerts) {
+        Index const begin = _p.vertFirstFace[pVert];
+        Index const end = _p.vertFirstFace[pVert + 1];
+        Index numFaces = 0;
+        Index numEdges = end - begin;
+        for (Index i = begin; i < end; ++i) {
+            FaceCorner const corner = cornerOf(_p.vertFaces[i], _p.vertFaceLocals[i]);
+            bool const startsFan = corner.outEdge.isBoundary && corner.outEdge.HasEFace();
+            bool const endsFan = corner.inEdge.isBoundary && corner.inEdge.HasEFace();
+            numFaces += Index(corner.inEdge.HasEFace()) + Index(startsFan);
+            numEdges += Index(startsFan) + Index(endsFan);
+        }
+        shift.face += numFaces - (end - begin);
+        shift.edge += numEdges - (_p.vertFirstEdge[pVert + 1] - _p.vertFirstEdge[pVert]);
+        _vVertexShifts.push_back(shift);
+    }
+}
+
+// Face-vertices, and face-edges for FULL: the F-faces repeat the parent's faces with corners for
+// vertices and edges, then come the E-faces.
+template <bool FULL>
+void Refinement::fillFaces() {
     ParallelFor(_p.numFaces, [this](Index pFace) {
         _c.faceFirstCorner[_indexing.GetFaceChildFace(pFace)] =
             _indexing.GetFaceChildFirstCorner(_p.faceFirstCorner[pFace]);
     });
-    if constexpr (IS_IRREGULAR) {
-        Index numBBefore = 0;
-        Index numBoundaryBefore = 0;
-        for (Index pEdge = 0; pEdge < _p.numEdges; ++pEdge) {
-            if (_p.IsSharpBoundaryB(pEdge)) {
-                ++numBBefore;
-                continue;
-            }
-            _c.faceFirstCorner[_indexing.GetEdgeChildFace(pEdge, numBBefore)] =
-                _indexing.GetEdgeChildFirstCorner(pEdge, numBBefore, numBoundaryBefore);
-            numBoundaryBefore += isBoundary(pEdge);
+    ParallelFor(_p.numCorners, [this](Index pCorner) {
+        Index const cCorner = _indexing.GetFaceChildFirstCorner(pCorner);
+        _c.faceVerts[cCorner] = _indexing.GetCornerChildVertex(pCorner);
+        if constexpr (FULL) {
+            _c.faceEdges[cCorner] = _indexing.GetCornerChildEdge(pCorner);
         }
-    } else {
-        ParallelFor(_p.numEdges, [this](Index pEdge) {
-            _c.faceFirstCorner[_indexing.GetEdgeChildFace(pEdge, 0)] =
-                _indexing.GetEdgeChildFirstCorner(pEdge, 0, 0);
-        });
-    }
+    });
+    ParallelForRange(_p.numEdges, [this](Index begin, Index end) {
+        forEachRun(
+            begin, end, _p.boundaryEdges,
+            [this](Index runBegin, Index runEnd, Index numBoundaryBefore) {
+                fillEFaces<FULL>(runBegin, runEnd, numBoundaryBefore);
+            },
+            [this](Index pEdge, Index numBoundaryBefore) {
+                fillBoundaryEFace<FULL>(pEdge, numBoundaryBefore);
+            });
+    });
     _c.faceFirstCorner[_c.numFaces] = _c.numCorners;
 }
 
-// Every corner writes its own corner of the F-face and its own side of its edge's E-face; that of
-// a boundary edge has no other side, so its end vertex is written as well.
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillFaceVerticesOf(Index pFace) {
-    forEachCorner(
-        pFace, [this](FaceEdge const &, FaceEdge const &edge, Index, Index pCorner, Index next) {
-            Index const fVertex = _indexing.GetCornerChildVertex(pCorner);
-            _c.faceVerts[_indexing.GetFaceChildFirstCorner(pCorner)] = fVertex;
-            if (IS_IRREGULAR && !edge.HasEFace()) {
-                return;
+// The E-faces of a run of interior edges.
+template <bool FULL>
+void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
+    HexIndexing const indexing = _indexing;
+    Index cFace = _p.GetEdgeChildFace(begin);
+    Index const numBBefore = indexing.GetEdgeChildFace(begin, 0) - cFace;
+    Index cFirst =
+        indexing.GetEdgeChildFirstCorner(begin, numBBefore, numBoundaryBefore - numBBefore);
+    for (Index pEdge = begin; pEdge < end; ++pEdge) {
+        _c.faceFirstCorner[cFace++] = cFirst;
+        for (int i = 0; i < 2; ++i) {
+            std::size_t const k = 2 * std::size_t(pEdge) + i;
+            EFaceSide const &side = i == 0 ? kEFaceSideA : kEFaceSideB;
+            Index const pFace = _p.edgeFaces[k];
+            Index const pFirst = _p.faceFirstCorner[pFace];
+            Index const pCorner = pFirst + _p.edgeFaceLocals[k];
+            Index const pNext = pCorner + 1 == _p.faceFirstCorner[pFace + 1] ? pFirst : pCorner + 1;
+            Index *const verts = _c.faceVerts.data() + cFirst;
+            verts[side.startVertex] = indexing.GetVertexChildVertex(_p.edgeVerts[k]);
+            verts[side.startFVertex] = indexing.GetCornerChildVertex(pCorner);
+            verts[side.endFVertex] = indexing.GetCornerChildVertex(pNext);
+            if constexpr (FULL) {
+                Index *const edges = _c.faceEdges.data() + cFirst;
+                edges[side.fFaceEdge] = indexing.GetCornerChildEdge(pCorner);
+                edges[side.startSpoke] = indexing.GetCornerChildSpoke(pCorner);
+                edges[side.endSpoke] = indexing.GetCornerChildSpoke(pNext);
             }
-            Index *verts = _c.faceVerts.data() + edge.firstCorner;
-            verts[edge.side->startVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[pCorner]);
-            verts[edge.side->startFVertex] = fVertex;
-            verts[edge.side->endFVertex] = _indexing.GetCornerChildVertex(next);
-            if (IS_IRREGULAR && edge.isBoundary) {
-                verts[edge.side->endVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[next]);
-            }
-        });
+        }
+        cFirst += HexIndexing::kNumEFaceCorners;
+    }
 }
 
-// What the corners of a face make: their part of the face-edges, two edges each, and the relations
-// of their F-vertices.
+// All of the E-face of a boundary edge but its edge that is on the boundary.
+template <bool FULL>
+void Refinement::fillBoundaryEFace(Index pEdge, Index numBoundaryBefore) {
+    Index const cFace = _p.GetEdgeChildFace(pEdge);
+    if (cFace == Far::INDEX_INVALID) {
+        return;
+    }
+    EFaceSide const &side = kBoundaryEFaceSide;
+    std::size_t const k = 2 * std::size_t(pEdge);
+    Index const numBBefore = _indexing.GetEdgeChildFace(pEdge, 0) - cFace;
+    Index const cFirst =
+        _indexing.GetEdgeChildFirstCorner(pEdge, numBBefore, numBoundaryBefore - numBBefore);
+    FaceCorner const corner = cornerOf(_p.edgeFaces[k], _p.edgeFaceLocals[k]);
+    _c.faceFirstCorner[cFace] = cFirst;
+    Index *const verts = _c.faceVerts.data() + cFirst;
+    verts[side.startVertex] = _indexing.GetVertexChildVertex(_p.edgeVerts[k]);
+    verts[side.endVertex] = _indexing.GetVertexChildVertex(_p.edgeVerts[k + 1]);
+    verts[side.endFVertex] = _indexing.GetCornerChildVertex(corner.next);
+    verts[side.startFVertex] = _indexing.GetCornerChildVertex(corner.corner);
+    if constexpr (FULL) {
+        Index *const edges = _c.faceEdges.data() + cFirst;
+        edges[side.endSpoke] = _indexing.GetCornerChildSpoke(corner.next);
+        edges[side.fFaceEdge] = _indexing.GetCornerChildEdge(corner.corner);
+        edges[side.startSpoke] = _indexing.GetCornerChildSpoke(corner.corner);
+    }
+}
+
+// What a corner makes: the edge of the F-face and the spoke, and the relations of its F-vertex.
+// IS_OPEN is for faces with boundary edges.
 //
 // An edge whose E-face is missing is a boundary: the edge of the F-face is a B edge then, and the
 // spokes at its ends are A edges, each directed as its one face runs; the F-vertices at its ends
 // have two faces, others have three.
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillRelationsOfFace(Index pFace) {
-    Index const cFace = _indexing.GetFaceChildFace(pFace);
-    Index const first = _p.faceFirstCorner[pFace];
-    std::size_t face = _c.vertFirstFace[_indexing.GetCornerChildVertex(first)];
-    std::size_t edge = _c.vertFirstEdge[_indexing.GetCornerChildVertex(first)];
-    forEachCorner(pFace, [&](FaceEdge const &inEdge, FaceEdge const &outEdge, Index prev,
-                             Index pCorner, Index next) {
-        Index const vVertex = _indexing.GetVertexChildVertex(_p.faceVerts[pCorner]);
-        Index const fVertex = _indexing.GetCornerChildVertex(pCorner);
-        Index const nextFVertex = _indexing.GetCornerChildVertex(next);
-        Index const fEdge = _indexing.GetCornerChildEdge(pCorner);
-        Index const prevFEdge = _indexing.GetCornerChildEdge(prev);
-        Index const spoke = _indexing.GetCornerChildSpoke(pCorner);
-        LocalIndex const local = LocalIndex(pCorner - first);
-        bool const hasOut = !IS_IRREGULAR || outEdge.HasEFace();
-        bool const hasIn = !IS_IRREGULAR || inEdge.HasEFace();
+template <bool IS_OPEN>
+void Refinement::fillCorner(FaceCorner const &corner, VertexOffsets &vertex) {
+    Index const cFace = _indexing.GetFaceChildFace(corner.face);
+    Index const vVertex = _indexing.GetVertexChildVertex(_p.faceVerts[corner.corner]);
+    Index const fVertex = _indexing.GetCornerChildVertex(corner.corner);
+    Index const nextFVertex = _indexing.GetCornerChildVertex(corner.next);
+    Index const fEdge = _indexing.GetCornerChildEdge(corner.corner);
+    Index const prevFEdge = _indexing.GetCornerChildEdge(corner.prev);
+    Index const spoke = _indexing.GetCornerChildSpoke(corner.corner);
+    FaceEdge const &in = corner.inEdge;
+    FaceEdge const &out = corner.outEdge;
+    bool const hasIn = !IS_OPEN || in.HasEFace();
+    bool const hasOut = !IS_OPEN || out.HasEFace();
 
-        _c.faceEdges[_indexing.GetFaceChildFirstCorner(pCorner)] = fEdge;
-        if (hasOut) {
-            Index *edges = _c.faceEdges.data() + outEdge.firstCorner;
-            edges[outEdge.side->fFaceEdge] = fEdge;
-            edges[outEdge.side->startSpoke] = spoke;
-            edges[outEdge.side->endSpoke] = _indexing.GetCornerChildSpoke(next);
-        }
-
-        if (!hasOut) {
-            setBoundaryEdge(fEdge, fVertex, nextFVertex, cFace, kSharpBoundaryB, local);
-            setBoundaryEdge(spoke, vVertex, fVertex, inEdge.eFace, kSharpBoundaryA,
-                            inEdge.side->endSpoke);
-        } else {
-            setEdge(fEdge, fVertex, nextFVertex, cFace, outEdge.eFace, local,
-                    outEdge.side->fFaceEdge);
-            if (!hasIn) {
-                setBoundaryEdge(spoke, fVertex, vVertex, outEdge.eFace, kSharpBoundaryA,
-                                outEdge.side->startSpoke);
-            } else {
-                // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
-                setEdge(spoke, vVertex, fVertex, inEdge.eFace, outEdge.eFace, inEdge.side->endSpoke,
-                        outEdge.side->startSpoke);
-            }
-        }
-
-        _c.vertFirstFace[fVertex] = Index(face);
-        _c.vertFirstEdge[fVertex] = Index(edge);
-        auto addFace = [&](Index vertFace, LocalIndex vertLocal) {
-            _c.vertFaces[face] = vertFace;
-            _c.vertFaceLocals[face++] = vertLocal;
-        };
-        auto addEdge = [&](Index vertEdge, LocalIndex vertLocal) {
-            _c.vertEdges[edge] = vertEdge;
-            _c.vertEdgeLocals[edge++] = vertLocal;
-        };
+    if (!hasOut) {
+        setBoundaryEdge(fEdge, fVertex, nextFVertex, cFace, kSharpBoundaryB, corner.local);
+        setBoundaryEdge(spoke, vVertex, fVertex, in.eFace, kSharpBoundaryA, in.side->endSpoke);
+    } else {
+        setEdge(fEdge, fVertex, nextFVertex, cFace, out.eFace, corner.local, out.side->fFaceEdge);
         if (!hasIn) {
-            // The way around begins behind the missing face.
-            addEdge(spoke, 0);
-            addFace(outEdge.eFace, outEdge.side->startFVertex);
+            setBoundaryEdge(spoke, fVertex, vVertex, out.eFace, kSharpBoundaryA,
+                            out.side->startSpoke);
+        } else {
+            // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
+            setEdge(spoke, vVertex, fVertex, in.eFace, out.eFace, in.side->endSpoke,
+                    out.side->startSpoke);
         }
-        addEdge(fEdge, 0);
-        addFace(cFace, local);
-        addEdge(prevFEdge, 1);
-        if (hasIn) {
-            addFace(inEdge.eFace, inEdge.side->endFVertex);
-            addEdge(spoke, 1);
-            if (hasOut) {
-                addFace(outEdge.eFace, outEdge.side->startFVertex);
-            }
+    }
+
+    _c.vertFirstFace[fVertex] = vertex.face;
+    _c.vertFirstEdge[fVertex] = vertex.edge;
+    if (!hasIn) {
+        // The way around begins behind the missing face.
+        addVertexEdge(vertex, spoke, 0);
+        addVertexFace(vertex, out.eFace, out.side->startFVertex);
+    }
+    addVertexEdge(vertex, fEdge, 0);
+    addVertexFace(vertex, cFace, corner.local);
+    addVertexEdge(vertex, prevFEdge, 1);
+    if (hasIn) {
+        addVertexFace(vertex, in.eFace, in.side->endFVertex);
+        addVertexEdge(vertex, spoke, 1);
+        if (hasOut) {
+            addVertexFace(vertex, out.eFace, out.side->startFVertex);
         }
-    });
+    }
+}
+
+void Refinement::fillOpenFace(Index pFace) {
+    Index const first = _p.faceFirstCorner[pFace];
+    Index const size = _p.faceFirstCorner[pFace + 1] - first;
+    VertexOffsets vertex = fVertexOffsets(first, numHalfFacesBefore(pFace));
+    for (Index local = 0; local < size; ++local) {
+        fillCorner<true>(cornerOf(pFace, LocalIndex(local)), vertex);
+    }
+}
+
+// A run of faces without boundary edges.
+void Refinement::fillClosedFaces(Index begin, Index end) {
+    // None of them is a half face.
+    Index const numHalfBefore = numHalfFacesBefore(begin);
+    if (!_p.isHexagonal) {
+        for (Index pFace = begin; pFace < end; ++pFace) {
+            auto const getSide = [&](Index pCorner) {
+                return edgeFrom(pFace, pCorner).side;
+            };
+            fillClosedFace(pFace, getSide, numHalfBefore);
+        }
+        return;
+    }
+    // The first faces are F-faces, which are side A of all their edges; then come hexagons.
+    Index const endFFaces = std::max(begin, std::min(end, _p.parent->numFaces));
+    for (Index pFace = begin; pFace < endFFaces; ++pFace) {
+        fillClosedFace(
+            pFace, [](Index) { return &kEFaceSideA; }, numHalfBefore);
+    }
+    Index first = _p.faceFirstCorner[endFFaces];
+    for (Index pFace = endFFaces; pFace < end; ++pFace) {
+        fillHexagon(pFace, first, numHalfBefore);
+        first += HexIndexing::kNumEFaceCorners;
+    }
+}
+
+template <typename SIDE>
+void Refinement::fillClosedFace(Index pFace, SIDE getSide, Index numHalfBefore) {
+    Index const first = _p.faceFirstCorner[pFace];
+    Index const last = _p.faceFirstCorner[pFace + 1] - 1;
+    VertexOffsets vertex = fVertexOffsets(first, numHalfBefore);
+    FaceCorner corner = {pFace, 0, last, first, first + 1, closedEdge(last, getSide(last)), {}};
+    for (; corner.corner <= last; ++corner.corner, ++corner.local) {
+        corner.next = corner.corner == last ? first : corner.corner + 1;
+        corner.outEdge = closedEdge(corner.corner, getSide(corner.corner));
+        fillCorner<false>(corner, vertex);
+        corner.prev = corner.corner;
+        corner.inEdge = corner.outEdge;
+    }
+}
+
+// A hexagon that is an E-face of the parent: all but its vertices and edges is constant.
+void Refinement::fillHexagon(Index pFace, Index first, Index numHalfBefore) {
+    constexpr int kSize = HexIndexing::kNumEFaceCorners;
+    VertexOffsets vertex = fVertexOffsets(first, numHalfBefore);
+    for (int local = 0; local < kSize; ++local) {
+        int const prev = (local + kSize - 1) % kSize;
+        int const next = (local + 1) % kSize;
+        fillCorner<false>({pFace, LocalIndex(local), first + prev, first + local, first + next,
+                           closedEdge(first + prev, kSidesOfEFace[prev]),
+                           closedEdge(first + local, kSidesOfEFace[local])},
+                          vertex);
+    }
 }
 
 // Around a V-vertex the spokes take the place of the parent's faces and the E-faces that of its
-// edges.  Where a fan of faces ends in a boundary edge with an E-face, that one's boundary edge
-// comes first or last.
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillRelationsOfVertex(Index pVert) {
-    Index const cVert = _indexing.GetVertexChildVertex(pVert);
-    std::size_t face = _c.vertFirstFace[cVert];
-    std::size_t edge = _c.vertFirstEdge[cVert];
-    auto addEdge = [&](Index cEdge, LocalIndex local) {
-        _c.vertEdges[edge] = cEdge;
-        _c.vertEdgeLocals[edge++] = local;
-    };
-    auto addFace = [&](Index cFace, LocalIndex local) {
-        _c.vertFaces[face] = cFace;
-        _c.vertFaceLocals[face++] = local;
-    };
-    Index const begin = _p.vertFirstFace[pVert];
-    Index const end = _p.vertFirstFace[pVert + 1];
-    for (Index i = begin; i < end; ++i) {
-        Index const pFace = _p.vertFaces[i];
-        Index const pCorner = _p.faceFirstCorner[pFace] + _p.vertFaceLocals[i];
-        Index const spoke = _indexing.GetCornerChildSpoke(pCorner);
-        if constexpr (IS_IRREGULAR) {
-            auto const [inEdge, outEdge] = edgesAt(pFace, pCorner);
-            if (outEdge.isBoundary && outEdge.HasEFace()) {
-                addEdge(_c.faceEdges[outEdge.firstCorner + kBoundaryEFaceEdge], 0);
-                addFace(outEdge.eFace, outEdge.side->startVertex);
-            }
-            addEdge(spoke, inEdge.HasEFace() ? 0 : 1);
-            if (inEdge.HasEFace()) {
-                addFace(inEdge.eFace, inEdge.side->endVertex);
-                if (inEdge.isBoundary) {
-                    addEdge(_c.faceEdges[inEdge.firstCorner + kBoundaryEFaceEdge], 1);
-                }
-            }
-        } else {
+// edges.
+void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore) {
+    VertexOffsets vertex = vVertexOffsets(begin, numOpenBefore);
+    for (Index pVert = begin; pVert < end; ++pVert) {
+        Index const cVert = _indexing.GetVertexChildVertex(pVert);
+        Index const firstFace = _p.vertFirstFace[pVert];
+        Index const firstEdge = _p.vertFirstEdge[pVert];
+        Index const size = _p.vertFirstFace[pVert + 1] - firstFace;
+        _c.vertFirstFace[cVert] = vertex.face;
+        _c.vertFirstEdge[cVert] = vertex.edge;
+        for (Index i = 0; i < size; ++i) {
+            Index const pCorner = _p.faceFirstCorner[_p.vertFaces[firstFace + i]] +
+                                  _p.vertFaceLocals[firstFace + i];
             // The edge behind the face comes next in the vertex's own list.
-            Index const k = _p.vertFirstEdge[pVert] + (i + 1 == end ? 0 : i + 1 - begin);
-            addEdge(spoke, 0);
-            addFace(_indexing.GetEdgeChildFace(_p.vertEdges[k], 0),
-                    _p.vertEdgeLocals[k] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex);
+            Index const k = firstEdge + (i + 1 == size ? 0 : i + 1);
+            addVertexEdge(vertex, _indexing.GetCornerChildSpoke(pCorner), 0);
+            addVertexFace(vertex, _p.GetEdgeChildFace(_p.vertEdges[k]),
+                          _p.vertEdgeLocals[k] == 0 ? kEFaceSideA.startVertex
+                                                    : kEFaceSideA.endVertex);
         }
     }
 }
 
-// Where the faces and edges of each vertex begin: those of V-vertices, and of each parent face's
-// first F-vertex; the others follow from it.
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillVertexOffsets() {
-    Index numFaces = 0;
-    Index numEdges = 0;
-    if constexpr (IS_IRREGULAR) {
-        for (Index pVert = 0; pVert < _p.numVertices; ++pVert) {
-            Index const cVert = _indexing.GetVertexChildVertex(pVert);
-            _c.vertFirstFace[cVert] = numFaces;
-            _c.vertFirstEdge[cVert] = numEdges;
-            for (Index i = _p.vertFirstFace[pVert]; i < _p.vertFirstFace[pVert + 1]; ++i) {
-                Index const pFace = _p.vertFaces[i];
-                auto const [inEdge, outEdge] =
-                    edgesAt(pFace, _p.faceFirstCorner[pFace] + _p.vertFaceLocals[i]);
-                bool const startsFan = outEdge.isBoundary && outEdge.HasEFace();
-                bool const endsFan = inEdge.isBoundary && inEdge.HasEFace();
-                numFaces += Index(inEdge.HasEFace()) + Index(startsFan);
-                numEdges += 1 + Index(startsFan) + Index(endsFan);
+// Where a fan of faces ends in a boundary edge with an E-face, that one's boundary edge comes first
+// or last.
+void Refinement::fillOpenVertex(Index pVert, Index numOpenBefore) {
+    VertexOffsets vertex = vVertexOffsets(pVert, numOpenBefore);
+    Index const cVert = _indexing.GetVertexChildVertex(pVert);
+    _c.vertFirstFace[cVert] = vertex.face;
+    _c.vertFirstEdge[cVert] = vertex.edge;
+    auto const boundaryEdgeOf = [this](Index eFace) {
+        return _c.faceEdges[_c.faceFirstCorner[eFace] + kBoundaryEFaceEdge];
+    };
+    for (Index i = _p.vertFirstFace[pVert]; i < _p.vertFirstFace[pVert + 1]; ++i) {
+        FaceCorner const corner = cornerOf(_p.vertFaces[i], _p.vertFaceLocals[i]);
+        FaceEdge const &in = corner.inEdge;
+        FaceEdge const &out = corner.outEdge;
+        if (out.isBoundary && out.HasEFace()) {
+            addVertexEdge(vertex, boundaryEdgeOf(out.eFace), 0);
+            addVertexFace(vertex, out.eFace, out.side->startVertex);
+        }
+        addVertexEdge(vertex, _indexing.GetCornerChildSpoke(corner.corner), in.HasEFace() ? 0 : 1);
+        if (in.HasEFace()) {
+            addVertexFace(vertex, in.eFace, in.side->endVertex);
+            if (in.isBoundary) {
+                addVertexEdge(vertex, boundaryEdgeOf(in.eFace), 1);
             }
         }
-        std::size_t half = 0;
-        for (Index pFace = 0; pFace < _p.numFaces; ++pFace) {
-            Index const first = _p.faceFirstCorner[pFace];
-            Index const size = _p.faceFirstCorner[pFace + 1] - first;
-            Index const fVertex = _indexing.GetCornerChildVertex(first);
-            bool const isHalf = half < _p.halfFaces.size() && _p.halfFaces[half] == pFace;
-            half += isHalf;
-            _c.vertFirstFace[fVertex] = numFaces;
-            _c.vertFirstEdge[fVertex] = numEdges;
-            numFaces += 3 * size - (isHalf ? 2 : 0);
-            numEdges += 3 * size;
-        }
-    } else {
-        // A V-vertex has as many faces and edges as its parent, which come to numCorners in all.
-        ParallelFor(_p.numVertices, [this](Index pVert) {
-            Index const cVert = _indexing.GetVertexChildVertex(pVert);
-            _c.vertFirstFace[cVert] = _p.vertFirstFace[pVert];
-            _c.vertFirstEdge[cVert] = _p.vertFirstEdge[pVert];
-        });
-        ParallelFor(_p.numFaces, [this](Index pFace) {
-            Index const first = _p.faceFirstCorner[pFace];
-            Index const fVertex = _indexing.GetCornerChildVertex(first);
-            _c.vertFirstFace[fVertex] = _p.numCorners + 3 * first;
-            _c.vertFirstEdge[fVertex] = _p.numCorners + 3 * first;
-        });
     }
-    _c.vertFirstFace[_c.numVertices] = _c.numCorners;
-    _c.vertFirstEdge[_c.numVertices] = 2 * _c.numEdges;
 }
 
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillBoundaries() {
+// The edges on the boundary, and the half faces.
+void Refinement::fillBoundaries() {
     std::size_t const numHalfFaces = _p.halfFaces.size();
-    std::size_t const numBoundaryEFaces = _p.boundaryEdges.size() - numHalfFaces;
-    _c.boundaryEdges.Resize(3 * numHalfFaces + numBoundaryEFaces);
-    _c.halfFaces.Resize(numHalfFaces + std::size_t(_p.numSharpBoundariesA));
     Index *bEdges = _c.boundaryEdges.data();
     Index *spokes = bEdges + numHalfFaces;
     for (std::size_t i = 0; i < numHalfFaces; ++i) {
@@ -405,12 +509,16 @@ void Refinement<IS_IRREGULAR>::fillBoundaries() {
     }
     Index *boundaryChildren = spokes + 2 * numHalfFaces;
     Index *halfEFaces = _c.halfFaces.data() + numHalfFaces;
-    forEachBoundaryEFace([&](Index pEdge, Index rank) {
+    Index rank = 0;
+    for (Index pEdge : _p.boundaryEdges) {
+        if (_p.IsSharpBoundaryB(pEdge)) {
+            continue;
+        }
         std::size_t const k = 2 * std::size_t(pEdge);
         Index const eFace = _p.GetEdgeChildFace(pEdge);
         Index const cEdge = _indexing.GetBoundaryChildEdge(rank);
         bool const isFree = _p.edgeFaces[k + 1] == kFreeBoundary;
-        boundaryChildren[rank] = cEdge;
+        boundaryChildren[rank++] = cEdge;
         if (!isFree) {
             *halfEFaces++ = eFace;
         }
@@ -418,47 +526,68 @@ void Refinement<IS_IRREGULAR>::fillBoundaries() {
         setBoundaryEdge(cEdge, _indexing.GetVertexChildVertex(_p.edgeVerts[k]),
                         _indexing.GetVertexChildVertex(_p.edgeVerts[k + 1]), eFace,
                         isFree ? kFreeBoundary : kSharpBoundaryB, kBoundaryEFaceEdge);
-    });
+    }
 }
 
-template <bool IS_IRREGULAR>
-void fillLevel(LevelTopology const &parent, bool fullTopology, LevelTopology &child) {
-    Refinement<IS_IRREGULAR> refinement(parent, child);
-    refinement.FillFaceVertices();
-    if (fullTopology) {
-        refinement.FillRelations();
-    }
+// Gives all arrays of the child and the relations of the parent to it a place.
+void placeArrays(LevelTopology &parent, LevelTopology &child) {
+    PlaceArrays(child.memory, [&](auto place) {
+        place(parent.faceChildFaces, parent.numFaces);
+        place(parent.edgeChildFaces, parent.halfFaces.empty() ? 0 : parent.numEdges);
+        place(child.faceFirstCorner, std::size_t(child.numFaces) + 1);
+        place(child.faceVerts, child.numCorners);
+        // Arrays that are not wanted get no place.
+        auto const placeRelation = [&](auto &array, std::size_t size) {
+            place(array, child.hasFullTopology ? size : 0);
+        };
+        std::size_t const numSharpBoundaries =
+            std::size_t(child.numSharpBoundariesA) + child.numSharpBoundariesB;
+        placeRelation(child.faceEdges, child.numCorners);
+        placeRelation(child.edgeVerts, 2 * std::size_t(child.numEdges));
+        placeRelation(child.edgeFaces, 2 * std::size_t(child.numEdges));
+        placeRelation(child.edgeFaceLocals, 2 * std::size_t(child.numEdges));
+        placeRelation(child.boundaryEdges, child.numFreeBoundaries + numSharpBoundaries);
+        placeRelation(child.halfFaces, child.numSharpBoundariesB);
+        placeRelation(child.vertFirstFace, std::size_t(child.numVertices) + 1);
+        placeRelation(child.vertFaces, child.numCorners);
+        placeRelation(child.vertFaceLocals, child.numCorners);
+        placeRelation(child.vertFirstEdge, std::size_t(child.numVertices) + 1);
+        placeRelation(child.vertEdges, 2 * std::size_t(child.numEdges));
+        placeRelation(child.vertEdgeLocals, 2 * std::size_t(child.numEdges));
+    });
 }
 
 // The relations that only a refined level has: to its children.
 void fillChildRelations(LevelTopology &parent) {
     HexIndexing const indexing = parent.ChildIndexing();
-    parent.faceChildFaces.Resize(parent.numFaces);
     ParallelFor(parent.numFaces, [&](Index pFace) {
         parent.faceChildFaces[pFace] = indexing.GetFaceChildFace(pFace);
     });
-    parent.edgeChildFaces.Resize(parent.halfFaces.empty() ? 0 : parent.numEdges);
-    Index numBBefore = 0;
-    for (std::size_t pEdge = 0; pEdge < parent.edgeChildFaces.size(); ++pEdge) {
-        bool const isB = parent.IsSharpBoundaryB(Index(pEdge));
-        parent.edgeChildFaces[pEdge] =
-            isB ? Far::INDEX_INVALID : indexing.GetEdgeChildFace(Index(pEdge), numBBefore);
-        numBBefore += isB;
+    if (parent.edgeChildFaces.empty()) {
+        return;
     }
-}
-
-void clearRelations(LevelTopology &level) {
-    for (Buffer<Index> *array : {&level.faceEdges, &level.edgeVerts, &level.edgeFaces,
-                                 &level.boundaryEdges, &level.halfFaces, &level.vertFirstFace,
-                                 &level.vertFaces, &level.vertFirstEdge, &level.vertEdges}) {
-        array->Resize(0);
+    // By the number of boundary edges before.
+    std::vector<Index> numBBefore = {0};
+    numBBefore.reserve(parent.boundaryEdges.size() + 1);
+    for (Index pEdge : parent.boundaryEdges) {
+        numBBefore.push_back(numBBefore.back() + Index(parent.IsSharpBoundaryB(pEdge)));
     }
-    for (Buffer<LocalIndex> *array :
-         {&level.edgeFaceLocals, &level.vertFaceLocals, &level.vertEdgeLocals}) {
-        array->Resize(0);
-    }
-    level.sharpVerts.clear();
-    level.sectorCorners.clear();
+    ParallelForRange(parent.numEdges, [&](Index begin, Index end) {
+        auto const fillRun = [&](Index runBegin, Index runEnd, Index numBoundaryBefore) {
+            for (Index pEdge = runBegin; pEdge < runEnd; ++pEdge) {
+                parent.edgeChildFaces[pEdge] =
+                    indexing.GetEdgeChildFace(pEdge, numBBefore[numBoundaryBefore]);
+            }
+        };
+        forEachRun(begin, end, parent.boundaryEdges, fillRun,
+                   [&](Index pEdge, Index numBoundaryBefore) {
+                       if (parent.IsSharpBoundaryB(pEdge)) {
+                           parent.edgeChildFaces[pEdge] = Far::INDEX_INVALID;
+                       } else {
+                           fillRun(pEdge, pEdge + 1, numBoundaryBefore);
+                       }
+                   });
+    });
 }
 
 } // namespace
@@ -500,19 +629,22 @@ void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTop
     child.numSharpBoundariesB = Index(sizes.sharpBoundariesB);
     child.hasFullTopology = fullTopology;
 
-    fillChildRelations(parent);
+    child.isHexagonal = true;
 
-    if (parent.boundaryEdges.empty() && parent.nonManifoldVerts.empty()) {
-        fillLevel<false>(parent, fullTopology, child);
+    placeArrays(parent, child);
+    fillChildRelations(parent);
+    Refinement refinement(parent, child);
+    if (fullTopology) {
+        refinement.FillAll();
     } else {
-        fillLevel<true>(parent, fullTopology, child);
-    }
-    if (!fullTopology) {
-        clearRelations(child);
+        refinement.FillFaces();
     }
     RefineTags(parent, sdcOptions, child);
     if (fullTopology) {
         ComputeSharpMasks(sdcOptions, child);
+    } else {
+        child.sharpVerts.clear();
+        child.sectorCorners.clear();
     }
     // Last, so that a parent has no child that is only half made.
     parent.child = &child;
