@@ -4,7 +4,7 @@
 #include "parallel.h"
 #include "sharpFeatures.h"
 
-#include <utility>
+#include <type_traits>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -13,10 +13,16 @@ namespace {
 using Index = Far::Index;
 using LocalIndex = Far::LocalIndex;
 
-// The side of its edges that an interior E-face is, by corner; known without a look at the edge, as
-// the hexagonal step always gives the vertices of an edge the same order.
-constexpr EFaceSide const *kSidesOfEFace[HexIndexing::kNumEFaceCorners] = {
-    &kEFaceSideA, &kEFaceSideB, &kEFaceSideB, &kEFaceSideA, &kEFaceSideB, &kEFaceSideB};
+// The sides of its interior edges that a hexagon is, by corner; known without a look at the edges
+// where the hexagonal step made it, as that always gives the vertices of an edge the same order.
+struct SidesOfEFace {
+    static constexpr EFaceSide const *kSides[] = {&kEFaceSideA, &kEFaceSideB, &kEFaceSideB,
+                                                  &kEFaceSideA, &kEFaceSideB, &kEFaceSideB};
+};
+struct SidesOfFFace {
+    static constexpr EFaceSide const *kSides[] = {&kEFaceSideA, &kEFaceSideA, &kEFaceSideA,
+                                                  &kEFaceSideA, &kEFaceSideA, &kEFaceSideA};
+};
 
 // An edge as one of its faces sees it.
 struct FaceEdge {
@@ -43,6 +49,30 @@ struct VertexOffsets {
     Index face;
     Index edge;
 };
+
+// LevelTopology::GetEdgeChildFace for loops.
+class EFaceOfEdge {
+public:
+    explicit EFaceOfEdge(LevelTopology const &level)
+        : _eFaces(level.edgeChildFaces.empty() ? nullptr : level.edgeChildFaces.data()),
+          _indexing(level.ChildIndexing()) {}
+
+    Index operator()(Index edge) const {
+        return _eFaces ? _eFaces[edge] : _indexing.GetEdgeChildFace(edge, 0);
+    }
+
+private:
+    Index const *_eFaces;
+    HexIndexing _indexing;
+};
+
+// Writes first, first + step ...
+template <typename STEP>
+void fillOffsets(Index *offsets, Index first, STEP step, Index count) {
+    for (Index i = 0; i < count; ++i) {
+        offsets[i] = first + step * i;
+    }
+}
 
 void sortUnique(std::vector<Index> &indices) {
     std::sort(indices.begin(), indices.end());
@@ -121,11 +151,13 @@ private:
     void fillClosedFaces(Index begin, Index end);
     template <typename SIDE>
     void fillClosedFace(Index pFace, SIDE getSide, Index numHalfBefore);
-    void fillHexagon(Index pFace, Index first, Index numHalfBefore);
+    template <typename SIDES>
+    void fillHexagons(Index begin, Index end, Index numHalfBefore);
     void fillOpenFace(Index pFace);
     template <bool IS_OPEN>
     void fillCorner(FaceCorner const &corner, VertexOffsets &vertex);
     void fillClosedVertices(Index begin, Index end, Index numOpenBefore);
+    void fillClosedFVertices(Index begin, Index end, Index numOpenBefore);
     void fillOpenVertex(Index pVert, Index numOpenBefore);
 
     FaceEdge closedEdge(Index pCorner, EFaceSide const *side) const {
@@ -389,7 +421,7 @@ void Refinement::fillOpenFace(Index pFace) {
 
 // A run of faces without boundary edges.
 void Refinement::fillClosedFaces(Index begin, Index end) {
-    // None of them is a half face.
+    // The same for all, as none of them is a half face.
     Index const numHalfBefore = numHalfFacesBefore(begin);
     if (!_p.isHexagonal) {
         for (Index pFace = begin; pFace < end; ++pFace) {
@@ -400,17 +432,26 @@ void Refinement::fillClosedFaces(Index begin, Index end) {
         }
         return;
     }
-    // The first faces are F-faces, which are side A of all their edges; then come hexagons.
+    // F-faces come first; then all faces are hexagons.
     Index const endFFaces = std::max(begin, std::min(end, _p.parent->numFaces));
-    for (Index pFace = begin; pFace < endFFaces; ++pFace) {
-        fillClosedFace(
-            pFace, [](Index) { return &kEFaceSideA; }, numHalfBefore);
+    auto const isHexagon = [this](Index pFace) {
+        return _p.faceFirstCorner[pFace + 1] - _p.faceFirstCorner[pFace] ==
+               HexIndexing::kNumEFaceCorners;
+    };
+    for (Index pFace = begin; pFace < endFFaces;) {
+        Index runEnd = pFace;
+        while (runEnd < endFFaces && isHexagon(runEnd)) {
+            ++runEnd;
+        }
+        if (runEnd > pFace) {
+            fillHexagons<SidesOfFFace>(pFace, runEnd, numHalfBefore);
+            pFace = runEnd;
+        } else {
+            fillClosedFace(
+                pFace++, [](Index) { return &kEFaceSideA; }, numHalfBefore);
+        }
     }
-    Index first = _p.faceFirstCorner[endFFaces];
-    for (Index pFace = endFFaces; pFace < end; ++pFace) {
-        fillHexagon(pFace, first, numHalfBefore);
-        first += HexIndexing::kNumEFaceCorners;
-    }
+    fillHexagons<SidesOfEFace>(endFFaces, end, numHalfBefore);
 }
 
 template <typename SIDE>
@@ -428,25 +469,120 @@ void Refinement::fillClosedFace(Index pFace, SIDE getSide, Index numHalfBefore) 
     }
 }
 
-// A hexagon that is an E-face of the parent: all but its vertices and edges is constant.
-void Refinement::fillHexagon(Index pFace, Index first, Index numHalfBefore) {
+// What fillCorner does, for a run of hexagons whose sides of their edges are known.  Most numbers
+// are then constants, or constants behind the first corner's.  One array after the other: so each
+// is written from front to back by a loop that compilers make vectors of.
+template <typename SIDES>
+void Refinement::fillHexagons(Index begin, Index end, Index numHalfBefore) {
     constexpr int kSize = HexIndexing::kNumEFaceCorners;
-    VertexOffsets vertex = fVertexOffsets(first, numHalfBefore);
-    for (int local = 0; local < kSize; ++local) {
-        int const prev = (local + kSize - 1) % kSize;
-        int const next = (local + 1) % kSize;
-        fillCorner<false>({pFace, LocalIndex(local), first + prev, first + local, first + next,
-                           closedEdge(first + prev, kSidesOfEFace[prev]),
-                           closedEdge(first + local, kSidesOfEFace[local])},
-                          vertex);
-    }
+    constexpr auto prev = [](int i) { return (i + kSize - 1) % kSize; };
+    constexpr auto next = [](int i) { return (i + 1) % kSize; };
+    constexpr auto in = [prev](int i) -> EFaceSide const & { return *SIDES::kSides[prev(i)]; };
+    constexpr auto out = [](int i) -> EFaceSide const & { return *SIDES::kSides[i]; };
+
+    // Calls fill(entries, pFace, pFirst) for all hexagons, with their entries in an array that has
+    // kEntries for each corner.
+    Index const pRunFirst = _p.faceFirstCorner[begin];
+    auto const forEachHexagon = [=](auto kEntries, auto *entries, auto fill) {
+        Index pFirst = pRunFirst;
+        for (Index pFace = begin; pFace < end; ++pFace) {
+            fill(entries, pFace, pFirst);
+            entries += kEntries * kSize;
+            pFirst += kSize;
+        }
+    };
+    constexpr std::integral_constant<int, 2> kTwo;
+    constexpr std::integral_constant<int, 3> kThree;
+
+    HexIndexing const indexing = _indexing;
+    Index const *const pVerts = _p.faceVerts.data();
+    Index const *const pEdges = _p.faceEdges.data();
+    EFaceOfEdge const eFaceOf(_p);
+
+    std::size_t const fEdges = 2 * std::size_t(indexing.GetCornerChildEdge(pRunFirst));
+    forEachHexagon(kTwo, &_c.edgeVerts[fEdges], [=](Index *verts, Index, Index pFirst) {
+        Index const fVertex = indexing.GetCornerChildVertex(pFirst);
+        for (int i = 0; i < kSize; ++i) {
+            verts[2 * i] = fVertex + i;
+            verts[2 * i + 1] = fVertex + next(i);
+        }
+    });
+    forEachHexagon(kTwo, &_c.edgeFaces[fEdges], [=](Index *faces, Index pFace, Index pFirst) {
+        for (int i = 0; i < kSize; ++i) {
+            faces[2 * i] = indexing.GetFaceChildFace(pFace);
+            faces[2 * i + 1] = eFaceOf(pEdges[pFirst + i]);
+        }
+    });
+    forEachHexagon(kTwo, &_c.edgeFaceLocals[fEdges], [=](LocalIndex *locals, Index, Index) {
+        for (int i = 0; i < kSize; ++i) {
+            locals[2 * i] = LocalIndex(i);
+            locals[2 * i + 1] = out(i).fFaceEdge;
+        }
+    });
+
+    std::size_t const spokes = 2 * std::size_t(indexing.GetCornerChildSpoke(pRunFirst));
+    forEachHexagon(kTwo, &_c.edgeVerts[spokes], [=](Index *verts, Index, Index pFirst) {
+        for (int i = 0; i < kSize; ++i) {
+            verts[2 * i] = indexing.GetVertexChildVertex(pVerts[pFirst + i]);
+            verts[2 * i + 1] = indexing.GetCornerChildVertex(pFirst + i);
+        }
+    });
+    forEachHexagon(kTwo, &_c.edgeFaces[spokes], [=](Index *faces, Index, Index pFirst) {
+        for (int i = 0; i < kSize; ++i) {
+            faces[2 * i] = eFaceOf(pEdges[pFirst + prev(i)]);
+            faces[2 * i + 1] = eFaceOf(pEdges[pFirst + i]);
+        }
+    });
+    forEachHexagon(kTwo, &_c.edgeFaceLocals[spokes], [=](LocalIndex *locals, Index, Index) {
+        for (int i = 0; i < kSize; ++i) {
+            locals[2 * i] = in(i).endSpoke;
+            locals[2 * i + 1] = out(i).startSpoke;
+        }
+    });
+
+    VertexOffsets const vertex = fVertexOffsets(pRunFirst, numHalfBefore);
+    Index const fVertex = indexing.GetCornerChildVertex(pRunFirst);
+    fillOffsets(&_c.vertFirstFace[fVertex], vertex.face, kThree, kSize * (end - begin));
+    fillOffsets(&_c.vertFirstEdge[fVertex], vertex.edge, kThree, kSize * (end - begin));
+    forEachHexagon(kThree, &_c.vertFaces[vertex.face], [=](Index *faces, Index pFace, Index pFirst) {
+        for (int i = 0; i < kSize; ++i) {
+            faces[3 * i] = indexing.GetFaceChildFace(pFace);
+            faces[3 * i + 1] = eFaceOf(pEdges[pFirst + prev(i)]);
+            faces[3 * i + 2] = eFaceOf(pEdges[pFirst + i]);
+        }
+    });
+    forEachHexagon(kThree, &_c.vertFaceLocals[vertex.face], [=](LocalIndex *locals, Index, Index) {
+        for (int i = 0; i < kSize; ++i) {
+            locals[3 * i] = LocalIndex(i);
+            locals[3 * i + 1] = in(i).endFVertex;
+            locals[3 * i + 2] = out(i).startFVertex;
+        }
+    });
+    forEachHexagon(kThree, &_c.vertEdges[vertex.edge], [=](Index *edges, Index, Index pFirst) {
+        Index const fEdge = indexing.GetCornerChildEdge(pFirst);
+        Index const spoke = indexing.GetCornerChildSpoke(pFirst);
+        for (int i = 0; i < kSize; ++i) {
+            edges[3 * i] = fEdge + i;
+            edges[3 * i + 1] = fEdge + prev(i);
+            edges[3 * i + 2] = spoke + i;
+        }
+    });
+    forEachHexagon(kThree, &_c.vertEdgeLocals[vertex.edge], [=](LocalIndex *locals, Index, Index) {
+        for (int i = 0; i < kSize; ++i) {
+            locals[3 * i] = 0;
+            locals[3 * i + 1] = 1;
+            locals[3 * i + 2] = 1;
+        }
+    });
 }
 
 // Around a V-vertex the spokes take the place of the parent's faces and the E-faces that of its
 // edges.
 void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore) {
+    Index const endOther = _p.isHexagonal ? std::min(end, _p.parent->numVertices) : end;
     VertexOffsets vertex = vVertexOffsets(begin, numOpenBefore);
-    for (Index pVert = begin; pVert < end; ++pVert) {
+    Index pVert = begin;
+    for (; pVert < endOther; ++pVert) {
         Index const cVert = _indexing.GetVertexChildVertex(pVert);
         Index const firstFace = _p.vertFirstFace[pVert];
         Index const firstEdge = _p.vertFirstEdge[pVert];
@@ -463,6 +599,46 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
                           _p.vertEdgeLocals[k] == 0 ? kEFaceSideA.startVertex
                                                     : kEFaceSideA.endVertex);
         }
+    }
+    if (pVert < end) {
+        fillClosedFVertices(pVert, end, numOpenBefore);
+    }
+}
+
+// The same for F-vertices of the parent, which have three faces and are the first, second and
+// second vertex of their three edges; array by array as for hexagons.
+void Refinement::fillClosedFVertices(Index begin, Index end, Index numOpenBefore) {
+    constexpr std::integral_constant<int, 3> kSize;
+    VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
+    Index const numEntries = kSize * (end - begin);
+    Index const *const pFaces = &_p.vertFaces[_p.vertFirstFace[begin]];
+    LocalIndex const *const pFaceLocals = &_p.vertFaceLocals[_p.vertFirstFace[begin]];
+    Index const *const pEdges = &_p.vertEdges[_p.vertFirstEdge[begin]];
+    HexIndexing const indexing = _indexing;
+
+    Index const cVert = indexing.GetVertexChildVertex(begin);
+    fillOffsets(&_c.vertFirstFace[cVert], vertex.face, kSize, end - begin);
+    fillOffsets(&_c.vertFirstEdge[cVert], vertex.edge, kSize, end - begin);
+
+    Index const *const pFirstCorner = _p.faceFirstCorner.data();
+    Index *const edges = &_c.vertEdges[vertex.edge];
+    for (Index i = 0; i < numEntries; ++i) {
+        edges[i] = indexing.GetCornerChildSpoke(pFirstCorner[pFaces[i]] + pFaceLocals[i]);
+    }
+    std::fill_n(&_c.vertEdgeLocals[vertex.edge], numEntries, LocalIndex(0));
+
+    EFaceOfEdge const eFaceOf(_p);
+    Index *const faces = &_c.vertFaces[vertex.face];
+    LocalIndex *const faceLocals = &_c.vertFaceLocals[vertex.face];
+    for (Index i = 0; i < numEntries; i += kSize) {
+        faces[i] = eFaceOf(pEdges[i + 1]);
+        faces[i + 1] = eFaceOf(pEdges[i + 2]);
+        faces[i + 2] = eFaceOf(pEdges[i]);
+    }
+    for (Index i = 0; i < numEntries; i += kSize) {
+        faceLocals[i] = kEFaceSideA.endVertex;
+        faceLocals[i + 1] = kEFaceSideA.endVertex;
+        faceLocals[i + 2] = kEFaceSideA.startVertex;
     }
 }
 
