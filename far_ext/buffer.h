@@ -71,9 +71,8 @@ void PlaceArrays(Buffer<std::byte> &memory, FOR_EACH_ARRAY const &forEachArray) 
         return (bytes + kCacheLine - 1) / kCacheLine * kCacheLine;
     };
     std::size_t bytes = 0;
-    forEachArray([&](auto &buffer, std::size_t size) {
-        bytes += roundUp(size * sizeof(*buffer.data()));
-    });
+    forEachArray(
+        [&](auto &buffer, std::size_t size) { bytes += roundUp(size * sizeof(*buffer.data())); });
     memory.Resize(bytes);
     std::byte *next = memory.data();
     forEachArray([&](auto &buffer, std::size_t size) {

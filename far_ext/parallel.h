@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <exception>
 #include <optional>
+#include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -82,6 +83,25 @@ void ParallelFor(Far::Index count, FUNCTION function) {
             function(i);
         }
     });
+}
+
+/// Gathers the i of 0 <= i < count that satisfy predicate(i), ascending, in the same way.
+template <typename PREDICATE>
+std::vector<Far::Index> ParallelSelect(Far::Index count, PREDICATE predicate) {
+    std::vector<std::vector<Far::Index>> selected(GetNumParallelRanges(count));
+    ParallelForRange(count, [&](Far::Index begin, Far::Index end) {
+        std::vector<Far::Index> &ofRange = selected[begin / kParallelRange];
+        for (Far::Index i = begin; i < end; ++i) {
+            if (predicate(i)) {
+                ofRange.push_back(i);
+            }
+        }
+    });
+    std::vector<Far::Index> result;
+    for (std::vector<Far::Index> const &ofRange : selected) {
+        result.insert(result.end(), ofRange.begin(), ofRange.end());
+    }
+    return result;
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

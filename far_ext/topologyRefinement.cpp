@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "topologyRefinement.h"
 
+#include "arrayWriter.h"
 #include "parallel.h"
 #include "sharpFeatures.h"
 
@@ -23,6 +24,10 @@ struct SidesOfFFace {
     static constexpr EFaceSide const *kSides[] = {&kEFaceSideA, &kEFaceSideA, &kEFaceSideA,
                                                   &kEFaceSideA, &kEFaceSideA, &kEFaceSideA};
 };
+
+// Bytes of a level above which it is written past the caches: less than most caches have, but they
+// hold its parent as well.
+constexpr std::size_t kCacheSize = std::size_t(16) << 20;
 
 // An edge as one of its faces sees it.
 struct FaceEdge {
@@ -66,14 +71,6 @@ private:
     HexIndexing _indexing;
 };
 
-// Writes first, first + step ...
-template <typename STEP>
-void fillOffsets(Index *offsets, Index first, STEP step, Index count) {
-    for (Index i = 0; i < count; ++i) {
-        offsets[i] = first + step * i;
-    }
-}
-
 void sortUnique(std::vector<Index> &indices) {
     std::sort(indices.begin(), indices.end());
     indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
@@ -108,7 +105,8 @@ void forEachRun(Index begin, Index end, LIST const &list, REGULAR regular, LISTE
 class Refinement {
 public:
     Refinement(LevelTopology const &parent, LevelTopology &child)
-        : _p(parent), _c(child), _indexing(parent.ChildIndexing()) {}
+        : _p(parent), _c(child), _indexing(parent.ChildIndexing()),
+          _pastCaches(child.memory.size() > kCacheSize) {}
 
     // Face-vertices alone.
     void FillFaces() { fillFaces<false>(); }
@@ -130,9 +128,7 @@ public:
                 [this](Index runBegin, Index runEnd, Index numOpenBefore) {
                     fillClosedVertices(runBegin, runEnd, numOpenBefore);
                 },
-                [this](Index pVert, Index numOpenBefore) {
-                    fillOpenVertex(pVert, numOpenBefore);
-                });
+                [this](Index pVert, Index numOpenBefore) { fillOpenVertex(pVert, numOpenBefore); });
         });
         _c.vertFirstFace[_c.numVertices] = _c.numCorners;
         _c.vertFirstEdge[_c.numVertices] = 2 * _c.numEdges;
@@ -221,9 +217,19 @@ private:
         _c.vertFaceLocals[vertex.face++] = local;
     }
 
+    // Writes count numbers: first, first + step ...
+    void writeSequence(Index *array, Index count, Index first, Index step) const {
+        WriteArray<1>(array, count, _pastCaches,
+                      [step, next = first](Index *number, Index) mutable {
+                          *number = next;
+                          next += step;
+                      });
+    }
+
     LevelTopology const &_p;
     LevelTopology &_c;
     HexIndexing const _indexing;
+    bool const _pastCaches;
 
     std::vector<Index> _openFaces; // have a boundary edge
     std::vector<Index> _openVerts; // on a boundary, or non-manifold
@@ -277,11 +283,13 @@ void Refinement::fillFaces() {
         _c.faceFirstCorner[_indexing.GetFaceChildFace(pFace)] =
             _indexing.GetFaceChildFirstCorner(_p.faceFirstCorner[pFace]);
     });
-    ParallelFor(_p.numCorners, [this](Index pCorner) {
-        Index const cCorner = _indexing.GetFaceChildFirstCorner(pCorner);
-        _c.faceVerts[cCorner] = _indexing.GetCornerChildVertex(pCorner);
+    ParallelForRange(_p.numCorners, [=](Index begin, Index end) {
+        Index const cCorner = _indexing.GetFaceChildFirstCorner(begin);
+        writeSequence(&_c.faceVerts[cCorner], end - begin, _indexing.GetCornerChildVertex(begin),
+                      1);
         if constexpr (FULL) {
-            _c.faceEdges[cCorner] = _indexing.GetCornerChildEdge(pCorner);
+            writeSequence(&_c.faceEdges[cCorner], end - begin, _indexing.GetCornerChildEdge(begin),
+                          1);
         }
     });
     ParallelForRange(_p.numEdges, [this](Index begin, Index end) {
@@ -297,35 +305,59 @@ void Refinement::fillFaces() {
     _c.faceFirstCorner[_c.numFaces] = _c.numCorners;
 }
 
-// The E-faces of a run of interior edges.
+// The E-faces of a run of interior edges, at most kParallelRange.
 template <bool FULL>
 void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
     HexIndexing const indexing = _indexing;
-    Index cFace = _p.GetEdgeChildFace(begin);
+    Index const cFace = _p.GetEdgeChildFace(begin);
     Index const numBBefore = indexing.GetEdgeChildFace(begin, 0) - cFace;
-    Index cFirst =
+    Index const cFirst =
         indexing.GetEdgeChildFirstCorner(begin, numBBefore, numBoundaryBefore - numBBefore);
-    for (Index pEdge = begin; pEdge < end; ++pEdge) {
-        _c.faceFirstCorner[cFace++] = cFirst;
-        for (int i = 0; i < 2; ++i) {
-            std::size_t const k = 2 * std::size_t(pEdge) + i;
-            EFaceSide const &side = i == 0 ? kEFaceSideA : kEFaceSideB;
-            Index const pFace = _p.edgeFaces[k];
-            Index const pFirst = _p.faceFirstCorner[pFace];
-            Index const pCorner = pFirst + _p.edgeFaceLocals[k];
-            Index const pNext = pCorner + 1 == _p.faceFirstCorner[pFace + 1] ? pFirst : pCorner + 1;
-            Index *const verts = _c.faceVerts.data() + cFirst;
-            verts[side.startVertex] = indexing.GetVertexChildVertex(_p.edgeVerts[k]);
-            verts[side.startFVertex] = indexing.GetCornerChildVertex(pCorner);
-            verts[side.endFVertex] = indexing.GetCornerChildVertex(pNext);
-            if constexpr (FULL) {
-                Index *const edges = _c.faceEdges.data() + cFirst;
-                edges[side.fFaceEdge] = indexing.GetCornerChildEdge(pCorner);
-                edges[side.startSpoke] = indexing.GetCornerChildSpoke(pCorner);
-                edges[side.endSpoke] = indexing.GetCornerChildSpoke(pNext);
-            }
-        }
-        cFirst += HexIndexing::kNumEFaceCorners;
+    constexpr int kSize = HexIndexing::kNumEFaceCorners;
+    writeSequence(&_c.faceFirstCorner[cFace], end - begin, cFirst, kSize);
+
+    // Where the sides of the edges start and end: parent corners, found once for both arrays.
+    struct SideCorners {
+        Index start;
+        Index end;
+    };
+    SideCorners sides[2 * kParallelRange];
+    std::size_t const firstSide = 2 * std::size_t(begin);
+    std::size_t const numSides = 2 * std::size_t(end - begin);
+    Index const *const pFaces = _p.edgeFaces.data() + firstSide;
+    LocalIndex const *const pLocals = _p.edgeFaceLocals.data() + firstSide;
+    Index const *const pFirstCorner = _p.faceFirstCorner.data();
+    for (std::size_t k = 0; k < numSides; ++k) {
+        Index const first = pFirstCorner[pFaces[k]];
+        Index const start = first + pLocals[k];
+        sides[k] = {start, start + 1 == pFirstCorner[pFaces[k] + 1] ? first : start + 1};
+    }
+
+    constexpr EFaceSide const &kA = kEFaceSideA;
+    constexpr EFaceSide const &kB = kEFaceSideB;
+    Index const *const pVerts = _p.edgeVerts.data() + firstSide;
+    WriteArray<kSize>(&_c.faceVerts[cFirst], end - begin, _pastCaches, [&](Index *verts, Index i) {
+        SideCorners const &a = sides[2 * i];
+        SideCorners const &b = sides[2 * i + 1];
+        verts[kA.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i]);
+        verts[kA.startFVertex] = indexing.GetCornerChildVertex(a.start);
+        verts[kA.endFVertex] = indexing.GetCornerChildVertex(a.end);
+        verts[kB.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i + 1]);
+        verts[kB.startFVertex] = indexing.GetCornerChildVertex(b.start);
+        verts[kB.endFVertex] = indexing.GetCornerChildVertex(b.end);
+    });
+    if constexpr (FULL) {
+        Index *const edgesOfRun = &_c.faceEdges[cFirst];
+        WriteArray<kSize>(edgesOfRun, end - begin, _pastCaches, [&](Index *edges, Index i) {
+            SideCorners const &a = sides[2 * i];
+            SideCorners const &b = sides[2 * i + 1];
+            edges[kA.fFaceEdge] = indexing.GetCornerChildEdge(a.start);
+            edges[kA.startSpoke] = indexing.GetCornerChildSpoke(a.start);
+            edges[kA.endSpoke] = indexing.GetCornerChildSpoke(a.end);
+            edges[kB.fFaceEdge] = indexing.GetCornerChildEdge(b.start);
+            edges[kB.startSpoke] = indexing.GetCornerChildSpoke(b.start);
+            edges[kB.endSpoke] = indexing.GetCornerChildSpoke(b.end);
+        });
     }
 }
 
@@ -425,9 +457,7 @@ void Refinement::fillClosedFaces(Index begin, Index end) {
     Index const numHalfBefore = numHalfFacesBefore(begin);
     if (!_p.isHexagonal) {
         for (Index pFace = begin; pFace < end; ++pFace) {
-            auto const getSide = [&](Index pCorner) {
-                return edgeFrom(pFace, pCorner).side;
-            };
+            auto const getSide = [&](Index pCorner) { return edgeFrom(pFace, pCorner).side; };
             fillClosedFace(pFace, getSide, numHalfBefore);
         }
         return;
@@ -451,7 +481,9 @@ void Refinement::fillClosedFaces(Index begin, Index end) {
                 pFace++, [](Index) { return &kEFaceSideA; }, numHalfBefore);
         }
     }
-    fillHexagons<SidesOfEFace>(endFFaces, end, numHalfBefore);
+    if (endFFaces < end) {
+        fillHexagons<SidesOfEFace>(endFFaces, end, numHalfBefore);
+    }
 }
 
 template <typename SIDE>
@@ -481,15 +513,12 @@ void Refinement::fillHexagons(Index begin, Index end, Index numHalfBefore) {
     constexpr auto out = [](int i) -> EFaceSide const & { return *SIDES::kSides[i]; };
 
     // Calls fill(entries, pFace, pFirst) for all hexagons, with their entries in an array that has
-    // kEntries for each corner.
+    // as many as kEntries for each corner.
     Index const pRunFirst = _p.faceFirstCorner[begin];
-    auto const forEachHexagon = [=](auto kEntries, auto *entries, auto fill) {
-        Index pFirst = pRunFirst;
-        for (Index pFace = begin; pFace < end; ++pFace) {
-            fill(entries, pFace, pFirst);
-            entries += kEntries * kSize;
-            pFirst += kSize;
-        }
+    auto const writeHexagons = [=](auto kEntries, auto *array, auto fill) {
+        WriteArray<decltype(kEntries)::value * kSize>(
+            array, end - begin, _pastCaches,
+            [=](auto *entries, Index i) { fill(entries, begin + i, pRunFirst + kSize * i); });
     };
     constexpr std::integral_constant<int, 2> kTwo;
     constexpr std::integral_constant<int, 3> kThree;
@@ -500,20 +529,20 @@ void Refinement::fillHexagons(Index begin, Index end, Index numHalfBefore) {
     EFaceOfEdge const eFaceOf(_p);
 
     std::size_t const fEdges = 2 * std::size_t(indexing.GetCornerChildEdge(pRunFirst));
-    forEachHexagon(kTwo, &_c.edgeVerts[fEdges], [=](Index *verts, Index, Index pFirst) {
+    writeHexagons(kTwo, &_c.edgeVerts[fEdges], [=](Index *verts, Index, Index pFirst) {
         Index const fVertex = indexing.GetCornerChildVertex(pFirst);
         for (int i = 0; i < kSize; ++i) {
             verts[2 * i] = fVertex + i;
             verts[2 * i + 1] = fVertex + next(i);
         }
     });
-    forEachHexagon(kTwo, &_c.edgeFaces[fEdges], [=](Index *faces, Index pFace, Index pFirst) {
+    writeHexagons(kTwo, &_c.edgeFaces[fEdges], [=](Index *faces, Index pFace, Index pFirst) {
         for (int i = 0; i < kSize; ++i) {
             faces[2 * i] = indexing.GetFaceChildFace(pFace);
             faces[2 * i + 1] = eFaceOf(pEdges[pFirst + i]);
         }
     });
-    forEachHexagon(kTwo, &_c.edgeFaceLocals[fEdges], [=](LocalIndex *locals, Index, Index) {
+    writeHexagons(kTwo, &_c.edgeFaceLocals[fEdges], [=](LocalIndex *locals, Index, Index) {
         for (int i = 0; i < kSize; ++i) {
             locals[2 * i] = LocalIndex(i);
             locals[2 * i + 1] = out(i).fFaceEdge;
@@ -521,19 +550,19 @@ void Refinement::fillHexagons(Index begin, Index end, Index numHalfBefore) {
     });
 
     std::size_t const spokes = 2 * std::size_t(indexing.GetCornerChildSpoke(pRunFirst));
-    forEachHexagon(kTwo, &_c.edgeVerts[spokes], [=](Index *verts, Index, Index pFirst) {
+    writeHexagons(kTwo, &_c.edgeVerts[spokes], [=](Index *verts, Index, Index pFirst) {
         for (int i = 0; i < kSize; ++i) {
             verts[2 * i] = indexing.GetVertexChildVertex(pVerts[pFirst + i]);
             verts[2 * i + 1] = indexing.GetCornerChildVertex(pFirst + i);
         }
     });
-    forEachHexagon(kTwo, &_c.edgeFaces[spokes], [=](Index *faces, Index, Index pFirst) {
+    writeHexagons(kTwo, &_c.edgeFaces[spokes], [=](Index *faces, Index, Index pFirst) {
         for (int i = 0; i < kSize; ++i) {
             faces[2 * i] = eFaceOf(pEdges[pFirst + prev(i)]);
             faces[2 * i + 1] = eFaceOf(pEdges[pFirst + i]);
         }
     });
-    forEachHexagon(kTwo, &_c.edgeFaceLocals[spokes], [=](LocalIndex *locals, Index, Index) {
+    writeHexagons(kTwo, &_c.edgeFaceLocals[spokes], [=](LocalIndex *locals, Index, Index) {
         for (int i = 0; i < kSize; ++i) {
             locals[2 * i] = in(i).endSpoke;
             locals[2 * i + 1] = out(i).startSpoke;
@@ -542,23 +571,23 @@ void Refinement::fillHexagons(Index begin, Index end, Index numHalfBefore) {
 
     VertexOffsets const vertex = fVertexOffsets(pRunFirst, numHalfBefore);
     Index const fVertex = indexing.GetCornerChildVertex(pRunFirst);
-    fillOffsets(&_c.vertFirstFace[fVertex], vertex.face, kThree, kSize * (end - begin));
-    fillOffsets(&_c.vertFirstEdge[fVertex], vertex.edge, kThree, kSize * (end - begin));
-    forEachHexagon(kThree, &_c.vertFaces[vertex.face], [=](Index *faces, Index pFace, Index pFirst) {
+    writeSequence(&_c.vertFirstFace[fVertex], kSize * (end - begin), vertex.face, 3);
+    writeSequence(&_c.vertFirstEdge[fVertex], kSize * (end - begin), vertex.edge, 3);
+    writeHexagons(kThree, &_c.vertFaces[vertex.face], [=](Index *faces, Index pFace, Index pFirst) {
         for (int i = 0; i < kSize; ++i) {
             faces[3 * i] = indexing.GetFaceChildFace(pFace);
             faces[3 * i + 1] = eFaceOf(pEdges[pFirst + prev(i)]);
             faces[3 * i + 2] = eFaceOf(pEdges[pFirst + i]);
         }
     });
-    forEachHexagon(kThree, &_c.vertFaceLocals[vertex.face], [=](LocalIndex *locals, Index, Index) {
+    writeHexagons(kThree, &_c.vertFaceLocals[vertex.face], [=](LocalIndex *locals, Index, Index) {
         for (int i = 0; i < kSize; ++i) {
             locals[3 * i] = LocalIndex(i);
             locals[3 * i + 1] = in(i).endFVertex;
             locals[3 * i + 2] = out(i).startFVertex;
         }
     });
-    forEachHexagon(kThree, &_c.vertEdges[vertex.edge], [=](Index *edges, Index, Index pFirst) {
+    writeHexagons(kThree, &_c.vertEdges[vertex.edge], [=](Index *edges, Index, Index pFirst) {
         Index const fEdge = indexing.GetCornerChildEdge(pFirst);
         Index const spoke = indexing.GetCornerChildSpoke(pFirst);
         for (int i = 0; i < kSize; ++i) {
@@ -567,7 +596,7 @@ void Refinement::fillHexagons(Index begin, Index end, Index numHalfBefore) {
             edges[3 * i + 2] = spoke + i;
         }
     });
-    forEachHexagon(kThree, &_c.vertEdgeLocals[vertex.edge], [=](LocalIndex *locals, Index, Index) {
+    writeHexagons(kThree, &_c.vertEdgeLocals[vertex.edge], [=](LocalIndex *locals, Index, Index) {
         for (int i = 0; i < kSize; ++i) {
             locals[3 * i] = 0;
             locals[3 * i + 1] = 1;
@@ -581,21 +610,23 @@ void Refinement::fillHexagons(Index begin, Index end, Index numHalfBefore) {
 void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore) {
     Index const endOther = _p.isHexagonal ? std::min(end, _p.parent->numVertices) : end;
     VertexOffsets vertex = vVertexOffsets(begin, numOpenBefore);
+    HexIndexing const indexing = _indexing;
+    EFaceOfEdge const eFaceOf(_p);
     Index pVert = begin;
     for (; pVert < endOther; ++pVert) {
-        Index const cVert = _indexing.GetVertexChildVertex(pVert);
+        Index const cVert = indexing.GetVertexChildVertex(pVert);
         Index const firstFace = _p.vertFirstFace[pVert];
         Index const firstEdge = _p.vertFirstEdge[pVert];
         Index const size = _p.vertFirstFace[pVert + 1] - firstFace;
         _c.vertFirstFace[cVert] = vertex.face;
         _c.vertFirstEdge[cVert] = vertex.edge;
         for (Index i = 0; i < size; ++i) {
-            Index const pCorner = _p.faceFirstCorner[_p.vertFaces[firstFace + i]] +
-                                  _p.vertFaceLocals[firstFace + i];
+            Index const pCorner =
+                _p.faceFirstCorner[_p.vertFaces[firstFace + i]] + _p.vertFaceLocals[firstFace + i];
             // The edge behind the face comes next in the vertex's own list.
             Index const k = firstEdge + (i + 1 == size ? 0 : i + 1);
-            addVertexEdge(vertex, _indexing.GetCornerChildSpoke(pCorner), 0);
-            addVertexFace(vertex, _p.GetEdgeChildFace(_p.vertEdges[k]),
+            addVertexEdge(vertex, indexing.GetCornerChildSpoke(pCorner), 0);
+            addVertexFace(vertex, eFaceOf(_p.vertEdges[k]),
                           _p.vertEdgeLocals[k] == 0 ? kEFaceSideA.startVertex
                                                     : kEFaceSideA.endVertex);
         }
@@ -608,38 +639,39 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
 // The same for F-vertices of the parent, which have three faces and are the first, second and
 // second vertex of their three edges; array by array as for hexagons.
 void Refinement::fillClosedFVertices(Index begin, Index end, Index numOpenBefore) {
-    constexpr std::integral_constant<int, 3> kSize;
+    constexpr int kSize = 3;
     VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
-    Index const numEntries = kSize * (end - begin);
     Index const *const pFaces = &_p.vertFaces[_p.vertFirstFace[begin]];
     LocalIndex const *const pFaceLocals = &_p.vertFaceLocals[_p.vertFirstFace[begin]];
     Index const *const pEdges = &_p.vertEdges[_p.vertFirstEdge[begin]];
     HexIndexing const indexing = _indexing;
 
     Index const cVert = indexing.GetVertexChildVertex(begin);
-    fillOffsets(&_c.vertFirstFace[cVert], vertex.face, kSize, end - begin);
-    fillOffsets(&_c.vertFirstEdge[cVert], vertex.edge, kSize, end - begin);
+    writeSequence(&_c.vertFirstFace[cVert], end - begin, vertex.face, kSize);
+    writeSequence(&_c.vertFirstEdge[cVert], end - begin, vertex.edge, kSize);
 
     Index const *const pFirstCorner = _p.faceFirstCorner.data();
-    Index *const edges = &_c.vertEdges[vertex.edge];
-    for (Index i = 0; i < numEntries; ++i) {
-        edges[i] = indexing.GetCornerChildSpoke(pFirstCorner[pFaces[i]] + pFaceLocals[i]);
-    }
-    std::fill_n(&_c.vertEdgeLocals[vertex.edge], numEntries, LocalIndex(0));
-
     EFaceOfEdge const eFaceOf(_p);
-    Index *const faces = &_c.vertFaces[vertex.face];
-    LocalIndex *const faceLocals = &_c.vertFaceLocals[vertex.face];
-    for (Index i = 0; i < numEntries; i += kSize) {
-        faces[i] = eFaceOf(pEdges[i + 1]);
-        faces[i + 1] = eFaceOf(pEdges[i + 2]);
-        faces[i + 2] = eFaceOf(pEdges[i]);
-    }
-    for (Index i = 0; i < numEntries; i += kSize) {
-        faceLocals[i] = kEFaceSideA.endVertex;
-        faceLocals[i + 1] = kEFaceSideA.endVertex;
-        faceLocals[i + 2] = kEFaceSideA.startVertex;
-    }
+    auto const write = [=](auto *array, auto fill) {
+        WriteArray<kSize>(array, end - begin, _pastCaches, fill);
+    };
+    write(&_c.vertEdges[vertex.edge], [=](Index *edges, Index i) {
+        for (int k = 0; k < kSize; ++k) {
+            Index const pCorner = pFirstCorner[pFaces[kSize * i + k]] + pFaceLocals[kSize * i + k];
+            edges[k] = indexing.GetCornerChildSpoke(pCorner);
+        }
+    });
+    write(&_c.vertEdgeLocals[vertex.edge],
+          [](LocalIndex *locals, Index) { locals[0] = locals[1] = locals[2] = 0; });
+    write(&_c.vertFaces[vertex.face], [=](Index *faces, Index i) {
+        for (int k = 0; k < kSize; ++k) {
+            faces[k] = eFaceOf(pEdges[kSize * i + (k + 1) % kSize]);
+        }
+    });
+    write(&_c.vertFaceLocals[vertex.face], [](LocalIndex *locals, Index) {
+        locals[0] = locals[1] = kEFaceSideA.endVertex;
+        locals[2] = kEFaceSideA.startVertex;
+    });
 }
 
 // Where a fan of faces ends in a boundary edge with an E-face, that one's boundary edge comes first

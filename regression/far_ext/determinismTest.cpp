@@ -32,12 +32,34 @@ struct Result {
     }
 };
 
-Result compute(Shape const &shape, int numThreads) {
+void setNumThreads(int numThreads) {
 #ifdef _OPENMP
     omp_set_num_threads(numThreads);
 #else
     static_cast<void>(numThreads);
 #endif
+}
+
+/// The arrays of a level.
+struct Arrays {
+    std::vector<std::vector<int>> arrays;
+
+    explicit Arrays(FarExt::TopologyLevel const &level) {
+        FarExt::internal::LevelTopology const &t = level.GetTopology();
+        add(t.faceFirstCorner, t.faceVerts, t.faceEdges, t.edgeVerts, t.edgeFaces, t.edgeFaceLocals,
+            t.boundaryEdges, t.halfFaces, t.vertFirstFace, t.vertFaces, t.vertFaceLocals,
+            t.vertFirstEdge, t.vertEdges, t.vertEdgeLocals, t.faceChildFaces, t.edgeChildFaces,
+            t.edgeSharpness, t.vertSharpness, t.faceHoles, t.nonManifoldVerts, t.nonManifoldEdges);
+    }
+    template <typename... ARRAYS>
+    void add(ARRAYS const &...added) {
+        (arrays.emplace_back(added.begin(), added.end()), ...);
+    }
+    bool operator==(Arrays const &other) const { return arrays == other.arrays; }
+};
+
+Result compute(Shape const &shape, int numThreads) {
+    setNumThreads(numThreads);
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 5, options);
@@ -68,6 +90,40 @@ TEST(Determinism, SameBitsForAnyNumberOfThreads) {
         for (int numThreads : {2, 3, 8}) {
             SCOPED_TRACE(std::to_string(numThreads) + " threads");
             ASSERT_TRUE(compute(shape, numThreads) == expected);
+        }
+    }
+}
+
+// Level 7 of these takes more than the 16 MB from which on levels are written past the caches.
+TEST(Determinism, LargeLevelsAreValidAndTheSame) {
+    for (char const *name : {"dodecahedron", "quadGrid"}) {
+        for (auto boundary :
+             {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}) {
+            SCOPED_TRACE(std::string(name) + ", boundary option " + std::to_string(boundary));
+            Sdc::Options options;
+            options.SetVtxBoundaryInterpolation(boundary);
+            auto const refiner = CreateRefiner(GetShape(name), ReferenceMask::Smooth, 0, options);
+            FarExt::TopologyRefiner::UniformOptions uniform(7);
+            uniform.fullTopologyInLastLevel = true;
+            setNumThreads(1);
+            ASSERT_TRUE(refiner->RefineUniform(uniform));
+            FarExt::TopologyLevel const &level = refiner->GetLevel(7);
+            EXPECT_GT(level.GetTopology().memory.size(), std::size_t(16) << 20);
+            FarExt::Status status;
+            EXPECT_TRUE(level.Validate(&status)) << status.GetMessage();
+            Arrays const expected(level);
+            for (int numThreads : {2, 3, 8}) {
+                SCOPED_TRACE(std::to_string(numThreads) + " threads");
+                setNumThreads(numThreads);
+                ASSERT_TRUE(refiner->RefineUniform(uniform));
+                ASSERT_TRUE(Arrays(refiner->GetLevel(7)) == expected);
+                // Without the relations: the same faces, in the same memory.
+                ASSERT_TRUE(refiner->RefineUniform(7));
+                Arrays const faces(refiner->GetLevel(7));
+                EXPECT_EQ(faces.arrays[0], expected.arrays[0]);
+                EXPECT_EQ(faces.arrays[1], expected.arrays[1]);
+                EXPECT_TRUE(faces.arrays[2].empty());
+            }
         }
     }
 }
