@@ -40,13 +40,22 @@ struct FaceEdge {
 
 // A corner with its neighbours in the face and the edges that end and start there.
 struct FaceCorner {
-    Index face;
-    LocalIndex local; // its place in the face
     Index prev;
     Index corner;
     Index next;
     FaceEdge inEdge;
     FaceEdge outEdge;
+};
+
+// A corner of a face without boundary edges, and the sides that the face is of the edges.
+struct ClosedCorner {
+    Index face;
+    LocalIndex local; // its place in the face
+    Index prev;
+    Index corner;
+    Index next;
+    EFaceSide const *inSide;
+    EFaceSide const *outSide;
 };
 
 // Where the faces and edges of a vertex begin in the arrays of all vertices.
@@ -144,29 +153,27 @@ private:
     template <bool FULL>
     void fillBoundaryEFace(Index pEdge, Index numBoundaryBefore);
     void fillBoundaries();
-    void fillClosedFaces(Index begin, Index end);
-    template <typename SIDE>
-    void fillClosedFace(Index pFace, SIDE getSide, Index numHalfBefore);
-    template <typename SIDES>
-    void fillHexagons(Index begin, Index end, Index numHalfBefore);
     void fillOpenFace(Index pFace);
-    template <bool IS_OPEN>
-    void fillCorner(FaceCorner const &corner, VertexOffsets &vertex);
+    void fillClosedFaces(Index begin, Index end);
+    template <typename SIDES>
+    void fillHexagons(Index begin, Index end);
+    template <typename GET_SIDE>
+    void fillFacesOfAnySize(Index begin, Index end, GET_SIDE getSide);
+    template <typename WRITE>
+    void fillClosedCorners(Index begin, Index end, WRITE write);
     void fillClosedVertices(Index begin, Index end, Index numOpenBefore);
     void fillClosedFVertices(Index begin, Index end, Index numOpenBefore);
     void fillOpenVertex(Index pVert, Index numOpenBefore);
 
-    FaceEdge closedEdge(Index pCorner, EFaceSide const *side) const {
-        return {_p.GetEdgeChildFace(_p.faceEdges[pCorner]), side, false};
-    }
     // The edge from a corner to the next, seen from the face.
     FaceEdge edgeFrom(Index pFace, Index pCorner) const {
         Index const pEdge = _p.faceEdges[pCorner];
+        Index const eFace = _p.GetEdgeChildFace(pEdge);
         if (_p.IsBoundary(pEdge)) {
-            return {_p.GetEdgeChildFace(pEdge), &kBoundaryEFaceSide, true};
+            return {eFace, &kBoundaryEFaceSide, true};
         }
         bool const isSideA = _p.edgeFaces[2 * std::size_t(pEdge)] == pFace;
-        return closedEdge(pCorner, isSideA ? &kEFaceSideA : &kEFaceSideB);
+        return {eFace, isSideA ? &kEFaceSideA : &kEFaceSideB, false};
     }
     FaceCorner cornerOf(Index pFace, LocalIndex local) const {
         Index const first = _p.faceFirstCorner[pFace];
@@ -174,7 +181,7 @@ private:
         Index const corner = first + local;
         Index const prev = corner == first ? last : corner - 1;
         Index const next = corner == last ? first : corner + 1;
-        return {pFace, local, prev, corner, next, edgeFrom(pFace, prev), edgeFrom(pFace, corner)};
+        return {prev, corner, next, edgeFrom(pFace, prev), edgeFrom(pFace, corner)};
     }
     Index numHalfFacesBefore(Index pFace) const {
         return Index(std::lower_bound(_p.halfFaces.begin(), _p.halfFaces.end(), pFace) -
@@ -388,220 +395,206 @@ void Refinement::fillBoundaryEFace(Index pEdge, Index numBoundaryBefore) {
     }
 }
 
-// What a corner makes: the edge of the F-face and the spoke, and the relations of its F-vertex.
-// IS_OPEN is for faces with boundary edges.
+// What the corners of a face with boundary edges make, as in fillClosedCorners.
 //
 // An edge whose E-face is missing is a boundary: the edge of the F-face is a B edge then, and the
 // spokes at its ends are A edges, each directed as its one face runs; the F-vertices at its ends
 // have two faces, others have three.
-template <bool IS_OPEN>
-void Refinement::fillCorner(FaceCorner const &corner, VertexOffsets &vertex) {
-    Index const cFace = _indexing.GetFaceChildFace(corner.face);
-    Index const vVertex = _indexing.GetVertexChildVertex(_p.faceVerts[corner.corner]);
-    Index const fVertex = _indexing.GetCornerChildVertex(corner.corner);
-    Index const nextFVertex = _indexing.GetCornerChildVertex(corner.next);
-    Index const fEdge = _indexing.GetCornerChildEdge(corner.corner);
-    Index const prevFEdge = _indexing.GetCornerChildEdge(corner.prev);
-    Index const spoke = _indexing.GetCornerChildSpoke(corner.corner);
-    FaceEdge const &in = corner.inEdge;
-    FaceEdge const &out = corner.outEdge;
-    bool const hasIn = !IS_OPEN || in.HasEFace();
-    bool const hasOut = !IS_OPEN || out.HasEFace();
-
-    if (!hasOut) {
-        setBoundaryEdge(fEdge, fVertex, nextFVertex, cFace, kSharpBoundaryB, corner.local);
-        setBoundaryEdge(spoke, vVertex, fVertex, in.eFace, kSharpBoundaryA, in.side->endSpoke);
-    } else {
-        setEdge(fEdge, fVertex, nextFVertex, cFace, out.eFace, corner.local, out.side->fFaceEdge);
-        if (!hasIn) {
-            setBoundaryEdge(spoke, fVertex, vVertex, out.eFace, kSharpBoundaryA,
-                            out.side->startSpoke);
-        } else {
-            // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
-            setEdge(spoke, vVertex, fVertex, in.eFace, out.eFace, in.side->endSpoke,
-                    out.side->startSpoke);
-        }
-    }
-
-    _c.vertFirstFace[fVertex] = vertex.face;
-    _c.vertFirstEdge[fVertex] = vertex.edge;
-    if (!hasIn) {
-        // The way around begins behind the missing face.
-        addVertexEdge(vertex, spoke, 0);
-        addVertexFace(vertex, out.eFace, out.side->startFVertex);
-    }
-    addVertexEdge(vertex, fEdge, 0);
-    addVertexFace(vertex, cFace, corner.local);
-    addVertexEdge(vertex, prevFEdge, 1);
-    if (hasIn) {
-        addVertexFace(vertex, in.eFace, in.side->endFVertex);
-        addVertexEdge(vertex, spoke, 1);
-        if (hasOut) {
-            addVertexFace(vertex, out.eFace, out.side->startFVertex);
-        }
-    }
-}
-
 void Refinement::fillOpenFace(Index pFace) {
+    Index const cFace = _indexing.GetFaceChildFace(pFace);
     Index const first = _p.faceFirstCorner[pFace];
     Index const size = _p.faceFirstCorner[pFace + 1] - first;
     VertexOffsets vertex = fVertexOffsets(first, numHalfFacesBefore(pFace));
-    for (Index local = 0; local < size; ++local) {
-        fillCorner<true>(cornerOf(pFace, LocalIndex(local)), vertex);
+    for (Index i = 0; i < size; ++i) {
+        LocalIndex const local = LocalIndex(i);
+        FaceCorner const corner = cornerOf(pFace, local);
+        FaceEdge const &in = corner.inEdge;
+        FaceEdge const &out = corner.outEdge;
+        Index const vVertex = _indexing.GetVertexChildVertex(_p.faceVerts[corner.corner]);
+        Index const fVertex = _indexing.GetCornerChildVertex(corner.corner);
+        Index const nextFVertex = _indexing.GetCornerChildVertex(corner.next);
+        Index const fEdge = _indexing.GetCornerChildEdge(corner.corner);
+        Index const spoke = _indexing.GetCornerChildSpoke(corner.corner);
+
+        if (!out.HasEFace()) {
+            setBoundaryEdge(fEdge, fVertex, nextFVertex, cFace, kSharpBoundaryB, local);
+            setBoundaryEdge(spoke, vVertex, fVertex, in.eFace, kSharpBoundaryA, in.side->endSpoke);
+        } else {
+            setEdge(fEdge, fVertex, nextFVertex, cFace, out.eFace, local, out.side->fFaceEdge);
+            if (!in.HasEFace()) {
+                setBoundaryEdge(spoke, fVertex, vVertex, out.eFace, kSharpBoundaryA,
+                                out.side->startSpoke);
+            } else {
+                setEdge(spoke, vVertex, fVertex, in.eFace, out.eFace, in.side->endSpoke,
+                        out.side->startSpoke);
+            }
+        }
+
+        _c.vertFirstFace[fVertex] = vertex.face;
+        _c.vertFirstEdge[fVertex] = vertex.edge;
+        if (!in.HasEFace()) {
+            // The way around begins behind the missing face.
+            addVertexEdge(vertex, spoke, 0);
+            addVertexFace(vertex, out.eFace, out.side->startFVertex);
+        }
+        addVertexEdge(vertex, fEdge, 0);
+        addVertexFace(vertex, cFace, local);
+        addVertexEdge(vertex, _indexing.GetCornerChildEdge(corner.prev), 1);
+        if (in.HasEFace()) {
+            addVertexFace(vertex, in.eFace, in.side->endFVertex);
+            addVertexEdge(vertex, spoke, 1);
+            if (out.HasEFace()) {
+                addVertexFace(vertex, out.eFace, out.side->startFVertex);
+            }
+        }
     }
 }
 
 // A run of faces without boundary edges.
 void Refinement::fillClosedFaces(Index begin, Index end) {
-    // The same for all, as none of them is a half face.
-    Index const numHalfBefore = numHalfFacesBefore(begin);
     if (!_p.isHexagonal) {
-        for (Index pFace = begin; pFace < end; ++pFace) {
-            auto const getSide = [&](Index pCorner) { return edgeFrom(pFace, pCorner).side; };
-            fillClosedFace(pFace, getSide, numHalfBefore);
-        }
+        fillFacesOfAnySize(begin, end, [this](Index pFace, Index pCorner) {
+            std::size_t const pEdge = _p.faceEdges[pCorner];
+            return _p.edgeFaces[2 * pEdge] == pFace ? &kEFaceSideA : &kEFaceSideB;
+        });
         return;
     }
-    // F-faces come first; then all faces are hexagons.
+    // F-faces come first, which are side A of all their edges; then all faces are hexagons.
     Index const endFFaces = std::max(begin, std::min(end, _p.parent->numFaces));
     auto const isHexagon = [this](Index pFace) {
         return _p.faceFirstCorner[pFace + 1] - _p.faceFirstCorner[pFace] ==
                HexIndexing::kNumEFaceCorners;
     };
     for (Index pFace = begin; pFace < endFFaces;) {
-        Index runEnd = pFace;
-        while (runEnd < endFFaces && isHexagon(runEnd)) {
+        Index runEnd = pFace + 1;
+        while (runEnd < endFFaces && isHexagon(runEnd) == isHexagon(pFace)) {
             ++runEnd;
         }
-        if (runEnd > pFace) {
-            fillHexagons<SidesOfFFace>(pFace, runEnd, numHalfBefore);
-            pFace = runEnd;
+        if (isHexagon(pFace)) {
+            fillHexagons<SidesOfFFace>(pFace, runEnd);
         } else {
-            fillClosedFace(
-                pFace++, [](Index) { return &kEFaceSideA; }, numHalfBefore);
+            fillFacesOfAnySize(pFace, runEnd, [](Index, Index) { return &kEFaceSideA; });
         }
+        pFace = runEnd;
     }
     if (endFFaces < end) {
-        fillHexagons<SidesOfEFace>(endFFaces, end, numHalfBefore);
+        fillHexagons<SidesOfEFace>(endFFaces, end);
     }
 }
 
-template <typename SIDE>
-void Refinement::fillClosedFace(Index pFace, SIDE getSide, Index numHalfBefore) {
-    Index const first = _p.faceFirstCorner[pFace];
-    Index const last = _p.faceFirstCorner[pFace + 1] - 1;
-    VertexOffsets vertex = fVertexOffsets(first, numHalfBefore);
-    FaceCorner corner = {pFace, 0, last, first, first + 1, closedEdge(last, getSide(last)), {}};
-    for (; corner.corner <= last; ++corner.corner, ++corner.local) {
-        corner.next = corner.corner == last ? first : corner.corner + 1;
-        corner.outEdge = closedEdge(corner.corner, getSide(corner.corner));
-        fillCorner<false>(corner, vertex);
-        corner.prev = corner.corner;
-        corner.inEdge = corner.outEdge;
-    }
-}
-
-// What fillCorner does, for a run of hexagons whose sides of their edges are known.  Most numbers
-// are then constants, or constants behind the first corner's.  One array after the other: so each
-// is written from front to back by a loop that compilers make vectors of.
+// Hexagons whose sides of their edges are known: all but indices are constants.
 template <typename SIDES>
-void Refinement::fillHexagons(Index begin, Index end, Index numHalfBefore) {
+void Refinement::fillHexagons(Index begin, Index end) {
     constexpr int kSize = HexIndexing::kNumEFaceCorners;
-    constexpr auto prev = [](int i) { return (i + kSize - 1) % kSize; };
-    constexpr auto next = [](int i) { return (i + 1) % kSize; };
-    constexpr auto in = [prev](int i) -> EFaceSide const & { return *SIDES::kSides[prev(i)]; };
-    constexpr auto out = [](int i) -> EFaceSide const & { return *SIDES::kSides[i]; };
+    Index const runFirst = _p.faceFirstCorner[begin];
+    fillClosedCorners(begin, end, [=](auto kEntries, auto *array, auto fill) {
+        WriteArray<kEntries * kSize>(array, end - begin, _pastCaches, [=](auto *entries, Index i) {
+            Index const first = runFirst + kSize * i;
+            for (int local = 0; local < kSize; ++local) {
+                int const prev = (local + kSize - 1) % kSize;
+                int const next = (local + 1) % kSize;
+                fill(entries + kEntries * local,
+                     ClosedCorner{begin + i, LocalIndex(local), first + prev, first + local,
+                                  first + next, SIDES::kSides[prev], SIDES::kSides[local]});
+            }
+        });
+    });
+}
 
-    // Calls fill(entries, pFace, pFirst) for all hexagons, with their entries in an array that has
-    // as many as kEntries for each corner.
-    Index const pRunFirst = _p.faceFirstCorner[begin];
-    auto const writeHexagons = [=](auto kEntries, auto *array, auto fill) {
-        WriteArray<decltype(kEntries)::value * kSize>(
-            array, end - begin, _pastCaches,
-            [=](auto *entries, Index i) { fill(entries, begin + i, pRunFirst + kSize * i); });
-    };
+// getSide(pFace, pCorner) tells the side that the face is of the edge from a corner to the next.
+template <typename GET_SIDE>
+void Refinement::fillFacesOfAnySize(Index begin, Index end, GET_SIDE getSide) {
+    std::vector<ClosedCorner> corners;
+    corners.reserve(_p.faceFirstCorner[end] - _p.faceFirstCorner[begin]);
+    for (Index pFace = begin; pFace < end; ++pFace) {
+        Index const first = _p.faceFirstCorner[pFace];
+        Index const last = _p.faceFirstCorner[pFace + 1] - 1;
+        ClosedCorner corner = {pFace, 0, last, first, first + 1, getSide(pFace, last), nullptr};
+        for (; corner.corner <= last; ++corner.corner, ++corner.local) {
+            corner.next = corner.corner == last ? first : corner.corner + 1;
+            corner.outSide = getSide(pFace, corner.corner);
+            corners.push_back(corner);
+            corner.prev = corner.corner;
+            corner.inSide = corner.outSide;
+        }
+    }
+    fillClosedCorners(begin, end, [&](auto kEntries, auto *array, auto fill) {
+        WriteArray<kEntries>(array, Index(corners.size()), _pastCaches,
+                             [&](auto *entries, Index i) { fill(entries, corners[i]); });
+    });
+}
+
+// What the corners of a run of faces without boundary edges make: an edge of the F-face, a spoke,
+// and the relations of an F-vertex.  One array after the other: so each is written from front to
+// back, by a loop that compilers make vectors of.
+//
+// write(kEntries, array, fill) calls fill(entries, corner) for all corners, with their kEntries
+// entries of an array.
+template <typename WRITE>
+void Refinement::fillClosedCorners(Index begin, Index end, WRITE write) {
     constexpr std::integral_constant<int, 2> kTwo;
     constexpr std::integral_constant<int, 3> kThree;
-
     HexIndexing const indexing = _indexing;
     Index const *const pVerts = _p.faceVerts.data();
     Index const *const pEdges = _p.faceEdges.data();
     EFaceOfEdge const eFaceOf(_p);
+    Index const pFirst = _p.faceFirstCorner[begin];
 
-    std::size_t const fEdges = 2 * std::size_t(indexing.GetCornerChildEdge(pRunFirst));
-    writeHexagons(kTwo, &_c.edgeVerts[fEdges], [=](Index *verts, Index, Index pFirst) {
-        Index const fVertex = indexing.GetCornerChildVertex(pFirst);
-        for (int i = 0; i < kSize; ++i) {
-            verts[2 * i] = fVertex + i;
-            verts[2 * i + 1] = fVertex + next(i);
-        }
+    std::size_t const fEdges = 2 * std::size_t(indexing.GetCornerChildEdge(pFirst));
+    write(kTwo, &_c.edgeVerts[fEdges], [=](Index *verts, ClosedCorner const &corner) {
+        verts[0] = indexing.GetCornerChildVertex(corner.corner);
+        verts[1] = indexing.GetCornerChildVertex(corner.next);
     });
-    writeHexagons(kTwo, &_c.edgeFaces[fEdges], [=](Index *faces, Index pFace, Index pFirst) {
-        for (int i = 0; i < kSize; ++i) {
-            faces[2 * i] = indexing.GetFaceChildFace(pFace);
-            faces[2 * i + 1] = eFaceOf(pEdges[pFirst + i]);
-        }
+    write(kTwo, &_c.edgeFaces[fEdges], [=](Index *faces, ClosedCorner const &corner) {
+        faces[0] = indexing.GetFaceChildFace(corner.face);
+        faces[1] = eFaceOf(pEdges[corner.corner]);
     });
-    writeHexagons(kTwo, &_c.edgeFaceLocals[fEdges], [=](LocalIndex *locals, Index, Index) {
-        for (int i = 0; i < kSize; ++i) {
-            locals[2 * i] = LocalIndex(i);
-            locals[2 * i + 1] = out(i).fFaceEdge;
-        }
+    write(kTwo, &_c.edgeFaceLocals[fEdges], [](LocalIndex *locals, ClosedCorner const &corner) {
+        locals[0] = corner.local;
+        locals[1] = corner.outSide->fFaceEdge;
     });
 
-    std::size_t const spokes = 2 * std::size_t(indexing.GetCornerChildSpoke(pRunFirst));
-    writeHexagons(kTwo, &_c.edgeVerts[spokes], [=](Index *verts, Index, Index pFirst) {
-        for (int i = 0; i < kSize; ++i) {
-            verts[2 * i] = indexing.GetVertexChildVertex(pVerts[pFirst + i]);
-            verts[2 * i + 1] = indexing.GetCornerChildVertex(pFirst + i);
-        }
+    // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
+    std::size_t const spokes = 2 * std::size_t(indexing.GetCornerChildSpoke(pFirst));
+    write(kTwo, &_c.edgeVerts[spokes], [=](Index *verts, ClosedCorner const &corner) {
+        verts[0] = indexing.GetVertexChildVertex(pVerts[corner.corner]);
+        verts[1] = indexing.GetCornerChildVertex(corner.corner);
     });
-    writeHexagons(kTwo, &_c.edgeFaces[spokes], [=](Index *faces, Index, Index pFirst) {
-        for (int i = 0; i < kSize; ++i) {
-            faces[2 * i] = eFaceOf(pEdges[pFirst + prev(i)]);
-            faces[2 * i + 1] = eFaceOf(pEdges[pFirst + i]);
-        }
+    write(kTwo, &_c.edgeFaces[spokes], [=](Index *faces, ClosedCorner const &corner) {
+        faces[0] = eFaceOf(pEdges[corner.prev]);
+        faces[1] = eFaceOf(pEdges[corner.corner]);
     });
-    writeHexagons(kTwo, &_c.edgeFaceLocals[spokes], [=](LocalIndex *locals, Index, Index) {
-        for (int i = 0; i < kSize; ++i) {
-            locals[2 * i] = in(i).endSpoke;
-            locals[2 * i + 1] = out(i).startSpoke;
-        }
+    write(kTwo, &_c.edgeFaceLocals[spokes], [](LocalIndex *locals, ClosedCorner const &corner) {
+        locals[0] = corner.inSide->endSpoke;
+        locals[1] = corner.outSide->startSpoke;
     });
 
-    VertexOffsets const vertex = fVertexOffsets(pRunFirst, numHalfBefore);
-    Index const fVertex = indexing.GetCornerChildVertex(pRunFirst);
-    writeSequence(&_c.vertFirstFace[fVertex], kSize * (end - begin), vertex.face, 3);
-    writeSequence(&_c.vertFirstEdge[fVertex], kSize * (end - begin), vertex.edge, 3);
-    writeHexagons(kThree, &_c.vertFaces[vertex.face], [=](Index *faces, Index pFace, Index pFirst) {
-        for (int i = 0; i < kSize; ++i) {
-            faces[3 * i] = indexing.GetFaceChildFace(pFace);
-            faces[3 * i + 1] = eFaceOf(pEdges[pFirst + prev(i)]);
-            faces[3 * i + 2] = eFaceOf(pEdges[pFirst + i]);
-        }
+    // None of the faces is a half face, so that all F-vertices have three faces and edges.
+    VertexOffsets const vertex = fVertexOffsets(pFirst, numHalfFacesBefore(begin));
+    Index const numCorners = _p.faceFirstCorner[end] - pFirst;
+    Index const fVertex = indexing.GetCornerChildVertex(pFirst);
+    writeSequence(&_c.vertFirstFace[fVertex], numCorners, vertex.face, kThree);
+    writeSequence(&_c.vertFirstEdge[fVertex], numCorners, vertex.edge, kThree);
+    write(kThree, &_c.vertFaces[vertex.face], [=](Index *faces, ClosedCorner const &corner) {
+        faces[0] = indexing.GetFaceChildFace(corner.face);
+        faces[1] = eFaceOf(pEdges[corner.prev]);
+        faces[2] = eFaceOf(pEdges[corner.corner]);
     });
-    writeHexagons(kThree, &_c.vertFaceLocals[vertex.face], [=](LocalIndex *locals, Index, Index) {
-        for (int i = 0; i < kSize; ++i) {
-            locals[3 * i] = LocalIndex(i);
-            locals[3 * i + 1] = in(i).endFVertex;
-            locals[3 * i + 2] = out(i).startFVertex;
-        }
+    write(kThree, &_c.vertFaceLocals[vertex.face],
+          [](LocalIndex *locals, ClosedCorner const &corner) {
+              locals[0] = corner.local;
+              locals[1] = corner.inSide->endFVertex;
+              locals[2] = corner.outSide->startFVertex;
+          });
+    write(kThree, &_c.vertEdges[vertex.edge], [=](Index *edges, ClosedCorner const &corner) {
+        edges[0] = indexing.GetCornerChildEdge(corner.corner);
+        edges[1] = indexing.GetCornerChildEdge(corner.prev);
+        edges[2] = indexing.GetCornerChildSpoke(corner.corner);
     });
-    writeHexagons(kThree, &_c.vertEdges[vertex.edge], [=](Index *edges, Index, Index pFirst) {
-        Index const fEdge = indexing.GetCornerChildEdge(pFirst);
-        Index const spoke = indexing.GetCornerChildSpoke(pFirst);
-        for (int i = 0; i < kSize; ++i) {
-            edges[3 * i] = fEdge + i;
-            edges[3 * i + 1] = fEdge + prev(i);
-            edges[3 * i + 2] = spoke + i;
-        }
-    });
-    writeHexagons(kThree, &_c.vertEdgeLocals[vertex.edge], [=](LocalIndex *locals, Index, Index) {
-        for (int i = 0; i < kSize; ++i) {
-            locals[3 * i] = 0;
-            locals[3 * i + 1] = 1;
-            locals[3 * i + 2] = 1;
-        }
+    write(kThree, &_c.vertEdgeLocals[vertex.edge], [](LocalIndex *locals, ClosedCorner const &) {
+        locals[0] = 0;
+        locals[1] = 1;
+        locals[2] = 1;
     });
 }
 
