@@ -246,8 +246,8 @@ void Importer::importFaces() {
     _level->faceFirstCorner[_level->numFaces] = _level->numCorners;
 }
 
-// Gives the sides of an edge that bounds one face, or joins two which run it in opposite directions,
-// their order; false for any other edge.
+// Gives the sides of an edge that bounds one face, or joins two which run it in opposite
+// directions, their order; false for any other edge.
 bool Importer::joinSides(Index edge, int numCorners) {
     ConstIndexArray const verts = _base.GetEdgeVertices(edge);
     if (verts[0] == verts[1] || _base.IsEdgeNonManifold(edge)) {
@@ -268,7 +268,8 @@ bool Importer::joinSides(Index edge, int numCorners) {
     return true;
 }
 
-// An edge of any other kind comes apart: every face gets an edge of its own, the first of them with the edge's index.
+// An edge of any other kind comes apart: every face gets an edge of its own, the first of them with
+// the edge's index.
 Status Importer::importEdges() {
     _edges.assign(_base.GetNumEdges(), {{Far::INDEX_INVALID, Far::INDEX_INVALID}});
     std::vector<int> numCorners(_base.GetNumEdges(), 0);

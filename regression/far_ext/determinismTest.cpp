@@ -128,4 +128,33 @@ TEST(Determinism, LargeLevelsAreValidAndTheSame) {
     }
 }
 
+TEST(Determinism, SameImportForAnyNumberOfThreads) {
+    // A grid of quads with holes, large enough for many ranges of work.
+    constexpr int kSize = 160;
+    Shape grid;
+    grid.name = "grid";
+    for (int i = 0; i < (kSize + 1) * (kSize + 1); ++i) {
+        grid.positions.insert(grid.positions.end(), {double(i % kSize), double(i / kSize), 0});
+    }
+    for (int u = 0; u < kSize; ++u) {
+        for (int v = 0; v < kSize; ++v) {
+            int const corner = u * (kSize + 1) + v;
+            if (u % 7 != 3 || v % 5 != 2) {
+                grid.faceSizes.push_back(4);
+                for (int step : {0, kSize + 1, kSize + 2, 1}) {
+                    grid.faceVertices.push_back(corner + step);
+                }
+            }
+        }
+    }
+    setNumThreads(1);
+    auto const expected = CreateRefiner(grid, ReferenceMask::Smooth, 0);
+    EXPECT_TRUE(expected->GetLevel(0).Validate());
+    for (int numThreads : {2, 3, 8}) {
+        setNumThreads(numThreads);
+        auto const refiner = CreateRefiner(grid, ReferenceMask::Smooth, 0);
+        EXPECT_TRUE(Arrays(refiner->GetLevel(0)) == Arrays(expected->GetLevel(0))) << numThreads;
+    }
+}
+
 } // namespace OpenSubdivHex::Regression
