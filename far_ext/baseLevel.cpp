@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "baseLevel.h"
 
+#include "parallel.h"
+
 #include <algorithm>
 #include <set>
 
@@ -26,7 +28,7 @@ private:
     void buildFacesOfCorners();
     void buildEdges();
     void buildVertices();
-    void appendFan(Index startCorner);
+    void fillVertex(Index vert, Index const *corners, Index numCorners);
 
     LocalIndex local(Index corner) const {
         return LocalIndex(corner - _level.faceFirstCorner[_faceOfCorner[corner]]);
@@ -52,17 +54,15 @@ private:
     std::vector<EdgeSides> const &_edges;
     LevelTopology &_level;
     std::vector<Index> _faceOfCorner;
-    std::vector<bool> _isPlaced; // corner in a fan
-    Index _nextFace = 0;
-    Index _nextEdge = 0;
+    std::vector<char> _isPlaced; // corner in a fan; not bits, which corners would share
 };
 
 void BaseLevelBuilder::buildFacesOfCorners() {
     _faceOfCorner.resize(_level.numCorners);
-    for (Index face = 0; face < _level.numFaces; ++face) {
+    ParallelFor(_level.numFaces, [this](Index face) {
         std::fill(_faceOfCorner.begin() + _level.faceFirstCorner[face],
                   _faceOfCorner.begin() + _level.faceFirstCorner[face + 1], face);
-    }
+    });
 }
 
 void BaseLevelBuilder::buildEdges() {
@@ -71,104 +71,120 @@ void BaseLevelBuilder::buildEdges() {
     _level.edgeVerts.Resize(2 * _edges.size());
     _level.edgeFaces.Resize(2 * _edges.size());
     _level.edgeFaceLocals.Resize(2 * _edges.size());
-    _level.numFreeBoundaries = 0;
-    _level.numSharpBoundariesA = 0;
-    _level.numSharpBoundariesB = 0;
-    std::vector<Index> boundaryEdges;
-    for (std::size_t edge = 0; edge < _edges.size(); ++edge) {
+    ParallelFor(_level.numEdges, [this](Index edge) {
+        std::size_t const k = 2 * std::size_t(edge);
         Index const corner = _edges[edge].corners[0];
         Index const other = _edges[edge].corners[1];
         Index const face = _faceOfCorner[corner];
         Index const next = _level.GetNextCorner(face, corner);
-        _level.edgeVerts[2 * edge] = _level.faceVerts[corner];
-        _level.edgeVerts[2 * edge + 1] = _level.faceVerts[next];
-        _level.edgeFaces[2 * edge] = face;
-        _level.edgeFaceLocals[2 * edge] = local(corner);
-        _level.faceEdges[corner] = Index(edge);
+        _level.edgeVerts[k] = _level.faceVerts[corner];
+        _level.edgeVerts[k + 1] = _level.faceVerts[next];
+        _level.edgeFaces[k] = face;
+        _level.edgeFaceLocals[k] = local(corner);
+        _level.faceEdges[corner] = edge;
         if (other < 0) {
-            _level.edgeFaces[2 * edge + 1] = other;
-            _level.edgeFaceLocals[2 * edge + 1] = 0;
-            boundaryEdges.push_back(Index(edge));
-            ++(other == kFreeBoundary     ? _level.numFreeBoundaries
-               : other == kSharpBoundaryA ? _level.numSharpBoundariesA
-                                          : _level.numSharpBoundariesB);
+            _level.edgeFaces[k + 1] = other;
+            _level.edgeFaceLocals[k + 1] = 0;
         } else {
-            _level.edgeFaces[2 * edge + 1] = _faceOfCorner[other];
-            _level.edgeFaceLocals[2 * edge + 1] = local(other);
-            _level.faceEdges[other] = Index(edge);
+            _level.edgeFaces[k + 1] = _faceOfCorner[other];
+            _level.edgeFaceLocals[k + 1] = local(other);
+            _level.faceEdges[other] = edge;
         }
-    }
+    });
+    std::vector<Index> const boundaryEdges =
+        ParallelSelect(_level.numEdges, [this](Index edge) { return _level.IsBoundary(edge); });
+    auto const count = [&](BoundaryKind kind) {
+        return Index(std::count_if(boundaryEdges.begin(), boundaryEdges.end(), [&](Index edge) {
+            return _edges[edge].corners[1] == kind;
+        }));
+    };
+    _level.numFreeBoundaries = count(kFreeBoundary);
+    _level.numSharpBoundariesA = count(kSharpBoundaryA);
+    _level.numSharpBoundariesB = count(kSharpBoundaryB);
     _level.boundaryEdges.Resize(boundaryEdges.size());
     std::copy(boundaryEdges.begin(), boundaryEdges.end(), _level.boundaryEdges.data());
 }
 
 void BaseLevelBuilder::buildVertices() {
-    // The corners of each vertex, ascending.
-    std::vector<Index> first(std::size_t(_level.numVertices) + 1, 0);
-    for (Index vert : _level.faceVerts) {
-        ++first[vert + 1];
-    }
-    for (Index vert = 0; vert < _level.numVertices; ++vert) {
-        first[vert + 1] += first[vert];
-    }
-    std::vector<Index> cornersOfVerts(_level.numCorners);
-    std::vector<Index> next(first.begin(), first.end() - 1);
-    for (Index corner = 0; corner < _level.numCorners; ++corner) {
-        cornersOfVerts[next[_level.faceVerts[corner]]++] = corner;
-    }
-
     _level.vertFirstFace.Resize(std::size_t(_level.numVertices) + 1);
     _level.vertFirstEdge.Resize(std::size_t(_level.numVertices) + 1);
     _level.vertFaces.Resize(_level.numCorners);
     _level.vertFaceLocals.Resize(_level.numCorners);
     _level.vertEdges.Resize(2 * std::size_t(_level.numEdges));
     _level.vertEdgeLocals.Resize(2 * std::size_t(_level.numEdges));
-    _isPlaced.assign(_level.numCorners, false);
-    for (Index vert = 0; vert < _level.numVertices; ++vert) {
-        _level.vertFirstFace[vert] = _nextFace;
-        _level.vertFirstEdge[vert] = _nextEdge;
-        for (Index k = first[vert]; k < first[vert + 1]; ++k) {
-            Index const corner = cornersOfVerts[k];
-            if (_isPlaced[corner]) {
-                continue;
-            }
-            Index start = corner;
-            for (Index prev = prevAround(start); prev >= 0 && prev != corner;
-                 prev = prevAround(start)) {
-                start = prev;
-            }
-            // A closed fan comes back to the corner, and starts there.
-            appendFan(prevAround(start) < 0 ? start : corner);
-        }
+
+    // A vertex has as many faces as corners, and an edge more than faces for each fan that begins
+    // with a boundary edge.
+    Index *const firstFace = _level.vertFirstFace.data();
+    Index *const firstEdge = _level.vertFirstEdge.data();
+    std::fill_n(firstFace, _level.vertFirstFace.size(), 0);
+    std::fill_n(firstEdge, _level.vertFirstEdge.size(), 0);
+    for (Index vert : _level.faceVerts) {
+        ++firstFace[vert + 1];
     }
-    _level.vertFirstFace[_level.numVertices] = _nextFace;
-    _level.vertFirstEdge[_level.numVertices] = _nextEdge;
+    for (Index edge : _level.boundaryEdges) {
+        ++firstEdge[_level.edgeVerts[2 * std::size_t(edge)] + 1];
+    }
+    for (Index vert = 0; vert < _level.numVertices; ++vert) {
+        firstEdge[vert + 1] += firstEdge[vert] + firstFace[vert + 1];
+        firstFace[vert + 1] += firstFace[vert];
+    }
+
+    // The corners of each vertex, ascending.
+    std::vector<Index> cornersOfVerts(_level.numCorners);
+    std::vector<Index> next(firstFace, firstFace + _level.numVertices);
+    for (Index corner = 0; corner < _level.numCorners; ++corner) {
+        cornersOfVerts[next[_level.faceVerts[corner]]++] = corner;
+    }
+    _isPlaced.assign(_level.numCorners, false);
+    ParallelFor(_level.numVertices, [&](Index vert) {
+        fillVertex(vert, cornersOfVerts.data() + firstFace[vert],
+                   firstFace[vert + 1] - firstFace[vert]);
+    });
 }
 
-void BaseLevelBuilder::appendFan(Index startCorner) {
+// The fans of a vertex, by their lowest corners.
+void BaseLevelBuilder::fillVertex(Index vert, Index const *corners, Index numCorners) {
+    Index nextFace = _level.vertFirstFace[vert];
+    Index nextEdge = _level.vertFirstEdge[vert];
     // An interior edge may have the vertex as its first or second; in a fan it is seen from the
     // side that starts at the vertex.
     auto addEdge = [&](Index edge, bool isStartOfSide, Index sideCorner) {
         bool const isSideA = _edges[edge].corners[0] == sideCorner;
-        _level.vertEdges[_nextEdge] = edge;
-        _level.vertEdgeLocals[_nextEdge++] = LocalIndex(isStartOfSide == isSideA ? 0 : 1);
+        _level.vertEdges[nextEdge] = edge;
+        _level.vertEdgeLocals[nextEdge++] = LocalIndex(isStartOfSide == isSideA ? 0 : 1);
     };
-    Index corner = startCorner;
-    for (;;) {
-        _isPlaced[corner] = true;
-        _level.vertFaces[_nextFace] = _faceOfCorner[corner];
-        _level.vertFaceLocals[_nextFace++] = local(corner);
-        addEdge(_level.faceEdges[corner], true, corner);
-        Index const next = nextAround(corner);
-        if (next == startCorner) {
-            return;
+    auto addFan = [&](Index startCorner) {
+        Index corner = startCorner;
+        for (;;) {
+            _isPlaced[corner] = true;
+            _level.vertFaces[nextFace] = _faceOfCorner[corner];
+            _level.vertFaceLocals[nextFace++] = local(corner);
+            addEdge(_level.faceEdges[corner], true, corner);
+            Index const next = nextAround(corner);
+            if (next == startCorner) {
+                return;
+            }
+            if (next < 0) {
+                Index const prev = _level.GetPrevCorner(_faceOfCorner[corner], corner);
+                addEdge(_level.faceEdges[prev], false, prev);
+                return;
+            }
+            corner = next;
         }
-        if (next < 0) {
-            Index const prev = _level.GetPrevCorner(_faceOfCorner[corner], corner);
-            addEdge(_level.faceEdges[prev], false, prev);
-            return;
+    };
+    for (Index k = 0; k < numCorners; ++k) {
+        Index const corner = corners[k];
+        if (_isPlaced[corner]) {
+            continue;
         }
-        corner = next;
+        Index start = corner;
+        for (Index prev = prevAround(start); prev >= 0 && prev != corner;
+             prev = prevAround(start)) {
+            start = prev;
+        }
+        // A closed fan comes back to the corner, and starts there.
+        addFan(prevAround(start) < 0 ? start : corner);
     }
 }
 

@@ -12,7 +12,6 @@ namespace OpenSubdivHex::FarExt::internal {
 
 namespace {
 constexpr std::size_t kHugePage = std::size_t(2) << 20;
-constexpr std::size_t kCacheLine = 64;
 
 std::size_t roundUp(std::size_t bytes, std::size_t unit) {
     return (bytes + unit - 1) / unit * unit;
@@ -20,7 +19,7 @@ std::size_t roundUp(std::size_t bytes, std::size_t unit) {
 } // namespace
 
 void *AllocateArray(std::size_t bytes) {
-    std::size_t const alignment = bytes >= 2 * kHugePage ? kHugePage : kCacheLine;
+    std::size_t const alignment = bytes >= kHugePage ? kHugePage : kCacheLine;
     void *memory = std::aligned_alloc(alignment, roundUp(bytes, alignment));
     if (!memory) {
         throw std::bad_alloc();

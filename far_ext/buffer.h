@@ -8,6 +8,8 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
+constexpr std::size_t kCacheLine = 64; ///< bytes; the least alignment of an array
+
 /// Memory for a large array: not initialized, on huge pages where the system offers them.
 /// Throws std::bad_alloc.
 void *AllocateArray(std::size_t bytes);
@@ -16,7 +18,8 @@ void FreeArray(void *memory);
 /// \brief An array of trivial elements that are not written until the owner writes them.
 ///
 /// Resize() keeps nothing of the content and takes new memory only when it needs more than it has,
-/// so that refining again reuses the memory of the levels before.
+/// so that refining again reuses the memory of the levels before.  PlaceArrays() gives many arrays
+/// a place in one Buffer<std::byte>.
 template <typename T>
 class Buffer {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -24,20 +27,27 @@ class Buffer {
 public:
     void Resize(std::size_t size) {
         if (size > _capacity) {
-            _data.reset();
-            _size = _capacity = 0;
-            _data.reset(static_cast<T *>(AllocateArray(size * sizeof(T))));
+            Place(nullptr, 0);
+            _memory.reset(static_cast<T *>(AllocateArray(size * sizeof(T))));
+            _data = _memory.get();
             _capacity = size;
         }
+        _size = size;
+    }
+    /// Uses \p memory of someone else, which must outlive the use, and frees its own.
+    void Place(T *memory, std::size_t size) {
+        _memory.reset();
+        _capacity = 0;
+        _data = memory;
         _size = size;
     }
 
     std::size_t size() const { return _size; }
     bool empty() const { return _size == 0; }
-    T *data() { return _data.get(); }
-    T const *data() const { return _data.get(); }
-    T &operator[](std::size_t i) { return _data.get()[i]; }
-    T const &operator[](std::size_t i) const { return _data.get()[i]; }
+    T *data() { return _data; }
+    T const *data() const { return _data; }
+    T &operator[](std::size_t i) { return _data[i]; }
+    T const &operator[](std::size_t i) const { return _data[i]; }
     T const *begin() const { return data(); }
     T const *end() const { return data() + _size; }
 
@@ -45,10 +55,32 @@ private:
     struct Free {
         void operator()(T *memory) const { FreeArray(memory); }
     };
-    std::unique_ptr<T, Free> _data;
+    std::unique_ptr<T, Free> _memory; // null when placed
+    T *_data = nullptr;
     std::size_t _size = 0;
-    std::size_t _capacity = 0;
+    std::size_t _capacity = 0; // of _memory
 };
+
+/// \brief Places arrays one after the other in \p memory, which grows to their size at once: so all
+/// but the smallest of them lie on huge pages.
+///
+/// \param forEachArray  calls the function that it is given, function(buffer, size), for each array
+template <typename FOR_EACH_ARRAY>
+void PlaceArrays(Buffer<std::byte> &memory, FOR_EACH_ARRAY const &forEachArray) {
+    auto const roundUp = [](std::size_t bytes) {
+        return (bytes + kCacheLine - 1) / kCacheLine * kCacheLine;
+    };
+    std::size_t bytes = 0;
+    forEachArray(
+        [&](auto &buffer, std::size_t size) { bytes += roundUp(size * sizeof(*buffer.data())); });
+    memory.Resize(bytes);
+    std::byte *next = memory.data();
+    forEachArray([&](auto &buffer, std::size_t size) {
+        using T = std::remove_reference_t<decltype(*buffer.data())>;
+        buffer.Place(reinterpret_cast<T *>(next), size);
+        next += roundUp(size * sizeof(T));
+    });
+}
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -142,10 +142,12 @@ struct LevelTopology {
     Index numSharpBoundariesA = 0;
     Index numSharpBoundariesB = 0;
 
-    /// Whether the hexagonal step made the level: see kEFaceSideA for the order in its E-faces.
-    bool isHexagonal = false;
     /// False when only the face-vertices were made (the last level, unless asked for more).
     bool hasFullTopology = false;
+    /// Whether the hexagonal step made the level: the sides of its E-faces' edges are known then.
+    bool isHexagonal = false;
+
+    Buffer<std::byte> memory; ///< of the arrays that refinement makes
 
     Buffer<Index> faceFirstCorner; ///< numFaces + 1 positions in faceVerts and faceEdges
     Buffer<Index> faceVerts;       ///< numCorners
@@ -168,6 +170,7 @@ struct LevelTopology {
     Index numVVertices = 0;       ///< vertices of the child that were made of vertices
     Buffer<Index> vertChildVerts; ///< numVertices; empty when V-vertices have their parent's index
     Buffer<Index> vVertexParents; ///< numVVertices, ascending; empty likewise
+    // After a hexagonal step in the memory of the child.
     Buffer<Index> faceChildFaces; ///< numFaces
     Buffer<Index> edgeChildFaces; ///< numEdges; empty when every edge makes an E-face
 

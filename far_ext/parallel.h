@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <exception>
 #include <optional>
+#include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -65,17 +66,42 @@ void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function)
     }
 }
 
-/// Calls function(i) for 0 <= i < count in the same way.
+/// Calls function(begin, end) in the same way, for ranges without a state.
 template <typename FUNCTION>
-void ParallelFor(Far::Index count, FUNCTION function) {
+void ParallelForRange(Far::Index count, FUNCTION function) {
     struct Nothing {};
     ParallelForRange(
         count, [] { return Nothing(); },
-        [&](Nothing, Far::Index begin, Far::Index end) {
-            for (Far::Index i = begin; i < end; ++i) {
-                function(i);
+        [&](Nothing, Far::Index begin, Far::Index end) { function(begin, end); });
+}
+
+/// Calls function(i) for 0 <= i < count in the same way.
+template <typename FUNCTION>
+void ParallelFor(Far::Index count, FUNCTION function) {
+    ParallelForRange(count, [&](Far::Index begin, Far::Index end) {
+        for (Far::Index i = begin; i < end; ++i) {
+            function(i);
+        }
+    });
+}
+
+/// Gathers the i of 0 <= i < count that satisfy predicate(i), ascending, in the same way.
+template <typename PREDICATE>
+std::vector<Far::Index> ParallelSelect(Far::Index count, PREDICATE predicate) {
+    std::vector<std::vector<Far::Index>> selected(GetNumParallelRanges(count));
+    ParallelForRange(count, [&](Far::Index begin, Far::Index end) {
+        std::vector<Far::Index> &ofRange = selected[begin / kParallelRange];
+        for (Far::Index i = begin; i < end; ++i) {
+            if (predicate(i)) {
+                ofRange.push_back(i);
             }
-        });
+        }
+    });
+    std::vector<Far::Index> result;
+    for (std::vector<Far::Index> const &ofRange : selected) {
+        result.insert(result.end(), ofRange.begin(), ofRange.end());
+    }
+    return result;
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

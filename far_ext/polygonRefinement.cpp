@@ -380,6 +380,19 @@ void findPartedVertices(LevelTopology const &parent, LevelTopology &child) {
     }
 }
 
+void removeRelations(LevelTopology &level) {
+    level.hasFullTopology = false;
+    for (Buffer<Index> *array : {&level.faceEdges, &level.edgeVerts, &level.edgeFaces,
+                                 &level.boundaryEdges, &level.halfFaces, &level.vertFirstFace,
+                                 &level.vertFaces, &level.vertFirstEdge, &level.vertEdges}) {
+        array->Resize(0);
+    }
+    for (Buffer<Far::LocalIndex> *array :
+         {&level.edgeFaceLocals, &level.vertFaceLocals, &level.vertEdgeLocals}) {
+        array->Resize(0);
+    }
+}
+
 } // namespace
 
 void PolygonStep::Refine(bool fullTopology, LevelTopology &child) {
@@ -397,7 +410,9 @@ void PolygonStep::Refine(bool fullTopology, LevelTopology &child) {
     if (isHexagonal() && !_rules.closeGaps) {
         findPartedVertices(_parent, child);
     }
-    child.hasFullTopology = fullTopology;
+    if (!fullTopology) {
+        removeRelations(child);
+    }
     EndLevel(_sdcOptions, _parent, child);
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "topologyRefinement.h"
 
+#include "arrayWriter.h"
 #include "parallel.h"
 #include "sharpFeatures.h"
 
-#include <utility>
+#include <type_traits>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -13,136 +14,191 @@ namespace {
 using Index = Far::Index;
 using LocalIndex = Far::LocalIndex;
 
-// Which corners of an E-face run along the first side of their edge; known without a look at the
-// edge, as the order of its vertices is always the same.
-constexpr bool kEFaceCornerIsSideA[HexIndexing::kNumEFaceCorners] = {true, false, false,
-                                                                     true, false, false};
-constexpr bool kBoundaryEFaceCornerIsSideA[HexIndexing::kNumBoundaryEFaceCorners] = {true, true,
-                                                                                     false, false};
+// The sides of its interior edges that a hexagon is, by corner; known without a look at the edges
+// where the hexagonal step made it, as that always gives the vertices of an edge the same order.
+struct SidesOfEFace {
+    static constexpr EFaceSide const *kSides[] = {&kEFaceSideA, &kEFaceSideB, &kEFaceSideB,
+                                                  &kEFaceSideA, &kEFaceSideB, &kEFaceSideB};
+};
+struct SidesOfFFace {
+    static constexpr EFaceSide const *kSides[] = {&kEFaceSideA, &kEFaceSideA, &kEFaceSideA,
+                                                  &kEFaceSideA, &kEFaceSideA, &kEFaceSideA};
+};
+
+// Bytes of a level above which it is written past the caches: less than most caches have, but they
+// hold its parent as well.
+constexpr std::size_t kCacheSize = std::size_t(16) << 20;
 
 // An edge as one of its faces sees it.
 struct FaceEdge {
     bool HasEFace() const { return eFace != Far::INDEX_INVALID; }
 
-    Index eFace;       // INDEX_INVALID for a B edge, which makes none
-    Index firstCorner; // of the E-face
+    Index eFace; // INDEX_INVALID for a B edge, which makes none
     EFaceSide const *side;
     bool isBoundary;
 };
 
-// Fills a child level.  All that a component makes is written by that component alone, to places
-// that are known in advance, so that components can be taken in any order and in parallel.
-//
-// IS_IRREGULAR is for levels with boundaries or non-manifold vertices; without, all places are
-// closed-form.
-template <bool IS_IRREGULAR>
-class Refinement {
+// A corner with its neighbours in the face and the edges that end and start there.
+struct FaceCorner {
+    Index prev;
+    Index corner;
+    Index next;
+    FaceEdge inEdge;
+    FaceEdge outEdge;
+};
+
+// A corner of a face without boundary edges, and the sides that the face is of the edges.
+struct ClosedCorner {
+    Index face;
+    LocalIndex local; // its place in the face
+    Index prev;
+    Index corner;
+    Index next;
+    EFaceSide const *inSide;
+    EFaceSide const *outSide;
+};
+
+// Where the faces and edges of a vertex begin in the arrays of all vertices.
+struct VertexOffsets {
+    Index face;
+    Index edge;
+};
+
+// LevelTopology::GetEdgeChildFace for loops.
+class EFaceOfEdge {
 public:
-    Refinement(LevelTopology const &parent, LevelTopology &child)
-        : _p(parent), _c(child), _indexing(parent.ChildIndexing()) {}
+    explicit EFaceOfEdge(LevelTopology const &level)
+        : _eFaces(level.edgeChildFaces.empty() ? nullptr : level.edgeChildFaces.data()),
+          _indexing(level.ChildIndexing()) {}
 
-    void FillFaceVertices() {
-        fillFaceOffsets();
-        _c.faceVerts.Resize(_c.numCorners);
-        ParallelFor(_p.numFaces, [this](Index pFace) { fillFaceVerticesOf(pFace); });
-    }
-
-    void FillRelations() {
-        _c.faceEdges.Resize(_c.numCorners);
-        _c.edgeVerts.Resize(2 * std::size_t(_c.numEdges));
-        _c.edgeFaces.Resize(2 * std::size_t(_c.numEdges));
-        _c.edgeFaceLocals.Resize(2 * std::size_t(_c.numEdges));
-        _c.vertFirstFace.Resize(std::size_t(_c.numVertices) + 1);
-        _c.vertFirstEdge.Resize(std::size_t(_c.numVertices) + 1);
-        _c.vertFaces.Resize(_c.numCorners);
-        _c.vertFaceLocals.Resize(_c.numCorners);
-        _c.vertEdges.Resize(2 * std::size_t(_c.numEdges));
-        _c.vertEdgeLocals.Resize(2 * std::size_t(_c.numEdges));
-        fillBoundaries();
-        fillVertexOffsets();
-        ParallelFor(_p.numFaces, [this](Index pFace) { fillRelationsOfFace(pFace); });
-        ParallelFor(_p.numVertices, [this](Index pVert) { fillRelationsOfVertex(pVert); });
+    Index operator()(Index edge) const {
+        return _eFaces ? _eFaces[edge] : _indexing.GetEdgeChildFace(edge, 0);
     }
 
 private:
-    void fillFaceOffsets();
-    void fillVertexOffsets();
+    Index const *_eFaces;
+    HexIndexing _indexing;
+};
+
+void sortUnique(std::vector<Index> &indices) {
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
+// Takes [begin, end) apart at the indices that are listed, ascending: calls regular(begin, end, n)
+// for the runs between them and listed(index, n) for those themselves, in order; n of the listed
+// indices come before.
+template <typename LIST, typename REGULAR, typename LISTED>
+void forEachRun(Index begin, Index end, LIST const &list, REGULAR regular, LISTED listed) {
+    auto next = std::lower_bound(list.begin(), list.end(), begin);
+    while (begin < end) {
+        Index const numBefore = Index(next - list.begin());
+        Index const runEnd = next == list.end() ? end : std::min(*next, end);
+        if (begin < runEnd) {
+            regular(begin, runEnd, numBefore);
+        }
+        if (runEnd < end) {
+            listed(runEnd, numBefore);
+            ++next;
+        }
+        begin = runEnd + 1;
+    }
+}
+
+// Fills a child level.  All that a component makes is written by that component alone, to places
+// that are known in advance, so that components can be taken in any order and in parallel; and it
+// lies together, so that memory is written from front to back.
+//
+// Few components meet a boundary or a non-manifold vertex.  They are listed; between them all
+// places are closed-form but for shifts that are the same from one listed component to the next.
+class Refinement {
+public:
+    Refinement(LevelTopology const &parent, LevelTopology &child)
+        : _p(parent), _c(child), _indexing(parent.ChildIndexing()),
+          _pastCaches(child.memory.size() > kCacheSize) {}
+
+    // Face-vertices alone.
+    void FillFaces() { fillFaces<false>(); }
+    // All relations.
+    void FillAll() {
+        listOpenFaces();
+        listOpenVertices();
+        fillFaces<true>();
+        fillBoundaries();
+        ParallelForRange(_p.numFaces, [this](Index begin, Index end) {
+            forEachRun(
+                begin, end, _openFaces,
+                [this](Index runBegin, Index runEnd, Index) { fillClosedFaces(runBegin, runEnd); },
+                [this](Index pFace, Index) { fillOpenFace(pFace); });
+        });
+        ParallelForRange(_p.numVertices, [this](Index begin, Index end) {
+            forEachRun(
+                begin, end, _openVerts,
+                [this](Index runBegin, Index runEnd, Index numOpenBefore) {
+                    fillClosedVertices(runBegin, runEnd, numOpenBefore);
+                },
+                [this](Index pVert, Index numOpenBefore) { fillOpenVertex(pVert, numOpenBefore); });
+        });
+        _c.vertFirstFace[_c.numVertices] = _c.numCorners;
+        _c.vertFirstEdge[_c.numVertices] = 2 * _c.numEdges;
+    }
+
+private:
+    void listOpenFaces();
+    void listOpenVertices();
+    template <bool FULL>
+    void fillFaces();
+    template <bool FULL>
+    void fillEFaces(Index begin, Index end, Index numBoundaryBefore);
+    template <bool FULL>
+    void fillBoundaryEFace(Index pEdge, Index numBoundaryBefore);
     void fillBoundaries();
-    void fillFaceVerticesOf(Index pFace);
-    void fillRelationsOfFace(Index pFace);
-    void fillRelationsOfVertex(Index pVert);
-
-    bool isBoundary(Index pEdge) const {
-        if constexpr (IS_IRREGULAR) {
-            return _p.IsBoundary(pEdge);
-        }
-        static_cast<void>(pEdge);
-        return false;
-    }
-
-    bool isSideA(Index pFace, int size, Index pCorner, Index pEdge) const {
-        if (!_p.isHexagonal) {
-            return _p.edgeFaces[2 * std::size_t(pEdge)] == pFace;
-        }
-        if (!_p.parent->ChildIndexing().IsFaceFromEdge(pFace)) {
-            return true;
-        }
-        Index const local = pCorner - _p.faceFirstCorner[pFace];
-        return size == HexIndexing::kNumEFaceCorners ? kEFaceCornerIsSideA[local]
-                                                     : kBoundaryEFaceCornerIsSideA[local];
-    }
+    void fillOpenFace(Index pFace);
+    void fillClosedFaces(Index begin, Index end);
+    template <typename SIDES>
+    void fillHexagons(Index begin, Index end);
+    template <typename GET_SIDE>
+    void fillFacesOfAnySize(Index begin, Index end, GET_SIDE getSide);
+    template <typename WRITE>
+    void fillClosedCorners(Index begin, Index end, WRITE write);
+    void fillClosedVertices(Index begin, Index end, Index numOpenBefore);
+    void fillClosedFVertices(Index begin, Index end, Index numOpenBefore);
+    void fillOpenVertex(Index pVert, Index numOpenBefore);
 
     // The edge from a corner to the next, seen from the face.
-    FaceEdge edgeFrom(Index pFace, int size, Index pCorner) const {
+    FaceEdge edgeFrom(Index pFace, Index pCorner) const {
         Index const pEdge = _p.faceEdges[pCorner];
-        if constexpr (IS_IRREGULAR) {
-            Index const eFace = _p.GetEdgeChildFace(pEdge);
-            Index const first = eFace < 0 ? Far::INDEX_INVALID : _c.faceFirstCorner[eFace];
-            if (isBoundary(pEdge)) {
-                return {eFace, first, &kBoundaryEFaceSide, true};
-            }
-            return {eFace, first,
-                    isSideA(pFace, size, pCorner, pEdge) ? &kEFaceSideA : &kEFaceSideB, false};
+        Index const eFace = _p.GetEdgeChildFace(pEdge);
+        if (_p.IsBoundary(pEdge)) {
+            return {eFace, &kBoundaryEFaceSide, true};
         }
-        return {_indexing.GetEdgeChildFace(pEdge, 0),
-                _indexing.GetEdgeChildFirstCorner(pEdge, 0, 0),
-                isSideA(pFace, size, pCorner, pEdge) ? &kEFaceSideA : &kEFaceSideB, false};
+        bool const isSideA = _p.edgeFaces[2 * std::size_t(pEdge)] == pFace;
+        return {eFace, isSideA ? &kEFaceSideA : &kEFaceSideB, false};
     }
-
-    // Calls function(inEdge, outEdge, prev, pCorner, next) for all corners of a face.
-    template <typename FUNCTION>
-    void forEachCorner(Index pFace, FUNCTION function) const {
+    FaceCorner cornerOf(Index pFace, LocalIndex local) const {
         Index const first = _p.faceFirstCorner[pFace];
         Index const last = _p.faceFirstCorner[pFace + 1] - 1;
-        int const size = last - first + 1;
-        FaceEdge inEdge = edgeFrom(pFace, size, last);
-        Index prev = last;
-        for (Index pCorner = first; pCorner <= last; ++pCorner) {
-            FaceEdge const outEdge = edgeFrom(pFace, size, pCorner);
-            function(inEdge, outEdge, prev, pCorner, pCorner == last ? first : pCorner + 1);
-            inEdge = outEdge;
-            prev = pCorner;
-        }
+        Index const corner = first + local;
+        Index const prev = corner == first ? last : corner - 1;
+        Index const next = corner == last ? first : corner + 1;
+        return {prev, corner, next, edgeFrom(pFace, prev), edgeFrom(pFace, corner)};
+    }
+    Index numHalfFacesBefore(Index pFace) const {
+        return Index(std::lower_bound(_p.halfFaces.begin(), _p.halfFaces.end(), pFace) -
+                     _p.halfFaces.begin());
     }
 
-    // The edges of a face that end and start at a corner.
-    std::pair<FaceEdge, FaceEdge> edgesAt(Index pFace, Index pCorner) const {
-        Index const first = _p.faceFirstCorner[pFace];
-        Index const last = _p.faceFirstCorner[pFace + 1] - 1;
-        int const size = last - first + 1;
-        return {edgeFrom(pFace, size, pCorner == first ? last : pCorner - 1),
-                edgeFrom(pFace, size, pCorner)};
+    // A V-vertex has as many faces and edges as its parent, unless that is open.
+    VertexOffsets vVertexOffsets(Index pVert, Index numOpenBefore) const {
+        VertexOffsets const &shift = _vVertexShifts[numOpenBefore];
+        return {_p.vertFirstFace[pVert] + shift.face, _p.vertFirstEdge[pVert] + shift.edge};
     }
-
-    // Calls function(pEdge, rank) for the boundary edges that make an E-face.
-    template <typename FUNCTION>
-    void forEachBoundaryEFace(FUNCTION function) const {
-        Index rank = 0;
-        for (Index pEdge : _p.boundaryEdges) {
-            if (!_p.IsSharpBoundaryB(pEdge)) {
-                function(pEdge, rank++);
-            }
-        }
+    // F-vertices have three faces and edges, but for two in each half face that have two faces.
+    VertexOffsets fVertexOffsets(Index pCorner, Index numHalfBefore) const {
+        Index const numHalfFaces = Index(_p.halfFaces.size());
+        Index const numRemaining = 3 * (_p.numCorners - pCorner);
+        return {_c.numCorners - numRemaining + 2 * (numHalfFaces - numHalfBefore),
+                2 * _c.numEdges - numRemaining};
     }
 
     void setEdge(Index cEdge, Index vert0, Index vert1, Index face0, Index face1, LocalIndex local0,
@@ -159,240 +215,489 @@ private:
                          LocalIndex local) {
         setEdge(cEdge, vert0, vert1, face, kind, local, 0);
     }
+    void addVertexEdge(VertexOffsets &vertex, Index cEdge, LocalIndex local) {
+        _c.vertEdges[vertex.edge] = cEdge;
+        _c.vertEdgeLocals[vertex.edge++] = local;
+    }
+    void addVertexFace(VertexOffsets &vertex, Index cFace, LocalIndex local) {
+        _c.vertFaces[vertex.face] = cFace;
+        _c.vertFaceLocals[vertex.face++] = local;
+    }
+
+    // Writes count numbers: first, first + step ...
+    void writeSequence(Index *array, Index count, Index first, Index step) const {
+        WriteArray<1>(array, count, _pastCaches,
+                      [step, next = first](Index *number, Index) mutable {
+                          *number = next;
+                          next += step;
+                      });
+    }
 
     LevelTopology const &_p;
     LevelTopology &_c;
     HexIndexing const _indexing;
+    bool const _pastCaches;
+
+    std::vector<Index> _openFaces; // have a boundary edge
+    std::vector<Index> _openVerts; // on a boundary, or non-manifold
+    // How far the offsets of V-vertices lie behind those of their parents, when n of the open
+    // vertices come before.
+    std::vector<VertexOffsets> _vVertexShifts;
 };
 
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillFaceOffsets() {
-    _c.faceFirstCorner.Resize(std::size_t(_c.numFaces) + 1);
+void Refinement::listOpenFaces() {
+    for (Index pEdge : _p.boundaryEdges) {
+        _openFaces.push_back(_p.edgeFaces[2 * std::size_t(pEdge)]);
+    }
+    sortUnique(_openFaces);
+}
+
+// Where a fan of faces ends in a boundary edge with an E-face, its V-vertex has the E-face's
+// boundary edge besides the spokes, and as many faces as there are E-faces.
+void Refinement::listOpenVertices() {
+    _openVerts = _p.nonManifoldVerts;
+    for (Index pEdge : _p.boundaryEdges) {
+        std::size_t const k = 2 * std::size_t(pEdge);
+        _openVerts.insert(_openVerts.end(), {_p.edgeVerts[k], _p.edgeVerts[k + 1]});
+    }
+    sortUnique(_openVerts);
+    VertexOffsets shift = {0, 0};
+    _vVertexShifts.reserve(_openVerts.size() + 1);
+    _vVertexShifts.push_back(shift);
+    for (Index pVert : _openVerts) {
+        Index const begin = _p.vertFirstFace[pVert];
+        Index const end = _p.vertFirstFace[pVert + 1];
+        Index numFaces = 0;
+        Index numEdges = end - begin;
+        for (Index i = begin; i < end; ++i) {
+            FaceCorner const corner = cornerOf(_p.vertFaces[i], _p.vertFaceLocals[i]);
+            bool const startsFan = corner.outEdge.isBoundary && corner.outEdge.HasEFace();
+            bool const endsFan = corner.inEdge.isBoundary && corner.inEdge.HasEFace();
+            numFaces += Index(corner.inEdge.HasEFace()) + Index(startsFan);
+            numEdges += Index(startsFan) + Index(endsFan);
+        }
+        shift.face += numFaces - (end - begin);
+        shift.edge += numEdges - (_p.vertFirstEdge[pVert + 1] - _p.vertFirstEdge[pVert]);
+        _vVertexShifts.push_back(shift);
+    }
+}
+
+// Face-vertices, and face-edges for FULL: the F-faces repeat the parent's faces with corners for
+// vertices and edges, then come the E-faces.
+template <bool FULL>
+void Refinement::fillFaces() {
     ParallelFor(_p.numFaces, [this](Index pFace) {
         _c.faceFirstCorner[_indexing.GetFaceChildFace(pFace)] =
             _indexing.GetFaceChildFirstCorner(_p.faceFirstCorner[pFace]);
     });
-    if constexpr (IS_IRREGULAR) {
-        Index numBBefore = 0;
-        Index numBoundaryBefore = 0;
-        for (Index pEdge = 0; pEdge < _p.numEdges; ++pEdge) {
-            if (_p.IsSharpBoundaryB(pEdge)) {
-                ++numBBefore;
-                continue;
-            }
-            _c.faceFirstCorner[_indexing.GetEdgeChildFace(pEdge, numBBefore)] =
-                _indexing.GetEdgeChildFirstCorner(pEdge, numBBefore, numBoundaryBefore);
-            numBoundaryBefore += isBoundary(pEdge);
+    ParallelForRange(_p.numCorners, [=](Index begin, Index end) {
+        Index const cCorner = _indexing.GetFaceChildFirstCorner(begin);
+        writeSequence(&_c.faceVerts[cCorner], end - begin, _indexing.GetCornerChildVertex(begin),
+                      1);
+        if constexpr (FULL) {
+            writeSequence(&_c.faceEdges[cCorner], end - begin, _indexing.GetCornerChildEdge(begin),
+                          1);
         }
-    } else {
-        ParallelFor(_p.numEdges, [this](Index pEdge) {
-            _c.faceFirstCorner[_indexing.GetEdgeChildFace(pEdge, 0)] =
-                _indexing.GetEdgeChildFirstCorner(pEdge, 0, 0);
-        });
-    }
+    });
+    ParallelForRange(_p.numEdges, [this](Index begin, Index end) {
+        forEachRun(
+            begin, end, _p.boundaryEdges,
+            [this](Index runBegin, Index runEnd, Index numBoundaryBefore) {
+                fillEFaces<FULL>(runBegin, runEnd, numBoundaryBefore);
+            },
+            [this](Index pEdge, Index numBoundaryBefore) {
+                fillBoundaryEFace<FULL>(pEdge, numBoundaryBefore);
+            });
+    });
     _c.faceFirstCorner[_c.numFaces] = _c.numCorners;
 }
 
-// Every corner writes its own corner of the F-face and its own side of its edge's E-face; that of
-// a boundary edge has no other side, so its end vertex is written as well.
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillFaceVerticesOf(Index pFace) {
-    forEachCorner(
-        pFace, [this](FaceEdge const &, FaceEdge const &edge, Index, Index pCorner, Index next) {
-            Index const fVertex = _indexing.GetCornerChildVertex(pCorner);
-            _c.faceVerts[_indexing.GetFaceChildFirstCorner(pCorner)] = fVertex;
-            if (IS_IRREGULAR && !edge.HasEFace()) {
-                return;
-            }
-            Index *verts = _c.faceVerts.data() + edge.firstCorner;
-            verts[edge.side->startVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[pCorner]);
-            verts[edge.side->startFVertex] = fVertex;
-            verts[edge.side->endFVertex] = _indexing.GetCornerChildVertex(next);
-            if (IS_IRREGULAR && edge.isBoundary) {
-                verts[edge.side->endVertex] = _indexing.GetVertexChildVertex(_p.faceVerts[next]);
-            }
+// The E-faces of a run of interior edges, at most kParallelRange.
+template <bool FULL>
+void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
+    HexIndexing const indexing = _indexing;
+    Index const cFace = _p.GetEdgeChildFace(begin);
+    Index const numBBefore = indexing.GetEdgeChildFace(begin, 0) - cFace;
+    Index const cFirst =
+        indexing.GetEdgeChildFirstCorner(begin, numBBefore, numBoundaryBefore - numBBefore);
+    constexpr int kSize = HexIndexing::kNumEFaceCorners;
+    writeSequence(&_c.faceFirstCorner[cFace], end - begin, cFirst, kSize);
+
+    // Where the sides of the edges start and end: parent corners, found once for both arrays.
+    struct SideCorners {
+        Index start;
+        Index end;
+    };
+    SideCorners sides[2 * kParallelRange];
+    std::size_t const firstSide = 2 * std::size_t(begin);
+    std::size_t const numSides = 2 * std::size_t(end - begin);
+    Index const *const pFaces = _p.edgeFaces.data() + firstSide;
+    LocalIndex const *const pLocals = _p.edgeFaceLocals.data() + firstSide;
+    Index const *const pFirstCorner = _p.faceFirstCorner.data();
+    for (std::size_t k = 0; k < numSides; ++k) {
+        Index const first = pFirstCorner[pFaces[k]];
+        Index const start = first + pLocals[k];
+        sides[k] = {start, start + 1 == pFirstCorner[pFaces[k] + 1] ? first : start + 1};
+    }
+
+    constexpr EFaceSide const &kA = kEFaceSideA;
+    constexpr EFaceSide const &kB = kEFaceSideB;
+    Index const *const pVerts = _p.edgeVerts.data() + firstSide;
+    WriteArray<kSize>(&_c.faceVerts[cFirst], end - begin, _pastCaches, [&](Index *verts, Index i) {
+        SideCorners const &a = sides[2 * i];
+        SideCorners const &b = sides[2 * i + 1];
+        verts[kA.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i]);
+        verts[kA.startFVertex] = indexing.GetCornerChildVertex(a.start);
+        verts[kA.endFVertex] = indexing.GetCornerChildVertex(a.end);
+        verts[kB.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i + 1]);
+        verts[kB.startFVertex] = indexing.GetCornerChildVertex(b.start);
+        verts[kB.endFVertex] = indexing.GetCornerChildVertex(b.end);
+    });
+    if constexpr (FULL) {
+        Index *const edgesOfRun = &_c.faceEdges[cFirst];
+        WriteArray<kSize>(edgesOfRun, end - begin, _pastCaches, [&](Index *edges, Index i) {
+            SideCorners const &a = sides[2 * i];
+            SideCorners const &b = sides[2 * i + 1];
+            edges[kA.fFaceEdge] = indexing.GetCornerChildEdge(a.start);
+            edges[kA.startSpoke] = indexing.GetCornerChildSpoke(a.start);
+            edges[kA.endSpoke] = indexing.GetCornerChildSpoke(a.end);
+            edges[kB.fFaceEdge] = indexing.GetCornerChildEdge(b.start);
+            edges[kB.startSpoke] = indexing.GetCornerChildSpoke(b.start);
+            edges[kB.endSpoke] = indexing.GetCornerChildSpoke(b.end);
         });
+    }
 }
 
-// What the corners of a face make: their part of the face-edges, two edges each, and the relations
-// of their F-vertices.
+// All of the E-face of a boundary edge but its edge that is on the boundary.
+template <bool FULL>
+void Refinement::fillBoundaryEFace(Index pEdge, Index numBoundaryBefore) {
+    Index const cFace = _p.GetEdgeChildFace(pEdge);
+    if (cFace == Far::INDEX_INVALID) {
+        return;
+    }
+    EFaceSide const &side = kBoundaryEFaceSide;
+    std::size_t const k = 2 * std::size_t(pEdge);
+    Index const numBBefore = _indexing.GetEdgeChildFace(pEdge, 0) - cFace;
+    Index const cFirst =
+        _indexing.GetEdgeChildFirstCorner(pEdge, numBBefore, numBoundaryBefore - numBBefore);
+    FaceCorner const corner = cornerOf(_p.edgeFaces[k], _p.edgeFaceLocals[k]);
+    _c.faceFirstCorner[cFace] = cFirst;
+    Index *const verts = _c.faceVerts.data() + cFirst;
+    verts[side.startVertex] = _indexing.GetVertexChildVertex(_p.edgeVerts[k]);
+    verts[side.endVertex] = _indexing.GetVertexChildVertex(_p.edgeVerts[k + 1]);
+    verts[side.endFVertex] = _indexing.GetCornerChildVertex(corner.next);
+    verts[side.startFVertex] = _indexing.GetCornerChildVertex(corner.corner);
+    if constexpr (FULL) {
+        Index *const edges = _c.faceEdges.data() + cFirst;
+        edges[side.endSpoke] = _indexing.GetCornerChildSpoke(corner.next);
+        edges[side.fFaceEdge] = _indexing.GetCornerChildEdge(corner.corner);
+        edges[side.startSpoke] = _indexing.GetCornerChildSpoke(corner.corner);
+    }
+}
+
+// What the corners of a face with boundary edges make, as in fillClosedCorners.
 //
 // An edge whose E-face is missing is a boundary: the edge of the F-face is a B edge then, and the
 // spokes at its ends are A edges, each directed as its one face runs; the F-vertices at its ends
 // have two faces, others have three.
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillRelationsOfFace(Index pFace) {
+void Refinement::fillOpenFace(Index pFace) {
     Index const cFace = _indexing.GetFaceChildFace(pFace);
     Index const first = _p.faceFirstCorner[pFace];
-    std::size_t face = _c.vertFirstFace[_indexing.GetCornerChildVertex(first)];
-    std::size_t edge = _c.vertFirstEdge[_indexing.GetCornerChildVertex(first)];
-    forEachCorner(pFace, [&](FaceEdge const &inEdge, FaceEdge const &outEdge, Index prev,
-                             Index pCorner, Index next) {
-        Index const vVertex = _indexing.GetVertexChildVertex(_p.faceVerts[pCorner]);
-        Index const fVertex = _indexing.GetCornerChildVertex(pCorner);
-        Index const nextFVertex = _indexing.GetCornerChildVertex(next);
-        Index const fEdge = _indexing.GetCornerChildEdge(pCorner);
-        Index const prevFEdge = _indexing.GetCornerChildEdge(prev);
-        Index const spoke = _indexing.GetCornerChildSpoke(pCorner);
-        LocalIndex const local = LocalIndex(pCorner - first);
-        bool const hasOut = !IS_IRREGULAR || outEdge.HasEFace();
-        bool const hasIn = !IS_IRREGULAR || inEdge.HasEFace();
+    Index const size = _p.faceFirstCorner[pFace + 1] - first;
+    VertexOffsets vertex = fVertexOffsets(first, numHalfFacesBefore(pFace));
+    for (Index i = 0; i < size; ++i) {
+        LocalIndex const local = LocalIndex(i);
+        FaceCorner const corner = cornerOf(pFace, local);
+        FaceEdge const &in = corner.inEdge;
+        FaceEdge const &out = corner.outEdge;
+        Index const vVertex = _indexing.GetVertexChildVertex(_p.faceVerts[corner.corner]);
+        Index const fVertex = _indexing.GetCornerChildVertex(corner.corner);
+        Index const nextFVertex = _indexing.GetCornerChildVertex(corner.next);
+        Index const fEdge = _indexing.GetCornerChildEdge(corner.corner);
+        Index const spoke = _indexing.GetCornerChildSpoke(corner.corner);
 
-        _c.faceEdges[_indexing.GetFaceChildFirstCorner(pCorner)] = fEdge;
-        if (hasOut) {
-            Index *edges = _c.faceEdges.data() + outEdge.firstCorner;
-            edges[outEdge.side->fFaceEdge] = fEdge;
-            edges[outEdge.side->startSpoke] = spoke;
-            edges[outEdge.side->endSpoke] = _indexing.GetCornerChildSpoke(next);
-        }
-
-        if (!hasOut) {
+        if (!out.HasEFace()) {
             setBoundaryEdge(fEdge, fVertex, nextFVertex, cFace, kSharpBoundaryB, local);
-            setBoundaryEdge(spoke, vVertex, fVertex, inEdge.eFace, kSharpBoundaryA,
-                            inEdge.side->endSpoke);
+            setBoundaryEdge(spoke, vVertex, fVertex, in.eFace, kSharpBoundaryA, in.side->endSpoke);
         } else {
-            setEdge(fEdge, fVertex, nextFVertex, cFace, outEdge.eFace, local,
-                    outEdge.side->fFaceEdge);
-            if (!hasIn) {
-                setBoundaryEdge(spoke, fVertex, vVertex, outEdge.eFace, kSharpBoundaryA,
-                                outEdge.side->startSpoke);
+            setEdge(fEdge, fVertex, nextFVertex, cFace, out.eFace, local, out.side->fFaceEdge);
+            if (!in.HasEFace()) {
+                setBoundaryEdge(spoke, fVertex, vVertex, out.eFace, kSharpBoundaryA,
+                                out.side->startSpoke);
             } else {
-                // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
-                setEdge(spoke, vVertex, fVertex, inEdge.eFace, outEdge.eFace, inEdge.side->endSpoke,
-                        outEdge.side->startSpoke);
+                setEdge(spoke, vVertex, fVertex, in.eFace, out.eFace, in.side->endSpoke,
+                        out.side->startSpoke);
             }
         }
 
-        _c.vertFirstFace[fVertex] = Index(face);
-        _c.vertFirstEdge[fVertex] = Index(edge);
-        auto addFace = [&](Index vertFace, LocalIndex vertLocal) {
-            _c.vertFaces[face] = vertFace;
-            _c.vertFaceLocals[face++] = vertLocal;
-        };
-        auto addEdge = [&](Index vertEdge, LocalIndex vertLocal) {
-            _c.vertEdges[edge] = vertEdge;
-            _c.vertEdgeLocals[edge++] = vertLocal;
-        };
-        if (!hasIn) {
+        _c.vertFirstFace[fVertex] = vertex.face;
+        _c.vertFirstEdge[fVertex] = vertex.edge;
+        if (!in.HasEFace()) {
             // The way around begins behind the missing face.
-            addEdge(spoke, 0);
-            addFace(outEdge.eFace, outEdge.side->startFVertex);
+            addVertexEdge(vertex, spoke, 0);
+            addVertexFace(vertex, out.eFace, out.side->startFVertex);
         }
-        addEdge(fEdge, 0);
-        addFace(cFace, local);
-        addEdge(prevFEdge, 1);
-        if (hasIn) {
-            addFace(inEdge.eFace, inEdge.side->endFVertex);
-            addEdge(spoke, 1);
-            if (hasOut) {
-                addFace(outEdge.eFace, outEdge.side->startFVertex);
+        addVertexEdge(vertex, fEdge, 0);
+        addVertexFace(vertex, cFace, local);
+        addVertexEdge(vertex, _indexing.GetCornerChildEdge(corner.prev), 1);
+        if (in.HasEFace()) {
+            addVertexFace(vertex, in.eFace, in.side->endFVertex);
+            addVertexEdge(vertex, spoke, 1);
+            if (out.HasEFace()) {
+                addVertexFace(vertex, out.eFace, out.side->startFVertex);
             }
         }
+    }
+}
+
+// A run of faces without boundary edges.
+void Refinement::fillClosedFaces(Index begin, Index end) {
+    if (!_p.isHexagonal) {
+        fillFacesOfAnySize(begin, end, [this](Index pFace, Index pCorner) {
+            std::size_t const pEdge = _p.faceEdges[pCorner];
+            return _p.edgeFaces[2 * pEdge] == pFace ? &kEFaceSideA : &kEFaceSideB;
+        });
+        return;
+    }
+    // F-faces come first, which are side A of all their edges; then all faces are hexagons.
+    Index const endFFaces = std::max(begin, std::min(end, _p.parent->numFaces));
+    auto const isHexagon = [this](Index pFace) {
+        return _p.faceFirstCorner[pFace + 1] - _p.faceFirstCorner[pFace] ==
+               HexIndexing::kNumEFaceCorners;
+    };
+    for (Index pFace = begin; pFace < endFFaces;) {
+        Index runEnd = pFace + 1;
+        while (runEnd < endFFaces && isHexagon(runEnd) == isHexagon(pFace)) {
+            ++runEnd;
+        }
+        if (isHexagon(pFace)) {
+            fillHexagons<SidesOfFFace>(pFace, runEnd);
+        } else {
+            fillFacesOfAnySize(pFace, runEnd, [](Index, Index) { return &kEFaceSideA; });
+        }
+        pFace = runEnd;
+    }
+    if (endFFaces < end) {
+        fillHexagons<SidesOfEFace>(endFFaces, end);
+    }
+}
+
+// Hexagons whose sides of their edges are known: all but indices are constants.
+template <typename SIDES>
+void Refinement::fillHexagons(Index begin, Index end) {
+    constexpr int kSize = HexIndexing::kNumEFaceCorners;
+    Index const runFirst = _p.faceFirstCorner[begin];
+    fillClosedCorners(begin, end, [=](auto kEntries, auto *array, auto fill) {
+        WriteArray<kEntries * kSize>(array, end - begin, _pastCaches, [=](auto *entries, Index i) {
+            Index const first = runFirst + kSize * i;
+            for (int local = 0; local < kSize; ++local) {
+                int const prev = (local + kSize - 1) % kSize;
+                int const next = (local + 1) % kSize;
+                fill(entries + kEntries * local,
+                     ClosedCorner{begin + i, LocalIndex(local), first + prev, first + local,
+                                  first + next, SIDES::kSides[prev], SIDES::kSides[local]});
+            }
+        });
+    });
+}
+
+// getSide(pFace, pCorner) tells the side that the face is of the edge from a corner to the next.
+template <typename GET_SIDE>
+void Refinement::fillFacesOfAnySize(Index begin, Index end, GET_SIDE getSide) {
+    std::vector<ClosedCorner> corners;
+    corners.reserve(_p.faceFirstCorner[end] - _p.faceFirstCorner[begin]);
+    for (Index pFace = begin; pFace < end; ++pFace) {
+        Index const first = _p.faceFirstCorner[pFace];
+        Index const last = _p.faceFirstCorner[pFace + 1] - 1;
+        ClosedCorner corner = {pFace, 0, last, first, first + 1, getSide(pFace, last), nullptr};
+        for (; corner.corner <= last; ++corner.corner, ++corner.local) {
+            corner.next = corner.corner == last ? first : corner.corner + 1;
+            corner.outSide = getSide(pFace, corner.corner);
+            corners.push_back(corner);
+            corner.prev = corner.corner;
+            corner.inSide = corner.outSide;
+        }
+    }
+    fillClosedCorners(begin, end, [&](auto kEntries, auto *array, auto fill) {
+        WriteArray<kEntries>(array, Index(corners.size()), _pastCaches,
+                             [&](auto *entries, Index i) { fill(entries, corners[i]); });
+    });
+}
+
+// What the corners of a run of faces without boundary edges make: an edge of the F-face, a spoke,
+// and the relations of an F-vertex.  One array after the other: so each is written from front to
+// back, by a loop that compilers make vectors of.
+//
+// write(kEntries, array, fill) calls fill(entries, corner) for all corners, with their kEntries
+// entries of an array.
+template <typename WRITE>
+void Refinement::fillClosedCorners(Index begin, Index end, WRITE write) {
+    constexpr std::integral_constant<int, 2> kTwo;
+    constexpr std::integral_constant<int, 3> kThree;
+    HexIndexing const indexing = _indexing;
+    Index const *const pVerts = _p.faceVerts.data();
+    Index const *const pEdges = _p.faceEdges.data();
+    EFaceOfEdge const eFaceOf(_p);
+    Index const pFirst = _p.faceFirstCorner[begin];
+
+    std::size_t const fEdges = 2 * std::size_t(indexing.GetCornerChildEdge(pFirst));
+    write(kTwo, &_c.edgeVerts[fEdges], [=](Index *verts, ClosedCorner const &corner) {
+        verts[0] = indexing.GetCornerChildVertex(corner.corner);
+        verts[1] = indexing.GetCornerChildVertex(corner.next);
+    });
+    write(kTwo, &_c.edgeFaces[fEdges], [=](Index *faces, ClosedCorner const &corner) {
+        faces[0] = indexing.GetFaceChildFace(corner.face);
+        faces[1] = eFaceOf(pEdges[corner.corner]);
+    });
+    write(kTwo, &_c.edgeFaceLocals[fEdges], [](LocalIndex *locals, ClosedCorner const &corner) {
+        locals[0] = corner.local;
+        locals[1] = corner.outSide->fFaceEdge;
+    });
+
+    // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
+    std::size_t const spokes = 2 * std::size_t(indexing.GetCornerChildSpoke(pFirst));
+    write(kTwo, &_c.edgeVerts[spokes], [=](Index *verts, ClosedCorner const &corner) {
+        verts[0] = indexing.GetVertexChildVertex(pVerts[corner.corner]);
+        verts[1] = indexing.GetCornerChildVertex(corner.corner);
+    });
+    write(kTwo, &_c.edgeFaces[spokes], [=](Index *faces, ClosedCorner const &corner) {
+        faces[0] = eFaceOf(pEdges[corner.prev]);
+        faces[1] = eFaceOf(pEdges[corner.corner]);
+    });
+    write(kTwo, &_c.edgeFaceLocals[spokes], [](LocalIndex *locals, ClosedCorner const &corner) {
+        locals[0] = corner.inSide->endSpoke;
+        locals[1] = corner.outSide->startSpoke;
+    });
+
+    // None of the faces is a half face, so that all F-vertices have three faces and edges.
+    VertexOffsets const vertex = fVertexOffsets(pFirst, numHalfFacesBefore(begin));
+    Index const numCorners = _p.faceFirstCorner[end] - pFirst;
+    Index const fVertex = indexing.GetCornerChildVertex(pFirst);
+    writeSequence(&_c.vertFirstFace[fVertex], numCorners, vertex.face, kThree);
+    writeSequence(&_c.vertFirstEdge[fVertex], numCorners, vertex.edge, kThree);
+    write(kThree, &_c.vertFaces[vertex.face], [=](Index *faces, ClosedCorner const &corner) {
+        faces[0] = indexing.GetFaceChildFace(corner.face);
+        faces[1] = eFaceOf(pEdges[corner.prev]);
+        faces[2] = eFaceOf(pEdges[corner.corner]);
+    });
+    write(kThree, &_c.vertFaceLocals[vertex.face],
+          [](LocalIndex *locals, ClosedCorner const &corner) {
+              locals[0] = corner.local;
+              locals[1] = corner.inSide->endFVertex;
+              locals[2] = corner.outSide->startFVertex;
+          });
+    write(kThree, &_c.vertEdges[vertex.edge], [=](Index *edges, ClosedCorner const &corner) {
+        edges[0] = indexing.GetCornerChildEdge(corner.corner);
+        edges[1] = indexing.GetCornerChildEdge(corner.prev);
+        edges[2] = indexing.GetCornerChildSpoke(corner.corner);
+    });
+    write(kThree, &_c.vertEdgeLocals[vertex.edge], [](LocalIndex *locals, ClosedCorner const &) {
+        locals[0] = 0;
+        locals[1] = 1;
+        locals[2] = 1;
     });
 }
 
 // Around a V-vertex the spokes take the place of the parent's faces and the E-faces that of its
-// edges.  Where a fan of faces ends in a boundary edge with an E-face, that one's boundary edge
-// comes first or last.
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillRelationsOfVertex(Index pVert) {
-    Index const cVert = _indexing.GetVertexChildVertex(pVert);
-    std::size_t face = _c.vertFirstFace[cVert];
-    std::size_t edge = _c.vertFirstEdge[cVert];
-    auto addEdge = [&](Index cEdge, LocalIndex local) {
-        _c.vertEdges[edge] = cEdge;
-        _c.vertEdgeLocals[edge++] = local;
-    };
-    auto addFace = [&](Index cFace, LocalIndex local) {
-        _c.vertFaces[face] = cFace;
-        _c.vertFaceLocals[face++] = local;
-    };
-    Index const begin = _p.vertFirstFace[pVert];
-    Index const end = _p.vertFirstFace[pVert + 1];
-    for (Index i = begin; i < end; ++i) {
-        Index const pFace = _p.vertFaces[i];
-        Index const pCorner = _p.faceFirstCorner[pFace] + _p.vertFaceLocals[i];
-        Index const spoke = _indexing.GetCornerChildSpoke(pCorner);
-        if constexpr (IS_IRREGULAR) {
-            auto const [inEdge, outEdge] = edgesAt(pFace, pCorner);
-            if (outEdge.isBoundary && outEdge.HasEFace()) {
-                addEdge(_c.faceEdges[outEdge.firstCorner + kBoundaryEFaceEdge], 0);
-                addFace(outEdge.eFace, outEdge.side->startVertex);
-            }
-            addEdge(spoke, inEdge.HasEFace() ? 0 : 1);
-            if (inEdge.HasEFace()) {
-                addFace(inEdge.eFace, inEdge.side->endVertex);
-                if (inEdge.isBoundary) {
-                    addEdge(_c.faceEdges[inEdge.firstCorner + kBoundaryEFaceEdge], 1);
-                }
-            }
-        } else {
+// edges.
+void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore) {
+    Index const endOther = _p.isHexagonal ? std::min(end, _p.parent->numVertices) : end;
+    VertexOffsets vertex = vVertexOffsets(begin, numOpenBefore);
+    HexIndexing const indexing = _indexing;
+    EFaceOfEdge const eFaceOf(_p);
+    Index pVert = begin;
+    for (; pVert < endOther; ++pVert) {
+        Index const cVert = indexing.GetVertexChildVertex(pVert);
+        Index const firstFace = _p.vertFirstFace[pVert];
+        Index const firstEdge = _p.vertFirstEdge[pVert];
+        Index const size = _p.vertFirstFace[pVert + 1] - firstFace;
+        _c.vertFirstFace[cVert] = vertex.face;
+        _c.vertFirstEdge[cVert] = vertex.edge;
+        for (Index i = 0; i < size; ++i) {
+            Index const pCorner =
+                _p.faceFirstCorner[_p.vertFaces[firstFace + i]] + _p.vertFaceLocals[firstFace + i];
             // The edge behind the face comes next in the vertex's own list.
-            Index const k = _p.vertFirstEdge[pVert] + (i + 1 == end ? 0 : i + 1 - begin);
-            addEdge(spoke, 0);
-            addFace(_indexing.GetEdgeChildFace(_p.vertEdges[k], 0),
-                    _p.vertEdgeLocals[k] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex);
+            Index const k = firstEdge + (i + 1 == size ? 0 : i + 1);
+            addVertexEdge(vertex, indexing.GetCornerChildSpoke(pCorner), 0);
+            addVertexFace(vertex, eFaceOf(_p.vertEdges[k]),
+                          _p.vertEdgeLocals[k] == 0 ? kEFaceSideA.startVertex
+                                                    : kEFaceSideA.endVertex);
         }
+    }
+    if (pVert < end) {
+        fillClosedFVertices(pVert, end, numOpenBefore);
     }
 }
 
-// Where the faces and edges of each vertex begin: those of V-vertices, and of each parent face's
-// first F-vertex; the others follow from it.
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillVertexOffsets() {
-    Index numFaces = 0;
-    Index numEdges = 0;
-    if constexpr (IS_IRREGULAR) {
-        for (Index pVert = 0; pVert < _p.numVertices; ++pVert) {
-            Index const cVert = _indexing.GetVertexChildVertex(pVert);
-            _c.vertFirstFace[cVert] = numFaces;
-            _c.vertFirstEdge[cVert] = numEdges;
-            for (Index i = _p.vertFirstFace[pVert]; i < _p.vertFirstFace[pVert + 1]; ++i) {
-                Index const pFace = _p.vertFaces[i];
-                auto const [inEdge, outEdge] =
-                    edgesAt(pFace, _p.faceFirstCorner[pFace] + _p.vertFaceLocals[i]);
-                bool const startsFan = outEdge.isBoundary && outEdge.HasEFace();
-                bool const endsFan = inEdge.isBoundary && inEdge.HasEFace();
-                numFaces += Index(inEdge.HasEFace()) + Index(startsFan);
-                numEdges += 1 + Index(startsFan) + Index(endsFan);
+// The same for F-vertices of the parent, which have three faces and are the first, second and
+// second vertex of their three edges; array by array as for hexagons.
+void Refinement::fillClosedFVertices(Index begin, Index end, Index numOpenBefore) {
+    constexpr int kSize = 3;
+    VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
+    Index const *const pFaces = &_p.vertFaces[_p.vertFirstFace[begin]];
+    LocalIndex const *const pFaceLocals = &_p.vertFaceLocals[_p.vertFirstFace[begin]];
+    Index const *const pEdges = &_p.vertEdges[_p.vertFirstEdge[begin]];
+    HexIndexing const indexing = _indexing;
+
+    Index const cVert = indexing.GetVertexChildVertex(begin);
+    writeSequence(&_c.vertFirstFace[cVert], end - begin, vertex.face, kSize);
+    writeSequence(&_c.vertFirstEdge[cVert], end - begin, vertex.edge, kSize);
+
+    Index const *const pFirstCorner = _p.faceFirstCorner.data();
+    EFaceOfEdge const eFaceOf(_p);
+    auto const write = [=](auto *array, auto fill) {
+        WriteArray<kSize>(array, end - begin, _pastCaches, fill);
+    };
+    write(&_c.vertEdges[vertex.edge], [=](Index *edges, Index i) {
+        for (int k = 0; k < kSize; ++k) {
+            Index const pCorner = pFirstCorner[pFaces[kSize * i + k]] + pFaceLocals[kSize * i + k];
+            edges[k] = indexing.GetCornerChildSpoke(pCorner);
+        }
+    });
+    write(&_c.vertEdgeLocals[vertex.edge],
+          [](LocalIndex *locals, Index) { locals[0] = locals[1] = locals[2] = 0; });
+    write(&_c.vertFaces[vertex.face], [=](Index *faces, Index i) {
+        for (int k = 0; k < kSize; ++k) {
+            faces[k] = eFaceOf(pEdges[kSize * i + (k + 1) % kSize]);
+        }
+    });
+    write(&_c.vertFaceLocals[vertex.face], [](LocalIndex *locals, Index) {
+        locals[0] = locals[1] = kEFaceSideA.endVertex;
+        locals[2] = kEFaceSideA.startVertex;
+    });
+}
+
+// Where a fan of faces ends in a boundary edge with an E-face, that one's boundary edge comes first
+// or last.
+void Refinement::fillOpenVertex(Index pVert, Index numOpenBefore) {
+    VertexOffsets vertex = vVertexOffsets(pVert, numOpenBefore);
+    Index const cVert = _indexing.GetVertexChildVertex(pVert);
+    _c.vertFirstFace[cVert] = vertex.face;
+    _c.vertFirstEdge[cVert] = vertex.edge;
+    auto const boundaryEdgeOf = [this](Index eFace) {
+        return _c.faceEdges[_c.faceFirstCorner[eFace] + kBoundaryEFaceEdge];
+    };
+    for (Index i = _p.vertFirstFace[pVert]; i < _p.vertFirstFace[pVert + 1]; ++i) {
+        FaceCorner const corner = cornerOf(_p.vertFaces[i], _p.vertFaceLocals[i]);
+        FaceEdge const &in = corner.inEdge;
+        FaceEdge const &out = corner.outEdge;
+        if (out.isBoundary && out.HasEFace()) {
+            addVertexEdge(vertex, boundaryEdgeOf(out.eFace), 0);
+            addVertexFace(vertex, out.eFace, out.side->startVertex);
+        }
+        addVertexEdge(vertex, _indexing.GetCornerChildSpoke(corner.corner), in.HasEFace() ? 0 : 1);
+        if (in.HasEFace()) {
+            addVertexFace(vertex, in.eFace, in.side->endVertex);
+            if (in.isBoundary) {
+                addVertexEdge(vertex, boundaryEdgeOf(in.eFace), 1);
             }
         }
-        std::size_t half = 0;
-        for (Index pFace = 0; pFace < _p.numFaces; ++pFace) {
-            Index const first = _p.faceFirstCorner[pFace];
-            Index const size = _p.faceFirstCorner[pFace + 1] - first;
-            Index const fVertex = _indexing.GetCornerChildVertex(first);
-            bool const isHalf = half < _p.halfFaces.size() && _p.halfFaces[half] == pFace;
-            half += isHalf;
-            _c.vertFirstFace[fVertex] = numFaces;
-            _c.vertFirstEdge[fVertex] = numEdges;
-            numFaces += 3 * size - (isHalf ? 2 : 0);
-            numEdges += 3 * size;
-        }
-    } else {
-        // A V-vertex has as many faces and edges as its parent, which come to numCorners in all.
-        ParallelFor(_p.numVertices, [this](Index pVert) {
-            Index const cVert = _indexing.GetVertexChildVertex(pVert);
-            _c.vertFirstFace[cVert] = _p.vertFirstFace[pVert];
-            _c.vertFirstEdge[cVert] = _p.vertFirstEdge[pVert];
-        });
-        ParallelFor(_p.numFaces, [this](Index pFace) {
-            Index const first = _p.faceFirstCorner[pFace];
-            Index const fVertex = _indexing.GetCornerChildVertex(first);
-            _c.vertFirstFace[fVertex] = _p.numCorners + 3 * first;
-            _c.vertFirstEdge[fVertex] = _p.numCorners + 3 * first;
-        });
     }
-    _c.vertFirstFace[_c.numVertices] = _c.numCorners;
-    _c.vertFirstEdge[_c.numVertices] = 2 * _c.numEdges;
 }
 
-template <bool IS_IRREGULAR>
-void Refinement<IS_IRREGULAR>::fillBoundaries() {
+// The edges on the boundary, and the half faces.
+void Refinement::fillBoundaries() {
     std::size_t const numHalfFaces = _p.halfFaces.size();
-    std::size_t const numBoundaryEFaces = _p.boundaryEdges.size() - numHalfFaces;
-    _c.boundaryEdges.Resize(3 * numHalfFaces + numBoundaryEFaces);
-    _c.halfFaces.Resize(numHalfFaces + std::size_t(_p.numSharpBoundariesA));
     Index *bEdges = _c.boundaryEdges.data();
     Index *spokes = bEdges + numHalfFaces;
     for (std::size_t i = 0; i < numHalfFaces; ++i) {
@@ -405,12 +710,16 @@ void Refinement<IS_IRREGULAR>::fillBoundaries() {
     }
     Index *boundaryChildren = spokes + 2 * numHalfFaces;
     Index *halfEFaces = _c.halfFaces.data() + numHalfFaces;
-    forEachBoundaryEFace([&](Index pEdge, Index rank) {
+    Index rank = 0;
+    for (Index pEdge : _p.boundaryEdges) {
+        if (_p.IsSharpBoundaryB(pEdge)) {
+            continue;
+        }
         std::size_t const k = 2 * std::size_t(pEdge);
         Index const eFace = _p.GetEdgeChildFace(pEdge);
         Index const cEdge = _indexing.GetBoundaryChildEdge(rank);
         bool const isFree = _p.edgeFaces[k + 1] == kFreeBoundary;
-        boundaryChildren[rank] = cEdge;
+        boundaryChildren[rank++] = cEdge;
         if (!isFree) {
             *halfEFaces++ = eFace;
         }
@@ -418,16 +727,35 @@ void Refinement<IS_IRREGULAR>::fillBoundaries() {
         setBoundaryEdge(cEdge, _indexing.GetVertexChildVertex(_p.edgeVerts[k]),
                         _indexing.GetVertexChildVertex(_p.edgeVerts[k + 1]), eFace,
                         isFree ? kFreeBoundary : kSharpBoundaryB, kBoundaryEFaceEdge);
-    });
+    }
 }
 
-template <bool IS_IRREGULAR>
-void fillLevel(LevelTopology const &parent, bool fullTopology, LevelTopology &child) {
-    Refinement<IS_IRREGULAR> refinement(parent, child);
-    refinement.FillFaceVertices();
-    if (fullTopology) {
-        refinement.FillRelations();
-    }
+// Gives all arrays of the child and the relations of the parent to it a place.
+void placeArrays(LevelTopology &parent, LevelTopology &child) {
+    PlaceArrays(child.memory, [&](auto place) {
+        place(parent.faceChildFaces, parent.numFaces);
+        place(parent.edgeChildFaces, parent.halfFaces.empty() ? 0 : parent.numEdges);
+        place(child.faceFirstCorner, std::size_t(child.numFaces) + 1);
+        place(child.faceVerts, child.numCorners);
+        // Arrays that are not wanted get no place.
+        auto const placeRelation = [&](auto &array, std::size_t size) {
+            place(array, child.hasFullTopology ? size : 0);
+        };
+        std::size_t const numSharpBoundaries =
+            std::size_t(child.numSharpBoundariesA) + child.numSharpBoundariesB;
+        placeRelation(child.faceEdges, child.numCorners);
+        placeRelation(child.edgeVerts, 2 * std::size_t(child.numEdges));
+        placeRelation(child.edgeFaces, 2 * std::size_t(child.numEdges));
+        placeRelation(child.edgeFaceLocals, 2 * std::size_t(child.numEdges));
+        placeRelation(child.boundaryEdges, child.numFreeBoundaries + numSharpBoundaries);
+        placeRelation(child.halfFaces, child.numSharpBoundariesB);
+        placeRelation(child.vertFirstFace, std::size_t(child.numVertices) + 1);
+        placeRelation(child.vertFaces, child.numCorners);
+        placeRelation(child.vertFaceLocals, child.numCorners);
+        placeRelation(child.vertFirstEdge, std::size_t(child.numVertices) + 1);
+        placeRelation(child.vertEdges, 2 * std::size_t(child.numEdges));
+        placeRelation(child.vertEdgeLocals, 2 * std::size_t(child.numEdges));
+    });
 }
 
 // The relations that only a refined level has: to its children.
@@ -436,32 +764,34 @@ void fillChildRelations(LevelTopology &parent) {
     parent.vertChildVerts.Resize(0);
     parent.vVertexParents.Resize(0);
     HexIndexing const indexing = parent.ChildIndexing();
-    parent.faceChildFaces.Resize(parent.numFaces);
     ParallelFor(parent.numFaces, [&](Index pFace) {
         parent.faceChildFaces[pFace] = indexing.GetFaceChildFace(pFace);
     });
-    parent.edgeChildFaces.Resize(parent.halfFaces.empty() ? 0 : parent.numEdges);
-    Index numBBefore = 0;
-    for (std::size_t pEdge = 0; pEdge < parent.edgeChildFaces.size(); ++pEdge) {
-        bool const isB = parent.IsSharpBoundaryB(Index(pEdge));
-        parent.edgeChildFaces[pEdge] =
-            isB ? Far::INDEX_INVALID : indexing.GetEdgeChildFace(Index(pEdge), numBBefore);
-        numBBefore += isB;
+    if (parent.edgeChildFaces.empty()) {
+        return;
     }
-}
-
-void clearRelations(LevelTopology &level) {
-    for (Buffer<Index> *array : {&level.faceEdges, &level.edgeVerts, &level.edgeFaces,
-                                 &level.boundaryEdges, &level.halfFaces, &level.vertFirstFace,
-                                 &level.vertFaces, &level.vertFirstEdge, &level.vertEdges}) {
-        array->Resize(0);
+    // By the number of boundary edges before.
+    std::vector<Index> numBBefore = {0};
+    numBBefore.reserve(parent.boundaryEdges.size() + 1);
+    for (Index pEdge : parent.boundaryEdges) {
+        numBBefore.push_back(numBBefore.back() + Index(parent.IsSharpBoundaryB(pEdge)));
     }
-    for (Buffer<LocalIndex> *array :
-         {&level.edgeFaceLocals, &level.vertFaceLocals, &level.vertEdgeLocals}) {
-        array->Resize(0);
-    }
-    level.sharpVerts.clear();
-    level.sectorCorners.clear();
+    ParallelForRange(parent.numEdges, [&](Index begin, Index end) {
+        auto const fillRun = [&](Index runBegin, Index runEnd, Index numBoundaryBefore) {
+            for (Index pEdge = runBegin; pEdge < runEnd; ++pEdge) {
+                parent.edgeChildFaces[pEdge] =
+                    indexing.GetEdgeChildFace(pEdge, numBBefore[numBoundaryBefore]);
+            }
+        };
+        forEachRun(begin, end, parent.boundaryEdges, fillRun,
+                   [&](Index pEdge, Index numBoundaryBefore) {
+                       if (parent.IsSharpBoundaryB(pEdge)) {
+                           parent.edgeChildFaces[pEdge] = Far::INDEX_INVALID;
+                       } else {
+                           fillRun(pEdge, pEdge + 1, numBoundaryBefore);
+                       }
+                   });
+    });
 }
 
 } // namespace
@@ -505,12 +835,12 @@ void BeginLevel(LevelSizes const &sizes, bool fullTopology, LevelTopology const 
 }
 
 void EndLevel(Sdc::Options sdcOptions, LevelTopology &parent, LevelTopology &child) {
-    if (!child.hasFullTopology) {
-        clearRelations(child);
-    }
     RefineTags(parent, sdcOptions, child);
     if (child.hasFullTopology) {
         ComputeSharpMasks(sdcOptions, child);
+    } else {
+        child.sharpVerts.clear();
+        child.sectorCorners.clear();
     }
     // Last, so that a parent has no child that is only half made.
     parent.child = &child;
@@ -529,11 +859,13 @@ void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTop
             child.faceSizes.insert(place, size);
         }
     }
+    placeArrays(parent, child);
     fillChildRelations(parent);
-    if (parent.boundaryEdges.empty() && parent.nonManifoldVerts.empty()) {
-        fillLevel<false>(parent, fullTopology, child);
+    Refinement refinement(parent, child);
+    if (fullTopology) {
+        refinement.FillAll();
     } else {
-        fillLevel<true>(parent, fullTopology, child);
+        refinement.FillFaces();
     }
     EndLevel(sdcOptions, parent, child);
 }

@@ -29,7 +29,7 @@ void BeginLevel(LevelSizes const &sizes, bool fullTopology, LevelTopology const 
                 LevelTopology &child);
 
 /// \brief Ends \p child, which has its topology: adds its tags and, with full topology, the masks of
-/// its sharp vertices; else removes the relations of an earlier level that had them.
+/// its sharp vertices.
 void EndLevel(Sdc::Options sdcOptions, LevelTopology &parent, LevelTopology &child);
 
 /// \brief Makes \p child the hexagonal refinement of \p parent: topology, tags and, with \p fullTopology, the

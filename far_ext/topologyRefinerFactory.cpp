@@ -3,6 +3,7 @@
 
 #include "baseLevel.h"
 #include "fvarLevel.h"
+#include "parallel.h"
 #include "sharpFeatures.h"
 
 #include <opensubdiv/far/topologyRefinerFactory.h>
@@ -187,6 +188,7 @@ public:
 private:
     void importFaces();
     Status importEdges();
+    bool joinSides(Index edge, int numCorners);
     void importTags();
     void importChannel(int channel);
 
@@ -195,6 +197,10 @@ private:
                Sdc::Options::VTX_BOUNDARY_NONE;
     }
     bool isHole(Index face) const;
+    // Whether a side of an edge starts at the first vertex that the base gives the edge.
+    bool isForward(Index edge, int side) const {
+        return _level->faceVerts[_edges[edge].corners[side]] == _base.GetEdgeVertices(edge)[0];
+    }
 
     Far::TopologyLevel const &_base;
     Far::TopologyRefiner const &_baseRefiner;
@@ -228,19 +234,42 @@ void Importer::importFaces() {
     _level->faceFirstCorner.Resize(std::size_t(_level->numFaces) + 1);
     _level->faceVerts.Resize(_level->numCorners);
     _faceOfCorner.resize(_level->numCorners);
-    Index corner = 0;
-    for (Index face = 0; face < _level->numFaces; ++face) {
+    OpenSubdiv::Vtr::internal::Level const &base = _baseRefiner.getLevel(0);
+    internal::ParallelFor(_level->numFaces, [&](Index face) {
+        Index corner = base.getOffsetOfFaceVertices(face);
         _level->faceFirstCorner[face] = corner;
         for (Index vert : _base.GetFaceVertices(face)) {
             _faceOfCorner[corner] = face;
             _level->faceVerts[corner++] = vert;
         }
-    }
-    _level->faceFirstCorner[_level->numFaces] = corner;
+    });
+    _level->faceFirstCorner[_level->numFaces] = _level->numCorners;
 }
 
-// An edge that does not join two faces which run it in opposite directions, nor bounds one, comes
-// apart: every face gets an edge of its own, the first of them with the edge's index.
+// Gives the sides of an edge that bounds one face, or joins two which run it in opposite
+// directions, their order; false for any other edge.
+bool Importer::joinSides(Index edge, int numCorners) {
+    ConstIndexArray const verts = _base.GetEdgeVertices(edge);
+    if (verts[0] == verts[1] || _base.IsEdgeNonManifold(edge)) {
+        return false;
+    }
+    EdgeSides &sides = _edges[edge];
+    if (numCorners == 1) {
+        sides.corners[1] = isFree() ? internal::kFreeBoundary : internal::kSharpBoundaryA;
+        return true;
+    }
+    if (numCorners != 2 || isForward(edge, 0) == isForward(edge, 1) ||
+        _faceOfCorner[sides.corners[0]] == _faceOfCorner[sides.corners[1]]) {
+        return false;
+    }
+    if (!isForward(edge, 0)) {
+        std::swap(sides.corners[0], sides.corners[1]);
+    }
+    return true;
+}
+
+// An edge of any other kind comes apart: every face gets an edge of its own, the first of them with
+// the edge's index.
 Status Importer::importEdges() {
     _edges.assign(_base.GetNumEdges(), {{Far::INDEX_INVALID, Far::INDEX_INVALID}});
     std::vector<int> numCorners(_base.GetNumEdges(), 0);
@@ -257,37 +286,25 @@ Status Importer::importEdges() {
             ++corner;
         }
     }
-    Index const boundary = isFree() ? internal::kFreeBoundary : internal::kSharpBoundaryA;
+    std::vector<Index> const irregular = internal::ParallelSelect(
+        _base.GetNumEdges(), [&](Index edge) { return !joinSides(edge, numCorners[edge]); });
     std::vector<Index> second; // sides of edges that come apart
-    for (Index edge = 0; edge < _base.GetNumEdges(); ++edge) {
+    for (Index edge : irregular) {
         EdgeSides &sides = _edges[edge];
         Index const start = _base.GetEdgeVertices(edge)[0];
         Index const end = _base.GetEdgeVertices(edge)[1];
-        bool const isLoop = start == end;
         if (numCorners[edge] == 0) {
             return invalid(ComponentType::Edge, edge, "edge " + str(edge) + " has no face");
         }
-        if (numCorners[edge] == 1 && !isLoop && !_base.IsEdgeNonManifold(edge)) {
-            sides.corners[1] = boundary;
-            continue;
-        }
-        if (numCorners[edge] == 2 && !isLoop) {
+        if (numCorners[edge] == 2 && start != end) {
             Index const face0 = _faceOfCorner[sides.corners[0]];
             Index const face1 = _faceOfCorner[sides.corners[1]];
-            bool const isForward = _level->faceVerts[sides.corners[0]] == start;
-            bool const isOtherForward = _level->faceVerts[sides.corners[1]] == start;
-            if (isForward == isOtherForward && face0 != face1) {
+            if (isForward(edge, 0) == isForward(edge, 1) && face0 != face1) {
                 return invalid(ComponentType::Edge, edge,
                                "faces " + str(face0) + " and " + str(face1) + " run edge " +
                                    str(edge) + " between vertices " + str(start) + " and " +
                                    str(end) +
                                    " in the same direction: their orientations are inconsistent");
-            }
-            if (face0 != face1 && !_base.IsEdgeNonManifold(edge)) {
-                if (!isForward) {
-                    std::swap(sides.corners[0], sides.corners[1]);
-                }
-                continue;
             }
         }
         _level->nonManifoldEdges.push_back(edge);
@@ -324,37 +341,33 @@ bool Importer::isHole(Index face) const {
 void Importer::importTags() {
     LevelTopology &level = *_level;
     // Edges that came apart are boundaries, so that the base's edges are all that can be creases.
-    bool hasCreases = false;
-    for (Index edge = 0; edge < _base.GetNumEdges(); ++edge) {
-        hasCreases |= !level.IsBoundary(edge) && Sdc::Crease::IsSharp(_base.GetEdgeSharpness(edge));
-    }
-    if (hasCreases) {
+    auto const isCrease = [&](Index edge) {
+        return !level.IsBoundary(edge) && Sdc::Crease::IsSharp(_base.GetEdgeSharpness(edge));
+    };
+    if (!internal::ParallelSelect(_base.GetNumEdges(), isCrease).empty()) {
         level.edgeSharpness.Resize(level.numEdges);
-        for (Index edge = 0; edge < level.numEdges; ++edge) {
+        internal::ParallelFor(level.numEdges, [&](Index edge) {
             level.edgeSharpness[edge] = level.IsBoundary(edge) ? 0 : _base.GetEdgeSharpness(edge);
-        }
+        });
     }
-    bool hasCorners = false;
-    for (Index vert = 0; vert < level.numVertices; ++vert) {
-        hasCorners |= Sdc::Crease::IsSharp(_base.GetVertexSharpness(vert));
-        if (_base.IsVertexNonManifold(vert)) {
-            level.nonManifoldVerts.push_back(vert);
-        }
-    }
-    if (hasCorners) {
+    level.nonManifoldVerts = internal::ParallelSelect(
+        level.numVertices, [&](Index vert) { return _base.IsVertexNonManifold(vert); });
+    auto const isCorner = [&](Index vert) {
+        return Sdc::Crease::IsSharp(_base.GetVertexSharpness(vert));
+    };
+    if (!internal::ParallelSelect(level.numVertices, isCorner).empty()) {
         level.vertSharpness.Resize(level.numVertices);
-        for (Index vert = 0; vert < level.numVertices; ++vert) {
+        internal::ParallelFor(level.numVertices, [&](Index vert) {
             level.vertSharpness[vert] = _base.GetVertexSharpness(vert);
-        }
+        });
     }
-    bool hasHoles = false;
-    for (Index face = 0; face < level.numFaces; ++face) {
-        hasHoles |= isHole(face);
-    }
-    if (hasHoles) {
+    std::vector<Index> const holes =
+        internal::ParallelSelect(level.numFaces, [this](Index face) { return isHole(face); });
+    if (!holes.empty()) {
         level.faceHoles.Resize(level.numFaces);
-        for (Index face = 0; face < level.numFaces; ++face) {
-            level.faceHoles[face] = isHole(face);
+        std::fill_n(level.faceHoles.data(), level.numFaces, static_cast<unsigned char>(false));
+        for (Index face : holes) {
+            level.faceHoles[face] = true;
         }
     }
 }

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_ARRAY_WRITER_H
+#define OPENSUBDIVHEX_FAR_EXT_ARRAY_WRITER_H
+
+#include "buffer.h"
+#include "status.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief Copies without bringing \p dst into the caches, where the processor (and this code) can.
+///
+/// A store to memory that is in no cache reads it first; this does not.
+void CopyPastCaches(void *dst, void const *src, std::size_t bytes);
+/// Such copies may be late: to be called before other threads are told of them.
+void FinishCopiesPastCaches();
+
+/// \brief Writes count groups of SIZE entries to \p array, from front to back: calls
+/// fill(entries, i) for i = 0 ... count - 1, which writes group i to entries.
+///
+/// \param pastCaches  for an array that is larger than the caches.  Groups are then collected in a
+///                    block that stays in the first cache.
+template <int SIZE, typename T, typename FUNCTION>
+void WriteArray(T *array, Far::Index count, bool pastCaches, FUNCTION fill) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (!pastCaches) {
+        for (Far::Index i = 0; i < count; ++i) {
+            fill(array + std::ptrdiff_t(i) * SIZE, i);
+        }
+        return;
+    }
+    constexpr Far::Index kBlockGroups = 4096 / (SIZE * sizeof(T));
+    alignas(kCacheLine) T block[kBlockGroups * SIZE];
+    for (Far::Index begin = 0; begin < count; begin += kBlockGroups) {
+        Far::Index const size = std::min(count - begin, kBlockGroups);
+        for (Far::Index i = 0; i < size; ++i) {
+            fill(block + i * SIZE, begin + i);
+        }
+        CopyPastCaches(array + std::ptrdiff_t(begin) * SIZE, block,
+                       std::size_t(size) * SIZE * sizeof(T));
+    }
+    FinishCopiesPastCaches();
+}
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

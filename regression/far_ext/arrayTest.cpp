@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The memory of levels: buffers, arrays placed in one, and writing past the caches.
+#include "far_ext/arrayWriter.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::internal::Buffer;
+using FarExt::internal::kCacheLine;
+using FarExt::internal::PlaceArrays;
+using FarExt::internal::WriteArray;
+
+TEST(Buffer, KeepsItsMemoryUntilItNeedsMore) {
+    Buffer<int> buffer;
+    EXPECT_TRUE(buffer.empty());
+    buffer.Resize(100);
+    int const *const memory = buffer.data();
+    buffer.Resize(10);
+    EXPECT_EQ(buffer.size(), 10u);
+    buffer.Resize(100);
+    EXPECT_EQ(buffer.data(), memory);
+}
+
+TEST(Buffer, PlacedDoesNotGrowIntoOthersMemory) {
+    int memory[4] = {1, 2, 3, 4};
+    Buffer<int> buffer;
+    buffer.Resize(7);
+    buffer.Place(memory, 2);
+    EXPECT_EQ(buffer.data(), memory);
+    EXPECT_EQ(buffer.size(), 2u);
+    buffer.Resize(0);
+    EXPECT_TRUE(buffer.empty());
+    buffer.Resize(2);
+    EXPECT_NE(buffer.data(), memory);
+}
+
+TEST(PlaceArrays, LeavesEveryArrayItsOwnAlignedPlace) {
+    Buffer<std::byte> memory;
+    Buffer<int> ints;
+    Buffer<std::uint16_t> shorts;
+    Buffer<int> none;
+    Buffer<int> last;
+    // Larger, smaller, and with huge pages.
+    for (std::size_t size : {std::size_t(33), std::size_t(5), std::size_t(1) << 20}) {
+        PlaceArrays(memory, [&](auto place) {
+            place(ints, size);
+            place(shorts, size + 1);
+            place(none, 0);
+            place(last, 3);
+        });
+        ASSERT_EQ(ints.size(), size);
+        ASSERT_EQ(shorts.size(), size + 1);
+        EXPECT_TRUE(none.empty());
+        ASSERT_EQ(last.size(), 3u);
+        auto const begin = [](auto const &array) {
+            return reinterpret_cast<std::uintptr_t>(array.data());
+        };
+        auto const end = [&](auto const &array) {
+            return begin(array) + array.size() * sizeof(array[0]);
+        };
+        EXPECT_EQ(begin(ints), begin(memory));
+        EXPECT_LE(end(ints), begin(shorts));
+        EXPECT_LE(end(shorts), begin(last));
+        EXPECT_LE(end(last), end(memory));
+        for (std::uintptr_t place : {begin(ints), begin(shorts), begin(last)}) {
+            EXPECT_EQ(place % kCacheLine, 0u);
+        }
+    }
+}
+
+namespace {
+
+/// Writes count groups of SIZE numbers from array[start] on and checks them, and that nothing else
+/// is touched.
+template <int SIZE, typename T>
+void expectGroups(std::size_t start, int count, bool pastCaches) {
+    std::vector<T> array(start + std::size_t(SIZE * count) + 100, T(7));
+    WriteArray<SIZE>(array.data() + start, count, pastCaches, [](T *entries, int i) {
+        for (int k = 0; k < SIZE; ++k) {
+            entries[k] = T(100 + SIZE * i + k);
+        }
+    });
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        bool const written = i >= start && i < start + std::size_t(SIZE * count);
+        ASSERT_EQ(array[i], written ? T(100 + i - start) : T(7))
+            << i << " from " << start << ", " << count << " groups of " << SIZE;
+    }
+}
+
+} // namespace
+
+// Counts below, at and above the block that groups are collected in, from any place in a line.
+TEST(WriteArray, WritesWhatItIsToldAndNoMore) {
+    for (bool pastCaches : {false, true}) {
+        for (std::size_t start = 0; start < 40; ++start) {
+            for (int count : {0, 1, 5, 56, 57, 85, 86, 200, 1024, 1025, 3000}) {
+                expectGroups<1, int>(start, count, pastCaches);
+                expectGroups<12, int>(start, count, pastCaches);
+                expectGroups<18, std::uint16_t>(start, count, pastCaches);
+            }
+        }
+    }
+}
+
+} // namespace OpenSubdivHex::Regression
