@@ -77,7 +77,9 @@ void BaseLevelBuilder::buildEdges() {
     _level.edgeFaceLocals.Resize(2 * _edges.size());
     _level.numFreeBoundaries = 0;
     _level.numSharpBoundariesA = 0;
+    _level.numSharpBoundariesB = 0;
     std::vector<Index> boundaryEdges;
+    std::vector<Index> halfFaces;
     for (std::size_t edge = 0; edge < _edges.size(); ++edge) {
         Index const corner = _edges[edge].corners[0];
         Index const other = _edges[edge].corners[1];
@@ -93,7 +95,12 @@ void BaseLevelBuilder::buildEdges() {
             _level.edgeFaces[2 * edge + 1] = other;
             _level.edgeFaceLocals[2 * edge + 1] = 0;
             boundaryEdges.push_back(Index(edge));
-            ++(other == kFreeBoundary ? _level.numFreeBoundaries : _level.numSharpBoundariesA);
+            if (other == kSharpBoundaryB) {
+                ++_level.numSharpBoundariesB;
+                halfFaces.push_back(face);
+            } else {
+                ++(other == kFreeBoundary ? _level.numFreeBoundaries : _level.numSharpBoundariesA);
+            }
         } else {
             _level.edgeFaces[2 * edge + 1] = _faceOfCorner[other];
             _level.edgeFaceLocals[2 * edge + 1] = local(other);
@@ -102,6 +109,9 @@ void BaseLevelBuilder::buildEdges() {
     }
     _level.boundaryEdges.Resize(boundaryEdges.size());
     std::copy(boundaryEdges.begin(), boundaryEdges.end(), _level.boundaryEdges.data());
+    std::sort(halfFaces.begin(), halfFaces.end());
+    _level.halfFaces.Resize(halfFaces.size());
+    std::copy(halfFaces.begin(), halfFaces.end(), _level.halfFaces.data());
 }
 
 void BaseLevelBuilder::buildVertices() {

@@ -2,6 +2,7 @@
 #include "sharpFeatures.h"
 
 #include "mask.h"
+#include "vertexFan.h"
 
 #include <algorithm>
 
@@ -12,85 +13,7 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 
-// What is met on the way around a vertex: its faces, and between them edges and diagonals.
-struct RingItem {
-    bool isFace;
-    Index corner;    // of a face; INDEX_INVALID for half a hexagon
-    Index neighbor;  // at the other end of an edge or diagonal
-    bool isLong;     // a diagonal or a B boundary
-    float sharpness; // of an edge or diagonal; 0 for smooth ones
-};
-
-RingItem faceItem(Index corner) { return {true, corner, Far::INDEX_INVALID, false, 0}; }
-
-RingItem edgeItem(LevelTopology const &level, Index edge, Index neighbor) {
-    Index const kind = level.edgeFaces[2 * std::size_t(edge) + 1];
-    float sharpness = level.GetEdgeSharpness(edge);
-    if (kind < 0) {
-        sharpness = kind == kFreeBoundary ? 0 : Crease::SHARPNESS_INFINITE;
-    }
-    return {false, Far::INDEX_INVALID, neighbor, kind == kSharpBoundaryB, sharpness};
-}
-
 bool isSharp(RingItem const &item) { return Crease::IsSharp(item.sharpness); }
-
-// The faces around a vertex that are joined by edges, counter-clockwise: from boundary to boundary
-// or, when closed, all around, from the edge before the first face to the last face.
-struct Fan {
-    std::vector<RingItem> items;
-    bool isClosed;
-};
-
-// The fan that begins with the face at position i of the vertex's faces; returns where the next one
-// begins.
-Index gatherFan(LevelTopology const &level, Index vert, Index i, Fan &fan) {
-    fan.items.clear();
-    fan.isClosed = false;
-    Index firstEdge = Far::INDEX_INVALID;
-    for (; i < level.vertFirstFace[vert + 1]; ++i) {
-        Index const face = level.vertFaces[i];
-        Index const first = level.faceFirstCorner[face];
-        int const size = level.faceFirstCorner[face + 1] - first;
-        int const local = level.vertFaceLocals[i];
-        Index const next = first + (local + 1) % size;
-        Index const prev = first + (local + size - 1) % size;
-        Index const outEdge = level.faceEdges[first + local];
-        Index const inEdge = level.faceEdges[prev];
-        if (firstEdge == Far::INDEX_INVALID) {
-            firstEdge = outEdge;
-        }
-        fan.items.push_back(edgeItem(level, outEdge, level.faceVerts[next]));
-        float const diagonal = level.GetDiagonalSharpness(face);
-        if ((local == kDiagonalStart || local == kDiagonalEnd) && Crease::IsSharp(diagonal)) {
-            Index const end = first + kDiagonalStart + kDiagonalEnd - local;
-            fan.items.push_back(faceItem(Far::INDEX_INVALID));
-            fan.items.push_back({false, Far::INDEX_INVALID, level.faceVerts[end], true, diagonal});
-            fan.items.push_back(faceItem(Far::INDEX_INVALID));
-        } else {
-            bool const isHalf = level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
-            fan.items.push_back(faceItem(isHalf ? Far::INDEX_INVALID : first + local));
-        }
-        if (level.IsBoundary(inEdge)) {
-            fan.items.push_back(edgeItem(level, inEdge, level.faceVerts[prev]));
-            return i + 1;
-        }
-        if (inEdge == firstEdge) {
-            fan.isClosed = true;
-            return i + 1;
-        }
-    }
-    return i;
-}
-
-// Calls function(fan) for the fans of a vertex.
-template <typename FUNCTION>
-void forEachFan(LevelTopology const &level, Index vert, FUNCTION function) {
-    Fan fan;
-    for (Index i = level.vertFirstFace[vert]; i < level.vertFirstFace[vert + 1];) {
-        i = gatherFan(level, vert, i, fan);
-        function(fan);
-    }
-}
 
 // The sharp edges that meet in a vertex: boundaries, crease edges and crease diagonals.
 struct SharpEdges {
@@ -106,7 +29,7 @@ struct SharpEdges {
 SharpEdges gatherSharpEdges(LevelTopology const &level, Index vert) {
     SharpEdges result;
     bool hasBoundary = false;
-    forEachFan(level, vert, [&](Fan const &fan) {
+    ForEachFan(level, vert, [&](Fan const &fan) {
         bool const isOtherSheet = !fan.isClosed && hasBoundary;
         for (RingItem const &item : fan.items) {
             bool const isBoundary =
@@ -230,7 +153,7 @@ void addSectorCorners(Fan &fan, std::vector<SectorCorner> &result) {
             float(numFaces) - 0.5f * float(start->isLong) - 0.5f * float(end->isLong);
         float const weight = std::min({1.0f, start->sharpness, end->sharpness});
         for (auto item = start; item != end && size >= kMinShrunkSector; ++item) {
-            if (item->corner != Far::INDEX_INVALID) {
+            if (item->isFace && !item->isHalf) {
                 result.push_back({item->corner, size, weight});
             }
         }
@@ -250,7 +173,7 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
         float const vertSharpness = level.GetVertexSharpness(vert);
         SharpEdges const edges = gatherSharpEdges(level, vert);
         if (edges.GetSize() >= 2) {
-            forEachFan(level, vert, [&](Fan &fan) { addSectorCorners(fan, level.sectorCorners); });
+            ForEachFan(level, vert, [&](Fan &fan) { addSectorCorners(fan, level.sectorCorners); });
         }
         Crease::Rule const rule = creasing.DetermineVertexVertexRule(vertSharpness, edges.GetSize(),
                                                                      edges.sharpness.data());
