@@ -124,13 +124,19 @@ void writePly(Mesh const &mesh, OutputFile &file) {
                             ? 0
                             : *std::max_element(mesh.faceSizes.begin(), mesh.faceSizes.end());
     bool const hasShortFaces = maxSize < 256;
+    bool const hasNormals = !mesh.vertexNormals.empty();
     file.Write("ply\nformat binary_little_endian 1.0\nelement vertex " +
                std::to_string(mesh.GetNumVertices()) +
-               "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-               std::to_string(mesh.GetNumFaces()) + "\nproperty list " +
+               "\nproperty float x\nproperty float y\nproperty float z\n" +
+               (hasNormals ? "property float nx\nproperty float ny\nproperty float nz\n" : "") +
+               "element face " + std::to_string(mesh.GetNumFaces()) + "\nproperty list " +
                (hasShortFaces ? "uchar" : "int") + " int vertex_indices\nend_header\n");
-    for (float value : mesh.positions) {
-        file.Advance(putBytes(file.Reserve(4), value));
+    for (std::size_t i = 0; i < mesh.positions.size(); i += 3) {
+        for (std::vector<float> const *values : {&mesh.positions, &mesh.vertexNormals}) {
+            for (std::size_t k = i; k < std::min(i + 3, values->size()); ++k) {
+                file.Advance(putBytes(file.Reserve(4), (*values)[k]));
+            }
+        }
     }
     int const *vertices = mesh.faceVertices.data();
     for (int size : mesh.faceSizes) {
