@@ -196,7 +196,7 @@ TEST(Limit, MasksOfVVerticesAmongHexagons) {
 }
 
 TEST(Limit, WeightsOfPointsSumToOneAndOfDerivativesToZero) {
-    forEachShape(3000, [](Shape const &shape, Sdc::Options options) {
+    forEachShape(200, [](Shape const &shape, Sdc::Options options) {
         auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 1, options);
         for (int level : {0, 1}) {
             LimitValues const values =
@@ -211,23 +211,23 @@ TEST(Limit, WeightsOfPointsSumToOneAndOfDerivativesToZero) {
 // A vertex and its V-vertex have the same limit and tangent planes, so has a face and its F-face.
 TEST(Limit, IsTheSameFromEveryLevel) {
     forEachShape(200, [](Shape const &shape, Sdc::Options options) {
-        if (shape.name == "dihedron5") {
-            return; // two faces back to back: folded, without tangent planes
+        if (shape.name == "dihedron5" || shape.name.find("degenerate") == 0) {
+            return; // faces back to back or collapsed: folded, without tangent planes
         }
         ReferenceValues const positions = GetPositions(shape);
         for (ReferenceMask mask : kMasks) {
             SCOPED_TRACE(ToString(mask));
-            auto const refiner = CreateRefiner(shape, mask, 3, options);
+            auto const refiner = CreateRefiner(shape, mask, 2, options);
             LimitValues values = evaluateAll(*refiner, 0, positions);
             LimitSides sides(refiner->GetLevel(0));
-            for (int level = 1; level <= 3; ++level) {
+            for (int level = 1; level <= 2; ++level) {
                 TopologyLevel const &pLevel = refiner->GetLevel(level - 1);
                 LimitValues const cValues = evaluateAll(*refiner, level, positions);
                 LimitSides const cSides(refiner->GetLevel(level));
                 // Chaikin's sharpness is a float that depends, in its last bit, on the edge that a
                 // sum begins with.
                 bool const isChaikin = options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
-                double const allowed = (isChaikin ? 1e-6 : 1e-12) * GetSize(positions);
+                double const allowed = (isChaikin ? 1e-5 : 1e-12) * GetSize(positions);
                 // The planes of a side: some side of the V-vertex has the same.
                 auto const expectPlane = [&](int i, int cBegin, int cEnd, double tolerance) {
                     Eigen::Vector3d const normal = normalOf(values, i);
@@ -253,7 +253,7 @@ TEST(Limit, IsTheSameFromEveryLevel) {
                         continue;
                     }
                     double const tolerance = isApproximate(pLevel, sides, i) ? 0.2
-                                             : isChaikin                     ? 1e-5
+                                             : isChaikin                     ? 1e-3
                                                                              : 1e-8;
                     int c = cSides.GetNumSides();
                     while (c > refiner->GetLevel(level).GetNumVertices() &&
@@ -342,6 +342,8 @@ TEST(Limit, NormalsAreThoseOfTheDeepMesh) {
         LimitValues const limit = evaluateAll(*refiner, maxLevel, positions);
         TopologyLevel const &level = refiner->GetLevel(maxLevel);
         LimitSides const sides(level);
+        // The surface at a sharp vertex with many faces becomes flat slowly.
+        double const least = std::string(name) == "wideSectors" ? 0.7 : 0.95;
         int numSides = 0;
         for (int face = 0; face < level.GetNumFaces(); ++face) {
             auto const verts = level.GetFaceVertices(face);
@@ -368,7 +370,7 @@ TEST(Limit, NormalsAreThoseOfTheDeepMesh) {
                     int const side = sides.FindSide(level, face, corner, half);
                     numSides += side >= level.GetNumVertices();
                     ASSERT_EQ(sides.GetVertex(side), verts[corner]);
-                    ASSERT_GT(normal.dot(normalOf(limit, side)), 0.9)
+                    ASSERT_GT(normal.dot(normalOf(limit, side)), least)
                         << "face " << face << ", corner " << corner;
                 }
                 ASSERT_GT(normal.dot(normalOf(limit, sides.GetNumSides() + face)),
