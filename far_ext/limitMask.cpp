@@ -134,7 +134,8 @@ Mode findNextMode(Cycle &cycle, std::vector<Mode> const &modes, Vector left, Vec
 }
 
 // Where the vertices of a patch of hexagons, of its part on one side of vertex 0, lie in the plane:
-// vertex 0 at the origin, its neighbours at the distance 1.  A side fills half the plane, from the x
+// vertex 0 at the origin, its neighbours at the distance 1.  A side fills half the plane, from the
+// x
 // axis on, or at a corner as much as it would in the lattice, unless it is all around.
 struct Layout {
     Layout(LevelTopology const &level, VertexSide const &side, bool isCorner)
@@ -266,7 +267,8 @@ private:
         _modes.push_back(findNextMode(_cycle, _modes, start, start));
     }
 
-    // What lies on a sharp curve depends on the curve alone, so that du stays on it: on the edge where
+    // What lies on a sharp curve depends on the curve alone, so that du stays on it: on the edge
+    // where
     // the side begins and, at a crease, on that where it ends.
     bool startAlongCurve(Vector &du) const {
         RingItem const &begin = _side.items.front();
@@ -573,7 +575,8 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
     return hasSector || Crease::IsSharp(diagonal) ? findAfterStep(face) : makePlainFaceMask(size);
 }
 
-// The F-face is a level of its own here: it has no sector corners, and a diagonal that is less sharp.
+// The F-face is a level of its own here: it has no sector corners, and a diagonal that is less
+// sharp.
 LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     int const size = _level.GetFaceVertices(face).size();
     LevelTopology child;

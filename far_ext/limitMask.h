@@ -23,7 +23,8 @@ struct LimitMask {
 
 /// \brief Finds limit masks of vertices.
 ///
-/// A semi-sharp crease becomes smooth after so many steps as its sharpness says, and two steps after
+/// A semi-sharp crease becomes smooth after so many steps as its sharpness says, and two steps
+/// after
 /// a feature has left the patch all faces there are hexagons or halves of hexagons: then patches
 /// repeat themselves after one step or, where A and B edges alternate, a few.  The steps of such a
 /// cycle, multiplied, have the eigenvalue 1, whose left eigenvector is the mask of the point, and
@@ -66,7 +67,8 @@ public:
         : _level(level), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions),
           _mask(level, schemeOptions.faceMask, Interpolation::Vertex) {}
 
-    /// Of a face with an infinitely sharp diagonal the sides are half 0 and half 1; others have one.
+    /// Of a face with an infinitely sharp diagonal the sides are half 0 and half 1; others have
+    /// one.
     LimitMask Find(Far::Index face) const;
 
 private:

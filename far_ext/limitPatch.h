@@ -112,7 +112,8 @@ LimitStep RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
                       SchemeOptions const &schemeOptions, LimitPatch &cPatch);
 
 /// \brief What lies at a vertex between two infinitely sharp edges, or all around it: the limit
-/// surface has a tangent plane for each.  A fan of faces with fewer than two such edges is one side.
+/// surface has a tangent plane for each.  A fan of faces with fewer than two such edges is one
+/// side.
 struct VertexSide {
     /// From the edge (or diagonal) where the side begins, counter-clockwise to that where it ends;
     /// of a closed fan that is one side, to the last face.

@@ -18,11 +18,13 @@ struct LimitStencilTableTypes<float> {
     using Table = Far::LimitStencilTable; ///< what the Osd evaluators take
 };
 
-/// \brief The sides of the vertices of a level: at a vertex where infinitely sharp edges meet, two or
+/// \brief The sides of the vertices of a level: at a vertex where infinitely sharp edges meet, two
+/// or
 /// more, the surface has a tangent plane for each part of its faces that they bound.
 ///
 /// Where fewer meet, and at sharp boundaries without creases, a vertex has one side.  Sides are
-/// counted around the vertex, in the order of its faces and from the first sharp edge on.  Side 0 has
+/// counted around the vertex, in the order of its faces and from the first sharp edge on.  Side 0
+/// has
 /// the index of its vertex; the further sides of all vertices, in their order, follow the vertices.
 class LimitSides {
 public:
@@ -101,7 +103,8 @@ class LimitStencilTableFactoryReal {
 public:
     using Table = typename LimitStencilTableTypes<REAL>::Table;
 
-    /// \brief Which points, in this order: the vertices of the level, the further sides of vertices,
+    /// \brief Which points, in this order: the vertices of the level, the further sides of
+    /// vertices,
     /// the centres of the level's faces.
     struct Options {
         int level = 0; ///< 0 ... refiner.GetMaxLevel(); must have full topology
@@ -113,7 +116,8 @@ public:
 
     /// \brief Makes the table.
     ///
-    /// The indices of a stencil are control vertices and ascend; offsets are filled.  The weights of
+    /// The indices of a stencil are control vertices and ascend; offsets are filled.  The weights
+    /// of
     /// a point sum to 1, those of a derivative to 0.  Every point depends on the topology around it
     /// alone: any number of threads makes the same bits.
     ///

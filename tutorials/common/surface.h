@@ -29,7 +29,8 @@ public:
     OsdExt::TriangleIndices const &GetTriangles() const { return _triangles; }
     std::vector<float> const &GetPositions() const { return _positions; }
 
-    /// The normals at the corners, interpolated at the barycentric coordinates \p u and \p v of a triangle.
+    /// The normals at the corners, interpolated at the barycentric coordinates \p u and \p v of a
+    /// triangle.
     Vec3 GetSmoothNormal(int triangle, float u, float v) const;
     /// The normal of the polygon that the triangle is a part of, by Newell's formula.
     Vec3 GetFlatNormal(int triangle) const;

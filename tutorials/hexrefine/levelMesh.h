@@ -14,7 +14,8 @@ namespace OpenSubdivHex::Tutorials {
 /// since a mesh has one value per corner; other faces stay whole.
 void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh);
 
-/// \brief The same, with a further channel, the last of \p mesh, whose values are those of \p sides.
+/// \brief The same, with a further channel, the last of \p mesh, whose values are those of \p
+/// sides.
 ///
 /// Hexagons that a sharp crease crosses become two quads as well.
 void CopyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const &sides, Mesh *mesh);

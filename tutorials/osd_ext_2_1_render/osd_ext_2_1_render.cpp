@@ -4,8 +4,10 @@
 //
 //     A renderer with hexagonal subdivision surfaces, on Embree's ray tracing kernels.
 //
-//     What a renderer does at load time is in the constructor of Panel: the refiner, the limit stencil
-//     table, the buffers and the triangle indices, all made once.  What it does for each frame is in
+//     What a renderer does at load time is in the constructor of Panel: the refiner, the limit
+//     stencil
+//     table, the buffers and the triangle indices, all made once.  What it does for each frame is
+//     in
 //     Panel::Update: it evaluates the table for the frame's control positions and hands the refined
 //     triangles to the ray tracer.  The rest of this file is about options; the pictures themselves
 //     are made in tutorials/common (scene.h, renderer.h).
