@@ -103,6 +103,15 @@ void BaseLevelBuilder::buildEdges() {
     _level.numSharpBoundariesB = count(kSharpBoundaryB);
     _level.boundaryEdges.Resize(boundaryEdges.size());
     std::copy(boundaryEdges.begin(), boundaryEdges.end(), _level.boundaryEdges.data());
+    std::vector<Index> halfFaces;
+    for (Index edge : boundaryEdges) {
+        if (_level.IsSharpBoundaryB(edge)) {
+            halfFaces.push_back(_level.edgeFaces[2 * std::size_t(edge)]);
+        }
+    }
+    std::sort(halfFaces.begin(), halfFaces.end());
+    _level.halfFaces.Resize(halfFaces.size());
+    std::copy(halfFaces.begin(), halfFaces.end(), _level.halfFaces.data());
 }
 
 void BaseLevelBuilder::buildVertices() {

@@ -351,19 +351,6 @@ void PolygonStep::buildFaces(Builder &builder) const {
 
 namespace {
 
-// The faces with a B edge.
-void findHalfFaces(LevelTopology &level) {
-    std::vector<Index> halfFaces;
-    for (Index edge : level.boundaryEdges) {
-        if (level.IsSharpBoundaryB(edge)) {
-            halfFaces.push_back(level.edgeFaces[2 * std::size_t(edge)]);
-        }
-    }
-    std::sort(halfFaces.begin(), halfFaces.end());
-    level.halfFaces.Resize(halfFaces.size());
-    std::copy(halfFaces.begin(), halfFaces.end(), level.halfFaces.data());
-}
-
 // The vertices whose faces the gaps of an open refinement have parted, now or in a level before.
 void findPartedVertices(LevelTopology const &parent, LevelTopology &child) {
     auto const contains = [](std::vector<Index> const &verts, Index vert) {
@@ -406,7 +393,6 @@ void PolygonStep::Refine(bool fullTopology, LevelTopology &child) {
     buildFaces(builder);
     builder.StoreFaces(child);
     BuildBaseLevel(builder.GetEdges(), child);
-    findHalfFaces(child);
     if (isHexagonal() && !_rules.closeGaps) {
         findPartedVertices(_parent, child);
     }

@@ -13,72 +13,7 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 
-// What is met on the way around a vertex: its faces, and between them edges and diagonals.
-struct RingItem {
-    bool isFace;
-    Index corner;    // of a face; INDEX_INVALID for half a hexagon
-    Index neighbor;  // at the other end of an edge or diagonal
-    bool isLong;     // a diagonal or a B boundary
-    float sharpness; // of an edge or diagonal; 0 for smooth ones
-};
-
-RingItem faceItem(Index corner) { return {true, corner, Far::INDEX_INVALID, false, 0}; }
-
-RingItem edgeItem(LevelTopology const &level, Index edge, Index neighbor) {
-    Index const kind = level.edgeFaces[2 * std::size_t(edge) + 1];
-    float sharpness = level.GetEdgeSharpness(edge);
-    if (kind < 0) {
-        sharpness = kind == kFreeBoundary ? 0 : Crease::SHARPNESS_INFINITE;
-    }
-    return {false, Far::INDEX_INVALID, neighbor, kind == kSharpBoundaryB, sharpness};
-}
-
 bool isSharp(RingItem const &item) { return Crease::IsSharp(item.sharpness); }
-
-// The items of a fan of faces, counter-clockwise: from boundary to boundary or, when closed, from the
-// edge before the first face to the last face.
-struct FanItems {
-    std::vector<RingItem> items;
-    bool isClosed;
-};
-
-void gatherItems(LevelTopology const &level, VertexFan const &range, FanItems &fan) {
-    fan.items.clear();
-    fan.isClosed = range.isClosed;
-    for (Index i = range.begin; i < range.end; ++i) {
-        Index const face = level.vertFaces[i];
-        int const local = level.vertFaceLocals[i];
-        Index const corner = level.GetVertexCorner(i);
-        Index const next = level.GetNextCorner(face, corner);
-        Index const prev = level.GetPrevCorner(face, corner);
-        Index const outEdge = level.faceEdges[corner];
-        Index const inEdge = level.faceEdges[prev];
-        fan.items.push_back(edgeItem(level, outEdge, level.faceVerts[next]));
-        float const diagonal = level.GetDiagonalSharpness(face);
-        if ((local == kDiagonalStart || local == kDiagonalEnd) && Crease::IsSharp(diagonal)) {
-            Index const end = corner - local + kDiagonalStart + kDiagonalEnd - local;
-            fan.items.push_back(faceItem(Far::INDEX_INVALID));
-            fan.items.push_back({false, Far::INDEX_INVALID, level.faceVerts[end], true, diagonal});
-            fan.items.push_back(faceItem(Far::INDEX_INVALID));
-        } else {
-            bool const isHalf = level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
-            fan.items.push_back(faceItem(isHalf ? Far::INDEX_INVALID : corner));
-        }
-        if (i + 1 == range.end && !range.isClosed) {
-            fan.items.push_back(edgeItem(level, inEdge, level.faceVerts[prev]));
-        }
-    }
-}
-
-// Calls function(items) for the fans of a vertex.
-template <typename FUNCTION>
-void forEachFanItems(LevelTopology const &level, Index vert, FUNCTION function) {
-    FanItems fan;
-    ForEachFan(level, vert, [&](VertexFan const &range) {
-        gatherItems(level, range, fan);
-        function(fan);
-    });
-}
 
 // The sharp edges that meet in a vertex: boundaries, crease edges and crease diagonals.
 struct SharpEdges {
@@ -96,7 +31,7 @@ SharpEdges gatherSharpEdges(LevelTopology const &level, Index vert) {
     bool const isParted =
         std::binary_search(level.partedVerts.begin(), level.partedVerts.end(), vert);
     bool hasBoundary = false;
-    forEachFanItems(level, vert, [&](FanItems const &fan) {
+    ForEachFanItems(level, vert, [&](FanItems const &fan) {
         bool const isOtherSheet = !isParted && !fan.isClosed && hasBoundary;
         for (RingItem const &item : fan.items) {
             bool const isBoundary =
@@ -220,7 +155,7 @@ void addSectorCorners(FanItems &fan, std::vector<SectorCorner> &result) {
             float(numFaces) - 0.5f * float(start->isLong) - 0.5f * float(end->isLong);
         float const weight = std::min({1.0f, start->sharpness, end->sharpness});
         for (auto item = start; item != end && size >= kMinShrunkSector; ++item) {
-            if (item->corner != Far::INDEX_INVALID) {
+            if (item->isFace && !item->isHalf) {
                 result.push_back({item->corner, size, weight});
             }
         }
@@ -240,7 +175,7 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
         float const vertSharpness = level.GetVertexSharpness(vert);
         SharpEdges const edges = gatherSharpEdges(level, vert);
         if (edges.GetSize() >= 2) {
-            forEachFanItems(level, vert,
+            ForEachFanItems(level, vert,
                             [&](FanItems &fan) { addSectorCorners(fan, level.sectorCorners); });
         }
         Crease::Rule const rule = creasing.DetermineVertexVertexRule(vertSharpness, edges.GetSize(),

@@ -37,6 +37,36 @@ void ForEachFan(LevelTopology const &level, Far::Index vert, FUNCTION function) 
     }
 }
 
+/// \brief What is met on the way around a vertex: its faces, and between them edges and diagonals.
+struct RingItem {
+    bool isFace;
+    Far::Index corner;   ///< of a face: where the vertex is in it
+    bool isHalf;         ///< a half face, or one side of a sharp diagonal
+    int half;            ///< of a hexagon with a sharp diagonal, as in kHexagonHalves; else -1
+    Far::Index neighbor; ///< at the other end of an edge or diagonal
+    bool isLong;         ///< a diagonal or a B boundary
+    float sharpness;     ///< of an edge or diagonal; 0 for smooth ones and free boundaries
+};
+
+/// \brief What is met on the way through a fan: from boundary to boundary or, when closed, from the
+/// edge before the first face to the last face.
+struct FanItems {
+    std::vector<RingItem> items;
+    bool isClosed;
+};
+
+void GatherFanItems(LevelTopology const &level, VertexFan const &fan, FanItems &result);
+
+/// Calls function(fanItems) for the fans of a vertex, in their order.
+template <typename FUNCTION>
+void ForEachFanItems(LevelTopology const &level, Far::Index vert, FUNCTION function) {
+    FanItems items;
+    ForEachFan(level, vert, [&](VertexFan const &fan) {
+        GatherFanItems(level, fan, items);
+        function(items);
+    });
+}
+
 } // namespace OpenSubdivHex::FarExt::internal
 
 #endif

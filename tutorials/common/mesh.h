@@ -47,6 +47,7 @@ struct Mesh {
     std::vector<int> faceSizes{};    ///< number of corners of each face
     std::vector<int> faceVertices{}; ///< vertices of all faces, one face after the other
     std::vector<FVarChannel> channels{};
+    std::vector<float> vertexNormals{}; ///< x y z of each vertex, or empty; of a mesh to write
     MeshTags tags{};
 
     int GetNumVertices() const { return int(positions.size() / 3); }

@@ -187,20 +187,29 @@ void writePly(Mesh const &mesh, OutputFile &file) {
                             ? 0
                             : *std::max_element(mesh.faceSizes.begin(), mesh.faceSizes.end());
     bool const hasShortFaces = maxSize < 256;
+    bool const hasNormals = !mesh.vertexNormals.empty();
     file.Write("ply\nformat binary_little_endian 1.0\nelement vertex " +
                std::to_string(mesh.GetNumVertices()) +
-               "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-               std::to_string(mesh.GetNumFaces()) + "\nproperty list " +
+               "\nproperty float x\nproperty float y\nproperty float z\n" +
+               (hasNormals ? "property float nx\nproperty float ny\nproperty float nz\n" : "") +
+               "element face " + std::to_string(mesh.GetNumFaces()) + "\nproperty list " +
                (hasShortFaces ? "uchar" : "int") + " int vertex_indices\nend_header\n");
-    auto const printPositions = [&](std::size_t begin, std::size_t end, char *out) {
+    std::size_t const numFloats = hasNormals ? 6 : 3; // of a vertex
+    auto const printVertices = [&](std::size_t begin, std::size_t end, char *out) {
         for (std::size_t i = begin; i < end; ++i) {
-            out = putBytes(out, mesh.positions[i]);
+            for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
+                out = putBytes(out, mesh.positions[k]);
+            }
+            for (std::size_t k = 3 * i; hasNormals && k < 3 * i + 3; ++k) {
+                out = putBytes(out, mesh.vertexNormals[k]);
+            }
         }
         return out;
     };
     writeItems(
-        mesh.positions.size(), [](std::size_t begin, std::size_t end) { return 4 * (end - begin); },
-        printPositions, file);
+        std::size_t(mesh.GetNumVertices()),
+        [numFloats](std::size_t begin, std::size_t end) { return 4 * numFloats * (end - begin); },
+        printVertices, file);
     auto const printFace = [&](int size, std::size_t firstCorner, char *out) {
         if (hasShortFaces) {
             *out++ = char(size);

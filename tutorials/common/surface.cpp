@@ -20,12 +20,37 @@ float computeSegmentDistance(Vec3 point, Vec3 a, Vec3 b) {
 } // namespace
 
 Surface::Surface(FarExt::TopologyLevel const &level)
-    : _level(level), _triangles(OsdExt::CreateTriangleIndices(level)) {}
+    : _level(level), _sides(level), _triangles(OsdExt::CreateTriangleIndices(level)) {
+    _triangleNormals.reserve(_triangles.vertices.size());
+    for (int triangle = 0; triangle < _triangles.GetNumTriangles(); ++triangle) {
+        int const face = _triangles.faces[triangle];
+        Far::ConstIndexArray const vertices = _level.GetFaceVertices(face);
+        int corners[3];
+        bool isHalf1 = true; // all corners are among those of half 1
+        for (int i = 0; i < 3; ++i) {
+            corners[i] = vertices.FindIndex(_triangles.vertices[3 * std::size_t(triangle) + i]);
+            isHalf1 = isHalf1 && corners[i] <= FarExt::kDiagonalEnd;
+        }
+        for (int corner : corners) {
+            _triangleNormals.push_back(_sides.FindSide(_level, face, corner, isHalf1 ? 1 : 0));
+        }
+    }
+}
 
-void Surface::SetPositions(float const *positions) {
+void Surface::SetPositions(float const *positions, float const *du, float const *dv) {
     _positions.assign(positions, positions + 3 * std::ptrdiff_t(_level.GetNumVertices()));
+    findPolygonNormals();
+    if (du && dv) {
+        for (int side = 0; side < _sides.GetNumSides(); ++side) {
+            _normals[side] = Normalize(Cross(GetVec3(du, side), GetVec3(dv, side)));
+        }
+    }
+}
+
+void Surface::findPolygonNormals() {
+    float const *const positions = _positions.data();
     _faceNormals.assign(_level.GetNumFaces(), Vec3());
-    _vertexNormals.assign(_level.GetNumVertices(), Vec3());
+    std::vector<Vec3> vertexNormals(_level.GetNumVertices());
     for (int face = 0; face < _level.GetNumFaces(); ++face) {
         Far::ConstIndexArray const vertices = _level.GetFaceVertices(face);
         int const size = vertices.size();
@@ -41,20 +66,21 @@ void Surface::SetPositions(float const *positions) {
             Vec3 const point = GetVec3(positions, vertices[i]);
             Vec3 const next = GetVec3(positions, vertices[(i + 1) % size]);
             Vec3 const previous = GetVec3(positions, vertices[(i + size - 1) % size]);
-            Vec3 &vertexNormal = _vertexNormals[vertices[i]];
+            Vec3 &vertexNormal = vertexNormals[vertices[i]];
             vertexNormal =
                 vertexNormal + computeAngle(next - point, previous - point) * _faceNormals[face];
         }
     }
-    for (Vec3 &normal : _vertexNormals) {
-        normal = Normalize(normal);
+    _normals.clear();
+    for (int side = 0; side < _sides.GetNumSides(); ++side) {
+        _normals.push_back(Normalize(vertexNormals[_sides.GetVertex(side)]));
     }
 }
 
 Vec3 Surface::GetSmoothNormal(int triangle, float u, float v) const {
-    int const *vertices = _triangles.vertices.data() + 3 * std::ptrdiff_t(triangle);
-    return Normalize((1 - u - v) * _vertexNormals[vertices[0]] + u * _vertexNormals[vertices[1]] +
-                     v * _vertexNormals[vertices[2]]);
+    int const *normals = _triangleNormals.data() + 3 * std::ptrdiff_t(triangle);
+    return Normalize((1 - u - v) * _normals[normals[0]] + u * _normals[normals[1]] +
+                     v * _normals[normals[2]]);
 }
 
 Vec3 Surface::GetFlatNormal(int triangle) const { return _faceNormals[_triangles.faces[triangle]]; }

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_TUTORIALS_SURFACE_H
 #define OPENSUBDIVHEX_TUTORIALS_SURFACE_H
 
-#include "far_ext/topologyLevel.h"
+#include "far_ext/limitStencilTableFactory.h"
 #include "osd_ext/triangleIndices.h"
 #include "vec3.h"
 
@@ -15,16 +15,22 @@ namespace OpenSubdivHex::Tutorials {
 /// The topology is set up once; positions may change from frame to frame.
 class Surface {
 public:
-    /// \p level must outlive the surface.
+    /// \p level must outlive the surface, and has full topology.
     explicit Surface(FarExt::TopologyLevel const &level);
 
+    /// The sides of the level's vertices: where normals are asked for.
+    FarExt::LimitSides const &GetSides() const { return _sides; }
+
     /// \param positions  x y z of each vertex of the level; copied
-    void SetPositions(float const *positions);
+    /// \param du, dv     x y z of the derivatives on each of GetSides(): the normals are theirs.
+    ///                   Null for those of the polygons: the mean around each vertex
+    void SetPositions(float const *positions, float const *du = nullptr, float const *dv = nullptr);
 
     OsdExt::TriangleIndices const &GetTriangles() const { return _triangles; }
     std::vector<float> const &GetPositions() const { return _positions; }
 
-    /// The vertex normals, interpolated at the barycentric coordinates \p u and \p v of a triangle.
+    /// The normals at the corners, interpolated at the barycentric coordinates \p u and \p v of a
+    /// triangle.
     Vec3 GetSmoothNormal(int triangle, float u, float v) const;
     /// The normal of the polygon that the triangle is a part of, by Newell's formula.
     Vec3 GetFlatNormal(int triangle) const;
@@ -35,11 +41,15 @@ public:
     float GetEdgeDistance(int triangle, Vec3 point) const;
 
 private:
+    void findPolygonNormals();
+
     FarExt::TopologyLevel const &_level;
+    FarExt::LimitSides const _sides;
     OsdExt::TriangleIndices const _triangles;
     std::vector<float> _positions;
     std::vector<Vec3> _faceNormals;
-    std::vector<Vec3> _vertexNormals;
+    std::vector<Vec3> _normals;        ///< by side
+    std::vector<int> _triangleNormals; ///< three per triangle
 };
 
 } // namespace OpenSubdivHex::Tutorials

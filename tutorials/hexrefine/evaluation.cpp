@@ -134,6 +134,51 @@ void EvaluateStencils(Far::StencilTable const &table, std::string const &evaluat
     evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
 }
 
+std::unique_ptr<Far::LimitStencilTable const>
+CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::Status *status) {
+    FarExt::LimitStencilTableFactory::Options options;
+    options.level = refiner.GetMaxLevel();
+    options.generateFurtherSides = true;
+    return FarExt::LimitStencilTableFactory::Create(refiner, options, status);
+}
+
+std::vector<float> EvaluateLimit(Far::LimitStencilTable const &table,
+                                 FarExt::LimitSides const &sides, std::string const &evaluator,
+                                 std::vector<float> *positions) {
+    std::size_t const size = 3 * std::size_t(table.GetNumStencils());
+    std::vector<float> points(size), du(size), dv(size);
+    Osd::BufferDescriptor const desc(0, 3, 3);
+    auto evaluate = [&](auto const &evaluateRange) {
+        evaluateRange(positions->data(), desc, points.data(), desc, du.data(), desc, dv.data(),
+                      desc, table.GetSizes().data(), table.GetOffsets().data(),
+                      table.GetControlIndices().data(), table.GetWeights().data(),
+                      table.GetDuWeights().data(), table.GetDvWeights().data(), 0,
+                      table.GetNumStencils());
+    };
+    if (evaluator == kStencilCpu) {
+        evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
+#ifdef HEXREFINE_HAS_OPENMP
+    } else if (evaluator == kStencilOmp) {
+        evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
+#endif
+    } else {
+        evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });
+    }
+    std::vector<float> normals(3 * std::size_t(sides.GetNumSides()));
+    for (std::size_t i = 0; i < normals.size(); i += 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::size_t const a = i + (k + 1) % 3;
+            std::size_t const b = i + (k + 2) % 3;
+            normals[i + k] = du[a] * dv[b] - du[b] * dv[a];
+        }
+    }
+    Normalize(&normals);
+    // The points of further sides are those of their vertices.
+    points.resize(3 * std::size_t(sides.GetNumVertices()));
+    *positions = std::move(points);
+    return normals;
+}
+
 void Normalize(std::vector<float> *vectors) {
     for (std::size_t i = 0; i + 2 < vectors->size(); i += 3) {
         float *const vector = vectors->data() + i;

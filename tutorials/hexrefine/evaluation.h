@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_TUTORIALS_EVALUATION_H
 #define OPENSUBDIVHEX_TUTORIALS_EVALUATION_H
 
-#include "far_ext/topologyRefiner.h"
+#include "far_ext/limitStencilTableFactory.h"
 
 #include <opensubdiv/far/stencilTable.h>
 
@@ -47,6 +47,18 @@ CreateStencils(FarExt::TopologyRefiner const &refiner, Primvar const &primvar,
 /// \param evaluator  one that takes a table
 void EvaluateStencils(OpenSubdiv::Far::StencilTable const &table, std::string const &evaluator,
                       Primvar const &primvar);
+
+/// The limit points of the refiner's last level, which has full topology, and the derivatives on
+/// each of its LimitSides; null with a status, as from LimitStencilTableFactory.
+std::unique_ptr<OpenSubdiv::Far::LimitStencilTable const>
+CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::Status *status);
+
+/// \brief Replaces \p positions by the limit points of \p table, from CreateLimitStencils.
+/// \param evaluator  stencil-cpu or stencil-omp
+/// \return  a normal for each side, 1 long; 0 where there is no tangent plane
+std::vector<float> EvaluateLimit(OpenSubdiv::Far::LimitStencilTable const &table,
+                                 FarExt::LimitSides const &sides, std::string const &evaluator,
+                                 std::vector<float> *positions);
 
 /// Makes vectors of three floats 1 long; those without a direction stay 0.
 void Normalize(std::vector<float> *vectors);

@@ -27,6 +27,7 @@
 #include <omp.h>
 #endif
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <iostream>
@@ -55,6 +56,7 @@ struct Arguments {
     std::optional<int> numThreads;
     std::string png;
     std::string stats;
+    bool isLimit = false;
     bool printsTags = false;
     bool isQuiet = false;
 };
@@ -157,6 +159,10 @@ void addOptions(CLI::App &app, Arguments *arguments) {
 #endif
         })
         ->capture_default_str();
+    app.add_flag("--limit", arguments->isLimit,
+                 "Push the vertices to the limit surface and write its normals: to both sides of "
+                 "sharp creases in .obj files, their mean at each vertex in .ply files, none in "
+                 ".off files");
     app.add_option("--threads", arguments->numThreads,
                    "Number of threads, 1 to 1024; the result does not depend on it")
         ->check([](std::string const &word) {
@@ -191,6 +197,9 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         }
         if (arguments->isCoplanar && (arguments->scheme != "hex" || arguments->isTriHexFirst)) {
             throw CLI::ValidationError("--coplanar", "is for the hexagonal scheme alone");
+        }
+        if (arguments->isLimit && arguments->evaluator == "primvar") {
+            throw CLI::ValidationError("--limit", "needs a stencil table, not --evaluator primvar");
         }
     });
     app.set_version_flag("--version", "hexrefine " HEXREFINE_VERSION);
@@ -252,12 +261,15 @@ std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Arguments const &argument
 /// To the last level; the positions of \p mesh are the rest pose.
 void refine(Arguments const &arguments, Mesh const &mesh, FarExt::TopologyRefiner *refiner) {
     FarExt::Status status;
+    FarExt::TopologyRefiner::UniformOptions uniformOptions(arguments.level);
+    uniformOptions.fullTopologyInLastLevel = arguments.isLimit;
     FarExt::TopologyRefiner::CoplanarOptions options(arguments.level);
     options.angleTolerance = arguments.tolerance;
     options.closeGaps = !arguments.hasOpenGaps;
+    options.fullTopologyInLastLevel = arguments.isLimit;
     bool const isDone = arguments.isCoplanar
                             ? refiner->RefineCoplanar(mesh.positions.data(), options, &status)
-                            : refiner->RefineUniform(arguments.level, &status);
+                            : refiner->RefineUniform(uniformOptions, &status);
     if (!isDone) {
         throw FileError(arguments.input, status.GetMessage());
     }
@@ -272,11 +284,55 @@ std::vector<Primvar> findPrimvars(Mesh *mesh) {
     return primvars;
 }
 
-/// Replaces the values of \p mesh by those of the last level.
+/// Replaces the positions of \p mesh by limit points, and gives the normal on each side.
+std::vector<float> evaluateLimit(Arguments const &arguments, FarExt::TopologyRefiner const &refiner,
+                                 FarExt::LimitSides const &sides, Mesh *mesh, Progress &progress,
+                                 Statistics *statistics) {
+    auto &milliseconds = statistics->milliseconds;
+    std::unique_ptr<Far::LimitStencilTable const> table;
+    milliseconds.stencils += measure(progress, "building limit stencils", [&] {
+        FarExt::Status status;
+        table = CreateLimitStencils(refiner, &status);
+        if (!table) {
+            throw FileError(arguments.input, status.GetMessage());
+        }
+    });
+    statistics->stencils = table->GetNumStencils();
+    statistics->weights = std::int64_t(table->GetWeights().size());
+    std::vector<float> normals;
+    milliseconds.evaluate += measure(progress, "evaluating", [&] {
+        normals = EvaluateLimit(*table, sides, arguments.evaluator, &mesh->positions);
+    });
+    return normals;
+}
+
+/// The faces of the last level and, where the file takes them, the normals on each side.
+void copyFacesWithNormals(Arguments const &arguments, FarExt::TopologyLevel const &level,
+                          FarExt::LimitSides const &sides, std::vector<float> normals, Mesh *mesh) {
+    if (HasChannels(arguments.output)) {
+        mesh->channels.push_back({FVarKind::Normal, 3, std::move(normals), {}});
+        CopyFaces(level, sides, mesh);
+        return;
+    }
+    CopyFaces(level, mesh);
+    mesh->vertexNormals.assign(mesh->positions.size(), 0.0f);
+    for (int side = 0; side < sides.GetNumSides(); ++side) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            mesh->vertexNormals[3 * std::size_t(sides.GetVertex(side)) + k] +=
+                normals[3 * std::size_t(side) + k];
+        }
+    }
+    Normalize(&mesh->vertexNormals);
+}
+
+/// Replaces the values of \p mesh by those of the last level, but for positions on the limit.
 void evaluate(Arguments const &arguments, FarExt::TopologyRefiner const &refiner, Mesh *mesh,
               Progress &progress, Statistics *statistics) {
     auto &milliseconds = statistics->milliseconds;
     for (Primvar const &primvar : findPrimvars(mesh)) {
+        if (arguments.isLimit && primvar.fvarChannel < 0) {
+            continue;
+        }
         FarExt::Status status;
         auto const require = [&](bool isDone) {
             if (!isDone) {
@@ -357,6 +413,13 @@ void run(Arguments const &arguments) {
                 }
                 mesh.channels.clear();
             }
+            bool const hasNormals = std::any_of(
+                mesh.channels.begin(), mesh.channels.end(),
+                [](FVarChannel const &channel) { return channel.kind == FVarKind::Normal; });
+            if (arguments.isLimit && hasNormals) {
+                throw FileError(arguments.input,
+                                "has normals of its own, which those of --limit would replace");
+            }
             refiner = createRefiner(arguments, mesh, sdcOptions);
             statistics.boundary = kBoundaryNames[sdcOptions.GetVtxBoundaryInterpolation()];
             statistics.creasingMethod = kCreasingMethodNames[sdcOptions.GetCreasingMethod()];
@@ -375,10 +438,21 @@ void run(Arguments const &arguments) {
         if (arguments.level > 0) {
             evaluate(arguments, *refiner, &mesh, progress, &statistics);
         }
+        FarExt::TopologyLevel const &lastLevel = refiner->GetLevel(arguments.level);
+        std::optional<FarExt::LimitSides> sides;
+        std::vector<float> normals;
+        if (arguments.isLimit) {
+            sides.emplace(lastLevel);
+            normals = evaluateLimit(arguments, *refiner, *sides, &mesh, progress, &statistics);
+        }
 
         if (!arguments.output.empty()) {
             milliseconds.write = measure(progress, "writing", [&] {
-                CopyFaces(refiner->GetLevel(arguments.level), &mesh);
+                if (sides) {
+                    copyFacesWithNormals(arguments, lastLevel, *sides, std::move(normals), &mesh);
+                } else {
+                    CopyFaces(lastLevel, &mesh);
+                }
                 WriteMesh(mesh, arguments.output);
             });
         }

@@ -13,7 +13,9 @@ namespace Far = OpenSubdiv::Far;
 
 class FaceCopier {
 public:
-    FaceCopier(FarExt::TopologyLevel const &level, Mesh *mesh) : _level(level), _mesh(*mesh) {}
+    // sides is null where no channel has their values.
+    FaceCopier(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sides, Mesh *mesh)
+        : _level(level), _sides(sides), _mesh(*mesh) {}
 
     void Run() {
         _mesh.faceSizes.clear();
@@ -36,7 +38,8 @@ private:
     }
 
     void addFace(int face) {
-        bool isSplit = false;
+        bool isSplit =
+            _sides && OpenSubdiv::Sdc::Crease::IsInfinite(_level.GetFaceDiagonalSharpness(face));
         for (int channel = 0; channel < numChannels(); ++channel) {
             isSplit = isSplit || _level.IsFaceFVarSplit(face, channel);
         }
@@ -50,6 +53,16 @@ private:
         append(vertices, &_mesh.faceVertices);
         for (int channel = 0; channel < numChannels(); ++channel) {
             append(_level.GetFaceFVarValues(face, channel), &_mesh.channels[channel].faceValues);
+        }
+        for (int corner = 0; corner < vertices.size(); ++corner) {
+            appendSide(face, corner, 0);
+        }
+    }
+
+    void appendSide(int face, int corner, int half) {
+        if (_sides) {
+            _mesh.channels.back().faceValues.push_back(
+                _sides->FindSide(_level, face, corner, half));
         }
     }
 
@@ -65,6 +78,9 @@ private:
                 appendCorners(_level.GetFaceFVarValues(face, channel), corners, &values);
             }
         }
+        for (int corner : corners) {
+            appendSide(face, corner, half);
+        }
     }
 
     static void append(Far::ConstIndexArray from, std::vector<int> *to) {
@@ -79,14 +95,22 @@ private:
         }
     }
 
-    int numChannels() const { return int(_mesh.channels.size()); }
+    // Those of the level.
+    int numChannels() const { return int(_mesh.channels.size()) - (_sides ? 1 : 0); }
 
     FarExt::TopologyLevel const &_level;
+    FarExt::LimitSides const *_sides;
     Mesh &_mesh;
 };
 
 } // namespace
 
-void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh) { FaceCopier(level, mesh).Run(); }
+void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh) {
+    FaceCopier(level, nullptr, mesh).Run();
+}
+
+void CopyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const &sides, Mesh *mesh) {
+    FaceCopier(level, &sides, mesh).Run();
+}
 
 } // namespace OpenSubdivHex::Tutorials

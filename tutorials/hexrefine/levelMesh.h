@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_TUTORIALS_LEVEL_MESH_H
 #define OPENSUBDIVHEX_TUTORIALS_LEVEL_MESH_H
 
-#include "far_ext/topologyLevel.h"
+#include "far_ext/limitStencilTableFactory.h"
 #include "tutorials/common/mesh.h"
 
 namespace OpenSubdivHex::Tutorials {
@@ -13,6 +13,12 @@ namespace OpenSubdivHex::Tutorials {
 /// Holes are left out.  A hexagon that a seam of a channel crosses becomes two quads, its halves,
 /// since a mesh has one value per corner; other faces stay whole.
 void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh);
+
+/// \brief The same, with a further channel, the last of \p mesh, whose values are those of \p
+/// sides.
+///
+/// Hexagons that a sharp crease crosses become two quads as well.
+void CopyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const &sides, Mesh *mesh);
 
 } // namespace OpenSubdivHex::Tutorials
 

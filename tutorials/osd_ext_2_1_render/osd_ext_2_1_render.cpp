@@ -4,15 +4,16 @@
 //
 //     A renderer with hexagonal subdivision surfaces, on Embree's ray tracing kernels.
 //
-//     What a renderer does at load time is in the constructor of Panel: the refiner, the stencil
-//     table, the buffers and the triangle indices, all made once.  What it does for each frame is in
+//     What a renderer does at load time is in the constructor of Panel: the refiner, the limit
+//     stencil
+//     table, the buffers and the triangle indices, all made once.  What it does for each frame is
+//     in
 //     Panel::Update: it evaluates the table for the frame's control positions and hands the refined
 //     triangles to the ray tracer.  The rest of this file is about options; the pictures themselves
 //     are made in tutorials/common (scene.h, renderer.h).
 //
-#include "far_ext/stencilTableFactory.h"
+#include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "osd_ext/stencilEvaluation.h"
 #include "tutorials/common/fileError.h"
 #include "tutorials/common/meshReader.h"
 #include "tutorials/common/meshText.h"
@@ -36,6 +37,8 @@
 namespace OpenSubdivHex::Tutorials {
 
 namespace {
+
+namespace Osd = OpenSubdiv::Osd;
 
 constexpr char kName[] = "osd_ext_2_1_render";
 
@@ -244,21 +247,27 @@ public:
         FarExt::Status status;
         _refiner = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), sdcOptions,
                                                           refinerOptions, &status);
-        if (!_refiner || !_refiner->RefineUniform(settings.level, &status)) {
+        FarExt::TopologyRefiner::UniformOptions refineOptions(settings.level);
+        refineOptions.fullTopologyInLastLevel = true;
+        if (!_refiner || !_refiner->RefineUniform(refineOptions, &status)) {
             throw FileError(input, status.GetMessage());
         }
         FarExt::TopologyLevel const &level = _refiner->GetLevel(settings.level);
+        _surface = std::make_unique<Surface>(level);
         if (settings.level > 0) {
-            FarExt::StencilTableFactory::Options tableOptions;
-            tableOptions.generateIntermediateLevels = false;
-            _table = FarExt::StencilTableFactory::Create(*_refiner, tableOptions, &status);
+            // Points of the limit surface, with a normal for each side of a crease.
+            FarExt::LimitStencilTableFactory::Options tableOptions;
+            tableOptions.level = settings.level;
+            tableOptions.generateFurtherSides = true;
+            _table = FarExt::LimitStencilTableFactory::Create(*_refiner, tableOptions, &status);
             if (!_table) {
                 throw FileError(input, status.GetMessage());
             }
             _controlBuffer.reset(Osd::CpuVertexBuffer::Create(3, mesh.GetNumVertices()));
-            _refinedBuffer.reset(Osd::CpuVertexBuffer::Create(3, level.GetNumVertices()));
+            for (auto *buffer : {&_pointBuffer, &_duBuffer, &_dvBuffer}) {
+                buffer->reset(Osd::CpuVertexBuffer::Create(3, _table->GetNumStencils()));
+            }
         }
-        _surface = std::make_unique<Surface>(level);
         auto const [low, high] = findBounds(mesh.positions);
         _rodRadius = 0.005f * Length(high - low);
         std::printf("level %d: %d vertices, %d triangles, made in %.0f ms\n", settings.level,
@@ -270,9 +279,12 @@ public:
     void Update(std::vector<float> const &positions) {
         if (_table) {
             _controlBuffer->UpdateData(positions.data(), 0, _controlBuffer->GetNumVertices());
-            OsdExt::EvalStencils<Osd::CpuEvaluator>(*_table, _controlBuffer.get(),
-                                                    _refinedBuffer.get());
-            _surface->SetPositions(_refinedBuffer->BindCpuBuffer());
+            Osd::BufferDescriptor const desc(0, 3, 3);
+            Osd::CpuEvaluator::EvalStencils(_controlBuffer.get(), desc, _pointBuffer.get(), desc,
+                                            _duBuffer.get(), desc, _dvBuffer.get(), desc,
+                                            _table.get());
+            _surface->SetPositions(_pointBuffer->BindCpuBuffer(), _duBuffer->BindCpuBuffer(),
+                                   _dvBuffer->BindCpuBuffer());
         } else {
             _surface->SetPositions(positions.data());
         }
@@ -305,9 +317,11 @@ private:
 
     PanelSettings const _settings;
     std::unique_ptr<FarExt::TopologyRefiner> _refiner;
-    std::unique_ptr<Far::StencilTable const> _table; // null for level 0
+    std::unique_ptr<Far::LimitStencilTable const> _table; // null for level 0
     std::unique_ptr<Osd::CpuVertexBuffer> _controlBuffer;
-    std::unique_ptr<Osd::CpuVertexBuffer> _refinedBuffer;
+    std::unique_ptr<Osd::CpuVertexBuffer> _pointBuffer;
+    std::unique_ptr<Osd::CpuVertexBuffer> _duBuffer;
+    std::unique_ptr<Osd::CpuVertexBuffer> _dvBuffer;
     std::unique_ptr<Surface> _surface;
     float _rodRadius = 0;
     Scene _scene;

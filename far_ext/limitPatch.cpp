@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitPatch.h"
+
+#include "baseLevel.h"
+#include "refinementMask.h"
+#include "topologyRefinement.h"
+
+#include <cstring>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Far::Index;
+using Sdc::Crease;
+
+int getBits(float value) {
+    static_assert(sizeof(int) == sizeof(float));
+    int bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+template <typename T>
+void fill(std::vector<T> const &from, Buffer<T> &to) {
+    to.Resize(from.size());
+    std::copy(from.begin(), from.end(), to.data());
+}
+
+// Tags that are all smooth are left out, as in every level.
+void fillTags(std::vector<float> const &from, Buffer<float> &to) {
+    if (std::any_of(from.begin(), from.end(), Crease::IsSharp)) {
+        fill(from, to);
+    }
+}
+
+bool isBreak(RingItem const &item) { return !item.isFace && Crease::IsInfinite(item.sharpness); }
+
+} // namespace
+
+// A closed fan has no first face of its own: that with the least sequence of what is around the
+// vertex is taken.
+int LimitPatchGatherer::findFirstFace(Index vert, int &firstSide) {
+    firstSide = 0;
+    Index const begin = _level.vertFirstFace[vert];
+    int const numFaces = _level.vertFirstFace[vert + 1] - begin;
+    int numFans = 0;
+    ForEachFan(_level, vert, [&](VertexFan const &fan) {
+        ++numFans;
+        GatherFanItems(_level, fan, _fan);
+    });
+    if (numFaces < 2 || numFans != 1 || !_fan.isClosed) {
+        return 0;
+    }
+    struct Key {
+        int numbers[4];
+        int numBreaks;
+    };
+    std::vector<Key> keys;
+    for (RingItem const &item : _fan.items) {
+        if (item.isFace && item.half < 0) {
+            Index const face = _level.vertFaces[begin + Index(keys.size()) - 1];
+            keys.back().numbers[1] =
+                _level.faceFirstCorner[face + 1] - _level.faceFirstCorner[face];
+            keys.back().numbers[2] =
+                _level.IsHalfFace(face) ? 1 + item.corner - _level.faceFirstCorner[face] : 0;
+        } else if (item.isLong) {
+            keys.back().numbers[3] = getBits(item.sharpness);
+            keys.back().numBreaks += isBreak(item);
+        } else if (!item.isFace) {
+            keys.push_back({{getBits(item.sharpness), 0, 0, 0}, isBreak(item)});
+        }
+    }
+    auto const compare = [&](int first, int second) {
+        for (int i = 0; i < numFaces; ++i) {
+            int const order =
+                std::memcmp(keys[(first + i) % numFaces].numbers,
+                            keys[(second + i) % numFaces].numbers, sizeof keys[0].numbers);
+            if (order != 0) {
+                return order;
+            }
+        }
+        return 0;
+    };
+    int best = 0;
+    bool const isUniform = std::all_of(keys.begin(), keys.end(), [&](Key const &key) {
+        return std::memcmp(key.numbers, keys[0].numbers, sizeof key.numbers) == 0;
+    });
+    for (int i = 1; i < numFaces && !isUniform; ++i) {
+        if (compare(i, best) < 0) {
+            best = i;
+        }
+    }
+    for (int i = 0; i < best; ++i) {
+        firstSide += keys[i].numBreaks;
+    }
+    return best;
+}
+
+Index LimitPatchGatherer::addVertex(Index vert, LimitPatch &patch) {
+    Index found = _verts.Find(vert);
+    if (found == Far::INDEX_INVALID) {
+        found = Index(patch.sources.size());
+        _verts.Set(vert, found);
+        patch.sources.push_back(vert);
+    }
+    return found;
+}
+
+// The corners of a face begin at local, unless corner 0 stands out.
+void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch &patch) {
+    if (_faces.Find(face) != Far::INDEX_INVALID) {
+        return;
+    }
+    _faces.Set(face, Index(patch.faceSizes.size()));
+    Index const first = _level.faceFirstCorner[face];
+    int const size = _level.faceFirstCorner[face + 1] - first;
+    float const diagonal = _level.GetDiagonalSharpness(face);
+    if (_level.IsHalfFace(face) || Crease::IsSharp(diagonal)) {
+        local = 0;
+    }
+    Index const patchFirst = Index(patch.faceVerts.size());
+    for (int i = 0; i < size; ++i) {
+        Index const corner = first + (local + i) % size;
+        _corners.push_back(corner);
+        Index const vert = addVertex(_level.faceVerts[corner], patch);
+        patch.faceVerts.push_back(vert);
+        // Of the faces further out, only the corners at the neighbours of vertex 0 matter.
+        if (isRing || vert < _numComplete) {
+            if (SectorCorner const *sector = _level.FindSectorCorner(corner)) {
+                patch.sectorCorners.push_back({patchFirst + i, sector->sectorSize, sector->weight});
+            }
+        }
+    }
+    patch.faceSizes.push_back(size);
+    patch.diagonalSharpness.push_back(diagonal);
+}
+
+void LimitPatchGatherer::addEdge(Index corner, Index edge, LimitPatch &patch) {
+    Index const size = Index(patch.otherCorners.size());
+    Index const other = _edges.Find(edge);
+    bool const isComplete = _verts.Find(_level.edgeVerts[2 * std::size_t(edge)]) < _numComplete ||
+                            _verts.Find(_level.edgeVerts[2 * std::size_t(edge) + 1]) < _numComplete;
+    patch.edgeSharpness.push_back(isComplete ? _level.GetEdgeSharpness(edge) : 0);
+    if (other != Far::INDEX_INVALID) {
+        patch.otherCorners.push_back(other);
+        patch.otherCorners[other] = corner;
+        return;
+    }
+    _edges.Set(edge, size);
+    bool const isKept = _level.IsBoundary(edge) && (isComplete || _level.IsSharpBoundaryB(edge));
+    patch.otherCorners.push_back(isKept ? _level.edgeFaces[2 * std::size_t(edge) + 1]
+                                        : Index(kFreeBoundary));
+}
+
+void LimitPatchGatherer::addTags(LimitPatch &patch) {
+    for (Index vert = 0; vert < Index(patch.sources.size()); ++vert) {
+        Index const source = patch.sources[vert];
+        bool const isComplete = vert < _numComplete;
+        patch.vertSharpness.push_back(isComplete ? _level.GetVertexSharpness(source) : 0);
+        if (isComplete && std::binary_search(_level.nonManifoldVerts.begin(),
+                                             _level.nonManifoldVerts.end(), source)) {
+            patch.nonManifoldVerts.push_back(vert);
+        }
+    }
+}
+
+void LimitPatchGatherer::addSharpVertices(LimitPatch &patch) {
+    for (Index vert = 0; vert < _numComplete; ++vert) {
+        SharpVertex const *const sharp = _level.FindSharpVertex(patch.sources[vert]);
+        if (!sharp) {
+            continue;
+        }
+        SharpVertex mask = *sharp;
+        mask.vert = vert;
+        for (int i = 0; i < 2; ++i) {
+            mask.neighbors[i] =
+                mask.neighborWeights[i] > 0 ? _verts.Find(sharp->neighbors[i]) : vert;
+        }
+        patch.sharpVerts.push_back(mask);
+    }
+}
+
+void LimitPatchGatherer::addSignature(LimitPatch &patch) {
+    std::vector<int> &signature = patch.signature;
+    auto const add = [&](auto const &numbers) {
+        signature.push_back(int(numbers.size()));
+        for (auto number : numbers) {
+            if constexpr (std::is_same_v<decltype(number), float>) {
+                signature.push_back(getBits(number));
+            } else {
+                signature.push_back(number);
+            }
+        }
+    };
+    auto const addIfAny = [&](std::vector<float> const &tags) {
+        add(std::any_of(tags.begin(), tags.end(), Crease::IsSharp) ? tags : std::vector<float>());
+    };
+    add(patch.faceSizes);
+    add(patch.faceVerts);
+    add(patch.otherCorners);
+    addIfAny(patch.edgeSharpness);
+    addIfAny(patch.diagonalSharpness);
+    addIfAny(patch.vertSharpness);
+    add(patch.nonManifoldVerts);
+    for (SectorCorner const &sector : patch.sectorCorners) {
+        signature.insert(signature.end(),
+                         {sector.corner, getBits(sector.sectorSize), getBits(sector.weight)});
+    }
+}
+
+void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
+    _verts.Clear(_level.numVertices);
+    _faces.Clear(_level.numFaces);
+    _edges.Clear(_level.numEdges);
+    _corners.clear();
+    patch = LimitPatch();
+
+    // The vertices whose faces are all there come first: vertex 0 and its neighbours.
+    addVertex(vert, patch);
+    int const firstFace = findFirstFace(vert, patch.firstSide);
+    Index const beginEdge = _level.vertFirstEdge[vert];
+    int const numEdges = _level.vertFirstEdge[vert + 1] - beginEdge;
+    auto const edgeOf = [&](int i) {
+        return _level.vertEdges[beginEdge + (firstFace + i) % numEdges];
+    };
+    for (int i = 0; i < numEdges; ++i) {
+        std::size_t const edge = 2 * std::size_t(edgeOf(i));
+        addVertex(_level.edgeVerts[edge], patch);
+        addVertex(_level.edgeVerts[edge + 1], patch);
+    }
+    _numComplete = int(patch.sources.size());
+
+    auto const addFacesOf = [&](Index center, int first) {
+        Index const begin = _level.vertFirstFace[center];
+        int const numFaces = _level.vertFirstFace[center + 1] - begin;
+        for (int i = 0; i < numFaces; ++i) {
+            Index const k = begin + (first + i) % numFaces;
+            addFace(_level.vertFaces[k], _level.vertFaceLocals[k], center == vert, patch);
+        }
+    };
+    addFacesOf(vert, firstFace);
+    for (int i = 1; i < _numComplete; ++i) {
+        Index const neighbor = patch.sources[i];
+        // From an edge of the vertex on, where the neighbour has it.
+        Index const begin = _level.vertFirstEdge[neighbor];
+        Index const *const edges = _level.vertEdges.data();
+        int first = 0;
+        for (Index k = begin; k < _level.vertFirstEdge[neighbor + 1]; ++k) {
+            std::size_t const edge = 2 * std::size_t(edges[k]);
+            if (_level.edgeVerts[edge] == vert || _level.edgeVerts[edge + 1] == vert) {
+                first = k - begin;
+                break;
+            }
+        }
+        addFacesOf(neighbor, first);
+    }
+    for (Index corner = 0; corner < Index(_corners.size()); ++corner) {
+        addEdge(corner, _level.faceEdges[_corners[corner]], patch);
+    }
+    std::sort(patch.sectorCorners.begin(), patch.sectorCorners.end(),
+              [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
+    addTags(patch);
+    addSharpVertices(patch);
+    addSignature(patch);
+}
+
+void BuildPatchLevel(LimitPatch const &patch, LevelTopology &level) {
+    level.depth = 0;
+    level.parent = nullptr;
+    level.numVertices = Index(patch.sources.size());
+    level.numFaces = Index(patch.faceSizes.size());
+    level.numCorners = Index(patch.faceVerts.size());
+    level.faceFirstCorner.Resize(patch.faceSizes.size() + 1);
+    Index first = 0;
+    for (Index face = 0; face < level.numFaces; ++face) {
+        level.faceFirstCorner[face] = first;
+        first += patch.faceSizes[face];
+    }
+    level.faceFirstCorner[level.numFaces] = first;
+    fill(patch.faceVerts, level.faceVerts);
+
+    std::vector<EdgeSides> edges;
+    std::vector<float> edgeSharpness;
+    for (Index corner = 0; corner < level.numCorners; ++corner) {
+        Index const other = patch.otherCorners[corner];
+        if (other < 0 || other > corner) {
+            edges.push_back({{corner, other}});
+            edgeSharpness.push_back(patch.edgeSharpness[corner]);
+        }
+    }
+    BuildBaseLevel(edges, level);
+    fillTags(edgeSharpness, level.edgeSharpness);
+    fillTags(patch.diagonalSharpness, level.diagonalSharpness);
+    fillTags(patch.vertSharpness, level.vertSharpness);
+    level.nonManifoldVerts = patch.nonManifoldVerts;
+    level.sharpVerts = patch.sharpVerts;
+    level.sectorCorners = patch.sectorCorners;
+}
+
+void LimitStep::ApplyLeft(std::vector<double> const &left, std::vector<double> &result) const {
+    result.assign(numParentVerts, 0.0);
+    for (std::size_t row = 0; row < left.size(); ++row) {
+        for (int k = firsts[row]; k < firsts[row + 1]; ++k) {
+            result[verts[k]] += left[row] * weights[k];
+        }
+    }
+}
+
+void LimitStep::ApplyRight(std::vector<double> const &right, std::vector<double> &result) const {
+    result.assign(firsts.size() - 1, 0.0);
+    for (std::size_t row = 0; row < result.size(); ++row) {
+        for (int k = firsts[row]; k < firsts[row + 1]; ++k) {
+            result[row] += weights[k] * right[verts[k]];
+        }
+    }
+}
+
+namespace {
+
+// The rows of a step: the stencils of a child level's vertices.
+class StepBuilder {
+public:
+    StepBuilder(LevelTopology const &pTopology, SchemeOptions const &schemeOptions, LimitStep &step)
+        : _pLevel(&pTopology), _indexing(pTopology.ChildIndexing()),
+          _mask(_pLevel, schemeOptions, Interpolation::Vertex), _step(step),
+          _row(pTopology.numVertices), _faceOfCorner(pTopology.numCorners) {
+        _step.numParentVerts = pTopology.numVertices;
+        _step.firsts.push_back(0);
+        for (Index face = 0; face < pTopology.numFaces; ++face) {
+            std::fill(_faceOfCorner.begin() + pTopology.faceFirstCorner[face],
+                      _faceOfCorner.begin() + pTopology.faceFirstCorner[face + 1], face);
+        }
+    }
+
+    void AddRow(Index cVert) {
+        if (_indexing.IsVertexFromCorner(cVert)) {
+            addFVertex(_indexing.GetChildVertexCorner(cVert), 1);
+        } else {
+            addVVertex(cVert);
+        }
+        std::sort(_columns.begin(), _columns.end());
+        for (Index column : _columns) {
+            if (_row[column] != 0) {
+                _step.verts.push_back(column);
+                _step.weights.push_back(_row[column]);
+                _row[column] = 0;
+            }
+        }
+        _columns.clear();
+        _step.firsts.push_back(int(_step.verts.size()));
+    }
+
+private:
+    void add(Index vert, double weight) {
+        _columns.push_back(vert);
+        _row[vert] += weight;
+    }
+    void addFVertex(Index corner, double weight) {
+        Index const face = _faceOfCorner[corner];
+        Far::ConstIndexArray const verts = _pLevel.GetFaceVertices(face);
+        double const *weights =
+            _mask.GetFaceVertexWeights(face, corner - _pLevel.GetFaceFirstCorner(face), _scratch);
+        for (int j = 0; j < verts.size(); ++j) {
+            add(verts[j], weight * weights[j]);
+        }
+    }
+    void addVVertex(Index vert) {
+        auto const mask = _mask.GetVertexMask(vert);
+        add(vert, mask.vertexWeight);
+        for (int i = 0; i < mask.numNeighbors; ++i) {
+            add(mask.neighbors[i], mask.neighborWeights[i]);
+        }
+        for (int i = 0; mask.faceWeight > 0 && i < _pLevel.GetVertexFaces(vert).size(); ++i) {
+            addFVertex(_pLevel.GetVertexCorner(vert, i), mask.faceWeight);
+        }
+    }
+
+    TopologyLevel const _pLevel;
+    HexIndexing const _indexing;
+    RefinementMask const _mask;
+    LimitStep &_step;
+    std::vector<double> _row; // dense; 0 between rows
+    std::vector<Index> _columns;
+    std::vector<Index> _faceOfCorner;
+    std::vector<double> _scratch;
+};
+
+// Around a V-vertex the children of edges take the place of faces: the first edge of a closed fan
+// comes last, and so does the side that begins there.
+std::vector<int> mapSides(LevelTopology const &pLevel, LimitPatch const &cPatch) {
+    std::vector<int> result;
+    ForEachFanItems(pLevel, 0, [&](FanItems const &fan) {
+        int const first = int(result.size());
+        int const numBreaks = int(std::count_if(fan.items.begin(), fan.items.end(), isBreak));
+        if (fan.isClosed && numBreaks >= 2) {
+            int const shift = int(isBreak(fan.items[0])) + cPatch.firstSide;
+            for (int side = 0; side < numBreaks; ++side) {
+                result.push_back(first + (side + 2 * numBreaks - shift) % numBreaks);
+            }
+        } else {
+            int numSides = 1;
+            if (!fan.isClosed && numBreaks >= 2) {
+                numSides = numBreaks - 1 + !isBreak(fan.items.front()) + !isBreak(fan.items.back());
+            }
+            for (int side = 0; side < numSides; ++side) {
+                result.push_back(first + side);
+            }
+        }
+    });
+    return result;
+}
+
+} // namespace
+
+LimitStep RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
+                      SchemeOptions const &schemeOptions, LimitPatch &cPatch) {
+    LevelTopology parent;
+    LevelTopology child;
+    BuildPatchLevel(pPatch, parent);
+    RefineTopology(parent, sdcOptions, true, child);
+    LimitPatchGatherer(child).Gather(parent.ChildIndexing().GetVertexChildVertex(0), cPatch);
+
+    LimitStep step;
+    StepBuilder builder(parent, schemeOptions, step);
+    for (Index cVert : cPatch.sources) {
+        builder.AddRow(cVert);
+    }
+    step.sides = mapSides(parent, cPatch);
+    return step;
+}
+
+Index FindFaceOfCorner(LevelTopology const &level, Index corner) {
+    Index const *const next =
+        std::upper_bound(level.faceFirstCorner.begin(), level.faceFirstCorner.end(), corner);
+    return Index(next - level.faceFirstCorner.begin()) - 1;
+}
+
+std::vector<VertexSide> FindVertexSides(LevelTopology const &level, Index vert) {
+    std::vector<VertexSide> sides;
+    int fanIndex = 0;
+    ForEachFanItems(level, vert, [&](FanItems &fan) {
+        std::vector<RingItem> &items = fan.items;
+        int const numBreaks = int(std::count_if(items.begin(), items.end(), isBreak));
+        if (numBreaks < 2) {
+            sides.push_back({items, fan.isClosed, fanIndex++});
+            return;
+        }
+        if (fan.isClosed) {
+            std::rotate(items.begin(), std::find_if(items.begin(), items.end(), isBreak),
+                        items.end());
+            items.push_back(items.front());
+        }
+        auto begin = items.begin();
+        for (auto item = begin + 1; item != items.end(); ++item) {
+            if (isBreak(*item) || item + 1 == items.end()) {
+                sides.push_back({std::vector<RingItem>(begin, item + 1), false, fanIndex});
+                begin = item;
+            }
+        }
+        ++fanIndex;
+    });
+    return sides;
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

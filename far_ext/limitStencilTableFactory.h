@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_LIMIT_STENCIL_TABLE_FACTORY_H
+#define OPENSUBDIVHEX_FAR_EXT_LIMIT_STENCIL_TABLE_FACTORY_H
+
+#include "topologyRefiner.h"
+
+#include <opensubdiv/far/stencilTable.h>
+
+namespace OpenSubdivHex::FarExt {
+
+/// \brief The types of limit stencil table by the precision of the weights.
+template <typename REAL>
+struct LimitStencilTableTypes {
+    using Table = Far::LimitStencilTableReal<REAL>;
+};
+template <>
+struct LimitStencilTableTypes<float> {
+    using Table = Far::LimitStencilTable; ///< what the Osd evaluators take
+};
+
+/// \brief The sides of the vertices of a level: at a vertex where two or more infinitely sharp edges
+/// meet, the surface has a tangent plane for each part of its faces that they bound.
+///
+/// Where fewer meet, and at sharp boundaries without creases, a vertex has one side.  Sides are
+/// counted around the vertex, in the order of its faces and from the first sharp edge on.  Side 0
+/// has the index of its vertex; the further sides of all vertices, in their order, follow the
+/// vertices.
+class LimitSides {
+public:
+    using Index = Far::Index;
+
+    /// \p level has full topology; it is not referred to afterwards.
+    explicit LimitSides(TopologyLevel const &level);
+
+    int GetNumVertices() const { return _numVertices; }
+    int GetNumSides() const { return _numVertices + int(_furtherSides.size()); }
+
+    /// The vertex of a side, and which of the vertex's sides it is.
+    Index GetVertex(Index side) const {
+        return side < _numVertices ? side : _furtherSides[side - _numVertices].vert;
+    }
+    int GetLocalSide(Index side) const {
+        return side < _numVertices ? 0 : _furtherSides[side - _numVertices].side;
+    }
+
+    /// \brief The side on which a face has its vertex number \p local.
+    ///
+    /// \param level  that of the constructor
+    /// \param half   of a hexagon with an infinitely sharp diagonal, the half that is meant, as in
+    ///               kHexagonHalves; of no matter for other faces
+    Index FindSide(TopologyLevel const &level, Index face, int local, int half = 0) const;
+
+private:
+    struct FurtherSide {
+        Index vert;
+        int side;
+    };
+    // The sides of the halves of a corner, of which a face without a diagonal has one.
+    struct Corner {
+        Index corner;
+        Index sides[2];
+    };
+
+    void addCorner(std::size_t begin, Index corner, int half, Index side);
+
+    int _numVertices;
+    std::vector<FurtherSide> _furtherSides;
+    std::vector<Corner> _corners; // ascending; of the vertices with more than one side
+};
+
+/// \brief Makes limit stencil tables of hexagonal refinements: points of the limit surface and its
+/// first derivatives there, as weighted sums of control vertices, for any Osd evaluator.
+///
+/// The derivatives du and dv span the tangent plane, and du x dv points to the side from which the
+/// faces are counter-clockwise.  They are derivatives by coordinates u and v in which the edges of
+/// the level are about 1 long, exactly so where the faces around are laid out regularly; along a
+/// sharp boundary or crease du follows the curve.  From one point to the next these coordinates
+/// turn.  What else they are depends on the point:
+///
+/// | point             | limit                                                                   |
+/// |-------------------|-------------------------------------------------------------------------|
+/// | vertex            | that of its V-vertices; tangents from the subdominant eigenvectors      |
+/// | on a sharp curve  | a point of the curve; each side has its tangent plane (see LimitSides)  |
+/// | on a boundary with| the vertex itself, unmoved, and the mean plane of its faces: there every |
+/// | the paper's rule  | step adds a face and the border creeps on, without a local limit        |
+/// | sharp corner with | the vertex; du along the first sharp edge of the side, dv into the side |
+/// | sharp edges       |                                                                         |
+/// | sharp corner      | the vertex; the tip of a cone, which has no tangent plane: du and dv    |
+/// | without           | span the plane across its axis                                          |
+/// | vertex, no faces  | the vertex; derivatives 0                                               |
+/// | face              | the centroid, where it has no sharp features                            |
+/// | half face,        | the middle of its long edge or of the diagonal, as its own parts shrink |
+/// | sharp diagonal    | towards there; tangents on the side of the half face, and of half 0     |
+///
+/// At a vertex without a plain tangent plane, on the narrow side of a crease (one face) and on the
+/// wide side of a corner (two faces and more), dv goes to the middle of its faces some levels on,
+/// instead of being an eigenvector.
+///
+/// Vertex interpolation alone; varying and face-varying data have no limit stencils.
+template <typename REAL>
+class LimitStencilTableFactoryReal {
+public:
+    using Table = typename LimitStencilTableTypes<REAL>::Table;
+
+    /// \brief Which points, in this order: the vertices of the level, the further sides of
+    /// vertices, the centres of the level's faces.
+    struct Options {
+        int level = 0; ///< 0 ... refiner.GetMaxLevel(); must have full topology
+        bool generateVertices = true;
+        bool generateFurtherSides = false; ///< only with vertices; as LimitSides numbers them
+        bool generateFaceCenters = false;
+        bool generate1stDerivatives = true; ///< else the table has no derivative weights
+    };
+
+    /// \brief Makes the table.
+    ///
+    /// The indices of a stencil are control vertices and ascend; offsets are filled.  The weights
+    /// of a point sum to 1, those of a derivative to 0.  Every point depends on the topology around
+    /// it alone: any number of threads makes the same bits.
+    ///
+    /// \return  null on failure: InvalidArgument (level out of range or without full topology, no
+    ///          points asked for, further sides without vertices) or TooLarge (more than 2^31 - 1
+    ///          weights, here or in the stencils of the level).
+    static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,
+                                               Status *status = nullptr);
+};
+
+using LimitStencilTableFactory = LimitStencilTableFactoryReal<float>;
+
+extern template class LimitStencilTableFactoryReal<float>;
+extern template class LimitStencilTableFactoryReal<double>;
+
+} // namespace OpenSubdivHex::FarExt
+
+#endif
