@@ -360,6 +360,12 @@ TEST(Coplanar, RefinesAgain) {
     auto const uniform = CreateRefiner(box, ReferenceMask::Average, 2);
     ASSERT_NO_FATAL_FAILURE(expectSameFaces(*refiner, *uniform));
     ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
+    // Of the gaps of an open refinement nothing is left.
+    ASSERT_TRUE(refiner->RefineCoplanar(box.positions.data(), makeOptions(2, 0.1, false)));
+    ASSERT_TRUE(refiner->RefineUniform(uniformOptions));
+    for (int v = 0; v < refiner->GetLevel(1).GetNumVertices(); ++v) {
+        ASSERT_FALSE(refiner->GetLevel(1).IsVertexNonManifold(v));
+    }
     ASSERT_TRUE(refiner->RefineCoplanar(box.positions.data(), makeOptions(2, 100)));
     auto const coplanar = createRefiner(box, ReferenceMask::Average, makeOptions(2, 100));
     ASSERT_NO_FATAL_FAILURE(expectSameFaces(*refiner, *coplanar));
