@@ -48,9 +48,10 @@ SchemeSizes getSchemeSizes(LevelTopology const &level) {
     result.interiorEdges = level.numEdges - std::int64_t(level.boundaryEdges.size());
     for (Far::Index vert = 0; vert < level.numVertices; ++vert) {
         internal::ForEachFan(level, vert, [&](internal::VertexFan const &fan) {
-            result.closedVertices += fan.isClosed;
-            result.closedCorners += fan.isClosed ? fan.end - fan.begin : 0;
-            result.digons += fan.isClosed && fan.end - fan.begin == 2;
+            std::int64_t const size = fan.end - fan.begin;
+            result.closedVertices += fan.isClosed ? 1 : 0;
+            result.closedCorners += fan.isClosed ? size : 0;
+            result.digons += fan.isClosed && size == 2 ? 1 : 0;
         });
     }
     return result;
@@ -68,7 +69,7 @@ SchemeSizes getDooSabinSizes(SchemeSizes const &p) {
     result.sizes.corners = p.sizes.corners + 4 * p.interiorEdges + vFaceCorners;
     result.interiorEdges = 2 * p.interiorEdges + vFaceCorners + p.digons;
     result.closedVertices = vFaceCorners + 2 * p.digons;
-    result.closedCorners = 4 * vFaceCorners + 3 * 2 * p.digons;
+    result.closedCorners = 4 * vFaceCorners + 6 * p.digons;
     return result;
 }
 
