@@ -169,19 +169,6 @@ std::vector<int> ringFace(int n, int first, bool reversed) {
     return face;
 }
 
-Shape makePrism(int n) {
-    ShapeBuilder builder(numbered("prism", n));
-    addRing(builder, n, 1, -0.8);
-    addRing(builder, n, 1, 0.8);
-    builder.AddFace(ringFace(n, 0, true));
-    for (int i = 0; i < n; ++i) {
-        int const j = (i + 1) % n;
-        builder.AddFace({i, j, n + j, n + i});
-    }
-    builder.AddFace(ringFace(n, n, false));
-    return builder.Take();
-}
-
 Shape makePyramid(int n) {
     ShapeBuilder builder(numbered("pyramid", n));
     addRing(builder, n, 1, -0.5);
@@ -189,18 +176,6 @@ Shape makePyramid(int n) {
     builder.AddFace(ringFace(n, 0, true));
     for (int i = 0; i < n; ++i) {
         builder.AddFace({i, (i + 1) % n, apex});
-    }
-    return builder.Take();
-}
-
-Shape makeBipyramid(int n) {
-    ShapeBuilder builder(numbered("bipyramid", n));
-    addRing(builder, n, 1, 0);
-    int const south = builder.AddVertex(0, 0, -1);
-    int const north = builder.AddVertex(0, 0, 1);
-    for (int i = 0; i < n; ++i) {
-        builder.AddFace({i, (i + 1) % n, north});
-        builder.AddFace({(i + 1) % n, i, south});
     }
     return builder.Take();
 }
@@ -373,12 +348,12 @@ std::vector<Shape> makeShapes() {
     shapes.push_back(MakeDual("dodecahedron", makeIcosahedron()));
     shapes.push_back(makeIcosahedron());
     for (int n : {3, 5, 6, 8, 12}) {
-        shapes.push_back(makePrism(n));
+        shapes.push_back(MakePrism(n));
         shapes.push_back(makePyramid(n));
     }
     for (int n : {64, 360}) {
-        shapes.push_back(makePrism(n));
-        shapes.push_back(makeBipyramid(n));
+        shapes.push_back(MakePrism(n));
+        shapes.push_back(MakeBipyramid(n));
     }
     shapes.push_back(makeDihedron(5));
     shapes.push_back(makeQuadTorus(8, 5));
@@ -387,7 +362,7 @@ std::vector<Shape> makeShapes() {
     shapes.push_back(MakeTruncated("truncatedCube", makeCube()));
     shapes.push_back(MakeTruncated("truncatedIcosahedron", makeIcosahedron()));
     shapes.push_back(MakeChamfered("chamferedCube", makeCube()));
-    shapes.push_back(MakeUnion("twoComponents", makePrism(5), makeTetrahedron(), 3));
+    shapes.push_back(MakeUnion("twoComponents", MakePrism(5), makeTetrahedron(), 3));
 
     for (int n : {3, 4, 5, 6, 9}) {
         shapes.push_back(makePolygon(n));
@@ -423,6 +398,31 @@ std::vector<Shape> makeShapes() {
 }
 
 } // namespace
+
+Shape MakePrism(int n) {
+    ShapeBuilder builder(numbered("prism", n));
+    addRing(builder, n, 1, -0.8);
+    addRing(builder, n, 1, 0.8);
+    builder.AddFace(ringFace(n, 0, true));
+    for (int i = 0; i < n; ++i) {
+        int const j = (i + 1) % n;
+        builder.AddFace({i, j, n + j, n + i});
+    }
+    builder.AddFace(ringFace(n, n, false));
+    return builder.Take();
+}
+
+Shape MakeBipyramid(int n) {
+    ShapeBuilder builder(numbered("bipyramid", n));
+    addRing(builder, n, 1, 0);
+    int const south = builder.AddVertex(0, 0, -1);
+    int const north = builder.AddVertex(0, 0, 1);
+    for (int i = 0; i < n; ++i) {
+        builder.AddFace({i, (i + 1) % n, north});
+        builder.AddFace({(i + 1) % n, i, south});
+    }
+    return builder.Take();
+}
 
 std::vector<Shape> const &GetShapes() {
     static std::vector<Shape> const shapes = makeShapes();

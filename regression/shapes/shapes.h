@@ -39,6 +39,12 @@ struct Shape {
     int GetNumCorners() const { return int(faceVertices.size()); }
 };
 
+/// A prism over a regular polygon with \p n sides, which is its first face and its last.
+Shape MakePrism(int n);
+
+/// Two pyramids with \p n sides, base to base; the tips are the last two vertices.
+Shape MakeBipyramid(int n);
+
 /// \brief The catalogue that all tests share: made by code, the same on every run.
 ///
 /// Orientation is consistent, and outward for closed shapes.  Positions are deformed by a smooth

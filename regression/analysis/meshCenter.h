@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_ANALYSIS_MESH_CENTER_H
+#define OPENSUBDIVHEX_REGRESSION_ANALYSIS_MESH_CENTER_H
+
+#include "far_ext/topologyLevel.h"
+
+namespace OpenSubdivHex::Regression {
+
+enum class CenterKind { Vertex, Face };
+
+/// The vertex or face of a mesh whose neighbourhood is looked at.
+struct MeshCenter {
+    CenterKind kind = CenterKind::Vertex;
+    int index = 0;
+};
+
+/// What \p center of \p level becomes in the next level, \p cLevel: V-vertex, V-face or F-face.
+MeshCenter FindChild(MeshCenter center, FarExt::TopologyLevel const &level,
+                     FarExt::TopologyLevel const &cLevel);
+
+} // namespace OpenSubdivHex::Regression
+
+#endif

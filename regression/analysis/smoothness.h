@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_ANALYSIS_SMOOTHNESS_H
+#define OPENSUBDIVHEX_REGRESSION_ANALYSIS_SMOOTHNESS_H
+
+#include "localSubdivision.h"
+#include "surfaceLevels.h"
+
+#include <array>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+/// \brief How far a mesh is from smooth.
+struct Smoothness {
+    /// The largest angle between the normals of faces that share an edge, in radians.
+    double maxNormalAngle = 0;
+    /// The largest such angle by the distance of the faces' centroids: curvature across an edge.
+    double maxCurvature = 0;
+};
+
+/// Of all interior edges of \p mesh.  A face's normal is that of its vector area.
+Smoothness MeasureSmoothness(PolygonMesh const &mesh);
+
+/// \brief The principal curvatures of a mesh near one of its vertices, the smaller first.
+///
+/// Those, at the vertex, of the quadratic that fits best the vertices of all faces which touch the
+/// vertex or a neighbour of it, over the plane through the vertex whose normal is the mean of those
+/// of its faces.
+std::array<double, 2> EstimateCurvatures(PolygonMesh const &mesh, int vertex);
+
+/// \brief The largest modulus of a principal curvature at the vertices of the faces that touch the
+/// center, those at the center included.
+double MeasureCurvature(PolygonMesh const &mesh, MeshCenter center);
+
+/// \brief The largest modulus of a principal curvature at the center of a neighbourhood, in it and
+/// after each of \p numSteps steps: as MeasureCurvature, of the vertices at the center alone, but
+/// many more levels than a mesh can have.
+///
+/// The neighbourhood begins as a flat bowl and saddle over its characteristic map z, of height
+/// h (|z|^2 + Re z^2); curvatures are divided by h.  Up to about 18 steps they are well above
+/// rounding.
+std::vector<double> TraceCurvature(LocalSubdivision const &subdivision, int numSteps);
+
+} // namespace OpenSubdivHex::Regression
+
+#endif
