@@ -11,7 +11,7 @@ enum class CenterKind { Vertex, Face };
 /// The vertex or face of a mesh whose neighbourhood is looked at.
 struct MeshCenter {
     CenterKind kind = CenterKind::Vertex;
-    int index = 0;
+    int index = -1; ///< -1: none is looked at
 };
 
 /// What \p center of \p level becomes in the next level, \p cLevel: V-vertex, V-face or F-face.

@@ -80,7 +80,9 @@ std::vector<SurfaceLevel> makeLevels(REFINER const &refiner, Shape const &shape,
         std::vector<Position> refined(level.GetNumVertices());
         primvarRefiner.Interpolate(depth, positions, refined);
         positions = std::move(refined);
-        center = findChild(center, refiner.GetLevel(depth - 1), level);
+        if (center.index >= 0) {
+            center = findChild(center, refiner.GetLevel(depth - 1), level);
+        }
         levels.push_back({makeMesh(level, positions), center});
     }
     return levels;
@@ -96,7 +98,7 @@ std::vector<SurfaceLevel> refine(Shape const &shape, FarExt::SchemeOptions const
     if (!refiner || !refiner->RefineUniform(uniformOptions, &status)) {
         throw std::runtime_error(shape.name + ": " + status.GetMessage());
     }
-    return makeLevels<FarExt::PrimvarRefinerReal<double>>(*refiner, shape, center);
+    return MakeSurfaceLevels(*refiner, shape, center);
 }
 
 std::vector<SurfaceLevel> refine(Shape const &shape, Sdc::SchemeType scheme, int maxLevel,
@@ -123,6 +125,11 @@ std::vector<SurfaceLevel> RefineSurface(Shape const &shape, AnyScheme const &sch
                                         MeshCenter center) {
     return std::visit([&](auto const &one) { return refine(shape, one, maxLevel, center); },
                       scheme);
+}
+
+std::vector<SurfaceLevel> MakeSurfaceLevels(FarExt::TopologyRefiner const &refiner,
+                                            Shape const &shape, MeshCenter center) {
+    return makeLevels<FarExt::PrimvarRefinerReal<double>>(refiner, shape, center);
 }
 
 Shape MakeSaddleBipyramid(int n) {

@@ -4,7 +4,7 @@
 
 #include "meshCenter.h"
 
-#include "far_ext/schemeOptions.h"
+#include "far_ext/topologyRefiner.h"
 #include "regression/shapes/shapes.h"
 
 #include <opensubdiv/sdc/types.h>
@@ -44,11 +44,15 @@ struct SurfaceLevel {
 /// \brief Levels 0 ... \p maxLevel of a shape, its topology and positions, refined by this library
 /// or by Far.  Tags of the shape are obeyed, boundaries refined by the options' defaults.
 ///
-/// \param center  followed from level to level
+/// \param center  followed from level to level, if any
 /// \throws std::runtime_error  for a shape that the scheme does not take, as Loop other faces than
 ///         triangles, and for a face as center in Loop
 std::vector<SurfaceLevel> RefineSurface(Shape const &shape, AnyScheme const &scheme, int maxLevel,
                                         MeshCenter center = MeshCenter());
+
+/// The same of a refiner of that shape which has been refined, in full, in another way.
+std::vector<SurfaceLevel> MakeSurfaceLevels(FarExt::TopologyRefiner const &refiner,
+                                            Shape const &shape, MeshCenter center = MeshCenter());
 
 /// \brief A bipyramid over \p n sides whose ring is a saddle and whose upper tip, vertex n + 1, is
 /// low: a control mesh that every scheme takes, with an irregular vertex where bowl and saddle mix.

@@ -84,28 +84,6 @@ Shape makeOctahedron() {
     return builder.Take();
 }
 
-Shape makeIcosahedron() {
-    ShapeBuilder builder("icosahedron");
-    double const height = 1 / std::sqrt(5.0);
-    for (int ring = 0; ring < 2; ++ring) {
-        for (int i = 0; i < 5; ++i) {
-            double const angle = 2 * kPi * (i + 0.5 * ring) / 5;
-            builder.AddVertex(2 * height * std::cos(angle), 2 * height * std::sin(angle),
-                              ring == 0 ? -height : height);
-        }
-    }
-    int const south = builder.AddVertex(0, 0, -1);
-    int const north = builder.AddVertex(0, 0, 1);
-    for (int i = 0; i < 5; ++i) {
-        int const j = (i + 1) % 5;
-        builder.AddFace({j, i, south});
-        builder.AddFace({i, j, 5 + i});
-        builder.AddFace({j, 5 + j, 5 + i});
-        builder.AddFace({5 + i, 5 + j, north});
-    }
-    return builder.Take();
-}
-
 /// The surface of a set of unit cubes: its quads between a filled and an empty cell.
 Shape makeVoxelSurface(std::string name, std::set<std::array<int, 3>> const &cells) {
     ShapeBuilder builder(std::move(name));
@@ -345,8 +323,8 @@ std::vector<Shape> makeShapes() {
     shapes.push_back(makeTetrahedron());
     shapes.push_back(makeCube());
     shapes.push_back(makeOctahedron());
-    shapes.push_back(MakeDual("dodecahedron", makeIcosahedron()));
-    shapes.push_back(makeIcosahedron());
+    shapes.push_back(MakeDual("dodecahedron", MakeIcosahedron()));
+    shapes.push_back(MakeIcosahedron());
     for (int n : {3, 5, 6, 8, 12}) {
         shapes.push_back(MakePrism(n));
         shapes.push_back(makePyramid(n));
@@ -360,7 +338,7 @@ std::vector<Shape> makeShapes() {
     shapes.push_back(makeHexTorus(6, 5));
     shapes.push_back(makeGenus2());
     shapes.push_back(MakeTruncated("truncatedCube", makeCube()));
-    shapes.push_back(MakeTruncated("truncatedIcosahedron", makeIcosahedron()));
+    shapes.push_back(MakeTruncated("truncatedIcosahedron", MakeIcosahedron()));
     shapes.push_back(MakeChamfered("chamferedCube", makeCube()));
     shapes.push_back(MakeUnion("twoComponents", MakePrism(5), makeTetrahedron(), 3));
 
@@ -398,6 +376,28 @@ std::vector<Shape> makeShapes() {
 }
 
 } // namespace
+
+Shape MakeIcosahedron() {
+    ShapeBuilder builder("icosahedron");
+    double const height = 1 / std::sqrt(5.0);
+    for (int ring = 0; ring < 2; ++ring) {
+        for (int i = 0; i < 5; ++i) {
+            double const angle = 2 * kPi * (i + 0.5 * ring) / 5;
+            builder.AddVertex(2 * height * std::cos(angle), 2 * height * std::sin(angle),
+                              ring == 0 ? -height : height);
+        }
+    }
+    int const south = builder.AddVertex(0, 0, -1);
+    int const north = builder.AddVertex(0, 0, 1);
+    for (int i = 0; i < 5; ++i) {
+        int const j = (i + 1) % 5;
+        builder.AddFace({j, i, south});
+        builder.AddFace({i, j, 5 + i});
+        builder.AddFace({j, 5 + j, 5 + i});
+        builder.AddFace({5 + i, 5 + j, north});
+    }
+    return builder.Take();
+}
 
 Shape MakePrism(int n) {
     ShapeBuilder builder(numbered("prism", n));

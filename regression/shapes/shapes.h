@@ -39,6 +39,9 @@ struct Shape {
     int GetNumCorners() const { return int(faceVertices.size()); }
 };
 
+/// The regular icosahedron.
+Shape MakeIcosahedron();
+
 /// A prism over a regular polygon with \p n sides, which is its first face and its last.
 Shape MakePrism(int n);
 

@@ -6,9 +6,11 @@
 
 #include <png.h>
 
+#include <stdexcept>
+
 namespace OpenSubdivHex::Tutorials {
 
-void WritePng(Image const &image, std::string const &path) {
+std::string EncodePng(Image const &image) {
     png_image png = {};
     png.version = PNG_IMAGE_VERSION;
     png.width = png_uint_32(image.width);
@@ -19,10 +21,19 @@ void WritePng(Image const &image, std::string const &path) {
     png_alloc_size_t size = content.size();
     if (!png_image_write_to_memory(&png, content.data(), &size, 0, image.pixels.data(), 0,
                                    nullptr)) {
-        throw FileError(path, std::string("cannot be made: ") + png.message);
+        throw std::runtime_error(std::string("cannot be made: ") + png.message);
     }
     content.resize(size);
+    return content;
+}
 
+void WritePng(Image const &image, std::string const &path) {
+    std::string content;
+    try {
+        content = EncodePng(image);
+    } catch (std::runtime_error const &error) {
+        throw FileError(path, error.what());
+    }
     OutputFile file(path);
     file.Write(content);
     file.Commit();

@@ -8,6 +8,9 @@
 
 namespace OpenSubdivHex::Tutorials {
 
+/// \p image as the content of a PNG file.  Throws std::runtime_error.
+std::string EncodePng(Image const &image);
+
 /// Writes \p image, all or nothing.  Throws FileError.
 void WritePng(Image const &image, std::string const &path);
 

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Runs the program that makes the report, with little work, and looks at the page.
+#include "tutorials/common/testFolder.h"
+
+#include <png.h>
+
+#include <cstdlib>
+#include <regex>
+
+#ifdef __unix__
+#include <sys/wait.h>
+#endif
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+int countMatches(std::string const &text, char const *pattern) {
+    std::regex const regex(pattern);
+    return int(std::distance(std::sregex_iterator(text.begin(), text.end(), regex),
+                             std::sregex_iterator()));
+}
+
+/// Occurrences of \p word.
+int count(std::string const &text, std::string const &word) {
+    int number = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        ++number;
+    }
+    return number;
+}
+
+std::string decodeBase64(std::string const &text) {
+    std::string const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    unsigned bits = 0;
+    int numBits = 0;
+    for (char c : text.substr(0, text.find('='))) {
+        EXPECT_NE(digits.find(c), std::string::npos) << c;
+        bits = (bits << 6 | unsigned(digits.find(c))) & 0xffffffu;
+        numBits += 6;
+        if (numBits >= 8) {
+            numBits -= 8;
+            bytes += char(bits >> numBits & 255);
+        }
+    }
+    return bytes;
+}
+
+class Paper : public Tutorials::TestFolder {
+protected:
+    int run(std::string const &arguments) const {
+        int const status = std::system(("\"" PAPER_PROGRAM "\" " + arguments + " >\"" +
+                                        getPath("stdout") + "\" 2>\"" + getPath("stderr") + "\"")
+                                           .c_str());
+#ifdef __unix__
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+#else
+        return status;
+#endif
+    }
+};
+
+} // namespace
+
+TEST_F(Paper, PageIsComplete) {
+    constexpr int kWidth = 40;
+    ASSERT_EQ(run("-o \"" + getPath("index.html") +
+                  "\" --width 40 --samples 1 --solid-level 2 --mask-level 2 --smoothness-level 2"
+                  " --curvature-level 2 --timing-level 2 --rounds 1"),
+              0)
+        << getContent(getPath("stderr"));
+    std::string page = getContent(getPath("index.html"));
+    EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
+    EXPECT_EQ(page.substr(page.size() - 8), "</html>\n");
+
+    for (std::string const id : {"claims", "solid", "meshes", "factors", "counts", "eigenvalues",
+                                 "smoothness", "tips", "masks", "timing", "stage3"}) {
+        EXPECT_EQ(count(page, "<section id=\"" + id + "\">"), 1) << id;
+        EXPECT_EQ(count(page, "href=\"#" + id + "\""), 1) << id;
+    }
+    EXPECT_EQ(count(page, "<section"), count(page, "</section>"));
+    EXPECT_EQ(count(page, "<figcaption>"), 11);
+
+    // Pictures: 2 x 3 levels, 2 x 4 meshes, 3 tips, 3 x 3 masks, 3 boxes, each a PNG of its size.
+    int numPictures = 0;
+    for (std::size_t at = page.find("<img"); at != std::string::npos; at = page.find("<img")) {
+        std::string const element = page.substr(at, page.find('>', at) + 1 - at);
+        std::size_t const comma = element.find("base64,") + 7;
+        std::string const bytes = decodeBase64(element.substr(comma, element.size() - 2 - comma));
+        png_image png = {};
+        png.version = PNG_IMAGE_VERSION;
+        ASSERT_TRUE(png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()))
+            << png.message;
+        EXPECT_EQ(int(png.width), kWidth);
+        EXPECT_NE(element.find("height=\"" + std::to_string(png.height) + "\""), std::string::npos);
+        std::vector<png_byte> pixels(PNG_IMAGE_SIZE(png));
+        ASSERT_TRUE(png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr)) << png.message;
+        EXPECT_NE(*std::min_element(pixels.begin(), pixels.end()),
+                  *std::max_element(pixels.begin(), pixels.end()));
+        page.erase(at, element.size());
+        ++numPictures;
+    }
+    EXPECT_EQ(numPictures, 6 + 8 + 3 + 9 + 3);
+
+    // Drawings: two lattices and 2 + 2 + 4 + 6 + 2 plots.
+    EXPECT_EQ(count(page, "<svg"), 2 + 16);
+    EXPECT_EQ(count(page, "<svg"), count(page, "</svg>"));
+    EXPECT_GT(count(page, "<path"), 300);
+    for (char const *word : {"nan", "inf", "NaN"}) {
+        EXPECT_EQ(countMatches(page, (std::string("[^a-z]") + word + "[^a-z]").c_str()), 0) << word;
+    }
+
+    // What cannot depend on the machine or on how much was computed.
+    EXPECT_EQ(count(page, "class=\"off\""), 0);
+    EXPECT_EQ(count(page, "class=\"ok\""), 6);
+    EXPECT_EQ(count(page, "class=\"chip "), 14);
+    EXPECT_NE(page.find("<td>1</td><td>122, 192, 72</td><td>116, 216, 102</td><td>2</td>"
+                        "<td>96</td>"),
+              std::string::npos);
+    EXPECT_NE(page.find("13 4 1 1 1 4 / 24</td>"
+                        "<td>1.0000, 0.6250, 0.6250, 0.3750, 0.3750, 0.2500</td>"),
+              std::string::npos);
+    EXPECT_NE(page.find("factor is 1.00 everywhere"), std::string::npos);
+    EXPECT_EQ(listFiles(), (std::vector<std::string>{"index.html", "stderr", "stdout"}));
+}
+
+TEST_F(Paper, RefusesBadUsage) {
+    EXPECT_EQ(run(""), 2);
+    EXPECT_NE(getContent(getPath("stderr")).find("--output"), std::string::npos);
+    EXPECT_EQ(run("-o a.html --solid-level 0"), 2);
+    EXPECT_EQ(run("-o a.html --rounds x"), 2);
+}
+
+} // namespace OpenSubdivHex::Regression
