@@ -15,8 +15,9 @@ struct EdgeSides {
 /// \brief Derives all relations of \p level from its faces (numVertices, numFaces, numCorners,
 /// faceFirstCorner and faceVerts, which the caller has filled) and from its edges.
 ///
-/// Every corner is a side of exactly one edge; a B boundary is edge 0 of its face.  The faces of a vertex are joined to fans across
-/// interior edges; edges that are joined nowhere else may share both vertices.
+/// Every corner is a side of exactly one edge; a B boundary is edge 0 of its face.  The faces of a
+/// vertex are joined to fans across interior edges; edges that are joined nowhere else may share
+/// both vertices.
 void BuildBaseLevel(std::vector<EdgeSides> const &edges, LevelTopology &level);
 
 } // namespace OpenSubdivHex::FarExt::internal

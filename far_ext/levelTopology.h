@@ -85,7 +85,8 @@ struct LevelTopology {
     Index GetVertexCorner(Index k) const {
         return faceFirstCorner[vertFaces[k]] + vertFaceLocals[k];
     }
-    /// The corner where side \p side of an edge starts; a BoundaryKind, negative, where there is none.
+    /// The corner where side \p side of an edge starts; a BoundaryKind, negative, where there is
+    /// none.
     Index GetSideCorner(Index e, int side) const {
         std::size_t const k = 2 * std::size_t(e) + std::size_t(side);
         return edgeFaces[k] < 0 ? edgeFaces[k] : faceFirstCorner[edgeFaces[k]] + edgeFaceLocals[k];

@@ -18,8 +18,8 @@ struct LimitStencilTableTypes<float> {
     using Table = Far::LimitStencilTable; ///< what the Osd evaluators take
 };
 
-/// \brief The sides of the vertices of a level: at a vertex where two or more infinitely sharp edges
-/// meet, the surface has a tangent plane for each part of its faces that they bound.
+/// \brief The sides of the vertices of a level: at a vertex where two or more infinitely sharp
+/// edges meet, the surface has a tangent plane for each part of its faces that they bound.
 ///
 /// Where fewer meet, and at sharp boundaries without creases, a vertex has one side.  Sides are
 /// counted around the vertex, in the order of its faces and from the first sharp edge on.  Side 0

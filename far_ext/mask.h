@@ -41,8 +41,8 @@ void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, do
 /// V, Q*, P*, W, Q, P; the weights come out non-negative.
 void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, double *weights);
 
-/// \brief Writes the \p n weights for the new point of the edge from vertex 0 to vertex 1 of a face,
-/// in the tri-hex scheme: P = (V_0 + V_1 + centroid)/3, for vertex and for varying data.
+/// \brief Writes the \p n weights for the new point of the edge from vertex 0 to vertex 1 of a
+/// face, in the tri-hex scheme: P = (V_0 + V_1 + centroid)/3, for vertex and for varying data.
 ///
 /// The masks of Claes, Beets and Van Reeth (2002) are not public; of the masks on one face that are
 /// symmetric and reproduce linear functions this is the smoothest.

@@ -36,10 +36,10 @@ public:
     }
 
     void BeginFace() { _faceFirstCorner.push_back(Index(_faceVerts.size())); }
-    // Adds a vertex to the face begun last, and the edge from there to the next one.  The first side
-    // of a spoke runs from its V-vertex, as in the hexagonal step; that of another edge is the first
-    // to come.  So both sides are the same in the mesh and in its channels, whose faces come in
-    // another order.
+    // Adds a vertex to the face begun last, and the edge from there to the next one.  The first
+    // side of a spoke runs from its V-vertex, as in the hexagonal step; that of another edge is the
+    // first to come.  So both sides are the same in the mesh and in its channels, whose faces come
+    // in another order.
     void AddCorner(Index vert, Index edge) {
         EdgeSides &sides = _edges[std::size_t(edge)];
         bool const isSecond = sides.corners[0] != Far::INDEX_INVALID;
@@ -230,8 +230,8 @@ void PolygonStep::joinDigons() {
     _sizes.edges -= std::int64_t(removed.size());
 }
 
-// The end of an edge, as a position in _endEdges, at the vertex of the corner where one of its faces
-// begins to run along it.
+// The end of an edge, as a position in _endEdges, at the vertex of the corner where one of its
+// faces begins to run along it.
 std::size_t PolygonStep::endAt(Index startCorner) const {
     Index const pEdge = _parent.faceEdges[startCorner];
     return 2 * std::size_t(pEdge) + (_parent.GetSideCorner(pEdge, 0) == startCorner ? 0 : 1);

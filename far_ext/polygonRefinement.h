@@ -11,8 +11,8 @@ namespace OpenSubdivHex::FarExt::internal {
 /// \brief Which polygons a step makes, beside the F-face of every face.
 struct PolygonRules {
     SchemeType scheme = SchemeType::Hexagonal;
-    /// Of Hexagonal, by edge: whether an interior edge makes a quad, of its F-vertices alone.  Empty
-    /// when none does.
+    /// Of Hexagonal, by edge: whether an interior edge makes a quad, of its F-vertices alone.
+    /// Empty when none does.
     std::vector<unsigned char> flatEdges;
     /// Of Hexagonal: whether faces at the vertices close the gaps that quads leave.
     bool closeGaps = true;
@@ -31,9 +31,9 @@ PolygonRules GetRulesOfChannel(LevelTopology const &mesh, PolygonRules const &ru
 /// in the hexagonal step and, in the other schemes, nothing.  At each vertex follow V-faces:
 ///  - Doo-Sabin: per closed fan of k faces the polygon of its k F-vertices;
 ///  - tri-hex: likewise, with two F-vertices of each face;
-///  - hexagonal: per maximal run of quad edges the polygon of the V-vertex and the F-vertices of the
-///    faces between which they run; with quads all around a vertex that of the F-vertices alone, in
-///    place of the V-vertex.
+///  - hexagonal: per maximal run of quad edges the polygon of the V-vertex and the F-vertices of
+///    the faces between which they run; with quads all around a vertex that of the F-vertices
+///    alone, in place of the V-vertex.
 /// Where it would have two vertices alone there is no V-face: the two quads share an edge.
 ///
 /// The last vertex of a V-face is the F-vertex of a corner at its vertex.  INDEXING.md has the

@@ -544,8 +544,8 @@ bool Validator::checkEFaces() {
     return true;
 }
 
-// A V-face has its V-vertex first or not at all, and F-vertices of faces around its vertex: those of
-// corners there or, in tri-hex, of the corners before.
+// A V-face has its V-vertex first or not at all, and F-vertices of faces around its vertex: those
+// of corners there or, in tri-hex, of the corners before.
 bool Validator::checkVFaces() {
     LevelTopology const &topology = *_topology.parent;
     TopologyLevel const parent(&topology);

@@ -143,8 +143,8 @@ public:
     /// The face of level 0 that this face lies in; for other faces than F-faces, that of their
     /// parent face.
     Index GetFaceBaseFace(Index f) const;
-    /// The parent face of an F-face; for an E-face, the first face of its parent edge; for a V-face,
-    /// that of its last F-vertex.
+    /// The parent face of an F-face; for an E-face, the first face of its parent edge; for a
+    /// V-face, that of its last F-vertex.
     Index GetFaceParentFace(Index f) const;
     /// The parent edge of an E-face, INDEX_INVALID for other faces.
     Index GetFaceParentEdge(Index f) const;
@@ -164,7 +164,8 @@ public:
     /// The edge of the E-face of a boundary edge that is on the boundary again; other edges have
     /// none, a B edge because its children belong to its vertices and its face.
     ConstIndexArray GetEdgeChildEdges(Index e) const;
-    /// The E-face of an edge; INDEX_INVALID for one that makes none, as a B edge of a sharp boundary.
+    /// The E-face of an edge; INDEX_INVALID for one that makes none, as a B edge of a sharp
+    /// boundary.
     Index GetEdgeChildFace(Index e) const;
     /// The V-vertex of a vertex; INDEX_INVALID for one that makes none.
     Index GetVertexChildVertex(Index v) const;

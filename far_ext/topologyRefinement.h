@@ -28,13 +28,13 @@ LevelSizes GetChildSizes(LevelSizes const &parent);
 void BeginLevel(LevelSizes const &sizes, bool fullTopology, LevelTopology const &parent,
                 LevelTopology &child);
 
-/// \brief Ends \p child, which has its topology: adds its tags and, with full topology, the masks of
-/// its sharp vertices.
+/// \brief Ends \p child, which has its topology: adds its tags and, with full topology, the masks
+/// of its sharp vertices.
 void EndLevel(Sdc::Options sdcOptions, LevelTopology &parent, LevelTopology &child);
 
-/// \brief Makes \p child the hexagonal refinement of \p parent: topology, tags and, with \p fullTopology, the
-/// masks of its sharp vertices.  Its sizes must fit 32 bits.  Without \p fullTopology only the
-/// face-vertices and the tags of faces are made.
+/// \brief Makes \p child the hexagonal refinement of \p parent: topology, tags and, with \p
+/// fullTopology, the masks of its sharp vertices.  Its sizes must fit 32 bits.  Without \p
+/// fullTopology only the face-vertices and the tags of faces are made.
 void RefineTopology(LevelTopology &parent, Sdc::Options sdcOptions, bool fullTopology,
                     LevelTopology &child);
 

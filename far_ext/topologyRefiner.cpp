@@ -57,8 +57,8 @@ SchemeSizes getSchemeSizes(LevelTopology const &level) {
     return result;
 }
 
-// A quad per interior edge, a V-face per closed vertex but for digons, where two quads share an edge.
-// The F-vertices of V-faces are closed, with four faces each, those of digons with three.
+// A quad per interior edge, a V-face per closed vertex but for digons, where two quads share an
+// edge. The F-vertices of V-faces are closed, with four faces each, those of digons with three.
 SchemeSizes getDooSabinSizes(SchemeSizes const &p) {
     std::int64_t const vFaces = p.closedVertices - p.digons;
     std::int64_t const vFaceCorners = p.closedCorners - 2 * p.digons;

@@ -72,8 +72,8 @@ public:
     /// \return  false with StatusCode::InvalidArgument for a negative level, and with
     ///          StatusCode::TooLarge, which names the level and the count, when a size or the sum
     ///          of a size over the levels exceeds 2^31 - 1.  No memory is taken then and the
-    ///          levels are as before.  With borders the sizes of a tri-hex step and what follows are
-    ///          known only once it is made: there the base alone is left.
+    ///          levels are as before.  With borders the sizes of a tri-hex step and what follows
+    ///          are known only once it is made: there the base alone is left.
     bool RefineUniform(UniformOptions options, Status *status = nullptr);
 
     /// The options of the last successful RefineUniform.
@@ -95,10 +95,10 @@ public:
     /// quads, others hexagons.  Replaces earlier refinements.
     ///
     /// The faces are those of the rest pose, which the masks refine along; they fix the topology,
-    /// and tables and primvars work for any other pose as ever.  The normal of a face is that of its
-    /// polygon's vector area, planar or not; a face of no area has none.  Edges at boundaries,
-    /// creases, crease diagonals, sharp and non-manifold vertices and face-varying seams always make
-    /// hexagons.  INDEXING.md has the numbering.
+    /// and tables and primvars work for any other pose as ever.  The normal of a face is that of
+    /// its polygon's vector area, planar or not; a face of no area has none.  Edges at boundaries,
+    /// creases, crease diagonals, sharp and non-manifold vertices and face-varying seams always
+    /// make hexagons.  INDEXING.md has the numbering.
     ///
     /// \param restPositions  x, y, z of the GetLevel(0).GetNumVertices() vertices of level 0
     /// \return  false with StatusCode::InvalidArgument for a negative level, an angle that is not

@@ -28,9 +28,9 @@ public:
     /// boundary are not taken over, since Far tags all faces there as holes.
     ///
     /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices,
-    ///          two faces that run an edge in the same direction, an edge without a face), TooLarge,
-    ///          or Unsupported (creases, interior corners, non-manifold edges or face-varying
-    ///          channels with other steps than hexagonal ones).
+    ///          two faces that run an edge in the same direction, an edge without a face),
+    ///          TooLarge, or Unsupported (creases, interior corners, non-manifold edges or
+    ///          face-varying channels with other steps than hexagonal ones).
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    Options options, Status *status = nullptr);
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
@@ -42,8 +42,8 @@ public:
     /// options \p sdcOptions.
     ///
     /// Additionally refuses, with InvalidTopology, indices out of range: of vertices in faces,
-    /// creases and corners, of faces that are holes, and of face-varying values; a crease that is no edge;
-    /// and, with InvalidArgument, a descriptor without its arrays of faces.
+    /// creases and corners, of faces that are holes, and of face-varying values; a crease that is
+    /// no edge; and, with InvalidArgument, a descriptor without its arrays of faces.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyDescriptor const &descriptor,
                                                    Sdc::Options sdcOptions, Options options,
                                                    Status *status = nullptr);

@@ -12,8 +12,8 @@
 namespace OpenSubdivHex::OsdExt {
 namespace {
 
-/// Stencils, or blocks of them, that a thread takes at a time: enough that starting on them costs nothing beside them,
-/// few enough that the threads end together.
+/// Stencils, or blocks of them, that a thread takes at a time: enough that starting on them costs
+/// nothing beside them, few enough that the threads end together.
 constexpr std::int64_t kMinBatch = 256;
 constexpr std::int64_t kMaxBatch = 4096;
 constexpr int kBatchesPerThread = 16;

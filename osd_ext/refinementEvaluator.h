@@ -34,8 +34,8 @@ namespace OsdExt {
 ///         evaluator->Evaluate(controlPositions, desc, positions, desc, refiner.GetMaxLevel());
 /// \endcode
 ///
-/// **Elements.** Element j of a buffer is the \c length floats from <tt>offset + j * stride</tt> on,
-/// computed in 64 bits.  Nothing else is read or written, not even beside them.
+/// **Elements.** Element j of a buffer is the \c length floats from <tt>offset + j * stride</tt>
+/// on, computed in 64 bits.  Nothing else is read or written, not even beside them.
 ///
 /// **Aliasing.** Source and destination may be one buffer, as long as no float is both read and
 /// written: the destination may lie behind the source, or beside it in each stride.

@@ -21,9 +21,9 @@ namespace OsdExt {
 /// Osd::Mesh and EvalStencilsInPlace, accept them.  There are no EvalPatches functions.
 ///
 /// **Tables.** Any Far::StencilTable or Far::LimitStencilTable, of this library or of OpenSubdiv,
-/// or a class with their functions, and CompactStencilTable.  Offsets may be missing, as Far's option generateOffsets
-/// suggests: stencils then follow each other without gaps, and OmpEvaluator and ranges that do not
-/// start at 0 cost a pass over the sizes.
+/// or a class with their functions, and CompactStencilTable.  Offsets may be missing, as Far's
+/// option generateOffsets suggests: stencils then follow each other without gaps, and OmpEvaluator
+/// and ranges that do not start at 0 cost a pass over the sizes.
 ///
 /// **Elements.** Source element j is the \c length floats from <tt>offset + j * stride</tt> on,
 /// computed in 64 bits.  Nothing else is read, not even beside them, and nothing else is written.
@@ -122,7 +122,8 @@ public:
     /// @name With pointers
     /// \param src,dst,...  without the offset of their descriptors, which is added
     /// \param sizes        of the indices of each stencil, 0 or more
-    /// \param offsets      of the first index of each stencil, 0 or more; null: without gaps from 0 on
+    /// \param offsets      of the first index of each stencil, 0 or more; null: without gaps from 0
+    /// on
     /// \param indices      of source elements, 0 or more
     /// \param weights,...  in the order of the indices
     /// @{

@@ -24,7 +24,8 @@ struct StencilBlock {
     int firstWeight; ///< those of all its stencils follow each other
 };
 
-/// \brief The stencils of a table: as StencilEvaluator takes them or, if there are blocks, in these.
+/// \brief The stencils of a table: as StencilEvaluator takes them or, if there are blocks, in
+/// these.
 struct StencilRows {
     /// Whether the weights of a stencil are found without a look at those before it.
     bool HasPlaces() const { return offsets || blocks; }

@@ -57,8 +57,8 @@ bool isQuad(TopologyRefiner const &refiner, int level, int edge) {
            refiner.GetLevel(level + 1).GetFaceVertices(pLevel.GetEdgeChildFace(edge)).size() == 4;
 }
 
-/// The edges that make quads are those that the reference finds, but for angles that are as large as
-/// the tolerance up to rounding.
+/// The edges that make quads are those that the reference finds, but for angles that are as large
+/// as the tolerance up to rounding.
 void expectFlatEdges(TopologyRefiner const &refiner, TaggedMatch const &match, ReferenceMask mask,
                      ReferenceValues positions, double angleTolerance) {
     for (int level = 0; level < match.GetMaxLevel(); ++level) {

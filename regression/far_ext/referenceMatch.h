@@ -35,7 +35,8 @@ double GetSize(ReferenceValues const &values);
 /// are.  The matching uses what each component was made from, never positions.
 class ReferenceMatch {
 public:
-    /// Refines to \p numLevels levels above the base.  Failures to match are reported by GetError().
+    /// Refines to \p numLevels levels above the base.  Failures to match are reported by
+    /// GetError().
     ReferenceMatch(Shape const &shape, int numLevels);
 
     /// Empty when every component has its partner.

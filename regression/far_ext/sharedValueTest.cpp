@@ -23,8 +23,8 @@ constexpr int kSize = 4; // quads along each side of a grid
 
 int vertex(int i, int j) { return j * (kSize + 1) + i; }
 
-/// The value of an inner vertex at level 1, with linear boundaries, in a grid whose values are those
-/// of its vertices but for the border vertex 1, 0, which has the value \p borderValue.
+/// The value of an inner vertex at level 1, with linear boundaries, in a grid whose values are
+/// those of its vertices but for the border vertex 1, 0, which has the value \p borderValue.
 float refineInnerValue(int innerVert, int borderValue) {
     std::vector<int> const sizes(kSize * kSize, 4);
     std::vector<int> verts;

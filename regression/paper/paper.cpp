@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Computes the figures and numbers of the paper (Ghaleb and Abd El-Latif 2005) and writes them as one
-// self-contained HTML page.
+// Computes the figures and numbers of the paper (Ghaleb and Abd El-Latif 2005) and writes them as
+// one self-contained HTML page.
 #include "page.h"
 #include "sections.h"
 #include "settings.h"

@@ -48,8 +48,9 @@ struct ReferenceLevel {
 
 /// \brief The base mesh; vertices and faces keep their numbers.  \p positions are x, y, z each.
 ///
-/// Throws std::runtime_error if OpenMesh does not take a face, as it does not where an edge has more
-/// than two faces or two that run it the same way, and if a vertex has more than one fan of faces.
+/// Throws std::runtime_error if OpenMesh does not take a face, as it does not where an edge has
+/// more than two faces or two that run it the same way, and if a vertex has more than one fan of
+/// faces.
 ReferenceMesh MakeReferenceMesh(std::vector<double> const &positions,
                                 std::vector<int> const &faceSizes,
                                 std::vector<int> const &faceVertices);

@@ -193,8 +193,8 @@ TEST(SchemeReference, FlatEdgesOfABox) {
         std::vector<bool> const flat = FindFlatEdges(mesh, positionsOf(box), tolerance);
         EXPECT_EQ(std::count(flat.begin(), flat.end(), true), expected) << tolerance;
     }
-    // A crease or a corner is never flat: the box's side with 4 quads has 4 flat edges, all of which
-    // end in its middle.
+    // A crease or a corner is never flat: the box's side with 4 quads has 4 flat edges, all of
+    // which end in its middle.
     mesh.vertices[0].sharpness = 2;
     std::vector<bool> const flat = FindFlatEdges(mesh, positionsOf(box), 180);
     EXPECT_EQ(std::count(flat.begin(), flat.end(), true),

@@ -17,9 +17,9 @@ enum class ReferenceScheme { Hexagonal, DooSabin, TriHex };
 /// \brief A mesh with boundaries, creases, corners, holes and flaws, of which DESIGN.md sections 3
 /// to 6 are taken at their word: a sharp line goes along edges.
 ///
-/// So a hexagon that a crease crosses is two half faces, glued along a *long* edge, until the crease
-/// is smooth; a half face at a sharp boundary has a long edge without another side.  Edges name
-/// their sides, so that several may join the same two vertices.
+/// So a hexagon that a crease crosses is two half faces, glued along a *long* edge, until the
+/// crease is smooth; a half face at a sharp boundary has a long edge without another side.  Edges
+/// name their sides, so that several may join the same two vertices.
 struct TaggedMesh {
     struct Face {
         std::vector<int> vertices;
@@ -50,8 +50,8 @@ struct TaggedMesh {
         int face = -1;
         int place = -1;
     };
-    /// \brief What a face was made from: a face, an edge seen from one of its sides, or a vertex.  A
-    /// hexagon made for an edge has the side that its first vertices start on.
+    /// \brief What a face was made from: a face, an edge seen from one of its sides, or a vertex.
+    /// A hexagon made for an edge has the side that its first vertices start on.
     struct FaceOrigin {
         int face = -1;
         int edge = -1;
@@ -115,14 +115,14 @@ struct ReferenceStep {
     /// By edge, of a hexagonal step: edges that make a quad of the four points beside them, as
     /// those of faces with the same normal do in the paper's stage 3.  Empty: none.
     std::vector<bool> flatEdges;
-    /// Whether polygons close the gaps that quads leave around vertices.  The borders of gaps follow
-    /// the paper's rule.
+    /// Whether polygons close the gaps that quads leave around vertices.  The borders of gaps
+    /// follow the paper's rule.
     bool closeGaps = true;
 };
 
 /// \brief One step: topology and tags.  Schemes but the hexagonal one drop the faces of boundary
-/// edges and boundary vertices.  A vertex between two faces whose polygon would have two sides makes
-/// none: the quads at either side of it meet.
+/// edges and boundary vertices.  A vertex between two faces whose polygon would have two sides
+/// makes none: the quads at either side of it meet.
 TaggedMesh Refine(TaggedMesh const &mesh, ReferenceStep const &step = ReferenceStep());
 
 /// \brief By edge: whether its two faces have normals that make an angle of at most

@@ -12,8 +12,8 @@
 
 namespace OpenSubdivHex::Tutorials::internal {
 
-/// \brief Reads the tag lines of OpenSubdiv's own shape files: `t NAME I/F/S`, then I ints, F floats
-/// and S strings.
+/// \brief Reads the tag lines of OpenSubdiv's own shape files: `t NAME I/F/S`, then I ints, F
+/// floats and S strings.
 ///
 /// | name                           | arguments                                                   |
 /// |--------------------------------|-------------------------------------------------------------|
