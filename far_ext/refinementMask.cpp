@@ -45,6 +45,19 @@ double const *RefinementMask::GetFaceVertexWeights(Index face, int corner,
                         : smoothWeights(_level.GetFaceVertices(face).size(), corner);
 }
 
+bool RefinementMask::hasFeatures(Index face) const {
+    LevelTopology const &topology = _level.GetTopology();
+    if (_level.IsFaceHalf(face)) {
+        return true;
+    }
+    if (_interpolation == Interpolation::Varying) {
+        return false;
+    }
+    return Sdc::Crease::IsSharp(_level.GetFaceDiagonalSharpness(face)) ||
+           topology.FindSectorCorner(topology.faceFirstCorner[face],
+                                     topology.faceFirstCorner[face + 1]) != nullptr;
+}
+
 double const *RefinementMask::featureWeights(Index face, int corner,
                                              std::vector<double> &scratch) const {
     int const size = _level.GetFaceVertices(face).size();

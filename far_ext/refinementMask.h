@@ -45,6 +45,7 @@ public:
     VertexVertexMask GetPlainVertexMask(int numFaces) const {
         return ComputeVertexVertexMask(_interpolation, numFaces);
     }
+    bool IsFacePlain(Index face) const { return !_hasFeatures || !hasFeatures(face); }
     /// All faces and vertices that are not plain, and perhaps some that are; ascending.
     std::vector<Index> FindFeatureFaces() const;
     std::vector<Index> FindFeatureVertices() const;
@@ -56,6 +57,7 @@ private:
         return _faceMasks[faceSize].data() + faceSize - corner;
     }
 
+    bool hasFeatures(Index face) const;
     double const *featureWeights(Index face, int corner, std::vector<double> &scratch) const;
 
     TopologyLevel const _level;
