@@ -683,25 +683,85 @@ public:
 
 private:
     static constexpr int kMaxSampledLevel = 4;
-    static constexpr Index kMaxSampledFaces = 64;
+    static constexpr Index kMaxSampledFaces = 128;
+    static constexpr Index kMaxLargeFaces = 32;
 
-    // Sizes of stencils, averaged over all corners of the parent's faces for F-vertices, and over
-    // its vertices for V-vertices.
-    struct Averages {
-        double ofFVertices = 0;
-        double ofVVertices = 0;
+    // Faces, and how many corners and vertices of a level they have; a vertex counts as a part for
+    // each of its faces.
+    struct Stratum {
+        std::vector<Index> baseFaces;
+        std::vector<std::vector<Index>> faces; // of the mesh, or the value mesh, by level
+        double numCorners = 0;
+        double numVerts = 0;
+        StepWeights weights; // of the stencils made of these
     };
 
-    // The faces of the mesh or the value mesh at a level.
+    void countIsolated();
+    void takeSample();
     std::vector<Index> getFaces(int level, std::vector<Index> const &meshFaces) const;
-    Averages average(int level, std::vector<Index> const &pFaces, StencilStep::Part const &part,
-                     int const *sizes) const;
+    std::vector<Index> findMade(int level) const;
+    void count(int level, std::vector<Index> const &made, int const *sizes, Stratum &stratum) const;
+    StepWeights average(int level) const;
 
     Plan const &_plan;
-    Index _numIsolated = 0;          // vertices without a face
-    std::vector<Averages> _averages; // by level, from 1 on
+    Stratum _large;  // the faces with the most sides, when they have far more than others
+    Stratum _sample; // of the rest
+    std::vector<Index> _numIsolated;    // V-vertices without a face, by level, from 1 on
+    std::vector<StepWeights> _averages; // by level, from 1 on: per stencil
 };
 
+void WeightSampler::countIsolated() {
+    TopologyLevel const base = _plan.GetLevel(0);
+    std::vector<Index> isolated;
+    for (Index vert = 0; vert < base.GetNumVertices(); ++vert) {
+        if (base.GetVertexFaces(vert).empty()) {
+            isolated.push_back(vert);
+        }
+    }
+    for (int level = 1; level <= _plan.lastLevel; ++level) {
+        TopologyLevel const pLevel = _plan.GetLevel(level - 1);
+        for (Index &vert : isolated) {
+            vert = pLevel.GetVertexChildVertex(vert);
+        }
+        isolated.erase(std::remove(isolated.begin(), isolated.end(), Far::INDEX_INVALID),
+                       isolated.end());
+        _numIsolated.push_back(Index(isolated.size()));
+    }
+}
+
+void WeightSampler::takeSample() {
+    TopologyLevel const &base = _plan.refiner.GetLevel(0);
+    Index const numFaces = base.GetNumFaces();
+    std::vector<Index> faces(numFaces);
+    std::iota(faces.begin(), faces.end(), 0);
+    if (numFaces > kMaxSampledFaces) {
+        auto const isLarge = [&](Index face) {
+            return std::int64_t(base.GetFaceVertices(face).size()) * numFaces >
+                   2 * std::int64_t(base.GetNumFaceVertices());
+        };
+        auto const largeEnd = std::stable_partition(faces.begin(), faces.end(), isLarge);
+        std::stable_sort(faces.begin(), largeEnd, [&](Index a, Index b) {
+            return base.GetFaceVertices(a).size() > base.GetFaceVertices(b).size();
+        });
+        auto const numLarge = std::min(largeEnd - faces.begin(), std::ptrdiff_t(kMaxLargeFaces));
+        _large.baseFaces.assign(faces.begin(), faces.begin() + numLarge);
+        faces.erase(faces.begin(), faces.begin() + numLarge);
+        std::sort(faces.begin(), faces.end());
+    }
+    auto const numRest = std::int64_t(faces.size());
+    std::int64_t const numSampled = std::min(numRest, std::int64_t(kMaxSampledFaces));
+    for (std::int64_t i = 0; i < numSampled; ++i) {
+        // One in each of equal ranges, at places in them that no regular numbering of the mesh
+        // meets: the fractional parts of multiples of the golden ratio.
+        std::int64_t const begin = i * numRest / numSampled;
+        std::int64_t const end = (i + 1) * numRest / numSampled;
+        double const golden = 0.6180339887498949 * double(i);
+        double const place = (golden - std::floor(golden)) * double(end - begin);
+        _sample.baseFaces.push_back(faces[begin + std::int64_t(place)]);
+    }
+}
+
+// The faces of the value mesh that faces of the mesh have.
 std::vector<Index> WeightSampler::getFaces(int level, std::vector<Index> const &meshFaces) const {
     if (_plan.channel < 0) {
         return meshFaces;
@@ -718,59 +778,13 @@ std::vector<Index> WeightSampler::getFaces(int level, std::vector<Index> const &
     return faces;
 }
 
-auto WeightSampler::average(int level, std::vector<Index> const &pFaces,
-                            StencilStep::Part const &part, int const *sizes) const -> Averages {
+// The vertices made of the corners, one for each face, and the vertices of all strata.
+std::vector<Index> WeightSampler::findMade(int level) const {
     TopologyLevel const pLevel = _plan.GetLevel(level - 1);
     internal::LevelTopology const &topology = pLevel.GetTopology();
-    std::vector<Index> const made = internal::FindMadeVertices(pLevel, part);
-    auto const sizeOf = [&](Index cVert) {
-        return sizes[std::lower_bound(made.begin(), made.end(), cVert) - made.begin()];
-    };
-    double numCorners = 0;
-    double fWeights = 0;
-    double numVerts = 0;
-    double vWeights = 0;
-    for (Index pFace : pFaces) {
-        Index const first = pLevel.GetFaceFirstCorner(pFace);
-        ConstIndexArray const pVerts = pLevel.GetFaceVertices(pFace);
-        numCorners += pVerts.size();
-        fWeights += double(pVerts.size()) * sizeOf(topology.GetCornerChildVertex(first));
-        for (Index pVert : pVerts) {
-            // Each of the vertex's faces counts its part of it.
-            Index const cVert = topology.GetVertexChildVertex(pVert);
-            if (cVert != Far::INDEX_INVALID) {
-                double const share = 1.0 / pLevel.GetVertexFaces(pVert).size();
-                numVerts += share;
-                vWeights += share * sizeOf(cVert);
-            }
-        }
-    }
-    return {fWeights / numCorners, numVerts > 0 ? vWeights / numVerts : 0};
-}
-
-Status WeightSampler::Form() {
-    TopologyRefiner const &refiner = _plan.refiner;
-    Index const numFaces = refiner.GetLevel(0).GetNumFaces();
-    Index const numSampled = std::min(numFaces, kMaxSampledFaces);
-    std::vector<Index> sample;
-    for (std::int64_t i = 0; i < numSampled; ++i) {
-        sample.push_back(Index(i * numFaces / numSampled));
-    }
-    int const lastLevel = std::min(_plan.lastLevel, kMaxSampledLevel);
-    if (lastLevel == 0) {
-        return Status();
-    }
-    auto const meshFaces = internal::FindFacesOfBaseFaces(
-        refiner, ConstIndexArray(sample.data(), numSampled), lastLevel - 1);
-    std::vector<std::vector<Index>> faces;
-    std::vector<std::vector<Index>> wanted(1);
-    for (int level = 1; level <= lastLevel; ++level) {
-        TopologyLevel const pLevel = _plan.GetLevel(level - 1);
-        internal::LevelTopology const &topology = pLevel.GetTopology();
-        faces.push_back(getFaces(level - 1, meshFaces[level - 1]));
-        std::vector<Index> verts;
-        for (Index pFace : faces.back()) {
-            // All F-vertices of a face come with one.
+    std::vector<Index> verts;
+    for (Stratum const *stratum : {&_large, &_sample}) {
+        for (Index pFace : stratum->faces[level - 1]) {
             verts.push_back(topology.GetCornerChildVertex(pLevel.GetFaceFirstCorner(pFace)));
             for (Index pVert : pLevel.GetFaceVertices(pFace)) {
                 if (Index const cVert = topology.GetVertexChildVertex(pVert);
@@ -779,44 +793,106 @@ Status WeightSampler::Form() {
                 }
             }
         }
-        std::sort(verts.begin(), verts.end());
-        verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
-        wanted.push_back(std::move(verts));
     }
+    std::sort(verts.begin(), verts.end());
+    verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
+    return verts;
+}
+
+void WeightSampler::count(int level, std::vector<Index> const &made, int const *sizes,
+                          Stratum &stratum) const {
+    TopologyLevel const pLevel = _plan.GetLevel(level - 1);
+    internal::LevelTopology const &topology = pLevel.GetTopology();
+    auto const sizeOf = [&](Index cVert) {
+        return sizes[std::lower_bound(made.begin(), made.end(), cVert) - made.begin()];
+    };
+    stratum.numCorners = stratum.numVerts = 0;
+    stratum.weights = StepWeights();
+    for (Index pFace : stratum.faces[level - 1]) {
+        Index const first = pLevel.GetFaceFirstCorner(pFace);
+        ConstIndexArray const pVerts = pLevel.GetFaceVertices(pFace);
+        stratum.numCorners += pVerts.size();
+        stratum.weights.ofFVertices +=
+            double(pVerts.size()) * sizeOf(topology.GetCornerChildVertex(first));
+        for (Index pVert : pVerts) {
+            Index const cVert = topology.GetVertexChildVertex(pVert);
+            if (cVert != Far::INDEX_INVALID) {
+                double const share = 1.0 / pLevel.GetVertexFaces(pVert).size();
+                stratum.numVerts += share;
+                stratum.weights.ofVVertices += share * sizeOf(cVert);
+            }
+        }
+    }
+}
+
+// What the large faces do not have is as in the sample.
+StepWeights WeightSampler::average(int level) const {
+    internal::LevelTopology const &parent = _plan.GetLevel(level - 1).GetTopology();
+    auto const combine = [](double all, double large, double largeWeights, double sampled,
+                            double sampledWeights) {
+        double const rest = sampled > 0 ? (all - large) * sampledWeights / sampled : 0;
+        return all > 0 ? (largeWeights + rest) / all : 0;
+    };
+    return {combine(parent.numCorners, _large.numCorners, _large.weights.ofFVertices,
+                    _sample.numCorners, _sample.weights.ofFVertices),
+            combine(parent.numVVertices - _numIsolated[level - 1], _large.numVerts,
+                    _large.weights.ofVVertices, _sample.numVerts, _sample.weights.ofVVertices)};
+}
+
+Status WeightSampler::Form() {
     Plan plan = _plan;
     plan.firstStored = 1;
-    plan.lastLevel = lastLevel;
+    plan.lastLevel = std::min(_plan.lastLevel, kMaxSampledLevel);
     plan.numControlStencils = 0;
-    Selection const selection(plan, wanted);
+    if (plan.lastLevel == 0) {
+        return Status();
+    }
+    countIsolated();
+    takeSample();
+    for (Stratum *stratum : {&_large, &_sample}) {
+        auto const meshFaces = internal::FindFacesOfBaseFaces(
+            plan.refiner,
+            ConstIndexArray(stratum->baseFaces.data(), int(stratum->baseFaces.size())),
+            plan.lastLevel - 1);
+        for (int level = 0; level < plan.lastLevel; ++level) {
+            stratum->faces.push_back(getFaces(level, meshFaces[level]));
+        }
+    }
+    std::vector<std::vector<Index>> wanted(1);
+    for (int level = 1; level <= plan.lastLevel; ++level) {
+        wanted.push_back(findMade(level));
+    }
+    Selection const selection(plan, std::move(wanted));
     SymbolicTable symbolic(plan, selection);
     if (Status status = symbolic.Form(); !status.IsOk()) {
         return status;
     }
     int const *sizes = symbolic.GetSizes().data();
-    for (int level = 1; level <= lastLevel; ++level) {
-        _averages.push_back(average(level, faces[level - 1], selection.parts[level - 1], sizes));
+    for (int level = 1; level <= plan.lastLevel; ++level) {
+        std::vector<Index> const made =
+            internal::FindMadeVertices(_plan.GetLevel(level - 1), selection.parts[level - 1]);
+        count(level, made, sizes, _large);
+        count(level, made, sizes, _sample);
+        _averages.push_back(average(level));
         sizes += symbolic.GetStep(level).GetNumRows();
-    }
-    TopologyLevel const base = _plan.GetLevel(0);
-    for (Index vert = 0; vert < base.GetNumVertices(); ++vert) {
-        _numIsolated += base.GetVertexFaces(vert).empty();
     }
     return Status();
 }
 
 StepWeights WeightSampler::Estimate(int level) const {
     internal::LevelTopology const &parent = _plan.GetLevel(level - 1).GetTopology();
-    Averages averages = _averages[std::min(std::size_t(level), _averages.size()) - 1];
-    if (std::size_t const numSampled = _averages.size(); std::size_t(level) > numSampled) {
+    int const numSampled = int(_averages.size());
+    StepWeights average = _averages[std::min(level, numSampled) - 1];
+    if (level > numSampled) {
         // Supports grow towards a limit, each level by half as much as the one before.
-        Averages const &before = _averages[numSampled - 2];
-        double const growth = 1 - std::ldexp(1.0, int(numSampled) - level);
-        averages.ofFVertices += growth * (averages.ofFVertices - before.ofFVertices);
-        averages.ofVVertices += growth * (averages.ofVVertices - before.ofVVertices);
+        StepWeights const &before = _averages[numSampled - 2];
+        double const growth = 1 - std::ldexp(1.0, numSampled - level);
+        average.ofFVertices += growth * (average.ofFVertices - before.ofFVertices);
+        average.ofVVertices += growth * (average.ofVVertices - before.ofVVertices);
     }
-    Index const numIsolated = parent.numVVertices > 0 ? _numIsolated : 0;
-    return {averages.ofFVertices * parent.numCorners,
-            averages.ofVVertices * (parent.numVVertices - numIsolated) + numIsolated};
+    Index const numIsolated = _numIsolated[level - 1];
+    return {average.ofFVertices * parent.numCorners,
+            average.ofVVertices * (parent.numVVertices - numIsolated) + numIsolated};
 }
 
 // Bytes that the supports of a step take, by what StepSupports keeps.

@@ -81,15 +81,15 @@ public:
     /// \brief Says how large a table will be before it is made, and also one that Create() refuses as
     /// too large.
     ///
-    /// The number of stencils is exact.  Factorized, that of weights is exact for meshes of up to 64
-    /// faces and up to level 4.  Else it is an estimate from 64 faces, evenly spaced by their index,
+    /// The number of stencils is exact.  Factorized, that of weights is exact for meshes of up to 128
+    /// faces and up to level 4.  Else it is an estimate from 128 faces, spread over their indices and up to 32 of the largest,
     /// and from the growth up to level 4: within 10 % on the test shapes, worse where few faces
     /// differ much from most.  Not factorized, it is an upper bound, exact unless faces at one
     /// vertex share more than the edges there.  Bytes follow from the weights; the peak is within
     /// 15 % of what glibc was seen to take.  The time does not depend on the number of stencils,
     /// unless they are not factorized.
     ///
-    /// \return  zeros on failure: InvalidArgument as Create(), TooLarge when the 64 faces alone are.
+    /// \return  zeros on failure: InvalidArgument as Create(), TooLarge when these faces alone are.
     static StencilTableSize EstimateSize(TopologyRefiner const &refiner, Options options,
                                          Status *status = nullptr);
 
