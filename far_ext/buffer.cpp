@@ -47,7 +47,7 @@ void PrepareArray([[maybe_unused]] void *memory, [[maybe_unused]] std::size_t by
     }
     std::size_t const numPages = (bytes - skipped) / kHugePage;
     char *const pages = static_cast<char *>(memory) + skipped;
-    // Advice only, as above; a system that is too old to make pages ready makes them at first touch.
+    // Advice only, as above; a system too old to make pages ready makes them at first touch.
     madvise(pages, numPages * kHugePage, MADV_HUGEPAGE);
 #ifdef MADV_POPULATE_WRITE
     constexpr std::size_t kPagesPerCall = 8;

@@ -4,6 +4,7 @@
 
 #include "stencilStep.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -75,11 +76,12 @@ private:
     unsigned _lastStamp = 0;
 };
 
-/// \brief V-vertices of a step whose stencils are made together, because they share what they depend
-/// on: those of the F-vertices of a face, or a single one.
+/// \brief V-vertices of a step whose stencils are made together, because they share what they
+/// depend on: those of the F-vertices of a face, or a single one.
 class VVertexGroup {
 public:
     using Index = Far::Index;
+
     /// A stencil that is a part of that of a V-vertex.
     struct Term {
         Index row;   ///< of the step if isFVertex, else of the step before
@@ -100,7 +102,7 @@ public:
     int GetNumSupports() const { return int(_supports.size()); }
     Support const *GetSupports() const { return _supports.data(); }
     int GetNumVVertices() const { return int(_firstTerms.size()) - 1; }
-    /// The terms of the i'th V-vertex; those with the same support follow one another.
+    /// The terms of the i'th V-vertex.
     Term const *BeginTerms(int i) const { return _terms.data() + _firstTerms[i]; }
     Term const *EndTerms(int i) const { return _terms.data() + _firstTerms[i + 1]; }
 
@@ -123,10 +125,13 @@ public:
             return n;
         }
         formBits(i);
-        Word const *const bits = _vertexBits.data();
-        for (int k = 0; k < _numSources; ++k) {
-            write(n, k);
-            n += int(bits[unsigned(k) / kWordBits] >> (unsigned(k) % kWordBits) & 1);
+        int k = 0;
+        for (Word word : _vertexBits) {
+            for (int const end = std::min(k + kWordBits, _numSources); k < end; ++k) {
+                write(n, k);
+                n += int(word & 1);
+                word >>= 1;
+            }
         }
         return n;
     }
@@ -135,18 +140,24 @@ private:
     using Word = std::uint64_t;
     static constexpr int kWordBits = 64;
 
-    // Any number will do; it bounds the work for supports that are not the same.
+    // Any numbers will do; they bound the work for supports that are not the same.
     static constexpr int kMaxSize = 16;
+    static constexpr int kMaxCompared = 16;
 
     int addSupport(Support support) {
-        // Vertices side by side share the support of the face between them, and all that of theirs.
-        for (int i = GetNumSupports(); i-- > 0;) {
+        // All vertices share the support of their face, which came first; neighbors that of the
+        // face between them, which came last.
+        if (!_supports.empty() && _supports[0] == support) {
+            return 0;
+        }
+        int const numSupports = GetNumSupports();
+        for (int i = numSupports; i-- > std::max(1, numSupports - kMaxCompared);) {
             if (_supports[i] == support) {
                 return i;
             }
         }
         _supports.push_back(support);
-        return GetNumSupports() - 1;
+        return numSupports;
     }
     void formBits(int i);
     void addTerms(StencilStep const &step, std::vector<Support> const &supportsOfVertices,
@@ -159,8 +170,8 @@ private:
     std::vector<int> _positions; ///< of the sources of all supports
     std::vector<int> _firstPositions;
     int _numSources = 0;
-    std::vector<Word> _bits; ///< of all supports, one for each source
-    std::vector<Word> _vertexBits;
+    std::vector<Word> _bits;       ///< of each support, one bit for each source of all
+    std::vector<Word> _vertexBits; ///< the same of one V-vertex
 };
 
 /// \brief What the stencils of a step depend on: those of the F-vertices of a face share a support,

@@ -78,16 +78,16 @@ public:
         return Create(refiner, Options(), status);
     }
 
-    /// \brief Says how large a table will be before it is made, and also one that Create() refuses as
-    /// too large.
+    /// \brief Says how large a table will be before it is made, also one that is too large to make.
     ///
-    /// The number of stencils is exact.  Factorized, that of weights is exact for meshes of up to 128
-    /// faces and up to level 4.  Else it is an estimate from 128 faces, spread over their indices and up to 32 of the largest,
-    /// and from the growth up to level 4: within 10 % on the test shapes, worse where few faces
-    /// differ much from most.  Not factorized, it is an upper bound, exact unless faces at one
-    /// vertex share more than the edges there.  Bytes follow from the weights; the peak is within
-    /// 15 % of what glibc was seen to take.  The time does not depend on the number of stencils,
-    /// unless they are not factorized.
+    /// The number of stencils is exact.  Factorized, that of weights is exact for meshes of up to
+    /// 128 faces and up to level 4.  Else it is an estimate from 128 faces, spread over their
+    /// indices, up to 32 of the largest, and the growth up to level 4: within 10 % on the test
+    /// shapes, worse where few faces differ much from most.  Not factorized, it is an upper bound,
+    /// exact unless faces at one vertex share more than the edges there.
+    ///
+    /// Bytes follow from the weights; the peak is within 15 % of what was seen with glibc.  The
+    /// time does not depend on the number of stencils, but for tables that are not factorized.
     ///
     /// \return  zeros on failure: InvalidArgument as Create(), TooLarge when these faces alone are.
     static StencilTableSize EstimateSize(TopologyRefiner const &refiner, Options options,
@@ -104,7 +104,7 @@ public:
     /// makes for them, and index the control vertices of the whole mesh.  The refined faces of
     /// selections that share no base face are disjoint, those of all base faces are all faces: the
     /// E-face of an edge goes with the edge's first face.  Time and memory are proportional to the
-    /// selection and the faces around it, but for a few bytes per control vertex.
+    /// selection and the faces around it.
     ///
     /// \param baseFaces  in any order, repeated or not; none gives a table without stencils
     /// \return  null on failure: as Create(); InvalidArgument, which names the face, for one out of
@@ -116,8 +116,8 @@ public:
     /// \brief The vertices, or values of options.fvarChannel, that CreateOfFaces() makes stencils
     /// for at \p level (0: with generateControlVerts), in the order of the stencils: ascending.
     ///
-    /// \return  empty on failure: InvalidArgument as CreateOfFaces(), or for a level that the refiner
-    ///          does not have.
+    /// \return  empty on failure: InvalidArgument as CreateOfFaces(), or for a level that the
+    ///          refiner does not have.
     static std::vector<Far::Index> GetVerticesOfFaces(TopologyRefiner const &refiner,
                                                       Far::ConstIndexArray baseFaces,
                                                       Options options, int level,
