@@ -12,11 +12,6 @@ using Far::Index;
 
 namespace {
 
-void sortUnique(std::vector<Index> &indices) {
-    std::sort(indices.begin(), indices.end());
-    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-}
-
 void append(std::vector<Index> &indices, ConstIndexArray more) {
     indices.insert(indices.end(), more.begin(), more.end());
 }
@@ -60,7 +55,7 @@ std::vector<Index> findChildFaces(TopologyLevel const &pLevel, TopologyLevel con
             });
         }
     }
-    sortUnique(result);
+    SortUnique(result, cLevel.GetNumFaces());
     return result;
 }
 
@@ -76,7 +71,7 @@ std::vector<std::vector<Index>> FindFacesOfBaseFaces(TopologyRefiner const &refi
                                                      ConstIndexArray baseFaces, int lastLevel) {
     std::vector<std::vector<Index>> result(1);
     append(result[0], baseFaces);
-    sortUnique(result[0]);
+    SortUnique(result[0], refiner.GetLevel(0).GetNumFaces());
     for (int level = 1; level <= lastLevel; ++level) {
         result.push_back(
             findChildFaces(refiner.GetLevel(level - 1), refiner.GetLevel(level), result.back()));
@@ -97,7 +92,7 @@ std::vector<Index> FindVerticesOfFaces(TopologyLevel const &mesh, int channel,
             append(verts, mesh.GetFaceFVarValues(face, channel));
         }
     }
-    sortUnique(verts);
+    SortUnique(verts, channel < 0 ? mesh.GetNumVertices() : mesh.GetNumFVarValues(channel));
     return verts;
 }
 
@@ -112,10 +107,14 @@ std::vector<StencilStep::Part> FindStencilParts(std::vector<TopologyLevel> const
         RefinementMask const mask(pLevel, schemeOptions, interpolation);
         StencilStep::Part &part = parts[level - 1];
         std::vector<Index> &pVerts = wanted[level - 1];
+        Index endOfFace = 0; // of the last corner, past its face
         for (Index cVert : wanted[level]) {
             if (cVert >= pTopology.numVVertices) {
-                part.faces.push_back(
-                    faceOfCorner(pTopology, pTopology.GetChildVertexCorner(cVert)));
+                Index const corner = pTopology.GetChildVertexCorner(cVert);
+                if (corner >= endOfFace) {
+                    part.faces.push_back(faceOfCorner(pTopology, corner));
+                    endOfFace = pTopology.faceFirstCorner[part.faces.back() + 1];
+                }
                 continue;
             }
             part.vVertices.push_back(cVert);
@@ -128,11 +127,11 @@ std::vector<StencilStep::Part> FindStencilParts(std::vector<TopologyLevel> const
                 append(part.faces, pLevel.GetVertexFaces(pVert));
             }
         }
-        sortUnique(part.faces);
+        SortUnique(part.faces, pTopology.numFaces);
         for (Index face : part.faces) {
             append(pVerts, pLevel.GetFaceVertices(face));
         }
-        sortUnique(pVerts);
+        SortUnique(pVerts, pTopology.numVertices);
     }
     if (!parts.empty()) {
         parts[0].verts = wanted[0];
