@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "buffer.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -34,5 +36,29 @@ void *AllocateArray(std::size_t bytes) {
 }
 
 void FreeArray(void *memory) { std::free(memory); }
+
+void PrepareArray([[maybe_unused]] void *memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__)
+    auto const address = reinterpret_cast<std::uintptr_t>(memory);
+    std::size_t const skipped = roundUp(address, kHugePage) - address;
+    if (bytes < skipped + 2 * kHugePage) {
+        return;
+    }
+    std::size_t const numPages = (bytes - skipped) / kHugePage;
+    char *const pages = static_cast<char *>(memory) + skipped;
+    // Advice only, as above; a system too old to make pages ready makes them at first touch.
+    madvise(pages, numPages * kHugePage, MADV_HUGEPAGE);
+#ifdef MADV_POPULATE_WRITE
+    constexpr std::size_t kPagesPerCall = 8;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic)
+#endif
+    for (std::size_t page = 0; page < numPages; page += kPagesPerCall) {
+        madvise(pages + page * kHugePage, std::min(kPagesPerCall, numPages - page) * kHugePage,
+                MADV_POPULATE_WRITE);
+    }
+#endif
+#endif
+}
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -15,6 +15,10 @@ constexpr std::size_t kCacheLine = 64; ///< bytes; the least alignment of an arr
 void *AllocateArray(std::size_t bytes);
 void FreeArray(void *memory);
 
+/// Has the system put pages behind memory that was not written yet, in parallel and huge ones where
+/// it offers them.  Whoever writes it first need not wait for them then.  Content is kept.
+void PrepareArray(void *memory, std::size_t bytes);
+
 /// \brief An array of trivial elements that are not written until the owner writes them.
 ///
 /// Resize() keeps nothing of the content and takes new memory only when it needs more than it has,

@@ -125,10 +125,14 @@ struct LevelTopology {
     }
     /// The entry of a corner in a wide sector, null for others.
     SectorCorner const *FindSectorCorner(Index corner) const {
+        return FindSectorCorner(corner, corner + 1);
+    }
+    /// The first entry of the corners from \p begin to \p end, null when there is none.
+    SectorCorner const *FindSectorCorner(Index begin, Index end) const {
         auto const found =
-            std::lower_bound(sectorCorners.begin(), sectorCorners.end(), corner,
+            std::lower_bound(sectorCorners.begin(), sectorCorners.end(), begin,
                              [](SectorCorner const &sector, Index c) { return sector.corner < c; });
-        return found != sectorCorners.end() && found->corner == corner ? &*found : nullptr;
+        return found != sectorCorners.end() && found->corner < end ? &*found : nullptr;
     }
 
     int depth = 0;

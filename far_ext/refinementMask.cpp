@@ -11,6 +11,10 @@ RefinementMask::RefinementMask(TopologyLevel const &pLevel, SchemeOptions scheme
     SchemeType const scheme = schemeOptions.GetSchemeOfLevel(pLevel.GetDepth() + 1);
     LevelTopology const &topology = pLevel.GetTopology();
     _hasFeatures = scheme == SchemeType::Hexagonal && topology.HasFeatures();
+    _hasSharpVertices = interpolation == Interpolation::Vertex && !topology.sharpVerts.empty();
+    for (int numFaces = 0; numFaces < kNumKept; ++numFaces) {
+        _plainVertexMasks[numFaces] = ComputeVertexVertexMask(interpolation, numFaces);
+    }
 
     _faceMasks.resize(topology.faceSizes.empty() ? 0 : topology.faceSizes.back() + 1);
     for (Index size : topology.faceSizes) {
@@ -43,6 +47,19 @@ double const *RefinementMask::GetFaceVertexWeights(Index face, int corner,
                                                    std::vector<double> &scratch) const {
     return _hasFeatures ? featureWeights(face, corner, scratch)
                         : smoothWeights(_level.GetFaceVertices(face).size(), corner);
+}
+
+bool RefinementMask::hasFeatures(Index face) const {
+    LevelTopology const &topology = _level.GetTopology();
+    if (_level.IsFaceHalf(face)) {
+        return true;
+    }
+    if (_interpolation == Interpolation::Varying) {
+        return false;
+    }
+    return Sdc::Crease::IsSharp(_level.GetFaceDiagonalSharpness(face)) ||
+           topology.FindSectorCorner(topology.faceFirstCorner[face],
+                                     topology.faceFirstCorner[face + 1]) != nullptr;
 }
 
 double const *RefinementMask::featureWeights(Index face, int corner,
@@ -83,19 +100,12 @@ double const *RefinementMask::featureWeights(Index face, int corner,
     return smooth;
 }
 
-auto RefinementMask::GetVertexMask(Index vert) const -> VertexMask {
-    SharpVertex const *sharp = _interpolation == Interpolation::Vertex
-                                   ? _level.GetTopology().FindSharpVertex(vert)
-                                   : nullptr;
-    if (!sharp) {
-        VertexVertexMask const mask = GetPlainVertexMask(_level.GetVertexFaces(vert).size());
-        return {mask.vertexWeight, mask.faceWeight, 0, {}, {}};
-    }
-    VertexMask mask = {sharp->vertexWeight, sharp->faceWeight, 0, {}, {}};
+auto RefinementMask::sharpMask(SharpVertex const &sharp) -> VertexMask {
+    VertexMask mask = {sharp.vertexWeight, sharp.faceWeight, 0, {}, {}};
     for (int i = 0; i < 2; ++i) {
-        if (sharp->neighborWeights[i] > 0) {
-            mask.neighbors[mask.numNeighbors] = sharp->neighbors[i];
-            mask.neighborWeights[mask.numNeighbors++] = sharp->neighborWeights[i];
+        if (sharp.neighborWeights[i] > 0) {
+            mask.neighbors[mask.numNeighbors] = sharp.neighbors[i];
+            mask.neighborWeights[mask.numNeighbors++] = sharp.neighborWeights[i];
         }
     }
     return mask;

@@ -33,7 +33,15 @@ public:
     /// \p corner.  The result is valid until \p scratch is used again.
     double const *GetFaceVertexWeights(Index face, int corner, std::vector<double> &scratch) const;
 
-    VertexMask GetVertexMask(Index vert) const;
+    VertexMask GetVertexMask(Index vert) const {
+        SharpVertex const *sharp =
+            _hasSharpVertices ? _level.GetTopology().FindSharpVertex(vert) : nullptr;
+        if (sharp) {
+            return sharpMask(*sharp);
+        }
+        VertexVertexMask const mask = GetPlainVertexMask(_level.GetVertexFaces(vert).size());
+        return {mask.vertexWeight, mask.faceWeight, 0, {}, {}};
+    }
 
     /// @name The plain majority and the rest
     /// All faces of a size have the same weights, and all vertices with as many faces the same mask
@@ -43,8 +51,10 @@ public:
     /// The weights of corner 0 of a plain face; those of corner i lie i steps further around.
     double const *GetPlainFaceWeights(int faceSize) const { return smoothWeights(faceSize, 0); }
     VertexVertexMask GetPlainVertexMask(int numFaces) const {
-        return ComputeVertexVertexMask(_interpolation, numFaces);
+        return numFaces < kNumKept ? _plainVertexMasks[numFaces]
+                                   : ComputeVertexVertexMask(_interpolation, numFaces);
     }
+    bool IsFacePlain(Index face) const { return !_hasFeatures || !hasFeatures(face); }
     /// All faces and vertices that are not plain, and perhaps some that are; ascending.
     std::vector<Index> FindFeatureFaces() const;
     std::vector<Index> FindFeatureVertices() const;
@@ -56,13 +66,18 @@ private:
         return _faceMasks[faceSize].data() + faceSize - corner;
     }
 
+    static VertexMask sharpMask(SharpVertex const &sharp);
+    bool hasFeatures(Index face) const;
     double const *featureWeights(Index face, int corner, std::vector<double> &scratch) const;
 
     TopologyLevel const _level;
     FaceMask _faceMask;
     bool _hasFeatures;
+    bool _hasSharpVertices;
     Interpolation _interpolation;
-    std::vector<std::vector<double>> _faceMasks; ///< by face size
+    static constexpr int kNumKept = 8;
+    VertexVertexMask _plainVertexMasks[kNumKept]; ///< by number of faces
+    std::vector<std::vector<double>> _faceMasks;  ///< by face size
 
     // One row of weights per corner of a half face and of a hexagon with a sharp diagonal.
     double _halfFaceWeights[HexIndexing::kNumBoundaryEFaceCorners]

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stencilStep.h"
+
+#include <algorithm>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+using Far::Index;
+
+namespace {
+
+// From this part of all indices on a table of all is faster than a search.
+constexpr Index kLeastPart = 64;
+
+bool isLargePart(std::size_t size, Index end) { return size >= std::size_t(end / kLeastPart); }
+
+Index numberOf(std::vector<Index> const &ascending, Index index) {
+    return Index(std::lower_bound(ascending.begin(), ascending.end(), index) - ascending.begin());
+}
+
+// Where indices below end stand in an ascending list that has them.
+class Numbering {
+public:
+    Numbering(std::vector<Index> const &ascending, Index end) : _ascending(ascending) {
+        if (isLargePart(ascending.size(), end)) {
+            _numbers.resize(end);
+            for (std::size_t i = 0; i < ascending.size(); ++i) {
+                _numbers[ascending[i]] = Index(i);
+            }
+        }
+    }
+    Index operator()(Index index) const {
+        return _numbers.empty() ? numberOf(_ascending, index) : _numbers[index];
+    }
+
+private:
+    std::vector<Index> const &_ascending;
+    std::vector<Index> _numbers;
+};
+
+} // namespace
+
+void SortUnique(std::vector<Index> &indices, Index end) {
+    if (!isLargePart(indices.size(), end)) {
+        std::sort(indices.begin(), indices.end());
+        indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+        return;
+    }
+    std::vector<unsigned char> marks(end);
+    for (Index index : indices) {
+        marks[index] = 1;
+    }
+    indices.clear();
+    for (Index index = 0; index < end; ++index) {
+        if (marks[index]) {
+            indices.push_back(index);
+        }
+    }
+}
+
+StencilStep::StencilStep(TopologyLevel const &pLevel, SchemeOptions schemeOptions,
+                         Interpolation interpolation)
+    : _mask(pLevel, schemeOptions, interpolation) {
+    LevelTopology const &topology = pLevel.GetTopology();
+    _numFaces = topology.numFaces;
+    _numVVertices = topology.numVVertices;
+    _faceFirstCorner = topology.faceFirstCorner.data();
+    _faceVerts = topology.faceVerts.data();
+    _vVertexParents = topology.vVertexParents.empty() ? nullptr : topology.vVertexParents.data();
+    _vertFirstFace = topology.vertFirstFace.data();
+    _vertFaces = topology.vertFaces.data();
+    _vertFaceLocals = topology.vertFaceLocals.data();
+}
+
+StencilStep::StencilStep(TopologyLevel const &pLevel, SchemeOptions schemeOptions,
+                         Interpolation interpolation, Part part)
+    : _mask(pLevel, schemeOptions, interpolation), _part(std::move(part)) {
+    LevelTopology const &topology = pLevel.GetTopology();
+    _numFaces = Index(_part.faces.size());
+    _numVVertices = Index(_part.vVertices.size());
+    Numbering const numberOfVert(_part.verts, topology.numVertices);
+    Numbering const numberOfFace(_part.faces, topology.numFaces);
+    _partFaceFirstCorner.push_back(0);
+    for (Index face : _part.faces) {
+        for (Index vert : pLevel.GetFaceVertices(face)) {
+            _partFaceVerts.push_back(numberOfVert(vert));
+        }
+        _partFaceFirstCorner.push_back(Index(_partFaceVerts.size()));
+    }
+    _partVertFirstFace.assign(_part.verts.size() + 1, 0);
+    Index nextVert = 0;
+    for (Index vVertex : _part.vVertices) {
+        Index const pVert = topology.GetVVertexParent(vVertex);
+        Index const vert = numberOfVert(pVert);
+        _partVVertexParents.push_back(vert);
+        for (; nextVert <= vert; ++nextVert) {
+            _partVertFirstFace[nextVert] = Index(_partVertFaces.size());
+        }
+        // None are there when the mask does not ask for them.
+        Far::ConstIndexArray const faces = pLevel.GetVertexFaces(pVert);
+        Far::ConstLocalIndexArray const locals = pLevel.GetVertexFaceLocalIndices(pVert);
+        if (_mask.GetVertexMask(pVert).faceWeight > 0) {
+            for (int i = 0; i < faces.size(); ++i) {
+                _partVertFaces.push_back(numberOfFace(faces[i]));
+                _partVertFaceLocals.push_back(locals[i]);
+            }
+        }
+    }
+    std::fill(_partVertFirstFace.begin() + nextVert, _partVertFirstFace.end(),
+              Index(_partVertFaces.size()));
+    _faceFirstCorner = _partFaceFirstCorner.data();
+    _faceVerts = _partFaceVerts.data();
+    _vVertexParents = _partVVertexParents.data();
+    _vertFirstFace = _partVertFirstFace.data();
+    _vertFaces = _partVertFaces.data();
+    _vertFaceLocals = _partVertFaceLocals.data();
+}
+
+RefinementMask::VertexMask StencilStep::GetVertexMask(Index vert) const {
+    if (_part.verts.empty()) {
+        return _mask.GetVertexMask(vert);
+    }
+    RefinementMask::VertexMask mask = _mask.GetVertexMask(_part.verts[vert]);
+    for (int i = 0; i < mask.numNeighbors; ++i) {
+        mask.neighbors[i] = numberOf(_part.verts, mask.neighbors[i]);
+    }
+    return mask;
+}
+
+} // namespace OpenSubdivHex::FarExt::internal
