@@ -579,4 +579,44 @@ TEST(Limit, RefusesBadOptions) {
     expectRefused(options, "without vertices");
 }
 
+TEST(Limit, IsOfHexagonalStepsAlone) {
+    FarExt::TopologyRefinerFactory::Options refinerOptions;
+    FarExt::SchemeOptions &scheme = refinerOptions.schemeOptions;
+    scheme.faceMask = FarExt::FaceMask::Smooth;
+    auto const createRefiner = [&] {
+        ShapeDescriptor const descriptor(GetShape("prism5"));
+        auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(),
+                                                              refinerOptions);
+        FarExt::TopologyRefiner::UniformOptions uniformOptions(2);
+        uniformOptions.fullTopologyInLastLevel = true;
+        EXPECT_TRUE(refiner->RefineUniform(uniformOptions));
+        return refiner;
+    };
+    using Factory = FarExt::LimitStencilTableFactoryReal<double>;
+    Factory::Options options;
+    FarExt::Status status;
+    for (FarExt::SchemeType type : {FarExt::SchemeType::DooSabin, FarExt::SchemeType::TriHex}) {
+        scheme.schemeType = type;
+        EXPECT_FALSE(Factory::Create(*createRefiner(), options, &status));
+        EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
+    }
+
+    // After one tri-hex step the limit is that of the steps which follow, from every level.
+    scheme.schemeType = FarExt::SchemeType::Hexagonal;
+    scheme.triHexFirst = true;
+    auto const refiner = createRefiner();
+    EXPECT_FALSE(Factory::Create(*refiner, options, &status));
+    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
+    ReferenceValues const positions = GetPositions(GetShape("prism5"));
+    options.level = 1;
+    LimitValues const fromFirst = evaluate<double>(*refiner, options, positions);
+    options.level = 2;
+    LimitValues const fromSecond = evaluate<double>(*refiner, options, positions);
+    int const numVertices = refiner->GetLevel(1).GetNumVertices();
+    EXPECT_LT((fromFirst.points.topRows(numVertices) - fromSecond.points.topRows(numVertices))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-12);
+}
+
 } // namespace OpenSubdivHex::Regression

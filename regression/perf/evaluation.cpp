@@ -37,6 +37,11 @@ double GetMovedBytes(Far::StencilTable const &table, int length) {
     return GetNumBytes(table) + numElements * length * sizeof(float);
 }
 
+double GetMovedBytes(OsdExt::CompactStencilTable const &table, int length) {
+    double const numElements = double(table.GetNumControlVertices()) + table.GetNumStencils();
+    return double(table.GetNumBytes()) + numElements * length * sizeof(float);
+}
+
 Contestant MakeTableFreeContestant(std::shared_ptr<FarExt::TopologyRefiner const> const &refiner,
                                    int numThreads, std::shared_ptr<Values const> const &values) {
     // The evaluator refers to the refiner.

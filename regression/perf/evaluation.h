@@ -36,13 +36,16 @@ struct Values {
 };
 
 /// The bytes of a table, of its sources and of its results.
+/// @{
 double GetMovedBytes(Far::StencilTable const &table, int length);
+double GetMovedBytes(OsdExt::CompactStencilTable const &table, int length);
+/// @}
 
 /// \brief Evaluates \p table, as many stencils as it has, with the evaluator EVALUATOR of Osd or
 /// OsdExt.
-template <class EVALUATOR>
+template <class EVALUATOR, class TABLE>
 Contestant MakeEvaluation(std::string const &name, int numThreads,
-                          std::shared_ptr<Far::StencilTable const> const &table,
+                          std::shared_ptr<TABLE const> const &table,
                           std::shared_ptr<Values const> const &values) {
     std::shared_ptr<Osd::CpuVertexBuffer> const dst(
         Osd::CpuVertexBuffer::Create(values->length, table->GetNumStencils()));

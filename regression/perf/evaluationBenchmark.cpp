@@ -13,21 +13,25 @@ namespace {
 Contest makeEvaluation(BenchMesh const &mesh, int length) {
     std::shared_ptr<Far::StencilTable const> const table = MakeTable(*MakeRefined(mesh));
     auto const values = std::make_shared<Values>(*table, length);
+    std::shared_ptr<OsdExt::CompactStencilTable const> const compact =
+        OsdExt::CompactStencilTable::Create(*table);
     std::string const suffix = "length" + std::to_string(length);
     Contest contest;
     contest.contestants = {
         MakeEvaluation<OsdExt::CpuEvaluator>("OsdExt::CpuEvaluator", 1, table, values),
-        MakeEvaluation<Osd::CpuEvaluator>("Osd::CpuEvaluator", 1, table, values)};
-    contest.pairings = {{"evaluation-1-" + suffix, 0, {1}}};
+        MakeEvaluation<Osd::CpuEvaluator>("Osd::CpuEvaluator", 1, table, values),
+        MakeEvaluation<OsdExt::CpuEvaluator>("OsdExt, compact table", 1, compact, values)};
+    contest.pairings = {{"evaluation-1-" + suffix, 0, {1}},
+                        {"evaluation-compact-" + suffix, 2, {0}}};
     if (HasThreads()) {
         contest.contestants.push_back(
             MakeEvaluation<OsdExt::OmpEvaluator>("OsdExt::OmpEvaluator", 2, table, values));
-        contest.pairings.push_back({"evaluation-2-cpu-" + suffix, 2, {1}});
-        contest.pairings.push_back({"evaluation-2-own-" + suffix, 2, {0}});
+        contest.pairings.push_back({"evaluation-2-cpu-" + suffix, 3, {1}});
+        contest.pairings.push_back({"evaluation-2-own-" + suffix, 3, {0}});
 #ifdef OPENSUBDIV_HAS_OPENMP
         contest.contestants.push_back(
             MakeEvaluation<Osd::OmpEvaluator>("Osd::OmpEvaluator", 2, table, values));
-        contest.pairings.push_back({"evaluation-2-" + suffix, 2, {3}});
+        contest.pairings.push_back({"evaluation-2-" + suffix, 3, {4}});
 #endif
     }
     return contest;

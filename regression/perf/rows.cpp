@@ -35,6 +35,8 @@ std::vector<Row> const &GetRows() {
                 {"evaluation-2-cpu-" + suffix, work + ", 2 threads", "Osd::CpuEvaluator", 12, 25});
             result.push_back(
                 {"evaluation-2-own-" + suffix, work + ", 2 threads", "own, 1 thread", 1.8, 1.8});
+            result.push_back({"evaluation-compact-" + suffix, work + ", compact table, 1 thread",
+                              "own, table as it is", 1, 1.5});
         }
         result.push_back(
             {"table-free-1", "table-free, all levels, 1 thread", "own best table", 3, 5});

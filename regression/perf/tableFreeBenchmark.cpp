@@ -56,19 +56,24 @@ Contestant makeLevelByLevel(FarExt::TopologyRefiner const &refiner, int numThrea
 Contest makeContest(BenchMesh const &mesh) {
     std::shared_ptr<FarExt::TopologyRefiner const> const refiner = MakeRefined(mesh);
     std::shared_ptr<Far::StencilTable const> const table = makeTable(*refiner, true);
+    std::shared_ptr<OsdExt::CompactStencilTable const> const compact =
+        OsdExt::CompactStencilTable::Create(*table);
     auto const values = std::make_shared<Values>(*table, 3);
     Contest contest;
     contest.contestants = {
         MakeTableFreeContestant(refiner, 1, values),
         MakeEvaluation<OsdExt::CpuEvaluator>("table, factorized", 1, table, values),
-        makeLevelByLevel<OsdExt::CpuEvaluator>(*refiner, 1, values)};
-    contest.pairings = {{"table-free-1", 0, {1, 2}}};
+        makeLevelByLevel<OsdExt::CpuEvaluator>(*refiner, 1, values),
+        MakeEvaluation<OsdExt::CpuEvaluator>("table, compact", 1, compact, values)};
+    contest.pairings = {{"table-free-1", 0, {1, 2, 3}}};
     if (HasThreads()) {
         contest.contestants.push_back(MakeTableFreeContestant(refiner, 2, values));
         contest.contestants.push_back(
             MakeEvaluation<OsdExt::OmpEvaluator>("table, factorized", 2, table, values));
         contest.contestants.push_back(makeLevelByLevel<OsdExt::OmpEvaluator>(*refiner, 2, values));
-        contest.pairings.push_back({"table-free-2", 3, {4, 5}});
+        contest.contestants.push_back(
+            MakeEvaluation<OsdExt::OmpEvaluator>("table, compact", 2, compact, values));
+        contest.pairings.push_back({"table-free-2", 4, {5, 6, 7}});
     }
     return contest;
 }
