@@ -70,27 +70,6 @@ std::vector<int> findNeighbors(PolygonMesh const &mesh, int vertex) {
     return neighbors;
 }
 
-/// The topology of the neighbourhood; a border is what its faces leave.
-PolygonMesh makeMesh(LocalSubdivision const &subdivision) {
-    PolygonMesh mesh;
-    mesh.positions.resize(subdivision.GetNumVertices());
-    std::vector<std::vector<int>> vertexFaces(subdivision.GetNumVertices());
-    mesh.faceFirst.push_back(0);
-    for (std::vector<int> const &face : subdivision.faces) {
-        for (int vertex : face) {
-            vertexFaces[vertex].push_back(mesh.GetNumFaces());
-            mesh.faceVertices.push_back(vertex);
-        }
-        mesh.faceFirst.push_back(int(mesh.faceVertices.size()));
-    }
-    mesh.vertexFirst.push_back(0);
-    for (std::vector<int> const &faces : vertexFaces) {
-        mesh.vertexFaces.insert(mesh.vertexFaces.end(), faces.begin(), faces.end());
-        mesh.vertexFirst.push_back(int(mesh.vertexFaces.size()));
-    }
-    return mesh;
-}
-
 } // namespace
 
 Smoothness MeasureSmoothness(PolygonMesh const &mesh) {
@@ -162,13 +141,35 @@ double MeasureCurvature(PolygonMesh const &mesh, MeshCenter center) {
     return largest;
 }
 
+PolygonMesh MakePlanarMesh(LocalSubdivision const &subdivision, Eigen::VectorXcd const &map) {
+    PolygonMesh mesh;
+    for (std::complex<double> position : map) {
+        mesh.positions.emplace_back(position.real(), position.imag(), 0);
+    }
+    std::vector<std::vector<int>> vertexFaces(subdivision.GetNumVertices());
+    mesh.faceFirst.push_back(0);
+    for (std::vector<int> const &face : subdivision.faces) {
+        for (int vertex : face) {
+            vertexFaces[vertex].push_back(mesh.GetNumFaces());
+            mesh.faceVertices.push_back(vertex);
+        }
+        mesh.faceFirst.push_back(int(mesh.faceVertices.size()));
+    }
+    mesh.vertexFirst.push_back(0);
+    for (std::vector<int> const &faces : vertexFaces) {
+        mesh.vertexFaces.insert(mesh.vertexFaces.end(), faces.begin(), faces.end());
+        mesh.vertexFirst.push_back(int(mesh.vertexFaces.size()));
+    }
+    return mesh;
+}
+
 std::vector<double> TraceCurvature(LocalSubdivision const &subdivision, int numSteps) {
     Eigen::VectorXcd const map = ComputeCharacteristicMap(subdivision);
     Eigen::Matrix<double, Eigen::Dynamic, 3> positions(map.size(), 3);
     constexpr double kHeight = 1e-3; // nearly flat, so that slopes do not matter
     positions << map.real(), map.imag(), kHeight * (map.cwiseAbs2() + map.cwiseProduct(map).real());
 
-    PolygonMesh mesh = makeMesh(subdivision);
+    PolygonMesh mesh = MakePlanarMesh(subdivision, map);
     int const numCenterVertices =
         subdivision.centerKind == CenterKind::Vertex ? 1 : subdivision.order;
     std::vector<double> curvatures;

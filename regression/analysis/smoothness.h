@@ -32,6 +32,10 @@ std::array<double, 2> EstimateCurvatures(PolygonMesh const &mesh, int vertex);
 /// center, those at the center included.
 double MeasureCurvature(PolygonMesh const &mesh, MeshCenter center);
 
+/// The faces of a neighbourhood as a mesh with the positions \p map, one per vertex, in the plane
+/// z = 0; without edges.
+PolygonMesh MakePlanarMesh(LocalSubdivision const &subdivision, Eigen::VectorXcd const &map);
+
 /// \brief The largest modulus of a principal curvature at the center of a neighbourhood, in it and
 /// after each of \p numSteps steps: as MeasureCurvature, of the vertices at the center alone, but
 /// many more levels than a mesh can have.

@@ -7,6 +7,7 @@
 
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/topologyRefinerFactory.h"
+#include "regression/analysis/smoothness.h"
 #include "regression/analysis/spectrum.h"
 #include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -125,6 +126,37 @@ double measureRounding(Shape const &shape, int level) {
         radius = std::max(radius, std::hypot(p[0], p[1], p[2]));
     }
     return largest / radius;
+}
+
+/// The characteristic map of a neighbourhood and of its child, which is the same but smaller.
+std::string drawCharacteristicMap(LocalSubdivision const &center) {
+    Eigen::VectorXcd const map = ComputeCharacteristicMap(center);
+    return DrawPlanarMesh(MakePlanarMesh(center, map), MakePlanarMesh(center, center.matrix * map));
+}
+
+/// Limit masks of vertices among hexagons.
+Table makeLimitTable() {
+    Table table{
+        {"vertex", "mask", "itself", "each neighbour", "each next to it", "each opposite"},
+        {},
+        "Limit masks: the weights of a vertex and of the other vertices of its hexagons for "
+        "the point of the surface that it tends to.  Each of the other vertices that count "
+        "has less than 0.0004."};
+    for (int order : {3, 4}) {
+        for (auto const &[name, mask] :
+             {std::pair("Average", FaceMask::Average), std::pair("Cosine", FaceMask::Cosine),
+              std::pair("Smooth", FaceMask::Smooth)}) {
+            LocalSubdivision const center =
+                MakeLocalSubdivision(MakeHexagonal(mask), CenterKind::Vertex, order);
+            Eigen::VectorXd const weights = ComputeLimitMask(center);
+            std::vector<std::string> row{std::to_string(order) + " faces", name};
+            for (int place = 0; place < 4; ++place) { // along the first hexagon, from the center
+                row.push_back(FormatNumber(weights(center.faces[0][place]), 5));
+            }
+            table.rows.push_back(row);
+        }
+    }
+    return table;
 }
 
 } // namespace
@@ -281,7 +313,8 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
     Table table{{"center", "k, n = 3", "4", "5", "6", "8", "12"},
                 {},
                 "What curvature at the center is multiplied by with every step, μ/λ² (above 1: "
-                "unbounded), and the eigenvalues: the sub-dominant one, λ, and the next, μ."};
+                "unbounded), and the eigenvalues: the sub-dominant one, λ, and the next, μ.  With "
+                "tri-hex they are equal at triangles: no tangent plane there."};
     bool areTangentPlanes = true;
     double paperGrowth = 0, triHexFirstGrowth = 0, smoothVertexGrowth = 0;
     for (Line const &line : lines) {
@@ -322,6 +355,19 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
         "valences 3 to 12.  After one tri-hex step every irregularity is a face of an "
         "otherwise 3-valent mesh, and the factor is 1 everywhere.");
     page->AddTable(table);
+    SchemeOptions const smooth = MakeHexagonal(FaceMask::Smooth);
+    page->AddFigure(
+        {Captioned(drawCharacteristicMap(MakeLocalSubdivision(smooth, CenterKind::Vertex, 5)),
+                   "vertex with 5 faces"),
+         Captioned(drawCharacteristicMap(MakeLocalSubdivision(smooth, CenterKind::Face, 5)),
+                   "face with 5 sides"),
+         Captioned(drawCharacteristicMap(MakeLocalSubdivision(MakeTriHexFirst(FaceMask::Smooth),
+                                                              CenterKind::Vertex, 5)),
+                   "the vertex after a tri-hex step: 10 sides")},
+        3,
+        "Characteristic maps with the mask Smooth (brown), and what one step makes of them (blue): "
+        "the same map, smaller by λ, around a vertex turned by half a step.");
+    page->AddTable(makeLimitTable());
     page->AddClaim(
         "The eigenvalues show that the scheme is C<sup>1</sup>", Judge(areTangentPlanes),
         "The paper looks at the matrix of one face.  Around every vertex and face of valence 3 "

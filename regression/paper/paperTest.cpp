@@ -81,7 +81,7 @@ TEST_F(Paper, PageIsComplete) {
         EXPECT_EQ(count(page, "href=\"#" + id + "\""), 1) << id;
     }
     EXPECT_EQ(count(page, "<section"), count(page, "</section>"));
-    EXPECT_EQ(count(page, "<figcaption>"), 11);
+    EXPECT_EQ(count(page, "<figcaption>"), 12);
 
     // Pictures: 2 x 3 levels, 2 x 4 meshes, 3 tips, 3 x 3 masks, 3 boxes, each a PNG of its size.
     int numPictures = 0;
@@ -104,8 +104,8 @@ TEST_F(Paper, PageIsComplete) {
     }
     EXPECT_EQ(numPictures, 6 + 8 + 3 + 9 + 3);
 
-    // Drawings: two lattices and 2 + 2 + 4 + 6 + 2 plots.
-    EXPECT_EQ(count(page, "<svg"), 2 + 16);
+    // Drawings: two lattices, three maps and 2 + 2 + 4 + 6 + 2 plots.
+    EXPECT_EQ(count(page, "<svg"), 2 + 3 + 16);
     EXPECT_EQ(count(page, "<svg"), count(page, "</svg>"));
     EXPECT_GT(count(page, "<path"), 300);
     for (char const *word : {"nan", "inf", "NaN"}) {
