@@ -173,6 +173,20 @@ TEST(Smoothness, TracedCurvature) {
     }
 }
 
+// With Doo-Sabin's mask the eigenvalues are the same, but 1/4 is there twice with one eigenvector:
+// every step adds as much curvature again.
+TEST(Smoothness, DooSabinAddsCurvature) {
+    for (int order : {5, 6, 8, 12}) {
+        LocalSubdivision const face = MakeLocalSubdivision(
+            {FaceMask::Cosine, SchemeType::DooSabin, false}, CenterKind::Vertex, order);
+        EXPECT_NEAR(ComputeSpectrum(face).GetCurvatureGrowth(), 1, 1e-6);
+        std::vector<double> const curvatures = TraceCurvature(face, 16);
+        double const growth = curvatures[16] - curvatures[15];
+        EXPECT_GT(growth, 0.1);
+        EXPECT_NEAR(growth / (curvatures[15] - curvatures[14]), 1, 0.01) << order;
+    }
+}
+
 // Where all is regular, the largest curvature of a mesh settles with Cosine and Smooth, and angles
 // between neighbouring normals fall by half; with Average curvature grows and angles fall by
 // 2^-0.68.

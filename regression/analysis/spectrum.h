@@ -39,7 +39,8 @@ struct Spectrum {
     }
     /// \brief The factor by which curvature at the center changes with every step.
     ///
-    /// Above 1 the curvature is unbounded, at 1 it is bounded, below 1 the surface is flat there.
+    /// Above 1 the curvature is unbounded, below 1 the surface is flat there.  At 1 it is bounded,
+    /// unless eigenvectors are missing: then every step adds as much again.
     double GetCurvatureGrowth() const { return next / (subdominant * subdominant); }
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What can be counted and computed: faces and vertices by level, matrices and eigenvalues.
+#include "meshes.h"
 #include "plot.h"
 #include "schemes.h"
 #include "sections.h"
@@ -9,7 +10,6 @@
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/analysis/smoothness.h"
 #include "regression/analysis/spectrum.h"
-#include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <Eigen/Eigenvalues>
@@ -139,9 +139,9 @@ Table makeLimitTable() {
     Table table{
         {"vertex", "mask", "itself", "each neighbour", "each next to it", "each opposite"},
         {},
-        "Limit masks: the weights of a vertex and of the other vertices of its hexagons for "
-        "the point of the surface that it tends to.  Each of the other vertices that count "
-        "has less than 0.0004."};
+        "Limit masks: the weights of a vertex and of the other vertices of its hexagons for the "
+        "point of the surface that it tends to.  Each of the other vertices that count has less "
+        "than 0.0004."};
     for (int order : {3, 4}) {
         for (auto const &[name, mask] :
              {std::pair("Average", FaceMask::Average), std::pair("Cosine", FaceMask::Cosine),
@@ -163,7 +163,7 @@ Table makeLimitTable() {
 
 void AddCountSection(Page *page, Settings const &settings) {
     page->BeginSection("counts", "Faces and vertices");
-    Shape const solid = MakeDual("dodecahedron", MakeIcosahedron());
+    Shape const solid = MakeDodecahedron();
     struct Entry {
         std::string name;
         std::string formula;
@@ -225,19 +225,17 @@ void AddCountSection(Page *page, Settings const &settings) {
     page->AddTable(table);
     page->AddFigure(
         {DrawPlot(plot), DrawPlot(ratio)}, 2,
-        "Hexagonal and Doo-Sabin have the same number of edges; Doo-Sabin has half as many "
-        "faces again in the long run.");
+        "Hexagonal and Doo-Sabin have the same number of edges; Doo-Sabin has half as many faces "
+        "again in the long run.");
     double const share = double(getLast(0).faces) / double(getLast(1).faces);
     std::string const level = std::to_string(settings.solidLevel);
-    page->AddClaim("It makes fewer faces than Doo-Sabin at every level",
-                   Judge(isAsForetold && share < 1),
-                   "At level " + level + " of the dodecahedron " + FormatCount(getLast(0).faces) +
-                       " against " + FormatCount(getLast(1).faces) + ", " +
-                       FormatNumber(100 * (1 - share), 1) +
-                       "&#8239;% fewer; in the limit a third.  "
-                       "It has " +
-                       FormatCount(getLast(0).vertices) + " vertices against " +
-                       FormatCount(getLast(1).vertices) + ".");
+    page->AddClaim(
+        "It makes fewer faces than Doo-Sabin at every level", Judge(isAsForetold && share < 1),
+        "At level " + level + " of the dodecahedron " + FormatCount(getLast(0).faces) +
+            " against " + FormatCount(getLast(1).faces) + ", " +
+            FormatNumber(100 * (1 - share), 1) + "&#8239;% fewer; in the limit a third.  It has " +
+            FormatCount(getLast(0).vertices) + " vertices against " +
+            FormatCount(getLast(1).vertices) + ".");
     page->AddClaim(
         "It manages the exponential growth of the number of faces",
         Judge(getGrowth(0) < 0.9 * getGrowth(1), share < 0.9),
@@ -252,9 +250,9 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
         return MakeLocalSubdivision(scheme, CenterKind::Face, n);
     };
     page->AddParagraph(
-        "The matrices are read off the stencil tables of the refiner, around a vertex or "
-        "a face with everything else regular.  Section 6 of the paper looks at the points "
-        "that a face makes of its own vertices.");
+        "The matrices are read off the stencil tables of the refiner, around a vertex or a face "
+        "with everything else regular.  Section 6 of the paper looks at the points that a face "
+        "makes of its own vertices.");
     Table faces{{"face", "mask", "first row", "eigenvalues"}, {}, ""};
     struct Mask {
         char const *name;
@@ -278,8 +276,8 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
     LocalSubdivision const quad = makeFace(MakeHexagonal(FaceMask::Average), 4);
     LocalSubdivision const hexagon = makeFace(MakeHexagonal(FaceMask::Average), 6);
     page->AddClaim(
-        "M<sub>4</sub> has the eigenvalues 1, 1/2, 1/2, 1/4 and M<sub>6</sub> has 1, 5/8, "
-        "5/8, 3/8, 3/8, 1/4",
+        "M<sub>4</sub> has the eigenvalues 1, 1/2, 1/2, 1/4 and M<sub>6</sub> has 1, 5/8, 5/8, "
+        "3/8, 3/8, 1/4",
         Judge(areNear(computeFaceEigenvalues(quad), {1, 0.5, 0.5, 0.25}) &&
               areNear(computeFaceEigenvalues(hexagon), {1, 0.625, 0.625, 0.375, 0.375, 0.25})),
         "To 12 digits, from the refiner's own tables: " +
@@ -351,9 +349,9 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
     }
     page->AddFigure(
         {DrawPlot(subdominant), DrawPlot(growth)}, 2,
-        "All eigenvalues around vertices (V-vertices) and faces of the hexagonal scheme, "
-        "valences 3 to 12.  After one tri-hex step every irregularity is a face of an "
-        "otherwise 3-valent mesh, and the factor is 1 everywhere.");
+        "All eigenvalues around vertices (V-vertices) and faces of the hexagonal scheme, valences "
+        "3 to 12.  After one tri-hex step every irregularity is a face of an otherwise 3-valent "
+        "mesh, and the factor is 1 everywhere.");
     page->AddTable(table);
     SchemeOptions const smooth = MakeHexagonal(FaceMask::Smooth);
     page->AddFigure(
@@ -365,13 +363,13 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
                                                               CenterKind::Vertex, 5)),
                    "the vertex after a tri-hex step: 10 sides")},
         3,
-        "Characteristic maps with the mask Smooth (brown), and what one step makes of them (blue): "
-        "the same map, smaller by λ, around a vertex turned by half a step.");
+        "Characteristic maps with the mask Smooth (brown), and what one step makes of them "
+        "(blue): the same map, smaller by λ, around a vertex turned by half a step.");
     page->AddTable(makeLimitTable());
     page->AddClaim(
         "The eigenvalues show that the scheme is C<sup>1</sup>", Judge(areTangentPlanes),
-        "The paper looks at the matrix of one face.  Around every vertex and face of valence 3 "
-        "to 12, for all three masks, the whole neighbourhood has 1 &gt; λ = λ &gt; μ, and no "
+        "The paper looks at the matrix of one face.  Around every vertex and face of valence 3 to "
+        "12, for all three masks, the whole neighbourhood has 1 &gt; λ = λ &gt; μ, and no "
         "characteristic map folds.");
     page->AddClaim(
         "It optimizes the continuity of the surface",
@@ -385,7 +383,7 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
             FormatNumber(triHexFirstGrowth, 2) + " everywhere.");
 
     int const level = settings.solidLevel;
-    double const rounding = measureRounding(MakeDual("dodecahedron", MakeIcosahedron()), level);
+    double const rounding = measureRounding(MakeDodecahedron(), level);
     double leastWeight = 1;
     for (int n = 3; n <= 12; ++n) {
         leastWeight =

@@ -42,11 +42,10 @@ std::string makePage(Settings const &settings) {
     Page page(
         "Hexagonal vertex-to-vertex subdivision: the paper, recomputed",
         "Ghaleb and Abd El-Latif (2005) propose a subdivision scheme that keeps every vertex, "
-        "makes "
-        "a smaller copy of every face and a hexagon of every edge.  This page recomputes their "
-        "figures and numbers, measures what they claim, and sets the scheme beside Doo-Sabin, "
-        "tri-hex corner cutting, Catmull-Clark and Loop.  Everything below was computed in one "
-        "run.");
+        "makes a smaller copy of every face and a hexagon of every edge.  This page recomputes "
+        "their figures and numbers, measures what they claim, and sets the scheme beside "
+        "Doo-Sabin, tri-hex corner cutting, Catmull-Clark and Loop.  Everything below was "
+        "computed in one run.");
     struct Section {
         char const *name;
         void (*add)(Page *, Settings const &);

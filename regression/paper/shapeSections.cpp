@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The figures of the paper: its solid, its meshes, its factors; and stage 3.
+#include "meshes.h"
 #include "picture.h"
 #include "plot.h"
 #include "schemes.h"
@@ -9,8 +10,6 @@
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/analysis/smoothness.h"
 #include "regression/shapes/featureShapes.h"
-#include "regression/shapes/meshOperations.h"
-#include "regression/shapes/objShape.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <algorithm>
@@ -65,16 +64,6 @@ Shape makeShape(std::string name, PolygonMesh const &mesh) {
     return shape;
 }
 
-/// An OBJ file has y up, the shapes z.
-Shape loadMesh(std::string const &name) {
-    Shape shape = LoadObjShape(name, std::string(TUTORIAL_MESHES_DIR "/") + name + ".obj");
-    for (int vertex = 0; vertex < shape.GetNumVertices(); ++vertex) {
-        double *const p = &shape.positions[3 * vertex];
-        std::rotate(p, p + 2, p + 3);
-    }
-    return shape;
-}
-
 std::vector<SurfaceLevel> refineCoplanar(Shape const &shape, int level, bool closeGaps) {
     FarExt::Status status;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(
@@ -90,13 +79,15 @@ std::vector<SurfaceLevel> refineCoplanar(Shape const &shape, int level, bool clo
 
 int countOpenEdges(PolygonMesh const &mesh) { return mesh.numEdges - int(mesh.edgeFaces.size()); }
 
-int countEdges(PolygonMesh const &mesh) { return mesh.numEdges; }
+int computeEulerCharacteristic(PolygonMesh const &mesh) {
+    return mesh.GetNumVertices() - mesh.numEdges + mesh.GetNumFaces();
+}
 
 } // namespace
 
 void AddSolidSection(Page *page, Settings const &settings) {
     page->BeginSection("solid", "A pentagonal solid");
-    Shape const solid = MakeDual("dodecahedron", MakeIcosahedron());
+    Shape const solid = MakeDodecahedron();
     FaceMask const mask = FaceMask::Average;
     auto const dooSabin = RefineSurface(solid, MakeDooSabin(mask), settings.solidLevel);
     auto const hexagonal = RefineSurface(solid, MakeHexagonal(mask), settings.solidLevel);
@@ -116,13 +107,13 @@ void AddSolidSection(Page *page, Settings const &settings) {
         }
     }
     page->AddParagraph(
-        "The paper's figure 5 refines a solid of pentagons with Doo-Sabin and with its "
-        "own scheme.  Here it is a dodecahedron, both schemes with the paper's mask, "
-        "each polygon lit by one normal.  Polygons that are no hexagons are blue.");
+        "The paper's figure 5 refines a solid of pentagons with Doo-Sabin and with its own "
+        "scheme.  Here it is a dodecahedron, both schemes with the paper's mask, each polygon lit "
+        "by one normal.  Polygons that are no hexagons are blue.");
     page->AddFigure(parts, 4,
                     "Figure 5 of the paper: levels 0 to " + std::to_string(settings.solidLevel) +
-                        " of a dodecahedron.  The same edges, but Doo-Sabin has a face more "
-                        "for every vertex.");
+                        " of a dodecahedron.  The same edges, but Doo-Sabin has a face more for "
+                        "every vertex.");
 
     PolygonMesh const &a = dooSabin.back().mesh;
     PolygonMesh const &b = hexagonal.back().mesh;
@@ -149,9 +140,9 @@ void AddSolidSection(Page *page, Settings const &settings) {
         where + "the largest face has a diameter of " + FormatNumber(coarseB.largest, 4) +
             " against " + FormatNumber(coarseA.largest, 4) +
             ", and the largest angle between neighbouring normals is " + FormatNumber(angleB, 2) +
-            "° against " + FormatNumber(angleA, 2) + "°.  By its mean the largest face is " +
-            FormatNumber(coarseB.largest / coarseB.mean, 2) + " against " +
-            FormatNumber(coarseA.largest / coarseA.mean, 2) + " times as large.");
+            "° against " + FormatNumber(angleA, 2) + "°.  The largest face is " +
+            FormatNumber(coarseB.largest / coarseB.mean, 2) + " times the mean, against " +
+            FormatNumber(coarseA.largest / coarseA.mean, 2) + ".");
 }
 
 void AddMeshSection(Page *page, Settings const &settings) {
@@ -161,13 +152,13 @@ void AddMeshSection(Page *page, Settings const &settings) {
         Shape shape;
         Tutorials::View view;
     };
-    std::vector<Entry> entries{{"lantern", loadMesh("lantern"), {30, 15, 1}},
-                               {"ring", loadMesh("ring"), {20, 35, 1}},
+    std::vector<Entry> entries{{"lantern", LoadTutorialMesh("lantern"), {30, 15, 1}},
+                               {"ring", LoadTutorialMesh("ring"), {20, 35, 1}},
                                {"two holes", GetShape("genus2"), {35, 55, 1}},
                                {"open patch", GetShape("mixedPatch"), {20, 50, 1}}};
     constexpr int kLevel = 2;
     std::vector<std::string> controls, refined;
-    bool hasAll = true;
+    bool areManifold = true;
     int numFaces = 0, numHexagons = 0;
     for (Entry const &entry : entries) {
         auto const levels = RefineSurface(entry.shape, MakeHexagonal(FaceMask::Average), kLevel);
@@ -184,26 +175,27 @@ void AddMeshSection(Page *page, Settings const &settings) {
         for (int face = 0; face < mesh.GetNumFaces(); ++face) {
             numHexagons += mesh.GetFaceSize(face) == 6 ? 1 : 0;
         }
-        hasAll = hasAll && mesh.GetNumFaces() > 0;
+        areManifold = areManifold && computeEulerCharacteristic(mesh) ==
+                                         computeEulerCharacteristic(levels[0].mesh);
     }
     controls.insert(controls.end(), refined.begin(), refined.end());
     page->AddFigure(
         controls, int(entries.size()),
-        "Figure 6 of the paper: arbitrary control meshes and their second level, with the "
-        "paper's mask and its rule for boundaries.  Polygons that are no hexagons are blue.");
+        "Figure 6 of the paper: arbitrary control meshes and their second level, with the paper's "
+        "mask and its rule for boundaries.  Polygons that are no hexagons are blue.");
     page->AddClaim(
-        "It takes arbitrary surface meshes", Judge(hasAll),
-        "Closed and open meshes of triangles to octagons, of any genus.  The tests refine "
-        "non-manifold and degenerate ones too.  What differs: all faces of an edge must run "
-        "it in a consistent direction.");
+        "It takes arbitrary surface meshes", Judge(areManifold),
+        "Closed and open meshes of any polygons, of any genus: the Euler characteristic of all "
+        "four stays.  The tests refine non-manifold and degenerate ones too.  What differs: all "
+        "faces of an edge must run it in "
+        "a consistent direction.");
     page->AddClaim(
         "It generates a hexagonal scheme without turning a triangle mesh into hexagons first",
         Judge(2 * numHexagons > numFaces),
         "Every edge makes a hexagon: at level 2 of these four meshes " +
             percent(double(numHexagons) / numFaces) +
-            " of the faces are hexagons, and the others are the copies of faces of the "
-            "control mesh and quads of the border, of which there are never more of the "
-            "former.");
+            " of the faces are hexagons, and the others are the copies of faces of the control "
+            "mesh and quads of the border, of which there are never more of the former.");
 }
 
 void AddFactorSection(Page *page, Settings const &) {
@@ -216,9 +208,9 @@ void AddFactorSection(Page *page, Settings const &) {
         {Captioned(DrawPlanarMesh(parent, three), "factor three: tri-hex corner cutting"),
          Captioned(DrawPlanarMesh(parent, four), "factor four: this scheme")},
         2,
-        "Figure 7 of the paper: one step of a regular mesh (brown) by the corner cutting of "
-        "Claes and others, which turns the lattice by 30 degrees and drops the border, and by "
-        "the hexagonal vertex-to-vertex scheme, which keeps the old vertices.  Cosine mask.");
+        "Figure 7 of the paper: one step of a regular mesh (brown) by the corner cutting of Claes "
+        "and others, which turns the lattice by 30 degrees and drops the border, and by the "
+        "hexagonal vertex-to-vertex scheme, which keeps the old vertices.  Cosine mask.");
 
     Shape const torus = GetShape("hexTorus");
     auto const getFaces = [&](SchemeOptions const &scheme) {
@@ -236,11 +228,9 @@ void AddFactorSection(Page *page, Settings const &) {
 void AddCoplanarSection(Page *page, Settings const &settings) {
     page->BeginSection("stage3", "Stage 3: equal normals");
     page->AddParagraph("Stage 3 of the paper makes a hexagon of an edge only if its two faces "
-                       "differ in normal, and "
-                       "otherwise a quad from the four new points alone.  Taken literally that "
-                       "leaves gaps around the "
-                       "old vertices; with one polygon for each run of flat edges at a vertex the "
-                       "mesh is closed again. "
+                       "differ in normal, and otherwise a quad from the four new points alone.  "
+                       "Taken literally that leaves gaps around the old vertices; with one "
+                       "polygon for each run of flat edges at a vertex the mesh is closed again. "
                        "<code>TopologyRefiner::RefineCoplanar</code> does both.");
     Shape const box =
         makeShape("box", RefineSurface(MakePrism(4), OpenSubdiv::Sdc::SCHEME_BILINEAR, 1)[1].mesh);
@@ -259,26 +249,25 @@ void AddCoplanarSection(Page *page, Settings const &settings) {
           std::pair("stage 3, closed", &closed)}) {
         int const shown = std::min(2, level);
         PolygonMesh const &mesh = (*levels)[shown].mesh;
-        parts.push_back(Captioned(
-            DrawMesh(mesh, box.positions.empty() ? mesh : (*levels)[0].mesh, options, settings),
-            std::string(name) + ", level " + std::to_string(shown) + ": " +
-                std::to_string(countOpenEdges(mesh)) + " open edges"));
+        parts.push_back(Captioned(DrawMesh(mesh, (*levels)[0].mesh, options, settings),
+                                  std::string(name) + ", level " + std::to_string(shown) + ": " +
+                                      std::to_string(countOpenEdges(mesh)) + " open edges"));
     }
     page->AddFigure(parts, 3,
-                    "A box with 2 x 2 faces on each side.  Within a side all normals agree; "
-                    "there stage 3 makes what Doo-Sabin makes.");
+                    "A box with 2 x 2 faces on each side.  Within a side all normals agree; there "
+                    "stage 3 makes what Doo-Sabin makes.");
     Table table{{"level", "V, E, F every edge a hexagon", "V, E, F stage 3, closed",
                  "Euler characteristic", "open edges, literal"},
                 {},
                 "Counts of the box."};
     bool isClosed = true;
     auto const describe = [](PolygonMesh const &mesh) {
-        return FormatCount(mesh.GetNumVertices()) + ", " + FormatCount(countEdges(mesh)) + ", " +
+        return FormatCount(mesh.GetNumVertices()) + ", " + FormatCount(mesh.numEdges) + ", " +
                FormatCount(mesh.GetNumFaces());
     };
     for (int i = 0; i <= level; ++i) {
         PolygonMesh const &mesh = closed[i].mesh;
-        int const characteristic = mesh.GetNumVertices() - mesh.numEdges + mesh.GetNumFaces();
+        int const characteristic = computeEulerCharacteristic(mesh);
         isClosed = isClosed && countOpenEdges(mesh) == 0 && characteristic == 2;
         table.rows.push_back({std::to_string(i), describe(uniform[i].mesh), describe(mesh),
                               std::to_string(characteristic),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // How smooth refined meshes are: normals, curvature and reflection lines.
+#include "meshes.h"
 #include "picture.h"
 #include "plot.h"
 #include "schemes.h"
@@ -8,8 +9,6 @@
 
 #include "regression/analysis/smoothness.h"
 #include "regression/analysis/spectrum.h"
-#include "regression/shapes/meshOperations.h"
-#include "regression/shapes/objShape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,15 +27,6 @@ struct Contestant {
     bool isPictured = false;
 };
 
-Shape loadRing() {
-    Shape shape = LoadObjShape("ring", TUTORIAL_MESHES_DIR "/ring.obj");
-    for (int vertex = 0; vertex < shape.GetNumVertices(); ++vertex) {
-        double *const p = &shape.positions[3 * vertex];
-        std::rotate(p, p + 2, p + 3);
-    }
-    return shape;
-}
-
 } // namespace
 
 void AddSmoothnessSection(Page *page, Settings const &settings) {
@@ -44,8 +34,7 @@ void AddSmoothnessSection(Page *page, Settings const &settings) {
     page->AddParagraph(
         "Of the largest angle between the normals of neighbouring faces, a surface with bounded "
         "curvature loses half with every step of factor four.  The curvature across an edge, that "
-        "angle "
-        "by the distance of the faces' centroids, settles for such a surface and grows for "
+        "angle by the distance of the faces' centroids, settles for such a surface and grows for "
         "others.");
     std::vector<Contestant> const contestants{
         {"hexagonal, Average", MakeHexagonal(FaceMask::Average), 0},
@@ -59,7 +48,7 @@ void AddSmoothnessSection(Page *page, Settings const &settings) {
     enum { kHexagonalAverage = 0, kHexagonalCosine = 1, kDooSabinAverage = 4, kDooSabinCosine = 5 };
     std::vector<std::pair<std::string, Shape>> const shapes{
         {"Honeycomb torus, all regular", GetShape("hexTorus")},
-        {"Dodecahedron", MakeDual("dodecahedron", MakeIcosahedron())}};
+        {"Dodecahedron", MakeDodecahedron()}};
     // Of each shape: which of Average and Cosine have smaller angles than Doo-Sabin's, and where.
     int numSmaller = 0, numSmallerLast = 0, numCompared = 0, numComparedLast = 0;
     std::string lastAngles;
@@ -112,8 +101,8 @@ void AddSmoothnessSection(Page *page, Settings const &settings) {
     }
     page->AddFigure(
         parts, 2,
-        "Smoothness by scheme and mask.  Tri-hex takes smaller steps, of factor three.  "
-        "Average loses less than half of the angle with every step, and its curvature grows.");
+        "Smoothness by scheme and mask.  Tri-hex takes smaller steps, of factor three.  Average "
+        "loses less than half of the angle with every step, and its curvature grows.");
     page->AddTable(table);
     page->AddClaim(
         "It increases the smoothness of the surfaces compared with Doo-Sabin",
@@ -124,18 +113,15 @@ void AddSmoothnessSection(Page *page, Settings const &settings) {
             lastAngles + ".  Over all levels it is the smaller one in " +
             std::to_string(numSmaller) + " of " + std::to_string(numCompared) +
             " comparisons.  With the paper's own mask it falls by less than half with every step, "
-            "so "
-            "that Doo-Sabin with the mask Cosine overtakes it.");
+            "so that Doo-Sabin with the mask Cosine overtakes it.");
 }
 
 void AddTipSection(Page *page, Settings const &settings) {
     page->BeginSection("tips", "Curvature at irregular vertices");
     page->AddParagraph("The largest principal curvature, of quadrics fitted to the mesh, at the "
-                       "faces around a vertex "
-                       "where n triangles of a control mesh meet, between a bowl and a saddle.  "
-                       "All schemes have the "
-                       "same control mesh.  A line that goes on rising is a surface without "
-                       "bounded curvature there.");
+                       "faces around a vertex where n triangles of a control mesh meet, between a "
+                       "bowl and a saddle.  All schemes have the same control mesh.  A line that "
+                       "goes on rising is a surface without bounded curvature there.");
     std::vector<Contestant> const contestants{
         {"hexagonal, Average", MakeHexagonal(FaceMask::Average), 0},
         {"hexagonal, Smooth", MakeHexagonal(FaceMask::Smooth), 2, false, true},
@@ -150,8 +136,8 @@ void AddTipSection(Page *page, Settings const &settings) {
     Table table{
         {"last step"},
         {},
-        "What the last step multiplied the curvature by, and in brackets μ/λ², which it tends "
-        "to, where the analysis gives it."};
+        "What the last step multiplied the curvature by, and in brackets μ/λ², which it tends to, "
+        "where the analysis gives it."};
     for (Contestant const &contestant : contestants) {
         table.rows.push_back({contestant.name});
     }
@@ -192,7 +178,7 @@ void AddTipSection(Page *page, Settings const &settings) {
     // Many more steps than a mesh can have, with the matrix of the neighbourhood.
     constexpr int kNumSteps = 16;
     Plot traced{"Many steps of the local matrix, 12 triangles", "step", "curvature", true, {}};
-    std::vector<double> bounded;
+    std::vector<double> bounded, dooSabin;
     for (Contestant const &contestant : contestants) {
         if (auto const *options = std::get_if<SchemeOptions>(&contestant.scheme)) {
             std::vector<double> const curvatures =
@@ -204,33 +190,43 @@ void AddTipSection(Page *page, Settings const &settings) {
             traced.series.push_back(series);
             if (options->triHexFirst && options->faceMask == FaceMask::Smooth) {
                 bounded = curvatures;
+            } else if (options->schemeType == SchemeType::DooSabin) {
+                dooSabin = curvatures;
             }
         }
     }
     parts.push_back(DrawPlot(traced));
     page->AddFigure(
         parts, 2,
-        "Curvature at an irregular vertex by level.  The last plot goes on with the local "
-        "matrix, from a bowl and saddle over the characteristic map.");
+        "Curvature at an irregular vertex by level.  The last plot goes on with the local matrix, "
+        "from a bowl and saddle over the characteristic map.");
     page->AddTable(table);
-    double const step = bounded[kNumSteps] - bounded[kNumSteps - 1];
-    double const decay = step / (bounded[kNumSteps - 1] - bounded[kNumSteps - 2]);
+    auto const getStep = [&](std::vector<double> const &curvatures, int step) {
+        return curvatures[step] - curvatures[step - 1];
+    };
+    auto const getDecay = [&](std::vector<double> const &curvatures) {
+        return getStep(curvatures, kNumSteps) / getStep(curvatures, kNumSteps - 1);
+    };
+    double const decay = getDecay(bounded);
+    double const limit = bounded[kNumSteps] + getStep(bounded, kNumSteps) * decay / (1 - decay);
     page->AddParagraph(
-        "<b>One tri-hex step first</b> makes every vertex 3-valent.  The eigenvalues are then 1/2, "
-        "1/2 "
-        "and the next 1/4 around all faces, so curvature is bounded everywhere with Cosine and "
-        "Smooth.  "
-        "That bound is reached slowly: at a vertex of 12 triangles, which becomes a face of 24 "
-        "sides, the "
-        "second eigenvalue of the saddle is nearly 1/4 too.  From the bowl and saddle above, "
-        "curvature is " +
+        "<b>One tri-hex step first</b> makes every vertex 3-valent.  The eigenvalues are then "
+        "1/2, 1/2 and the next 1/4 around all faces, so curvature is bounded everywhere with "
+        "Cosine and Smooth.  That bound is reached slowly: at a vertex of 12 triangles, which "
+        "becomes a face of 24 sides, the second eigenvalue of the saddle is nearly 1/4 too.  From "
+        "the bowl and saddle above, curvature is " +
         FormatNumber(bounded[kNumSteps] / bounded[0], 2) + " times the first after " +
         std::to_string(kNumSteps) + " steps, each step adds " + FormatNumber(decay, 3) +
-        " of what the one before added, and the limit is " +
-        FormatNumber((bounded[kNumSteps] + step * decay / (1 - decay)) / bounded[0], 1) +
-        " times.  In the last step measured, curvature still grew by more than 5&#8239;% with "
-        "Catmull-Clark " +
-        growing[0] + ", with Loop " + growing[1] + ".");
+        " of what the one before added, and the limit is " + FormatNumber(limit / bounded[0], 1) +
+        " times.  Doo-Sabin with the mask Cosine has the same eigenvalues, but 1/4 is there twice "
+        "with one eigenvector: each step adds " +
+        FormatNumber(getDecay(dooSabin), 3) +
+        " of what the one "
+        "before added, and that has no limit.");
+    page->AddParagraph("In the last step measured, curvature still grew by more than 5&#8239;% "
+                       "with Catmull-Clark " +
+                       (growing[0].empty() ? "nowhere" : growing[0]) + ", with Loop " +
+                       (growing[1].empty() ? "nowhere" : growing[1]) + ".");
 
     PictureOptions options;
     options.view = {0, 68, 1.9f};
@@ -250,13 +246,13 @@ void AddTipSection(Page *page, Settings const &settings) {
     page->AddFigure(pictures, 3,
                     "Reflection lines where " + std::to_string(orders.back()) +
                         " triangles meet, level " + std::to_string(settings.maskLevel) +
-                        ".  Bounded curvature at the vertex is not fairness around it: the tri-hex "
-                        "step cuts every corner of the triangles, and its ripples stay.");
+                        ".  Bounded curvature at the vertex is not fairness around it: the "
+                        "tri-hex step cuts every corner of the triangles, and its ripples stay.");
 }
 
 void AddMaskSection(Page *page, Settings const &settings) {
     page->BeginSection("masks", "Why Smooth differs from Average");
-    Shape const ring = loadRing();
+    Shape const ring = LoadTutorialMesh("ring");
     struct Entry {
         char const *name;
         SchemeOptions scheme;

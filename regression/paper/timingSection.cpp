@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Running time of the schemes, in turns on the same machine.
+#include "meshes.h"
 #include "plot.h"
 #include "schemes.h"
 #include "sections.h"
@@ -123,7 +124,7 @@ struct Times {
 void AddTimingSection(Page *page, Settings const &settings) {
     page->BeginSection("timing", "Running time");
     OneThread const oneThread;
-    Shape solid = MakeDual("dodecahedron", MakeIcosahedron());
+    Shape solid = MakeDodecahedron();
     Deform(solid); // so that no two normals agree exactly
     SchemeOptions const hexagonal = MakeHexagonal(FaceMask::Average);
     std::vector<Runner> runners;
@@ -162,13 +163,11 @@ void AddTimingSection(Page *page, Settings const &settings) {
         "Topology and positions of all levels up to the one given, medians of " +
         std::to_string(settings.numRounds) +
         " rounds in which all take turns, on one thread.  The scheme of the paper has a step of "
-        "its own in this "
-        "library, by closed formulas; Doo-Sabin and tri-hex are made by a general builder of "
-        "polygons.  "
-        "So that schemes are compared and not programs, the hexagonal scheme is also timed through "
-        "the "
-        "general builder (<code>RefineCoplanar</code> with tolerance 0 on a mesh without equal "
-        "normals), which refines rest positions and compares normals on top.");
+        "its own in this library, by closed formulas; Doo-Sabin and tri-hex are made by a general "
+        "builder of polygons.  So that schemes are compared and not programs, the hexagonal "
+        "scheme is also timed through the general builder (<code>RefineCoplanar</code> with "
+        "tolerance 0 on a mesh without equal normals), which refines rest positions and compares "
+        "normals on top.");
     Plot plot{"Time to a level", "level", "milliseconds", true, {}};
     Plot perFace{"Time per face of the last level", "level", "nanoseconds", true, {}};
     Table table{{"up to level " + std::to_string(settings.timingLevel), "faces", "vertices",
