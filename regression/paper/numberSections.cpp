@@ -284,6 +284,23 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
             formatEigenvalues(computeFaceEigenvalues(quad)) + " and " +
             formatEigenvalues(computeFaceEigenvalues(hexagon)) + ".");
 
+    bool areOrdered = true;
+    for (int n = 3; n <= 12; ++n) {
+        std::vector<double> const values =
+            computeFaceEigenvalues(makeFace(MakeHexagonal(FaceMask::Average), n));
+        bool const hasPair = std::abs(values[1] - values[2]) < 1e-12;
+        bool const isAbove = n == 3 || values[2] > values[3] + 1e-6;
+        bool const hasNextPair = n < 5 || std::abs(values[3] - values[4]) < 1e-12;
+        areOrdered =
+            areOrdered && std::abs(values[0] - 1) < 1e-12 && hasPair && isAbove && hasNextPair;
+    }
+    page->AddClaim(
+        "The largest eigenvalue is 1, the second and third are equal and above the others, "
+        "the fourth and fifth are equal",
+        Judge(areOrdered),
+        "For faces with 3 to 12 sides; triangles and quads have no fifth.  It says little of "
+        "curvature, which depends on the whole neighbourhood.");
+
     // Sub-dominant eigenvalues and the growth of curvature by valence.
     struct Line {
         std::string name;

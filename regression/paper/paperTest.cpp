@@ -5,8 +5,9 @@
 
 #include <png.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdlib>
-#include <regex>
 
 #ifdef __unix__
 #include <sys/wait.h>
@@ -16,17 +17,24 @@ namespace OpenSubdivHex::Regression {
 
 namespace {
 
-int countMatches(std::string const &text, char const *pattern) {
-    std::regex const regex(pattern);
-    return int(std::distance(std::sregex_iterator(text.begin(), text.end(), regex),
-                             std::sregex_iterator()));
-}
-
 /// Occurrences of \p word.
 int count(std::string const &text, std::string const &word) {
     int number = 0;
     for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
         ++number;
+    }
+    return number;
+}
+
+/// Occurrences of \p word with no letter beside it.
+int countAlone(std::string const &text, std::string const &word) {
+    auto const isLetter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+    int number = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        std::size_t const end = at + word.size();
+        bool const isAlone =
+            (at == 0 || !isLetter(text[at - 1])) && (end == text.size() || !isLetter(text[end]));
+        number += isAlone ? 1 : 0;
     }
     return number;
 }
@@ -109,13 +117,13 @@ TEST_F(Paper, PageIsComplete) {
     EXPECT_EQ(count(page, "<svg"), count(page, "</svg>"));
     EXPECT_GT(count(page, "<path"), 300);
     for (char const *word : {"nan", "inf", "NaN"}) {
-        EXPECT_EQ(countMatches(page, (std::string("[^a-z]") + word + "[^a-z]").c_str()), 0) << word;
+        EXPECT_EQ(countAlone(page, word), 0) << word;
     }
 
     // What cannot depend on the machine or on how much was computed.
     EXPECT_EQ(count(page, "class=\"off\""), 0);
     EXPECT_EQ(count(page, "class=\"ok\""), 6);
-    EXPECT_EQ(count(page, "class=\"chip "), 14);
+    EXPECT_EQ(count(page, "class=\"chip "), 15);
     EXPECT_NE(page.find("<td>1</td><td>122, 192, 72</td><td>116, 216, 102</td><td>2</td>"
                         "<td>96</td>"),
               std::string::npos);
