@@ -258,7 +258,9 @@ TEST(SchemeReference, CoplanarIsWatertight) {
 
 TEST(SchemeReference, AllFlatIsDooSabin) {
     forEachClosed([](TaggedMesh mesh, ReferenceValues positions) {
-        for (int level = 1; level <= 2; ++level) {
+        // The quads of a dihedron have no area, and so no normal.
+        int const numLevels = hasTwoSidedVertices(mesh) ? 1 : 2;
+        for (int level = 1; level <= numLevels; ++level) {
             ReferenceStep step;
             step.flatEdges = FindFlatEdges(mesh, positions, 180);
             ASSERT_EQ(std::count(step.flatEdges.begin(), step.flatEdges.end(), false), 0);
