@@ -261,12 +261,13 @@ std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Arguments const &argument
 /// To the last level; the positions of \p mesh are the rest pose.
 void refine(Arguments const &arguments, Mesh const &mesh, FarExt::TopologyRefiner *refiner) {
     FarExt::Status status;
+    bool const needsFullTopology = arguments.isLimit || !arguments.png.empty();
     FarExt::TopologyRefiner::UniformOptions uniformOptions(arguments.level);
-    uniformOptions.fullTopologyInLastLevel = arguments.isLimit;
+    uniformOptions.fullTopologyInLastLevel = needsFullTopology;
     FarExt::TopologyRefiner::CoplanarOptions options(arguments.level);
     options.angleTolerance = arguments.tolerance;
     options.closeGaps = !arguments.hasOpenGaps;
-    options.fullTopologyInLastLevel = arguments.isLimit;
+    options.fullTopologyInLastLevel = needsFullTopology;
     bool const isDone = arguments.isCoplanar
                             ? refiner->RefineCoplanar(mesh.positions.data(), options, &status)
                             : refiner->RefineUniform(uniformOptions, &status);
