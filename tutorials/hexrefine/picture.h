@@ -12,7 +12,8 @@ namespace OpenSubdivHex::Tutorials {
 /// Whether this program has the renderer, which needs Embree and libpng.
 bool HasRenderer();
 
-/// \brief Ray traces a level, which has full topology, and writes the picture, 800 x 600 pixels, to \p path.
+/// \brief Ray traces a level, which has full topology, and writes the picture, 800 x 600 pixels, to
+/// \p path.
 ///
 /// \param positions  x y z of each vertex of the level
 ///
