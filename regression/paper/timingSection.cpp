@@ -123,7 +123,7 @@ struct Times {
 
 void AddTimingSection(Page *page, Settings const &settings) {
     page->BeginSection("timing", "Running time");
-    OneThread const oneThread;
+    [[maybe_unused]] OneThread const oneThread;
     Shape solid = MakeDodecahedron();
     Deform(solid); // so that no two normals agree exactly
     SchemeOptions const hexagonal = MakeHexagonal(FaceMask::Average);
