@@ -26,8 +26,8 @@ template <int SIZE, typename T, typename FUNCTION>
 void WriteArray(T *array, Far::Index count, bool pastCaches, FUNCTION fill) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (!pastCaches) {
-        for (Far::Index i = 0; i < count; ++i) {
-            fill(array + std::ptrdiff_t(i) * SIZE, i);
+        for (Far::Index i = 0; i < count; ++i, array += SIZE) {
+            fill(array, i);
         }
         return;
     }
@@ -35,11 +35,12 @@ void WriteArray(T *array, Far::Index count, bool pastCaches, FUNCTION fill) {
     alignas(kCacheLine) T block[kBlockGroups * SIZE];
     for (Far::Index begin = 0; begin < count; begin += kBlockGroups) {
         Far::Index const size = std::min(count - begin, kBlockGroups);
-        for (Far::Index i = 0; i < size; ++i) {
-            fill(block + i * SIZE, begin + i);
+        T *entries = block;
+        for (Far::Index i = begin; i < begin + size; ++i, entries += SIZE) {
+            fill(entries, i);
         }
-        CopyPastCaches(array + std::ptrdiff_t(begin) * SIZE, block,
-                       std::size_t(size) * SIZE * sizeof(T));
+        CopyPastCaches(array, block, std::size_t(size) * SIZE * sizeof(T));
+        array += std::ptrdiff_t(size) * SIZE;
     }
     FinishCopiesPastCaches();
 }

@@ -17,12 +17,12 @@ using LocalIndex = Far::LocalIndex;
 // The sides of its interior edges that a hexagon is, by corner; known without a look at the edges
 // where the hexagonal step made it, as that always gives the vertices of an edge the same order.
 struct SidesOfEFace {
-    static constexpr EFaceSide const *kSides[] = {&kEFaceSideA, &kEFaceSideB, &kEFaceSideB,
-                                                  &kEFaceSideA, &kEFaceSideB, &kEFaceSideB};
+    static constexpr EFaceSide kSides[] = {kEFaceSideA, kEFaceSideB, kEFaceSideB,
+                                           kEFaceSideA, kEFaceSideB, kEFaceSideB};
 };
 struct SidesOfFFace {
-    static constexpr EFaceSide const *kSides[] = {&kEFaceSideA, &kEFaceSideA, &kEFaceSideA,
-                                                  &kEFaceSideA, &kEFaceSideA, &kEFaceSideA};
+    static constexpr EFaceSide kSides[] = {kEFaceSideA, kEFaceSideA, kEFaceSideA,
+                                           kEFaceSideA, kEFaceSideA, kEFaceSideA};
 };
 
 // Bytes of a level above which it is written past the caches: less than most caches have, but they
@@ -78,6 +78,14 @@ public:
 private:
     Index const *_eFaces;
     HexIndexing _indexing;
+};
+
+// The parent corners where the sides of an interior edge start and end.
+struct SideCorners {
+    Index startA;
+    Index endA;
+    Index startB;
+    Index endB;
 };
 
 void sortUnique(std::vector<Index> &indices) {
@@ -150,6 +158,8 @@ private:
     void fillFaces();
     template <bool FULL>
     void fillEFaces(Index begin, Index end, Index numBoundaryBefore);
+    template <bool FULL, typename GET_SIDES>
+    void fillEFaces(Index begin, Index end, Index numBoundaryBefore, GET_SIDES getSides);
     template <bool FULL>
     void fillBoundaryEFace(Index pEdge, Index numBoundaryBefore);
     void fillBoundaries();
@@ -312,9 +322,52 @@ void Refinement::fillFaces() {
     _c.faceFirstCorner[_c.numFaces] = _c.numCorners;
 }
 
-// The E-faces of a run of interior edges, at most kParallelRange.
+// The E-faces of a run of interior edges.
 template <bool FULL>
 void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
+    Index const *const pFaces = _p.edgeFaces.data();
+    LocalIndex const *const pLocals = _p.edgeFaceLocals.data();
+    Index const *const pFirstCorner = _p.faceFirstCorner.data();
+    if (!_p.isHexagonal) {
+        fillEFaces<FULL>(begin, end, numBoundaryBefore, [=](Index pEdge) {
+            std::size_t const k = 2 * std::size_t(pEdge);
+            Index const firstA = pFirstCorner[pFaces[k]];
+            Index const firstB = pFirstCorner[pFaces[k + 1]];
+            Index const startA = firstA + pLocals[k];
+            Index const startB = firstB + pLocals[k + 1];
+            return SideCorners{
+                startA, startA + 1 == pFirstCorner[pFaces[k] + 1] ? firstA : startA + 1, //
+                startB, startB + 1 == pFirstCorner[pFaces[k + 1] + 1] ? firstB : startB + 1};
+        });
+        return;
+    }
+    // Edges of F-faces come first: side a is the F-face, side b an E-face.  Then come spokes, with
+    // E-faces alone.  In these side b of a spoke may be the last edge, others are not.
+    Index const beginSpokes = std::clamp(_p.parent->numCorners, begin, end);
+    Index const *const pVerts = _p.edgeVerts.data();
+    Index const firstFVertex = _p.parent->ChildIndexing().GetCornerChildVertex(0);
+    fillEFaces<FULL>(begin, beginSpokes, numBoundaryBefore, [=](Index pEdge) {
+        std::size_t const k = 2 * std::size_t(pEdge);
+        Index const startB = pFirstCorner[pFaces[k + 1]] + pLocals[k + 1];
+        return SideCorners{pVerts[k] - firstFVertex, pVerts[k + 1] - firstFVertex, startB,
+                           startB + 1};
+    });
+    fillEFaces<FULL>(beginSpokes, end, numBoundaryBefore, [=](Index pEdge) {
+        std::size_t const k = 2 * std::size_t(pEdge);
+        Index const startA = pFirstCorner[pFaces[k]] + pLocals[k];
+        Index const firstB = pFirstCorner[pFaces[k + 1]];
+        Index const startB = firstB + pLocals[k + 1];
+        return SideCorners{startA, startA + 1, startB,
+                           pLocals[k + 1] == kEFaceSideB.startSpoke ? startB + 1 : firstB};
+    });
+}
+
+// getSides(pEdge) tells the corners of the sides.
+template <bool FULL, typename GET_SIDES>
+void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore, GET_SIDES getSides) {
+    if (begin == end) {
+        return;
+    }
     HexIndexing const indexing = _indexing;
     Index const cFace = _p.GetEdgeChildFace(begin);
     Index const numBBefore = indexing.GetEdgeChildFace(begin, 0) - cFace;
@@ -323,47 +376,26 @@ void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
     constexpr int kSize = HexIndexing::kNumEFaceCorners;
     writeSequence(&_c.faceFirstCorner[cFace], end - begin, cFirst, kSize);
 
-    // Where the sides of the edges start and end: parent corners, found once for both arrays.
-    struct SideCorners {
-        Index start;
-        Index end;
-    };
-    SideCorners sides[2 * kParallelRange];
-    std::size_t const firstSide = 2 * std::size_t(begin);
-    std::size_t const numSides = 2 * std::size_t(end - begin);
-    Index const *const pFaces = _p.edgeFaces.data() + firstSide;
-    LocalIndex const *const pLocals = _p.edgeFaceLocals.data() + firstSide;
-    Index const *const pFirstCorner = _p.faceFirstCorner.data();
-    for (std::size_t k = 0; k < numSides; ++k) {
-        Index const first = pFirstCorner[pFaces[k]];
-        Index const start = first + pLocals[k];
-        sides[k] = {start, start + 1 == pFirstCorner[pFaces[k] + 1] ? first : start + 1};
-    }
-
-    constexpr EFaceSide const &kA = kEFaceSideA;
-    constexpr EFaceSide const &kB = kEFaceSideB;
-    Index const *const pVerts = _p.edgeVerts.data() + firstSide;
-    WriteArray<kSize>(&_c.faceVerts[cFirst], end - begin, _pastCaches, [&](Index *verts, Index i) {
-        SideCorners const &a = sides[2 * i];
-        SideCorners const &b = sides[2 * i + 1];
-        verts[kA.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i]);
-        verts[kA.startFVertex] = indexing.GetCornerChildVertex(a.start);
-        verts[kA.endFVertex] = indexing.GetCornerChildVertex(a.end);
-        verts[kB.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i + 1]);
-        verts[kB.startFVertex] = indexing.GetCornerChildVertex(b.start);
-        verts[kB.endFVertex] = indexing.GetCornerChildVertex(b.end);
+    Index const *const pVerts = &_p.edgeVerts[2 * std::size_t(begin)];
+    WriteArray<kSize>(&_c.faceVerts[cFirst], end - begin, _pastCaches, [=](Index *verts, Index i) {
+        SideCorners const sides = getSides(begin + i);
+        verts[kEFaceSideA.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i]);
+        verts[kEFaceSideA.startFVertex] = indexing.GetCornerChildVertex(sides.startA);
+        verts[kEFaceSideA.endFVertex] = indexing.GetCornerChildVertex(sides.endA);
+        verts[kEFaceSideB.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i + 1]);
+        verts[kEFaceSideB.startFVertex] = indexing.GetCornerChildVertex(sides.startB);
+        verts[kEFaceSideB.endFVertex] = indexing.GetCornerChildVertex(sides.endB);
     });
     if constexpr (FULL) {
         Index *const edgesOfRun = &_c.faceEdges[cFirst];
-        WriteArray<kSize>(edgesOfRun, end - begin, _pastCaches, [&](Index *edges, Index i) {
-            SideCorners const &a = sides[2 * i];
-            SideCorners const &b = sides[2 * i + 1];
-            edges[kA.fFaceEdge] = indexing.GetCornerChildEdge(a.start);
-            edges[kA.startSpoke] = indexing.GetCornerChildSpoke(a.start);
-            edges[kA.endSpoke] = indexing.GetCornerChildSpoke(a.end);
-            edges[kB.fFaceEdge] = indexing.GetCornerChildEdge(b.start);
-            edges[kB.startSpoke] = indexing.GetCornerChildSpoke(b.start);
-            edges[kB.endSpoke] = indexing.GetCornerChildSpoke(b.end);
+        WriteArray<kSize>(edgesOfRun, end - begin, _pastCaches, [=](Index *edges, Index i) {
+            SideCorners const sides = getSides(begin + i);
+            edges[kEFaceSideA.fFaceEdge] = indexing.GetCornerChildEdge(sides.startA);
+            edges[kEFaceSideA.startSpoke] = indexing.GetCornerChildSpoke(sides.startA);
+            edges[kEFaceSideA.endSpoke] = indexing.GetCornerChildSpoke(sides.endA);
+            edges[kEFaceSideB.fFaceEdge] = indexing.GetCornerChildEdge(sides.startB);
+            edges[kEFaceSideB.startSpoke] = indexing.GetCornerChildSpoke(sides.startB);
+            edges[kEFaceSideB.endSpoke] = indexing.GetCornerChildSpoke(sides.endB);
         });
     }
 }
@@ -495,7 +527,7 @@ void Refinement::fillHexagons(Index begin, Index end) {
                 int const next = (local + 1) % kSize;
                 fill(entries + kEntries * local,
                      ClosedCorner{begin + i, LocalIndex(local), first + prev, first + local,
-                                  first + next, SIDES::kSides[prev], SIDES::kSides[local]});
+                                  first + next, &SIDES::kSides[prev], &SIDES::kSides[local]});
             }
         });
     });
