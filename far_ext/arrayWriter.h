@@ -6,6 +6,7 @@
 #include "status.h"
 
 #include <algorithm>
+#include <array>
 #include <type_traits>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -43,6 +44,20 @@ void WriteArray(T *array, Far::Index count, bool pastCaches, FUNCTION fill) {
         array += std::ptrdiff_t(size) * SIZE;
     }
     FinishCopiesPastCaches();
+}
+
+/// \brief Writes the same for indices that follow from those of group 0, which fill(entries)
+/// writes: from group to group all grow by \p step.
+template <int SIZE, typename FUNCTION>
+void WriteSequence(Far::Index *array, Far::Index count, bool pastCaches, Far::Index step,
+                   FUNCTION fill) {
+    std::array<Far::Index, SIZE> first;
+    fill(first.data());
+    WriteArray<SIZE>(array, count, pastCaches, [=](Far::Index *entries, Far::Index i) {
+        for (int k = 0; k < SIZE; ++k) {
+            entries[k] = first[k] + step * i;
+        }
+    });
 }
 
 } // namespace OpenSubdivHex::FarExt::internal
