@@ -24,7 +24,7 @@ void FinishCopiesPastCaches();
 /// \param pastCaches  for an array that is larger than the caches.  Groups are then collected in a
 ///                    block that stays in the first cache.
 template <int SIZE, typename T, typename FUNCTION>
-void WriteArray(T *array, Far::Index count, bool pastCaches, FUNCTION fill) {
+void WriteArray(T *__restrict array, Far::Index count, bool pastCaches, FUNCTION fill) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (!pastCaches) {
         for (Far::Index i = 0; i < count; ++i, array += SIZE) {
