@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <type_traits>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -33,15 +34,22 @@ void WriteArray(T *__restrict array, Far::Index count, bool pastCaches, FUNCTION
         return;
     }
     constexpr Far::Index kBlockGroups = 4096 / (SIZE * sizeof(T));
-    alignas(kCacheLine) T block[kBlockGroups * SIZE];
+    alignas(kCacheLine) T block[kBlockGroups * SIZE + kCacheLine / sizeof(T)];
+    std::size_t numHeld = 0; // entries that wait for the rest of their cache line
     for (Far::Index begin = 0; begin < count; begin += kBlockGroups) {
-        Far::Index const size = std::min(count - begin, kBlockGroups);
-        T *entries = block;
-        for (Far::Index i = begin; i < begin + size; ++i, entries += SIZE) {
+        Far::Index const end = begin + std::min(count - begin, kBlockGroups);
+        T *entries = block + numHeld;
+        for (Far::Index i = begin; i < end; ++i, entries += SIZE) {
             fill(entries, i);
         }
-        CopyPastCaches(array, block, std::size_t(size) * SIZE * sizeof(T));
-        array += std::ptrdiff_t(size) * SIZE;
+        std::size_t const numEntries = entries - block;
+        numHeld = end == count ? 0
+                               : reinterpret_cast<std::uintptr_t>(array + numEntries) % kCacheLine /
+                                     sizeof(T);
+        std::size_t const numCopied = numEntries - numHeld;
+        CopyPastCaches(array, block, numCopied * sizeof(T));
+        array += numCopied;
+        std::copy(block + numCopied, block + numEntries, block);
     }
     FinishCopiesPastCaches();
 }
