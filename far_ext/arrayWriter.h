@@ -12,6 +12,11 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
+/// Bytes of the blocks in which arrays are written past the caches: about as many cache lines as a
+/// core has on the way to memory at a time (10 to 16), so that it does not wait for them while it
+/// makes the next block.
+constexpr std::size_t kBlockSize = 12 * kCacheLine;
+
 /// \brief Copies without bringing \p dst into the caches, where the processor (and this code) can.
 ///
 /// A store to memory that is in no cache reads it first; this does not.
@@ -33,7 +38,7 @@ void WriteArray(T *__restrict array, Far::Index count, bool pastCaches, FUNCTION
         }
         return;
     }
-    constexpr Far::Index kBlockGroups = 4096 / (SIZE * sizeof(T));
+    constexpr Far::Index kBlockGroups = kBlockSize / (SIZE * sizeof(T));
     alignas(kCacheLine) T block[kBlockGroups * SIZE + kCacheLine / sizeof(T)];
     std::size_t numHeld = 0; // entries that wait for the rest of their cache line
     for (Far::Index begin = 0; begin < count; begin += kBlockGroups) {
