@@ -27,6 +27,7 @@ void FinishCopiesPastCaches();
 /// \brief Writes count groups of SIZE entries to \p array, from front to back: calls
 /// fill(entries, i) for i = 0 ... count - 1, which writes group i to entries.
 ///
+/// \param array       overlaps nothing that fill reads
 /// \param pastCaches  for an array that is larger than the caches.  Groups are then collected in a
 ///                    block that stays in the first cache.
 template <int SIZE, typename T, typename FUNCTION>
@@ -39,7 +40,7 @@ void WriteArray(T *__restrict array, Far::Index count, bool pastCaches, FUNCTION
         return;
     }
     constexpr Far::Index kBlockGroups = kBlockSize / (SIZE * sizeof(T));
-    alignas(kCacheLine) T block[kBlockGroups * SIZE + kCacheLine / sizeof(T)];
+    alignas(kCacheLine) T block[(kBlockSize + kCacheLine) / sizeof(T)];
     std::size_t numHeld = 0; // entries that wait for the rest of their cache line
     for (Far::Index begin = 0; begin < count; begin += kBlockGroups) {
         Far::Index const end = begin + std::min(count - begin, kBlockGroups);

@@ -320,26 +320,24 @@ void Refinement::fillFaces() {
 // The E-faces of a run of interior edges.
 template <bool FULL>
 void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
-    Index const *const pFaces = _p.edgeFaces.data();
-    LocalIndex const *const pLocals = _p.edgeFaceLocals.data();
-    Index const *const pFirstCorner = _p.faceFirstCorner.data();
     if (!_p.isHexagonal) {
-        fillEFaces<FULL>(begin, end, numBoundaryBefore, [=](Index pEdge) {
+        fillEFaces<FULL>(begin, end, numBoundaryBefore, [this](Index pEdge) {
             std::size_t const k = 2 * std::size_t(pEdge);
-            Index const firstA = pFirstCorner[pFaces[k]];
-            Index const firstB = pFirstCorner[pFaces[k + 1]];
-            Index const startA = firstA + pLocals[k];
-            Index const startB = firstB + pLocals[k + 1];
-            return SideCorners{
-                startA, startA + 1 == pFirstCorner[pFaces[k] + 1] ? firstA : startA + 1, //
-                startB, startB + 1 == pFirstCorner[pFaces[k + 1] + 1] ? firstB : startB + 1};
+            Index const startA = _p.GetSideCorner(pEdge, 0);
+            Index const startB = _p.GetSideCorner(pEdge, 1);
+            return SideCorners{startA, _p.GetNextCorner(_p.edgeFaces[k], startA), startB,
+                               _p.GetNextCorner(_p.edgeFaces[k + 1], startB)};
         });
         return;
     }
-    // Edges of F-faces come first: side a is the F-face, side b an E-face.  Then come spokes, with
-    // E-faces alone.  In these side b of a spoke may be the last edge, others are not.
+    // The edges of F-faces come first: side a is the F-face, from whose corner to the next the edge
+    // has its number and its F-vertices; side b is an E-face.  Then come spokes, with E-faces alone.
+    // Of all these sides in E-faces only side b of a spoke can be the last edge of its face.
     Index const beginSpokes = std::clamp(_p.parent->numCorners, begin, end);
     Index const *const pVerts = _p.edgeVerts.data();
+    Index const *const pFaces = _p.edgeFaces.data();
+    LocalIndex const *const pLocals = _p.edgeFaceLocals.data();
+    Index const *const pFirstCorner = _p.faceFirstCorner.data();
     Index const firstFVertex = _p.parent->ChildIndexing().GetCornerChildVertex(0);
     fillEFaces<FULL>(begin, beginSpokes, numBoundaryBefore, [=](Index pEdge) {
         std::size_t const k = 2 * std::size_t(pEdge);
@@ -357,7 +355,7 @@ void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
     });
 }
 
-// getSides(pEdge) tells the corners of the sides.
+// getSides(pEdge) tells the corners of an edge's sides.
 template <bool FULL, typename GET_SIDES>
 void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore, GET_SIDES getSides) {
     if (begin == end) {
@@ -371,13 +369,14 @@ void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore, GET
     constexpr int kSize = HexIndexing::kNumEFaceCorners;
     writeSequence(&_c.faceFirstCorner[cFace], end - begin, cFirst, kSize);
 
-    Index const *const pVerts = &_p.edgeVerts[2 * std::size_t(begin)];
+    Index const *const pVerts = _p.edgeVerts.data();
     WriteArray<kSize>(&_c.faceVerts[cFirst], end - begin, _pastCaches, [=](Index *verts, Index i) {
         SideCorners const sides = getSides(begin + i);
-        verts[kEFaceSideA.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i]);
+        std::size_t const k = 2 * std::size_t(begin + i);
+        verts[kEFaceSideA.startVertex] = indexing.GetVertexChildVertex(pVerts[k]);
         verts[kEFaceSideA.startFVertex] = indexing.GetCornerChildVertex(sides.startA);
         verts[kEFaceSideA.endFVertex] = indexing.GetCornerChildVertex(sides.endA);
-        verts[kEFaceSideB.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i + 1]);
+        verts[kEFaceSideB.startVertex] = indexing.GetVertexChildVertex(pVerts[k + 1]);
         verts[kEFaceSideB.startFVertex] = indexing.GetCornerChildVertex(sides.startB);
         verts[kEFaceSideB.endFVertex] = indexing.GetCornerChildVertex(sides.endB);
     });
