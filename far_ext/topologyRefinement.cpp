@@ -652,13 +652,14 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
 
     VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
     Index const numFaces = _p.vertFirstFace[end] - _p.vertFirstFace[begin];
-    Index const *const pFaces = &_p.vertFaces[_p.vertFirstFace[begin]];
-    LocalIndex const *const pFaceLocals = &_p.vertFaceLocals[_p.vertFirstFace[begin]];
+    Index const *const pFaces = _p.vertFaces.data() + _p.vertFirstFace[begin];
+    LocalIndex const *const pFaceLocals = _p.vertFaceLocals.data() + _p.vertFirstFace[begin];
     Index const *const pFirstCorner = _p.faceFirstCorner.data();
-    WriteArray<1>(&_c.vertEdges[vertex.edge], numFaces, _pastCaches, [=](Index *edge, Index i) {
-        *edge = indexing.GetCornerChildSpoke(pFirstCorner[pFaces[i]] + pFaceLocals[i]);
-    });
-    WriteArray<1>(&_c.vertEdgeLocals[vertex.edge], numFaces, _pastCaches,
+    WriteArray<1>(
+        _c.vertEdges.data() + vertex.edge, numFaces, _pastCaches, [=](Index *edge, Index i) {
+            *edge = indexing.GetCornerChildSpoke(pFirstCorner[pFaces[i]] + pFaceLocals[i]);
+        });
+    WriteArray<1>(_c.vertEdgeLocals.data() + vertex.edge, numFaces, _pastCaches,
                   [](LocalIndex *local, Index) { *local = 0; });
 
     Index const beginFVertices =
@@ -677,14 +678,14 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
     }
     // F-vertices of the parent are the first, second and second vertex of their three edges.
     constexpr int kSize = 3;
-    Index const *const pEdges = &_p.vertEdges[_p.vertFirstEdge[beginFVertices]];
-    WriteArray<kSize>(&_c.vertFaces[cFace], end - beginFVertices, _pastCaches,
+    Index const *const pEdges = _p.vertEdges.data() + _p.vertFirstEdge[beginFVertices];
+    WriteArray<kSize>(_c.vertFaces.data() + cFace, end - beginFVertices, _pastCaches,
                       [=](Index *faces, Index i) {
                           for (int k = 0; k < kSize; ++k) {
                               faces[k] = eFaceOf(pEdges[kSize * i + (k + 1) % kSize]);
                           }
                       });
-    WriteArray<kSize>(&_c.vertFaceLocals[cFace], end - beginFVertices, _pastCaches,
+    WriteArray<kSize>(_c.vertFaceLocals.data() + cFace, end - beginFVertices, _pastCaches,
                       [](LocalIndex *locals, Index) {
                           locals[0] = locals[1] = kEFaceSideA.endVertex;
                           locals[2] = kEFaceSideA.startVertex;
