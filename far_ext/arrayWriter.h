@@ -6,9 +6,16 @@
 #include "status.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <type_traits>
 
 namespace OpenSubdivHex::FarExt::internal {
+
+/// Bytes of the blocks in which arrays are written past the caches: about as many cache lines as a
+/// core has on the way to memory at a time (10 to 16), so that it does not wait for them while it
+/// makes the next block.
+constexpr std::size_t kBlockSize = 12 * kCacheLine;
 
 /// \brief Copies without bringing \p dst into the caches, where the processor (and this code) can.
 ///
@@ -20,28 +27,51 @@ void FinishCopiesPastCaches();
 /// \brief Writes count groups of SIZE entries to \p array, from front to back: calls
 /// fill(entries, i) for i = 0 ... count - 1, which writes group i to entries.
 ///
+/// \param array       overlaps nothing that fill reads
 /// \param pastCaches  for an array that is larger than the caches.  Groups are then collected in a
 ///                    block that stays in the first cache.
 template <int SIZE, typename T, typename FUNCTION>
-void WriteArray(T *array, Far::Index count, bool pastCaches, FUNCTION fill) {
+void WriteArray(T *__restrict array, Far::Index count, bool pastCaches, FUNCTION fill) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (!pastCaches) {
-        for (Far::Index i = 0; i < count; ++i) {
-            fill(array + std::ptrdiff_t(i) * SIZE, i);
+        for (Far::Index i = 0; i < count; ++i, array += SIZE) {
+            fill(array, i);
         }
         return;
     }
-    constexpr Far::Index kBlockGroups = 4096 / (SIZE * sizeof(T));
-    alignas(kCacheLine) T block[kBlockGroups * SIZE];
+    constexpr Far::Index kBlockGroups = kBlockSize / (SIZE * sizeof(T));
+    alignas(kCacheLine) T block[(kBlockSize + kCacheLine) / sizeof(T)];
+    std::size_t numHeld = 0; // entries that wait for the rest of their cache line
     for (Far::Index begin = 0; begin < count; begin += kBlockGroups) {
-        Far::Index const size = std::min(count - begin, kBlockGroups);
-        for (Far::Index i = 0; i < size; ++i) {
-            fill(block + i * SIZE, begin + i);
+        Far::Index const end = begin + std::min(count - begin, kBlockGroups);
+        T *entries = block + numHeld;
+        for (Far::Index i = begin; i < end; ++i, entries += SIZE) {
+            fill(entries, i);
         }
-        CopyPastCaches(array + std::ptrdiff_t(begin) * SIZE, block,
-                       std::size_t(size) * SIZE * sizeof(T));
+        std::size_t const numEntries = entries - block;
+        numHeld = end == count ? 0
+                               : reinterpret_cast<std::uintptr_t>(array + numEntries) % kCacheLine /
+                                     sizeof(T);
+        std::size_t const numCopied = numEntries - numHeld;
+        CopyPastCaches(array, block, numCopied * sizeof(T));
+        array += numCopied;
+        std::copy(block + numCopied, block + numEntries, block);
     }
     FinishCopiesPastCaches();
+}
+
+/// \brief Writes the same for indices that follow from those of group 0, which fill(entries)
+/// writes: from group to group all grow by \p step.
+template <int SIZE, typename FUNCTION>
+void WriteSequence(Far::Index *array, Far::Index count, bool pastCaches, Far::Index step,
+                   FUNCTION fill) {
+    std::array<Far::Index, SIZE> first;
+    fill(first.data());
+    WriteArray<SIZE>(array, count, pastCaches, [=](Far::Index *entries, Far::Index i) {
+        for (int k = 0; k < SIZE; ++k) {
+            entries[k] = first[k] + step * i;
+        }
+    });
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

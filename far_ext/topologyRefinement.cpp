@@ -17,12 +17,12 @@ using LocalIndex = Far::LocalIndex;
 // The sides of its interior edges that a hexagon is, by corner; known without a look at the edges
 // where the hexagonal step made it, as that always gives the vertices of an edge the same order.
 struct SidesOfEFace {
-    static constexpr EFaceSide const *kSides[] = {&kEFaceSideA, &kEFaceSideB, &kEFaceSideB,
-                                                  &kEFaceSideA, &kEFaceSideB, &kEFaceSideB};
+    static constexpr EFaceSide kSides[] = {kEFaceSideA, kEFaceSideB, kEFaceSideB,
+                                           kEFaceSideA, kEFaceSideB, kEFaceSideB};
 };
 struct SidesOfFFace {
-    static constexpr EFaceSide const *kSides[] = {&kEFaceSideA, &kEFaceSideA, &kEFaceSideA,
-                                                  &kEFaceSideA, &kEFaceSideA, &kEFaceSideA};
+    static constexpr EFaceSide kSides[] = {kEFaceSideA, kEFaceSideA, kEFaceSideA,
+                                           kEFaceSideA, kEFaceSideA, kEFaceSideA};
 };
 
 // Bytes of a level above which it is written past the caches: less than most caches have, but they
@@ -78,6 +78,14 @@ public:
 private:
     Index const *_eFaces;
     HexIndexing _indexing;
+};
+
+// The parent corners where the sides of an interior edge start and end.
+struct SideCorners {
+    Index startA;
+    Index endA;
+    Index startB;
+    Index endB;
 };
 
 void sortUnique(std::vector<Index> &indices) {
@@ -150,6 +158,8 @@ private:
     void fillFaces();
     template <bool FULL>
     void fillEFaces(Index begin, Index end, Index numBoundaryBefore);
+    template <bool FULL, typename GET_SIDES>
+    void fillEFaces(Index begin, Index end, Index numBoundaryBefore, GET_SIDES getSides);
     template <bool FULL>
     void fillBoundaryEFace(Index pEdge, Index numBoundaryBefore);
     void fillBoundaries();
@@ -159,10 +169,9 @@ private:
     void fillHexagons(Index begin, Index end);
     template <typename GET_SIDE>
     void fillFacesOfAnySize(Index begin, Index end, GET_SIDE getSide);
-    template <typename WRITE>
-    void fillClosedCorners(Index begin, Index end, WRITE write);
+    template <typename WRITE, typename WRITE_CLOSED_FORM>
+    void fillClosedCorners(Index begin, Index end, WRITE write, WRITE_CLOSED_FORM writeClosedForm);
     void fillClosedVertices(Index begin, Index end, Index numOpenBefore);
-    void fillClosedFVertices(Index begin, Index end, Index numOpenBefore);
     void fillOpenVertex(Index pVert, Index numOpenBefore);
 
     // The edge from a corner to the next, seen from the face.
@@ -226,11 +235,7 @@ private:
 
     // Writes count numbers: first, first + step ...
     void writeSequence(Index *array, Index count, Index first, Index step) const {
-        WriteArray<1>(array, count, _pastCaches,
-                      [step, next = first](Index *number, Index) mutable {
-                          *number = next;
-                          next += step;
-                      });
+        WriteSequence<1>(array, count, _pastCaches, step, [=](Index *number) { *number = first; });
     }
 
     LevelTopology const &_p;
@@ -312,9 +317,50 @@ void Refinement::fillFaces() {
     _c.faceFirstCorner[_c.numFaces] = _c.numCorners;
 }
 
-// The E-faces of a run of interior edges, at most kParallelRange.
+// The E-faces of a run of interior edges.
 template <bool FULL>
 void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
+    if (!_p.isHexagonal) {
+        fillEFaces<FULL>(begin, end, numBoundaryBefore, [this](Index pEdge) {
+            std::size_t const k = 2 * std::size_t(pEdge);
+            Index const startA = _p.GetSideCorner(pEdge, 0);
+            Index const startB = _p.GetSideCorner(pEdge, 1);
+            return SideCorners{startA, _p.GetNextCorner(_p.edgeFaces[k], startA), startB,
+                               _p.GetNextCorner(_p.edgeFaces[k + 1], startB)};
+        });
+        return;
+    }
+    // The edges of F-faces come first: side a is the F-face, from whose corner to the next the edge
+    // has its number and its F-vertices; side b is an E-face.  Then come spokes, with E-faces alone.
+    // Of all these sides in E-faces only side b of a spoke can be the last edge of its face.
+    Index const beginSpokes = std::clamp(_p.parent->numCorners, begin, end);
+    Index const *const pVerts = _p.edgeVerts.data();
+    Index const *const pFaces = _p.edgeFaces.data();
+    LocalIndex const *const pLocals = _p.edgeFaceLocals.data();
+    Index const *const pFirstCorner = _p.faceFirstCorner.data();
+    Index const firstFVertex = _p.parent->ChildIndexing().GetCornerChildVertex(0);
+    fillEFaces<FULL>(begin, beginSpokes, numBoundaryBefore, [=](Index pEdge) {
+        std::size_t const k = 2 * std::size_t(pEdge);
+        Index const startB = pFirstCorner[pFaces[k + 1]] + pLocals[k + 1];
+        return SideCorners{pVerts[k] - firstFVertex, pVerts[k + 1] - firstFVertex, startB,
+                           startB + 1};
+    });
+    fillEFaces<FULL>(beginSpokes, end, numBoundaryBefore, [=](Index pEdge) {
+        std::size_t const k = 2 * std::size_t(pEdge);
+        Index const startA = pFirstCorner[pFaces[k]] + pLocals[k];
+        Index const firstB = pFirstCorner[pFaces[k + 1]];
+        Index const startB = firstB + pLocals[k + 1];
+        return SideCorners{startA, startA + 1, startB,
+                           pLocals[k + 1] == kEFaceSideB.startSpoke ? startB + 1 : firstB};
+    });
+}
+
+// getSides(pEdge) tells the corners of an edge's sides.
+template <bool FULL, typename GET_SIDES>
+void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore, GET_SIDES getSides) {
+    if (begin == end) {
+        return;
+    }
     HexIndexing const indexing = _indexing;
     Index const cFace = _p.GetEdgeChildFace(begin);
     Index const numBBefore = indexing.GetEdgeChildFace(begin, 0) - cFace;
@@ -323,47 +369,27 @@ void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
     constexpr int kSize = HexIndexing::kNumEFaceCorners;
     writeSequence(&_c.faceFirstCorner[cFace], end - begin, cFirst, kSize);
 
-    // Where the sides of the edges start and end: parent corners, found once for both arrays.
-    struct SideCorners {
-        Index start;
-        Index end;
-    };
-    SideCorners sides[2 * kParallelRange];
-    std::size_t const firstSide = 2 * std::size_t(begin);
-    std::size_t const numSides = 2 * std::size_t(end - begin);
-    Index const *const pFaces = _p.edgeFaces.data() + firstSide;
-    LocalIndex const *const pLocals = _p.edgeFaceLocals.data() + firstSide;
-    Index const *const pFirstCorner = _p.faceFirstCorner.data();
-    for (std::size_t k = 0; k < numSides; ++k) {
-        Index const first = pFirstCorner[pFaces[k]];
-        Index const start = first + pLocals[k];
-        sides[k] = {start, start + 1 == pFirstCorner[pFaces[k] + 1] ? first : start + 1};
-    }
-
-    constexpr EFaceSide const &kA = kEFaceSideA;
-    constexpr EFaceSide const &kB = kEFaceSideB;
-    Index const *const pVerts = _p.edgeVerts.data() + firstSide;
-    WriteArray<kSize>(&_c.faceVerts[cFirst], end - begin, _pastCaches, [&](Index *verts, Index i) {
-        SideCorners const &a = sides[2 * i];
-        SideCorners const &b = sides[2 * i + 1];
-        verts[kA.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i]);
-        verts[kA.startFVertex] = indexing.GetCornerChildVertex(a.start);
-        verts[kA.endFVertex] = indexing.GetCornerChildVertex(a.end);
-        verts[kB.startVertex] = indexing.GetVertexChildVertex(pVerts[2 * i + 1]);
-        verts[kB.startFVertex] = indexing.GetCornerChildVertex(b.start);
-        verts[kB.endFVertex] = indexing.GetCornerChildVertex(b.end);
+    Index const *const pVerts = _p.edgeVerts.data();
+    WriteArray<kSize>(&_c.faceVerts[cFirst], end - begin, _pastCaches, [=](Index *verts, Index i) {
+        SideCorners const sides = getSides(begin + i);
+        std::size_t const k = 2 * std::size_t(begin + i);
+        verts[kEFaceSideA.startVertex] = indexing.GetVertexChildVertex(pVerts[k]);
+        verts[kEFaceSideA.startFVertex] = indexing.GetCornerChildVertex(sides.startA);
+        verts[kEFaceSideA.endFVertex] = indexing.GetCornerChildVertex(sides.endA);
+        verts[kEFaceSideB.startVertex] = indexing.GetVertexChildVertex(pVerts[k + 1]);
+        verts[kEFaceSideB.startFVertex] = indexing.GetCornerChildVertex(sides.startB);
+        verts[kEFaceSideB.endFVertex] = indexing.GetCornerChildVertex(sides.endB);
     });
     if constexpr (FULL) {
         Index *const edgesOfRun = &_c.faceEdges[cFirst];
-        WriteArray<kSize>(edgesOfRun, end - begin, _pastCaches, [&](Index *edges, Index i) {
-            SideCorners const &a = sides[2 * i];
-            SideCorners const &b = sides[2 * i + 1];
-            edges[kA.fFaceEdge] = indexing.GetCornerChildEdge(a.start);
-            edges[kA.startSpoke] = indexing.GetCornerChildSpoke(a.start);
-            edges[kA.endSpoke] = indexing.GetCornerChildSpoke(a.end);
-            edges[kB.fFaceEdge] = indexing.GetCornerChildEdge(b.start);
-            edges[kB.startSpoke] = indexing.GetCornerChildSpoke(b.start);
-            edges[kB.endSpoke] = indexing.GetCornerChildSpoke(b.end);
+        WriteArray<kSize>(edgesOfRun, end - begin, _pastCaches, [=](Index *edges, Index i) {
+            SideCorners const sides = getSides(begin + i);
+            edges[kEFaceSideA.fFaceEdge] = indexing.GetCornerChildEdge(sides.startA);
+            edges[kEFaceSideA.startSpoke] = indexing.GetCornerChildSpoke(sides.startA);
+            edges[kEFaceSideA.endSpoke] = indexing.GetCornerChildSpoke(sides.endA);
+            edges[kEFaceSideB.fFaceEdge] = indexing.GetCornerChildEdge(sides.startB);
+            edges[kEFaceSideB.startSpoke] = indexing.GetCornerChildSpoke(sides.startB);
+            edges[kEFaceSideB.endSpoke] = indexing.GetCornerChildSpoke(sides.endB);
         });
     }
 }
@@ -487,18 +513,28 @@ template <typename SIDES>
 void Refinement::fillHexagons(Index begin, Index end) {
     constexpr int kSize = HexIndexing::kNumEFaceCorners;
     Index const runFirst = _p.faceFirstCorner[begin];
-    fillClosedCorners(begin, end, [=](auto kEntries, auto *array, auto fill) {
-        WriteArray<kEntries * kSize>(array, end - begin, _pastCaches, [=](auto *entries, Index i) {
-            Index const first = runFirst + kSize * i;
-            for (int local = 0; local < kSize; ++local) {
-                int const prev = (local + kSize - 1) % kSize;
-                int const next = (local + 1) % kSize;
-                fill(entries + kEntries * local,
-                     ClosedCorner{begin + i, LocalIndex(local), first + prev, first + local,
-                                  first + next, SIDES::kSides[prev], SIDES::kSides[local]});
-            }
+    auto const fillHexagon = [=](auto kEntries, auto *entries, Index i, auto fill) {
+        Index const first = runFirst + kSize * i;
+        for (int local = 0; local < kSize; ++local) {
+            int const prev = (local + kSize - 1) % kSize;
+            int const next = (local + 1) % kSize;
+            fill(entries + kEntries * local,
+                 ClosedCorner{begin + i, LocalIndex(local), first + prev, first + local,
+                              first + next, &SIDES::kSides[prev], &SIDES::kSides[local]});
+        }
+    };
+    fillClosedCorners(
+        begin, end,
+        [=](auto kEntries, auto *array, auto fill) {
+            WriteArray<kEntries * kSize>(
+                array, end - begin, _pastCaches,
+                [=](auto *entries, Index i) { fillHexagon(kEntries, entries, i, fill); });
+        },
+        [=](auto kEntries, Index *array, auto fill) {
+            WriteSequence<kEntries * kSize>(
+                array, end - begin, _pastCaches, kSize,
+                [=](Index *entries) { fillHexagon(kEntries, entries, 0, fill); });
         });
-    });
 }
 
 // getSide(pFace, pCorner) tells the side that the face is of the edge from a corner to the next.
@@ -518,10 +554,11 @@ void Refinement::fillFacesOfAnySize(Index begin, Index end, GET_SIDE getSide) {
             corner.inSide = corner.outSide;
         }
     }
-    fillClosedCorners(begin, end, [&](auto kEntries, auto *array, auto fill) {
+    auto const write = [&](auto kEntries, auto *array, auto fill) {
         WriteArray<kEntries>(array, Index(corners.size()), _pastCaches,
                              [&](auto *entries, Index i) { fill(entries, corners[i]); });
-    });
+    };
+    fillClosedCorners(begin, end, write, write);
 }
 
 // What the corners of a run of faces without boundary edges make: an edge of the F-face, a spoke,
@@ -529,9 +566,10 @@ void Refinement::fillFacesOfAnySize(Index begin, Index end, GET_SIDE getSide) {
 // back, by a loop that compilers make vectors of.
 //
 // write(kEntries, array, fill) calls fill(entries, corner) for all corners, with their kEntries
-// entries of an array.
-template <typename WRITE>
-void Refinement::fillClosedCorners(Index begin, Index end, WRITE write) {
+// entries of an array; so does writeClosedForm, for entries that are corners but for a constant.
+template <typename WRITE, typename WRITE_CLOSED_FORM>
+void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
+                                   WRITE_CLOSED_FORM writeClosedForm) {
     constexpr std::integral_constant<int, 2> kTwo;
     constexpr std::integral_constant<int, 3> kThree;
     HexIndexing const indexing = _indexing;
@@ -541,7 +579,7 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write) {
     Index const pFirst = _p.faceFirstCorner[begin];
 
     std::size_t const fEdges = 2 * std::size_t(indexing.GetCornerChildEdge(pFirst));
-    write(kTwo, &_c.edgeVerts[fEdges], [=](Index *verts, ClosedCorner const &corner) {
+    writeClosedForm(kTwo, &_c.edgeVerts[fEdges], [=](Index *verts, ClosedCorner const &corner) {
         verts[0] = indexing.GetCornerChildVertex(corner.corner);
         verts[1] = indexing.GetCornerChildVertex(corner.next);
     });
@@ -586,11 +624,12 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write) {
               locals[1] = corner.inSide->endFVertex;
               locals[2] = corner.outSide->startFVertex;
           });
-    write(kThree, &_c.vertEdges[vertex.edge], [=](Index *edges, ClosedCorner const &corner) {
-        edges[0] = indexing.GetCornerChildEdge(corner.corner);
-        edges[1] = indexing.GetCornerChildEdge(corner.prev);
-        edges[2] = indexing.GetCornerChildSpoke(corner.corner);
-    });
+    writeClosedForm(kThree, &_c.vertEdges[vertex.edge],
+                    [=](Index *edges, ClosedCorner const &corner) {
+                        edges[0] = indexing.GetCornerChildEdge(corner.corner);
+                        edges[1] = indexing.GetCornerChildEdge(corner.prev);
+                        edges[2] = indexing.GetCornerChildSpoke(corner.corner);
+                    });
     write(kThree, &_c.vertEdgeLocals[vertex.edge], [](LocalIndex *locals, ClosedCorner const &) {
         locals[0] = 0;
         locals[1] = 1;
@@ -599,72 +638,58 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write) {
 }
 
 // Around a V-vertex the spokes take the place of the parent's faces and the E-faces that of its
-// edges.
+// edges, beginning with the second one.
 void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore) {
-    Index const endOther = _p.isHexagonal ? std::min(end, _p.parent->numVertices) : end;
-    VertexOffsets vertex = vVertexOffsets(begin, numOpenBefore);
     HexIndexing const indexing = _indexing;
-    EFaceOfEdge const eFaceOf(_p);
-    Index pVert = begin;
-    for (; pVert < endOther; ++pVert) {
-        Index const cVert = indexing.GetVertexChildVertex(pVert);
-        Index const firstFace = _p.vertFirstFace[pVert];
-        Index const firstEdge = _p.vertFirstEdge[pVert];
-        Index const size = _p.vertFirstFace[pVert + 1] - firstFace;
-        _c.vertFirstFace[cVert] = vertex.face;
-        _c.vertFirstEdge[cVert] = vertex.edge;
-        for (Index i = 0; i < size; ++i) {
-            Index const pCorner =
-                _p.faceFirstCorner[_p.vertFaces[firstFace + i]] + _p.vertFaceLocals[firstFace + i];
-            // The edge behind the face comes next in the vertex's own list.
-            Index const k = firstEdge + (i + 1 == size ? 0 : i + 1);
-            addVertexEdge(vertex, indexing.GetCornerChildSpoke(pCorner), 0);
-            addVertexFace(vertex, eFaceOf(_p.vertEdges[k]),
-                          _p.vertEdgeLocals[k] == 0 ? kEFaceSideA.startVertex
-                                                    : kEFaceSideA.endVertex);
-        }
-    }
-    if (pVert < end) {
-        fillClosedFVertices(pVert, end, numOpenBefore);
-    }
-}
-
-// The same for F-vertices of the parent, which have three faces and are the first, second and
-// second vertex of their three edges; array by array as for hexagons.
-void Refinement::fillClosedFVertices(Index begin, Index end, Index numOpenBefore) {
-    constexpr int kSize = 3;
-    VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
-    Index const *const pFaces = &_p.vertFaces[_p.vertFirstFace[begin]];
-    LocalIndex const *const pFaceLocals = &_p.vertFaceLocals[_p.vertFirstFace[begin]];
-    Index const *const pEdges = &_p.vertEdges[_p.vertFirstEdge[begin]];
-    HexIndexing const indexing = _indexing;
-
     Index const cVert = indexing.GetVertexChildVertex(begin);
-    writeSequence(&_c.vertFirstFace[cVert], end - begin, vertex.face, kSize);
-    writeSequence(&_c.vertFirstEdge[cVert], end - begin, vertex.edge, kSize);
+    VertexOffsets const shift = _vVertexShifts[numOpenBefore];
+    Index const *const pFirstFaces = &_p.vertFirstFace[begin];
+    Index const *const pFirstEdges = &_p.vertFirstEdge[begin];
+    WriteArray<1>(&_c.vertFirstFace[cVert], end - begin, _pastCaches,
+                  [=](Index *first, Index i) { *first = pFirstFaces[i] + shift.face; });
+    WriteArray<1>(&_c.vertFirstEdge[cVert], end - begin, _pastCaches,
+                  [=](Index *first, Index i) { *first = pFirstEdges[i] + shift.edge; });
 
+    VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
+    Index const numFaces = _p.vertFirstFace[end] - _p.vertFirstFace[begin];
+    Index const *const pFaces = _p.vertFaces.data() + _p.vertFirstFace[begin];
+    LocalIndex const *const pFaceLocals = _p.vertFaceLocals.data() + _p.vertFirstFace[begin];
     Index const *const pFirstCorner = _p.faceFirstCorner.data();
+    WriteArray<1>(
+        _c.vertEdges.data() + vertex.edge, numFaces, _pastCaches, [=](Index *edge, Index i) {
+            *edge = indexing.GetCornerChildSpoke(pFirstCorner[pFaces[i]] + pFaceLocals[i]);
+        });
+    WriteArray<1>(_c.vertEdgeLocals.data() + vertex.edge, numFaces, _pastCaches,
+                  [](LocalIndex *local, Index) { *local = 0; });
+
+    Index const beginFVertices =
+        _p.isHexagonal ? std::clamp(_p.parent->numVertices, begin, end) : end;
     EFaceOfEdge const eFaceOf(_p);
-    auto const write = [=](auto *array, auto fill) {
-        WriteArray<kSize>(array, end - begin, _pastCaches, fill);
-    };
-    write(&_c.vertEdges[vertex.edge], [=](Index *edges, Index i) {
-        for (int k = 0; k < kSize; ++k) {
-            Index const pCorner = pFirstCorner[pFaces[kSize * i + k]] + pFaceLocals[kSize * i + k];
-            edges[k] = indexing.GetCornerChildSpoke(pCorner);
+    Index cFace = vertex.face;
+    for (Index pVert = begin; pVert < beginFVertices; ++pVert) {
+        Index const firstEdge = _p.vertFirstEdge[pVert];
+        Index const endEdge = _p.vertFirstEdge[pVert + 1];
+        for (Index k = firstEdge; k < endEdge; ++k, ++cFace) {
+            Index const behind = k + 1 == endEdge ? firstEdge : k + 1;
+            _c.vertFaces[cFace] = eFaceOf(_p.vertEdges[behind]);
+            _c.vertFaceLocals[cFace] =
+                _p.vertEdgeLocals[behind] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex;
         }
-    });
-    write(&_c.vertEdgeLocals[vertex.edge],
-          [](LocalIndex *locals, Index) { locals[0] = locals[1] = locals[2] = 0; });
-    write(&_c.vertFaces[vertex.face], [=](Index *faces, Index i) {
-        for (int k = 0; k < kSize; ++k) {
-            faces[k] = eFaceOf(pEdges[kSize * i + (k + 1) % kSize]);
-        }
-    });
-    write(&_c.vertFaceLocals[vertex.face], [](LocalIndex *locals, Index) {
-        locals[0] = locals[1] = kEFaceSideA.endVertex;
-        locals[2] = kEFaceSideA.startVertex;
-    });
+    }
+    // F-vertices of the parent are the first, second and second vertex of their three edges.
+    constexpr int kSize = 3;
+    Index const *const pEdges = _p.vertEdges.data() + _p.vertFirstEdge[beginFVertices];
+    WriteArray<kSize>(_c.vertFaces.data() + cFace, end - beginFVertices, _pastCaches,
+                      [=](Index *faces, Index i) {
+                          for (int k = 0; k < kSize; ++k) {
+                              faces[k] = eFaceOf(pEdges[kSize * i + (k + 1) % kSize]);
+                          }
+                      });
+    WriteArray<kSize>(_c.vertFaceLocals.data() + cFace, end - beginFVertices, _pastCaches,
+                      [](LocalIndex *locals, Index) {
+                          locals[0] = locals[1] = kEFaceSideA.endVertex;
+                          locals[2] = kEFaceSideA.startVertex;
+                      });
 }
 
 // Where a fan of faces ends in a boundary edge with an E-face, that one's boundary edge comes first
