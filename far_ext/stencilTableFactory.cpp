@@ -20,13 +20,33 @@ using internal::SymbolicTable;
 
 namespace {
 
-// The stencils of one step: entries [offsets[row], offsets[row] + size) of weights and, where they
-// are wanted, of indices belong to a row.
+// The stencils of one step.  A row begins at entry offsets[row] of weights and indices; one that the
+// table does not have at entry ~offsets[row] of spareWeights.
 template <typename REAL>
 struct StepRows {
-    Index *offsets;
-    Index *indices; // null: only the weights are stored
+    REAL *GetWeights(Index row) const {
+        Index const offset = offsets[row];
+        return offset < 0 ? spareWeights + ~offset : weights + offset;
+    }
+    void Store(Index row, REAL const *rowWeights, Index const *sources, int size) const {
+        std::copy_n(rowWeights, size, GetWeights(row));
+        Index const offset = offsets[row];
+        if (offset < 0) {
+            return;
+        }
+        if (!indexOfSource) {
+            std::copy_n(sources, size, indices + offset);
+            return;
+        }
+        std::transform(sources, sources + size, indices + offset,
+                       [this](Index source) { return indexOfSource[source]; });
+    }
+
+    Index const *offsets;
     REAL *weights;
+    Index *indices;
+    Index const *indexOfSource; // null: sources are indices
+    REAL *spareWeights;
 };
 
 // The arrays of Far's tables are protected; a derived class may fill them.
@@ -41,34 +61,25 @@ public:
         internal::ResizeLarge(this->_weights, numWeights);
     }
 
-    int const *GetRowSizes(Index first) const { return this->_sizes.data() + first; }
-    // The stencils from number first on.
-    StepRows<REAL> GetRows(Index first) {
-        return {this->_offsets.data() + first, this->_indices.data(), this->_weights.data()};
-    }
+    int const *GetRowSizes() const { return this->_sizes.data(); }
+    Index *GetRowOffsets() { return this->_offsets.data(); }
+    REAL *GetRowWeights() { return this->_weights.data(); }
+    Index *GetRowIndices() { return this->_indices.data(); }
 };
 
-// The weights alone of the stencils of a step that does not go into the table.
-template <typename REAL>
-struct TemporaryRows {
-    TemporaryRows(std::size_t numStencils, std::size_t numWeights) {
-        offsets.Resize(numStencils);
-        weights.Resize(numWeights);
-    }
-    StepRows<REAL> GetRows() { return {offsets.data(), nullptr, weights.data()}; }
+// What a table of a selection has of all that is made for it.
+struct KeptRows {
+    std::vector<Index> controls;          // control vertices, whose stencils come first
+    std::vector<std::vector<Index>> rows; // of the step that makes each level, ascending
+    std::vector<Index> indices;           // of each source
+};
 
+// What is needed of the stencils of a step to make the next, beside what is in the table.
+template <typename REAL>
+struct SpareRows {
     internal::Buffer<Index> offsets;
     internal::Buffer<REAL> weights;
 };
-
-template <typename REAL>
-void fillControlRows(StepRows<REAL> const &rows, Index numControlVertices) {
-    for (Index vert = 0; vert < numControlVertices; ++vert) {
-        rows.offsets[vert] = vert;
-        rows.indices[vert] = vert;
-        rows.weights[vert] = REAL(1);
-    }
-}
 
 // The F-vertices of a plain face: rows of the face's circulant mask times its vertices' rows.  The
 // rows of both are stride apart.
@@ -138,7 +149,7 @@ private:
 
         internal::VVertexGroup group;
         std::vector<double> sums; // one dense stencil
-        std::vector<Index> rowIndices;
+        std::vector<Index> rowSources;
     };
 
     void fillFace(Index face, Scratch &scratch) const;
@@ -147,23 +158,16 @@ private:
     void multiply(Index face, std::size_t stride, Scratch &scratch) const;
     Index fillVVertices(Index begin, Index end, Support all, Scratch &scratch) const;
 
-    // The weights of a row of the step before; only sources have none.
-    REAL const *parentWeights(Index row) const { return _pRows->weights + _pRows->offsets[row]; }
-
     REAL const *termWeights(internal::VVertexGroup::Term const &term) const {
         static constexpr REAL kOne[] = {REAL(1)};
-        return term.isFVertex ? _rows.weights + _rows.offsets[term.row]
-               : _pRows       ? parentWeights(term.row)
+        return term.isFVertex ? _rows.GetWeights(term.row)
+               : _pRows       ? _pRows->GetWeights(term.row)
                               : kOne;
     }
 
     void storeFaceRow(Index face, int corner, REAL const *weights) const {
         Support const support = _supports.OfFaces()[face];
-        Index const offset = _rows.offsets[_step.GetFaceFirstRow(face) + corner];
-        std::copy_n(weights, support.size(), _rows.weights + offset);
-        if (_rows.indices) {
-            std::copy(support.begin(), support.end(), _rows.indices + offset);
-        }
+        _rows.Store(_step.GetFaceFirstRow(face) + corner, weights, support.begin(), support.size());
     }
 
     StencilStep const &_step;
@@ -207,7 +211,7 @@ void StepBuilder<REAL>::loadParents(Index face, std::size_t stride, Scratch &scr
     Support located = support;
     for (int j = 0; j < size; ++j) {
         Support const pSupport = _pSupports.OfVertices()[verts[j]];
-        REAL const *weights = parentWeights(verts[j]);
+        REAL const *weights = _pRows->GetWeights(verts[j]);
         double *const dense = scratch.block.data() + j * stride;
         if (pSupport == support) {
             double *const end = std::transform(weights, weights + support.size(), dense,
@@ -295,9 +299,9 @@ Index StepBuilder<REAL>::fillVVertices(Index begin, Index end, Support all,
         group.Take(_step, _pSupports.OfVertices(), _supports.OfFaces(), begin, end, true);
     group.Locate(all.begin(), all.size());
     // One more than is kept: see ForEachSource.
-    scratch.rowIndices.resize(std::size_t(all.size()) + 1);
+    scratch.rowSources.resize(std::size_t(all.size()) + 1);
     scratch.result.resize(std::size_t(all.size()) + 1);
-    Index *const rowIndices = scratch.rowIndices.data();
+    Index *const rowSources = scratch.rowSources.data();
     REAL *const rowWeights = scratch.result.data();
     for (int i = 0; i < groupEnd - begin; ++i) {
         scratch.sums.assign(all.size(), 0.0);
@@ -323,57 +327,135 @@ Index StepBuilder<REAL>::fillVVertices(Index begin, Index end, Support all,
             }
         }
         int const size = group.ForEachSource(i, [=](int n, int k) {
-            rowIndices[n] = all[k];
+            rowSources[n] = all[k];
             rowWeights[n] = REAL(sums[k]);
         });
-        Index const offset = _rows.offsets[begin + i];
-        std::copy_n(rowWeights, size, _rows.weights + offset);
-        if (_rows.indices) {
-            std::copy_n(rowIndices, size, _rows.indices + offset);
-        }
+        _rows.Store(begin + i, rowWeights, rowSources, size);
     }
     return groupEnd;
 }
 
+// Fills an empty table; of all that is made, it has the kept rows, or all when there are none.
+template <typename REAL>
+class TableBuilder {
+public:
+    TableBuilder(SymbolicTable const &symbolic, KeptRows const *kept, WritableTable<REAL> &table)
+        : _symbolic(symbolic), _plan(symbolic.GetPlan()), _kept(kept), _table(table) {}
+
+    void Fill() {
+        fillControlRows();
+        SpareRows<REAL> pSpare, spare;
+        StepRows<REAL> pRows{};
+        for (int level = _plan.firstBuilt; level <= _plan.lastLevel; ++level) {
+            StepRows<REAL> const rows = level < _plan.firstStored ? placeUnstored(level, spare)
+                                        : _kept                   ? placeKept(level, spare)
+                                                                  : placeAll(level);
+            StepBuilder<REAL>(_symbolic.GetStep(level), _symbolic.GetParentSupports(level),
+                              _symbolic.GetSupports(level),
+                              _plan.HasParentStencils(level) ? &pRows : nullptr, rows)
+                .Fill(_symbolic.GetNumSources(level));
+            pRows = rows;
+            std::swap(pSpare, spare);
+        }
+    }
+
+private:
+    void fillControlRows() {
+        for (Index i = 0; i < _plan.numControlStencils; ++i) {
+            place(1);
+            _table.GetRowIndices()[i] = _kept ? _kept->controls[i] : i;
+            _table.GetRowWeights()[i] = REAL(1);
+        }
+    }
+
+    // Gives the next stencil of the table its place.
+    Index place(int size) {
+        Index const offset = _nextOffset;
+        _table.GetRowOffsets()[_nextStencil++] = offset;
+        _nextOffset += size;
+        return offset;
+    }
+
+    StepRows<REAL> placeAll(int level) {
+        Index const first = _nextStencil;
+        for (Index i = 0; i < _symbolic.GetStep(level).GetNumRows(); ++i) {
+            place(_table.GetRowSizes()[_nextStencil]);
+        }
+        return {_table.GetRowOffsets() + first, _table.GetRowWeights(), _table.GetRowIndices(),
+                nullptr, nullptr};
+    }
+
+    StepRows<REAL> placeUnstored(int level, SpareRows<REAL> &spare) const {
+        std::vector<Support> const &supports = _symbolic.GetSupports(level).OfVertices();
+        spare.offsets.Resize(supports.size());
+        Index numSpare = 0;
+        for (std::size_t row = 0; row < supports.size(); ++row) {
+            spare.offsets[row] = ~numSpare;
+            numSpare += supports[row].size();
+        }
+        spare.weights.Resize(numSpare);
+        return {spare.offsets.data(), nullptr, nullptr, nullptr, spare.weights.data()};
+    }
+
+    StepRows<REAL> placeKept(int level, SpareRows<REAL> &spare) {
+        Index const numRows = _symbolic.GetStep(level).GetNumRows();
+        int const *const sizes = _symbolic.GetSizes(level);
+        spare.offsets.Resize(numRows);
+        Index numSpare = 0;
+        Index row = 0;
+        auto const placeSpare = [&](Index end) {
+            for (; row < end; ++row) {
+                spare.offsets[row] = ~numSpare;
+                numSpare += sizes[row];
+            }
+        };
+        for (Index const keptRow : _kept->rows[level]) {
+            placeSpare(keptRow);
+            spare.offsets[row++] = place(sizes[keptRow]);
+        }
+        placeSpare(numRows);
+        spare.weights.Resize(numSpare);
+        return {spare.offsets.data(), _table.GetRowWeights(), _table.GetRowIndices(),
+                _kept->indices.data(), spare.weights.data()};
+    }
+
+    SymbolicTable const &_symbolic;
+    StencilPlan const &_plan;
+    KeptRows const *_kept;
+    WritableTable<REAL> &_table;
+    Index _nextStencil = 0;
+    Index _nextOffset = 0;
+};
+
 template <typename REAL>
 std::unique_ptr<WritableTable<REAL>> buildTable(SymbolicTable &symbolic) {
-    StencilPlan const &plan = symbolic.GetPlan();
-    auto table = std::make_unique<WritableTable<REAL>>(plan.GetNumVertices(0), symbolic.TakeSizes(),
-                                                       symbolic.GetNumWeights());
-    fillControlRows(table->GetRows(0), plan.numControlStencils);
-    Index nextStencil = plan.numControlStencils;
-    Index nextOffset = plan.numControlStencils;
+    auto table = std::make_unique<WritableTable<REAL>>(
+        symbolic.GetPlan().GetNumVertices(0), symbolic.TakeSizes(), symbolic.GetNumWeights());
+    TableBuilder<REAL>(symbolic, nullptr, *table).Fill();
+    return table;
+}
 
-    std::unique_ptr<TemporaryRows<REAL>> previous, current; // of levels that are not stored
-    StepRows<REAL> pRows{};
-    for (int level = plan.firstBuilt; level <= plan.lastLevel; ++level) {
-        StencilStep const &step = symbolic.GetStep(level);
-        StepSupports const &supports = symbolic.GetSupports(level);
-        previous = std::move(current);
-        StepRows<REAL> rows;
-        if (level >= plan.firstStored) {
-            rows = table->GetRows(nextStencil);
-            int const *const sizes = table->GetRowSizes(nextStencil);
-            for (Index row = 0; row < step.GetNumRows(); ++row) {
-                rows.offsets[row] = nextOffset;
-                nextOffset += sizes[row];
-            }
-            nextStencil += step.GetNumRows();
-        } else {
-            current =
-                std::make_unique<TemporaryRows<REAL>>(step.GetNumRows(), supports.GetNumWeights());
-            rows = current->GetRows();
-            Index offset = 0;
-            for (Index row = 0; row < step.GetNumRows(); ++row) {
-                rows.offsets[row] = offset;
-                offset += supports.OfVertices()[row].size();
-            }
-        }
-        StepBuilder<REAL>(step, symbolic.GetParentSupports(level), supports,
-                          plan.HasParentStencils(level) ? &pRows : nullptr, rows)
-            .Fill(symbolic.GetNumSources(level));
-        pRows = rows;
+// The same of kept rows.
+template <typename REAL>
+std::unique_ptr<WritableTable<REAL>> buildTable(SymbolicTable const &symbolic,
+                                                KeptRows const &kept) {
+    StencilPlan const &plan = symbolic.GetPlan();
+    std::size_t numStencils = kept.controls.size();
+    for (std::vector<Index> const &rows : kept.rows) {
+        numStencils += rows.size();
     }
+    std::vector<int> sizes(kept.controls.size(), 1);
+    sizes.reserve(numStencils);
+    for (int level = plan.firstStored; level <= plan.lastLevel; ++level) {
+        int const *const ofRows = symbolic.GetSizes(level);
+        for (Index row : kept.rows[level]) {
+            sizes.push_back(ofRows[row]);
+        }
+    }
+    std::size_t const numWeights = std::accumulate(sizes.begin(), sizes.end(), std::size_t(0));
+    auto table =
+        std::make_unique<WritableTable<REAL>>(plan.GetNumVertices(0), std::move(sizes), numWeights);
+    TableBuilder<REAL>(symbolic, &kept, *table).Fill();
     return table;
 }
 
@@ -390,49 +472,22 @@ std::vector<std::vector<Index>> findVerticesOfBaseFaces(StencilPlan const &plan,
     return verts;
 }
 
-// Copies the stencils of wanted vertices, and control stencils, from a table of a selection.
-template <typename REAL>
-std::unique_ptr<WritableTable<REAL>>
-selectRows(StencilPlan const &plan, SymbolicTable const &symbolic,
-           StencilSelection const &selection, std::vector<Index> const &controls,
-           std::vector<std::vector<Index>> const &wanted, WritableTable<REAL> &all) {
-    std::vector<Index> rows; // of all
-    Index firstRow = 0;
+// Where the wanted vertices of each level are among those that a selection makes.
+std::vector<std::vector<Index>> findRows(StencilPlan const &plan, StencilSelection const &selection,
+                                         std::vector<std::vector<Index>> const &wanted) {
+    std::vector<std::vector<Index>> rows(wanted.size());
     for (int level = plan.firstStored; level <= plan.lastLevel; ++level) {
-        // Both ascend.
         std::vector<Index> const made =
             internal::FindMadeVertices(plan.GetLevel(level - 1), selection.parts[level - 1]);
+        rows[level].reserve(wanted[level].size());
+        // Both ascend.
         auto next = made.begin();
         for (Index vert : wanted[level]) {
             next = std::lower_bound(next, made.end(), vert);
-            rows.push_back(firstRow + Index(next - made.begin()));
+            rows[level].push_back(Index(next - made.begin()));
         }
-        firstRow += symbolic.GetStep(level).GetNumRows();
     }
-    int const *const allSizes = all.GetRowSizes(0);
-    StepRows<REAL> const allRows = all.GetRows(0);
-    std::vector<int> sizes(controls.size() + rows.size(), 1);
-    std::transform(rows.begin(), rows.end(), sizes.begin() + std::ptrdiff_t(controls.size()),
-                   [&](Index row) { return allSizes[row]; });
-    std::int64_t const numWeights = std::accumulate(sizes.begin(), sizes.end(), std::int64_t(0));
-    auto table =
-        std::make_unique<WritableTable<REAL>>(plan.GetNumVertices(0), std::move(sizes), numWeights);
-    StepRows<REAL> result = table->GetRows(0);
-    Index offset = 0;
-    for (Index control : controls) {
-        *result.offsets++ = offset;
-        result.indices[offset] = control;
-        result.weights[offset++] = REAL(1);
-    }
-    for (Index row : rows) {
-        Index const *const indices = allRows.indices + allRows.offsets[row];
-        *result.offsets++ = offset;
-        std::copy_n(allRows.weights + allRows.offsets[row], allSizes[row], result.weights + offset);
-        std::transform(indices, indices + allSizes[row], result.indices + offset,
-                       [&](Index source) { return selection.indices[source]; });
-        offset += allSizes[row];
-    }
-    return table;
+    return rows;
 }
 
 template <typename OPTIONS>
@@ -517,21 +572,21 @@ auto StencilTableFactoryReal<REAL>::CreateOfFaces(TopologyRefiner const &refiner
     if (!internal::Report(result, status)) {
         return nullptr;
     }
-    bool const hasControls = options.generateControlVerts;
-    options.generateControlVerts = false;
-    StencilPlan const plan = makePlan(refiner, options);
-    std::vector<Index> controls;
-    if (hasControls) {
-        controls = GetVerticesOfFaces(refiner, baseFaces, options, 0);
+    StencilPlan plan = makePlan(refiner, options);
+    KeptRows kept;
+    if (options.generateControlVerts) {
+        kept.controls = GetVerticesOfFaces(refiner, baseFaces, options, 0);
+        plan.numControlStencils = Index(kept.controls.size());
     }
     auto const wanted = findVerticesOfBaseFaces(plan, baseFaces);
     StencilSelection const selection(plan, wanted);
+    kept.rows = findRows(plan, selection, wanted);
+    kept.indices = selection.indices;
     SymbolicTable symbolic(plan, selection);
     if (!internal::Report(symbolic.Form(), status)) {
         return nullptr;
     }
-    auto const all = buildTable<REAL>(symbolic);
-    return selectRows(plan, symbolic, selection, controls, wanted, *all);
+    return buildTable<REAL>(symbolic, kept);
 }
 
 template <typename REAL>

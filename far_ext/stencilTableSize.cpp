@@ -244,14 +244,13 @@ Status WeightSampler::Form() {
     if (Status status = symbolic.Form(); !status.IsOk()) {
         return status;
     }
-    int const *sizes = symbolic.GetSizes().data();
     for (int level = 1; level <= plan.lastLevel; ++level) {
         std::vector<Index> const made =
             FindMadeVertices(_plan.GetLevel(level - 1), selection.parts[level - 1]);
+        int const *const sizes = symbolic.GetSizes(level);
         count(level, made, sizes, _large);
         count(level, made, sizes, _sample);
         _averages.push_back(average(level));
-        sizes += symbolic.GetStep(level).GetNumRows();
     }
     return Status();
 }

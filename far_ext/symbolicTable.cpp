@@ -43,6 +43,14 @@ SymbolicTable::SymbolicTable(StencilPlan const &plan, StencilSelection const &se
     }
 }
 
+int const *SymbolicTable::GetSizes(int level) const {
+    int const *sizes = _sizes.data() + _plan.numControlStencils;
+    for (int before = _plan.firstStored; before < level; ++before) {
+        sizes += GetStep(before).GetNumRows();
+    }
+    return sizes;
+}
+
 Status SymbolicTable::Form() {
     std::int64_t numStencils = _plan.numControlStencils;
     for (int level = _plan.firstStored; level <= _plan.lastLevel; ++level) {

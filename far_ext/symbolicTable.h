@@ -31,7 +31,9 @@ public:
     }
     Index GetNumSources(int level) const { return _sources[getSourceNumber(level)].number; }
     std::int64_t GetNumWeights() const { return _numWeights; }
-    std::vector<int> const &GetSizes() const { return _sizes; }
+    /// The sizes of the stencils of a level that is stored.
+    int const *GetSizes(int level) const;
+    /// Those of all that are stored, behind the control stencils.
     std::vector<int> TakeSizes() { return std::move(_sizes); }
 
 private:
