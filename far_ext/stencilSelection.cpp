@@ -2,6 +2,7 @@
 #include "stencilSelection.h"
 
 #include "fvarLevel.h"
+#include "indexSet.h"
 
 #include <algorithm>
 

@@ -483,7 +483,7 @@ std::vector<std::vector<Index>> findRows(StencilPlan const &plan, StencilSelecti
         // Both ascend.
         auto next = made.begin();
         for (Index vert : wanted[level]) {
-            next = std::lower_bound(next, made.end(), vert);
+            next = std::find(next, made.end(), vert);
             rows[level].push_back(Index(next - made.begin()));
         }
     }
