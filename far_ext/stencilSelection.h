@@ -11,7 +11,8 @@
 namespace OpenSubdivHex::FarExt::internal {
 
 /// Of levels 0 ... \p lastLevel, the faces whose GetFaceBaseFace() is one of \p baseFaces, in
-/// ascending order.  The work is proportional to their number, but for a logarithm where there are V-faces.
+/// ascending order.  The work is proportional to their number, but for a logarithm where there are
+/// V-faces.
 std::vector<std::vector<Far::Index>>
 FindFacesOfBaseFaces(TopologyRefiner const &refiner, Far::ConstIndexArray baseFaces, int lastLevel);
 

@@ -20,8 +20,8 @@ using internal::SymbolicTable;
 
 namespace {
 
-// The stencils of one step.  A row begins at entry offsets[row] of weights and indices; one that the
-// table does not have at entry ~offsets[row] of spareWeights.
+// The stencils of one step.  A row begins at entry offsets[row] of weights and indices; one that
+// the table does not have, at entry ~offsets[row] of spareWeights.
 template <typename REAL>
 struct StepRows {
     REAL *GetWeights(Index row) const {
@@ -53,7 +53,7 @@ struct StepRows {
 template <typename REAL>
 class WritableTable : public StencilTableTypes<REAL>::Table {
 public:
-    WritableTable(int numControlVertices, std::vector<int> sizes, std::size_t numWeights) {
+    WritableTable(int numControlVertices, std::vector<int> &&sizes, std::size_t numWeights) {
         this->_numControlVertices = numControlVertices;
         this->_sizes = std::move(sizes);
         internal::ResizeLarge(this->_offsets, this->_sizes.size());

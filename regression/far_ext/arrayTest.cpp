@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The memory of levels: buffers, arrays placed in one, and writing past the caches; sets of indices.
+// The memory of levels: buffers, arrays placed in one, and writing past the caches; and sets of
+// indices.
 #include "far_ext/arrayWriter.h"
 #include "far_ext/indexSet.h"
 
