@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <type_traits>
+#include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -18,6 +19,14 @@ void FreeArray(void *memory);
 /// Has the system put pages behind memory that was not written yet, in parallel and huge ones where
 /// it offers them.  Whoever writes it first need not wait for them then.  Content is kept.
 void PrepareArray(void *memory, std::size_t bytes);
+
+/// Resizes an empty vector without touching its memory in pages of 4 KiB, or by one thread alone.
+template <typename T>
+void ResizeLarge(std::vector<T> &array, std::size_t size) {
+    array.reserve(size);
+    PrepareArray(array.data(), size * sizeof(T));
+    array.resize(size);
+}
 
 /// \brief An array of trivial elements that are not written until the owner writes them.
 ///

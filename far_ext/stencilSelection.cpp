@@ -2,6 +2,7 @@
 #include "stencilSelection.h"
 
 #include "fvarLevel.h"
+#include "indexSet.h"
 
 #include <algorithm>
 
@@ -65,46 +66,14 @@ Index faceOfCorner(LevelTopology const &level, Index corner) {
     return Index(std::upper_bound(first, level.faceFirstCorner.end(), corner) - first) - 1;
 }
 
-} // namespace
-
-std::vector<std::vector<Index>> FindFacesOfBaseFaces(TopologyRefiner const &refiner,
-                                                     ConstIndexArray baseFaces, int lastLevel) {
-    std::vector<std::vector<Index>> result(1);
-    append(result[0], baseFaces);
-    SortUnique(result[0], refiner.GetLevel(0).GetNumFaces());
-    for (int level = 1; level <= lastLevel; ++level) {
-        result.push_back(
-            findChildFaces(refiner.GetLevel(level - 1), refiner.GetLevel(level), result.back()));
-    }
-    return result;
-}
-
-std::vector<Index> FindVerticesOfFaces(TopologyLevel const &mesh, int channel,
-                                       std::vector<Index> const &faces) {
-    std::vector<Index> verts;
-    for (Index face : faces) {
-        if (channel < 0) {
-            append(verts, mesh.GetFaceVertices(face));
-        } else if (mesh.IsFaceFVarSplit(face, channel)) {
-            append(verts, mesh.GetFaceFVarValues(face, channel, 0));
-            append(verts, mesh.GetFaceFVarValues(face, channel, 1));
-        } else {
-            append(verts, mesh.GetFaceFVarValues(face, channel));
-        }
-    }
-    SortUnique(verts, channel < 0 ? mesh.GetNumVertices() : mesh.GetNumFVarValues(channel));
-    return verts;
-}
-
-std::vector<StencilStep::Part> FindStencilParts(std::vector<TopologyLevel> const &levels,
-                                                SchemeOptions schemeOptions,
-                                                Interpolation interpolation,
-                                                std::vector<std::vector<Index>> wanted) {
-    std::vector<StencilStep::Part> parts(levels.size() - 1);
+// The part of the step that makes each level but the first.
+std::vector<StencilStep::Part> findParts(StencilPlan const &plan,
+                                         std::vector<std::vector<Index>> wanted) {
+    std::vector<StencilStep::Part> parts(plan.lastLevel);
     for (std::size_t level = parts.size(); level > 0; --level) {
-        TopologyLevel const &pLevel = levels[level - 1];
+        TopologyLevel const pLevel = plan.GetLevel(int(level) - 1);
         LevelTopology const &pTopology = pLevel.GetTopology();
-        RefinementMask const mask(pLevel, schemeOptions, interpolation);
+        RefinementMask const mask(pLevel, plan.refiner.GetHexSchemeOptions(), plan.interpolation);
         StencilStep::Part &part = parts[level - 1];
         std::vector<Index> &pVerts = wanted[level - 1];
         Index endOfFace = 0; // of the last corner, past its face
@@ -137,9 +106,53 @@ std::vector<StencilStep::Part> FindStencilParts(std::vector<TopologyLevel> const
         parts[0].verts = wanted[0];
     }
     for (std::size_t i = 1; i < parts.size(); ++i) {
-        parts[i].verts = FindMadeVertices(levels[i - 1], parts[i - 1]);
+        parts[i].verts = FindMadeVertices(plan.GetLevel(int(i) - 1), parts[i - 1]);
     }
     return parts;
+}
+
+} // namespace
+
+std::vector<std::vector<Index>> FindFacesOfBaseFaces(TopologyRefiner const &refiner,
+                                                     ConstIndexArray baseFaces, int lastLevel) {
+    std::vector<std::vector<Index>> result(1);
+    append(result[0], baseFaces);
+    SortUnique(result[0], refiner.GetLevel(0).GetNumFaces());
+    for (int level = 1; level <= lastLevel; ++level) {
+        result.push_back(
+            findChildFaces(refiner.GetLevel(level - 1), refiner.GetLevel(level), result.back()));
+    }
+    return result;
+}
+
+std::vector<Index> FindVerticesOfFaces(TopologyLevel const &mesh, int channel,
+                                       std::vector<Index> const &faces) {
+    std::vector<Index> verts;
+    for (Index face : faces) {
+        if (channel < 0) {
+            append(verts, mesh.GetFaceVertices(face));
+        } else if (mesh.IsFaceFVarSplit(face, channel)) {
+            append(verts, mesh.GetFaceFVarValues(face, channel, 0));
+            append(verts, mesh.GetFaceFVarValues(face, channel, 1));
+        } else {
+            append(verts, mesh.GetFaceFVarValues(face, channel));
+        }
+    }
+    SortUnique(verts, channel < 0 ? mesh.GetNumVertices() : mesh.GetNumFVarValues(channel));
+    return verts;
+}
+
+StencilSelection::StencilSelection(StencilPlan const &plan, std::vector<std::vector<Index>> wanted)
+    : parts(findParts(plan, std::move(wanted))) {
+    if (!parts.empty()) {
+        sources = plan.GetSources(0, parts[0].verts);
+    }
+    indices = sources;
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    for (Index &source : sources) {
+        source = Index(std::lower_bound(indices.begin(), indices.end(), source) - indices.begin());
+    }
 }
 
 std::vector<Index> FindMadeVertices(TopologyLevel const &pLevel, StencilStep::Part const &part) {

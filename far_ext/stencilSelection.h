@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_STENCIL_SELECTION_H
 #define OPENSUBDIVHEX_FAR_EXT_STENCIL_SELECTION_H
 
+#include "stencilPlan.h"
 #include "stencilStep.h"
 #include "topologyRefiner.h"
 
@@ -10,7 +11,8 @@
 namespace OpenSubdivHex::FarExt::internal {
 
 /// Of levels 0 ... \p lastLevel, the faces whose GetFaceBaseFace() is one of \p baseFaces, in
-/// ascending order.  The work is proportional to their number, but for a logarithm where there are V-faces.
+/// ascending order.  The work is proportional to their number, but for a logarithm where there are
+/// V-faces.
 std::vector<std::vector<Far::Index>>
 FindFacesOfBaseFaces(TopologyRefiner const &refiner, Far::ConstIndexArray baseFaces, int lastLevel);
 
@@ -18,15 +20,15 @@ FindFacesOfBaseFaces(TopologyRefiner const &refiner, Far::ConstIndexArray baseFa
 std::vector<Far::Index> FindVerticesOfFaces(TopologyLevel const &mesh, int channel,
                                             std::vector<Far::Index> const &faces);
 
-/// \brief The least parts of all steps that make wanted vertices.
-///
-/// \param levels  all levels, of the mesh or of the value mesh of a channel
-/// \param wanted  by level, ascending
-/// \return        the part of the step that makes level i + 1, for each level but the last
-std::vector<StencilStep::Part> FindStencilParts(std::vector<TopologyLevel> const &levels,
-                                                SchemeOptions schemeOptions,
-                                                Interpolation interpolation,
-                                                std::vector<std::vector<Far::Index>> wanted);
+/// \brief The least parts of all steps that make wanted vertices, in terms of the control vertices.
+struct StencilSelection {
+    /// \param wanted  vertices of each level of the plan, ascending
+    StencilSelection(StencilPlan const &plan, std::vector<std::vector<Far::Index>> wanted);
+
+    std::vector<StencilStep::Part> parts; ///< of the steps that make levels 1, 2 ...
+    std::vector<Far::Index> sources;      ///< of parts[0].verts, as numbers in indices
+    std::vector<Far::Index> indices;      ///< ascending; what the stencils refer to
+};
 
 /// The vertices that a part of the step from \p pLevel makes: see StencilStep.  Ascending.
 std::vector<Far::Index> FindMadeVertices(TopologyLevel const &pLevel,

@@ -1,62 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stencilStep.h"
 
+#include "indexSet.h"
+
 #include <algorithm>
 
 namespace OpenSubdivHex::FarExt::internal {
 
 using Far::Index;
-
-namespace {
-
-// From this part of all indices on a table of all is faster than a search.
-constexpr Index kLeastPart = 64;
-
-bool isLargePart(std::size_t size, Index end) { return size >= std::size_t(end / kLeastPart); }
-
-Index numberOf(std::vector<Index> const &ascending, Index index) {
-    return Index(std::lower_bound(ascending.begin(), ascending.end(), index) - ascending.begin());
-}
-
-// Where indices below end stand in an ascending list that has them.
-class Numbering {
-public:
-    Numbering(std::vector<Index> const &ascending, Index end) : _ascending(ascending) {
-        if (isLargePart(ascending.size(), end)) {
-            _numbers.resize(end);
-            for (std::size_t i = 0; i < ascending.size(); ++i) {
-                _numbers[ascending[i]] = Index(i);
-            }
-        }
-    }
-    Index operator()(Index index) const {
-        return _numbers.empty() ? numberOf(_ascending, index) : _numbers[index];
-    }
-
-private:
-    std::vector<Index> const &_ascending;
-    std::vector<Index> _numbers;
-};
-
-} // namespace
-
-void SortUnique(std::vector<Index> &indices, Index end) {
-    if (!isLargePart(indices.size(), end)) {
-        std::sort(indices.begin(), indices.end());
-        indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-        return;
-    }
-    std::vector<unsigned char> marks(end);
-    for (Index index : indices) {
-        marks[index] = 1;
-    }
-    indices.clear();
-    for (Index index = 0; index < end; ++index) {
-        if (marks[index]) {
-            indices.push_back(index);
-        }
-    }
-}
 
 StencilStep::StencilStep(TopologyLevel const &pLevel, SchemeOptions schemeOptions,
                          Interpolation interpolation)
@@ -78,8 +29,8 @@ StencilStep::StencilStep(TopologyLevel const &pLevel, SchemeOptions schemeOption
     LevelTopology const &topology = pLevel.GetTopology();
     _numFaces = Index(_part.faces.size());
     _numVVertices = Index(_part.vVertices.size());
-    Numbering const numberOfVert(_part.verts, topology.numVertices);
-    Numbering const numberOfFace(_part.faces, topology.numFaces);
+    IndexNumbering const numberOfVert(_part.verts, topology.numVertices);
+    IndexNumbering const numberOfFace(_part.faces, topology.numFaces);
     _partFaceFirstCorner.push_back(0);
     for (Index face : _part.faces) {
         for (Index vert : pLevel.GetFaceVertices(face)) {
@@ -122,7 +73,9 @@ RefinementMask::VertexMask StencilStep::GetVertexMask(Index vert) const {
     }
     RefinementMask::VertexMask mask = _mask.GetVertexMask(_part.verts[vert]);
     for (int i = 0; i < mask.numNeighbors; ++i) {
-        mask.neighbors[i] = numberOf(_part.verts, mask.neighbors[i]);
+        auto const place =
+            std::lower_bound(_part.verts.begin(), _part.verts.end(), mask.neighbors[i]);
+        mask.neighbors[i] = Index(place - _part.verts.begin());
     }
     return mask;
 }

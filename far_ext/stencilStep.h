@@ -8,9 +8,6 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// Sorts indices below \p end and removes repeated ones.
-void SortUnique(std::vector<Far::Index> &indices, Far::Index end);
-
 /// \brief The part of one refinement step that stencils are made of, in numbers of its own.
 ///
 /// The vertices it makes, the *rows*, are V-vertices and then the F-vertices of its faces, in their

@@ -2,11 +2,11 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_STENCIL_TABLE_FACTORY_H
 #define OPENSUBDIVHEX_FAR_EXT_STENCIL_TABLE_FACTORY_H
 
+#include "stencilTableSize.h"
 #include "topologyRefiner.h"
 
 #include <opensubdiv/far/stencilTable.h>
 
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -24,14 +24,6 @@ struct StencilTableTypes<float> {
 
 /// \brief What the stencils interpolate, spelled as in Far::StencilTableFactory.
 enum StencilMode { INTERPOLATE_VERTEX, INTERPOLATE_VARYING, INTERPOLATE_FACE_VARYING };
-
-/// \brief What a stencil table holds and takes: see StencilTableFactoryReal::EstimateSize.
-struct StencilTableSize {
-    std::int64_t numStencils = 0;
-    std::int64_t numWeights = 0;
-    std::int64_t numBytes = 0;     ///< of the table's arrays
-    std::int64_t numPeakBytes = 0; ///< of all that its making takes at once, the table included
-};
 
 /// \brief Makes Far stencil tables of hexagonal refinements, for any Osd evaluator.
 template <typename REAL>

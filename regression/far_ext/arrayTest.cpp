@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The memory of levels: buffers, arrays placed in one, and writing past the caches.
+// The memory of levels: buffers, arrays placed in one, and writing past the caches; and sets of
+// indices.
 #include "far_ext/arrayWriter.h"
+#include "far_ext/indexSet.h"
 
 #include <gtest/gtest.h>
 
@@ -105,6 +107,29 @@ TEST(WriteArray, WritesWhatItIsToldAndNoMore) {
             }
         }
     }
+}
+
+TEST(IndexSet, SortsAndNumbersIndicesOfAnyDensity) {
+    for (int const end : {1, 64, 512, 513, 100000}) {
+        for (int const step : {1, 7, 63, 64, 511, 3000}) {
+            SCOPED_TRACE(testing::Message() << "every " << step << " below " << end);
+            std::vector<int> expected;
+            for (int index = end - 1; index >= 0; index -= step) {
+                expected.insert(expected.begin(), index);
+            }
+            std::vector<int> indices(expected.rbegin(), expected.rend());
+            indices.insert(indices.end(), expected.begin(), expected.end());
+            FarExt::internal::SortUnique(indices, end);
+            ASSERT_EQ(indices, expected);
+            FarExt::internal::IndexNumbering const numberOf(indices, end);
+            for (std::size_t i = 0; i < indices.size(); ++i) {
+                ASSERT_EQ(numberOf(indices[i]), int(i));
+            }
+        }
+    }
+    std::vector<int> none;
+    FarExt::internal::SortUnique(none, 1000);
+    EXPECT_TRUE(none.empty());
 }
 
 } // namespace OpenSubdivHex::Regression

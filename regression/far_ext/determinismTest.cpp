@@ -75,6 +75,27 @@ Result gather(FarExt::TopologyRefiner const &refiner) {
     return result;
 }
 
+/// A grid of up to \p size x \p size quads.
+Shape makeGridWithHoles(int size) {
+    Shape grid;
+    grid.name = "grid";
+    for (int i = 0; i < (size + 1) * (size + 1); ++i) {
+        grid.positions.insert(grid.positions.end(), {double(i % size), double(i / size), 0});
+    }
+    for (int u = 0; u < size; ++u) {
+        for (int v = 0; v < size; ++v) {
+            int const corner = u * (size + 1) + v;
+            if (u % 7 != 3 || v % 5 != 2) {
+                grid.faceSizes.push_back(4);
+                for (int step : {0, size + 1, size + 2, 1}) {
+                    grid.faceVertices.push_back(corner + step);
+                }
+            }
+        }
+    }
+    return grid;
+}
+
 /// create() gives a refined refiner.
 template <typename CREATE>
 void expectSameBits(CREATE const &create) {
@@ -165,24 +186,7 @@ TEST(Determinism, LargeLevelsAreValidAndTheSame) {
 }
 
 TEST(Determinism, SameImportForAnyNumberOfThreads) {
-    // A grid of quads with holes, large enough for many ranges of work.
-    constexpr int kSize = 160;
-    Shape grid;
-    grid.name = "grid";
-    for (int i = 0; i < (kSize + 1) * (kSize + 1); ++i) {
-        grid.positions.insert(grid.positions.end(), {double(i % kSize), double(i / kSize), 0});
-    }
-    for (int u = 0; u < kSize; ++u) {
-        for (int v = 0; v < kSize; ++v) {
-            int const corner = u * (kSize + 1) + v;
-            if (u % 7 != 3 || v % 5 != 2) {
-                grid.faceSizes.push_back(4);
-                for (int step : {0, kSize + 1, kSize + 2, 1}) {
-                    grid.faceVertices.push_back(corner + step);
-                }
-            }
-        }
-    }
+    Shape const grid = makeGridWithHoles(160); // many ranges of work
     setNumThreads(1);
     auto const expected = CreateRefiner(grid, ReferenceMask::Smooth, 0);
     EXPECT_TRUE(expected->GetLevel(0).Validate());
@@ -190,6 +194,43 @@ TEST(Determinism, SameImportForAnyNumberOfThreads) {
         setNumThreads(numThreads);
         auto const refiner = CreateRefiner(grid, ReferenceMask::Smooth, 0);
         EXPECT_TRUE(Arrays(refiner->GetLevel(0)) == Arrays(expected->GetLevel(0))) << numThreads;
+    }
+}
+
+// The last step is made of more than the 16,384 faces from which on threads share the work.
+TEST(Determinism, SameStencilsForAnyNumberOfThreads) {
+    Shape const grid = makeGridWithHoles(48);
+    Sdc::Options sdcOptions;
+    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    auto const refiner = CreateRefiner(grid, ReferenceMask::Smooth, 3, sdcOptions);
+    ASSERT_GT(refiner->GetLevel(2).GetNumFaces(), 16384);
+    std::vector<int> faces;
+    for (int face = 0; face < grid.GetNumFaces(); ++face) {
+        if (face % 5 != 0) {
+            faces.push_back(face);
+        }
+    }
+    FarExt::StencilTableFactory::Options options;
+    for (bool isWhole : {true, false}) {
+        for (bool hasAllLevels : {true, false}) {
+            options.generateIntermediateLevels = hasAllLevels;
+            auto const create = [&](int numThreads) {
+                setNumThreads(numThreads);
+                return isWhole ? FarExt::StencilTableFactory::Create(*refiner, options)
+                               : FarExt::StencilTableFactory::CreateOfFaces(
+                                     *refiner, {faces.data(), int(faces.size())}, options);
+            };
+            auto const expected = create(1);
+            for (int numThreads : {2, 3, 8}) {
+                SCOPED_TRACE(testing::Message() << numThreads << " threads, whole " << isWhole
+                                                << ", all levels " << hasAllLevels);
+                auto const table = create(numThreads);
+                EXPECT_TRUE(table->GetSizes() == expected->GetSizes());
+                EXPECT_TRUE(table->GetOffsets() == expected->GetOffsets());
+                EXPECT_TRUE(table->GetControlIndices() == expected->GetControlIndices());
+                EXPECT_TRUE(table->GetWeights() == expected->GetWeights());
+            }
+        }
     }
 }
 
