@@ -344,9 +344,10 @@ public:
 
     void Fill() {
         fillControlRows();
-        SpareRows<REAL> pSpare, spare;
+        SpareRows<REAL> pSpare;
         StepRows<REAL> pRows{};
         for (int level = _plan.firstBuilt; level <= _plan.lastLevel; ++level) {
+            SpareRows<REAL> spare;
             StepRows<REAL> const rows = level < _plan.firstStored ? placeUnstored(level, spare)
                                         : _kept                   ? placeKept(level, spare)
                                                                   : placeAll(level);
@@ -355,7 +356,7 @@ public:
                               _plan.HasParentStencils(level) ? &pRows : nullptr, rows)
                 .Fill(_symbolic.GetNumSources(level));
             pRows = rows;
-            std::swap(pSpare, spare);
+            pSpare = std::move(spare);
         }
     }
 
