@@ -94,9 +94,8 @@ void BaseLevelBuilder::buildEdges() {
     std::vector<Index> const boundaryEdges =
         ParallelSelect(_level.numEdges, [this](Index edge) { return _level.IsBoundary(edge); });
     auto const count = [&](BoundaryKind kind) {
-        return Index(std::count_if(boundaryEdges.begin(), boundaryEdges.end(), [&](Index edge) {
-            return _edges[edge].corners[1] == kind;
-        }));
+        return Index(std::count_if(boundaryEdges.begin(), boundaryEdges.end(),
+                                   [&](Index edge) { return _edges[edge].corners[1] == kind; }));
     };
     _level.numFreeBoundaries = count(kFreeBoundary);
     _level.numSharpBoundariesA = count(kSharpBoundaryA);
