@@ -331,8 +331,8 @@ void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
         return;
     }
     // The edges of F-faces come first: side a is the F-face, from whose corner to the next the edge
-    // has its number and its F-vertices; side b is an E-face.  Then come spokes, with E-faces alone.
-    // Of all these sides in E-faces only side b of a spoke can be the last edge of its face.
+    // has its number and its F-vertices; side b is an E-face.  Then come spokes, with E-faces
+    // alone. Of all these sides in E-faces only side b of a spoke can be the last edge of its face.
     Index const beginSpokes = std::clamp(_p.parent->numCorners, begin, end);
     Index const *const pVerts = _p.edgeVerts.data();
     Index const *const pFaces = _p.edgeFaces.data();
