@@ -3,7 +3,6 @@
 
 #include "baseLevel.h"
 #include "sharpFeatures.h"
-#include "topologyRefinement.h"
 #include "vertexFan.h"
 
 namespace OpenSubdivHex::FarExt::internal {

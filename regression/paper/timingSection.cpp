@@ -10,6 +10,7 @@
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "tutorials/common/point.h"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -22,16 +23,6 @@
 namespace OpenSubdivHex::Regression {
 
 namespace {
-
-struct Position {
-    void Clear() { x = y = z = 0; }
-    void AddWithWeight(Position const &other, float weight) {
-        x += weight * other.x;
-        y += weight * other.y;
-        z += weight * other.z;
-    }
-    float x, y, z;
-};
 
 double median(std::vector<double> values) {
     auto const middle = values.begin() + std::ptrdiff_t(values.size() / 2);
@@ -90,9 +81,9 @@ public:
 private:
     std::unique_ptr<FarExt::TopologyRefiner> _refiner;
     bool _isGeneral;
-    std::vector<Position> _base;
+    std::vector<Tutorials::Point> _base;
     std::vector<float> _restPositions;
-    std::vector<std::vector<Position>> _positions;
+    std::vector<std::vector<Tutorials::Point>> _positions;
 };
 
 /// One thread while it lives, since not all steps can use several.
