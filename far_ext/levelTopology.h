@@ -33,10 +33,13 @@ struct SharpVertex {
 
 /// \brief A corner whose F-vertex is drawn towards its vertex, because that has many faces between
 /// two sharp edges: see ComputeSectorShrink in mask.h.
+///
+/// Edges whose sharpness is below 1 take part in proportion to it: the corner has an entry for each
+/// set of edges that are at least as sharp as some threshold in (0, 1].
 struct SectorCorner {
     Far::Index corner;
     float sectorSize; ///< faces between the sharp edges; a half hexagon counts half
-    float weight;     ///< 1, or less between semi-sharp edges whose sharpness is below 1
+    float weight;     ///< share of the thresholds; the entries of a corner sum to 1 at most
 };
 
 struct FVarLevel;
@@ -123,16 +126,13 @@ struct LevelTopology {
             [](SharpVertex const &sharp, Index vert) { return sharp.vert < vert; });
         return found != sharpVerts.end() && found->vert == v ? &*found : nullptr;
     }
-    /// The entry of a corner in a wide sector, null for others.
-    SectorCorner const *FindSectorCorner(Index corner) const {
-        return FindSectorCorner(corner, corner + 1);
-    }
-    /// The first entry of the corners from \p begin to \p end, null when there is none.
-    SectorCorner const *FindSectorCorner(Index begin, Index end) const {
-        auto const found =
-            std::lower_bound(sectorCorners.begin(), sectorCorners.end(), begin,
-                             [](SectorCorner const &sector, Index c) { return sector.corner < c; });
-        return found != sectorCorners.end() && found->corner < end ? &*found : nullptr;
+    /// The entries of the corners from \p begin to \p end - 1 that lie in wide sectors.
+    OpenSubdiv::Vtr::ConstArray<SectorCorner> GetSectorCorners(Index begin, Index end) const {
+        auto const isBefore = [](SectorCorner const &sector, Index c) { return sector.corner < c; };
+        auto const first =
+            std::lower_bound(sectorCorners.begin(), sectorCorners.end(), begin, isBefore);
+        auto const last = std::lower_bound(first, sectorCorners.end(), end, isBefore);
+        return {sectorCorners.data() + (first - sectorCorners.begin()), int(last - first)};
     }
 
     int depth = 0;

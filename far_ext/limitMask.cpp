@@ -566,10 +566,7 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
         return mask;
     }
     Index const first = topology.faceFirstCorner[face];
-    auto const sector =
-        std::lower_bound(topology.sectorCorners.begin(), topology.sectorCorners.end(), first,
-                         [](SectorCorner const &entry, Index c) { return entry.corner < c; });
-    bool const hasSector = sector != topology.sectorCorners.end() && sector->corner < first + size;
+    bool const hasSector = !topology.GetSectorCorners(first, first + size).empty();
     return hasSector || Crease::IsSharp(diagonal) ? findAfterStep(face) : makePlainFaceMask(size);
 }
 

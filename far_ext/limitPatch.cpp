@@ -127,8 +127,8 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
         patch.faceVerts.push_back(vert);
         // Of the faces further out, only the corners at the neighbours of vertex 0 matter.
         if (isRing || vert < _numComplete) {
-            if (SectorCorner const *sector = _level.FindSectorCorner(corner)) {
-                patch.sectorCorners.push_back({patchFirst + i, sector->sectorSize, sector->weight});
+            for (SectorCorner const &sector : _level.GetSectorCorners(corner, corner + 1)) {
+                patch.sectorCorners.push_back({patchFirst + i, sector.sectorSize, sector.weight});
             }
         }
     }
@@ -258,8 +258,9 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
     for (Index corner = 0; corner < Index(_corners.size()); ++corner) {
         addEdge(corner, _level.faceEdges[_corners[corner]], patch);
     }
-    std::sort(patch.sectorCorners.begin(), patch.sectorCorners.end(),
-              [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
+    std::stable_sort(
+        patch.sectorCorners.begin(), patch.sectorCorners.end(),
+        [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
     addTags(patch);
     addSharpVertices(patch);
     addSignature(patch);

@@ -58,8 +58,10 @@ bool RefinementMask::hasFeatures(Index face) const {
         return false;
     }
     return Sdc::Crease::IsSharp(_level.GetFaceDiagonalSharpness(face)) ||
-           topology.FindSectorCorner(topology.faceFirstCorner[face],
-                                     topology.faceFirstCorner[face + 1]) != nullptr;
+           !topology
+                .GetSectorCorners(topology.faceFirstCorner[face],
+                                  topology.faceFirstCorner[face + 1])
+                .empty();
 }
 
 double const *RefinementMask::featureWeights(Index face, int corner,
@@ -72,32 +74,22 @@ double const *RefinementMask::featureWeights(Index face, int corner,
     if (_interpolation == Interpolation::Varying) {
         return smooth;
     }
-    if (float const sharpness = _level.GetFaceDiagonalSharpness(face);
-        Sdc::Crease::IsSharp(sharpness)) {
-        double const *sharp = _diagonalWeights[corner];
-        if (sharpness >= 1) {
-            return sharp;
-        }
-        double const weight = sharpness;
-        scratch.resize(size);
-        for (int j = 0; j < size; ++j) {
-            scratch[j] = weight * sharp[j] + (1 - weight) * smooth[j];
-        }
-        return scratch.data();
+    double const sharp = std::min(1.0f, _level.GetFaceDiagonalSharpness(face));
+    double towards = 0;
+    Index const levelCorner = _level.GetFaceFirstCorner(face) + corner;
+    for (SectorCorner const &sector :
+         _level.GetTopology().GetSectorCorners(levelCorner, levelCorner + 1)) {
+        towards += sector.weight * (1 - ComputeSectorShrink(_faceMask, sector.sectorSize));
     }
-    SectorCorner const *sector =
-        _level.GetTopology().FindSectorCorner(_level.GetFaceFirstCorner(face) + corner);
-    if (sector) {
-        double const towards =
-            sector->weight * (1 - ComputeSectorShrink(_faceMask, sector->sectorSize));
-        scratch.assign(smooth, smooth + size);
-        for (double &weight : scratch) {
-            weight *= 1 - towards;
-        }
-        scratch[corner] += towards;
-        return scratch.data();
+    scratch.assign(smooth, smooth + size);
+    for (double &weight : scratch) {
+        weight *= 1 - sharp - towards;
     }
-    return smooth;
+    scratch[corner] += towards;
+    for (int j = 0; j < size && sharp > 0; ++j) {
+        scratch[j] += sharp * _diagonalWeights[corner][j];
+    }
+    return scratch.data();
 }
 
 auto RefinementMask::sharpMask(SharpVertex const &sharp) -> VertexMask {

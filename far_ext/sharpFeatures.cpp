@@ -134,10 +134,20 @@ SharpVertex blend(SharpVertex const &parent, SharpVertex const &child, double pa
     return result;
 }
 
-// Adds the corners of wide sectors between two sharp edges of a fan.
-void addSectorCorners(FanItems &fan, std::vector<SectorCorner> &result) {
+// Thresholds of sharpness, from lower up to upper, between which the same edges are sharp.
+struct SharpnessLayer {
+    float lower;
+    float upper;
+
+    bool IsSharp(float sharpness) const { return sharpness >= upper; }
+};
+
+// Adds the corners of wide sectors between two edges of a fan that are sharp in the layer.
+void addSectorCorners(LevelTopology const &level, SharpnessLayer layer, FanItems &fan,
+                      std::vector<SectorCorner> &result) {
     std::vector<RingItem> &items = fan.items;
-    auto start = std::find_if(items.begin(), items.end(), isSharp);
+    auto const isSharpInLayer = [&](RingItem const &item) { return layer.IsSharp(item.sharpness); };
+    auto start = std::find_if(items.begin(), items.end(), isSharpInLayer);
     if (fan.isClosed && start != items.end()) {
         // All around, from a sharp edge back to it.
         std::rotate(items.begin(), start, items.end());
@@ -145,21 +155,49 @@ void addSectorCorners(FanItems &fan, std::vector<SectorCorner> &result) {
         start = items.begin();
     }
     while (start != items.end()) {
-        auto const end = std::find_if(start + 1, items.end(), isSharp);
+        auto const end = std::find_if(start + 1, items.end(), isSharpInLayer);
         if (end == items.end()) {
             return;
         }
-        auto const numFaces =
-            std::count_if(start, end, [](RingItem const &item) { return item.isFace; });
-        float const size =
-            float(numFaces) - 0.5f * float(start->isLong) - 0.5f * float(end->isLong);
-        float const weight = std::min({1.0f, start->sharpness, end->sharpness});
+        float size = 0;
+        for (auto item = start; item != end; ++item) {
+            if (item->isFace) {
+                size += item->isHalf ? 0.5f : 1.0f;
+            }
+        }
+        Index lastCorner = Far::INDEX_INVALID;
         for (auto item = start; item != end && size >= kMinShrunkSector; ++item) {
-            if (item->isFace && !item->isHalf) {
-                result.push_back({item->corner, size, weight});
+            // The halves beside a diagonal that is less sharp are one corner.
+            if (!item->isFace || item->corner == lastCorner || level.IsHalfFace(item->face)) {
+                continue;
+            }
+            lastCorner = item->corner;
+            float const lower = std::max(layer.lower, level.GetDiagonalSharpness(item->face));
+            if (lower < layer.upper) {
+                result.push_back({item->corner, size, layer.upper - lower});
             }
         }
         start = end;
+    }
+}
+
+// Adds the corners of wide sectors at a vertex where sharp edges meet.
+void addSectorCorners(LevelTopology const &level, Index vert, SharpEdges const &edges,
+                      std::vector<SectorCorner> &result) {
+    std::vector<float> sharpness;
+    for (float value : edges.sharpness) {
+        sharpness.push_back(std::min(1.0f, value));
+    }
+    std::sort(sharpness.begin(), sharpness.end());
+    float lower = 0;
+    // The sharpest edge of all is alone in its layer.
+    for (int i = 0; i + 1 < int(sharpness.size()); ++i) {
+        if (sharpness[i] > lower) {
+            SharpnessLayer const layer = {lower, sharpness[i]};
+            ForEachFanItems(level, vert,
+                            [&](FanItems &fan) { addSectorCorners(level, layer, fan, result); });
+            lower = layer.upper;
+        }
     }
 }
 
@@ -174,10 +212,7 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
         int const numFaces = level.vertFirstFace[vert + 1] - level.vertFirstFace[vert];
         float const vertSharpness = level.GetVertexSharpness(vert);
         SharpEdges const edges = gatherSharpEdges(level, vert);
-        if (edges.GetSize() >= 2) {
-            ForEachFanItems(level, vert,
-                            [&](FanItems &fan) { addSectorCorners(fan, level.sectorCorners); });
-        }
+        addSectorCorners(level, vert, edges, level.sectorCorners);
         Crease::Rule const rule = creasing.DetermineVertexVertexRule(vertSharpness, edges.GetSize(),
                                                                      edges.sharpness.data());
         SharpVertex mask = maskOfRule(creasing, rule, vert, numFaces, edges, edges.sharpness);
@@ -200,8 +235,9 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
             level.sharpVerts.push_back(mask);
         }
     }
-    std::sort(level.sectorCorners.begin(), level.sectorCorners.end(),
-              [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
+    std::stable_sort(
+        level.sectorCorners.begin(), level.sectorCorners.end(),
+        [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
 }
 
 namespace {

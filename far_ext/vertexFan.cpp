@@ -8,8 +8,12 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 
-RingItem faceItem(Index corner, bool isHalf, int half) {
-    return {true, corner, isHalf, half, Far::INDEX_INVALID, false, 0};
+RingItem faceItem(Index face, Index corner, bool isHalf, int half) {
+    return {true, face, corner, isHalf, half, Far::INDEX_INVALID, false, 0};
+}
+
+RingItem lineItem(Index neighbor, bool isLong, float sharpness) {
+    return {false, Far::INDEX_INVALID, Far::INDEX_INVALID, false, -1, neighbor, isLong, sharpness};
 }
 
 RingItem edgeItem(LevelTopology const &level, Index edge, Index neighbor) {
@@ -18,8 +22,7 @@ RingItem edgeItem(LevelTopology const &level, Index edge, Index neighbor) {
     if (kind < 0) {
         sharpness = kind == kFreeBoundary ? 0 : Crease::SHARPNESS_INFINITE;
     }
-    bool const isLong = kind == kSharpBoundaryB;
-    return {false, Far::INDEX_INVALID, false, -1, neighbor, isLong, sharpness};
+    return lineItem(neighbor, kind == kSharpBoundaryB, sharpness);
 }
 
 } // namespace
@@ -42,13 +45,12 @@ void GatherFanItems(LevelTopology const &level, VertexFan const &fan, FanItems &
             // Seen from the start of the diagonal, half 1 comes first, from its end half 0.
             int const half = local == kDiagonalStart ? 1 : 0;
             Index const end = corner - local + kDiagonalStart + kDiagonalEnd - local;
-            items.push_back(faceItem(corner, true, half));
-            items.push_back(
-                {false, Far::INDEX_INVALID, false, -1, level.faceVerts[end], true, diagonal});
-            items.push_back(faceItem(corner, true, 1 - half));
+            items.push_back(faceItem(face, corner, true, half));
+            items.push_back(lineItem(level.faceVerts[end], true, diagonal));
+            items.push_back(faceItem(face, corner, true, 1 - half));
         } else {
             bool const isHalf = level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
-            items.push_back(faceItem(corner, isHalf, -1));
+            items.push_back(faceItem(face, corner, isHalf, -1));
         }
         if (i + 1 == fan.end && !fan.isClosed) {
             items.push_back(edgeItem(level, inEdge, level.faceVerts[prev]));

@@ -40,6 +40,7 @@ void ForEachFan(LevelTopology const &level, Far::Index vert, FUNCTION function) 
 /// \brief What is met on the way around a vertex: its faces, and between them edges and diagonals.
 struct RingItem {
     bool isFace;
+    Far::Index face;     ///< of a face
     Far::Index corner;   ///< of a face: where the vertex is in it
     bool isHalf;         ///< a half face, or one side of a sharp diagonal
     int half;            ///< of a hexagon with a sharp diagonal, as in kHexagonHalves; else -1

@@ -681,6 +681,40 @@ TEST(Property, WideSectorsConvergeAsTheirBorder) {
 
 namespace {
 
+/// The shape with \p excess above the whole part of all finite sharpness.
+Shape withExcess(Shape shape, float excess) {
+    for (std::vector<float> *tags : {&shape.creaseSharpness, &shape.cornerSharpness}) {
+        for (float &sharpness : *tags) {
+            if (sharpness < kInfinite) {
+                sharpness = std::floor(sharpness) + excess;
+            }
+        }
+    }
+    return shape;
+}
+
+} // namespace
+
+TEST(Property, FadingCreasesDoNotPop) {
+    // The limit from above is what is there without the rest of sharpness.  Not so with
+    // CREASE_CHAIKIN: Sdc::Crease takes the mean of those edges at a vertex that are sharp at all.
+    constexpr float kExcess = 1e-4f;
+    forEachFeature([&](Shape const &shape, Sdc::Options options) {
+        if (options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN) {
+            return;
+        }
+        auto const before =
+            refinePositions(withExcess(shape, kExcess), ReferenceMask::Smooth, 3, options);
+        auto const after = refinePositions(withExcess(shape, 0), ReferenceMask::Smooth, 3, options);
+        for (std::size_t level = 0; level < before.size(); ++level) {
+            ASSERT_LE((before[level] - after[level]).cwiseAbs().maxCoeff(), 5 * kExcess)
+                << "level " << level;
+        }
+    });
+}
+
+namespace {
+
 void expectChartsApart(Shape const &shape, int channel, int numLevels, Sdc::Options options) {
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, numLevels, options);
     TopologyLevel const &base = refiner->GetLevel(0);

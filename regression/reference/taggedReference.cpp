@@ -689,46 +689,70 @@ double sectorFactor(ReferenceMask mask, double size) {
     return mask == ReferenceMask::Average ? 1 / (0.98 + 0.305 * c) : 1 / (1.31 + 0.515 * c);
 }
 
-Pulls findPulls(TaggedMesh const &mesh, ReferenceMask mask) {
-    Pulls pulls;
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-        if (sharpEdges(mesh, int(v)).size() < 2) {
+/// How sharp the line is that has the face on one side only; 0 for whole faces.
+double lineSharpness(TaggedMesh const &mesh, Face const &face) {
+    return face.isHalf ? double(mesh.edges[face.edges[0]].sharpness) : 0;
+}
+
+/// Adds \p share of the pulls at a vertex as if all edges of less than \p threshold were smooth.
+void addPulls(TaggedMesh const &mesh, ReferenceMask mask, int vertex, double threshold,
+              double share, Pulls &pulls) {
+    for (Side start : mesh.vertices[vertex].corners) {
+        Face const &startFace = mesh.faces[start.face];
+        if (mesh.edges[startFace.edges[start.place]].sharpness < threshold) {
             continue;
         }
-        for (Side start : mesh.vertices[v].corners) {
-            Face const &startFace = mesh.faces[start.face];
-            Edge const &startEdge = mesh.edges[startFace.edges[start.place]];
-            if (startEdge.sharpness <= 0) {
-                continue;
+        // Counter-clockwise from one sharp edge to the next.
+        std::vector<Side> corners;
+        double size = 0;
+        Side corner = start;
+        Edge const *edge = nullptr;
+        while (true) {
+            Face const &face = mesh.faces[corner.face];
+            corners.push_back(corner);
+            size += face.isHalf && corner.place < 2 ? 0.5 : 1;
+            int const before = previousPlace(face, corner.place);
+            edge = &mesh.edges[face.edges[before]];
+            if (edge->sharpness >= threshold || edge->sides.size() == 1) {
+                break;
             }
-            // Counter-clockwise from one sharp edge to the next.
-            std::vector<Side> corners;
-            double size = 0;
-            Side corner = start;
-            Edge const *edge = nullptr;
-            while (true) {
-                Face const &face = mesh.faces[corner.face];
-                corners.push_back(corner);
-                size += face.isHalf && corner.place < 2 ? 0.5 : 1;
-                int const before = previousPlace(face, corner.place);
-                edge = &mesh.edges[face.edges[before]];
-                if (edge->sharpness > 0 || edge->sides.size() == 1) {
-                    break;
-                }
-                bool const isFirst =
-                    edge->sides[0].face == corner.face && edge->sides[0].place == before;
-                corner = edge->sides[isFirst ? 1 : 0];
+            bool const isFirst =
+                edge->sides[0].face == corner.face && edge->sides[0].place == before;
+            corner = edge->sides[isFirst ? 1 : 0];
+        }
+        if (edge->sharpness < threshold || size < 3) {
+            continue;
+        }
+        for (Side pulled : corners) {
+            // Halves are one face while their line is smooth.
+            if (lineSharpness(mesh, mesh.faces[pulled.face]) < threshold) {
+                pulls[{pulled.face, pulled.place}] += share * (1 - sectorFactor(mask, size));
             }
-            if (edge->sharpness <= 0 || size < 3) {
-                continue;
+        }
+    }
+}
+
+/// An edge of sharpness s below 1 is sharp with share s and smooth with share 1 - s, the less sharp
+/// edges whenever a sharper one is.
+Pulls findPulls(TaggedMesh const &mesh, ReferenceMask mask) {
+    std::set<double> thresholds{1};
+    for (Edge const &edge : mesh.edges) {
+        if (edge.sharpness > 0 && edge.sharpness < 1) {
+            thresholds.insert(edge.sharpness);
+        }
+    }
+    Pulls pulls;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        std::vector<SharpEdge> const edges = sharpEdges(mesh, int(v));
+        double last = 0;
+        for (double threshold : thresholds) {
+            auto const numSharp =
+                std::count_if(edges.begin(), edges.end(),
+                              [&](SharpEdge const &edge) { return edge.sharpness >= threshold; });
+            if (numSharp >= 2) {
+                addPulls(mesh, mask, int(v), threshold, threshold - last, pulls);
             }
-            double const sharp =
-                std::min({1.0, double(startEdge.sharpness), double(edge->sharpness)});
-            for (Side pulled : corners) {
-                if (!mesh.faces[pulled.face].isHalf) {
-                    pulls[{pulled.face, pulled.place}] = sharp * (1 - sectorFactor(mask, size));
-                }
-            }
+            last = threshold;
         }
     }
     return pulls;
@@ -749,12 +773,10 @@ public:
             if (origin.face < 0) {
                 continue;
             }
-            Point point = cornerPoint({origin.face, origin.place});
             auto const pull = pulls.find({origin.face, origin.place});
-            if (pull != pulls.end()) {
-                point += pull->second * (_values.row(origin.vertex) - point);
-            }
-            _result.row(Eigen::Index(v)) = point;
+            double const towards = pull != pulls.end() ? pull->second : 0;
+            _result.row(Eigen::Index(v)) =
+                cornerPoint({origin.face, origin.place}, towards, _values.row(origin.vertex));
         }
         for (std::size_t v = 0; v < _mesh.vertices.size(); ++v) {
             if (_child.vVertices[v] >= 0) {
@@ -778,13 +800,15 @@ private:
         return points;
     }
 
-    Point cornerPoint(Side corner) const {
+    /// The share \p towards of the smooth mask is replaced by \p vertex.
+    Point cornerPoint(Side corner, double towards, Point const &vertex) const {
         Face const &face = _mesh.faces[corner.face];
         if (_child.madeBy == ReferenceScheme::TriHex) {
             return edgePoint(pointsOf(face.vertices), corner.place);
         }
         if (!face.isHalf) {
-            return maskPoint(pointsOf(face.vertices), corner.place);
+            return towards * vertex +
+                   (1 - towards) * maskPoint(pointsOf(face.vertices), corner.place);
         }
         Edge const &line = _mesh.edges[face.edges[0]];
         if (line.sides.size() == 1) {
@@ -799,7 +823,8 @@ private:
         int const places[] = {0, 3, 4, 5};
         Point const smooth = maskPoint(hexagon, places[corner.place]);
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
-        return sharp * halfPoint(face, corner.place) + (1 - sharp) * smooth;
+        return sharp * halfPoint(face, corner.place) + towards * vertex +
+               (1 - sharp - towards) * smooth;
     }
 
     /// Beside the edge that starts at a corner.
