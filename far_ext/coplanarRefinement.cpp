@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fvarLevel.h"
+#include "parallel.h"
 #include "polygonRefinement.h"
 #include "primvarRefiner.h"
 #include "sizeChecker.h"
@@ -79,16 +80,15 @@ std::vector<unsigned char> findFlatEdges(TopologyLevel const &level,
                                          std::vector<Vector> const &positions,
                                          double angleTolerance) {
     std::vector<Vector> normals(level.GetNumFaces());
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        normals[face] = faceNormal(level, face, positions);
-    }
+    internal::ParallelFor(level.GetNumFaces(),
+                          [&](Index face) { normals[face] = faceNormal(level, face, positions); });
     std::vector<unsigned char> result(level.GetNumEdges());
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+    internal::ParallelFor(level.GetNumEdges(), [&](Index edge) {
         if (!level.IsEdgeBoundary(edge) && !hasFeature(level, edge)) {
             auto const faces = level.GetEdgeFaces(edge);
             result[edge] = isParallel(normals[faces[0]], normals[faces[1]], angleTolerance);
         }
-    }
+    });
     return result;
 }
 
