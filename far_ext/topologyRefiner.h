@@ -103,8 +103,10 @@ public:
     /// \param restPositions  x, y, z of the GetLevel(0).GetNumVertices() vertices of level 0
     /// \return  false with StatusCode::InvalidArgument for a negative level, an angle that is not
     ///          between 0 and 180, a coordinate that is not finite (its vertex is named) or a null
-    ///          pointer; Unsupported for other schemes than Hexagonal; the levels are then as
-    ///          before.  False with TooLarge as RefineUniform; then the base alone is left.
+    ///          pointer; Unsupported for other schemes than Hexagonal; TooLarge, as RefineUniform,
+    ///          for sizes that are too large whichever edges are flat; the levels are then as
+    ///          before.  Other sizes are known only once the level before is made: False with
+    ///          TooLarge, and the base alone is left.
     bool RefineCoplanar(float const *restPositions, CoplanarOptions options,
                         Status *status = nullptr);
     bool RefineCoplanar(double const *restPositions, CoplanarOptions options,
