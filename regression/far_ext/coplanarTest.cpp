@@ -5,6 +5,7 @@
 
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
 
 #include <gtest/gtest.h>
 
@@ -23,10 +24,6 @@ namespace {
 
 using CoplanarOptions = TopologyRefiner::CoplanarOptions;
 using Counts = std::array<int, 3>;
-
-constexpr Sdc::Options::VtxBoundaryInterpolation kBoundaries[] = {
-    Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
-    Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
 
 CoplanarOptions makeOptions(int level, double angleTolerance, bool closeGaps = true) {
     CoplanarOptions options(level);
