@@ -20,7 +20,8 @@ class SizeChecker;
 /// \brief The topology of a mesh and of its hexagonal refinements, level by level.
 ///
 /// Made by TopologyRefinerFactory, which copies what it needs: nothing refers to the base refiner
-/// or descriptor afterwards.  All queries are const and safe to call from several threads.
+/// or descriptor afterwards.  All queries are const and safe to call from several threads; indices,
+/// channels and levels are not checked, as in Far.
 class TopologyRefiner {
 public:
     /// Takes the base level.  Use TopologyRefinerFactory, which validates it.
@@ -32,7 +33,7 @@ public:
     TopologyRefiner &operator=(TopologyRefiner const &) = delete;
 
     SchemeOptions GetHexSchemeOptions() const { return _schemeOptions; }
-    /// The boundary and crease options of the base mesh.
+    /// The boundary, crease and face-varying options of the base mesh.
     Sdc::Options GetSchemeOptions() const { return _sdcOptions; }
 
     int GetNumLevels() const { return int(_levels.size()); }
@@ -57,6 +58,7 @@ public:
     int GetNumFacesTotal() const;
     int GetNumFaceVerticesTotal() const;
 
+    /// \p level is 0 ... GetMaxLevel().
     TopologyLevel const &GetLevel(int level) const { return _levels[level]; }
 
     /// \brief Options of RefineUniform, as Far::TopologyRefiner::UniformOptions.
@@ -76,7 +78,8 @@ public:
     ///          are known only once it is made: there the base alone is left.
     bool RefineUniform(UniformOptions options, Status *status = nullptr);
 
-    /// The options of the last successful RefineUniform.
+    /// The options of the last successful RefineUniform; of level 0 after RefineCoplanar and
+    /// Unrefine.
     UniformOptions GetUniformOptions() const { return _uniformOptions; }
 
     /// \brief Options of RefineCoplanar.
