@@ -12,11 +12,11 @@ namespace {
 
 using Index = Far::Index;
 using LocalIndex = Far::LocalIndex;
+using EdgeSidesArray = OpenSubdiv::Vtr::ConstArray<EdgeSides>;
 
 class BaseLevelBuilder {
 public:
-    BaseLevelBuilder(std::vector<EdgeSides> const &edges, LevelTopology &level)
-        : _edges(edges), _level(level) {}
+    BaseLevelBuilder(EdgeSidesArray edges, LevelTopology &level) : _edges(edges), _level(level) {}
 
     void Build() {
         buildFacesOfCorners();
@@ -51,26 +51,25 @@ private:
         return _level.GetNextCorner(_faceOfCorner[other], other);
     }
 
-    std::vector<EdgeSides> const &_edges;
+    EdgeSidesArray _edges;
     LevelTopology &_level;
-    std::vector<Index> _faceOfCorner;
-    std::vector<char> _isPlaced; // corner in a fan; not bits, which corners would share
+    Buffer<Index> _faceOfCorner;
 };
 
 void BaseLevelBuilder::buildFacesOfCorners() {
-    _faceOfCorner.resize(_level.numCorners);
+    _faceOfCorner.Resize(_level.numCorners);
     ParallelFor(_level.numFaces, [this](Index face) {
-        std::fill(_faceOfCorner.begin() + _level.faceFirstCorner[face],
-                  _faceOfCorner.begin() + _level.faceFirstCorner[face + 1], face);
+        std::fill(_faceOfCorner.data() + _level.faceFirstCorner[face],
+                  _faceOfCorner.data() + _level.faceFirstCorner[face + 1], face);
     });
 }
 
 void BaseLevelBuilder::buildEdges() {
-    _level.numEdges = Index(_edges.size());
+    _level.numEdges = _edges.size();
     _level.faceEdges.Resize(_level.numCorners);
-    _level.edgeVerts.Resize(2 * _edges.size());
-    _level.edgeFaces.Resize(2 * _edges.size());
-    _level.edgeFaceLocals.Resize(2 * _edges.size());
+    _level.edgeVerts.Resize(2 * std::size_t(_edges.size()));
+    _level.edgeFaces.Resize(2 * std::size_t(_edges.size()));
+    _level.edgeFaceLocals.Resize(2 * std::size_t(_edges.size()));
     ParallelFor(_level.numEdges, [this](Index edge) {
         std::size_t const k = 2 * std::size_t(edge);
         Index const corner = _edges[edge].corners[0];
@@ -139,12 +138,12 @@ void BaseLevelBuilder::buildVertices() {
     }
 
     // The corners of each vertex, ascending.
-    std::vector<Index> cornersOfVerts(_level.numCorners);
+    Buffer<Index> cornersOfVerts;
+    cornersOfVerts.Resize(_level.numCorners);
     std::vector<Index> next(firstFace, firstFace + _level.numVertices);
     for (Index corner = 0; corner < _level.numCorners; ++corner) {
         cornersOfVerts[next[_level.faceVerts[corner]]++] = corner;
     }
-    _isPlaced.assign(_level.numCorners, false);
     ParallelFor(_level.numVertices, [&](Index vert) {
         fillVertex(vert, cornersOfVerts.data() + firstFace[vert],
                    firstFace[vert + 1] - firstFace[vert]);
@@ -162,56 +161,76 @@ void BaseLevelBuilder::fillVertex(Index vert, Index const *corners, Index numCor
         _level.vertEdges[nextEdge] = edge;
         _level.vertEdgeLocals[nextEdge++] = LocalIndex(isStartOfSide == isSideA ? 0 : 1);
     };
+    // Whether the fan is closed; else only the faces from the corner on were added.
     auto addFan = [&](Index startCorner) {
         Index corner = startCorner;
         for (;;) {
-            _isPlaced[corner] = true;
             _level.vertFaces[nextFace] = _faceOfCorner[corner];
             _level.vertFaceLocals[nextFace++] = local(corner);
             addEdge(_level.faceEdges[corner], true, corner);
             Index const next = nextAround(corner);
             if (next == startCorner) {
-                return;
+                return true;
             }
             if (next < 0) {
                 Index const prev = _level.GetPrevCorner(_faceOfCorner[corner], corner);
                 addEdge(_level.faceEdges[prev], false, prev);
-                return;
+                return false;
             }
             corner = next;
         }
     };
-    for (Index k = 0; k < numCorners; ++k) {
-        Index const corner = corners[k];
-        if (_isPlaced[corner]) {
+    auto isPlaced = [&](Index corner) {
+        for (Index i = _level.vertFirstFace[vert]; i < nextFace; ++i) {
+            if (_level.GetVertexCorner(i) == corner) {
+                return true;
+            }
+        }
+        return false;
+    };
+    for (Index k = 0; nextFace < _level.vertFirstFace[vert] + numCorners; ++k) {
+        Index start = corners[k];
+        if (isPlaced(start)) {
             continue;
         }
-        Index start = corner;
-        for (Index prev = prevAround(start); prev >= 0 && prev != corner;
-             prev = prevAround(start)) {
-            start = prev;
+        // A closed fan starts at the corner, an open one at its first face.
+        Index const firstFace = nextFace;
+        Index const firstEdge = nextEdge;
+        if (addFan(start)) {
+            continue;
         }
-        // A closed fan comes back to the corner, and starts there.
-        addFan(prevAround(start) < 0 ? start : corner);
+        if (Index prev = prevAround(start); prev >= 0) {
+            for (; prev >= 0; prev = prevAround(start)) {
+                start = prev;
+            }
+            nextFace = firstFace;
+            nextEdge = firstEdge;
+            addFan(start);
+        }
     }
 }
 
 } // namespace
 
-void BuildBaseLevel(std::vector<EdgeSides> const &edges, LevelTopology &level) {
+void BuildBaseLevel(OpenSubdiv::Vtr::ConstArray<EdgeSides> edges, LevelTopology &level) {
     level.hasFullTopology = true;
     level.isHexagonal = false;
+    FindFaceSizes(level);
+    BaseLevelBuilder(edges, level).Build();
+}
+
+void FindFaceSizes(LevelTopology &level) {
+    auto const getSize = [&](Index face) {
+        return level.faceFirstCorner[face + 1] - level.faceFirstCorner[face];
+    };
+    std::vector<Index> const changes = ParallelSelect(level.numFaces, [&](Index face) {
+        return face == 0 || getSize(face) != getSize(face - 1);
+    });
     std::set<Index> sizes;
-    Index lastSize = 0;
-    for (Index face = 0; face < level.numFaces; ++face) {
-        Index const size = level.faceFirstCorner[face + 1] - level.faceFirstCorner[face];
-        if (size != lastSize) {
-            sizes.insert(size);
-            lastSize = size;
-        }
+    for (Index face : changes) {
+        sizes.insert(getSize(face));
     }
     level.faceSizes.assign(sizes.begin(), sizes.end());
-    BaseLevelBuilder(edges, level).Build();
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

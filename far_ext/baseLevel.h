@@ -18,7 +18,10 @@ struct EdgeSides {
 /// Every corner is a side of exactly one edge; a B boundary is edge 0 of its face.  The faces of a
 /// vertex are joined to fans across interior edges; edges that are joined nowhere else may share
 /// both vertices.
-void BuildBaseLevel(std::vector<EdgeSides> const &edges, LevelTopology &level);
+void BuildBaseLevel(OpenSubdiv::Vtr::ConstArray<EdgeSides> edges, LevelTopology &level);
+
+/// \brief Finds the sizes of the faces of \p level that occur.
+void FindFaceSizes(LevelTopology &level);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fvarLevel.h"
+#include "parallel.h"
 #include "polygonRefinement.h"
 #include "primvarRefiner.h"
 #include "sizeChecker.h"
@@ -79,16 +80,15 @@ std::vector<unsigned char> findFlatEdges(TopologyLevel const &level,
                                          std::vector<Vector> const &positions,
                                          double angleTolerance) {
     std::vector<Vector> normals(level.GetNumFaces());
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        normals[face] = faceNormal(level, face, positions);
-    }
+    internal::ParallelFor(level.GetNumFaces(),
+                          [&](Index face) { normals[face] = faceNormal(level, face, positions); });
     std::vector<unsigned char> result(level.GetNumEdges());
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+    internal::ParallelFor(level.GetNumEdges(), [&](Index edge) {
         if (!level.IsEdgeBoundary(edge) && !hasFeature(level, edge)) {
             auto const faces = level.GetEdgeFaces(edge);
             result[edge] = isParallel(normals[faces[0]], normals[faces[1]], angleTolerance);
         }
-    }
+    });
     return result;
 }
 
@@ -111,16 +111,41 @@ Status checkArguments(bool hasPositions, double angleTolerance, SchemeOptions sc
     return Status();
 }
 
-// On a closed mesh every edge makes four edges at least.
+// The least sizes that the child of a level of the least \p parent sizes has, whichever edges are
+// flat: those make no fewer edges and faces than others, but V-vertices may all be missing.  Where
+// gaps stay open, all edges but those of the F-faces may become boundaries, which make the fewest
+// edges later.
+internal::LevelSizes getLeastChildSizes(internal::LevelSizes const &parent, bool closeGaps,
+                                        std::int64_t numDigons) {
+    internal::LevelSizes sizes = internal::GetChildSizes(parent);
+    sizes.vertices = parent.corners;
+    // But for digons, where two quads share an edge.
+    sizes.edges -= numDigons;
+    sizes.corners -= 2 * numDigons;
+    if (!closeGaps) {
+        std::int64_t const interiorEdges = parent.corners - parent.sharpBoundariesB;
+        sizes.freeBoundaries =
+            sizes.edges - interiorEdges - sizes.sharpBoundariesA - sizes.sharpBoundariesB;
+        sizes.corners = sizes.edges + interiorEdges;
+    }
+    return sizes;
+}
+
 Status checkSizes(internal::LevelTopology const &base,
                   TopologyRefiner::CoplanarOptions const &options) {
-    internal::LevelSizes sizes = {};
+    // A vertex with two faces makes a digon in one level, or in none: most edges are missing then
+    // when all do in the first.
+    std::int64_t numDigons = 0;
+    for (Index vert = 0; vert < base.numVertices; ++vert) {
+        internal::ForEachFan(base, vert, [&](internal::VertexFan const &fan) {
+            numDigons += fan.isClosed && fan.end - fan.begin == 2 ? 1 : 0;
+        });
+    }
+    internal::LevelSizes sizes = internal::GetSizes(base);
     internal::SizeChecker checker(sizes, " or more");
     Status status;
-    sizes.edges = base.boundaryEdges.empty() && options.closeGaps ? base.numEdges : 0;
-    for (int level = 1; level <= options.refinementLevel && sizes.edges > 0 && status.IsOk();
-         ++level) {
-        sizes.edges *= 4;
+    for (int level = 1; level <= options.refinementLevel && status.IsOk(); ++level) {
+        sizes = getLeastChildSizes(sizes, options.closeGaps, level == 1 ? numDigons : 0);
         status = checker.Add(sizes);
     }
     return status;

@@ -66,7 +66,7 @@ void splitFans(FVarLevel &channel, std::vector<EdgeSides> const &edges) {
     std::copy(valuesOfVertices.begin(), valuesOfVertices.end(), channel.valuesOfVertices.data());
     if (Index(valuesOfVertices.size()) > channel.numValues) {
         level.numVertices = Index(valuesOfVertices.size());
-        BuildBaseLevel(edges, level);
+        BuildBaseLevel({edges.data(), Index(edges.size())}, level);
     }
 }
 
@@ -108,7 +108,7 @@ void BuildFVarLevel(LevelTopology const &mesh, Index numValues,
     std::copy(faceValues.begin(), faceValues.end(), level.faceVerts.data());
     std::vector<Index> meshEdges;
     std::vector<EdgeSides> const edges = cutSeams(mesh, faceValues, meshEdges);
-    BuildBaseLevel(edges, level);
+    BuildBaseLevel({edges.data(), Index(edges.size())}, level);
     splitFans(channel, edges);
 
     // The tags of the mesh; a seam is sharp without one.

@@ -290,7 +290,7 @@ void BuildPatchLevel(LimitPatch const &patch, LevelTopology &level) {
             edgeSharpness.push_back(patch.edgeSharpness[corner]);
         }
     }
-    BuildBaseLevel(edges, level);
+    BuildBaseLevel({edges.data(), Index(edges.size())}, level);
     fillTags(edgeSharpness, level.edgeSharpness);
     fillTags(patch.diagonalSharpness, level.diagonalSharpness);
     fillTags(patch.vertSharpness, level.vertSharpness);

@@ -85,6 +85,21 @@ void ParallelFor(Far::Index count, FUNCTION function) {
     });
 }
 
+/// \brief Adds up what sum(begin, end) gives for the ranges of ParallelForRange.
+///
+/// \return  by range, the sum of those before; then that of all
+template <typename SUM, typename FUNCTION>
+std::vector<SUM> ParallelSums(Far::Index count, FUNCTION sum) {
+    std::vector<SUM> result(std::size_t(GetNumParallelRanges(count)) + 1);
+    ParallelForRange(count, [&](Far::Index begin, Far::Index end) {
+        result[begin / kParallelRange + 1] = sum(begin, end);
+    });
+    for (std::size_t i = 1; i < result.size(); ++i) {
+        result[i] += result[i - 1];
+    }
+    return result;
+}
+
 /// Gathers the i of 0 <= i < count that satisfy predicate(i), ascending, in the same way.
 template <typename PREDICATE>
 std::vector<Far::Index> ParallelSelect(Far::Index count, PREDICATE predicate) {

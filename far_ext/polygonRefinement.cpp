@@ -3,9 +3,9 @@
 
 #include "baseLevel.h"
 #include "fvarLevel.h"
+#include "parallel.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -24,104 +24,88 @@ PolygonRules GetRulesOfChannel(LevelTopology const &mesh, PolygonRules const &ru
     return result;
 }
 
-// The polygons, one after the other, with their edges.
-class PolygonStep::Builder {
-public:
-    // An edge that only one face has will be a boundary of the kind given.
-    Builder(LevelSizes const &sizes, Index numVVertices, BoundaryKind boundaryKind)
-        : _numVVertices(numVVertices),
-          _edges(std::size_t(sizes.edges), EdgeSides{{Far::INDEX_INVALID, boundaryKind}}) {
-        _faceFirstCorner.reserve(std::size_t(sizes.faces) + 1);
-        _faceVerts.reserve(std::size_t(sizes.corners));
-    }
+namespace {
 
-    void BeginFace() { _faceFirstCorner.push_back(Index(_faceVerts.size())); }
-    // Adds a vertex to the face begun last, and the edge from there to the next one.  The first
-    // side of a spoke runs from its V-vertex, as in the hexagonal step; that of another edge is the
-    // first to come.  So both sides are the same in the mesh and in its channels, whose faces come
-    // in another order.
-    void AddCorner(Index vert, Index edge) {
-        EdgeSides &sides = _edges[std::size_t(edge)];
-        bool const isSecond = sides.corners[0] != Far::INDEX_INVALID;
-        sides.corners[isSecond ? 1 : 0] = Index(_faceVerts.size());
-        if (isSecond && vert < _numVVertices) {
-            std::swap(sides.corners[0], sides.corners[1]);
-        }
-        _faceVerts.push_back(vert);
-    }
-    void SetBoundaryKind(Index edge, BoundaryKind kind) {
-        _edges[std::size_t(edge)].corners[1] = kind;
-    }
+// What _endEdges holds before edges are numbered.
+constexpr Index kNoEndEdge = Far::INDEX_INVALID;
+constexpr Index kEndEdge = 0;
+constexpr Index kJoinedEnd = -2; // stays; the edge is that of the digon's other end
 
-    std::vector<EdgeSides> const &GetEdges() const { return _edges; }
+constexpr Index kNoCorner = -1; // of a side of an edge
 
-    void StoreFaces(LevelTopology &level) {
-        BeginFace(); // the end of the last one
-        level.faceFirstCorner.Resize(_faceFirstCorner.size());
-        std::copy(_faceFirstCorner.begin(), _faceFirstCorner.end(), level.faceFirstCorner.data());
-        level.faceVerts.Resize(_faceVerts.size());
-        std::copy(_faceVerts.begin(), _faceVerts.end(), level.faceVerts.data());
-    }
-
-private:
-    Index _numVVertices;
-    std::vector<Index> _faceFirstCorner;
-    std::vector<Index> _faceVerts;
-    std::vector<EdgeSides> _edges;
-};
+} // namespace
 
 PolygonStep::PolygonStep(LevelTopology &parent, PolygonRules rules, Sdc::Options sdcOptions)
     : _parent(parent), _rules(std::move(rules)), _sdcOptions(sdcOptions) {
-    planVertices();
-    planEdges();
-}
-
-bool PolygonStep::isQuad(Index pEdge) const {
-    switch (_rules.scheme) {
-    case SchemeType::Hexagonal:
-        return !_rules.flatEdges.empty() && _rules.flatEdges[std::size_t(pEdge)];
-    case SchemeType::DooSabin:
-        return !_parent.IsBoundary(pEdge);
-    case SchemeType::TriHex:
-        break;
-    }
-    return false;
+    countVertices();
+    findDigons();
+    markEndEdges();
+    countEdges();
+    countSpokes();
+    Counts const &vertices = _vertexCounts.back();
+    Counts const &edges = _edgeCounts.back();
+    _sizes.vertices = vertices.vertices + _parent.numCorners;
+    _sizes.edges = _parent.numCorners + _spokeCounts.back().edges + edges.edges;
+    _sizes.faces = _parent.numFaces + edges.faces + vertices.faces;
+    _sizes.corners = _parent.numCorners + edges.corners + vertices.corners;
+    countBoundaries();
 }
 
 bool PolygonStep::makesEFace(Index pEdge) const {
     return isQuad(pEdge) || (isHexagonal() && !_parent.IsSharpBoundaryB(pEdge));
 }
 
-void PolygonStep::addVFace(Index vVertex, VertexFan const &fan, Index begin, Index count) {
-    _vFaces.push_back({_vFaceCorners.size(), vVertex});
-    for (Index i = 0; i < count; ++i) {
-        Index const k = begin + i < fan.end ? begin + i : begin + i - (fan.end - fan.begin);
-        Index const corner = _parent.GetVertexCorner(k);
-        _vFaceCorners.push_back(corner);
-        if (isTriHex()) {
-            _vFaceCorners.push_back(_parent.GetPrevCorner(_parent.vertFaces[k], corner));
-        }
-    }
-    _sizes.corners += std::int64_t(_vFaceCorners.size() - _vFaces.back().firstCorner) +
-                      (vVertex == Far::INDEX_INVALID ? 0 : 1);
+// None where there are quads all around.
+bool PolygonStep::makesVVertex(Index pVert) const {
+    Index const *const begin = _parent.vertEdges.data() + _parent.vertFirstEdge[pVert];
+    Index const *const end = _parent.vertEdges.data() + _parent.vertFirstEdge[pVert + 1];
+    return isHexagonal() &&
+           (begin == end || !std::all_of(begin, end, [this](Index e) { return isQuad(e); }));
 }
 
-// The V-faces of a fan.
-void PolygonStep::planFan(Index pVert, VertexFan const &fan) {
-    Index const vVertex = _vertChildVerts[std::size_t(pVert)];
-    Index const size = fan.end - fan.begin;
-    if (vVertex == Far::INDEX_INVALID) {
-        if (fan.isClosed && size == 2 && !isTriHex()) {
-            _digons.emplace_back(endAt(_parent.GetVertexCorner(fan.begin)),
-                                 endAt(_parent.GetVertexCorner(fan.begin + 1)));
+// The end of an edge, as a position in _endEdges, at the vertex of the corner where one of its
+// faces begins to run along it.
+std::size_t PolygonStep::findEnd(Index startCorner) const {
+    Index const pEdge = _parent.faceEdges[startCorner];
+    return 2 * std::size_t(pEdge) + (_parent.GetSideCorner(pEdge, 0) == startCorner ? 0 : 1);
+}
+
+BoundaryKind PolygonStep::getBoundaryKind() const {
+    bool const isFree = isHexagonal() || _sdcOptions.GetVtxBoundaryInterpolation() ==
+                                             Sdc::Options::VTX_BOUNDARY_NONE;
+    return isFree ? kFreeBoundary : kSharpBoundaryA;
+}
+
+// Calls addVFace(vFace) for the V-faces of a vertex and addDigon(fan) for the digons in place of
+// them, in order.
+template <typename ADD_VFACE, typename ADD_DIGON>
+void PolygonStep::forEachVFace(Index pVert, bool hasVVertex, ADD_VFACE addVFace,
+                               ADD_DIGON addDigon) const {
+    if (hasVVertex && (_rules.flatEdges.empty() || !_rules.closeGaps)) {
+        return;
+    }
+    ForEachFan(_parent, pVert, [&](VertexFan const &fan) {
+        Index const size = fan.end - fan.begin;
+        if (hasVVertex) {
+            forEachRunOfQuads(fan, [&](Index begin, Index count) {
+                addVFace(VFace{fan, begin, count, hasVVertex});
+            });
+        } else if (fan.isClosed && size == 2 && !isTriHex()) {
+            addDigon(fan);
         } else if (fan.isClosed && _rules.closeGaps) {
-            addVFace(vVertex, fan, fan.begin, size);
+            addVFace(VFace{fan, fan.begin, size, hasVVertex});
         }
-        return;
-    }
-    if (_rules.flatEdges.empty() || !_rules.closeGaps) {
-        return;
-    }
+    });
+}
+
+// Calls function(begin, count) for the maximal runs of count faces with quads between them.
+template <typename FUNCTION>
+void PolygonStep::forEachRunOfQuads(VertexFan const &fan, FUNCTION function) const {
+    Index const size = fan.end - fan.begin;
+    auto const getInEdge = [this](Index k) {
+        Index const corner = _parent.GetVertexCorner(k);
+        return _parent.faceEdges[_parent.GetPrevCorner(_parent.vertFaces[k], corner)];
+    };
     // A run begins with a face that has another edge than a quad's before it: in an open fan, the
     // first.
     Index start = fan.begin;
@@ -131,221 +115,430 @@ void PolygonStep::planFan(Index pVert, VertexFan const &fan) {
     Index count = 1;
     for (Index i = 0; i < size; ++i) {
         Index const k = start + i < fan.end ? start + i : start + i - size;
-        if (isQuad(inEdge(k))) {
+        if (isQuad(getInEdge(k))) {
             ++count;
             continue;
         }
         if (count > 1) {
             Index const begin = start + i - count + 1;
-            addVFace(vVertex, fan, begin < fan.end ? begin : begin - size, count);
+            function(begin < fan.end ? begin : begin - size, count);
         }
         count = 1;
     }
 }
 
-void PolygonStep::planVertices() {
-    _vertChildVerts.assign(std::size_t(_parent.numVertices), Far::INDEX_INVALID);
-    for (Index pVert = 0; pVert < _parent.numVertices && isHexagonal(); ++pVert) {
-        Index const begin = _parent.vertFirstEdge[pVert];
-        Index const end = _parent.vertFirstEdge[pVert + 1];
-        bool const hasQuadsAllAround =
-            begin < end &&
-            std::all_of(_parent.vertEdges.data() + begin, _parent.vertEdges.data() + end,
-                        [this](Index pEdge) { return isQuad(pEdge); });
-        if (!hasQuadsAllAround) {
-            _vertChildVerts[std::size_t(pVert)] = Index(_sizes.vertices++);
-        }
-    }
-    for (Index pVert = 0; pVert < _parent.numVertices; ++pVert) {
-        ForEachFan(_parent, pVert, [&](VertexFan const &fan) { planFan(pVert, fan); });
-    }
-    _sizes.vertices += _parent.numCorners;
-    _sizes.corners += _parent.numCorners;
-    _sizes.faces = std::int64_t(_parent.numFaces) + std::int64_t(_vFaces.size());
-}
-
-// Edges are numbered in this order: those of the F-faces, the spokes, those of the edges.
-void PolygonStep::planEdges() {
-    _sizes.edges = _parent.numCorners;
-    _spokes.assign(std::size_t(_parent.numCorners), Far::INDEX_INVALID);
-    for (Index pFace = 0; pFace < _parent.numFaces && isHexagonal(); ++pFace) {
+// Calls function(corner) for the corners with a spoke.
+template <typename FUNCTION>
+void PolygonStep::forEachSpoke(Index beginFace, Index endFace, FUNCTION function) const {
+    for (Index pFace = beginFace; pFace < endFace && isHexagonal(); ++pFace) {
         Index const end = _parent.faceFirstCorner[pFace + 1];
         for (Index corner = _parent.faceFirstCorner[pFace]; corner < end; ++corner) {
             Index const prev = _parent.GetPrevCorner(pFace, corner);
             if (!isQuad(_parent.faceEdges[corner]) || !isQuad(_parent.faceEdges[prev])) {
-                _spokes[std::size_t(corner)] = Index(_sizes.edges++);
+                function(corner);
             }
         }
     }
-    _endEdges.assign(2 * std::size_t(_parent.numEdges), Far::INDEX_INVALID);
-    if (isTriHex()) {
-        // An edge between two V-faces, or one and a border.
-        for (std::size_t i = 0; i < _vFaceCorners.size(); i += 2) {
-            std::size_t const first = 2 * std::size_t(_parent.faceEdges[_vFaceCorners[i]]);
-            _endEdges[first] = _endEdges[first + 1] = 0;
-        }
-        for (std::size_t first = 0; first < _endEdges.size(); first += 2) {
-            if (_endEdges[first] == 0) {
-                _endEdges[first] = _endEdges[first + 1] = Index(_sizes.edges++);
-            }
-        }
-        return;
-    }
-    for (Index pEdge = 0; pEdge < _parent.numEdges; ++pEdge) {
-        if (!makesEFace(pEdge)) {
-            continue;
-        }
-        ++_sizes.faces;
-        std::size_t const first = 2 * std::size_t(pEdge);
-        bool const isBoundary = _parent.IsBoundary(pEdge);
-        bool const isHexagon = !isBoundary && !isQuad(pEdge);
-        _sizes.corners +=
-            isHexagon ? HexIndexing::kNumEFaceCorners : HexIndexing::kNumBoundaryEFaceCorners;
-        if (!isHexagon) {
-            _endEdges[first] = Index(_sizes.edges++);
-            _endEdges[first + 1] = isBoundary ? Far::INDEX_INVALID : Index(_sizes.edges++);
-        }
-    }
-    joinDigons();
 }
 
-// Two quads that would have a face of two vertices between them share an edge: the one with the
-// higher index goes.
-void PolygonStep::joinDigons() {
+void PolygonStep::countVertices() {
+    _vertexCounts = ParallelSums<Counts>(_parent.numVertices, [this](Index begin, Index end) {
+        Counts counts;
+        for (Index pVert = begin; pVert < end; ++pVert) {
+            bool const hasVVertex = makesVVertex(pVert);
+            counts.vertices += hasVVertex ? 1 : 0;
+            forEachVFace(
+                pVert, hasVVertex,
+                [&](VFace const &vFace) {
+                    ++counts.faces;
+                    counts.corners +=
+                        (isTriHex() ? 2 : 1) * vFace.count + (vFace.hasVVertex ? 1 : 0);
+                },
+                [&](VertexFan const &) { ++counts.digons; });
+        }
+        return counts;
+    });
+}
+
+void PolygonStep::findDigons() {
+    _digons.resize(std::size_t(_vertexCounts.back().digons));
     if (_digons.empty()) {
         return;
     }
-    std::vector<Index> removed;
-    for (auto &[end0, end1] : _digons) {
-        if (_endEdges[end0] > _endEdges[end1]) {
-            std::swap(end0, end1);
+    ParallelForRange(_parent.numVertices, [this](Index begin, Index end) {
+        auto digon = _digons.begin() + _vertexCounts[std::size_t(begin / kParallelRange)].digons;
+        for (Index pVert = begin; pVert < end; ++pVert) {
+            forEachVFace(
+                pVert, makesVVertex(pVert), [](VFace const &) {},
+                [&](VertexFan const &fan) {
+                    auto const [end0, end1] =
+                        std::minmax({findEnd(_parent.GetVertexCorner(fan.begin)),
+                                     findEnd(_parent.GetVertexCorner(fan.begin + 1))});
+                    *digon++ = {end0, end1};
+                });
         }
-        removed.push_back(_endEdges[end1]);
-        _endEdges[end1] = _endEdges[end0];
-    }
-    std::sort(removed.begin(), removed.end());
-    for (Index &edge : _endEdges) {
-        edge -= Index(std::lower_bound(removed.begin(), removed.end(), edge) - removed.begin());
-    }
-    _sizes.edges -= std::int64_t(removed.size());
+    });
+    std::sort(_digons.begin(), _digons.end(),
+              [](Digon const &a, Digon const &b) { return a.joinedEnd < b.joinedEnd; });
 }
 
-// The end of an edge, as a position in _endEdges, at the vertex of the corner where one of its
-// faces begins to run along it.
-std::size_t PolygonStep::endAt(Index startCorner) const {
-    Index const pEdge = _parent.faceEdges[startCorner];
-    return 2 * std::size_t(pEdge) + (_parent.GetSideCorner(pEdge, 0) == startCorner ? 0 : 1);
+void PolygonStep::markEndEdges() {
+    _endEdges.Resize(2 * std::size_t(_parent.numEdges));
+    ParallelFor(_parent.numEdges, [this](Index pEdge) {
+        std::size_t const first = 2 * std::size_t(pEdge);
+        bool const hasFirst = makesEFace(pEdge) && (_parent.IsBoundary(pEdge) || isQuad(pEdge));
+        _endEdges[first] = hasFirst ? kEndEdge : kNoEndEdge;
+        _endEdges[first + 1] = isQuad(pEdge) ? kEndEdge : kNoEndEdge;
+    });
+    for (Digon const &digon : _digons) {
+        _endEdges[digon.joinedEnd] = kJoinedEnd;
+    }
+    if (isTriHex()) {
+        // An edge between two V-faces, or one and a border.
+        ParallelFor(_parent.numVertices, [this](Index pVert) {
+            forEachVFace(
+                pVert, false,
+                [this](VFace const &vFace) {
+                    for (Index k = vFace.fan.begin; k < vFace.fan.end; ++k) {
+                        _endEdges[findEnd(_parent.GetVertexCorner(k))] = kEndEdge;
+                    }
+                },
+                [](VertexFan const &) {});
+        });
+    }
 }
 
-void PolygonStep::buildEFace(Index pEdge, Builder &builder) const {
-    std::size_t const k = 2 * std::size_t(pEdge);
-    auto fVertex = [this](Index corner) { return _parent.GetCornerChildVertex(corner); };
-    auto vVertex = [&](int end) {
-        return _vertChildVerts[std::size_t(_parent.edgeVerts[k + end])];
-    };
-    auto spoke = [this](Index corner) { return _spokes[std::size_t(corner)]; };
-    Index const startA = _parent.GetSideCorner(pEdge, 0);
-    Index const endA = _parent.GetNextCorner(_parent.edgeFaces[k], startA);
-    Index const *const endEdges = _endEdges.data() + k;
-    builder.BeginFace();
-    if (_parent.IsBoundary(pEdge)) {
-        bool const isFree = _parent.edgeFaces[k + 1] == kFreeBoundary;
-        builder.SetBoundaryKind(endEdges[0], isFree ? kFreeBoundary : kSharpBoundaryB);
-        builder.AddCorner(vVertex(0), endEdges[0]);
-        builder.AddCorner(vVertex(1), spoke(endA));
-        builder.AddCorner(fVertex(endA), startA);
-        builder.AddCorner(fVertex(startA), spoke(startA));
-        return;
-    }
-    Index const startB = _parent.GetSideCorner(pEdge, 1);
-    Index const endB = _parent.GetNextCorner(_parent.edgeFaces[k + 1], startB);
-    if (isQuad(pEdge)) {
-        builder.AddCorner(fVertex(endB), startB);
-        builder.AddCorner(fVertex(startB), endEdges[1]);
-        builder.AddCorner(fVertex(endA), startA);
-        builder.AddCorner(fVertex(startA), endEdges[0]);
-        return;
-    }
-    builder.AddCorner(vVertex(0), spoke(endB));
-    builder.AddCorner(fVertex(endB), startB);
-    builder.AddCorner(fVertex(startB), spoke(startB));
-    builder.AddCorner(vVertex(1), spoke(endA));
-    builder.AddCorner(fVertex(endA), startA);
-    builder.AddCorner(fVertex(startA), spoke(startA));
-}
-
-void PolygonStep::buildVFace(VFace const &vFace, std::size_t endCorner, Builder &builder) const {
-    Index const *const corners = _vFaceCorners.data() + vFace.firstCorner;
-    std::size_t const numCorners = endCorner - vFace.firstCorner;
-    auto fVertex = [this](Index corner) { return _parent.GetCornerChildVertex(corner); };
-    auto spoke = [this](Index corner) { return _spokes[std::size_t(corner)]; };
-    auto edgeTo = [&](std::size_t i) {
-        // In tri-hex every other edge is that of an F-face, between the corner before and this one.
-        return isTriHex() && i % 2 == 1 ? corners[i] : _endEdges[endAt(corners[i])];
-    };
-    builder.BeginFace();
-    if (vFace.vVertex == Far::INDEX_INVALID) {
-        for (std::size_t i = 1; i <= numCorners; ++i) {
-            builder.AddCorner(fVertex(corners[i % numCorners]), edgeTo((i + 1) % numCorners));
+void PolygonStep::countEdges() {
+    _edgeCounts = ParallelSums<Counts>(_parent.numEdges, [this](Index begin, Index end) {
+        Counts counts;
+        for (Index pEdge = begin; pEdge < end; ++pEdge) {
+            std::size_t const first = 2 * std::size_t(pEdge);
+            int const numEnds =
+                int(_endEdges[first] == kEndEdge) + int(_endEdges[first + 1] == kEndEdge);
+            counts.edges += isTriHex() ? std::min(numEnds, 1) : numEnds;
+            if (makesEFace(pEdge)) {
+                ++counts.faces;
+                bool const isHexagon = !_parent.IsBoundary(pEdge) && !isQuad(pEdge);
+                counts.corners += isHexagon ? HexIndexing::kNumEFaceCorners
+                                            : HexIndexing::kNumBoundaryEFaceCorners;
+            }
         }
-        return;
+        return counts;
+    });
+}
+
+void PolygonStep::countSpokes() {
+    _spokeCounts = ParallelSums<Counts>(_parent.numFaces, [this](Index begin, Index end) {
+        Counts counts;
+        forEachSpoke(begin, end, [&](Index) { ++counts.edges; });
+        return counts;
+    });
+}
+
+// Every corner is a side of an edge, and a boundary edge lacks one of its two sides.  Of the other
+// boundaries than those of the hexagonal step all are of one kind.
+void PolygonStep::countBoundaries() {
+    std::int64_t const numBoundaries = 2 * _sizes.edges - _sizes.corners;
+    if (isHexagonal()) {
+        LevelSizes const sizes = GetChildSizes(internal::GetSizes(_parent));
+        _sizes.sharpBoundariesA = sizes.sharpBoundariesA;
+        _sizes.sharpBoundariesB = sizes.sharpBoundariesB;
     }
-    builder.AddCorner(vFace.vVertex, spoke(corners[0]));
-    for (std::size_t i = 0; i + 1 < numCorners; ++i) {
-        builder.AddCorner(fVertex(corners[i]), edgeTo(i + 1));
-    }
-    builder.AddCorner(fVertex(corners[numCorners - 1]), spoke(corners[numCorners - 1]));
+    (getBoundaryKind() == kFreeBoundary ? _sizes.freeBoundaries : _sizes.sharpBoundariesA) +=
+        numBoundaries - _sizes.sharpBoundariesA - _sizes.sharpBoundariesB;
 }
 
 // What the parent knows of its children.
 void PolygonStep::relateParent() {
-    _parent.numVVertices = Index(_sizes.vertices - _parent.numCorners);
+    _parent.numVVertices = Index(_vertexCounts.back().vertices);
     _parent.vertChildVerts.Resize(0);
     _parent.vVertexParents.Resize(0);
     if (_parent.numVVertices != _parent.numVertices) {
-        _parent.vertChildVerts.Resize(_vertChildVerts.size());
+        _parent.vertChildVerts.Resize(std::size_t(_parent.numVertices));
         _parent.vVertexParents.Resize(std::size_t(_parent.numVVertices));
-        for (Index pVert = 0; pVert < _parent.numVertices; ++pVert) {
-            Index const cVert = _vertChildVerts[std::size_t(pVert)];
-            _parent.vertChildVerts[std::size_t(pVert)] = cVert;
-            if (cVert != Far::INDEX_INVALID) {
-                _parent.vVertexParents[std::size_t(cVert)] = pVert;
+        ParallelForRange(_parent.numVertices, [this](Index begin, Index end) {
+            Index cVert = Index(_vertexCounts[std::size_t(begin / kParallelRange)].vertices);
+            for (Index pVert = begin; pVert < end; ++pVert) {
+                bool const isMade = makesVVertex(pVert);
+                _parent.vertChildVerts[std::size_t(pVert)] = isMade ? cVert : Far::INDEX_INVALID;
+                if (isMade) {
+                    _parent.vVertexParents[std::size_t(cVert++)] = pVert;
+                }
             }
-        }
+        });
     }
     _parent.faceChildFaces.Resize(std::size_t(_parent.numFaces));
-    std::iota(_parent.faceChildFaces.data(), _parent.faceChildFaces.data() + _parent.numFaces, 0);
+    ParallelFor(_parent.numFaces,
+                [this](Index pFace) { _parent.faceChildFaces[std::size_t(pFace)] = pFace; });
     _parent.edgeChildFaces.Resize(std::size_t(_parent.numEdges));
-    Index cFace = _parent.numFaces;
-    for (Index pEdge = 0; pEdge < _parent.numEdges; ++pEdge) {
-        _parent.edgeChildFaces[std::size_t(pEdge)] =
-            makesEFace(pEdge) ? cFace++ : Far::INDEX_INVALID;
+    ParallelForRange(_parent.numEdges, [this](Index begin, Index end) {
+        Index cFace =
+            _parent.numFaces + Index(_edgeCounts[std::size_t(begin / kParallelRange)].faces);
+        for (Index pEdge = begin; pEdge < end; ++pEdge) {
+            _parent.edgeChildFaces[std::size_t(pEdge)] =
+                makesEFace(pEdge) ? cFace++ : Far::INDEX_INVALID;
+        }
+    });
+}
+
+// Edges are numbered in this order: those of the F-faces, the spokes, those of the edges.
+void PolygonStep::numberEdges() {
+    _spokes.Resize(std::size_t(_parent.numCorners));
+    ParallelForRange(_parent.numFaces, [this](Index begin, Index end) {
+        std::fill(_spokes.data() + _parent.faceFirstCorner[begin],
+                  _spokes.data() + _parent.faceFirstCorner[end], Far::INDEX_INVALID);
+        Index cEdge =
+            _parent.numCorners + Index(_spokeCounts[std::size_t(begin / kParallelRange)].edges);
+        forEachSpoke(begin, end, [&](Index corner) { _spokes[std::size_t(corner)] = cEdge++; });
+    });
+    ParallelForRange(_parent.numEdges, [this](Index begin, Index end) {
+        Index cEdge = _parent.numCorners + Index(_spokeCounts.back().edges) +
+                      Index(_edgeCounts[std::size_t(begin / kParallelRange)].edges);
+        for (Index pEdge = begin; pEdge < end; ++pEdge) {
+            Index *const ends = _endEdges.data() + 2 * std::size_t(pEdge);
+            if (isTriHex()) {
+                if (ends[0] == kEndEdge || ends[1] == kEndEdge) {
+                    ends[0] = ends[1] = cEdge++;
+                }
+                continue;
+            }
+            for (int i : {0, 1}) {
+                if (ends[i] == kEndEdge) {
+                    ends[i] = cEdge++;
+                }
+            }
+        }
+    });
+}
+
+// Fills the faces of a child and, for FULL, the sides of its edges.  All that a component of the
+// parent makes is written for that component alone, to places of its own.
+template <bool FULL>
+class PolygonStep::Builder {
+public:
+    Builder(PolygonStep const &step, LevelTopology &child)
+        : _step(step), _p(step._parent), _c(child) {}
+
+    void Build() {
+        _c.faceFirstCorner.Resize(std::size_t(_c.numFaces) + 1);
+        _c.faceVerts.Resize(std::size_t(_c.numCorners));
+        if constexpr (FULL) {
+            _edges.Resize(std::size_t(_c.numEdges));
+            ParallelFor(_c.numEdges, [this](Index cEdge) {
+                _edges[std::size_t(cEdge)] = {{kNoCorner, kNoCorner}};
+            });
+        }
+        fillFFaces();
+        fillEFaces();
+        fillVFaces();
+        _c.faceFirstCorner[std::size_t(_c.numFaces)] = _c.numCorners;
+        if constexpr (FULL) {
+            finishEdges();
+        }
+    }
+
+    Buffer<EdgeSides> const &GetEdges() const { return _edges; }
+
+private:
+    // Where the next face goes, and its next corner.
+    struct Place {
+        Index face;
+        Index corner;
+    };
+    // Which of the two sides of its edge a face is.  The first side of a spoke runs from its
+    // V-vertex, as in the hexagonal step; that of another edge is in the first of its two faces.
+    enum Side { kFirst = 0, kSecond = 1 };
+    struct EdgeSide {
+        Index edge;
+        Side side;
+    };
+
+    void beginFace(Place &place) { _c.faceFirstCorner[std::size_t(place.face++)] = place.corner; }
+    // Adds a vertex to the face begun last, and the edge from there to the next one.
+    void addCorner(Place &place, Index vert, EdgeSide edge) {
+        if constexpr (FULL) {
+            _edges[std::size_t(edge.edge)].corners[edge.side] = place.corner;
+        }
+        _c.faceVerts[std::size_t(place.corner++)] = vert;
+    }
+
+    Index fVertex(Index corner) const { return _p.GetCornerChildVertex(corner); }
+    Index vVertex(Index pVert) const { return _p.GetVertexChildVertex(pVert); }
+    static EdgeSide fFaceEdge(Index corner, Side side) { return {corner, side}; }
+    EdgeSide spoke(Index corner, Side side) const {
+        return {FULL ? _step._spokes[std::size_t(corner)] : Far::INDEX_INVALID, side};
+    }
+    // Seen from the E-face.
+    EdgeSide endEdge(std::size_t end) const {
+        if (!FULL || _step._endEdges[end] != kJoinedEnd) {
+            return {_step._endEdges[end], kFirst};
+        }
+        auto const digon =
+            std::lower_bound(_step._digons.begin(), _step._digons.end(), end,
+                             [](Digon const &d, std::size_t e) { return d.joinedEnd < e; });
+        return {_step._endEdges[digon->end], kSecond};
+    }
+
+    void fillFFaces();
+    void fillEFaces();
+    void fillEFace(Index pEdge, Place &place);
+    void fillVFaces();
+    void fillVFace(Index pVert, VFace const &vFace, Place &place);
+    void finishEdges();
+
+    PolygonStep const &_step;
+    LevelTopology const &_p;
+    LevelTopology &_c;
+    Buffer<EdgeSides> _edges;
+};
+
+template <bool FULL>
+void PolygonStep::Builder<FULL>::fillFFaces() {
+    ParallelForRange(_p.numFaces, [this](Index begin, Index end) {
+        Place place = {begin, _p.faceFirstCorner[begin]};
+        for (Index pFace = begin; pFace < end; ++pFace) {
+            beginFace(place);
+            while (place.corner < _p.faceFirstCorner[pFace + 1]) {
+                addCorner(place, fVertex(place.corner), fFaceEdge(place.corner, kFirst));
+            }
+        }
+    });
+}
+
+template <bool FULL>
+void PolygonStep::Builder<FULL>::fillEFaces() {
+    ParallelForRange(_p.numEdges, [this](Index begin, Index end) {
+        Counts const &before = _step._edgeCounts[std::size_t(begin / kParallelRange)];
+        Place place = {_p.numFaces + Index(before.faces), _p.numCorners + Index(before.corners)};
+        for (Index pEdge = begin; pEdge < end; ++pEdge) {
+            if (_step.makesEFace(pEdge)) {
+                fillEFace(pEdge, place);
+            }
+        }
+    });
+}
+
+template <bool FULL>
+void PolygonStep::Builder<FULL>::fillEFace(Index pEdge, Place &place) {
+    std::size_t const k = 2 * std::size_t(pEdge);
+    Index const vVertex0 = vVertex(_p.edgeVerts[k]);
+    Index const vVertex1 = vVertex(_p.edgeVerts[k + 1]);
+    Index const startA = _p.GetSideCorner(pEdge, 0);
+    Index const endA = _p.GetNextCorner(_p.edgeFaces[k], startA);
+    beginFace(place);
+    if (_p.IsBoundary(pEdge)) {
+        addCorner(place, vVertex0, endEdge(k));
+        addCorner(place, vVertex1, spoke(endA, kFirst));
+        addCorner(place, fVertex(endA), fFaceEdge(startA, kSecond));
+        addCorner(place, fVertex(startA), spoke(startA, kSecond));
+        return;
+    }
+    Index const startB = _p.GetSideCorner(pEdge, 1);
+    Index const endB = _p.GetNextCorner(_p.edgeFaces[k + 1], startB);
+    if (_step.isQuad(pEdge)) {
+        addCorner(place, fVertex(endB), fFaceEdge(startB, kSecond));
+        addCorner(place, fVertex(startB), endEdge(k + 1));
+        addCorner(place, fVertex(endA), fFaceEdge(startA, kSecond));
+        addCorner(place, fVertex(startA), endEdge(k));
+        return;
+    }
+    addCorner(place, vVertex0, spoke(endB, kFirst));
+    addCorner(place, fVertex(endB), fFaceEdge(startB, kSecond));
+    addCorner(place, fVertex(startB), spoke(startB, kSecond));
+    addCorner(place, vVertex1, spoke(endA, kFirst));
+    addCorner(place, fVertex(endA), fFaceEdge(startA, kSecond));
+    addCorner(place, fVertex(startA), spoke(startA, kSecond));
+}
+
+template <bool FULL>
+void PolygonStep::Builder<FULL>::fillVFaces() {
+    ParallelForRange(_p.numVertices, [this](Index begin, Index end) {
+        Counts const &before = _step._vertexCounts[std::size_t(begin / kParallelRange)];
+        Place place = {_c.numFaces - _c.numVFaces + Index(before.faces),
+                       _p.numCorners + Index(_step._edgeCounts.back().corners + before.corners)};
+        for (Index pVert = begin; pVert < end; ++pVert) {
+            _step.forEachVFace(
+                pVert, vVertex(pVert) != Far::INDEX_INVALID,
+                [&](VFace const &vFace) { fillVFace(pVert, vFace, place); },
+                [](VertexFan const &) {});
+        }
+    });
+}
+
+template <bool FULL>
+void PolygonStep::Builder<FULL>::fillVFace(Index pVert, VFace const &vFace, Place &place) {
+    auto const positionAt = [&](Index i) {
+        Index const k = vFace.begin + i;
+        return k < vFace.fan.end ? k : k - (vFace.fan.end - vFace.fan.begin);
+    };
+    auto const cornerAt = [&](Index i) { return _p.GetVertexCorner(positionAt(i)); };
+    // The edge across that between a face and the one before it.
+    auto const edgeTo = [&](Index i) -> EdgeSide {
+        if (!FULL) {
+            return {Far::INDEX_INVALID, kSecond};
+        }
+        std::size_t const end = _step.findEnd(cornerAt(i));
+        // In tri-hex it joins two V-faces, in the order of their vertices.
+        bool const isFirst = _step.isTriHex() && _p.edgeVerts[end] <= _p.edgeVerts[end ^ 1];
+        return {_step._endEdges[end], isFirst ? kFirst : kSecond};
+    };
+    beginFace(place);
+    if (vFace.hasVVertex) {
+        addCorner(place, vVertex(pVert), spoke(cornerAt(0), kFirst));
+        for (Index i = 1; i < vFace.count; ++i) {
+            addCorner(place, fVertex(cornerAt(i - 1)), edgeTo(i));
+        }
+        Index const last = cornerAt(vFace.count - 1);
+        addCorner(place, fVertex(last), spoke(last, kSecond));
+    } else if (_step.isTriHex()) {
+        // Of each face the F-vertices of two corners, and the edge of the F-face between them.
+        auto const cornerBefore = [&](Index i) {
+            return _p.GetPrevCorner(_p.vertFaces[positionAt(i)], cornerAt(i));
+        };
+        for (Index i = 1; i <= vFace.count; ++i) {
+            addCorner(place, fVertex(cornerBefore(i - 1)), edgeTo(i));
+            addCorner(place, fVertex(cornerAt(i)), fFaceEdge(cornerBefore(i), kSecond));
+        }
+    } else {
+        for (Index i = 1; i <= vFace.count; ++i) {
+            addCorner(place, fVertex(cornerAt(i)), edgeTo(i + 1));
+        }
     }
 }
 
-void PolygonStep::buildFaces(Builder &builder) const {
-    for (Index pFace = 0; pFace < _parent.numFaces; ++pFace) {
-        builder.BeginFace();
-        Index const end = _parent.faceFirstCorner[pFace + 1];
-        for (Index corner = _parent.faceFirstCorner[pFace]; corner < end; ++corner) {
-            builder.AddCorner(_parent.GetCornerChildVertex(corner), corner);
+// An edge of one face alone is a boundary, and that face its first side.
+template <bool FULL>
+void PolygonStep::Builder<FULL>::finishEdges() {
+    BoundaryKind const kind = _step.getBoundaryKind();
+    ParallelFor(_c.numEdges, [&](Index cEdge) {
+        auto &corners = _edges[std::size_t(cEdge)].corners;
+        if (corners[kFirst] == kNoCorner) {
+            corners[kFirst] = std::exchange(corners[kSecond], kind);
+        } else if (corners[kSecond] == kNoCorner) {
+            corners[kSecond] = kind;
         }
+    });
+    if (!_step.isHexagonal()) {
+        return;
     }
-    for (Index pEdge = 0; pEdge < _parent.numEdges; ++pEdge) {
-        if (makesEFace(pEdge)) {
-            buildEFace(pEdge, builder);
-        } else if (isHexagonal()) {
-            Index const start = _parent.GetSideCorner(pEdge, 0);
-            Index const end =
-                _parent.GetNextCorner(_parent.edgeFaces[2 * std::size_t(pEdge)], start);
-            builder.SetBoundaryKind(start, kSharpBoundaryB);
-            builder.SetBoundaryKind(_spokes[std::size_t(start)], kSharpBoundaryA);
-            builder.SetBoundaryKind(_spokes[std::size_t(end)], kSharpBoundaryA);
+    // The children of boundaries.
+    auto const setKind = [this](Index cEdge, BoundaryKind childKind) {
+        _edges[std::size_t(cEdge)].corners[kSecond] = childKind;
+    };
+    for (Index pEdge : _p.boundaryEdges) {
+        std::size_t const k = 2 * std::size_t(pEdge);
+        if (_p.edgeFaces[k + 1] == kFreeBoundary) {
+            continue;
         }
-    }
-    for (std::size_t i = 0; i < _vFaces.size(); ++i) {
-        bool const isLast = i + 1 == _vFaces.size();
-        buildVFace(_vFaces[i], isLast ? _vFaceCorners.size() : _vFaces[i + 1].firstCorner, builder);
+        if (!_p.IsSharpBoundaryB(pEdge)) {
+            setKind(_step._endEdges[k], kSharpBoundaryB);
+            continue;
+        }
+        Index const start = _p.GetSideCorner(pEdge, 0);
+        Index const end = _p.GetNextCorner(_p.edgeFaces[k], start);
+        setKind(start, kSharpBoundaryB);
+        setKind(_step._spokes[std::size_t(start)], kSharpBoundaryA);
+        setKind(_step._spokes[std::size_t(end)], kSharpBoundaryA);
     }
 }
 
@@ -356,19 +549,16 @@ void findPartedVertices(LevelTopology const &parent, LevelTopology &child) {
     auto const contains = [](std::vector<Index> const &verts, Index vert) {
         return std::binary_search(verts.begin(), verts.end(), vert);
     };
-    for (Index cVert = 0; cVert < parent.numVVertices; ++cVert) {
+    child.partedVerts = ParallelSelect(parent.numVVertices, [&](Index cVert) {
         Index const pVert = parent.GetVVertexParent(cVert);
         int numFans = 0;
         ForEachFan(child, cVert, [&](VertexFan const &) { ++numFans; });
         bool const wasOne = !contains(parent.nonManifoldVerts, pVert);
-        if (numFans > 1 && (wasOne || contains(parent.partedVerts, pVert))) {
-            child.partedVerts.push_back(cVert);
-        }
-    }
+        return numFans > 1 && (wasOne || contains(parent.partedVerts, pVert));
+    });
 }
 
 void removeRelations(LevelTopology &level) {
-    level.hasFullTopology = false;
     for (Buffer<Index> *array : {&level.faceEdges, &level.edgeVerts, &level.edgeFaces,
                                  &level.boundaryEdges, &level.halfFaces, &level.vertFirstFace,
                                  &level.vertFaces, &level.vertFirstEdge, &level.vertEdges}) {
@@ -383,21 +573,22 @@ void removeRelations(LevelTopology &level) {
 } // namespace
 
 void PolygonStep::Refine(bool fullTopology, LevelTopology &child) {
-    bool const isFree = isHexagonal() || _sdcOptions.GetVtxBoundaryInterpolation() ==
-                                             Sdc::Options::VTX_BOUNDARY_NONE;
     relateParent();
     BeginLevel(_sizes, fullTopology, _parent, child);
     child.isHexagonal = false;
-    child.numVFaces = Index(_vFaces.size());
-    Builder builder(_sizes, _parent.numVVertices, isFree ? kFreeBoundary : kSharpBoundaryA);
-    buildFaces(builder);
-    builder.StoreFaces(child);
-    BuildBaseLevel(builder.GetEdges(), child);
-    if (isHexagonal() && !_rules.closeGaps) {
-        findPartedVertices(_parent, child);
-    }
-    if (!fullTopology) {
-        removeRelations(child);
+    child.numVFaces = Index(_vertexCounts.back().faces);
+    if (fullTopology) {
+        numberEdges();
+        Builder<true> builder(*this, child);
+        builder.Build();
+        BuildBaseLevel({builder.GetEdges().data(), child.numEdges}, child);
+        if (isHexagonal() && !_rules.closeGaps) {
+            findPartedVertices(_parent, child);
+        }
+    } else {
+        Builder<false>(*this, child).Build();
+        FindFaceSizes(child);
+        removeRelations(child); // of a refinement before
     }
     EndLevel(_sdcOptions, _parent, child);
 }

@@ -38,12 +38,14 @@ PolygonRules GetRulesOfChannel(LevelTopology const &mesh, PolygonRules const &ru
 ///
 /// The last vertex of a V-face is the F-vertex of a corner at its vertex.  INDEXING.md has the
 /// numbering.
+///
+/// What a component makes is counted first and then written to places that follow from the counts,
+/// so that components can be taken in parallel.
 class PolygonStep {
 public:
     /// Plans the step; \p parent is written by Refine alone.
     PolygonStep(LevelTopology &parent, PolygonRules rules, Sdc::Options sdcOptions);
 
-    /// The sizes of the child; those of boundaries are left 0.
     LevelSizes GetSizes() const { return _sizes; }
 
     /// Makes \p child, whose sizes must fit 32 bits, as RefineTopology does.
@@ -51,47 +53,84 @@ public:
 
 private:
     using Index = Far::Index;
+    template <bool FULL>
     class Builder;
 
-    // The faces around a vertex that a V-face joins, as a range of _vFaceCorners.
+    /// What components of the parent make.
+    struct Counts {
+        Counts &operator+=(Counts const &other) {
+            vertices += other.vertices;
+            edges += other.edges;
+            faces += other.faces;
+            corners += other.corners;
+            digons += other.digons;
+            return *this;
+        }
+
+        std::int64_t vertices = 0;
+        std::int64_t edges = 0;
+        std::int64_t faces = 0;
+        std::int64_t corners = 0;
+        std::int64_t digons = 0;
+    };
+    /// Two ends of edges, as positions in _endEdges, at a vertex with two faces: the quads there
+    /// share the edge of the first, which has the lower position.
+    struct Digon {
+        std::size_t end;
+        std::size_t joinedEnd;
+    };
+    /// The faces around a vertex that a V-face joins: part of a fan, or all of it.
     struct VFace {
-        std::size_t firstCorner;
-        Index vVertex; // in the polygon too, or INDEX_INVALID
+        VertexFan fan;
+        Index
+            begin; ///< position in LevelTopology::vertFaces; the end of the fan leads to its begin
+        Index count;
+        bool hasVVertex; ///< in the polygon too
     };
 
     bool isHexagonal() const { return _rules.scheme == SchemeType::Hexagonal; }
     bool isTriHex() const { return _rules.scheme == SchemeType::TriHex; }
-    bool isQuad(Index pEdge) const;
-    bool makesEFace(Index pEdge) const;
-    Index inEdge(Index k) const {
-        Index const corner = _parent.GetVertexCorner(k);
-        return _parent.faceEdges[_parent.GetPrevCorner(_parent.vertFaces[k], corner)];
+    bool isQuad(Index pEdge) const {
+        return isHexagonal() ? !_rules.flatEdges.empty() && _rules.flatEdges[std::size_t(pEdge)]
+                             : !isTriHex() && !_parent.IsBoundary(pEdge);
     }
+    bool makesEFace(Index pEdge) const;
+    bool makesVVertex(Index pVert) const;
+    std::size_t findEnd(Index startCorner) const;
+    /// Of edges that have no such parent.
+    BoundaryKind getBoundaryKind() const;
 
-    void planVertices();
-    void planEdges();
-    void addVFace(Index vVertex, VertexFan const &fan, Index begin, Index count);
-    void planFan(Index pVert, VertexFan const &fan);
+    template <typename ADD_VFACE, typename ADD_DIGON>
+    void forEachVFace(Index pVert, bool hasVVertex, ADD_VFACE addVFace, ADD_DIGON addDigon) const;
+    template <typename FUNCTION>
+    void forEachRunOfQuads(VertexFan const &fan, FUNCTION function) const;
+    template <typename FUNCTION>
+    void forEachSpoke(Index beginFace, Index endFace, FUNCTION function) const;
+
+    void countVertices();
+    void findDigons();
+    void markEndEdges();
+    void countEdges();
+    void countSpokes();
+    void countBoundaries();
     void relateParent();
-    void buildFaces(Builder &builder) const;
-    void buildEFace(Index pEdge, Builder &builder) const;
-    void buildVFace(VFace const &vFace, std::size_t endCorner, Builder &builder) const;
-    void joinDigons();
-    std::size_t endAt(Index startCorner) const;
+    void numberEdges();
 
     LevelTopology &_parent;
     PolygonRules const _rules;
     Sdc::Options const _sdcOptions;
     LevelSizes _sizes{};
 
-    std::vector<Index> _vertChildVerts; // INDEX_INVALID when dropped
-    std::vector<Index> _spokes;         // by corner, INDEX_INVALID when there is none
+    // What the ranges of components before a range make, by range.
+    std::vector<Counts> _vertexCounts; ///< V-vertices, V-faces and digons
+    std::vector<Counts> _edgeCounts;   ///< edges of _endEdges, E-faces
+    std::vector<Counts> _spokeCounts;  ///< spokes, by range of faces
+
     /// By edge and end: the edge that joins the F-vertices of its faces there; in tri-hex one for
     /// both ends; of a boundary edge, first, the one that stays on the boundary.
-    std::vector<Index> _endEdges;
-    std::vector<std::pair<std::size_t, std::size_t>> _digons; ///< ends at vertices with two faces
-    std::vector<VFace> _vFaces;
-    std::vector<Index> _vFaceCorners; // counter-clockwise
+    Buffer<Index> _endEdges;
+    std::vector<Digon> _digons; ///< by joinedEnd, ascending
+    Buffer<Index> _spokes;      ///< by corner, INDEX_INVALID when there is none
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -13,7 +13,7 @@ namespace OpenSubdivHex::FarExt {
 /// The element types follow Far's protocol: \p src and \p dst are indexed by vertex (or face) and
 /// their elements have `void Clear()` and `void AddWithWeight(Element const &, REAL)`.  An element
 /// of \p dst must also take an element of \p dst, since V-vertices average new points.
-/// \p REAL is the type of the weights.
+/// \p REAL is the type of the weights.  Arguments are not checked.
 ///
 /// \code
 ///     PrimvarRefiner primvarRefiner(refiner);

@@ -20,7 +20,8 @@ class SizeChecker;
 /// \brief The topology of a mesh and of its hexagonal refinements, level by level.
 ///
 /// Made by TopologyRefinerFactory, which copies what it needs: nothing refers to the base refiner
-/// or descriptor afterwards.  All queries are const and safe to call from several threads.
+/// or descriptor afterwards.  All queries are const and safe to call from several threads; indices,
+/// channels and levels are not checked, as in Far.
 class TopologyRefiner {
 public:
     /// Takes the base level.  Use TopologyRefinerFactory, which validates it.
@@ -32,7 +33,7 @@ public:
     TopologyRefiner &operator=(TopologyRefiner const &) = delete;
 
     SchemeOptions GetHexSchemeOptions() const { return _schemeOptions; }
-    /// The boundary and crease options of the base mesh.
+    /// The boundary, crease and face-varying options of the base mesh.
     Sdc::Options GetSchemeOptions() const { return _sdcOptions; }
 
     int GetNumLevels() const { return int(_levels.size()); }
@@ -57,6 +58,7 @@ public:
     int GetNumFacesTotal() const;
     int GetNumFaceVerticesTotal() const;
 
+    /// \p level is 0 ... GetMaxLevel().
     TopologyLevel const &GetLevel(int level) const { return _levels[level]; }
 
     /// \brief Options of RefineUniform, as Far::TopologyRefiner::UniformOptions.
@@ -76,7 +78,8 @@ public:
     ///          are known only once it is made: there the base alone is left.
     bool RefineUniform(UniformOptions options, Status *status = nullptr);
 
-    /// The options of the last successful RefineUniform.
+    /// The options of the last successful RefineUniform; of level 0 after RefineCoplanar and
+    /// Unrefine.
     UniformOptions GetUniformOptions() const { return _uniformOptions; }
 
     /// \brief Options of RefineCoplanar.
@@ -103,8 +106,10 @@ public:
     /// \param restPositions  x, y, z of the GetLevel(0).GetNumVertices() vertices of level 0
     /// \return  false with StatusCode::InvalidArgument for a negative level, an angle that is not
     ///          between 0 and 180, a coordinate that is not finite (its vertex is named) or a null
-    ///          pointer; Unsupported for other schemes than Hexagonal; the levels are then as
-    ///          before.  False with TooLarge as RefineUniform; then the base alone is left.
+    ///          pointer; Unsupported for other schemes than Hexagonal; TooLarge, as RefineUniform,
+    ///          for sizes that are too large whichever edges are flat; the levels are then as
+    ///          before.  Other sizes are known only once the level before is made: False with
+    ///          TooLarge, and the base alone is left.
     bool RefineCoplanar(float const *restPositions, CoplanarOptions options,
                         Status *status = nullptr);
     bool RefineCoplanar(double const *restPositions, CoplanarOptions options,

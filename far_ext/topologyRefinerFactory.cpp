@@ -221,7 +221,7 @@ std::unique_ptr<LevelTopology> Importer::Import(Status &status) {
     if (!status.IsOk()) {
         return nullptr;
     }
-    internal::BuildBaseLevel(_edges, *_level);
+    internal::BuildBaseLevel({_edges.data(), Index(_edges.size())}, *_level);
     importTags();
     internal::ComputeSharpMasks(_baseRefiner.GetSchemeOptions(), *_level);
     for (int channel = 0; channel < _base.GetNumFVarChannels(); ++channel) {

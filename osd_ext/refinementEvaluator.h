@@ -23,7 +23,7 @@ namespace OsdExt {
 /// \brief Computes the primvars of refined levels straight from the control values, level by level,
 /// without a stencil table: the fastest way to refine a whole mesh again and again.
 ///
-/// Values are those that a FarExt::StencilTable of the same refiner gives, with all rules for
+/// Values are those that a stencil table of the same refiner gives, with all rules for
 /// boundaries, creases, corners and face-varying seams, up to the rounding of floats (1e-6 of the
 /// largest control value).
 ///
@@ -88,7 +88,7 @@ public:
     /// \param level  0 ... GetMaxLevel(); 0 copies the control values
     ///
     /// \return  false with StatusCode::InvalidArgument, and nothing written, if
-    ///           - \p level is out of range, or the refiner has another number of levels now,
+    ///           - \p level is out of range, or the refiner refined or unrefined in the meantime,
     ///           - the lengths of the descriptors differ, or are less than 1,
     ///           - a stride is less than the length, or an offset is negative,
     ///           - \p src or \p dst is null, unless there is nothing to write.

@@ -25,7 +25,7 @@ struct TriangleIndices {
 /// \brief What CreateTriangleIndices draws.
 struct TriangleOptions {
     int vertexOffset = 0;   ///< added to every vertex, for levels behind others in one buffer
-    int fvarChannel = -1;   ///< channel for fvarValues; -1 for none
+    int fvarChannel = -1;   ///< for fvarValues, one that the level has; -1 for none
     bool drawHoles = false; ///< whether faces tagged as holes are drawn as well
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surfaceLevels.h"
 
+#include "position.h"
+
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -17,12 +19,7 @@ namespace {
 namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
 
-/// A position with the interface that primvar refiners ask for.
-struct Position {
-    void Clear() { value.setZero(); }
-    void AddWithWeight(Position const &other, double weight) { value += weight * other.value; }
-    Eigen::Vector3d value;
-};
+using Position = PositionReal<double>;
 
 template <class LEVEL>
 PolygonMesh makeMesh(LEVEL const &level, std::vector<Position> const &positions) {

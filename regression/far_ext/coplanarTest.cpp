@@ -5,6 +5,7 @@
 
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
 
 #include <gtest/gtest.h>
 
@@ -23,10 +24,6 @@ namespace {
 
 using CoplanarOptions = TopologyRefiner::CoplanarOptions;
 using Counts = std::array<int, 3>;
-
-constexpr Sdc::Options::VtxBoundaryInterpolation kBoundaries[] = {
-    Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
-    Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
 
 CoplanarOptions makeOptions(int level, double angleTolerance, bool closeGaps = true) {
     CoplanarOptions options(level);
@@ -373,18 +370,27 @@ TEST(Coplanar, RefinesAgain) {
 }
 
 TEST(Coplanar, LastLevelNeedsFaceVerticesOnly) {
-    for (bool closeGaps : {true, false}) {
-        Shape const &box = GetFlatShapes()[2];
-        CoplanarOptions options = makeOptions(2, 0.1, closeGaps);
-        auto const full = createRefiner(box, ReferenceMask::Cosine, options);
-        options.fullTopologyInLastLevel = false;
-        auto const refiner = createRefiner(box, ReferenceMask::Cosine, options);
-        EXPECT_FALSE(refiner->GetLevel(2).HasFullTopology());
-        ASSERT_NO_FATAL_FAILURE(expectSameFaces(*refiner, *full));
-        ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
-        ASSERT_NO_FATAL_FAILURE(ExpectNumbering(*refiner));
-        EXPECT_EQ(FarExt::StencilTableFactory::Create(*refiner)->GetWeights(),
-                  FarExt::StencilTableFactory::Create(*full)->GetWeights());
+    Sdc::Options sdcOptions;
+    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    for (Shape const *shape : {&GetFlatShapes()[2], &GetShape("mixedPatch")}) {
+        for (bool closeGaps : {true, false}) {
+            SCOPED_TRACE(shape->name + (closeGaps ? ", closed" : ", open"));
+            CoplanarOptions options = makeOptions(2, 10, closeGaps);
+            auto const full = createRefiner(*shape, ReferenceMask::Cosine, options, sdcOptions);
+            options.fullTopologyInLastLevel = false;
+            auto const refiner = createRefiner(*shape, ReferenceMask::Cosine, options, sdcOptions);
+            EXPECT_FALSE(refiner->GetLevel(2).HasFullTopology());
+            FarExt::internal::LevelTopology const &faces = refiner->GetLevel(2).GetTopology();
+            FarExt::internal::LevelTopology const &all = full->GetLevel(2).GetTopology();
+            EXPECT_EQ(faces.numFreeBoundaries, all.numFreeBoundaries);
+            EXPECT_EQ(faces.numSharpBoundariesA, all.numSharpBoundariesA);
+            EXPECT_EQ(faces.numSharpBoundariesB, all.numSharpBoundariesB);
+            ASSERT_NO_FATAL_FAILURE(expectSameFaces(*refiner, *full));
+            ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
+            ASSERT_NO_FATAL_FAILURE(ExpectNumbering(*refiner));
+            EXPECT_EQ(FarExt::StencilTableFactory::Create(*refiner)->GetWeights(),
+                      FarExt::StencilTableFactory::Create(*full)->GetWeights());
+        }
     }
 }
 

@@ -49,7 +49,8 @@ struct Arrays {
         add(t.faceFirstCorner, t.faceVerts, t.faceEdges, t.edgeVerts, t.edgeFaces, t.edgeFaceLocals,
             t.boundaryEdges, t.halfFaces, t.vertFirstFace, t.vertFaces, t.vertFaceLocals,
             t.vertFirstEdge, t.vertEdges, t.vertEdgeLocals, t.faceChildFaces, t.edgeChildFaces,
-            t.edgeSharpness, t.vertSharpness, t.faceHoles, t.nonManifoldVerts, t.nonManifoldEdges);
+            t.edgeSharpness, t.vertSharpness, t.faceHoles, t.nonManifoldVerts, t.nonManifoldEdges,
+            t.vertChildVerts, t.vVertexParents, t.partedVerts);
     }
     template <typename... ARRAYS>
     void add(ARRAYS const &...added) {
@@ -122,11 +123,74 @@ TEST(Determinism, SameBitsForAnyNumberOfThreads) {
     }
 }
 
+namespace {
+
+/// \p shape with a vertex in the middle of every edge, which has two faces.
+Shape splitEdges(Shape shape) {
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);
+    FarExt::TopologyLevel const &level = refiner->GetLevel(0);
+    std::vector<int> faceVertices;
+    for (int f = 0; f < level.GetNumFaces(); ++f) {
+        for (int i = 0; i < level.GetFaceVertices(f).size(); ++i) {
+            faceVertices.push_back(level.GetFaceVertices(f)[i]);
+            faceVertices.push_back(level.GetNumVertices() + level.GetFaceEdges(f)[i]);
+        }
+        shape.faceSizes[f] *= 2;
+    }
+    for (int e = 0; e < level.GetNumEdges(); ++e) {
+        auto const vertices = level.GetEdgeVertices(e);
+        for (int k = 0; k < 3; ++k) {
+            shape.positions.push_back(
+                (shape.positions[3 * vertices[0] + k] + shape.positions[3 * vertices[1] + k]) / 2);
+        }
+    }
+    shape.faceVertices = std::move(faceVertices);
+    return shape;
+}
+
+/// refine(refiner, fullTopology) makes the same levels of \p shape with any number of threads, of
+/// which the last step has work for several, and the same faces without full topology.
+template <typename REFINE>
+void expectSameLevels(Shape const &shape, FarExt::SchemeOptions schemeOptions,
+                      REFINE const &refine) {
+    auto const create = [&](int numThreads, bool fullTopology) {
+        setNumThreads(numThreads);
+        auto refiner =
+            CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options(), schemeOptions);
+        EXPECT_TRUE(refine(*refiner, fullTopology));
+        return refiner;
+    };
+    auto const expected = create(1, true);
+    int const maxLevel = expected->GetMaxLevel();
+    FarExt::TopologyLevel const &last = expected->GetLevel(maxLevel);
+    EXPECT_TRUE(last.Validate());
+    EXPECT_GT(expected->GetLevel(maxLevel - 1).GetNumFaces(), 16384);
+    for (int numThreads : {1, 2, 3, 8}) {
+        SCOPED_TRACE(std::to_string(numThreads) + " threads");
+        auto const refiner = create(numThreads, true);
+        for (int level = 0; level <= maxLevel; ++level) {
+            ASSERT_TRUE(Arrays(refiner->GetLevel(level)) == Arrays(expected->GetLevel(level)));
+        }
+        auto const facesAlone = create(numThreads, false);
+        FarExt::TopologyLevel const &faces = facesAlone->GetLevel(maxLevel);
+        EXPECT_FALSE(faces.HasFullTopology());
+        EXPECT_EQ(Arrays(faces).arrays[0], Arrays(last).arrays[0]);
+        EXPECT_EQ(Arrays(faces).arrays[1], Arrays(last).arrays[1]);
+        EXPECT_EQ(faces.GetNumEdges(), last.GetNumEdges());
+        EXPECT_EQ(faces.GetNumBoundaryEdges(), last.GetNumBoundaryEdges());
+        EXPECT_EQ(faces.GetTopology().faceSizes, last.GetTopology().faceSizes);
+    }
+}
+
+} // namespace
+
 TEST(Determinism, SameBitsOfOtherSchemes) {
     FarExt::SchemeOptions const schemes[] = {
         {FarExt::FaceMask::Smooth, FarExt::SchemeType::DooSabin, false},
         {FarExt::FaceMask::Smooth, FarExt::SchemeType::TriHex, false},
         {FarExt::FaceMask::Smooth, FarExt::SchemeType::Hexagonal, true}};
+    Shape const shapes[] = {MakeBox(54, 54, 54), splitEdges(MakeBox(54, 54, 54)),
+                            makeGridWithHoles(140)};
     for (FarExt::SchemeOptions const &scheme : schemes) {
         SCOPED_TRACE(testing::Message()
                      << "scheme " << int(scheme.schemeType) << ", first " << scheme.triHexFirst);
@@ -134,12 +198,24 @@ TEST(Determinism, SameBitsOfOtherSchemes) {
             return CreateRefiner(GetShape("quadGrid"), ReferenceMask::Smooth, 5, Sdc::Options(),
                                  scheme);
         });
+        for (Shape const &shape : shapes) {
+            SCOPED_TRACE(shape.name + ", " + std::to_string(shape.GetNumFaces()) + " faces");
+            expectSameLevels(shape, scheme,
+                             [](FarExt::TopologyRefiner &refiner, bool fullTopology) {
+                                 FarExt::TopologyRefiner::UniformOptions options(1);
+                                 options.fullTopologyInLastLevel = fullTopology;
+                                 return refiner.RefineUniform(options);
+                             });
+        }
     }
 }
 
 TEST(Determinism, SameBitsOfCoplanarRefinement) {
     Shape const box = MakeBox(3, 4, 5);
+    Shape const shapes[] = {MakeBox(54, 54, 54), splitEdges(MakeBox(54, 54, 54)),
+                            makeGridWithHoles(140)};
     for (bool closeGaps : {true, false}) {
+        SCOPED_TRACE(closeGaps ? "closed" : "open");
         expectSameBits([&] {
             auto refiner = CreateRefiner(box, ReferenceMask::Smooth, 0);
             FarExt::TopologyRefiner::CoplanarOptions options(4);
@@ -148,6 +224,16 @@ TEST(Determinism, SameBitsOfCoplanarRefinement) {
             EXPECT_TRUE(refiner->RefineCoplanar(box.positions.data(), options));
             return refiner;
         });
+        for (Shape const &shape : shapes) {
+            SCOPED_TRACE(shape.name + ", " + std::to_string(shape.GetNumFaces()) + " faces");
+            expectSameLevels(shape, FarExt::SchemeOptions(),
+                             [&](FarExt::TopologyRefiner &refiner, bool fullTopology) {
+                                 FarExt::TopologyRefiner::CoplanarOptions options(1);
+                                 options.closeGaps = closeGaps;
+                                 options.fullTopologyInLastLevel = fullTopology;
+                                 return refiner.RefineCoplanar(shape.positions.data(), options);
+                             });
+        }
     }
 }
 

@@ -145,6 +145,12 @@ private:
             }
         }
         ASSERT_EQ(_child.GetNumEdges(), numEdges);
+        for (int e = 0; e < numEdges; ++e) {
+            auto const vertices = _child.GetEdgeVertices(e);
+            auto const faces = _child.GetEdgeFaces(e);
+            bool const isSpoke = std::min(vertices[0], vertices[1]) < _numVVertices;
+            ASSERT_TRUE(isSpoke || faces.size() == 1 || faces[0] < faces[1]) << "edge " << e;
+        }
     }
 
     TopologyLevel const &_parent;

@@ -4,6 +4,7 @@
 #include "expectations.h"
 
 #include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +12,6 @@ namespace OpenSubdivHex::Regression {
 
 namespace {
 
-constexpr Sdc::Options::VtxBoundaryInterpolation kBoundaries[] = {
-    Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
-    Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
 constexpr Sdc::Options::CreasingMethod kCreasingMethods[] = {Sdc::Options::CREASE_UNIFORM,
                                                              Sdc::Options::CREASE_CHAIKIN};
 constexpr Sdc::Options::FVarLinearInterpolation kLinearInterpolations[] = {

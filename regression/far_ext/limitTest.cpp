@@ -28,10 +28,6 @@ using FarExt::TopologyRefiner;
 
 namespace {
 
-constexpr Sdc::Options::VtxBoundaryInterpolation kBoundaries[] = {
-    Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
-    Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
-
 struct LimitValues {
     ReferenceValues points, du, dv;
 };

@@ -5,6 +5,7 @@
 
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
 
 #include <gtest/gtest.h>
 
@@ -29,10 +30,6 @@ constexpr NamedScheme kSchemes[] = {{"Doo-Sabin", SchemeType::DooSabin, false},
                                     {"tri-hex", SchemeType::TriHex, false},
                                     {"tri-hex, then hexagonal", SchemeType::Hexagonal, true},
                                     {"tri-hex, then Doo-Sabin", SchemeType::DooSabin, true}};
-
-constexpr Sdc::Options::VtxBoundaryInterpolation kBoundaries[] = {
-    Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
-    Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
 
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, ReferenceMask mask,
                                                NamedScheme const &scheme, int level,

@@ -46,6 +46,16 @@ Shape makeShape(int numVertices, std::vector<std::vector<int>> const &faces) {
     return shape;
 }
 
+/// A base of the faces of \p level.
+Shape makeShape(FarExt::TopologyLevel const &level) {
+    std::vector<std::vector<int>> faces;
+    for (int f = 0; f < level.GetNumFaces(); ++f) {
+        auto const vertices = level.GetFaceVertices(f);
+        faces.emplace_back(vertices.begin(), vertices.end());
+    }
+    return makeShape(level.GetNumVertices(), faces);
+}
+
 } // namespace
 
 /// No test of this group may print.
@@ -492,11 +502,60 @@ TEST_F(StatusTest, TooManyLevelsOfOtherSchemes) {
             EXPECT_EQ(refiner->GetLevel(2).GetNumVertices(), numVertices);
         }
     }
-    auto const refiner = TopologyRefinerFactory::Create(descriptor.Get());
-    Status status;
-    EXPECT_FALSE(refiner->RefineCoplanar(cube.positions.data(), 100, &status));
-    expectRefusal(status,
-                  {StatusCode::TooLarge, ComponentType::Level, 14, {"level 14", "or more"}});
+}
+
+TEST_F(StatusTest, TooManyCoplanarLevels) {
+    // Refused before anything is made, by sizes that the shape has in any pose: what is made of it
+    // cannot be refined further.
+    auto const create = [](Shape const &shape, Sdc::Options sdcOptions) {
+        ShapeDescriptor const descriptor(shape);
+        return TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions);
+    };
+    auto const findRefusedLevel = [&](Shape const &shape, Sdc::Options sdcOptions, bool closeGaps) {
+        auto const refiner = create(shape, sdcOptions);
+        EXPECT_TRUE(refiner->RefineUniform(1));
+        TopologyRefiner::CoplanarOptions options(1000000);
+        options.closeGaps = closeGaps;
+        Status status;
+        EXPECT_FALSE(refiner->RefineCoplanar(shape.positions.data(), options, &status));
+        int const level = status.GetComponentIndex();
+        expectRefusal(status, {StatusCode::TooLarge, ComponentType::Level, level, {"or more"}});
+        EXPECT_EQ(refiner->GetMaxLevel(), 1);
+        return level;
+    };
+    for (char const *name :
+         {"cube", "quadGrid", "mixedPatch", "closedAndOpen", "dihedron5", "prism5"}) {
+        Shape const &shape = GetShape(name);
+        for (bool closeGaps : {true, false}) {
+            SCOPED_TRACE(std::string(name) + (closeGaps ? ", closed" : ", open"));
+            Sdc::Options sdcOptions;
+            sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
+            int const refusedLevel = findRefusedLevel(shape, sdcOptions, closeGaps);
+            for (double tolerance : {0.0, 60.0, 180.0}) {
+                for (int level : {1, 2}) {
+                    TopologyRefiner::CoplanarOptions options(level);
+                    options.angleTolerance = tolerance;
+                    options.closeGaps = closeGaps;
+                    auto const refiner = create(shape, sdcOptions);
+                    ASSERT_TRUE(refiner->RefineCoplanar(shape.positions.data(), options));
+                    Shape const other = makeShape(refiner->GetLevel(level));
+                    EXPECT_LE(findRefusedLevel(other, sdcOptions, closeGaps), refusedLevel - level)
+                        << tolerance << " degrees, level " << level;
+                }
+            }
+        }
+        // Without flat edges the sizes are those of the hexagonal step, but for vertices.
+        for (auto boundary :
+             {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}) {
+            Sdc::Options sdcOptions;
+            sdcOptions.SetVtxBoundaryInterpolation(boundary);
+            Status status;
+            EXPECT_FALSE(create(shape, sdcOptions)->RefineUniform(1000000, &status));
+            bool const hasDigons = std::string(name) == "dihedron5";
+            EXPECT_TRUE(hasDigons ||
+                        findRefusedLevel(shape, sdcOptions, true) == status.GetComponentIndex());
+        }
+    }
 }
 
 TEST_F(StatusTest, TooManyLevelsSeenFromAnyLevel) {
@@ -538,13 +597,7 @@ TEST_F(StatusTest, TooManyLevelsSeenFromAnyLevel) {
         std::int64_t count = readCount(expected);
         for (int level : {1, 2, 3}) {
             ASSERT_TRUE(refiner->RefineUniform(level));
-            FarExt::TopologyLevel const &topology = refiner->GetLevel(level);
-            std::vector<std::vector<int>> faces;
-            for (int f = 0; f < topology.GetNumFaces(); ++f) {
-                auto const vertices = topology.GetFaceVertices(f);
-                faces.emplace_back(vertices.begin(), vertices.end());
-            }
-            auto const other = create(makeShape(topology.GetNumVertices(), faces), test.scheme);
+            auto const other = create(makeShape(refiner->GetLevel(level)), test.scheme);
             ASSERT_TRUE(other);
             Status const actual = refuse(*other);
             EXPECT_EQ(actual.GetComponentIndex(), lastLevel - level);

@@ -30,9 +30,6 @@ using OsdExt::RefinementEvaluator;
 namespace {
 
 constexpr FaceMask kMasks[] = {FaceMask::Average, FaceMask::Cosine, FaceMask::Smooth};
-constexpr Sdc::Options::VtxBoundaryInterpolation kBoundaries[] = {
-    Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
-    Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
 constexpr Sdc::Options::FVarLinearInterpolation kLinearInterpolations[] = {
     Sdc::Options::FVAR_LINEAR_NONE,          Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
     Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,

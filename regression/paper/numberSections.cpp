@@ -8,6 +8,7 @@
 
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/topologyRefinerFactory.h"
+#include "regression/analysis/position.h"
 #include "regression/analysis/smoothness.h"
 #include "regression/analysis/spectrum.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -81,28 +82,17 @@ std::string formatRow(LocalSubdivision const &face, int denominator) {
 }
 
 template <typename REAL>
-struct Position {
-    void Clear() { x = y = z = 0; }
-    void AddWithWeight(Position const &other, REAL weight) {
-        x += weight * other.x;
-        y += weight * other.y;
-        z += weight * other.z;
-    }
-    REAL x, y, z;
-};
-
-template <typename REAL>
-std::vector<Position<REAL>> refinePositions(FarExt::TopologyRefiner const &refiner,
-                                            Shape const &shape) {
+std::vector<PositionReal<REAL>> refinePositions(FarExt::TopologyRefiner const &refiner,
+                                                Shape const &shape) {
     FarExt::PrimvarRefinerReal<REAL> const primvarRefiner(refiner);
-    std::vector<Position<REAL>> positions;
+    std::vector<PositionReal<REAL>> positions;
     for (int vertex = 0; vertex < shape.GetNumVertices(); ++vertex) {
-        double const *const p = &shape.positions[3 * vertex];
         // The same values in both precisions, so that only the arithmetic differs.
-        positions.push_back({REAL(float(p[0])), REAL(float(p[1])), REAL(float(p[2]))});
+        Eigen::Map<Eigen::Vector3d const> const position(&shape.positions[3 * vertex]);
+        positions.push_back({position.cast<float>().cast<REAL>()});
     }
     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
-        std::vector<Position<REAL>> refined(refiner.GetLevel(level).GetNumVertices());
+        std::vector<PositionReal<REAL>> refined(refiner.GetLevel(level).GetNumVertices());
         primvarRefiner.Interpolate(level, positions, refined);
         positions = std::move(refined);
     }
@@ -117,9 +107,7 @@ double measureRounding(Shape const &shape, int level) {
     auto const precise = refinePositions<double>(*refiner, shape);
     double largest = 0, radius = 0;
     for (std::size_t i = 0; i < single.size(); ++i) {
-        largest = std::max(largest, std::hypot(double(single[i].x) - precise[i].x,
-                                               double(single[i].y) - precise[i].y,
-                                               double(single[i].z) - precise[i].z));
+        largest = std::max(largest, (single[i].value.cast<double>() - precise[i].value).norm());
     }
     for (int i = 0; i < shape.GetNumVertices(); ++i) {
         double const *const p = &shape.positions[3 * i];

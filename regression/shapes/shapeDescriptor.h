@@ -11,6 +11,11 @@
 
 namespace OpenSubdivHex::Regression {
 
+/// All rules for boundaries.
+inline constexpr OpenSubdiv::Sdc::Options::VtxBoundaryInterpolation kBoundaries[] = {
+    OpenSubdiv::Sdc::Options::VTX_BOUNDARY_NONE, OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
+    OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
+
 /// \brief A Far::TopologyDescriptor of a shape.  It points into the shape, which must outlive it.
 class ShapeDescriptor {
 public:

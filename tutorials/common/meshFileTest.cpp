@@ -14,7 +14,9 @@
 
 #ifdef __unix__
 #include <csignal>
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <unistd.h>
 #endif
 
 namespace OpenSubdivHex::Tutorials {
@@ -385,11 +387,51 @@ TEST_F(MeshFile, AbandonedOutputLeavesNothing) {
     {
         OutputFile file(path);
         file.Write("half");
-        EXPECT_EQ(listFiles().size(), 2u);
+        EXPECT_EQ(getContent(path), "old");
     }
     EXPECT_EQ(getContent(path), "old");
     EXPECT_EQ(listFiles(), std::vector<std::string>{"a.obj"});
 }
+
+#ifdef O_TMPFILE
+TEST_F(MeshFile, KilledOutputLeavesNothing) {
+    int const unnamed = open(getPath("").c_str(), O_TMPFILE | O_WRONLY, 0600);
+    if (unnamed < 0) {
+        GTEST_SKIP() << "the disk has no files without a name";
+    }
+    close(unnamed);
+    std::string const path = makeFile("a.obj", "old");
+    auto const writeAndDie = [&] {
+        OutputFile file(path);
+        file.Write("half");
+        std::raise(SIGKILL);
+    };
+    EXPECT_EXIT(writeAndDie(), testing::KilledBySignal(SIGKILL), "");
+    EXPECT_EQ(getContent(path), "old");
+    EXPECT_EQ(listFiles(), std::vector<std::string>{"a.obj"});
+}
+#endif
+
+TEST_F(MeshFile, OutputKeepsTemporaryFilesOfOthers) {
+    std::string const path = makeFile("a.obj", "old");
+    makeFile("a.obj.part0", "of others");
+    OutputFile file(path);
+    file.Write("new");
+    file.Commit();
+    EXPECT_EQ(getContent(path), "new");
+    EXPECT_EQ(getContent(path + ".part0"), "of others");
+    EXPECT_EQ(listFiles(), (std::vector<std::string>{"a.obj", "a.obj.part0"}));
+}
+
+// As other files that a program makes, not as temporary ones.
+#ifdef __unix__
+TEST_F(MeshFile, OutputHasUsualPermissions) {
+    WriteMesh(MakeCube(), getPath("a.obj"));
+    makeFile("usual", "");
+    EXPECT_EQ(std::filesystem::status(getPath("a.obj")).permissions(),
+              std::filesystem::status(getPath("usual")).permissions());
+}
+#endif
 
 TEST_F(MeshFile, FailedOutputLeavesNothing) {
     std::string const path = makeFile("a.obj", "old");

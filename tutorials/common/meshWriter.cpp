@@ -2,61 +2,85 @@
 #include "meshWriter.h"
 
 #include "fileError.h"
+#include "floatText.h"
 #include "meshFormat.h"
 #include "outputFile.h"
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <exception>
 
 namespace OpenSubdivHex::Tutorials {
 
 namespace {
 
 /// Enough for a float or an index and the character before or after it.
-constexpr std::size_t kMaxNumber = 16;
+constexpr std::size_t kMaxNumber = kMaxFloatText + 1;
 
-/// Items that are printed at a time, by one thread.
+/// Items that a thread prints at a time.
 constexpr std::size_t kRangeSize = 4096;
-/// Ranges whose text is kept until it is written.
-constexpr std::size_t kNumRanges = 32;
 
-/// \brief Prints \p count items in parallel, and writes them in order.
+/// \brief Prints \p count items in parallel, and writes them in order: one thread at a time writes,
+/// while the others print.
 ///
 /// \param getMaxSize  most characters of items [begin, end)
 /// \param print       prints items [begin, end) to a place for so many, and gives its end
 template <typename GET_MAX_SIZE, typename PRINT>
 void writeItems(std::size_t count, GET_MAX_SIZE getMaxSize, PRINT print, OutputFile &file) {
-    std::vector<char> texts[kNumRanges];
-    std::size_t sizes[kNumRanges];
-    for (std::size_t first = 0; first < count; first += kNumRanges * kRangeSize) {
-        std::size_t const numRanges =
-            std::min(kNumRanges, (count - first + kRangeSize - 1) / kRangeSize);
-        auto const getBegin = [&](std::size_t range) {
-            return std::min(first + range * kRangeSize, count);
-        };
-        for (std::size_t i = 0; i < numRanges; ++i) {
-            std::size_t const size = getMaxSize(getBegin(i), getBegin(i + 1));
-            texts[i].resize(std::max(size, texts[i].size()));
-        }
+    std::size_t const numRanges = (count + kRangeSize - 1) / kRangeSize;
+    // An exception must not leave a parallel region: the first is kept and thrown behind it.
+    std::exception_ptr exception;
+    std::atomic<bool> hasFailed = false;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel
 #endif
-        for (int i = 0; i < int(numRanges); ++i) {
-            char *const text = texts[i].data();
-            char const *const end =
-                print(getBegin(std::size_t(i)), getBegin(std::size_t(i) + 1), text);
-            sizes[i] = std::size_t(end - text);
+    {
+        std::vector<char> text;
+#ifdef _OPENMP
+#pragma omp for ordered schedule(dynamic)
+#endif
+        for (std::size_t range = 0; range < numRanges; ++range) {
+            std::exception_ptr exceptionHere;
+            std::size_t size = 0;
+            auto const keepException = [&](auto const &work) {
+                try {
+                    if (!exceptionHere && !hasFailed) {
+                        work();
+                    }
+                } catch (...) {
+                    exceptionHere = std::current_exception();
+                }
+            };
+            keepException([&] {
+                std::size_t const begin = range * kRangeSize;
+                std::size_t const end = std::min(begin + kRangeSize, count);
+                text.resize(std::max(getMaxSize(begin, end), text.size()));
+                size = std::size_t(print(begin, end, text.data()) - text.data());
+            });
+#ifdef _OPENMP
+#pragma omp ordered
+#endif
+            {
+                keepException([&] { file.Write({text.data(), size}); });
+                if (exceptionHere && !hasFailed) {
+                    exception = exceptionHere;
+                    hasFailed = true;
+                }
+            }
         }
-        for (std::size_t i = 0; i < numRanges; ++i) {
-            file.Write({texts[i].data(), sizes[i]});
-        }
+    }
+    if (exception) {
+        std::rethrow_exception(exception);
     }
 }
 
-template <typename T>
-char *printNumber(char *out, T value) {
+char *printNumber(char *out, float value) { return PrintFloat(out, value); }
+
+template <typename INTEGER>
+char *printNumber(char *out, INTEGER value) {
     return std::to_chars(out, out + kMaxNumber, value).ptr;
 }
 

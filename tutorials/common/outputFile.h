@@ -10,9 +10,11 @@ namespace OpenSubdivHex::Tutorials {
 
 /// \brief A file that appears whole or not at all.
 ///
-/// Content goes to a temporary file beside the target, which Commit() renames to it; without
-/// Commit() the temporary file is removed and the target stays as it was.  A target that is no
-/// regular file, such as /dev/null, is written directly.  All functions throw FileError.
+/// Content goes to a temporary file that Commit() puts in the place of the target; without Commit()
+/// it is removed and the target stays as it was.  On Linux it has no name before Commit(), so that
+/// nothing is left of a process that is killed; elsewhere, and on disks that know no such files, it
+/// lies beside the target.  A target that is no regular file, such as /dev/null, is written
+/// directly.  All functions throw FileError.
 class OutputFile {
 public:
     explicit OutputFile(std::string const &path);
@@ -31,7 +33,8 @@ private:
 
     std::string _path;          ///< as given, for messages
     std::string _targetPath;    ///< links resolved
-    std::string _temporaryPath; ///< empty: the target is written directly
+    std::string _temporaryPath; ///< of a temporary file while it has a name
+    bool _isUnnamed = false;    ///< a temporary file that gets its name from Commit
     std::FILE *_file = nullptr;
 };
 

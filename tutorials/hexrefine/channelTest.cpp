@@ -44,10 +44,13 @@ protected:
         return ReadMesh(getPath("out.obj"));
     }
 
-    /// Expects the cross at level 3, as the library makes it with \p rule.
-    void expectRefined(std::string const &arguments, Options::FVarLinearInterpolation rule) const {
+    /// Expects the cross refined as the library does it with \p rule, to more faces than one
+    /// thread copies at a time.
+    void expectRefined(std::string const &arguments, Options::FVarLinearInterpolation rule,
+                       std::vector<int> const &holes = {}) const {
         SCOPED_TRACE(arguments);
-        Mesh const mesh = refine(arguments + " -l 3");
+        constexpr int kLevel = 6;
+        Mesh const mesh = refine(arguments + " -l " + std::to_string(kLevel));
         Mesh const cross = ReadMesh(makeFile("plain.obj", makeCrossContent()));
         Far::TopologyDescriptor descriptor = DescribeTopology(cross);
         Far::TopologyDescriptor::FVarChannel channel;
@@ -55,15 +58,17 @@ protected:
         channel.valueIndices = cross.channels[0].faceValues.data();
         descriptor.numFVarChannels = 1;
         descriptor.fvarChannels = &channel;
+        descriptor.numHoles = int(holes.size());
+        descriptor.holeIndices = holes.data();
         Options options;
         options.SetFVarLinearInterpolation(rule);
         auto const refiner = FarExt::TopologyRefinerFactory::Create(descriptor, options);
         ASSERT_TRUE(refiner);
-        refiner->RefineUniform(3);
+        refiner->RefineUniform(kLevel);
         std::vector<Uv> uvs(14);
         std::copy(cross.channels[0].values.begin(), cross.channels[0].values.end(),
                   &uvs[0].numbers[0]);
-        for (int level = 1; level <= 3; ++level) {
+        for (int level = 1; level <= kLevel; ++level) {
             std::vector<Uv> refined(refiner->GetLevel(level).GetNumFVarValues());
             FarExt::PrimvarRefiner(*refiner).InterpolateFaceVarying(level, uvs, refined);
             uvs = refined;
@@ -76,9 +81,12 @@ protected:
         }
 
         // Every corner of every face, a face that a seam crosses being its two halves.
-        FarExt::TopologyLevel const &level = refiner->GetLevel(3);
+        FarExt::TopologyLevel const &level = refiner->GetLevel(kLevel);
         std::vector<int> faceValues;
         for (int f = 0; f < level.GetNumFaces(); ++f) {
+            if (level.IsFaceHole(f)) {
+                continue;
+            }
             bool const isSplit = level.IsFaceFVarSplit(f);
             for (int half = 0; half < (isSplit ? 2 : 1); ++half) {
                 auto const part =
@@ -190,6 +198,7 @@ TEST_F(HexrefineChannel, HolesAreLeftOut) {
     EXPECT_EQ(std::count(mesh.faceSizes.begin(), mesh.faceSizes.end(), 4), 4 + 2 * 7);
     EXPECT_EQ(std::count(mesh.faceSizes.begin(), mesh.faceSizes.end(), 6), 4);
     EXPECT_EQ(mesh.channels.at(0).faceValues.size(), mesh.faceVertices.size());
+    expectRefined(makeCross("t hole 2/0/0 0 1\n"), Options::FVAR_LINEAR_ALL, {0, 1});
 }
 
 TEST_F(HexrefineChannel, OtherFormatsSayWhatTheyLeaveOut) {
