@@ -2,7 +2,6 @@
 #include "meshWriter.h"
 
 #include "fileError.h"
-#include "floatText.h"
 #include "meshFormat.h"
 #include "outputFile.h"
 
@@ -18,7 +17,7 @@ namespace OpenSubdivHex::Tutorials {
 namespace {
 
 /// Enough for a float or an index and the character before or after it.
-constexpr std::size_t kMaxNumber = kMaxFloatText + 1;
+constexpr std::size_t kMaxNumber = 16;
 
 /// Items that a thread prints at a time.
 constexpr std::size_t kRangeSize = 4096;
@@ -77,10 +76,8 @@ void writeItems(std::size_t count, GET_MAX_SIZE getMaxSize, PRINT print, OutputF
     }
 }
 
-char *printNumber(char *out, float value) { return PrintFloat(out, value); }
-
-template <typename INTEGER>
-char *printNumber(char *out, INTEGER value) {
+template <typename T>
+char *printNumber(char *out, T value) {
     return std::to_chars(out, out + kMaxNumber, value).ptr;
 }
 
