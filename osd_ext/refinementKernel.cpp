@@ -309,6 +309,10 @@ struct SidesOfEFace {
     static constexpr EFaceSide const &Of(int i) { return i % 3 == 0 ? kEFaceSideA : kEFaceSideB; }
 };
 
+// From the corner of an E-face where a side starts to that where it ends.
+constexpr int kFromStartToEnd = kEFaceSideA.endFVertex - kEFaceSideA.startFVertex;
+static_assert(kFromStartToEnd == kEFaceSideB.endFVertex - kEFaceSideB.startFVertex);
+
 // The F-vertices of the level before: each has the F-face of its face, and the E-faces of the edges
 // that end and start at its corner.
 template <class ACCESS, int SIZE, class SIDES>
@@ -323,6 +327,20 @@ void refineNewVertices(RefinementTask const &task, IndexRun run) {
                (ePoints.Load(edges[prev], SIDES::Of(prev).endFVertex) +
                 ePoints.Load(edges[i], SIDES::Of(i).startFVertex));
     });
+}
+
+// The same where the numbering does not tell which corners of the E-faces they are.
+template <class ACCESS, int SIZE>
+void refineListedVertices(RefinementTask const &task, IndexRun run) {
+    Elements<float const> const fVertices = asConst(task.FVertices());
+    Index const *const startCorners = task.step->startCorners.data();
+    refineFVerticesOf<ACCESS, SIZE>(
+        task, *task.step->parent->parent, run, [=](Index first, int prev, int i) {
+            Index const *const starts = startCorners + first;
+            return ACCESS::Load(fVertices, first + i) +
+                   (ACCESS::Load(fVertices, starts[prev] + kFromStartToEnd) +
+                    ACCESS::Load(fVertices, starts[i]));
+        });
 }
 
 // Those of the level before that one: each has the E-faces of its spoke and of two edges of its
@@ -391,9 +409,12 @@ void refineWeightedVertex(RefinementTask const &task, WeightedVertex const &vert
     ACCESS::StoreExactly(task.dst, vertex.child, point);
 }
 
-bool areHexagons(LevelTopology const &level, IndexRun run) {
+int getFaceSize(LevelTopology const &level, IndexRun run) {
     Index const *const firstCorner = level.faceFirstCorner.data() + run.begin;
-    return firstCorner[1] - firstCorner[0] == HexIndexing::kNumEFaceCorners;
+    return firstCorner[1] - firstCorner[0];
+}
+bool areHexagons(LevelTopology const &level, IndexRun run) {
+    return getFaceSize(level, run) == HexIndexing::kNumEFaceCorners;
 }
 
 template <class ACCESS>
@@ -432,7 +453,21 @@ struct NewVertexKernel {
     static void Run(RefinementTask const &task, IndexRun const *begin, IndexRun const *end) {
         for (; begin < end; ++begin) {
             LevelTopology const &before = *task.step->parent->parent;
-            if (begin->begin >= GetNumFFaces(before)) {
+            if (!task.step->startCorners.empty()) {
+                switch (getFaceSize(before, *begin)) {
+                case 3:
+                    refineListedVertices<ACCESS, 3>(task, *begin);
+                    break;
+                case 4:
+                    refineListedVertices<ACCESS, 4>(task, *begin);
+                    break;
+                case 6:
+                    refineListedVertices<ACCESS, 6>(task, *begin);
+                    break;
+                default:
+                    refineListedVertices<ACCESS, 0>(task, *begin);
+                }
+            } else if (begin->begin >= GetNumFFaces(before)) {
                 refineNewVertices<ACCESS, HexIndexing::kNumEFaceCorners, SidesOfEFace>(task,
                                                                                        *begin);
             } else if (areHexagons(before, *begin)) {

@@ -266,11 +266,13 @@ public:
           _arePlain(_parent.numVVertices == _parent.numVertices),
           _weightedVerts(findWeightedVertices(mask, parent)), _nextWeighted(_weightedVerts.begin()),
           _plain(_parent, step.numTiles) {
-        LevelTopology const *const before = _parent.parent;
-        if (_arePlain && step.masks.averagesFaces && _parent.isHexagonal && before->isHexagonal &&
-            before->numSharpBoundariesA == 0 && before->numSharpBoundariesB == 0) {
+        if (_arePlain && step.masks.averagesFaces && _parent.isHexagonal) {
+            LevelTopology const *const before = _parent.parent;
             _levelOfNewVertices = before;
-            _levelOfOlderVertices = before->parent;
+            if (before->isHexagonal && before->numSharpBoundariesA == 0 &&
+                before->numSharpBoundariesB == 0) {
+                _levelOfOlderVertices = before->parent;
+            }
         }
     }
 
@@ -304,6 +306,9 @@ public:
         }
         if (areNew) {
             _step.newVertexFaces = regular.Take(_step.numTiles);
+            if (!_levelOfOlderVertices) {
+                listStartCorners(level);
+            }
         }
         if (areOlder) {
             _step.olderVertexFaces = regular.Take(_step.numTiles);
@@ -321,13 +326,20 @@ private:
     Group groupOf(TileMap::Tile tile) const {
         return tile == TileMap::kNoTile ? kBetween : _groupOfTile[tile];
     }
-    // In a level that a hexagonal step made without sharp boundaries, the free ones come last.
     static bool hasInteriorEdges(LevelTopology const &level, Index face) {
-        Index const firstBoundary = level.numEdges - level.numFreeBoundaries;
-        return level.numFreeBoundaries == 0 ||
-               std::all_of(level.faceEdges.begin() + level.faceFirstCorner[std::size_t(face)],
-                           level.faceEdges.begin() + level.faceFirstCorner[std::size_t(face) + 1],
-                           [=](Index edge) { return edge < firstBoundary; });
+        return level.boundaryEdges.empty() ||
+               std::none_of(level.faceEdges.begin() + level.faceFirstCorner[std::size_t(face)],
+                            level.faceEdges.begin() + level.faceFirstCorner[std::size_t(face) + 1],
+                            [&](Index edge) { return level.IsBoundary(edge); });
+    }
+    void listStartCorners(LevelTopology const &level) {
+        _step.startCorners.Resize(std::size_t(level.numCorners));
+        Index const firstVertex = level.GetCornerChildVertex(0);
+        ParallelFor(level.numCorners, [&](Index corner) {
+            // The last face around an F-vertex, of three, is the E-face of the edge from its corner.
+            Index const end = _parent.vertFirstFace[std::size_t(firstVertex + corner) + 1];
+            _step.startCorners[std::size_t(corner)] = _parent.GetVertexCorner(end - 1);
+        });
     }
     void add(Index begin, Index end, Group group) {
         for (; _nextWeighted != _weightedVerts.end() && *_nextWeighted < end; ++_nextWeighted) {
@@ -365,7 +377,7 @@ private:
     std::vector<WeightedVertex> _weighted;
     std::vector<Group> _groupOfWeighted;
     VertexRunMaker _plain;
-    // Null where the numbering does not tell the faces around a vertex.
+    // Null where their vertices have no kernel of their own.
     LevelTopology const *_levelOfNewVertices = nullptr;
     LevelTopology const *_levelOfOlderVertices = nullptr;
 };

@@ -84,9 +84,10 @@ struct VertexRun {
 /// 3, 1.7 times for length 8.  The vertices are in the group of the tile that all their faces are
 /// in; others follow in groups of their own, behind those of the tiles.
 ///
-/// Most vertices were made of a corner one or two levels before, and where hexagonal steps made the
-/// levels and have no sharp boundary, the numbering tells where their F-vertices are (INDEXING.md).
-/// These are runs of the faces of those corners; the corners around all others are listed.
+/// Most vertices were made of a corner one or two levels before: they are runs of the faces of those
+/// corners.  Where hexagonal steps made the levels and have no sharp boundary, the numbering tells
+/// where the F-vertices around them are (INDEXING.md).  Else one corner is listed for each, and for
+/// all other vertices the corners around them.
 ///
 /// The last vertex of the level is never plain, nor are its faces of 3 to 6 sides and the vertex
 /// whose F-vertex is the last: what plain faces and vertices read may be read in packets that reach
@@ -106,6 +107,9 @@ struct RefinementStep {
     // and of the level before that one, by tile.  Runs of faces as above.
     Groups<IndexRun> newVertexFaces;
     Groups<IndexRun> olderVertexFaces;
+    /// Where the numbering does not tell, by corner of the level before: its F-vertex's corner in
+    /// the E-face of the edge from that corner to the next, side by side with that of the next.
+    FarExt::internal::Buffer<Far::Index> startCorners;
 
     // The other vertices of the parent, by group.
     Groups<VertexRun> plainVertices;
