@@ -78,7 +78,9 @@ RefinementEvaluator::RefinementEvaluator(TopologyRefiner const &refiner, Options
     : _refiner(refiner), _numRefinements(refiner.GetNumRefinements()) {
     std::vector<TopologyLevel> const meshes = getMeshes(refiner, options);
     _steps.resize(meshes.size() - 1);
-    internal::TileMap tileMap(meshes[0]);
+    internal::TileMap tileMap(
+        meshes[0],
+        internal::GetNumTiles(meshes[std::size_t(std::max(0, refiner.GetMaxLevel() - 1))]));
     for (std::size_t level = 0; level < _steps.size(); ++level) {
         if (level > 0) {
             tileMap.Refine(meshes[level - 1]);
@@ -161,16 +163,19 @@ bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const
         return true;
     }
     values = toVertices(values, length);
+    // The levels grow: the last two below the one asked for have room for those before.
+    for (int below = std::max(1, level - 2); below < level; ++below) {
+        _scratch[below % 2].Resize(std::size_t(GetNumElements(below)) * std::size_t(length));
+    }
+    std::vector<internal::RefinementTask> tasks;
     for (int step = 0; step < level; ++step) {
-        Destination next = result;
-        if (step + 1 < level) {
-            FarExt::internal::Buffer<float> &scratch = _scratch[step % 2];
-            scratch.Resize(std::size_t(GetNumElements(step + 1)) * std::size_t(length));
-            next = {scratch.data(), length};
-        }
-        internal::RefineElements(_steps[std::size_t(step)], length, values, next);
+        int const made = step + 1;
+        Destination const next =
+            made == level ? result : Destination{_scratch[made % 2].data(), length};
+        tasks.push_back({&_steps[std::size_t(step)], values, next});
         values = {next.data, next.stride};
     }
+    internal::RefineElements(tasks, length);
     return true;
 }
 
@@ -184,11 +189,13 @@ bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescrip
     int const length = srcDesc.length;
     Source values = toVertices({src + srcDesc.offset, srcDesc.stride}, length);
     Destination next = {dst + dstDesc.offset, dstDesc.stride};
+    std::vector<internal::RefinementTask> tasks;
     for (int step = 0; step < GetMaxLevel(); ++step) {
-        internal::RefineElements(_steps[std::size_t(step)], length, values, next);
+        tasks.push_back({&_steps[std::size_t(step)], values, next});
         values = {next.data, next.stride};
         next.data += GetNumElements(step + 1) * next.stride;
     }
+    internal::RefineElements(tasks, length);
     return true;
 }
 

@@ -60,8 +60,9 @@ public:
         int fvarChannel = 0; ///< for INTERPOLATE_FACE_VARYING, whose elements are the values
     };
 
-    /// \brief Prepares for the levels that \p refiner has.  Takes about 4 bytes per element of
-    /// levels 1 ... GetMaxLevel(), and the time of one or two frames.
+    /// \brief Prepares for the levels that \p refiner has.  Takes about half a byte per element of
+    /// levels 1 ... GetMaxLevel(), besides 4 bytes per corner of the first two levels, or of all
+    /// that are refined if they have sharp boundaries; and about half the time of a frame.
     ///
     /// \return  null with StatusCode::InvalidArgument for a channel that is not there
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,

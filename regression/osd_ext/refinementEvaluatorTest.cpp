@@ -416,22 +416,25 @@ TEST(RefinementEvaluator, EqualsPrimvarRefinerInManyTiles) {
 TEST(RefinementEvaluator, HasTheSameBitsInEveryLayout) {
     struct Case {
         Shape const &shape;
+        int level; // from 4 on all kernels take part
         FarExt::StencilMode mode;
     };
-    Case const cases[] = {{GetShape("mixedPatch"), FarExt::INTERPOLATE_VERTEX},
-                          {GetShape("prism12"), FarExt::INTERPOLATE_VERTEX},
-                          {GetShape("prism12"), FarExt::INTERPOLATE_VARYING},
-                          {GetFeatureShape("creasedBall"), FarExt::INTERPOLATE_VERTEX},
-                          {GetFeatureShape("cubeOfCharts"), FarExt::INTERPOLATE_FACE_VARYING}};
+    Case const cases[] = {{GetShape("mixedPatch"), 2, FarExt::INTERPOLATE_VERTEX},
+                          {GetShape("mixedPatch"), 4, FarExt::INTERPOLATE_VERTEX},
+                          {GetShape("prism12"), 4, FarExt::INTERPOLATE_VERTEX},
+                          {GetShape("prism12"), 2, FarExt::INTERPOLATE_VARYING},
+                          {GetFeatureShape("creasedBall"), 2, FarExt::INTERPOLATE_VERTEX},
+                          {GetFeatureShape("cubeOfCharts"), 2, FarExt::INTERPOLATE_FACE_VARYING}};
     for (Case const &testCase : cases) {
         SCOPED_TRACE(testCase.shape.name);
-        auto const refiner = createRefiner(testCase.shape, FaceMask::Cosine, 2);
+        auto const refiner = createRefiner(testCase.shape, FaceMask::Cosine, testCase.level);
         auto const evaluator = createEvaluator(*refiner, testCase.mode);
         int const numSources = evaluator->GetNumElements(0);
         for (int length = 1; length <= 9; ++length) {
             std::vector<float> const all = evaluateAll(*evaluator, length);
             std::vector<float> const last(
-                all.end() - std::ptrdiff_t(evaluator->GetNumElements(2) * length), all.end());
+                all.end() - std::ptrdiff_t(evaluator->GetNumElements(testCase.level) * length),
+                all.end());
             for (Layout const &layout : makeLayouts(length, numSources)) {
                 SCOPED_TRACE(testing::Message() << layout.name << ", length " << length);
                 ASSERT_NO_FATAL_FAILURE(
@@ -440,7 +443,7 @@ TEST(RefinementEvaluator, HasTheSameBitsInEveryLayout) {
                     }));
                 ASSERT_NO_FATAL_FAILURE(
                     expectInLayout(layout, numSources, last, [&](auto... arguments) {
-                        return evaluator->Evaluate(arguments..., 2);
+                        return evaluator->Evaluate(arguments..., testCase.level);
                     }));
                 ASSERT_NO_FATAL_FAILURE(expectInLayout(
                     layout, numSources, makeControlValues(numSources, length),
@@ -451,7 +454,7 @@ TEST(RefinementEvaluator, HasTheSameBitsInEveryLayout) {
 }
 
 TEST(RefinementEvaluator, HasTheSameBitsOfEachFloatForEveryLength) {
-    auto const refiner = createRefiner(GetFeatureShape("creasedBall"), FaceMask::Cosine, 2);
+    auto const refiner = createRefiner(GetFeatureShape("creasedBall"), FaceMask::Cosine, 4);
     auto const evaluator = createEvaluator(*refiner, FarExt::INTERPOLATE_VERTEX);
     std::vector<float> const longest = evaluateAll(*evaluator, 9);
     for (int length = 1; length < 9; ++length) {
