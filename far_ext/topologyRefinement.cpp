@@ -251,8 +251,10 @@ private:
         setEdge(cEdge, vert0, vert1, face, kind, local, 0);
     }
     void addVertexEdge(VertexOffsets &vertex, Index cEdge, LocalIndex local) {
-        _c.vertEdges[vertex.edge] = cEdge;
-        _c.vertEdgeLocals[vertex.edge++] = local;
+        if (!_c.vertEdgeLocals.empty()) {
+            _c.vertEdgeLocals[vertex.edge] = local;
+        }
+        _c.vertEdges[vertex.edge++] = cEdge;
     }
     void addVertexFace(VertexOffsets &vertex, Index cFace, LocalIndex local) {
         _c.vertFaces[vertex.face] = cFace;
@@ -692,6 +694,10 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
     writeSequence(&_c.vertFirstFace[fVertex], numCorners, vertex.face, kThree);
     if (!_c.boundaryEdges.empty()) {
         writeSequence(&_c.vertFirstEdge[fVertex], numCorners, vertex.edge, kThree);
+        write(kThree, &_c.vertEdgeLocals[vertex.edge],
+              [](LocalIndex *locals, ClosedCorner const &) {
+                  std::copy(kFVertexEdgeLocals.begin(), kFVertexEdgeLocals.end(), locals);
+              });
     }
     write(kThree, &_c.vertFaces[vertex.face], [=](Index *faces, ClosedCorner const &corner) {
         faces[0] = indexing.GetFaceChildFace(corner.face);
@@ -710,11 +716,6 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
                         edges[1] = indexing.GetCornerChildEdge(corner.prev);
                         edges[2] = indexing.GetCornerChildSpoke(corner.corner);
                     });
-    write(kThree, &_c.vertEdgeLocals[vertex.edge], [](LocalIndex *locals, ClosedCorner const &) {
-        locals[0] = 0;
-        locals[1] = 1;
-        locals[2] = 1;
-    });
 }
 
 // Around a V-vertex the spokes take the place of the parent's faces and the E-faces that of its
@@ -724,16 +725,18 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
     Index const cVert = indexing.GetVertexChildVertex(begin);
     VertexOffsets const shift = _vVertexShifts[numOpenBefore];
     Index const *const pFirstFaces = &_p.vertFirstFace[begin];
-    Index const *const pFirstEdges = &_p.vertFirstEdge[begin];
     WriteArray<1>(&_c.vertFirstFace[cVert], end - begin, _pastCaches,
                   [=](Index *first, Index i) { *first = pFirstFaces[i] + shift.face; });
-    if (!_c.boundaryEdges.empty()) {
-        WriteArray<1>(&_c.vertFirstEdge[cVert], end - begin, _pastCaches,
-                      [=](Index *first, Index i) { *first = pFirstEdges[i] + shift.edge; });
-    }
-
     VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
     Index const numFaces = _p.vertFirstFace[end] - _p.vertFirstFace[begin];
+    if (!_c.boundaryEdges.empty()) {
+        Index const *const pFirstEdges = &_p.vertFirstEdge[begin];
+        WriteArray<1>(&_c.vertFirstEdge[cVert], end - begin, _pastCaches,
+                      [=](Index *first, Index i) { *first = pFirstEdges[i] + shift.edge; });
+        WriteArray<1>(_c.vertEdgeLocals.data() + vertex.edge, numFaces, _pastCaches,
+                      [](LocalIndex *local, Index) { *local = kVVertexEdgeLocals[0]; });
+    }
+
     Index const *const pFaces = _p.vertFaces.data() + _p.vertFirstFace[begin];
     LocalIndex const *const pFaceLocals = _p.vertFaceLocals.data() + _p.vertFirstFace[begin];
     Index const *const pFirstCorner = _p.faceFirstCorner.data();
@@ -741,8 +744,6 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
         _c.vertEdges.data() + vertex.edge, numFaces, _pastCaches, [=](Index *edge, Index i) {
             *edge = indexing.GetCornerChildSpoke(pFirstCorner[pFaces[i]] + pFaceLocals[i]);
         });
-    WriteArray<1>(_c.vertEdgeLocals.data() + vertex.edge, numFaces, _pastCaches,
-                  [](LocalIndex *local, Index) { *local = 0; });
 
     EFaceOfEdge const eFaceOf(_p);
     Index cFace = vertex.face;
@@ -750,10 +751,11 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
     for (Index pVert = begin; pVert < endAnyValence; ++pVert) {
         Index const firstEdge = _p.vertFirstEdge[pVert];
         Index const lastEdge = _p.vertFirstEdge[pVert + 1] - 1;
+        LocalIndex const *const locals = _p.GetVertexEdgeLocals(pVert);
         auto const addFace = [&](Index k) {
             _c.vertFaces[cFace] = eFaceOf(_p.vertEdges[k]);
             _c.vertFaceLocals[cFace++] =
-                _p.vertEdgeLocals[k] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex;
+                locals[k - firstEdge] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex;
         };
         for (Index k = firstEdge; k < lastEdge; ++k) {
             addFace(k + 1);
@@ -870,11 +872,11 @@ void placeArrays(LevelTopology &parent, LevelTopology &child) {
         placeRelation(child.vertFirstFace, std::size_t(child.numVertices) + 1);
         placeRelation(child.vertFaces, child.numCorners);
         placeRelation(child.vertFaceLocals, child.numCorners);
-        // Without boundaries a vertex has as many edges as faces.
-        placeRelation(child.vertFirstEdge,
-                      numBoundaries == 0 ? 0 : std::size_t(child.numVertices) + 1);
         placeRelation(child.vertEdges, 2 * std::size_t(child.numEdges));
-        placeRelation(child.vertEdgeLocals, 2 * std::size_t(child.numEdges));
+        // Without boundaries a vertex has as many edges as faces, and known places in them.
+        bool const hasBoundaries = numBoundaries > 0;
+        placeRelation(child.vertFirstEdge, hasBoundaries * (std::size_t(child.numVertices) + 1));
+        placeRelation(child.vertEdgeLocals, hasBoundaries * 2 * std::size_t(child.numEdges));
     });
     if (numBoundaries == 0) {
         child.vertFirstEdge.Place(child.vertFirstFace.data(), child.vertFirstFace.size());
