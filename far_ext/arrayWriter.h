@@ -29,7 +29,7 @@ void FinishCopiesPastCaches();
 ///
 /// \param array       overlaps nothing that fill reads
 /// \param pastCaches  for an array that is larger than the caches.  Groups are then collected in a
-///                    block that stays in the first cache.
+///                    block that stays in the first cache; FinishCopiesPastCaches() is to follow.
 template <int SIZE, typename T, typename FUNCTION>
 void WriteArray(T *__restrict array, Far::Index count, bool pastCaches, FUNCTION fill) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -57,7 +57,6 @@ void WriteArray(T *__restrict array, Far::Index count, bool pastCaches, FUNCTION
         array += numCopied;
         std::copy(block + numCopied, block + numEntries, block);
     }
-    FinishCopiesPastCaches();
 }
 
 /// \brief Writes the same for indices that follow from those of group 0, which fill(entries)
@@ -65,13 +64,27 @@ void WriteArray(T *__restrict array, Far::Index count, bool pastCaches, FUNCTION
 template <int SIZE, typename FUNCTION>
 void WriteSequence(Far::Index *array, Far::Index count, bool pastCaches, Far::Index step,
                    FUNCTION fill) {
-    std::array<Far::Index, SIZE> first;
-    fill(first.data());
-    WriteArray<SIZE>(array, count, pastCaches, [=](Far::Index *entries, Far::Index i) {
+    // Whole vectors at a time, as long as there are enough groups.
+    constexpr int kGroups = SIZE % 4 == 0 ? 1 : 4;
+    std::array<Far::Index, kGroups * SIZE> first;
+    for (int i = 0; i < kGroups; ++i) {
+        fill(first.data() + SIZE * i);
         for (int k = 0; k < SIZE; ++k) {
-            entries[k] = first[k] + step * i;
+            first[SIZE * i + k] += step * i;
+        }
+    }
+    Far::Index const numWhole = count / kGroups;
+    WriteArray<kGroups * SIZE>(array, numWhole, pastCaches, [=](Far::Index *entries, Far::Index i) {
+        for (int k = 0; k < kGroups * SIZE; ++k) {
+            entries[k] = first[k] + kGroups * step * i;
         }
     });
+    WriteArray<SIZE>(array + kGroups * SIZE * std::size_t(numWhole), count % kGroups, pastCaches,
+                     [=](Far::Index *entries, Far::Index i) {
+                         for (int k = 0; k < SIZE; ++k) {
+                             entries[k] = first[k] + step * (kGroups * numWhole + i);
+                         }
+                     });
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -20,6 +20,11 @@ void FreeArray(void *memory);
 /// it offers them.  Whoever writes it first need not wait for them then.  Content is kept.
 void PrepareArray(void *memory, std::size_t bytes);
 
+/// Whether there are pages behind memory already: false for new memory of a large array, which gets
+/// cleared pages when it is first written.  A guess by a page in the middle; true where the system
+/// does not tell.
+bool IsResident(void const *memory, std::size_t bytes);
+
 /// Resizes an empty vector without touching its memory in pages of 4 KiB, or by one thread alone.
 template <typename T>
 void ResizeLarge(std::vector<T> &array, std::size_t size) {

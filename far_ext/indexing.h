@@ -28,6 +28,13 @@ struct EFaceSide {
 inline constexpr EFaceSide kEFaceSideA = {0, 3, 5, 4, 4, 5, 3};
 inline constexpr EFaceSide kEFaceSideB = {3, 0, 2, 1, 1, 2, 0};
 inline constexpr EFaceSide kBoundaryEFaceSide = {0, 1, 3, 2, 2, 3, 1};
+/// What lies behind the start vertex of side a lies so many places further than in side b.
+inline constexpr Far::LocalIndex kEFaceSideShift = 3;
+static_assert(kEFaceSideA.startFVertex == kEFaceSideB.startFVertex + kEFaceSideShift &&
+              kEFaceSideA.endFVertex == kEFaceSideB.endFVertex + kEFaceSideShift &&
+              kEFaceSideA.fFaceEdge == kEFaceSideB.fFaceEdge + kEFaceSideShift &&
+              kEFaceSideA.startSpoke == kEFaceSideB.startSpoke + kEFaceSideShift &&
+              kEFaceSideA.endSpoke == kEFaceSideB.endSpoke + kEFaceSideShift);
 /// Place in a boundary edge's E-face of the edge that stays on the boundary.
 inline constexpr Far::LocalIndex kBoundaryEFaceEdge = 0;
 

@@ -6,8 +6,10 @@
 #include "indexing.h"
 
 #include <opensubdiv/sdc/crease.h>
+#include <opensubdiv/vtr/types.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -41,6 +43,14 @@ struct SectorCorner {
     float sectorSize; ///< faces between the sharp edges; a half hexagon counts half
     float weight;     ///< share of the thresholds; the entries of a corner sum to 1 at most
 };
+
+/// @name The places of vertices in their edges, where a hexagonal step made both without boundaries
+/// @{
+/// All edges of a V-vertex are spokes, which begin there.
+inline constexpr std::array<Far::LocalIndex, OpenSubdiv::Vtr::VALENCE_LIMIT> kVVertexEdgeLocals{};
+/// An F-vertex has the edge of the F-face to the next corner, that from the corner before, a spoke.
+inline constexpr std::array<Far::LocalIndex, 3> kFVertexEdgeLocals = {0, 1, 1};
+/// @}
 
 struct FVarLevel;
 
@@ -93,6 +103,14 @@ struct LevelTopology {
     Index GetSideCorner(Index e, int side) const {
         std::size_t const k = 2 * std::size_t(e) + std::size_t(side);
         return edgeFaces[k] < 0 ? edgeFaces[k] : faceFirstCorner[edgeFaces[k]] + edgeFaceLocals[k];
+    }
+
+    /// The place of a vertex, 0 or 1, in each of its edges.
+    LocalIndex const *GetVertexEdgeLocals(Index v) const {
+        if (!vertEdgeLocals.empty()) {
+            return vertEdgeLocals.data() + vertFirstEdge[v];
+        }
+        return v < parent->numVertices ? kVVertexEdgeLocals.data() : kFVertexEdgeLocals.data();
     }
 
     bool IsBoundary(Index e) const { return edgeFaces[2 * std::size_t(e) + 1] < 0; }
@@ -169,7 +187,7 @@ struct LevelTopology {
     Buffer<LocalIndex> vertFaceLocals; ///< the vertex's place in each of its faces
     Buffer<Index> vertFirstEdge;       ///< numVertices + 1 positions in vertEdges, vertEdgeLocals
     Buffer<Index> vertEdges;
-    Buffer<LocalIndex> vertEdgeLocals; ///< 0 or 1: the vertex's place in each of its edges
+    Buffer<LocalIndex> vertEdgeLocals; ///< see GetVertexEdgeLocals; empty where that knows
 
     // Children, of a level that was refined.
     Index numVVertices = 0;       ///< vertices of the child that were made of vertices

@@ -319,9 +319,10 @@ void refineVertices(LevelTopology const &parent, SharpnessRefiner const &refiner
 Index findSpoke(LevelTopology const &parent, Index corner, LevelTopology const &child) {
     Index const vVertex = parent.GetVertexChildVertex(parent.faceVerts[corner]);
     Index const fVertex = parent.GetCornerChildVertex(corner);
+    Far::LocalIndex const *local = child.GetVertexEdgeLocals(fVertex);
     for (Index i = child.vertFirstEdge[fVertex]; i < child.vertFirstEdge[fVertex + 1]; ++i) {
         Index const edge = child.vertEdges[i];
-        if (child.edgeVerts[2 * std::size_t(edge) + 1 - child.vertEdgeLocals[i]] == vVertex) {
+        if (child.edgeVerts[2 * std::size_t(edge) + 1 - *local++] == vVertex) {
             return edge;
         }
     }

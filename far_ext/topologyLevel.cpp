@@ -58,7 +58,11 @@ Far::ConstIndexArray TopologyLevel::GetVertexEdges(Index v) const {
 }
 
 Far::ConstLocalIndexArray TopologyLevel::GetVertexEdgeLocalIndices(Index v) const {
-    return span(_topology->vertEdgeLocals, _topology->vertFirstEdge, v);
+    if (!HasFullTopology()) {
+        return ConstLocalIndexArray();
+    }
+    return ConstLocalIndexArray(_topology->GetVertexEdgeLocals(v),
+                                _topology->vertFirstEdge[v + 1] - _topology->vertFirstEdge[v]);
 }
 
 Index TopologyLevel::FindEdge(Index v0, Index v1) const {
@@ -339,12 +343,14 @@ bool Validator::checkSizes() {
     if (!t.hasFullTopology) {
         return true;
     }
+    bool const hasVertexEdgeLocals =
+        !t.vertEdgeLocals.empty() || !t.isHexagonal || _level.GetNumBoundaryEdges() > 0;
     return sized(t.faceEdges, numCorners) && sized(t.edgeVerts, 2 * numEdges) &&
            sized(t.edgeFaces, 2 * numEdges) && sized(t.edgeFaceLocals, 2 * numEdges) &&
            sized(t.boundaryEdges, _level.GetNumBoundaryEdges()) &&
            sized(t.halfFaces, t.numSharpBoundariesB) && sized(t.vertFaces, numCorners) &&
            sized(t.vertFaceLocals, numCorners) && sized(t.vertEdges, 2 * numEdges) &&
-           sized(t.vertEdgeLocals, 2 * numEdges) &&
+           sized(t.vertEdgeLocals, hasVertexEdgeLocals ? 2 * numEdges : 0) &&
            offsets(t.vertFirstFace, t.numVertices, numCorners, ComponentType::Vertex) &&
            offsets(t.vertFirstEdge, t.numVertices, 2 * numEdges, ComponentType::Vertex);
 }

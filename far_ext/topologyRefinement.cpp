@@ -14,19 +14,28 @@ namespace {
 using Index = Far::Index;
 using LocalIndex = Far::LocalIndex;
 
-// The sides of its interior edges that a hexagon is, by corner; known without a look at the edges
-// where the hexagonal step made it, as that always gives the vertices of an edge the same order.
-struct SidesOfEFace {
-    static constexpr EFaceSide kSides[] = {kEFaceSideA, kEFaceSideB, kEFaceSideB,
-                                           kEFaceSideA, kEFaceSideB, kEFaceSideB};
-};
+// Which sides of its edges a face is: by how much its F-vertices and edges in the E-face of the edge
+// from a corner to the next come before those of side a, 0 or kEFaceSideShift.
+//
+// Known without a look at the edges where the hexagonal step made the face, as that always gives
+// the vertices of an edge the same order.
 struct SidesOfFFace {
-    static constexpr EFaceSide kSides[] = {kEFaceSideA, kEFaceSideA, kEFaceSideA,
-                                           kEFaceSideA, kEFaceSideA, kEFaceSideA};
+    LocalIndex operator()(Index /* corner */, int /* local */) const { return 0; }
+};
+struct SidesOfEFace {
+    LocalIndex operator()(Index /* corner */, int local) const {
+        return local % 3 == 0 ? 0 : kEFaceSideShift;
+    }
+};
+struct SidesOfCorners {
+    LocalIndex operator()(Index corner, int /* local */) const { return shifts[corner - first]; }
+
+    LocalIndex const *shifts;
+    Index first; // corner
 };
 
 // Bytes of a level above which it is written past the caches: less than most caches have, but they
-// hold its parent as well.
+// hold its parent as well.  Not on new pages: those the system brings into the caches to clear them.
 constexpr std::size_t kCacheSize = std::size_t(16) << 20;
 
 // An edge as one of its faces sees it.
@@ -47,15 +56,21 @@ struct FaceCorner {
     FaceEdge outEdge;
 };
 
-// A corner of a face without boundary edges, and the sides that the face is of the edges.
+// A corner of a face without boundary edges.
 struct ClosedCorner {
+    // Places in the E-faces of the edges that end and start here.
+    LocalIndex InPlace(LocalIndex placeOfSideA) const { return LocalIndex(placeOfSideA - inShift); }
+    LocalIndex OutPlace(LocalIndex placeOfSideA) const {
+        return LocalIndex(placeOfSideA - outShift);
+    }
+
     Index face;
     LocalIndex local; // its place in the face
     Index prev;
     Index corner;
     Index next;
-    EFaceSide const *inSide;
-    EFaceSide const *outSide;
+    LocalIndex inShift; // of the sides that the face is of these edges
+    LocalIndex outShift;
 };
 
 // Where the faces and edges of a vertex begin in the arrays of all vertices.
@@ -93,6 +108,11 @@ void sortUnique(std::vector<Index> &indices) {
     indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
+// The vertices of the last level that was not made by a hexagonal step.
+Index getNumVertsOfAnyValence(LevelTopology const &level) {
+    return level.isHexagonal ? getNumVertsOfAnyValence(*level.parent) : level.numVertices;
+}
+
 // Takes [begin, end) apart at the indices that are listed, ascending: calls regular(begin, end, n)
 // for the runs between them and listed(index, n) for those themselves, in order; n of the listed
 // indices come before.
@@ -123,7 +143,9 @@ class Refinement {
 public:
     Refinement(LevelTopology const &parent, LevelTopology &child)
         : _p(parent), _c(child), _indexing(parent.ChildIndexing()),
-          _pastCaches(child.memory.size() > kCacheSize) {}
+          _numVertsOfAnyValence(getNumVertsOfAnyValence(parent)),
+          _pastCaches(child.memory.size() > kCacheSize &&
+                      IsResident(child.memory.data(), child.memory.size())) {}
 
     // Face-vertices alone.
     void FillFaces() { fillFaces<false>(); }
@@ -133,13 +155,13 @@ public:
         listOpenVertices();
         fillFaces<true>();
         fillBoundaries();
-        ParallelForRange(_p.numFaces, [this](Index begin, Index end) {
+        writeRanges(_p.numFaces, [this](Index begin, Index end) {
             forEachRun(
                 begin, end, _openFaces,
                 [this](Index runBegin, Index runEnd, Index) { fillClosedFaces(runBegin, runEnd); },
                 [this](Index pFace, Index) { fillOpenFace(pFace); });
         });
-        ParallelForRange(_p.numVertices, [this](Index begin, Index end) {
+        writeRanges(_p.numVertices, [this](Index begin, Index end) {
             forEachRun(
                 begin, end, _openVerts,
                 [this](Index runBegin, Index runEnd, Index numOpenBefore) {
@@ -166,9 +188,13 @@ private:
     void fillOpenFace(Index pFace);
     void fillClosedFaces(Index begin, Index end);
     template <typename SIDES>
-    void fillHexagons(Index begin, Index end);
-    template <typename GET_SIDE>
-    void fillFacesOfAnySize(Index begin, Index end, GET_SIDE getSide);
+    void fillClosedFaces(Index begin, Index end, SIDES sides);
+    template <typename SIDES>
+    void fillFacesOfOneSize(Index begin, Index end, SIDES sides);
+    template <int SIZE, typename SIDES>
+    void fillFacesOfSize(Index begin, Index end, SIDES sides);
+    template <typename SIDES>
+    void fillFacesOfAnySize(Index begin, Index end, SIDES sides);
     template <typename WRITE, typename WRITE_CLOSED_FORM>
     void fillClosedCorners(Index begin, Index end, WRITE write, WRITE_CLOSED_FORM writeClosedForm);
     void fillClosedVertices(Index begin, Index end, Index numOpenBefore);
@@ -225,12 +251,23 @@ private:
         setEdge(cEdge, vert0, vert1, face, kind, local, 0);
     }
     void addVertexEdge(VertexOffsets &vertex, Index cEdge, LocalIndex local) {
-        _c.vertEdges[vertex.edge] = cEdge;
-        _c.vertEdgeLocals[vertex.edge++] = local;
+        if (!_c.vertEdgeLocals.empty()) {
+            _c.vertEdgeLocals[vertex.edge] = local;
+        }
+        _c.vertEdges[vertex.edge++] = cEdge;
     }
     void addVertexFace(VertexOffsets &vertex, Index cFace, LocalIndex local) {
         _c.vertFaces[vertex.face] = cFace;
         _c.vertFaceLocals[vertex.face++] = local;
+    }
+
+    // ParallelForRange for functions that write arrays.
+    template <typename FUNCTION>
+    static void writeRanges(Index count, FUNCTION function) {
+        ParallelForRange(count, [=](Index begin, Index end) {
+            function(begin, end);
+            FinishCopiesPastCaches();
+        });
     }
 
     // Writes count numbers: first, first + step ...
@@ -241,6 +278,7 @@ private:
     LevelTopology const &_p;
     LevelTopology &_c;
     HexIndexing const _indexing;
+    Index const _numVertsOfAnyValence; // closed vertices behind them have three faces
     bool const _pastCaches;
 
     std::vector<Index> _openFaces; // have a boundary edge
@@ -295,7 +333,7 @@ void Refinement::fillFaces() {
         _c.faceFirstCorner[_indexing.GetFaceChildFace(pFace)] =
             _indexing.GetFaceChildFirstCorner(_p.faceFirstCorner[pFace]);
     });
-    ParallelForRange(_p.numCorners, [=](Index begin, Index end) {
+    writeRanges(_p.numCorners, [=](Index begin, Index end) {
         Index const cCorner = _indexing.GetFaceChildFirstCorner(begin);
         writeSequence(&_c.faceVerts[cCorner], end - begin, _indexing.GetCornerChildVertex(begin),
                       1);
@@ -304,7 +342,7 @@ void Refinement::fillFaces() {
                           1);
         }
     });
-    ParallelForRange(_p.numEdges, [this](Index begin, Index end) {
+    writeRanges(_p.numEdges, [this](Index begin, Index end) {
         forEachRun(
             begin, end, _p.boundaryEdges,
             [this](Index runBegin, Index runEnd, Index numBoundaryBefore) {
@@ -478,80 +516,122 @@ void Refinement::fillOpenFace(Index pFace) {
 
 // A run of faces without boundary edges.
 void Refinement::fillClosedFaces(Index begin, Index end) {
-    if (!_p.isHexagonal) {
-        fillFacesOfAnySize(begin, end, [this](Index pFace, Index pCorner) {
-            std::size_t const pEdge = _p.faceEdges[pCorner];
-            return _p.edgeFaces[2 * pEdge] == pFace ? &kEFaceSideA : &kEFaceSideB;
-        });
+    if (_p.isHexagonal) {
+        // F-faces come first; then all faces are hexagons.
+        Index const endFFaces = std::clamp(_p.parent->numFaces, begin, end);
+        fillClosedFaces(begin, endFFaces, SidesOfFFace());
+        fillFacesOfSize<HexIndexing::kNumEFaceCorners>(endFFaces, end, SidesOfEFace());
         return;
     }
-    // F-faces come first, which are side A of all their edges; then all faces are hexagons.
-    Index const endFFaces = std::max(begin, std::min(end, _p.parent->numFaces));
-    auto const isHexagon = [this](Index pFace) {
-        return _p.faceFirstCorner[pFace + 1] - _p.faceFirstCorner[pFace] ==
-               HexIndexing::kNumEFaceCorners;
-    };
-    for (Index pFace = begin; pFace < endFFaces;) {
-        Index runEnd = pFace + 1;
-        while (runEnd < endFFaces && isHexagon(runEnd) == isHexagon(pFace)) {
-            ++runEnd;
+    Index const first = _p.faceFirstCorner[begin];
+    std::vector<LocalIndex> shifts(_p.faceFirstCorner[end] - first);
+    LocalIndex *shift = shifts.data();
+    Index const *const pEdges = _p.faceEdges.data();
+    Index const *const pFaces = _p.edgeFaces.data();
+    for (Index pFace = begin; pFace < end; ++pFace) {
+        Index const endCorner = _p.faceFirstCorner[pFace + 1];
+        for (Index k = _p.faceFirstCorner[pFace]; k < endCorner; ++k) {
+            bool const isSideA = pFaces[2 * std::size_t(pEdges[k])] == pFace;
+            *shift++ = isSideA ? 0 : kEFaceSideShift;
         }
-        if (isHexagon(pFace)) {
-            fillHexagons<SidesOfFFace>(pFace, runEnd);
-        } else {
-            fillFacesOfAnySize(pFace, runEnd, [](Index, Index) { return &kEFaceSideA; });
-        }
-        pFace = runEnd;
     }
-    if (endFFaces < end) {
-        fillHexagons<SidesOfEFace>(endFFaces, end);
+    fillClosedFaces(begin, end, SidesOfCorners{shifts.data(), first});
+}
+
+// Most faces of a mesh are of one size, and lie in long runs; what lies between is taken together.
+template <typename SIDES>
+void Refinement::fillClosedFaces(Index begin, Index end, SIDES sides) {
+    constexpr Index kLongRun = 32;
+    auto const sizeOf = [this](Index pFace) {
+        return _p.faceFirstCorner[pFace + 1] - _p.faceFirstCorner[pFace];
+    };
+    auto const endOfRun = [=](Index pFace) {
+        Index const size = sizeOf(pFace);
+        do {
+            ++pFace;
+        } while (pFace < end && sizeOf(pFace) == size);
+        return pFace;
+    };
+    Index shortRuns = begin; // from here on
+    for (Index run = begin; run < end;) {
+        Index const runEnd = endOfRun(run);
+        if (runEnd - run >= kLongRun) {
+            fillFacesOfAnySize(shortRuns, run, sides);
+            fillFacesOfOneSize(run, runEnd, sides);
+            shortRuns = runEnd;
+        }
+        run = runEnd;
+    }
+    fillFacesOfAnySize(shortRuns, end, sides);
+}
+
+template <typename SIDES>
+void Refinement::fillFacesOfOneSize(Index begin, Index end, SIDES sides) {
+    switch (_p.faceFirstCorner[begin + 1] - _p.faceFirstCorner[begin]) {
+    case 3:
+        fillFacesOfSize<3>(begin, end, sides);
+        break;
+    case 4:
+        fillFacesOfSize<4>(begin, end, sides);
+        break;
+    case HexIndexing::kNumEFaceCorners:
+        fillFacesOfSize<HexIndexing::kNumEFaceCorners>(begin, end, sides);
+        break;
+    default:
+        fillFacesOfAnySize(begin, end, sides);
     }
 }
 
-// Hexagons whose sides of their edges are known: all but indices are constants.
-template <typename SIDES>
-void Refinement::fillHexagons(Index begin, Index end) {
-    constexpr int kSize = HexIndexing::kNumEFaceCorners;
+// The places of the corners in their faces are constants.
+template <int SIZE, typename SIDES>
+void Refinement::fillFacesOfSize(Index begin, Index end, SIDES sides) {
+    if (begin == end) {
+        return;
+    }
     Index const runFirst = _p.faceFirstCorner[begin];
-    auto const fillHexagon = [=](auto kEntries, auto *entries, Index i, auto fill) {
-        Index const first = runFirst + kSize * i;
-        for (int local = 0; local < kSize; ++local) {
-            int const prev = (local + kSize - 1) % kSize;
-            int const next = (local + 1) % kSize;
+    auto const fillFace = [=](auto kEntries, auto *entries, Index i, auto fill) {
+        Index const first = runFirst + SIZE * i;
+        for (int local = 0; local < SIZE; ++local) {
+            int const prev = (local + SIZE - 1) % SIZE;
+            int const next = (local + 1) % SIZE;
             fill(entries + kEntries * local,
                  ClosedCorner{begin + i, LocalIndex(local), first + prev, first + local,
-                              first + next, &SIDES::kSides[prev], &SIDES::kSides[local]});
+                              first + next, sides(first + prev, prev),
+                              sides(first + local, local)});
         }
     };
     fillClosedCorners(
         begin, end,
         [=](auto kEntries, auto *array, auto fill) {
-            WriteArray<kEntries * kSize>(
+            WriteArray<kEntries * SIZE>(
                 array, end - begin, _pastCaches,
-                [=](auto *entries, Index i) { fillHexagon(kEntries, entries, i, fill); });
+                [=](auto *entries, Index i) { fillFace(kEntries, entries, i, fill); });
         },
         [=](auto kEntries, Index *array, auto fill) {
-            WriteSequence<kEntries * kSize>(
-                array, end - begin, _pastCaches, kSize,
-                [=](Index *entries) { fillHexagon(kEntries, entries, 0, fill); });
+            WriteSequence<kEntries * SIZE>(
+                array, end - begin, _pastCaches, SIZE,
+                [=](Index *entries) { fillFace(kEntries, entries, 0, fill); });
         });
 }
 
-// getSide(pFace, pCorner) tells the side that the face is of the edge from a corner to the next.
-template <typename GET_SIDE>
-void Refinement::fillFacesOfAnySize(Index begin, Index end, GET_SIDE getSide) {
+template <typename SIDES>
+void Refinement::fillFacesOfAnySize(Index begin, Index end, SIDES sides) {
+    if (begin == end) {
+        return;
+    }
     std::vector<ClosedCorner> corners;
     corners.reserve(_p.faceFirstCorner[end] - _p.faceFirstCorner[begin]);
     for (Index pFace = begin; pFace < end; ++pFace) {
         Index const first = _p.faceFirstCorner[pFace];
         Index const last = _p.faceFirstCorner[pFace + 1] - 1;
-        ClosedCorner corner = {pFace, 0, last, first, first + 1, getSide(pFace, last), nullptr};
-        for (; corner.corner <= last; ++corner.corner, ++corner.local) {
-            corner.next = corner.corner == last ? first : corner.corner + 1;
-            corner.outSide = getSide(pFace, corner.corner);
-            corners.push_back(corner);
-            corner.prev = corner.corner;
-            corner.inSide = corner.outSide;
+        LocalIndex inShift = sides(last, last - first);
+        Index prev = last;
+        for (Index k = first; k <= last; ++k) {
+            LocalIndex const outShift = sides(k, k - first);
+            corners.push_back({pFace, LocalIndex(k - first), prev, k, k == last ? first : k + 1,
+                               inShift, outShift});
+            prev = k;
+            inShift = outShift;
         }
     }
     auto const write = [&](auto kEntries, auto *array, auto fill) {
@@ -589,7 +669,7 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
     });
     write(kTwo, &_c.edgeFaceLocals[fEdges], [](LocalIndex *locals, ClosedCorner const &corner) {
         locals[0] = corner.local;
-        locals[1] = corner.outSide->fFaceEdge;
+        locals[1] = corner.OutPlace(kEFaceSideA.fFaceEdge);
     });
 
     // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
@@ -603,8 +683,8 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
         faces[1] = eFaceOf(pEdges[corner.corner]);
     });
     write(kTwo, &_c.edgeFaceLocals[spokes], [](LocalIndex *locals, ClosedCorner const &corner) {
-        locals[0] = corner.inSide->endSpoke;
-        locals[1] = corner.outSide->startSpoke;
+        locals[0] = corner.InPlace(kEFaceSideA.endSpoke);
+        locals[1] = corner.OutPlace(kEFaceSideA.startSpoke);
     });
 
     // None of the faces is a half face, so that all F-vertices have three faces and edges.
@@ -612,7 +692,13 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
     Index const numCorners = _p.faceFirstCorner[end] - pFirst;
     Index const fVertex = indexing.GetCornerChildVertex(pFirst);
     writeSequence(&_c.vertFirstFace[fVertex], numCorners, vertex.face, kThree);
-    writeSequence(&_c.vertFirstEdge[fVertex], numCorners, vertex.edge, kThree);
+    if (!_c.boundaryEdges.empty()) {
+        writeSequence(&_c.vertFirstEdge[fVertex], numCorners, vertex.edge, kThree);
+        write(kThree, &_c.vertEdgeLocals[vertex.edge],
+              [](LocalIndex *locals, ClosedCorner const &) {
+                  std::copy(kFVertexEdgeLocals.begin(), kFVertexEdgeLocals.end(), locals);
+              });
+    }
     write(kThree, &_c.vertFaces[vertex.face], [=](Index *faces, ClosedCorner const &corner) {
         faces[0] = indexing.GetFaceChildFace(corner.face);
         faces[1] = eFaceOf(pEdges[corner.prev]);
@@ -621,8 +707,8 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
     write(kThree, &_c.vertFaceLocals[vertex.face],
           [](LocalIndex *locals, ClosedCorner const &corner) {
               locals[0] = corner.local;
-              locals[1] = corner.inSide->endFVertex;
-              locals[2] = corner.outSide->startFVertex;
+              locals[1] = corner.InPlace(kEFaceSideA.endFVertex);
+              locals[2] = corner.OutPlace(kEFaceSideA.startFVertex);
           });
     writeClosedForm(kThree, &_c.vertEdges[vertex.edge],
                     [=](Index *edges, ClosedCorner const &corner) {
@@ -630,11 +716,6 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
                         edges[1] = indexing.GetCornerChildEdge(corner.prev);
                         edges[2] = indexing.GetCornerChildSpoke(corner.corner);
                     });
-    write(kThree, &_c.vertEdgeLocals[vertex.edge], [](LocalIndex *locals, ClosedCorner const &) {
-        locals[0] = 0;
-        locals[1] = 1;
-        locals[2] = 1;
-    });
 }
 
 // Around a V-vertex the spokes take the place of the parent's faces and the E-faces that of its
@@ -644,14 +725,18 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
     Index const cVert = indexing.GetVertexChildVertex(begin);
     VertexOffsets const shift = _vVertexShifts[numOpenBefore];
     Index const *const pFirstFaces = &_p.vertFirstFace[begin];
-    Index const *const pFirstEdges = &_p.vertFirstEdge[begin];
     WriteArray<1>(&_c.vertFirstFace[cVert], end - begin, _pastCaches,
                   [=](Index *first, Index i) { *first = pFirstFaces[i] + shift.face; });
-    WriteArray<1>(&_c.vertFirstEdge[cVert], end - begin, _pastCaches,
-                  [=](Index *first, Index i) { *first = pFirstEdges[i] + shift.edge; });
-
     VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
     Index const numFaces = _p.vertFirstFace[end] - _p.vertFirstFace[begin];
+    if (!_c.boundaryEdges.empty()) {
+        Index const *const pFirstEdges = &_p.vertFirstEdge[begin];
+        WriteArray<1>(&_c.vertFirstEdge[cVert], end - begin, _pastCaches,
+                      [=](Index *first, Index i) { *first = pFirstEdges[i] + shift.edge; });
+        WriteArray<1>(_c.vertEdgeLocals.data() + vertex.edge, numFaces, _pastCaches,
+                      [](LocalIndex *local, Index) { *local = kVVertexEdgeLocals[0]; });
+    }
+
     Index const *const pFaces = _p.vertFaces.data() + _p.vertFirstFace[begin];
     LocalIndex const *const pFaceLocals = _p.vertFaceLocals.data() + _p.vertFirstFace[begin];
     Index const *const pFirstCorner = _p.faceFirstCorner.data();
@@ -659,37 +744,46 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
         _c.vertEdges.data() + vertex.edge, numFaces, _pastCaches, [=](Index *edge, Index i) {
             *edge = indexing.GetCornerChildSpoke(pFirstCorner[pFaces[i]] + pFaceLocals[i]);
         });
-    WriteArray<1>(_c.vertEdgeLocals.data() + vertex.edge, numFaces, _pastCaches,
-                  [](LocalIndex *local, Index) { *local = 0; });
 
-    Index const beginFVertices =
-        _p.isHexagonal ? std::clamp(_p.parent->numVertices, begin, end) : end;
     EFaceOfEdge const eFaceOf(_p);
     Index cFace = vertex.face;
-    for (Index pVert = begin; pVert < beginFVertices; ++pVert) {
+    Index const endAnyValence = std::clamp(_numVertsOfAnyValence, begin, end);
+    for (Index pVert = begin; pVert < endAnyValence; ++pVert) {
         Index const firstEdge = _p.vertFirstEdge[pVert];
-        Index const endEdge = _p.vertFirstEdge[pVert + 1];
-        for (Index k = firstEdge; k < endEdge; ++k, ++cFace) {
-            Index const behind = k + 1 == endEdge ? firstEdge : k + 1;
-            _c.vertFaces[cFace] = eFaceOf(_p.vertEdges[behind]);
-            _c.vertFaceLocals[cFace] =
-                _p.vertEdgeLocals[behind] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex;
+        Index const lastEdge = _p.vertFirstEdge[pVert + 1] - 1;
+        LocalIndex const *const locals = _p.GetVertexEdgeLocals(pVert);
+        auto const addFace = [&](Index k) {
+            _c.vertFaces[cFace] = eFaceOf(_p.vertEdges[k]);
+            _c.vertFaceLocals[cFace++] =
+                locals[k - firstEdge] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex;
+        };
+        for (Index k = firstEdge; k < lastEdge; ++k) {
+            addFace(k + 1);
         }
+        addFace(firstEdge);
     }
-    // F-vertices of the parent are the first, second and second vertex of their three edges.
-    constexpr int kSize = 3;
-    Index const *const pEdges = _p.vertEdges.data() + _p.vertFirstEdge[beginFVertices];
-    WriteArray<kSize>(_c.vertFaces.data() + cFace, end - beginFVertices, _pastCaches,
-                      [=](Index *faces, Index i) {
-                          for (int k = 0; k < kSize; ++k) {
-                              faces[k] = eFaceOf(pEdges[kSize * i + (k + 1) % kSize]);
-                          }
-                      });
-    WriteArray<kSize>(_c.vertFaceLocals.data() + cFace, end - beginFVertices, _pastCaches,
-                      [](LocalIndex *locals, Index) {
-                          locals[0] = locals[1] = kEFaceSideA.endVertex;
-                          locals[2] = kEFaceSideA.startVertex;
-                      });
+    // V-vertices of the parent are the first vertex of three edges, F-vertices the first, second
+    // and second.
+    constexpr int kValence = 3;
+    Index const *const pEdges = _p.vertEdges.data() + _p.vertFirstEdge[endAnyValence];
+    WriteArray<kValence>(_c.vertFaces.data() + cFace, end - endAnyValence, _pastCaches,
+                         [=](Index *faces, Index i) {
+                             for (int k = 0; k < kValence; ++k) {
+                                 faces[k] = eFaceOf(pEdges[kValence * i + (k + 1) % kValence]);
+                             }
+                         });
+    Index const endVVertices =
+        _p.isHexagonal ? std::clamp(_p.parent->numVertices, endAnyValence, end) : end;
+    Index const numVVertices = endVVertices - endAnyValence;
+    LocalIndex *const locals = _c.vertFaceLocals.data() + cFace;
+    WriteArray<kValence>(locals, numVVertices, _pastCaches, [](LocalIndex *ofVertex, Index) {
+        ofVertex[0] = ofVertex[1] = ofVertex[2] = kEFaceSideA.startVertex;
+    });
+    WriteArray<kValence>(locals + kValence * std::size_t(numVVertices), end - endVVertices,
+                         _pastCaches, [](LocalIndex *ofVertex, Index) {
+                             ofVertex[0] = ofVertex[1] = kEFaceSideA.endVertex;
+                             ofVertex[2] = kEFaceSideA.startVertex;
+                         });
 }
 
 // Where a fan of faces ends in a boundary edge with an E-face, that one's boundary edge comes first
@@ -757,6 +851,9 @@ void Refinement::fillBoundaries() {
 
 // Gives all arrays of the child and the relations of the parent to it a place.
 void placeArrays(LevelTopology &parent, LevelTopology &child) {
+    std::size_t const numSharpBoundaries =
+        std::size_t(child.numSharpBoundariesA) + child.numSharpBoundariesB;
+    std::size_t const numBoundaries = child.numFreeBoundaries + numSharpBoundaries;
     PlaceArrays(child.memory, [&](auto place) {
         place(parent.faceChildFaces, parent.numFaces);
         place(parent.edgeChildFaces, parent.halfFaces.empty() ? 0 : parent.numEdges);
@@ -766,21 +863,24 @@ void placeArrays(LevelTopology &parent, LevelTopology &child) {
         auto const placeRelation = [&](auto &array, std::size_t size) {
             place(array, child.hasFullTopology ? size : 0);
         };
-        std::size_t const numSharpBoundaries =
-            std::size_t(child.numSharpBoundariesA) + child.numSharpBoundariesB;
         placeRelation(child.faceEdges, child.numCorners);
         placeRelation(child.edgeVerts, 2 * std::size_t(child.numEdges));
         placeRelation(child.edgeFaces, 2 * std::size_t(child.numEdges));
         placeRelation(child.edgeFaceLocals, 2 * std::size_t(child.numEdges));
-        placeRelation(child.boundaryEdges, child.numFreeBoundaries + numSharpBoundaries);
+        placeRelation(child.boundaryEdges, numBoundaries);
         placeRelation(child.halfFaces, child.numSharpBoundariesB);
         placeRelation(child.vertFirstFace, std::size_t(child.numVertices) + 1);
         placeRelation(child.vertFaces, child.numCorners);
         placeRelation(child.vertFaceLocals, child.numCorners);
-        placeRelation(child.vertFirstEdge, std::size_t(child.numVertices) + 1);
         placeRelation(child.vertEdges, 2 * std::size_t(child.numEdges));
-        placeRelation(child.vertEdgeLocals, 2 * std::size_t(child.numEdges));
+        // Without boundaries a vertex has as many edges as faces, and known places in them.
+        bool const hasBoundaries = numBoundaries > 0;
+        placeRelation(child.vertFirstEdge, hasBoundaries * (std::size_t(child.numVertices) + 1));
+        placeRelation(child.vertEdgeLocals, hasBoundaries * 2 * std::size_t(child.numEdges));
     });
+    if (numBoundaries == 0) {
+        child.vertFirstEdge.Place(child.vertFirstFace.data(), child.vertFirstFace.size());
+    }
 }
 
 // The relations that only a refined level has: to its children.

@@ -13,9 +13,11 @@
 namespace OpenSubdivHex::Regression {
 
 using FarExt::internal::Buffer;
+using FarExt::internal::IsResident;
 using FarExt::internal::kCacheLine;
 using FarExt::internal::PlaceArrays;
 using FarExt::internal::WriteArray;
+using FarExt::internal::WriteSequence;
 
 TEST(Buffer, KeepsItsMemoryUntilItNeedsMore) {
     Buffer<int> buffer;
@@ -108,6 +110,44 @@ TEST(WriteArray, WritesWhatItIsToldAndNoMore) {
         }
     }
 }
+
+// Groups of and other than whole vectors.
+template <int SIZE>
+void expectSequence(int count, bool pastCaches) {
+    std::vector<int> array(std::size_t(SIZE * count) + 100, -1);
+    WriteSequence<SIZE>(array.data() + 1, count, pastCaches, 10, [](int *entries) {
+        for (int k = 0; k < SIZE; ++k) {
+            entries[k] = 5 - k;
+        }
+    });
+    for (int i = 0; i < int(array.size()); ++i) {
+        bool const written = i >= 1 && i <= SIZE * count;
+        ASSERT_EQ(array[i], written ? 5 - (i - 1) % SIZE + (i - 1) / SIZE * 10 : -1)
+            << i << ", " << count << " groups of " << SIZE;
+    }
+}
+
+TEST(WriteSequence, GrowsFromGroupToGroup) {
+    for (bool pastCaches : {false, true}) {
+        for (int count : {0, 1, 2, 3, 4, 5, 7, 8, 100, 1001}) {
+            expectSequence<1>(count, pastCaches);
+            expectSequence<3>(count, pastCaches);
+            expectSequence<12>(count, pastCaches);
+            expectSequence<18>(count, pastCaches);
+        }
+    }
+}
+
+#if defined(__linux__)
+TEST(IsResident, OnceWritten) {
+    constexpr std::size_t kSize = std::size_t(64) << 20; // malloc takes new pages for it
+    Buffer<std::byte> buffer;
+    buffer.Resize(kSize);
+    EXPECT_FALSE(IsResident(buffer.data(), kSize));
+    std::fill_n(buffer.data(), kSize, std::byte(0));
+    EXPECT_TRUE(IsResident(buffer.data(), kSize));
+}
+#endif
 
 TEST(IndexSet, SortsAndNumbersIndicesOfAnyDensity) {
     for (int const end : {1, 64, 512, 513, 100000}) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "referenceMatch.h"
 
+#include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace OpenSubdivHex::Regression {
@@ -163,6 +165,32 @@ void expectVertices(TopologyLevel const &level, Incidence const &incidence) {
     }
 }
 
+void expectRelations(Shape const &shape, int numLevels) {
+    SCOPED_TRACE(shape.name);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Average, numLevels);
+    for (int depth = 0; depth <= numLevels; ++depth) {
+        SCOPED_TRACE("level " + std::to_string(depth));
+        TopologyLevel const &level = refiner->GetLevel(depth);
+        EXPECT_EQ(level.GetDepth(), depth);
+        Incidence const incidence(level);
+        ASSERT_NO_FATAL_FAILURE(expectInventory(level, incidence));
+        ASSERT_NO_FATAL_FAILURE(expectEdges(level, incidence));
+        ASSERT_NO_FATAL_FAILURE(expectFaceEdges(level));
+        ASSERT_NO_FATAL_FAILURE(expectVertices(level, incidence));
+    }
+}
+
+/// A shape without one of its faces.
+Shape without(Shape shape, int face) {
+    shape.name += " without face " + std::to_string(face);
+    auto const size = shape.faceSizes.begin() + face;
+    auto const first =
+        shape.faceVertices.begin() + std::accumulate(shape.faceSizes.begin(), size, 0);
+    shape.faceVertices.erase(first, first + *size);
+    shape.faceSizes.erase(size);
+    return shape;
+}
+
 /// The table of DESIGN.md section 2, "closed-form numbering", literally.
 void expectNumbering(TopologyLevel const &parent, TopologyLevel const &child) {
     int const numV = parent.GetNumVertices();
@@ -294,20 +322,21 @@ TEST_F(Topology, EqualsReference) {
 }
 
 TEST_F(Topology, Relations) {
-    forEachShape([](Shape const &shape) {
-        int const numLevels = GetTestLevel(shape, 3);
-        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, numLevels);
-        for (int depth = 0; depth <= numLevels; ++depth) {
-            SCOPED_TRACE("level " + std::to_string(depth));
-            TopologyLevel const &level = refiner->GetLevel(depth);
-            EXPECT_EQ(level.GetDepth(), depth);
-            Incidence const incidence(level);
-            ASSERT_NO_FATAL_FAILURE(expectInventory(level, incidence));
-            ASSERT_NO_FATAL_FAILURE(expectEdges(level, incidence));
-            ASSERT_NO_FATAL_FAILURE(expectFaceEdges(level));
-            ASSERT_NO_FATAL_FAILURE(expectVertices(level, incidence));
+    forEachShape([](Shape const &shape) { expectRelations(shape, GetTestLevel(shape, 3)); });
+}
+
+// Of many faces of one size in a row, with few and many of another before and behind.
+TEST_F(Topology, RelationsOfRuns) {
+    Shape const triangles = MakeDual("triangles", MakeTruncated("", MakeIcosahedron()));
+    Shape const hexagons = MakeTruncated("hexagons, pentagons", triangles);
+    for (Shape const &shape :
+         {triangles, hexagons, MakePrism(70), MakeDual("triangles again", hexagons),
+          MakeUnion("triangles, hexagons, pentagons", triangles, hexagons, 3)}) {
+        expectRelations(shape, 2);
+        for (int face : {0, shape.GetNumFaces() / 2}) {
+            expectRelations(without(shape, face), 2);
         }
-    });
+    }
 }
 
 TEST_F(Topology, NumberingAndParents) {
