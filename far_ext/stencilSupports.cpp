@@ -4,22 +4,30 @@
 #include "parallel.h"
 
 #include <algorithm>
-#include <bitset>
 #include <numeric>
 
 namespace OpenSubdivHex::FarExt::internal {
 
 using Far::Index;
 
-Support SupportArena::Add(Index const *list, int size) {
-    constexpr std::size_t kBlock = 16384;
+Index *SupportArena::addBlock(std::size_t size) {
+    std::unique_ptr<Index[]> block(new Index[size]);
+    Index *const result = block.get();
+#ifdef _OPENMP
+#pragma omp critical(OpenSubdivHexSupportArena)
+#endif
+    _blocks.push_back(std::move(block));
+    return result;
+}
+
+Support SupportArena::Writer::Add(Index const *list, int size) {
+    constexpr std::size_t kMaxBlock = 16384;
     std::size_t const needed = std::size_t(size) + 1;
     if (needed > _numFree) {
-        // The first block is small, for ranges that need little.
-        std::size_t const numInBlock = std::max(needed, _blocks.empty() ? kBlock / 16 : kBlock);
-        _blocks.emplace_back(new Index[numInBlock]);
-        _free = _blocks.back().get();
-        _numFree = numInBlock;
+        // The first block is small, for steps that need little.
+        _blockSize = std::min(2 * _blockSize, kMaxBlock);
+        _numFree = std::max(needed, _blockSize);
+        _free = _arena.addBlock(_numFree);
     }
     Support const result(_free);
     *_free++ = size;
@@ -66,24 +74,8 @@ void SupportUnion::merge(Support support) {
     setUnion(_union, result - _union.data());
 }
 
-void SupportUnion::Form(Support const *supports, int numSupports) {
-    _begin = supports[0].begin();
-    _end = supports[0].end();
-    if (numSupports == 1) {
-        return;
-    }
-    int numSources = 0;
-    for (int i = 0; i < numSupports && numSources <= kMaxSorted; ++i) {
-        numSources += supports[i].size();
-    }
-    if (numSupports > kMaxMerged || numSources <= kMaxSorted) {
-        sort(supports, numSupports);
-        return;
-    }
-    if (numSupports == 2) {
-        merge(supports[1]);
-        return;
-    }
+// Merges all to supports[first].
+void SupportUnion::mergeAll(Support const *supports, int numSupports, int first) {
     if (++_lastStamp == 0) {
         std::fill(_stamp.begin(), _stamp.end(), 0);
         ++_lastStamp;
@@ -93,113 +85,34 @@ void SupportUnion::Form(Support const *supports, int numSupports) {
             _stamp[source] = _lastStamp;
         }
     };
-    stamp(supports[0]);
-    // Neighbors overlap most: every other support first, and most of the rest are covered.
-    for (int first : {2, 1}) {
-        for (int i = first; i < numSupports; i += 2) {
-            if (!isCovered(supports[i])) {
-                merge(supports[i]);
-                stamp(supports[i]);
-            }
+    _begin = supports[first].begin();
+    _end = supports[first].end();
+    stamp(supports[first]);
+    for (int i = 0; i < numSupports; ++i) {
+        if (i != first && !isCovered(supports[i])) {
+            merge(supports[i]);
+            stamp(supports[i]);
         }
     }
 }
 
-void VVertexGroup::addTerms(StencilStep const &step, std::vector<Support> const &supportsOfVertices,
-                            std::vector<Support> const &supportsOfFaces, Index vVertex,
-                            bool withAllTerms) {
-    Index const pVert = step.GetVVertexParent(vVertex);
-    RefinementMask::VertexMask const mask = step.GetVertexMask(pVert);
-    bool const hasFaces = mask.faceWeight > 0 && step.HasVertexFaces(pVert);
-    if (!hasFaces || withAllTerms) {
-        _terms.push_back({pVert, addSupport(supportsOfVertices[pVert]), false, mask.vertexWeight});
-        for (int i = 0; i < mask.numNeighbors; ++i) {
-            Index const neighbor = mask.neighbors[i];
-            _terms.push_back({neighbor, addSupport(supportsOfVertices[neighbor]), false,
-                              mask.neighborWeights[i]});
-        }
+Support SupportUnion::Form(Support const *supports, int numSupports) {
+    if (numSupports == 1) {
+        return supports[0];
     }
-    if (hasFaces) {
-        step.ForEachVertexFace(pVert, [&](Index face, Index row) {
-            _terms.push_back({row, addSupport(supportsOfFaces[face]), true, mask.faceWeight});
-        });
+    int numSources = 0;
+    int largest = 0;
+    for (int i = 0; i < numSupports; ++i) {
+        numSources += supports[i].size();
+        largest = supports[i].size() > supports[largest].size() ? i : largest;
     }
-}
-
-Index VVertexGroup::Take(StencilStep const &step, std::vector<Support> const &supportsOfVertices,
-                         std::vector<Support> const &supportsOfFaces, Index begin, Index end,
-                         bool withAllTerms) {
-    _supports.clear();
-    _terms.clear();
-    _firstTerms.assign(1, 0);
-    Support const shared = supportsOfVertices[step.GetVVertexParent(begin)];
-    end = std::min(end, begin + kMaxSize);
-    Index vVertex = begin;
-    do {
-        addTerms(step, supportsOfVertices, supportsOfFaces, vVertex, withAllTerms);
-        _firstTerms.push_back(int(_terms.size()));
-        ++vVertex;
-    } while (vVertex < end && supportsOfVertices[step.GetVVertexParent(vVertex)] == shared);
-    return vVertex;
-}
-
-void VVertexGroup::Locate(Index const *all, int size) {
-    _numSources = size;
-    for (int k = 0; k < size; ++k) {
-        _position[all[k]] = k;
+    if (numSupports > kMaxMerged || numSources <= kMaxSorted) {
+        sort(supports, numSupports);
+    } else {
+        // Mostly this one has the sources of all.
+        mergeAll(supports, numSupports, largest);
     }
-    int numPositions = 0;
-    _firstPositions.clear();
-    for (Support support : _supports) {
-        _firstPositions.push_back(numPositions);
-        numPositions += support.size();
-    }
-    if (_positions.size() < std::size_t(numPositions)) {
-        _positions.resize(2 * std::size_t(numPositions));
-    }
-    int *positions = _positions.data();
-    int const *const position = _position.data();
-    for (Support support : _supports) {
-        positions = std::transform(support.begin(), support.end(), positions,
-                                   [position](Index source) { return position[source]; });
-    }
-    if (GetNumVVertices() == 1) {
-        return; // depends on all
-    }
-    std::size_t const numWords = (std::size_t(size) + kWordBits - 1) / kWordBits;
-    _vertexBits.resize(numWords);
-    _bits.assign(numWords * _supports.size(), 0);
-    Word *bits = _bits.data();
-    int const *supportPositions = _positions.data();
-    for (Support support : _supports) {
-        int const *const end = supportPositions + support.size();
-        for (; supportPositions != end; ++supportPositions) {
-            auto const k = unsigned(*supportPositions);
-            bits[k / kWordBits] |= Word(1) << (k % kWordBits);
-        }
-        bits += numWords;
-    }
-}
-
-void VVertexGroup::formBits(int i) {
-    std::size_t const numWords = _vertexBits.size();
-    Term const *term = BeginTerms(i);
-    std::copy_n(_bits.data() + term->support * numWords, numWords, _vertexBits.data());
-    while (++term != EndTerms(i)) {
-        Word const *const bits = _bits.data() + term->support * numWords;
-        for (std::size_t word = 0; word < numWords; ++word) {
-            _vertexBits[word] |= bits[word];
-        }
-    }
-}
-
-int VVertexGroup::CountSources(int i) {
-    formBits(i);
-    std::size_t count = 0;
-    for (Word word : _vertexBits) {
-        count += std::bitset<kWordBits>(word).count();
-    }
-    return int(count);
+    return size() == supports[largest].size() ? supports[largest] : _writer.Add(_begin, size());
 }
 
 StepSupports StepSupports::MakeSources(std::vector<Index> const &sources) {
@@ -226,10 +139,8 @@ StepSupports::StepSupports(StencilStep const &step, StencilStep const *before,
         _numWeights = numLeast;
         return;
     }
-    if (keepsVertices) {
-        _ofVertices.resize(step.GetNumRows());
-        _coversFaces.resize(step.GetNumVVertices());
-    }
+    _ofVertices.resize(keepsVertices ? step.GetNumRows() : step.GetNumVVertices());
+    _coversFaces.resize(step.GetNumVVertices());
     ParallelFor(step.GetNumFaces(), [&](Index face) {
         Index const first = step.GetFaceFirstRow(face);
         if (keepsVertices) {
@@ -252,19 +163,17 @@ void StepSupports::formFaces(StencilStep const &step, StencilStep const *before,
                before->GetVVertexParent(neighbor) == before->GetFVertexParent(vert);
     };
     _ofFaces.resize(step.GetNumFaces());
-    _faceArenas.resize(GetNumParallelRanges(step.GetNumFaces()));
     struct Scratch {
         SupportUnion sources;
         std::vector<Support> supports;
     };
     ParallelForRange(
         step.GetNumFaces(),
-        [numSources] {
-            return Scratch{SupportUnion(numSources), {}};
+        [&] {
+            return Scratch{SupportUnion(numSources, _arena), {}};
         },
         [&](Scratch &scratch, Index begin, Index end) {
             std::vector<Support> &supports = scratch.supports;
-            SupportArena &arena = _faceArenas[begin / kParallelRange];
             for (Index face = begin; face < end; ++face) {
                 Index const *const verts = step.GetFaceVertices(face);
                 int const size = step.GetFaceSize(face);
@@ -279,76 +188,57 @@ void StepSupports::formFaces(StencilStep const &step, StencilStep const *before,
                         supports.push_back(support);
                     }
                 }
-                if (supports.size() == 1) {
-                    _ofFaces[face] = supports[0];
-                } else {
-                    scratch.sources.Form(supports.data(), int(supports.size()));
-                    _ofFaces[face] = arena.Add(scratch.sources.begin(), scratch.sources.size());
-                }
+                _ofFaces[face] = scratch.sources.Form(supports.data(), int(supports.size()));
             }
-        });
+        },
+        kRange);
 }
 
+// The faces around a vertex depend on all that the vertex and its neighbors do.
 void StepSupports::formVVertices(StencilStep const &step, StepSupports const &parents,
                                  Index numSources, int *sizes) {
     struct Scratch {
-        VVertexGroup group;
-        SupportUnion all;
-        std::vector<Index> sources;
+        SupportUnion sources;
+        std::vector<Support> supports;
     };
-    bool const keepsVertices = !_ofVertices.empty();
-    Index const numRanges = GetNumParallelRanges(step.GetNumVVertices());
-    _vertexArenas.resize(numRanges);
-    _ofGroups.resize(numRanges);
-    std::vector<std::int64_t> numWeights(numRanges);
+    std::vector<std::int64_t> numWeights(GetNumParallelRanges(step.GetNumVVertices(), kRange));
     ParallelForRange(
         step.GetNumVVertices(),
-        [numSources] {
-            return Scratch{VVertexGroup(numSources), SupportUnion(numSources), {}};
+        [&] {
+            return Scratch{SupportUnion(numSources, _arena), {}};
         },
         [&](Scratch &scratch, Index begin, Index end) {
-            VVertexGroup &group = scratch.group;
-            SupportUnion &all = scratch.all;
-            Index const range = begin / kParallelRange;
-            SupportArena &arena = _vertexArenas[range];
-            while (begin < end) {
-                Index const first = begin;
-                begin = group.Take(step, parents._ofVertices, _ofFaces, first, end, false);
-                all.Form(group.GetSupports(), group.GetNumSupports());
-                Support const ofGroup = arena.Add(all.begin(), all.size());
-                _ofGroups[range].push_back(ofGroup);
-                if (begin - first == 1) {
-                    // As is; nothing is to be selected.
-                    numWeights[range] += all.size();
-                    if (sizes) {
-                        sizes[first] = all.size();
+            std::vector<Support> &supports = scratch.supports;
+            std::int64_t numRangeWeights = 0;
+            for (Index vVertex = begin; vVertex < end; ++vVertex) {
+                Index const pVert = step.GetVVertexParent(vVertex);
+                RefinementMask::VertexMask const mask = step.GetVertexMask(pVert);
+                bool const hasFaces = mask.faceWeight > 0 && step.HasVertexFaces(pVert);
+                supports.assign(1, parents._ofVertices[pVert]);
+                if (hasFaces) {
+                    step.ForEachVertexFace(pVert, [&](Index face, Index) {
+                        if (!(_ofFaces[face] == supports[0])) {
+                            supports.push_back(_ofFaces[face]);
+                        }
+                    });
+                } else {
+                    for (int i = 0; i < mask.numNeighbors; ++i) {
+                        supports.push_back(parents._ofVertices[mask.neighbors[i]]);
                     }
-                    if (keepsVertices) {
-                        _ofVertices[first] = ofGroup;
-                        _coversFaces[first] = group.BeginTerms(0)->isFVertex;
-                    }
-                    continue;
                 }
-                group.Locate(all.begin(), all.size());
-                scratch.sources.resize(std::size_t(all.size()) + 1);
-                for (Index vVertex = first; vVertex < begin; ++vVertex) {
-                    int const i = int(vVertex - first);
-                    int const size = group.CountSources(i);
-                    numWeights[range] += size;
-                    if (sizes) {
-                        sizes[vVertex] = size;
-                    }
-                    if (keepsVertices) {
-                        Index *const sources = scratch.sources.data();
-                        Index const *const allSources = all.begin();
-                        group.ForEachSource(i, [=](int n, int k) { sources[n] = allSources[k]; });
-                        _ofVertices[vVertex] =
-                            size == all.size() ? ofGroup : arena.Add(sources, size);
-                        _coversFaces[vVertex] = group.BeginTerms(i)->isFVertex;
-                    }
+                bool const isCovered = hasFaces && supports.size() > 1;
+                Support const support = scratch.sources.Form(supports.data() + isCovered,
+                                                             int(supports.size()) - isCovered);
+                _ofVertices[vVertex] = support;
+                _coversFaces[vVertex] = hasFaces;
+                numRangeWeights += support.size();
+                if (sizes) {
+                    sizes[vVertex] = support.size();
                 }
             }
-        });
+            numWeights[begin / kRange] = numRangeWeights;
+        },
+        kRange);
     _numWeights = std::accumulate(numWeights.begin(), numWeights.end(), _numWeights);
 }
 

@@ -28,17 +28,16 @@ struct StepRows {
         Index const offset = offsets[row];
         return offset < 0 ? spareWeights + ~offset : weights + offset;
     }
-    void Store(Index row, REAL const *rowWeights, Index const *sources, int size) const {
-        std::copy_n(rowWeights, size, GetWeights(row));
+    void StoreIndices(Index row, Support sources) const {
         Index const offset = offsets[row];
         if (offset < 0) {
             return;
         }
         if (!indexOfSource) {
-            std::copy_n(sources, size, indices + offset);
+            std::copy(sources.begin(), sources.end(), indices + offset);
             return;
         }
-        std::transform(sources, sources + size, indices + offset,
+        std::transform(sources.begin(), sources.end(), indices + offset,
                        [this](Index source) { return indexOfSource[source]; });
     }
 
@@ -84,7 +83,7 @@ struct SpareRows {
 // The F-vertices of a plain face: rows of the face's circulant mask times its vertices' rows.  The
 // rows of both are stride apart.
 template <int SIZE, typename REAL>
-void multiplyPlain(double const *mask, double const *block, std::size_t stride, REAL *result) {
+void multiplyPlain(double const *mask, REAL const *block, std::size_t stride, REAL *result) {
     double weights[SIZE];
     std::copy_n(mask, SIZE, weights);
 #ifdef _OPENMP
@@ -93,7 +92,7 @@ void multiplyPlain(double const *mask, double const *block, std::size_t stride, 
     for (std::size_t k = 0; k < stride; ++k) {
         double values[SIZE];
         for (int j = 0; j < SIZE; ++j) {
-            values[j] = block[j * stride + k];
+            values[j] = double(block[j * stride + k]);
         }
         for (int i = 0; i < SIZE; ++i) {
             double sum = weights[0] * values[i];
@@ -120,54 +119,56 @@ public:
     // numSources is more than any index in a stencil.
     void Fill(Index numSources) const {
         auto const makeScratch = [numSources] { return Scratch(numSources); };
-        internal::ParallelForRange(_step.GetNumFaces(), makeScratch,
-                                   [this](Scratch &scratch, Index begin, Index end) {
-                                       for (Index face = begin; face < end; ++face) {
-                                           fillFace(face, scratch);
-                                       }
-                                   });
+        constexpr Index kRange = StepSupports::kRange;
+        internal::ParallelForRange(
+            _step.GetNumFaces(), makeScratch,
+            [this](Scratch &scratch, Index begin, Index end) {
+                for (Index face = begin; face < end; ++face) {
+                    fillFace(face, scratch);
+                }
+            },
+            kRange);
         // V-vertices average F-vertices.
         internal::ParallelForRange(
-            _step.GetNumVVertices(), makeScratch, [this](Scratch &scratch, Index begin, Index end) {
-                auto group = _supports.OfGroups(begin / internal::kParallelRange).begin();
-                while (begin < end) {
-                    begin = fillVVertices(begin, end, *group++, scratch);
+            _step.GetNumVVertices(), makeScratch,
+            [this](Scratch &scratch, Index begin, Index end) {
+                for (Index vVertex = begin; vVertex < end; ++vVertex) {
+                    fillVVertex(vVertex, scratch.sumOfSource.data());
                 }
-            });
+            },
+            kRange);
     }
 
 private:
     // What one thread works on.
     struct Scratch {
-        explicit Scratch(Index numSources) : position(numSources), group(numSources) {}
+        explicit Scratch(Index numSources) : position(numSources), sumOfSource(numSources) {}
 
-        std::vector<int> position;  // of each source in the support of the face
-        std::vector<double> mask;   // of a corner, see RefinementMask
-        std::vector<int> positions; // of a parent's sources
-        std::vector<double> block;  // dense stencils of a face's vertices over its support
-        std::vector<REAL> result;   // one or more rows
-
-        internal::VVertexGroup group;
-        std::vector<double> sums; // one dense stencil
-        std::vector<Index> rowSources;
+        std::vector<int> position;       // of each source in the support of the face
+        std::vector<double> sumOfSource; // all 0 between two V-vertices
+        std::vector<double> mask;        // of a corner, see RefinementMask
+        std::vector<int> positions;      // of a parent's sources
+        std::vector<REAL> block;         // dense stencils of a face's vertices over its support
+        std::vector<REAL> result;        // of the F-vertices
+        std::vector<double> sums;        // one dense stencil
     };
 
     void fillFace(Index face, Scratch &scratch) const;
     void fillSourceFace(Index face, Scratch &scratch) const;
     void loadParents(Index face, std::size_t stride, Scratch &scratch) const;
     void multiply(Index face, std::size_t stride, Scratch &scratch) const;
-    Index fillVVertices(Index begin, Index end, Support all, Scratch &scratch) const;
+    void fillVVertex(Index vVertex, double *sumOfSource) const;
 
-    REAL const *termWeights(internal::VVertexGroup::Term const &term) const {
+    REAL const *parentWeights(Index vert) const {
         static constexpr REAL kOne[] = {REAL(1)};
-        return term.isFVertex ? _rows.GetWeights(term.row)
-               : _pRows       ? _pRows->GetWeights(term.row)
-                              : kOne;
+        return _pRows ? _pRows->GetWeights(vert) : kOne;
     }
 
     void storeFaceRow(Index face, int corner, REAL const *weights) const {
         Support const support = _supports.OfFaces()[face];
-        _rows.Store(_step.GetFaceFirstRow(face) + corner, weights, support.begin(), support.size());
+        Index const row = _step.GetFaceFirstRow(face) + corner;
+        std::copy_n(weights, support.size(), _rows.GetWeights(row));
+        _rows.StoreIndices(row, support);
     }
 
     StencilStep const &_step;
@@ -212,14 +213,12 @@ void StepBuilder<REAL>::loadParents(Index face, std::size_t stride, Scratch &scr
     for (int j = 0; j < size; ++j) {
         Support const pSupport = _pSupports.OfVertices()[verts[j]];
         REAL const *weights = _pRows->GetWeights(verts[j]);
-        double *const dense = scratch.block.data() + j * stride;
+        REAL *const dense = scratch.block.data() + j * stride;
         if (pSupport == support) {
-            double *const end = std::transform(weights, weights + support.size(), dense,
-                                               [](REAL weight) { return double(weight); });
-            std::fill(end, dense + stride, 0.0);
+            std::fill(std::copy_n(weights, support.size(), dense), dense + stride, REAL(0));
             continue;
         }
-        std::fill(dense, dense + stride, 0.0);
+        std::fill(dense, dense + stride, REAL(0));
         if (!(pSupport == located)) {
             std::transform(pSupport.begin(), pSupport.end(), scratch.positions.begin(),
                            [&](Index source) { return scratch.position[source]; });
@@ -227,7 +226,7 @@ void StepBuilder<REAL>::loadParents(Index face, std::size_t stride, Scratch &scr
         }
         int const *const positions = scratch.positions.data();
         for (int k = 0; k < pSupport.size(); ++k) {
-            dense[positions[k]] = double(weights[k]);
+            dense[positions[k]] = weights[k];
         }
     }
 }
@@ -255,13 +254,13 @@ void StepBuilder<REAL>::multiply(Index face, std::size_t stride, Scratch &scratc
     double *const sums = scratch.sums.data();
     for (int i = 0; i < size; ++i) {
         double const *mask = _step.GetFaceVertexWeights(face, i, scratch.mask);
-        double const *parent = scratch.block.data();
+        REAL const *parent = scratch.block.data();
         std::transform(parent, parent + stride, sums,
-                       [weight = mask[0]](double value) { return weight * value; });
+                       [weight = mask[0]](REAL value) { return weight * double(value); });
         for (int j = 1; j < size; ++j) {
             parent += stride;
             for (std::size_t k = 0; k < stride; ++k) {
-                sums[k] += mask[j] * parent[k];
+                sums[k] += mask[j] * double(parent[k]);
             }
         }
         result =
@@ -290,49 +289,34 @@ void StepBuilder<REAL>::fillFace(Index face, Scratch &scratch) const {
     }
 }
 
-// The stencils of a group of V-vertices are sums of those of the step before and of F-vertices.
+// The stencil of a V-vertex is a sum of those of the step before and of F-vertices.
 template <typename REAL>
-Index StepBuilder<REAL>::fillVVertices(Index begin, Index end, Support all,
-                                       Scratch &scratch) const {
-    internal::VVertexGroup &group = scratch.group;
-    Index const groupEnd =
-        group.Take(_step, _pSupports.OfVertices(), _supports.OfFaces(), begin, end, true);
-    group.Locate(all.begin(), all.size());
-    // One more than is kept: see ForEachSource.
-    scratch.rowSources.resize(std::size_t(all.size()) + 1);
-    scratch.result.resize(std::size_t(all.size()) + 1);
-    Index *const rowSources = scratch.rowSources.data();
-    REAL *const rowWeights = scratch.result.data();
-    for (int i = 0; i < groupEnd - begin; ++i) {
-        scratch.sums.assign(all.size(), 0.0);
-        double *const sums = scratch.sums.data();
-        auto const *const termsEnd = group.EndTerms(i);
-        for (auto const *term = group.BeginTerms(i); term != termsEnd; ++term) {
-            int const *const positions = group.GetPositions(term->support);
-            int const size = group.GetSupports()[term->support].size();
-            REAL const *const weights = termWeights(*term);
-            double const weight = term->weight;
-            if (term + 1 != termsEnd && term[1].support == term->support) {
-                // Mostly the vertex itself and the F-face: half the scattered writes.
-                REAL const *const nextWeights = termWeights(*++term);
-                double const nextWeight = term->weight;
-                for (int k = 0; k < size; ++k) {
-                    sums[positions[k]] +=
-                        weight * double(weights[k]) + nextWeight * double(nextWeights[k]);
-                }
-                continue;
-            }
-            for (int k = 0; k < size; ++k) {
-                sums[positions[k]] += weight * double(weights[k]);
-            }
+void StepBuilder<REAL>::fillVVertex(Index vVertex, double *sumOfSource) const {
+    Index const pVert = _step.GetVVertexParent(vVertex);
+    internal::RefinementMask::VertexMask const mask = _step.GetVertexMask(pVert);
+    auto const add = [=](double weight, REAL const *weights, Support sources) {
+        for (int k = 0; k < sources.size(); ++k) {
+            sumOfSource[sources[k]] += weight * double(weights[k]);
         }
-        int const size = group.ForEachSource(i, [=](int n, int k) {
-            rowSources[n] = all[k];
-            rowWeights[n] = REAL(sums[k]);
-        });
-        _rows.Store(begin + i, rowWeights, rowSources, size);
+    };
+    add(mask.vertexWeight, parentWeights(pVert), _pSupports.OfVertices()[pVert]);
+    for (int i = 0; i < mask.numNeighbors; ++i) {
+        Index const neighbor = mask.neighbors[i];
+        add(mask.neighborWeights[i], parentWeights(neighbor), _pSupports.OfVertices()[neighbor]);
     }
-    return groupEnd;
+    if (mask.faceWeight > 0) {
+        _step.ForEachVertexFace(pVert, [&](Index face, Index row) {
+            add(mask.faceWeight, _rows.GetWeights(row), _supports.OfFaces()[face]);
+        });
+    }
+    Support const support = _supports.OfVertices()[vVertex];
+    REAL *const weights = _rows.GetWeights(vVertex);
+    for (int k = 0; k < support.size(); ++k) {
+        double &sum = sumOfSource[support[k]];
+        weights[k] = REAL(sum);
+        sum = 0;
+    }
+    _rows.StoreIndices(vVertex, support);
 }
 
 // Fills an empty table; of all that is made, it has the kept rows, or all when there are none.
