@@ -28,6 +28,17 @@ void ResizeLarge(std::vector<T> &array, std::size_t size) {
     array.resize(size);
 }
 
+/// Asks for the cache lines of memory that will be read soon.
+inline void Prefetch([[maybe_unused]] void const *memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__GNUC__)
+    auto const *const begin = static_cast<char const *>(memory);
+    for (std::size_t i = 0; i < bytes; i += kCacheLine) {
+        __builtin_prefetch(begin + i);
+    }
+    __asm__ volatile(""); // else GCC drops functions that do nothing but this
+#endif
+}
+
 /// \brief An array of trivial elements that are not written until the owner writes them.
 ///
 /// Resize() keeps nothing of the content and takes new memory only when it needs more than it has,

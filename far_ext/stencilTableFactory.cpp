@@ -20,6 +20,30 @@ using internal::SymbolicTable;
 
 namespace {
 
+// What a vector of the least machine holds; loops go by whole ones.
+constexpr int kVector = 4;
+
+// Calls function(begin) for vectors that together are 0 ... size; the last may overlap the one
+// before.  A size of less than a vector is not for it.
+template <typename FUNCTION>
+void forEachVector(int size, FUNCTION function) {
+    int const last = size - kVector;
+    for (int begin = 0; begin < last; begin += kVector) {
+        function(begin);
+    }
+    function(last);
+}
+
+// As std::copy_n, faster for some ten elements.
+template <typename T>
+void copyShort(T const *src, int size, T *dst) {
+    if (size < kVector) {
+        std::copy_n(src, size, dst);
+        return;
+    }
+    forEachVector(size, [=](int begin) { std::copy_n(src + begin, kVector, dst + begin); });
+}
+
 // The stencils of one step.  A row begins at entry offsets[row] of weights and indices; one that
 // the table does not have, at entry ~offsets[row] of spareWeights.
 template <typename REAL>
@@ -34,7 +58,7 @@ struct StepRows {
             return;
         }
         if (!indexOfSource) {
-            std::copy(sources.begin(), sources.end(), indices + offset);
+            copyShort(sources.begin(), sources.size(), indices + offset);
             return;
         }
         std::transform(sources.begin(), sources.end(), indices + offset,
@@ -80,28 +104,29 @@ struct SpareRows {
     internal::Buffer<REAL> weights;
 };
 
-// The F-vertices of a plain face: rows of the face's circulant mask times its vertices' rows.  The
-// rows of both are stride apart.
+// The F-vertices of a plain face: rows of the face's circulant mask times its vertices' rows.
 template <int SIZE, typename REAL>
-void multiplyPlain(double const *mask, REAL const *block, std::size_t stride, REAL *result) {
+void multiplyPlain(double const *mask, REAL const *const *parents, int width, REAL *const *rows) {
     double weights[SIZE];
     std::copy_n(mask, SIZE, weights);
+    forEachVector(width, [&](int begin) {
 #ifdef _OPENMP
 #pragma omp simd
 #endif
-    for (std::size_t k = 0; k < stride; ++k) {
-        double values[SIZE];
-        for (int j = 0; j < SIZE; ++j) {
-            values[j] = double(block[j * stride + k]);
-        }
-        for (int i = 0; i < SIZE; ++i) {
-            double sum = weights[0] * values[i];
-            for (int j = 1; j < SIZE; ++j) {
-                sum += weights[j] * values[(i + j) % SIZE];
+        for (int k = begin; k < begin + kVector; ++k) {
+            double values[SIZE];
+            for (int j = 0; j < SIZE; ++j) {
+                values[j] = double(parents[j][k]);
             }
-            result[i * stride + k] = REAL(sum);
+            for (int i = 0; i < SIZE; ++i) {
+                double sum = weights[0] * values[i];
+                for (int j = 1; j < SIZE; ++j) {
+                    sum += weights[j] * values[(i + j) % SIZE];
+                }
+                rows[i][k] = REAL(sum);
+            }
         }
-    }
+    });
 }
 
 // Makes the stencils of a step of those of the step before (none: its rows are sources).
@@ -133,6 +158,9 @@ public:
             _step.GetNumVVertices(), makeScratch,
             [this](Scratch &scratch, Index begin, Index end) {
                 for (Index vVertex = begin; vVertex < end; ++vVertex) {
+                    if (vVertex + kAhead < end) {
+                        prefetchFaceRows(vVertex + kAhead);
+                    }
                     fillVVertex(vVertex, scratch.sumOfSource.data());
                 }
             },
@@ -144,31 +172,32 @@ private:
     struct Scratch {
         explicit Scratch(Index numSources) : position(numSources), sumOfSource(numSources) {}
 
-        std::vector<int> position;       // of each source in the support of the face
-        std::vector<double> sumOfSource; // all 0 between two V-vertices
-        std::vector<double> mask;        // of a corner, see RefinementMask
-        std::vector<int> positions;      // of a parent's sources
-        std::vector<REAL> block;         // dense stencils of a face's vertices over its support
-        std::vector<REAL> result;        // of the F-vertices
-        std::vector<double> sums;        // one dense stencil
+        std::vector<int> position;         // of each source in the support of the face
+        std::vector<double> sumOfSource;   // all 0 between two V-vertices
+        std::vector<double> mask;          // of a corner, see RefinementMask
+        std::vector<double> sums;          // one dense stencil
+        std::vector<REAL> block;           // of dense stencils
+        std::vector<REAL const *> parents; // dense stencils of a face's vertices over its support
+        std::vector<REAL *> rows;          // those of its F-vertices
     };
 
     void fillFace(Index face, Scratch &scratch) const;
     void fillSourceFace(Index face, Scratch &scratch) const;
-    void loadParents(Index face, std::size_t stride, Scratch &scratch) const;
-    void multiply(Index face, std::size_t stride, Scratch &scratch) const;
+    void loadParents(Index face, Scratch &scratch) const;
+    void multiply(Index face, Scratch &scratch) const;
+    void prefetchFaceRows(Index vVertex) const {
+        constexpr std::size_t kBytes = 96; // of most rows and their sources
+        _step.ForEachVertexFace(_step.GetVVertexParent(vVertex), [this](Index face, Index row) {
+            internal::Prefetch(_rows.GetWeights(row), kBytes);
+            internal::Prefetch(_supports.OfFaces()[face].begin(), kBytes);
+        });
+    }
+    static constexpr Index kAhead = 8;
     void fillVVertex(Index vVertex, double *sumOfSource) const;
 
     REAL const *parentWeights(Index vert) const {
         static constexpr REAL kOne[] = {REAL(1)};
         return _pRows ? _pRows->GetWeights(vert) : kOne;
-    }
-
-    void storeFaceRow(Index face, int corner, REAL const *weights) const {
-        Support const support = _supports.OfFaces()[face];
-        Index const row = _step.GetFaceFirstRow(face) + corner;
-        std::copy_n(weights, support.size(), _rows.GetWeights(row));
-        _rows.StoreIndices(row, support);
     }
 
     StencilStep const &_step;
@@ -183,88 +212,76 @@ template <typename REAL>
 void StepBuilder<REAL>::fillSourceFace(Index face, Scratch &scratch) const {
     Index const *const verts = _step.GetFaceVertices(face);
     int const size = _step.GetFaceSize(face);
-    scratch.positions.resize(size);
-    for (int j = 0; j < size; ++j) {
-        scratch.positions[j] = scratch.position[_pSupports.OfVertices()[verts[j]][0]];
-    }
     int const width = _supports.OfFaces()[face].size();
-    scratch.result.resize(width);
     for (int i = 0; i < size; ++i) {
         double const *mask = _step.GetFaceVertexWeights(face, i, scratch.mask);
         scratch.sums.assign(width, 0.0);
         for (int j = 0; j < size; ++j) {
-            scratch.sums[scratch.positions[j]] += mask[j];
+            scratch.sums[scratch.position[_pSupports.OfVertices()[verts[j]][0]]] += mask[j];
         }
-        std::transform(scratch.sums.begin(), scratch.sums.end(), scratch.result.begin(),
+        std::transform(scratch.sums.begin(), scratch.sums.end(), scratch.rows[i],
                        [](double weight) { return REAL(weight); });
-        storeFaceRow(face, i, scratch.result.data());
     }
 }
 
-// Makes the stencils of a face's vertices dense over its support.
+// Finds the stencils of a face's vertices over its support, or makes them.
 template <typename REAL>
-void StepBuilder<REAL>::loadParents(Index face, std::size_t stride, Scratch &scratch) const {
+void StepBuilder<REAL>::loadParents(Index face, Scratch &scratch) const {
     Index const *const verts = _step.GetFaceVertices(face);
     int const size = _step.GetFaceSize(face);
     Support const support = _supports.OfFaces()[face];
-    scratch.block.resize(size * stride);
-    scratch.positions.resize(support.size());
-    Support located = support;
-    for (int j = 0; j < size; ++j) {
+    int const width = support.size();
+    scratch.parents.resize(size);
+    scratch.block.resize(std::size_t(size) * width);
+    int const *const position = scratch.position.data();
+    REAL *dense = scratch.block.data();
+    for (int j = 0; j < size; ++j, dense += width) {
         Support const pSupport = _pSupports.OfVertices()[verts[j]];
-        REAL const *weights = _pRows->GetWeights(verts[j]);
-        REAL *const dense = scratch.block.data() + j * stride;
+        REAL const *const weights = _pRows->GetWeights(verts[j]);
         if (pSupport == support) {
-            std::fill(std::copy_n(weights, support.size(), dense), dense + stride, REAL(0));
+            scratch.parents[j] = weights;
             continue;
         }
-        std::fill(dense, dense + stride, REAL(0));
-        if (!(pSupport == located)) {
-            std::transform(pSupport.begin(), pSupport.end(), scratch.positions.begin(),
-                           [&](Index source) { return scratch.position[source]; });
-            located = pSupport;
-        }
-        int const *const positions = scratch.positions.data();
+        std::fill_n(dense, width, REAL(0));
         for (int k = 0; k < pSupport.size(); ++k) {
-            dense[positions[k]] = weights[k];
+            dense[position[pSupport[k]]] = weights[k];
         }
+        scratch.parents[j] = dense;
     }
 }
 
-// The face mask times the dense stencils of the face's vertices.
+// The face mask times the stencils of the face's vertices.
 template <typename REAL>
-void StepBuilder<REAL>::multiply(Index face, std::size_t stride, Scratch &scratch) const {
+void StepBuilder<REAL>::multiply(Index face, Scratch &scratch) const {
     int const size = _step.GetFaceSize(face);
-    scratch.result.resize(size * stride);
-    REAL *result = scratch.result.data();
-    if (_step.IsFacePlain(face)) {
+    int const width = _supports.OfFaces()[face].size();
+    REAL const *const *const parents = scratch.parents.data();
+    REAL *const *const rows = scratch.rows.data();
+    if (width >= kVector && _step.IsFacePlain(face)) {
         double const *const mask = _step.GetPlainFaceWeights(size);
         switch (size) {
         case 3:
-            return multiplyPlain<3>(mask, scratch.block.data(), stride, result);
+            return multiplyPlain<3>(mask, parents, width, rows);
         case 4:
-            return multiplyPlain<4>(mask, scratch.block.data(), stride, result);
+            return multiplyPlain<4>(mask, parents, width, rows);
         case 5:
-            return multiplyPlain<5>(mask, scratch.block.data(), stride, result);
+            return multiplyPlain<5>(mask, parents, width, rows);
         case 6:
-            return multiplyPlain<6>(mask, scratch.block.data(), stride, result);
+            return multiplyPlain<6>(mask, parents, width, rows);
         }
     }
-    scratch.sums.resize(stride);
+    scratch.sums.resize(width);
     double *const sums = scratch.sums.data();
     for (int i = 0; i < size; ++i) {
         double const *mask = _step.GetFaceVertexWeights(face, i, scratch.mask);
-        REAL const *parent = scratch.block.data();
-        std::transform(parent, parent + stride, sums,
+        std::transform(parents[0], parents[0] + width, sums,
                        [weight = mask[0]](REAL value) { return weight * double(value); });
         for (int j = 1; j < size; ++j) {
-            parent += stride;
-            for (std::size_t k = 0; k < stride; ++k) {
-                sums[k] += mask[j] * double(parent[k]);
+            for (int k = 0; k < width; ++k) {
+                sums[k] += mask[j] * double(parents[j][k]);
             }
         }
-        result =
-            std::transform(sums, sums + stride, result, [](double weight) { return REAL(weight); });
+        std::transform(sums, sums + width, rows[i], [](double weight) { return REAL(weight); });
     }
 }
 
@@ -272,20 +289,21 @@ void StepBuilder<REAL>::multiply(Index face, std::size_t stride, Scratch &scratc
 template <typename REAL>
 void StepBuilder<REAL>::fillFace(Index face, Scratch &scratch) const {
     Support const support = _supports.OfFaces()[face];
+    Index const firstRow = _step.GetFaceFirstRow(face);
+    int const size = _step.GetFaceSize(face);
+    scratch.rows.resize(size);
+    for (int i = 0; i < size; ++i) {
+        scratch.rows[i] = _rows.GetWeights(firstRow + i);
+        _rows.StoreIndices(firstRow + i, support);
+    }
     for (int k = 0; k < support.size(); ++k) {
         scratch.position[support[k]] = k;
     }
-    if (!_pRows) {
+    if (_pRows) {
+        loadParents(face, scratch);
+        multiply(face, scratch);
+    } else {
         fillSourceFace(face, scratch);
-        return;
-    }
-    // Whole vectors are faster; what is behind the support stays 0.
-    constexpr std::size_t kVector = 4;
-    std::size_t const stride = (support.size() + kVector - 1) / kVector * kVector;
-    loadParents(face, stride, scratch);
-    multiply(face, stride, scratch);
-    for (int i = 0; i < _step.GetFaceSize(face); ++i) {
-        storeFaceRow(face, i, scratch.result.data() + i * stride);
     }
 }
 
