@@ -20,11 +20,17 @@ void FreeArray(void *memory);
 /// it offers them.  Whoever writes it first need not wait for them then.  Content is kept.
 void PrepareArray(void *memory, std::size_t bytes);
 
-/// Resizes an empty vector without touching its memory in pages of 4 KiB, or by one thread alone.
+/// Reserves the memory of an empty vector, so that it is not touched in pages of 4 KiB, or by one
+/// thread alone, later.
 template <typename T>
-void ResizeLarge(std::vector<T> &array, std::size_t size) {
+void ReserveLarge(std::vector<T> &array, std::size_t size) {
     array.reserve(size);
     PrepareArray(array.data(), size * sizeof(T));
+}
+/// The same, and resizes it.
+template <typename T>
+void ResizeLarge(std::vector<T> &array, std::size_t size) {
+    ReserveLarge(array, size);
     array.resize(size);
 }
 

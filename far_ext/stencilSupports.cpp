@@ -131,9 +131,6 @@ StepSupports::StepSupports(StencilStep const &step, StencilStep const *before,
                            StepSupports const &parents, Index numSources, bool keepsVertices,
                            int *sizes) {
     formFaces(step, before, parents, numSources);
-    for (Index face = 0; face < step.GetNumFaces(); ++face) {
-        _numWeights += std::int64_t(step.GetFaceSize(face)) * _ofFaces[face].size();
-    }
     if (std::int64_t const numLeast = _numWeights + countLeastVVertexWeights(step);
         numLeast > kMaxNumWeights) {
         _numWeights = numLeast;
@@ -167,6 +164,7 @@ void StepSupports::formFaces(StencilStep const &step, StencilStep const *before,
         SupportUnion sources;
         std::vector<Support> supports;
     };
+    std::vector<std::int64_t> numWeights(GetNumParallelRanges(step.GetNumFaces(), kRange));
     ParallelForRange(
         step.GetNumFaces(),
         [&] {
@@ -174,6 +172,7 @@ void StepSupports::formFaces(StencilStep const &step, StencilStep const *before,
         },
         [&](Scratch &scratch, Index begin, Index end) {
             std::vector<Support> &supports = scratch.supports;
+            std::int64_t numRangeWeights = 0;
             for (Index face = begin; face < end; ++face) {
                 Index const *const verts = step.GetFaceVertices(face);
                 int const size = step.GetFaceSize(face);
@@ -189,9 +188,12 @@ void StepSupports::formFaces(StencilStep const &step, StencilStep const *before,
                     }
                 }
                 _ofFaces[face] = scratch.sources.Form(supports.data(), int(supports.size()));
+                numRangeWeights += std::int64_t(size) * _ofFaces[face].size();
             }
+            numWeights[begin / kRange] = numRangeWeights;
         },
         kRange);
+    _numWeights = std::accumulate(numWeights.begin(), numWeights.end(), _numWeights);
 }
 
 // The faces around a vertex depend on all that the vertex and its neighbors do.

@@ -73,6 +73,10 @@ struct StepRows {
 };
 
 // The arrays of Far's tables are protected; a derived class may fill them.
+//
+// A std::vector writes its entries when it grows.  It grows within its capacity, piece by piece, so
+// that they are still in a cache when they get their values: nothing moves then, and other threads
+// may write what is there.
 template <typename REAL>
 class WritableTable : public StencilTableTypes<REAL>::Table {
 public:
@@ -80,8 +84,19 @@ public:
         this->_numControlVertices = numControlVertices;
         this->_sizes = std::move(sizes);
         internal::ResizeLarge(this->_offsets, this->_sizes.size());
-        internal::ResizeLarge(this->_indices, numWeights);
-        internal::ResizeLarge(this->_weights, numWeights);
+        internal::ReserveLarge(this->_indices, numWeights);
+        internal::ReserveLarge(this->_weights, numWeights);
+    }
+
+    // Makes the entries of indices and weights up to end; any thread may call it.
+    void Grow(std::size_t end) {
+#ifdef _OPENMP
+#pragma omp critical(OpenSubdivHexGrowTable)
+#endif
+        if (end > this->_indices.size()) {
+            this->_indices.resize(end);
+            this->_weights.resize(end);
+        }
     }
 
     int const *GetRowSizes() const { return this->_sizes.data(); }
@@ -141,19 +156,23 @@ public:
                 StepRows<REAL> const &rows)
         : _step(step), _pSupports(pSupports), _supports(supports), _pRows(pRows), _rows(rows) {}
 
-    // numSources is more than any index in a stencil.
-    void Fill(Index numSources) const {
+    // numSources is more than any index in a stencil; makePlace(endRow) is called before rows up to
+    // endRow are written, by any thread.
+    template <typename MAKE_PLACE>
+    void Fill(Index numSources, MAKE_PLACE makePlace) const {
         auto const makeScratch = [numSources] { return Scratch(numSources); };
         constexpr Index kRange = StepSupports::kRange;
         internal::ParallelForRange(
             _step.GetNumFaces(), makeScratch,
-            [this](Scratch &scratch, Index begin, Index end) {
+            [&](Scratch &scratch, Index begin, Index end) {
+                makePlace(_step.GetFaceFirstRow(end));
                 for (Index face = begin; face < end; ++face) {
                     fillFace(face, scratch);
                 }
             },
             kRange);
         // V-vertices average F-vertices.
+        makePlace(_step.GetNumVVertices());
         internal::ParallelForRange(
             _step.GetNumVVertices(), makeScratch,
             [this](Scratch &scratch, Index begin, Index end) {
@@ -349,14 +368,18 @@ public:
         SpareRows<REAL> pSpare;
         StepRows<REAL> pRows{};
         for (int level = _plan.firstBuilt; level <= _plan.lastLevel; ++level) {
+            bool const isWhole = level >= _plan.firstStored && !_kept;
             SpareRows<REAL> spare;
-            StepRows<REAL> const rows = level < _plan.firstStored ? placeUnstored(level, spare)
-                                        : _kept                   ? placeKept(level, spare)
-                                                                  : placeAll(level);
+            StepRows<REAL> const rows = isWhole ? placeAll(level)
+                                        : _kept ? placeKept(level, spare)
+                                                : placeUnstored(level, spare);
+            Index const numRows = _symbolic.GetStep(level).GetNumRows();
             StepBuilder<REAL>(_symbolic.GetStep(level), _symbolic.GetParentSupports(level),
                               _symbolic.GetSupports(level),
                               _plan.HasParentStencils(level) ? &pRows : nullptr, rows)
-                .Fill(_symbolic.GetNumSources(level));
+                .Fill(_symbolic.GetNumSources(level), [&](Index endRow) {
+                    _table.Grow(isWhole && endRow < numRows ? rows.offsets[endRow] : _nextOffset);
+                });
             pRows = rows;
             pSpare = std::move(spare);
         }
@@ -364,6 +387,7 @@ public:
 
 private:
     void fillControlRows() {
+        _table.Grow(_plan.numControlStencils);
         for (Index i = 0; i < _plan.numControlStencils; ++i) {
             place(1);
             _table.GetRowIndices()[i] = _kept ? _kept->controls[i] : i;
@@ -380,12 +404,15 @@ private:
     }
 
     StepRows<REAL> placeAll(int level) {
-        Index const first = _nextStencil;
-        for (Index i = 0; i < _symbolic.GetStep(level).GetNumRows(); ++i) {
-            place(_table.GetRowSizes()[_nextStencil]);
+        Index const numRows = _symbolic.GetStep(level).GetNumRows();
+        int const *const sizes = _table.GetRowSizes() + _nextStencil;
+        Index *const offsets = _table.GetRowOffsets() + _nextStencil;
+        std::exclusive_scan(sizes, sizes + numRows, offsets, _nextOffset);
+        if (numRows > 0) {
+            _nextOffset = offsets[numRows - 1] + sizes[numRows - 1];
         }
-        return {_table.GetRowOffsets() + first, _table.GetRowWeights(), _table.GetRowIndices(),
-                nullptr, nullptr};
+        _nextStencil += numRows;
+        return {offsets, _table.GetRowWeights(), _table.GetRowIndices(), nullptr, nullptr};
     }
 
     StepRows<REAL> placeUnstored(int level, SpareRows<REAL> &spare) const {
