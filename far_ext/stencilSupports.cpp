@@ -20,7 +20,7 @@ Index *SupportArena::addBlock(std::size_t size) {
     return result;
 }
 
-Support SupportArena::Writer::Add(Index const *list, int size) {
+Index *SupportArena::Writer::Add(int size) {
     constexpr std::size_t kMaxBlock = 16384;
     std::size_t const needed = std::size_t(size) + 1;
     if (needed > _numFree) {
@@ -29,90 +29,59 @@ Support SupportArena::Writer::Add(Index const *list, int size) {
         _numFree = std::max(needed, _blockSize);
         _free = _arena.addBlock(_numFree);
     }
-    Support const result(_free);
-    *_free++ = size;
-    _free = std::copy(list, list + size, _free);
+    Index *const list = _free;
+    *list = size;
+    _free += needed;
     _numFree -= needed;
-    return result;
-}
-
-void SupportUnion::sort(Support const *supports, int numSupports) {
-    _union.clear();
-    for (int i = 0; i < numSupports; ++i) {
-        _union.insert(_union.end(), supports[i].begin(), supports[i].end());
-    }
-    std::sort(_union.begin(), _union.end());
-    setUnion(_union, std::unique(_union.begin(), _union.end()) - _union.begin());
-}
-
-// Whether all sources of a support are in the union, whose sources are stamped.
-bool SupportUnion::isCovered(Support support) const {
-    return std::all_of(support.begin(), support.end(),
-                       [this](Index source) { return _stamp[source] == _lastStamp; });
-}
-
-void SupportUnion::merge(Support support) {
-    std::size_t const maxSize = std::size_t(size()) + support.size();
-    if (_merged.size() < maxSize) {
-        _merged.resize(2 * maxSize);
-    }
-    Index const *i0 = _begin;
-    Index const *i1 = support.begin();
-    Index const *const end0 = _end;
-    Index const *const end1 = support.end();
-    Index *result = _merged.data();
-    while (i0 != end0 && i1 != end1) {
-        Index const value0 = *i0;
-        Index const value1 = *i1;
-        *result++ = std::min(value0, value1);
-        i0 += value0 <= value1;
-        i1 += value1 <= value0;
-    }
-    result = std::copy(i0, end0, result);
-    result = std::copy(i1, end1, result);
-    _merged.swap(_union);
-    setUnion(_union, result - _union.data());
-}
-
-// Merges all to supports[first].
-void SupportUnion::mergeAll(Support const *supports, int numSupports, int first) {
-    if (++_lastStamp == 0) {
-        std::fill(_stamp.begin(), _stamp.end(), 0);
-        ++_lastStamp;
-    }
-    auto const stamp = [this](Support support) {
-        for (Index source : support) {
-            _stamp[source] = _lastStamp;
-        }
-    };
-    _begin = supports[first].begin();
-    _end = supports[first].end();
-    stamp(supports[first]);
-    for (int i = 0; i < numSupports; ++i) {
-        if (i != first && !isCovered(supports[i])) {
-            merge(supports[i]);
-            stamp(supports[i]);
-        }
-    }
+    return list;
 }
 
 Support SupportUnion::Form(Support const *supports, int numSupports) {
     if (numSupports == 1) {
         return supports[0];
     }
-    int numSources = 0;
     int largest = 0;
+    std::size_t numSources = 0;
     for (int i = 0; i < numSupports; ++i) {
         numSources += supports[i].size();
         largest = supports[i].size() > supports[largest].size() ? i : largest;
     }
-    if (numSupports > kMaxMerged || numSources <= kMaxSorted) {
-        sort(supports, numSupports);
-    } else {
-        // Mostly this one has the sources of all.
-        mergeAll(supports, numSupports, largest);
+    if (++_lastStamp == 0) {
+        std::fill(_stamp.begin(), _stamp.end(), 0);
+        ++_lastStamp;
     }
-    return size() == supports[largest].size() ? supports[largest] : _writer.Add(_begin, size());
+    Support const base = supports[largest];
+    for (Index source : base) {
+        _stamp[source] = _lastStamp;
+    }
+    if (_added.size() < numSources) {
+        _added.resize(2 * numSources);
+    }
+    Index *const added = _added.data();
+    unsigned *const stamp = _stamp.data();
+    int numAdded = 0;
+    bool isSorted = true;
+    for (int i = 0; i < numSupports; ++i) {
+        if (i == largest) {
+            continue;
+        }
+        int const numBefore = numAdded;
+        for (Index source : supports[i]) {
+            added[numAdded] = source;
+            numAdded += stamp[source] != _lastStamp;
+            stamp[source] = _lastStamp;
+        }
+        isSorted = isSorted && (numBefore == 0 || numBefore == numAdded);
+    }
+    if (numAdded == 0) {
+        return base; // as mostly
+    }
+    if (!isSorted) {
+        std::sort(added, added + numAdded);
+    }
+    Index *const list = _writer.Add(base.size() + numAdded);
+    std::merge(base.begin(), base.end(), added, added + numAdded, list + 1);
+    return Support(list);
 }
 
 StepSupports StepSupports::MakeSources(std::vector<Index> const &sources) {

@@ -41,7 +41,8 @@ public:
     class Writer {
     public:
         explicit Writer(SupportArena &arena) : _arena(arena) {}
-        Support Add(Index const *list, int size);
+        /// A list with its length and room for as many sources.
+        Index *Add(int size);
 
     private:
         SupportArena &_arena;
@@ -68,25 +69,9 @@ public:
     Support Form(Support const *supports, int numSupports);
 
 private:
-    void setUnion(std::vector<Index> const &list, std::size_t size) {
-        _begin = list.data();
-        _end = _begin + size;
-    }
-    int size() const { return int(_end - _begin); }
-    void sort(Support const *supports, int numSupports);
-    void mergeAll(Support const *supports, int numSupports, int first);
-    void merge(Support support);
-    bool isCovered(Support support) const;
-
-    static constexpr int kMaxMerged = 16; ///< more supports are sorted together ...
-    static constexpr int kMaxSorted = 16; ///< ... as are those with few sources
-
-    Index const *_begin = nullptr;
-    Index const *_end = nullptr;
-    std::vector<Index> _union;
-    std::vector<Index> _merged;
     std::vector<unsigned> _stamp; ///< by source: _lastStamp for those in the union
     unsigned _lastStamp = 0;
+    std::vector<Index> _added; ///< sources that the largest support does not have
     SupportArena::Writer _writer;
 };
 
