@@ -36,9 +36,11 @@ Index *SupportArena::Writer::Add(int size) {
     return list;
 }
 
-Support SupportUnion::Form(Support const *supports, int numSupports) {
+void SupportUnion::Form(Support const *supports, int numSupports) {
+    _base = supports[0];
+    _numAdded = 0;
     if (numSupports == 1) {
-        return supports[0];
+        return;
     }
     int largest = 0;
     std::size_t numSources = 0;
@@ -50,8 +52,8 @@ Support SupportUnion::Form(Support const *supports, int numSupports) {
         std::fill(_stamp.begin(), _stamp.end(), 0);
         ++_lastStamp;
     }
-    Support const base = supports[largest];
-    for (Index source : base) {
+    _base = supports[largest];
+    for (Index source : _base) {
         _stamp[source] = _lastStamp;
     }
     if (_added.size() < numSources) {
@@ -73,14 +75,28 @@ Support SupportUnion::Form(Support const *supports, int numSupports) {
         }
         isSorted = isSorted && (numBefore == 0 || numBefore == numAdded);
     }
-    if (numAdded == 0) {
-        return base; // as mostly
-    }
     if (!isSorted) {
         std::sort(added, added + numAdded);
     }
-    Index *const list = _writer.Add(base.size() + numAdded);
-    std::merge(base.begin(), base.end(), added, added + numAdded, list + 1);
+    _numAdded = numAdded;
+}
+
+Support SupportUnion::KeepAdded() {
+    static constexpr Index kNone[] = {0};
+    if (_numAdded == 0) {
+        return Support(kNone);
+    }
+    Index *const list = _writer.Add(_numAdded);
+    std::copy_n(_added.data(), _numAdded, list + 1);
+    return Support(list);
+}
+
+Support SupportUnion::Keep() {
+    if (_numAdded == 0) {
+        return _base;
+    }
+    Index *const list = _writer.Add(size());
+    std::merge(_base.begin(), _base.end(), _added.data(), _added.data() + _numAdded, list + 1);
     return Support(list);
 }
 
@@ -96,6 +112,21 @@ StepSupports StepSupports::MakeSources(std::vector<Index> const &sources) {
     return result;
 }
 
+Support StepSupports::OfVVertex(Index vVertex, std::vector<Index> &scratch) const {
+    Support const base = _ofVertices[vVertex];
+    if (_added.empty() || _added[vVertex].size() == 0) {
+        return base;
+    }
+    Support const added = _added[vVertex];
+    int const size = base.size() + added.size();
+    if (scratch.size() <= std::size_t(size)) {
+        scratch.resize(2 * std::size_t(size));
+    }
+    scratch[0] = size;
+    std::merge(base.begin(), base.end(), added.begin(), added.end(), scratch.begin() + 1);
+    return Support(scratch.data());
+}
+
 StepSupports::StepSupports(StencilStep const &step, StencilStep const *before,
                            StepSupports const &parents, Index numSources, bool keepsVertices,
                            int *sizes) {
@@ -105,8 +136,13 @@ StepSupports::StepSupports(StencilStep const &step, StencilStep const *before,
         _numWeights = numLeast;
         return;
     }
-    _ofVertices.resize(keepsVertices ? step.GetNumRows() : step.GetNumVVertices());
-    _coversFaces.resize(step.GetNumVVertices());
+    if (keepsVertices) {
+        _ofVertices.resize(step.GetNumRows());
+        _coversFaces.resize(step.GetNumVVertices());
+    } else {
+        _ofVertices.resize(step.GetNumVVertices());
+        _added.resize(step.GetNumVVertices());
+    }
     ParallelFor(step.GetNumFaces(), [&](Index face) {
         Index const first = step.GetFaceFirstRow(face);
         if (keepsVertices) {
@@ -116,7 +152,7 @@ StepSupports::StepSupports(StencilStep const &step, StencilStep const *before,
             std::fill_n(sizes + first, step.GetFaceSize(face), _ofFaces[face].size());
         }
     });
-    formVVertices(step, parents, numSources, sizes);
+    formVVertices(step, parents, numSources, keepsVertices, sizes);
 }
 
 // A vertex that depends on all that the faces around it do makes those needless that stand beside
@@ -156,7 +192,8 @@ void StepSupports::formFaces(StencilStep const &step, StencilStep const *before,
                         supports.push_back(support);
                     }
                 }
-                _ofFaces[face] = scratch.sources.Form(supports.data(), int(supports.size()));
+                scratch.sources.Form(supports.data(), int(supports.size()));
+                _ofFaces[face] = scratch.sources.Keep();
                 numRangeWeights += std::int64_t(size) * _ofFaces[face].size();
             }
             numWeights[begin / kRange] = numRangeWeights;
@@ -167,7 +204,7 @@ void StepSupports::formFaces(StencilStep const &step, StencilStep const *before,
 
 // The faces around a vertex depend on all that the vertex and its neighbors do.
 void StepSupports::formVVertices(StencilStep const &step, StepSupports const &parents,
-                                 Index numSources, int *sizes) {
+                                 Index numSources, bool keepsVertices, int *sizes) {
     struct Scratch {
         SupportUnion sources;
         std::vector<Support> supports;
@@ -198,13 +235,18 @@ void StepSupports::formVVertices(StencilStep const &step, StepSupports const &pa
                     }
                 }
                 bool const isCovered = hasFaces && supports.size() > 1;
-                Support const support = scratch.sources.Form(supports.data() + isCovered,
-                                                             int(supports.size()) - isCovered);
-                _ofVertices[vVertex] = support;
-                _coversFaces[vVertex] = hasFaces;
-                numRangeWeights += support.size();
+                SupportUnion &sources = scratch.sources;
+                sources.Form(supports.data() + isCovered, int(supports.size()) - isCovered);
+                if (keepsVertices) {
+                    _ofVertices[vVertex] = sources.Keep();
+                    _coversFaces[vVertex] = hasFaces;
+                } else {
+                    _ofVertices[vVertex] = sources.GetBase();
+                    _added[vVertex] = sources.KeepAdded();
+                }
+                numRangeWeights += sources.size();
                 if (sizes) {
-                    sizes[vVertex] = support.size();
+                    sizes[vVertex] = sources.size();
                 }
             }
             numWeights[begin / kRange] = numRangeWeights;

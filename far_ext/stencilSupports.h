@@ -64,14 +64,21 @@ public:
 
     SupportUnion(Index numSources, SupportArena &arena) : _stamp(numSources), _writer(arena) {}
 
-    /// The union of \p numSupports, 1 or more: one of them where it has all sources, else a list
-    /// in the arena.
-    Support Form(Support const *supports, int numSupports);
+    /// Forms the union of \p numSupports, 1 or more, which the rest is about.
+    void Form(Support const *supports, int numSupports);
+    int size() const { return _base.size() + _numAdded; }
+    /// The largest of the supports; mostly it has all sources.
+    Support GetBase() const { return _base; }
+    /// The sources that the largest does not have, and all, in the arena where they need a list.
+    Support KeepAdded();
+    Support Keep();
 
 private:
+    Support _base;
+    int _numAdded = 0;
+    std::vector<Index> _added;
     std::vector<unsigned> _stamp; ///< by source: _lastStamp for those in the union
     unsigned _lastStamp = 0;
-    std::vector<Index> _added; ///< sources that the largest support does not have
     SupportArena::Writer _writer;
 };
 
@@ -99,8 +106,10 @@ public:
     static constexpr std::int64_t kMaxNumWeights = std::numeric_limits<Index>::max();
 
     std::vector<Support> const &OfFaces() const { return _ofFaces; }
-    /// Of all rows; unless keepsVertices, of the V-vertices alone.
+    /// Of all rows; for a step with keepsVertices.
     std::vector<Support> const &OfVertices() const { return _ofVertices; }
+    /// Of a V-vertex; valid until \p scratch is used again.
+    Support OfVVertex(Index vVertex, std::vector<Index> &scratch) const;
 
     /// The length of parallel ranges of faces and V-vertices: their stencils take some hundred
     /// nanoseconds each, and their weights fit into the second cache.
@@ -112,12 +121,13 @@ private:
     void formFaces(StencilStep const &step, StencilStep const *before, StepSupports const &parents,
                    Index numSources);
     void formVVertices(StencilStep const &step, StepSupports const &parents, Index numSources,
-                       int *sizes);
+                       bool keepsVertices, int *sizes);
     std::int64_t countLeastVVertexWeights(StencilStep const &step) const;
 
     std::int64_t _numWeights = 0;
     std::vector<Support> _ofFaces;
-    std::vector<Support> _ofVertices;
+    std::vector<Support> _ofVertices; ///< else, of V-vertices alone, the largest part of each ...
+    std::vector<Support> _added;      ///< ... and what is to be added: a third of the memory
     std::vector<unsigned char> _coversFaces; ///< by V-vertex, if it depends on all its faces do
     SupportArena _arena;
     std::vector<Index> _sourceLists;

@@ -180,7 +180,7 @@ public:
                     if (vVertex + kAhead < end) {
                         prefetchFaceRows(vVertex + kAhead);
                     }
-                    fillVVertex(vVertex, scratch.sumOfSource.data());
+                    fillVVertex(vVertex, scratch);
                 }
             },
             kRange);
@@ -193,6 +193,7 @@ private:
 
         std::vector<int> position;         // of each source in the support of the face
         std::vector<double> sumOfSource;   // all 0 between two V-vertices
+        std::vector<Index> sources;        // of a V-vertex, see StepSupports
         std::vector<double> mask;          // of a corner, see RefinementMask
         std::vector<double> sums;          // one dense stencil
         std::vector<REAL> block;           // of dense stencils
@@ -212,7 +213,7 @@ private:
         });
     }
     static constexpr Index kAhead = 8;
-    void fillVVertex(Index vVertex, double *sumOfSource) const;
+    void fillVVertex(Index vVertex, Scratch &scratch) const;
 
     REAL const *parentWeights(Index vert) const {
         static constexpr REAL kOne[] = {REAL(1)};
@@ -328,7 +329,8 @@ void StepBuilder<REAL>::fillFace(Index face, Scratch &scratch) const {
 
 // The stencil of a V-vertex is a sum of those of the step before and of F-vertices.
 template <typename REAL>
-void StepBuilder<REAL>::fillVVertex(Index vVertex, double *sumOfSource) const {
+void StepBuilder<REAL>::fillVVertex(Index vVertex, Scratch &scratch) const {
+    double *const sumOfSource = scratch.sumOfSource.data();
     Index const pVert = _step.GetVVertexParent(vVertex);
     internal::RefinementMask::VertexMask const mask = _step.GetVertexMask(pVert);
     auto const add = [=](double weight, REAL const *weights, Support sources) {
@@ -346,7 +348,7 @@ void StepBuilder<REAL>::fillVVertex(Index vVertex, double *sumOfSource) const {
             add(mask.faceWeight, _rows.GetWeights(row), _supports.OfFaces()[face]);
         });
     }
-    Support const support = _supports.OfVertices()[vVertex];
+    Support const support = _supports.OfVVertex(vVertex, scratch.sources);
     REAL *const weights = _rows.GetWeights(vVertex);
     for (int k = 0; k < support.size(); ++k) {
         double &sum = sumOfSource[support[k]];
@@ -368,11 +370,12 @@ public:
         SpareRows<REAL> pSpare;
         StepRows<REAL> pRows{};
         for (int level = _plan.firstBuilt; level <= _plan.lastLevel; ++level) {
-            bool const isWhole = level >= _plan.firstStored && !_kept;
+            bool const isStored = level >= _plan.firstStored;
+            bool const isWhole = isStored && !_kept;
             SpareRows<REAL> spare;
-            StepRows<REAL> const rows = isWhole ? placeAll(level)
-                                        : _kept ? placeKept(level, spare)
-                                                : placeUnstored(level, spare);
+            StepRows<REAL> const rows = isWhole    ? placeAll(level)
+                                        : isStored ? placeKept(level, spare)
+                                                   : placeUnstored(level, spare);
             Index const numRows = _symbolic.GetStep(level).GetNumRows();
             StepBuilder<REAL>(_symbolic.GetStep(level), _symbolic.GetParentSupports(level),
                               _symbolic.GetSupports(level),
