@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_BUFFER_H
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -34,12 +35,13 @@ void ResizeLarge(std::vector<T> &array, std::size_t size) {
     array.resize(size);
 }
 
-/// Asks for the cache lines of memory that will be read soon.
+/// Asks for the cache lines of memory that will be read soon; \p bytes may lead behind its end.
 inline void Prefetch([[maybe_unused]] void const *memory, [[maybe_unused]] std::size_t bytes) {
 #if defined(__GNUC__)
-    auto const *const begin = static_cast<char const *>(memory);
+    // A number, since a pointer may not lead behind the end of its array.
+    auto const address = reinterpret_cast<std::uintptr_t>(memory);
     for (std::size_t i = 0; i < bytes; i += kCacheLine) {
-        __builtin_prefetch(begin + i);
+        __builtin_prefetch(reinterpret_cast<void const *>(address + i));
     }
     __asm__ volatile(""); // else GCC drops functions that do nothing but this
 #endif

@@ -127,7 +127,7 @@ private:
     std::int64_t _numWeights = 0;
     std::vector<Support> _ofFaces;
     std::vector<Support> _ofVertices; ///< else, of V-vertices alone, the largest part of each ...
-    std::vector<Support> _added;      ///< ... and what is to be added: a third of the memory
+    std::vector<Support> _added;      ///< ... and what is to be added, mostly nothing
     std::vector<unsigned char> _coversFaces; ///< by V-vertex, if it depends on all its faces do
     SupportArena _arena;
     std::vector<Index> _sourceLists;
