@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_BUFFER_H
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -25,12 +26,30 @@ void PrepareArray(void *memory, std::size_t bytes);
 /// does not tell.
 bool IsResident(void const *memory, std::size_t bytes);
 
-/// Resizes an empty vector without touching its memory in pages of 4 KiB, or by one thread alone.
+/// Reserves the memory of an empty vector, so that it is not touched in pages of 4 KiB, or by one
+/// thread alone, later.
 template <typename T>
-void ResizeLarge(std::vector<T> &array, std::size_t size) {
+void ReserveLarge(std::vector<T> &array, std::size_t size) {
     array.reserve(size);
     PrepareArray(array.data(), size * sizeof(T));
+}
+/// The same, and resizes it.
+template <typename T>
+void ResizeLarge(std::vector<T> &array, std::size_t size) {
+    ReserveLarge(array, size);
     array.resize(size);
+}
+
+/// Asks for the cache lines of memory that will be read soon; \p bytes may lead behind its end.
+inline void Prefetch([[maybe_unused]] void const *memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__GNUC__)
+    // A number, since a pointer may not lead behind the end of its array.
+    auto const address = reinterpret_cast<std::uintptr_t>(memory);
+    for (std::size_t i = 0; i < bytes; i += kCacheLine) {
+        __builtin_prefetch(reinterpret_cast<void const *>(address + i));
+    }
+    __asm__ volatile(""); // else GCC drops functions that do nothing but this
+#endif
 }
 
 /// \brief An array of trivial elements that are not written until the owner writes them.

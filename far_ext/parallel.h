@@ -11,22 +11,25 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// Number of ranges that ParallelForRange makes of \p count indices.
+/// The length of ranges for work of some nanoseconds per index.
 constexpr Far::Index kParallelRange = 4096;
-inline Far::Index GetNumParallelRanges(Far::Index count) {
-    return count / kParallelRange + (count % kParallelRange != 0);
+
+/// Number of ranges that ParallelForRange makes of \p count indices.
+inline Far::Index GetNumParallelRanges(Far::Index count, Far::Index length = kParallelRange) {
+    return count / length + (count % length != 0);
 }
 
 /// \brief Calls function(state, begin, end) for ranges that together are 0 ... count, in parallel
-/// with OpenMP where that is there.  Range number i begins at i kParallelRange; each thread has a
-/// state of its own, made by makeState().
+/// with OpenMP where that is there.  Range number i begins at i \p length; each thread has a state
+/// of its own, made by makeState().
 ///
 /// The ranges do not depend on the number of threads.  Calls must write to places of their own, and
 /// leave nothing in the state that another range could see: then the result does not depend on it
 /// either.  What a call throws is thrown again, once all have ended.
 template <typename MAKE_STATE, typename FUNCTION>
-void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function) {
-    Far::Index const numRanges = GetNumParallelRanges(count);
+void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function,
+                      Far::Index length = kParallelRange) {
+    Far::Index const numRanges = GetNumParallelRanges(count, length);
     // An exception must not leave a parallel region: the first is kept and thrown behind it.
     std::exception_ptr exception;
     auto const keepException = [&exception] {
@@ -51,10 +54,10 @@ void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function)
 #pragma omp for schedule(dynamic, 2)
 #endif
         for (Far::Index range = 0; range < numRanges; ++range) {
-            Far::Index const begin = range * kParallelRange;
+            Far::Index const begin = range * length;
             try {
                 if (state) {
-                    function(*state, begin, begin + std::min(count - begin, kParallelRange));
+                    function(*state, begin, begin + std::min(count - begin, length));
                 }
             } catch (...) {
                 keepException();

@@ -67,10 +67,7 @@ StencilStep::StencilStep(TopologyLevel const &pLevel, SchemeOptions schemeOption
     _vertFaceLocals = _partVertFaceLocals.data();
 }
 
-RefinementMask::VertexMask StencilStep::GetVertexMask(Index vert) const {
-    if (_part.verts.empty()) {
-        return _mask.GetVertexMask(vert);
-    }
+RefinementMask::VertexMask StencilStep::partVertexMask(Index vert) const {
     RefinementMask::VertexMask mask = _mask.GetVertexMask(_part.verts[vert]);
     for (int i = 0; i < mask.numNeighbors; ++i) {
         auto const place =

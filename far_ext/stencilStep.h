@@ -71,9 +71,12 @@ public:
     double const *GetFaceVertexWeights(Index face, int corner, std::vector<double> &scratch) const {
         return _mask.GetFaceVertexWeights(faceId(face), corner, scratch);
     }
-    RefinementMask::VertexMask GetVertexMask(Index vert) const;
+    RefinementMask::VertexMask GetVertexMask(Index vert) const {
+        return _part.verts.empty() ? _mask.GetVertexMask(vert) : partVertexMask(vert);
+    }
 
 private:
+    RefinementMask::VertexMask partVertexMask(Index vert) const;
     Index faceId(Index face) const { return _part.faces.empty() ? face : _part.faces[face]; }
 
     RefinementMask const _mask;

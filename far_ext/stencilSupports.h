@@ -35,12 +35,26 @@ private:
 /// \brief Memory for supports, which stay where they are.
 class SupportArena {
 public:
-    Support Add(Far::Index const *list, int size);
+    using Index = Far::Index;
+
+    /// What one thread adds with.
+    class Writer {
+    public:
+        explicit Writer(SupportArena &arena) : _arena(arena) {}
+        /// A list with its length and room for as many sources.
+        Index *Add(int size);
+
+    private:
+        SupportArena &_arena;
+        std::size_t _blockSize = 512;
+        std::size_t _numFree = 0;
+        Index *_free = nullptr;
+    };
 
 private:
-    std::vector<std::unique_ptr<Far::Index[]>> _blocks;
-    std::size_t _numFree = 0;
-    Far::Index *_free = nullptr;
+    Index *addBlock(std::size_t size);
+
+    std::vector<std::unique_ptr<Index[]>> _blocks;
 };
 
 /// \brief Forms unions of supports.  Each thread has one; \p numSources is above all sources.
@@ -48,134 +62,28 @@ class SupportUnion {
 public:
     using Index = Far::Index;
 
-    explicit SupportUnion(Index numSources) : _stamp(numSources) {}
+    SupportUnion(Index numSources, SupportArena &arena) : _stamp(numSources), _writer(arena) {}
 
-    /// Forms the union of \p numSupports, 1 or more, which begin() and end() are about.
+    /// Forms the union of \p numSupports, 1 or more, which the rest is about.
     void Form(Support const *supports, int numSupports);
-    int size() const { return int(_end - _begin); }
-    Index const *begin() const { return _begin; }
-    Index const *end() const { return _end; }
+    int size() const { return _base.size() + _numAdded; }
+    /// The largest of the supports; mostly it has all sources.
+    Support GetBase() const { return _base; }
+    /// The sources that the largest does not have, and all, in the arena where they need a list.
+    Support KeepAdded();
+    Support Keep();
 
 private:
-    void setUnion(std::vector<Index> const &list, std::size_t size) {
-        _begin = list.data();
-        _end = _begin + size;
-    }
-    void sort(Support const *supports, int numSupports);
-    void merge(Support support);
-    bool isCovered(Support support) const;
-
-    static constexpr int kMaxMerged = 16; ///< more supports are sorted together ...
-    static constexpr int kMaxSorted = 16; ///< ... as are those with few sources
-
-    Index const *_begin = nullptr;
-    Index const *_end = nullptr;
-    std::vector<Index> _union;
-    std::vector<Index> _merged;
+    Support _base;
+    int _numAdded = 0;
+    std::vector<Index> _added;
     std::vector<unsigned> _stamp; ///< by source: _lastStamp for those in the union
     unsigned _lastStamp = 0;
-};
-
-/// \brief V-vertices of a step whose stencils are made together, because they share what they
-/// depend on: those of the F-vertices of a face, or a single one.
-class VVertexGroup {
-public:
-    using Index = Far::Index;
-
-    /// A stencil that is a part of that of a V-vertex.
-    struct Term {
-        Index row;   ///< of the step if isFVertex, else of the step before
-        int support; ///< number in the group
-        bool isFVertex;
-        double weight;
-    };
-
-    explicit VVertexGroup(Index numSources) : _position(numSources) {}
-
-    /// Takes the V-vertices from \p begin on, up to \p end at most, and returns where they end.
-    /// \p withAllTerms is false when it is only asked what the stencils depend on: the faces around
-    /// a vertex depend on all that the vertex and its neighbors do.
-    Index Take(StencilStep const &step, std::vector<Support> const &supportsOfVertices,
-               std::vector<Support> const &supportsOfFaces, Index begin, Index end,
-               bool withAllTerms);
-
-    int GetNumSupports() const { return int(_supports.size()); }
-    Support const *GetSupports() const { return _supports.data(); }
-    int GetNumVVertices() const { return int(_firstTerms.size()) - 1; }
-    /// The terms of the i'th V-vertex.
-    Term const *BeginTerms(int i) const { return _terms.data() + _firstTerms[i]; }
-    Term const *EndTerms(int i) const { return _terms.data() + _firstTerms[i + 1]; }
-
-    /// Finds where the sources of each support stand in \p all, a list that has them all.
-    void Locate(Index const *all, int size);
-    int const *GetPositions(int support) const {
-        return _positions.data() + _firstPositions[support];
-    }
-    /// How many sources the i'th V-vertex depends on.
-    int CountSources(int i);
-    /// Calls write(n, k) for all positions k, with n counting those before that the i'th V-vertex
-    /// depends on: the last write for n is for number n of these.  Returns their number.
-    template <typename FUNCTION>
-    int ForEachSource(int i, FUNCTION write) {
-        int n = 0;
-        if (GetNumVVertices() == 1) {
-            for (; n < _numSources; ++n) {
-                write(n, n);
-            }
-            return n;
-        }
-        formBits(i);
-        int k = 0;
-        for (Word word : _vertexBits) {
-            for (int const end = std::min(k + kWordBits, _numSources); k < end; ++k) {
-                write(n, k);
-                n += int(word & 1);
-                word >>= 1;
-            }
-        }
-        return n;
-    }
-
-private:
-    using Word = std::uint64_t;
-    static constexpr int kWordBits = 64;
-
-    // Any numbers will do; they bound the work for supports that are not the same.
-    static constexpr int kMaxSize = 16;
-    static constexpr int kMaxCompared = 16;
-
-    int addSupport(Support support) {
-        // All vertices share the support of their face, which came first; neighbors that of the
-        // face between them, which came last.
-        if (!_supports.empty() && _supports[0] == support) {
-            return 0;
-        }
-        int const numSupports = GetNumSupports();
-        for (int i = numSupports; i-- > std::max(1, numSupports - kMaxCompared);) {
-            if (_supports[i] == support) {
-                return i;
-            }
-        }
-        _supports.push_back(support);
-        return numSupports;
-    }
-    void formBits(int i);
-    void addTerms(StencilStep const &step, std::vector<Support> const &supportsOfVertices,
-                  std::vector<Support> const &supportsOfFaces, Index vVertex, bool withAllTerms);
-
-    std::vector<Support> _supports;
-    std::vector<Term> _terms;
-    std::vector<int> _firstTerms;
-    std::vector<int> _position;  ///< by source
-    std::vector<int> _positions; ///< of the sources of all supports
-    std::vector<int> _firstPositions;
-    int _numSources = 0;
-    std::vector<Word> _bits;       ///< of each support, one bit for each source of all
-    std::vector<Word> _vertexBits; ///< the same of one V-vertex
+    SupportArena::Writer _writer;
 };
 
 /// \brief What the stencils of a step depend on: those of the F-vertices of a face share a support,
-/// every V-vertex has its own.
+/// and a V-vertex mostly shares that of one of the faces around it.
 class StepSupports {
 public:
     using Index = Far::Index;
@@ -194,14 +102,18 @@ public:
     /// Sum of the sizes of all stencils of the step, when it is no more than \p kMaxNumWeights;
     /// else a lower bound that is above it, and the supports are incomplete.
     std::int64_t GetNumWeights() const { return _numWeights; }
-    /// Of the groups of V-vertices in a parallel range: all that a group depends on.
-    std::vector<Support> const &OfGroups(Index range) const { return _ofGroups[range]; }
 
     static constexpr std::int64_t kMaxNumWeights = std::numeric_limits<Index>::max();
 
     std::vector<Support> const &OfFaces() const { return _ofFaces; }
-    /// Of all rows; empty unless keepsVertices.
+    /// Of all rows; for a step with keepsVertices.
     std::vector<Support> const &OfVertices() const { return _ofVertices; }
+    /// Of a V-vertex; valid until \p scratch is used again.
+    Support OfVVertex(Index vVertex, std::vector<Index> &scratch) const;
+
+    /// The length of parallel ranges of faces and V-vertices: their stencils take some hundred
+    /// nanoseconds each, and their weights fit into the second cache.
+    static constexpr Index kRange = 256;
 
 private:
     StepSupports() = default;
@@ -209,16 +121,15 @@ private:
     void formFaces(StencilStep const &step, StencilStep const *before, StepSupports const &parents,
                    Index numSources);
     void formVVertices(StencilStep const &step, StepSupports const &parents, Index numSources,
-                       int *sizes);
+                       bool keepsVertices, int *sizes);
     std::int64_t countLeastVVertexWeights(StencilStep const &step) const;
 
     std::int64_t _numWeights = 0;
     std::vector<Support> _ofFaces;
-    std::vector<Support> _ofVertices;
-    std::vector<unsigned char> _coversFaces;     ///< by V-vertex, if it depends on all its faces do
-    std::vector<std::vector<Support>> _ofGroups; ///< by parallel range
-    std::vector<SupportArena> _faceArenas;       ///< by parallel range
-    std::vector<SupportArena> _vertexArenas;
+    std::vector<Support> _ofVertices; ///< else, of V-vertices alone, the largest part of each ...
+    std::vector<Support> _added;      ///< ... and what is to be added, mostly nothing
+    std::vector<unsigned char> _coversFaces; ///< by V-vertex, if it depends on all its faces do
+    SupportArena _arena;
     std::vector<Index> _sourceLists;
 };
 

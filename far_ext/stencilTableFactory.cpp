@@ -20,6 +20,30 @@ using internal::SymbolicTable;
 
 namespace {
 
+// As many weights as the smallest vector registers hold; loops go by whole ones.
+constexpr int kVector = 4;
+
+// Calls function(begin) for vectors that together are 0 ... size; the last may overlap the one
+// before.  A size of less than a vector is not for it.
+template <typename FUNCTION>
+void forEachVector(int size, FUNCTION function) {
+    int const last = size - kVector;
+    for (int begin = 0; begin < last; begin += kVector) {
+        function(begin);
+    }
+    function(last);
+}
+
+// As std::copy_n, faster for some ten elements.
+template <typename T>
+void copyShort(T const *src, int size, T *dst) {
+    if (size < kVector) {
+        std::copy_n(src, size, dst);
+        return;
+    }
+    forEachVector(size, [=](int begin) { std::copy_n(src + begin, kVector, dst + begin); });
+}
+
 // The stencils of one step.  A row begins at entry offsets[row] of weights and indices; one that
 // the table does not have, at entry ~offsets[row] of spareWeights.
 template <typename REAL>
@@ -28,17 +52,16 @@ struct StepRows {
         Index const offset = offsets[row];
         return offset < 0 ? spareWeights + ~offset : weights + offset;
     }
-    void Store(Index row, REAL const *rowWeights, Index const *sources, int size) const {
-        std::copy_n(rowWeights, size, GetWeights(row));
+    void StoreIndices(Index row, Support sources) const {
         Index const offset = offsets[row];
         if (offset < 0) {
             return;
         }
         if (!indexOfSource) {
-            std::copy_n(sources, size, indices + offset);
+            copyShort(sources.begin(), sources.size(), indices + offset);
             return;
         }
-        std::transform(sources, sources + size, indices + offset,
+        std::transform(sources.begin(), sources.end(), indices + offset,
                        [this](Index source) { return indexOfSource[source]; });
     }
 
@@ -50,6 +73,10 @@ struct StepRows {
 };
 
 // The arrays of Far's tables are protected; a derived class may fill them.
+//
+// A std::vector writes its entries when it grows.  It grows within its capacity, piece by piece, so
+// that they are still in a cache when they get their values: nothing moves then, and other threads
+// may write what is there.
 template <typename REAL>
 class WritableTable : public StencilTableTypes<REAL>::Table {
 public:
@@ -57,8 +84,20 @@ public:
         this->_numControlVertices = numControlVertices;
         this->_sizes = std::move(sizes);
         internal::ResizeLarge(this->_offsets, this->_sizes.size());
-        internal::ResizeLarge(this->_indices, numWeights);
-        internal::ResizeLarge(this->_weights, numWeights);
+        internal::ReserveLarge(this->_indices, numWeights);
+        internal::ReserveLarge(this->_weights, numWeights);
+        Grow(std::min(numWeights, std::size_t(1))); // an empty vector need not say where it begins
+    }
+
+    // Makes the entries of indices and weights up to end; any thread may call it.
+    void Grow(std::size_t end) {
+#ifdef _OPENMP
+#pragma omp critical(OpenSubdivHexGrowTable)
+#endif
+        if (end > this->_indices.size()) {
+            this->_indices.resize(end);
+            this->_weights.resize(end);
+        }
     }
 
     int const *GetRowSizes() const { return this->_sizes.data(); }
@@ -81,28 +120,29 @@ struct SpareRows {
     internal::Buffer<REAL> weights;
 };
 
-// The F-vertices of a plain face: rows of the face's circulant mask times its vertices' rows.  The
-// rows of both are stride apart.
+// The F-vertices of a plain face: rows of the face's circulant mask times its vertices' rows.
 template <int SIZE, typename REAL>
-void multiplyPlain(double const *mask, double const *block, std::size_t stride, REAL *result) {
+void multiplyPlain(double const *mask, REAL const *const *parents, int width, REAL *const *rows) {
     double weights[SIZE];
     std::copy_n(mask, SIZE, weights);
+    forEachVector(width, [&](int begin) {
 #ifdef _OPENMP
 #pragma omp simd
 #endif
-    for (std::size_t k = 0; k < stride; ++k) {
-        double values[SIZE];
-        for (int j = 0; j < SIZE; ++j) {
-            values[j] = block[j * stride + k];
-        }
-        for (int i = 0; i < SIZE; ++i) {
-            double sum = weights[0] * values[i];
-            for (int j = 1; j < SIZE; ++j) {
-                sum += weights[j] * values[(i + j) % SIZE];
+        for (int k = begin; k < begin + kVector; ++k) {
+            double values[SIZE];
+            for (int j = 0; j < SIZE; ++j) {
+                values[j] = double(parents[j][k]);
             }
-            result[i * stride + k] = REAL(sum);
+            for (int i = 0; i < SIZE; ++i) {
+                double sum = weights[0] * values[i];
+                for (int j = 1; j < SIZE; ++j) {
+                    sum += weights[j] * values[(i + j) % SIZE];
+                }
+                rows[i][k] = REAL(sum);
+            }
         }
-    }
+    });
 }
 
 // Makes the stencils of a step of those of the step before (none: its rows are sources).
@@ -117,57 +157,69 @@ public:
                 StepRows<REAL> const &rows)
         : _step(step), _pSupports(pSupports), _supports(supports), _pRows(pRows), _rows(rows) {}
 
-    // numSources is more than any index in a stencil.
-    void Fill(Index numSources) const {
+    // numSources is more than any index in a stencil; makePlace(endRow) is called before rows up to
+    // endRow are written, by any thread.
+    template <typename MAKE_PLACE>
+    void Fill(Index numSources, MAKE_PLACE makePlace) const {
         auto const makeScratch = [numSources] { return Scratch(numSources); };
-        internal::ParallelForRange(_step.GetNumFaces(), makeScratch,
-                                   [this](Scratch &scratch, Index begin, Index end) {
-                                       for (Index face = begin; face < end; ++face) {
-                                           fillFace(face, scratch);
-                                       }
-                                   });
-        // V-vertices average F-vertices.
+        constexpr Index kRange = StepSupports::kRange;
         internal::ParallelForRange(
-            _step.GetNumVVertices(), makeScratch, [this](Scratch &scratch, Index begin, Index end) {
-                auto group = _supports.OfGroups(begin / internal::kParallelRange).begin();
-                while (begin < end) {
-                    begin = fillVVertices(begin, end, *group++, scratch);
+            _step.GetNumFaces(), makeScratch,
+            [&](Scratch &scratch, Index begin, Index end) {
+                makePlace(_step.GetFaceFirstRow(end));
+                for (Index face = begin; face < end; ++face) {
+                    fillFace(face, scratch);
                 }
-            });
+            },
+            kRange);
+        // V-vertices average F-vertices.
+        makePlace(_step.GetNumVVertices());
+        internal::ParallelForRange(
+            _step.GetNumVVertices(), makeScratch,
+            [this](Scratch &scratch, Index begin, Index end) {
+                for (Index vVertex = begin; vVertex < end; ++vVertex) {
+                    if (vVertex + kAhead < end) {
+                        prefetchFaceRows(vVertex + kAhead);
+                    }
+                    fillVVertex(vVertex, scratch);
+                }
+            },
+            kRange);
     }
 
 private:
     // What one thread works on.
     struct Scratch {
-        explicit Scratch(Index numSources) : position(numSources), group(numSources) {}
+        explicit Scratch(Index numSources) : position(numSources), sumOfSource(numSources) {}
 
-        std::vector<int> position;  // of each source in the support of the face
-        std::vector<double> mask;   // of a corner, see RefinementMask
-        std::vector<int> positions; // of a parent's sources
-        std::vector<double> block;  // dense stencils of a face's vertices over its support
-        std::vector<REAL> result;   // one or more rows
-
-        internal::VVertexGroup group;
-        std::vector<double> sums; // one dense stencil
-        std::vector<Index> rowSources;
+        std::vector<int> position;         // of each source in the support of the face
+        std::vector<double> sumOfSource;   // all 0 between two V-vertices
+        std::vector<Index> sources;        // of a V-vertex, see StepSupports
+        std::vector<double> mask;          // of a corner, see RefinementMask
+        std::vector<double> sums;          // one dense stencil
+        std::vector<REAL> block;           // of dense stencils
+        std::vector<REAL const *> parents; // dense stencils of a face's vertices over its support
+        std::vector<REAL *> rows;          // those of its F-vertices
     };
 
     void fillFace(Index face, Scratch &scratch) const;
     void fillSourceFace(Index face, Scratch &scratch) const;
-    void loadParents(Index face, std::size_t stride, Scratch &scratch) const;
-    void multiply(Index face, std::size_t stride, Scratch &scratch) const;
-    Index fillVVertices(Index begin, Index end, Support all, Scratch &scratch) const;
-
-    REAL const *termWeights(internal::VVertexGroup::Term const &term) const {
-        static constexpr REAL kOne[] = {REAL(1)};
-        return term.isFVertex ? _rows.GetWeights(term.row)
-               : _pRows       ? _pRows->GetWeights(term.row)
-                              : kOne;
+    void loadParents(Index face, Scratch &scratch) const;
+    void multiply(Index face, Scratch &scratch) const;
+    // Benchmark table/quad/large/warm: 1.2 times as fast with it.
+    void prefetchFaceRows(Index vVertex) const {
+        constexpr std::size_t kBytes = 96; // of most rows and their sources
+        _step.ForEachVertexFace(_step.GetVVertexParent(vVertex), [this](Index face, Index row) {
+            internal::Prefetch(_rows.GetWeights(row), kBytes);
+            internal::Prefetch(_supports.OfFaces()[face].begin(), kBytes);
+        });
     }
+    static constexpr Index kAhead = 8;
+    void fillVVertex(Index vVertex, Scratch &scratch) const;
 
-    void storeFaceRow(Index face, int corner, REAL const *weights) const {
-        Support const support = _supports.OfFaces()[face];
-        _rows.Store(_step.GetFaceFirstRow(face) + corner, weights, support.begin(), support.size());
+    REAL const *parentWeights(Index vert) const {
+        static constexpr REAL kOne[] = {REAL(1)};
+        return _pRows ? _pRows->GetWeights(vert) : kOne;
     }
 
     StencilStep const &_step;
@@ -182,90 +234,76 @@ template <typename REAL>
 void StepBuilder<REAL>::fillSourceFace(Index face, Scratch &scratch) const {
     Index const *const verts = _step.GetFaceVertices(face);
     int const size = _step.GetFaceSize(face);
-    scratch.positions.resize(size);
-    for (int j = 0; j < size; ++j) {
-        scratch.positions[j] = scratch.position[_pSupports.OfVertices()[verts[j]][0]];
-    }
     int const width = _supports.OfFaces()[face].size();
-    scratch.result.resize(width);
     for (int i = 0; i < size; ++i) {
         double const *mask = _step.GetFaceVertexWeights(face, i, scratch.mask);
         scratch.sums.assign(width, 0.0);
         for (int j = 0; j < size; ++j) {
-            scratch.sums[scratch.positions[j]] += mask[j];
+            scratch.sums[scratch.position[_pSupports.OfVertices()[verts[j]][0]]] += mask[j];
         }
-        std::transform(scratch.sums.begin(), scratch.sums.end(), scratch.result.begin(),
+        std::transform(scratch.sums.begin(), scratch.sums.end(), scratch.rows[i],
                        [](double weight) { return REAL(weight); });
-        storeFaceRow(face, i, scratch.result.data());
     }
 }
 
-// Makes the stencils of a face's vertices dense over its support.
+// Finds the stencils of a face's vertices over its support, or makes them.
 template <typename REAL>
-void StepBuilder<REAL>::loadParents(Index face, std::size_t stride, Scratch &scratch) const {
+void StepBuilder<REAL>::loadParents(Index face, Scratch &scratch) const {
     Index const *const verts = _step.GetFaceVertices(face);
     int const size = _step.GetFaceSize(face);
     Support const support = _supports.OfFaces()[face];
-    scratch.block.resize(size * stride);
-    scratch.positions.resize(support.size());
-    Support located = support;
-    for (int j = 0; j < size; ++j) {
+    int const width = support.size();
+    scratch.parents.resize(size);
+    scratch.block.resize(std::size_t(size) * width);
+    int const *const position = scratch.position.data();
+    REAL *dense = scratch.block.data();
+    for (int j = 0; j < size; ++j, dense += width) {
         Support const pSupport = _pSupports.OfVertices()[verts[j]];
-        REAL const *weights = _pRows->GetWeights(verts[j]);
-        double *const dense = scratch.block.data() + j * stride;
+        REAL const *const weights = _pRows->GetWeights(verts[j]);
         if (pSupport == support) {
-            double *const end = std::transform(weights, weights + support.size(), dense,
-                                               [](REAL weight) { return double(weight); });
-            std::fill(end, dense + stride, 0.0);
+            scratch.parents[j] = weights;
             continue;
         }
-        std::fill(dense, dense + stride, 0.0);
-        if (!(pSupport == located)) {
-            std::transform(pSupport.begin(), pSupport.end(), scratch.positions.begin(),
-                           [&](Index source) { return scratch.position[source]; });
-            located = pSupport;
-        }
-        int const *const positions = scratch.positions.data();
+        std::fill_n(dense, width, REAL(0));
         for (int k = 0; k < pSupport.size(); ++k) {
-            dense[positions[k]] = double(weights[k]);
+            dense[position[pSupport[k]]] = weights[k];
         }
+        scratch.parents[j] = dense;
     }
 }
 
-// The face mask times the dense stencils of the face's vertices.
+// The face mask times the stencils of the face's vertices.
 template <typename REAL>
-void StepBuilder<REAL>::multiply(Index face, std::size_t stride, Scratch &scratch) const {
+void StepBuilder<REAL>::multiply(Index face, Scratch &scratch) const {
     int const size = _step.GetFaceSize(face);
-    scratch.result.resize(size * stride);
-    REAL *result = scratch.result.data();
-    if (_step.IsFacePlain(face)) {
+    int const width = _supports.OfFaces()[face].size();
+    REAL const *const *const parents = scratch.parents.data();
+    REAL *const *const rows = scratch.rows.data();
+    if (width >= kVector && _step.IsFacePlain(face)) {
         double const *const mask = _step.GetPlainFaceWeights(size);
         switch (size) {
         case 3:
-            return multiplyPlain<3>(mask, scratch.block.data(), stride, result);
+            return multiplyPlain<3>(mask, parents, width, rows);
         case 4:
-            return multiplyPlain<4>(mask, scratch.block.data(), stride, result);
+            return multiplyPlain<4>(mask, parents, width, rows);
         case 5:
-            return multiplyPlain<5>(mask, scratch.block.data(), stride, result);
+            return multiplyPlain<5>(mask, parents, width, rows);
         case 6:
-            return multiplyPlain<6>(mask, scratch.block.data(), stride, result);
+            return multiplyPlain<6>(mask, parents, width, rows);
         }
     }
-    scratch.sums.resize(stride);
+    scratch.sums.resize(width);
     double *const sums = scratch.sums.data();
     for (int i = 0; i < size; ++i) {
         double const *mask = _step.GetFaceVertexWeights(face, i, scratch.mask);
-        double const *parent = scratch.block.data();
-        std::transform(parent, parent + stride, sums,
-                       [weight = mask[0]](double value) { return weight * value; });
+        std::transform(parents[0], parents[0] + width, sums,
+                       [weight = mask[0]](REAL value) { return weight * double(value); });
         for (int j = 1; j < size; ++j) {
-            parent += stride;
-            for (std::size_t k = 0; k < stride; ++k) {
-                sums[k] += mask[j] * parent[k];
+            for (int k = 0; k < width; ++k) {
+                sums[k] += mask[j] * double(parents[j][k]);
             }
         }
-        result =
-            std::transform(sums, sums + stride, result, [](double weight) { return REAL(weight); });
+        std::transform(sums, sums + width, rows[i], [](double weight) { return REAL(weight); });
     }
 }
 
@@ -273,66 +311,53 @@ void StepBuilder<REAL>::multiply(Index face, std::size_t stride, Scratch &scratc
 template <typename REAL>
 void StepBuilder<REAL>::fillFace(Index face, Scratch &scratch) const {
     Support const support = _supports.OfFaces()[face];
+    Index const firstRow = _step.GetFaceFirstRow(face);
+    int const size = _step.GetFaceSize(face);
+    scratch.rows.resize(size);
+    for (int i = 0; i < size; ++i) {
+        scratch.rows[i] = _rows.GetWeights(firstRow + i);
+        _rows.StoreIndices(firstRow + i, support);
+    }
     for (int k = 0; k < support.size(); ++k) {
         scratch.position[support[k]] = k;
     }
-    if (!_pRows) {
+    if (_pRows) {
+        loadParents(face, scratch);
+        multiply(face, scratch);
+    } else {
         fillSourceFace(face, scratch);
-        return;
-    }
-    // Whole vectors are faster; what is behind the support stays 0.
-    constexpr std::size_t kVector = 4;
-    std::size_t const stride = (support.size() + kVector - 1) / kVector * kVector;
-    loadParents(face, stride, scratch);
-    multiply(face, stride, scratch);
-    for (int i = 0; i < _step.GetFaceSize(face); ++i) {
-        storeFaceRow(face, i, scratch.result.data() + i * stride);
     }
 }
 
-// The stencils of a group of V-vertices are sums of those of the step before and of F-vertices.
+// The stencil of a V-vertex is a sum of those of the step before and of F-vertices.
 template <typename REAL>
-Index StepBuilder<REAL>::fillVVertices(Index begin, Index end, Support all,
-                                       Scratch &scratch) const {
-    internal::VVertexGroup &group = scratch.group;
-    Index const groupEnd =
-        group.Take(_step, _pSupports.OfVertices(), _supports.OfFaces(), begin, end, true);
-    group.Locate(all.begin(), all.size());
-    // One more than is kept: see ForEachSource.
-    scratch.rowSources.resize(std::size_t(all.size()) + 1);
-    scratch.result.resize(std::size_t(all.size()) + 1);
-    Index *const rowSources = scratch.rowSources.data();
-    REAL *const rowWeights = scratch.result.data();
-    for (int i = 0; i < groupEnd - begin; ++i) {
-        scratch.sums.assign(all.size(), 0.0);
-        double *const sums = scratch.sums.data();
-        auto const *const termsEnd = group.EndTerms(i);
-        for (auto const *term = group.BeginTerms(i); term != termsEnd; ++term) {
-            int const *const positions = group.GetPositions(term->support);
-            int const size = group.GetSupports()[term->support].size();
-            REAL const *const weights = termWeights(*term);
-            double const weight = term->weight;
-            if (term + 1 != termsEnd && term[1].support == term->support) {
-                // Mostly the vertex itself and the F-face: half the scattered writes.
-                REAL const *const nextWeights = termWeights(*++term);
-                double const nextWeight = term->weight;
-                for (int k = 0; k < size; ++k) {
-                    sums[positions[k]] +=
-                        weight * double(weights[k]) + nextWeight * double(nextWeights[k]);
-                }
-                continue;
-            }
-            for (int k = 0; k < size; ++k) {
-                sums[positions[k]] += weight * double(weights[k]);
-            }
+void StepBuilder<REAL>::fillVVertex(Index vVertex, Scratch &scratch) const {
+    double *const sumOfSource = scratch.sumOfSource.data();
+    Index const pVert = _step.GetVVertexParent(vVertex);
+    internal::RefinementMask::VertexMask const mask = _step.GetVertexMask(pVert);
+    auto const add = [=](double weight, REAL const *weights, Support sources) {
+        for (int k = 0; k < sources.size(); ++k) {
+            sumOfSource[sources[k]] += weight * double(weights[k]);
         }
-        int const size = group.ForEachSource(i, [=](int n, int k) {
-            rowSources[n] = all[k];
-            rowWeights[n] = REAL(sums[k]);
-        });
-        _rows.Store(begin + i, rowWeights, rowSources, size);
+    };
+    add(mask.vertexWeight, parentWeights(pVert), _pSupports.OfVertices()[pVert]);
+    for (int i = 0; i < mask.numNeighbors; ++i) {
+        Index const neighbor = mask.neighbors[i];
+        add(mask.neighborWeights[i], parentWeights(neighbor), _pSupports.OfVertices()[neighbor]);
     }
-    return groupEnd;
+    if (mask.faceWeight > 0) {
+        _step.ForEachVertexFace(pVert, [&](Index face, Index row) {
+            add(mask.faceWeight, _rows.GetWeights(row), _supports.OfFaces()[face]);
+        });
+    }
+    Support const support = _supports.OfVVertex(vVertex, scratch.sources);
+    REAL *const weights = _rows.GetWeights(vVertex);
+    for (int k = 0; k < support.size(); ++k) {
+        double &sum = sumOfSource[support[k]];
+        weights[k] = REAL(sum);
+        sum = 0;
+    }
+    _rows.StoreIndices(vVertex, support);
 }
 
 // Fills an empty table; of all that is made, it has the kept rows, or all when there are none.
@@ -347,14 +372,19 @@ public:
         SpareRows<REAL> pSpare;
         StepRows<REAL> pRows{};
         for (int level = _plan.firstBuilt; level <= _plan.lastLevel; ++level) {
+            bool const isStored = level >= _plan.firstStored;
+            bool const isWhole = isStored && !_kept;
             SpareRows<REAL> spare;
-            StepRows<REAL> const rows = level < _plan.firstStored ? placeUnstored(level, spare)
-                                        : _kept                   ? placeKept(level, spare)
-                                                                  : placeAll(level);
+            StepRows<REAL> const rows = isWhole    ? placeAll(level)
+                                        : isStored ? placeKept(level, spare)
+                                                   : placeUnstored(level, spare);
+            Index const numRows = _symbolic.GetStep(level).GetNumRows();
             StepBuilder<REAL>(_symbolic.GetStep(level), _symbolic.GetParentSupports(level),
                               _symbolic.GetSupports(level),
                               _plan.HasParentStencils(level) ? &pRows : nullptr, rows)
-                .Fill(_symbolic.GetNumSources(level));
+                .Fill(_symbolic.GetNumSources(level), [&](Index endRow) {
+                    _table.Grow(isWhole && endRow < numRows ? rows.offsets[endRow] : _nextOffset);
+                });
             pRows = rows;
             pSpare = std::move(spare);
         }
@@ -362,6 +392,7 @@ public:
 
 private:
     void fillControlRows() {
+        _table.Grow(_plan.numControlStencils);
         for (Index i = 0; i < _plan.numControlStencils; ++i) {
             place(1);
             _table.GetRowIndices()[i] = _kept ? _kept->controls[i] : i;
@@ -378,12 +409,15 @@ private:
     }
 
     StepRows<REAL> placeAll(int level) {
-        Index const first = _nextStencil;
-        for (Index i = 0; i < _symbolic.GetStep(level).GetNumRows(); ++i) {
-            place(_table.GetRowSizes()[_nextStencil]);
+        Index const numRows = _symbolic.GetStep(level).GetNumRows();
+        int const *const sizes = _table.GetRowSizes() + _nextStencil;
+        Index *const offsets = _table.GetRowOffsets() + _nextStencil;
+        std::exclusive_scan(sizes, sizes + numRows, offsets, _nextOffset);
+        if (numRows > 0) {
+            _nextOffset = offsets[numRows - 1] + sizes[numRows - 1];
         }
-        return {_table.GetRowOffsets() + first, _table.GetRowWeights(), _table.GetRowIndices(),
-                nullptr, nullptr};
+        _nextStencil += numRows;
+        return {offsets, _table.GetRowWeights(), _table.GetRowIndices(), nullptr, nullptr};
     }
 
     StepRows<REAL> placeUnstored(int level, SpareRows<REAL> &spare) const {

@@ -275,12 +275,15 @@ StepWeights WeightSampler::Estimate(int level) const {
 double estimateSupportBytes(StencilPlan const &plan, int level, StepWeights const &weights) {
     TopologyLevel const pLevel = plan.GetLevel(level - 1);
     double const cornersPerFace = double(pLevel.GetNumFaceVertices()) / pLevel.GetNumFaces();
-    // The groups of V-vertices hold about half as much as these do.
     bool const keepsVertices = plan.factorize && level < plan.lastLevel;
-    double const numSources =
-        weights.ofFVertices / cornersPerFace + weights.ofVVertices * (keepsVertices ? 1.5 : 0.5);
+    // Of the first two steps most supports have lists of their own, then from step to step fewer;
+    // what is added for a V-vertex is about a quarter of what it depends on.
+    double const share = plan.factorize ? std::ldexp(1.0, std::min(0, 2 - level)) : 1;
+    double const numSources = share * (weights.ofFVertices / cornersPerFace +
+                                       weights.ofVVertices * (keepsVertices ? 1 : 0.25));
     double const numSupports =
-        pLevel.GetNumFaces() + (keepsVertices ? double(plan.GetNumVertices(level)) : 0);
+        pLevel.GetNumFaces() + (keepsVertices ? double(plan.GetNumVertices(level))
+                                              : 2.0 * pLevel.GetTopology().numVVertices);
     return numSources * sizeof(Index) + numSupports * sizeof(Support);
 }
 

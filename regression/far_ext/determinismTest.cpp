@@ -283,7 +283,7 @@ TEST(Determinism, SameImportForAnyNumberOfThreads) {
     }
 }
 
-// The last step is made of more than the 16,384 faces from which on threads share the work.
+// The last step is made of many ranges of work.
 TEST(Determinism, SameStencilsForAnyNumberOfThreads) {
     Shape const grid = makeGridWithHoles(48);
     Sdc::Options sdcOptions;
