@@ -48,7 +48,6 @@ template <int WIDTH>
 struct WidePacket {
     static constexpr int kNumElements = 1;
     static constexpr int kNumSums = 2;
-    static constexpr int kMaxRows = 6;
 
     using Vector = __m256;
 
@@ -90,7 +89,6 @@ template <int WIDTH>
 struct NarrowPacket {
     static constexpr int kNumElements = 2;
     static constexpr int kNumSums = 1;
-    static constexpr int kMaxRows = 6;
 
     using Vector = __m256;
 
@@ -113,6 +111,11 @@ struct NarrowPacket {
 
     static Vector MultiplyAdd(Vector elements, Vector weights, Vector sum) {
         return _mm256_fmadd_ps(elements, weights, sum);
+    }
+    /// Of the last element alone.
+    static Vector MultiplyAddLast(Vector elements, Vector weights, Vector sum,
+                                  int /*numElements*/) {
+        return _mm256_blend_ps(sum, _mm256_fmadd_ps(elements, weights, sum), 0xf0);
     }
 
     static Vector Add(Vector first, Vector second) { return _mm256_add_ps(first, second); }
@@ -141,6 +144,10 @@ struct PacketType<WIDTH, true> {
 struct Avx2Simd {
     template <int WIDTH>
     using Packet = typename PacketType<WIDTH, (WIDTH > 4)>::Type;
+
+    static bool EqualIndices(int const *first, int const *second, int size) {
+        return equalIndices(first, second, size);
+    }
 };
 
 } // namespace

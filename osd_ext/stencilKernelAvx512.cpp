@@ -8,6 +8,7 @@
 #if defined(__GNUC__) && !defined(__clang__)
 // GCC 12 sees uninitialized values in its own intrinsics.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
 #endif
 #include <immintrin.h>
 
@@ -21,7 +22,6 @@ template <int WIDTH>
 struct WidePacket {
     static constexpr int kNumElements = 2;
     static constexpr int kNumSums = 1;
-    static constexpr int kMaxRows = 6;
 
     using Vector = __m512;
 
@@ -46,6 +46,11 @@ struct WidePacket {
 
     static Vector MultiplyAdd(Vector elements, Vector weights, Vector sum) {
         return _mm512_fmadd_ps(elements, weights, sum);
+    }
+    /// Of the last elements alone.
+    static Vector MultiplyAddLast(Vector elements, Vector weights, Vector sum,
+                                  int /*numElements*/) {
+        return _mm512_mask3_fmadd_ps(elements, weights, sum, __mmask16(0xff00));
     }
 
     static Vector Add(Vector first, Vector second) { return _mm512_add_ps(first, second); }
@@ -81,7 +86,6 @@ template <int WIDTH>
 struct NarrowPacket {
     static constexpr int kNumElements = 4;
     static constexpr int kNumSums = 1;
-    static constexpr int kMaxRows = 6;
 
     using Vector = __m512;
 
@@ -106,6 +110,11 @@ struct NarrowPacket {
 
     static Vector MultiplyAdd(Vector elements, Vector weights, Vector sum) {
         return _mm512_fmadd_ps(elements, weights, sum);
+    }
+    /// Of the last elements alone.
+    static Vector MultiplyAddLast(Vector elements, Vector weights, Vector sum, int numElements) {
+        return _mm512_mask3_fmadd_ps(elements, weights, sum,
+                                     __mmask16(0xffffu << (16 - 4 * numElements)));
     }
 
     static Vector Add(Vector first, Vector second) { return _mm512_add_ps(first, second); }
@@ -151,6 +160,17 @@ struct PacketType<WIDTH, true> {
 struct Avx512Simd {
     template <int WIDTH>
     using Packet = typename PacketType<WIDTH, (WIDTH > 4)>::Type;
+
+    static bool EqualIndices(int const *first, int const *second, int size) {
+        for (; size > 16; size -= 16, first += 16, second += 16) {
+            if (_mm512_cmpneq_epi32_mask(_mm512_loadu_si512(first), _mm512_loadu_si512(second))) {
+                return false;
+            }
+        }
+        __mmask16 const mask = __mmask16(firstBits(size));
+        return _mm512_mask_cmpneq_epi32_mask(mask, _mm512_maskz_loadu_epi32(mask, first),
+                                             _mm512_maskz_loadu_epi32(mask, second)) == 0;
+    }
 };
 
 } // namespace

@@ -48,11 +48,14 @@ OPENSUBDIVHEX_INLINE void storeFloats(float *dst, Quad const &values) {
 
 /// Plain C++, in a form that compilers turn into the vectors of any machine.
 struct PortableSimd {
+    static bool EqualIndices(int const *first, int const *second, int size) {
+        return equalIndices(first, second, size);
+    }
+
     template <int WIDTH>
     struct Packet {
         static constexpr int kNumElements = 1;
         static constexpr int kNumSums = WIDTH <= 4 ? 2 : 1;
-        static constexpr int kMaxRows = WIDTH <= 4 ? 6 : 3;
         static constexpr int kNumQuads = WIDTH <= 4 ? 1 : 2;
         static constexpr int kLastWidth = WIDTH - 4 * (kNumQuads - 1);
 

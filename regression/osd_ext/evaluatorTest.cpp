@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -397,6 +398,46 @@ TEST(Evaluator, BitsDependOnSimdLevelAlone) {
                     expectSameBits(*table, cpu, 3, numStencils, layouts[0], true));
                 ASSERT_NO_FATAL_FAILURE(
                     expectSameBits(*table, cpu, 6, numStencils, layouts[0], true));
+            }
+        }
+    }
+}
+
+/// Stencils of each size that add element \c place, which is infinite, once: not 0 times infinity
+/// anywhere, and not beside them.
+TEST(Evaluator, InfinityStaysWhereItIsUsed) {
+    int const maxSize = 13;
+    std::vector<int> sizes;
+    std::vector<int> indices;
+    std::vector<bool> isInfinite;
+    for (int size = 1; size <= maxSize; ++size) {
+        for (int place = 0; place <= size; ++place) {
+            sizes.push_back(size);
+            isInfinite.push_back(place < size);
+            for (int i = 0; i < size; ++i) {
+                indices.push_back(i == place ? 1 : 0);
+            }
+        }
+    }
+    std::vector<float> const weights(indices.size(), 1);
+    int const numStencils = int(sizes.size());
+    for (SimdLevel const level : GetSimdLevels()) {
+        EvaluatorScope const scope(level, 1);
+        for (int const length : kLengths) {
+            std::vector<float> src(std::size_t(2 * length), 1);
+            std::fill_n(src.begin() + length, length, std::numeric_limits<float>::infinity());
+            std::vector<float> dst(std::size_t(numStencils * length), kGuard);
+            Descriptor const desc(0, length, length);
+            ASSERT_TRUE(OsdExt::CpuEvaluator::EvalStencils(src.data(), desc, dst.data(), desc,
+                                                           sizes.data(), nullptr, indices.data(),
+                                                           weights.data(), 0, numStencils));
+            for (int i = 0; i < numStencils; ++i) {
+                float const expected =
+                    isInfinite[std::size_t(i)] ? src.back() : float(sizes[std::size_t(i)]);
+                for (int k = 0; k < length; ++k) {
+                    ASSERT_EQ(dst[std::size_t(i * length + k)], expected)
+                        << "level " << int(level) << " length " << length << " stencil " << i;
+                }
             }
         }
     }
