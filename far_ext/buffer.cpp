@@ -2,8 +2,10 @@
 #include "buffer.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 #if defined(__linux__)
@@ -14,51 +16,72 @@
 namespace OpenSubdivHex::FarExt::internal {
 
 namespace {
+
 constexpr std::size_t kHugePage = std::size_t(2) << 20;
 
-std::size_t roundUp(std::size_t bytes, std::size_t unit) {
+std::uintptr_t roundUp(std::uintptr_t bytes, std::size_t unit) {
     return (bytes + unit - 1) / unit * unit;
 }
+
+struct Pages {
+    char *begin;
+    std::size_t count;
+};
+
+// The huge pages that lie within an array.  Advises the system to have them; without, the array is
+// as good, just slower to touch first.
+Pages adviseHugePages(void *memory, std::size_t bytes) {
+    auto const address = reinterpret_cast<std::uintptr_t>(memory);
+    std::size_t const skipped = roundUp(address, kHugePage) - address;
+    if (bytes < skipped + kHugePage) {
+        return {nullptr, 0};
+    }
+    Pages const pages = {static_cast<char *>(memory) + skipped, (bytes - skipped) / kHugePage};
+#if defined(__linux__)
+    madvise(pages.begin, pages.count * kHugePage, MADV_HUGEPAGE);
+#endif
+    return pages;
+}
+
 } // namespace
 
+// Not by std::aligned_alloc: glibc may give to others what it cuts off in front of an aligned array.
+// The next array of the size then finds no place where this one was, and the heap grows for ever.
 void *AllocateArray(std::size_t bytes) {
-    std::size_t const alignment = bytes >= kHugePage ? kHugePage : kCacheLine;
-    void *memory = std::aligned_alloc(alignment, roundUp(bytes, alignment));
-    if (!memory) {
+    static_assert(alignof(std::max_align_t) >= sizeof(void *) &&
+                  kCacheLine % alignof(std::max_align_t) == 0);
+    void *const whole = std::malloc(bytes + kCacheLine);
+    if (!whole) {
         throw std::bad_alloc();
     }
-#if defined(__linux__)
-    if (alignment == kHugePage) {
-        // Advice only: without huge pages the array is as good, just slower to touch first.
-        madvise(memory, roundUp(bytes, alignment), MADV_HUGEPAGE);
-    }
-#endif
+    auto const address = reinterpret_cast<std::uintptr_t>(whole);
+    char *const memory =
+        static_cast<char *>(whole) + (roundUp(address + sizeof(void *), kCacheLine) - address);
+    std::memcpy(memory - sizeof(void *), &whole, sizeof(void *));
+    adviseHugePages(memory, bytes);
     return memory;
 }
 
-void FreeArray(void *memory) { std::free(memory); }
-
-void PrepareArray([[maybe_unused]] void *memory, [[maybe_unused]] std::size_t bytes) {
-#if defined(__linux__)
-    auto const address = reinterpret_cast<std::uintptr_t>(memory);
-    std::size_t const skipped = roundUp(address, kHugePage) - address;
-    if (bytes < skipped + 2 * kHugePage) {
-        return;
+void FreeArray(void *memory) {
+    if (memory) {
+        void *whole = nullptr;
+        std::memcpy(&whole, static_cast<char *>(memory) - sizeof(void *), sizeof(void *));
+        std::free(whole);
     }
-    std::size_t const numPages = (bytes - skipped) / kHugePage;
-    char *const pages = static_cast<char *>(memory) + skipped;
-    // Advice only, as above; a system too old to make pages ready makes them at first touch.
-    madvise(pages, numPages * kHugePage, MADV_HUGEPAGE);
+}
+
+void PrepareArray(void *memory, std::size_t bytes) {
+    [[maybe_unused]] Pages const pages = adviseHugePages(memory, bytes);
 #ifdef MADV_POPULATE_WRITE
+    // A system too old to make pages ready makes them at first touch.
     constexpr std::size_t kPagesPerCall = 8;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (pages.count > kPagesPerCall)
 #endif
-    for (std::size_t page = 0; page < numPages; page += kPagesPerCall) {
-        madvise(pages + page * kHugePage, std::min(kPagesPerCall, numPages - page) * kHugePage,
-                MADV_POPULATE_WRITE);
+    for (std::size_t page = 0; page < pages.count; page += kPagesPerCall) {
+        madvise(pages.begin + page * kHugePage,
+                std::min(kPagesPerCall, pages.count - page) * kHugePage, MADV_POPULATE_WRITE);
     }
-#endif
 #endif
 }
 

@@ -8,7 +8,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace OpenSubdivHex::Regression {
 
@@ -29,6 +34,33 @@ TEST(Buffer, KeepsItsMemoryUntilItNeedsMore) {
     buffer.Resize(100);
     EXPECT_EQ(buffer.data(), memory);
 }
+
+TEST(Buffer, IsAlignedToCacheLines) {
+    std::vector<Buffer<char>> buffers(20);
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+        buffers[i].Resize((std::size_t(1) << i) + i);
+        EXPECT_EQ(
+            reinterpret_cast<std::uintptr_t>(buffers[i].data()) % FarExt::internal::kCacheLine, 0u);
+    }
+}
+
+#ifdef __GLIBC__
+TEST(Buffer, NewOneFitsWhereAnotherWas) {
+    constexpr std::size_t kSize = std::size_t(4) << 20;
+    auto const getHeapSize = [] { return mallinfo2().arena + mallinfo2().hblkhd; };
+    // glibc takes arrays of this size from the heap once a larger one was freed.
+    Buffer<char>().Resize(4 * kSize);
+    auto first = std::make_unique<Buffer<char>>();
+    first->Resize(kSize);
+    std::vector<char> const behind(kSize / 4 * 3);
+    std::vector<char> const before(1000); // if there is a gap
+    std::size_t const heapSize = getHeapSize();
+    first.reset();
+    Buffer<char> second;
+    second.Resize(kSize);
+    EXPECT_EQ(getHeapSize(), heapSize);
+}
+#endif
 
 TEST(Buffer, PlacedDoesNotGrowIntoOthersMemory) {
     int memory[4] = {1, 2, 3, 4};
