@@ -45,8 +45,8 @@ Pages adviseHugePages(void *memory, std::size_t bytes) {
 
 } // namespace
 
-// Not by std::aligned_alloc: glibc may give to others what it cuts off in front of an aligned array.
-// The next array of the size then finds no place where this one was, and the heap grows for ever.
+// Not by std::aligned_alloc: glibc may give to others what it cuts off in front of an aligned
+// array.  The next of the size then finds no place where this one was, and the heap grows for ever.
 void *AllocateArray(std::size_t bytes) {
     static_assert(alignof(std::max_align_t) >= sizeof(void *) &&
                   kCacheLine % alignof(std::max_align_t) == 0);

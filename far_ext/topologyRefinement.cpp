@@ -14,8 +14,8 @@ namespace {
 using Index = Far::Index;
 using LocalIndex = Far::LocalIndex;
 
-// Which sides of its edges a face is: by how much its F-vertices and edges in the E-face of the edge
-// from a corner to the next come before those of side a, 0 or kEFaceSideShift.
+// Which sides of its edges a face is: by how much its F-vertices and edges in the E-face of the
+// edge from a corner to the next come before those of side a, 0 or kEFaceSideShift.
 //
 // Known without a look at the edges where the hexagonal step made the face, as that always gives
 // the vertices of an edge the same order.
@@ -35,7 +35,7 @@ struct SidesOfCorners {
 };
 
 // Bytes of a level above which it is written past the caches: less than most caches have, but they
-// hold its parent as well.  Not on new pages: those the system brings into the caches to clear them.
+// hold its parent as well.  Not on new pages: the system clears them in the caches.
 constexpr std::size_t kCacheSize = std::size_t(16) << 20;
 
 // An edge as one of its faces sees it.

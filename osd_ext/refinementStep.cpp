@@ -336,7 +336,7 @@ private:
         _step.startCorners.Resize(std::size_t(level.numCorners));
         Index const firstVertex = level.GetCornerChildVertex(0);
         ParallelFor(level.numCorners, [&](Index corner) {
-            // The last face around an F-vertex, of three, is the E-face of the edge from its corner.
+            // The last of three faces around an F-vertex is the E-face of the edge from its corner.
             Index const end = _parent.vertFirstFace[std::size_t(firstVertex + corner) + 1];
             _step.startCorners[std::size_t(corner)] = _parent.GetVertexCorner(end - 1);
         });

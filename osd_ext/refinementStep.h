@@ -84,8 +84,8 @@ struct VertexRun {
 /// 3, 1.7 times for length 8.  The vertices are in the group of the tile that all their faces are
 /// in; others follow in groups of their own, behind those of the tiles.
 ///
-/// Most vertices were made of a corner one or two levels before: they are runs of the faces of those
-/// corners.  Where hexagonal steps made the levels and have no sharp boundary, the numbering tells
+/// Most vertices were made of a corner one or two levels before: they are runs of the faces of
+/// those corners.  Where hexagonal steps made the levels and have no sharp boundary, the numbering tells
 /// where the F-vertices around them are (INDEXING.md).  Else one corner is listed for each, and for
 /// all other vertices the corners around them.
 ///

@@ -153,8 +153,8 @@ OPENSUBDIVHEX_INLINE void addRest(SOURCE src, int const *indices, float const *c
     }
 }
 
-/// \brief WIDTH floats, from float \p firstFloat of the elements on, of the runs from \p run on that
-/// have ROWS rows each: up to \p end or the first with another number, which is returned.
+/// \brief WIDTH floats, from float \p firstFloat of the elements on, of the runs from \p run on
+/// that have ROWS rows each: up to \p end or the first with another number, which is returned.
 ///
 /// SIMD::Packet<WIDTH> holds kNumElements consecutive terms of a sum, WIDTH floats each, of which
 /// kNumSums, 1 or 2, run side by side so that one addition need not wait for the one before it.
