@@ -50,15 +50,17 @@ Pages adviseHugePages(void *memory, std::size_t bytes) {
 void *AllocateArray(std::size_t bytes) {
     static_assert(alignof(std::max_align_t) >= sizeof(void *) &&
                   kCacheLine % alignof(std::max_align_t) == 0);
-    void *const whole = std::malloc(bytes + kCacheLine);
+    std::size_t const alignment = bytes >= kHugePage ? kHugePage : kCacheLine;
+    std::size_t const size = roundUp(bytes, alignment);
+    void *const whole = std::malloc(size + alignment);
     if (!whole) {
         throw std::bad_alloc();
     }
     auto const address = reinterpret_cast<std::uintptr_t>(whole);
     char *const memory =
-        static_cast<char *>(whole) + (roundUp(address + sizeof(void *), kCacheLine) - address);
+        static_cast<char *>(whole) + (roundUp(address + sizeof(void *), alignment) - address);
     std::memcpy(memory - sizeof(void *), &whole, sizeof(void *));
-    adviseHugePages(memory, bytes);
+    adviseHugePages(memory, size);
     return memory;
 }
 

@@ -85,13 +85,11 @@ struct VertexRun {
 /// in; others follow in groups of their own, behind those of the tiles.
 ///
 /// Most vertices were made of a corner one or two levels before: they are runs of the faces of
-/// those corners.  Where hexagonal steps made the levels and have no sharp boundary, the numbering tells
-/// where the F-vertices around them are (INDEXING.md).  Else one corner is listed for each, and for
-/// all other vertices the corners around them.
-///
-/// The last vertex of the level is never plain, nor are its faces of 3 to 6 sides and the vertex
-/// whose F-vertex is the last: what plain faces and vertices read may be read in packets that reach
-/// into the element behind.
+/// those corners.  Where hexagonal steps made the levels and have no sharp boundary, the numbering
+/// tells where the F-vertices around them are (INDEXING.md).  Else one corner is listed for each,
+/// and for all other vertices the corners around them.  The last vertex of the level is never
+/// plain, nor are its faces of 3 to 6 sides and the vertex whose F-vertex is the last: what plain
+/// faces and vertices read may be read in packets that reach into the element behind.
 struct RefinementStep {
     PlainMasks masks;
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
