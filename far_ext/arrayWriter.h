@@ -66,7 +66,7 @@ void WriteSequence(Far::Index *array, Far::Index count, bool pastCaches, Far::In
                    FUNCTION fill) {
     // Whole vectors at a time, as long as there are enough groups.
     constexpr int kGroups = SIZE % 4 == 0 ? 1 : 4;
-    std::array<Far::Index, kGroups * SIZE> first;
+    std::array<Far::Index, std::size_t(kGroups * SIZE)> first;
     for (int i = 0; i < kGroups; ++i) {
         fill(first.data() + SIZE * i);
         for (int k = 0; k < SIZE; ++k) {
@@ -79,7 +79,7 @@ void WriteSequence(Far::Index *array, Far::Index count, bool pastCaches, Far::In
             entries[k] = first[k] + kGroups * step * i;
         }
     });
-    WriteArray<SIZE>(array + kGroups * SIZE * std::size_t(numWhole), count % kGroups, pastCaches,
+    WriteArray<SIZE>(array + std::size_t(numWhole) * first.size(), count % kGroups, pastCaches,
                      [=](Far::Index *entries, Far::Index i) {
                          for (int k = 0; k < SIZE; ++k) {
                              entries[k] = first[k] + step * (kGroups * numWhole + i);

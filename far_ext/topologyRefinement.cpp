@@ -876,7 +876,7 @@ void placeArrays(LevelTopology &parent, LevelTopology &child) {
         // Without boundaries a vertex has as many edges as faces, and known places in them.
         bool const hasBoundaries = numBoundaries > 0;
         placeRelation(child.vertFirstEdge, hasBoundaries * (std::size_t(child.numVertices) + 1));
-        placeRelation(child.vertEdgeLocals, hasBoundaries * 2 * std::size_t(child.numEdges));
+        placeRelation(child.vertEdgeLocals, hasBoundaries * (2 * std::size_t(child.numEdges)));
     });
     if (numBoundaries == 0) {
         child.vertFirstEdge.Place(child.vertFirstFace.data(), child.vertFirstFace.size());

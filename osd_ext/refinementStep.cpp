@@ -424,9 +424,9 @@ void MakeRefinementStep(RefinementMask const &mask, TopologyLevel const &parent,
     step.parent = &topology;
     step.numTiles =
         std::min(topology.numCorners / kMinJoinedTileCorners + 1, tileMap.GetNumTiles());
-    std::vector<Group> groupOfTile;
+    std::vector<Group> groupOfTile(std::size_t(tileMap.GetNumTiles()));
     for (int tile = 0; tile < tileMap.GetNumTiles(); ++tile) {
-        groupOfTile.push_back(tile * step.numTiles / tileMap.GetNumTiles());
+        groupOfTile[std::size_t(tile)] = tile * step.numTiles / tileMap.GetNumTiles();
     }
     makeFaces(mask, parent, groupOfTile, tileMap, step);
 
