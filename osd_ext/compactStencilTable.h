@@ -21,7 +21,7 @@ namespace OsdExt {
 ///
 /// Evaluated by CpuEvaluator and OmpEvaluator, with the results of the table that it was made from,
 /// bit for bit.  For tables of the hexagonal scheme it takes 0.62 to 0.65 of the memory, and
-/// evaluation is 1.2 to 1.7 times as fast on one thread (benchmark evaluation, compact table).  A
+/// evaluation is 1.1 to 1.7 times as fast on one thread (benchmark evaluation, compact table).  A
 /// table whose stencils share no lists, as those of Catmull-Clark, gets larger.
 ///
 /// It is this library's own: other evaluators, on GPUs for one, take the Far::StencilTable.
