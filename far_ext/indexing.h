@@ -35,6 +35,9 @@ static_assert(kEFaceSideA.startFVertex == kEFaceSideB.startFVertex + kEFaceSideS
               kEFaceSideA.fFaceEdge == kEFaceSideB.fFaceEdge + kEFaceSideShift &&
               kEFaceSideA.startSpoke == kEFaceSideB.startSpoke + kEFaceSideShift &&
               kEFaceSideA.endSpoke == kEFaceSideB.endSpoke + kEFaceSideShift);
+/// Whether an E-face of six corners is side a of its own edge \p local, or side b.  F-faces are side
+/// a of all theirs.
+constexpr bool IsEFaceSideA(int local) { return local % 3 == 0; }
 /// Place in a boundary edge's E-face of the edge that stays on the boundary.
 inline constexpr Far::LocalIndex kBoundaryEFaceEdge = 0;
 

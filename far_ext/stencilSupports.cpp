@@ -155,6 +155,30 @@ StepSupports::StepSupports(StencilStep const &step, StencilStep const *before,
     formVVertices(step, parents, numSources, keepsVertices, sizes);
 }
 
+// form(item, sources, supports) forms the union of an item's supports and returns its weights.
+template <typename FORM>
+void StepSupports::formUnions(Index count, Index numSources, FORM form) {
+    struct Scratch {
+        SupportUnion sources;
+        std::vector<Support> supports;
+    };
+    std::vector<std::int64_t> numWeights(GetNumParallelRanges(count, kRange));
+    ParallelForRange(
+        count,
+        [&] {
+            return Scratch{SupportUnion(numSources, _arena), {}};
+        },
+        [&](Scratch &scratch, Index begin, Index end) {
+            std::int64_t numRangeWeights = 0;
+            for (Index item = begin; item < end; ++item) {
+                numRangeWeights += form(item, scratch.sources, scratch.supports);
+            }
+            numWeights[begin / kRange] = numRangeWeights;
+        },
+        kRange);
+    _numWeights = std::accumulate(numWeights.begin(), numWeights.end(), _numWeights);
+}
+
 // A vertex that depends on all that the faces around it do makes those needless that stand beside
 // it in an E-face.
 void StepSupports::formFaces(StencilStep const &step, StencilStep const *before,
@@ -165,94 +189,61 @@ void StepSupports::formFaces(StencilStep const &step, StencilStep const *before,
                before->GetVVertexParent(neighbor) == before->GetFVertexParent(vert);
     };
     _ofFaces.resize(step.GetNumFaces());
-    struct Scratch {
-        SupportUnion sources;
-        std::vector<Support> supports;
-    };
-    std::vector<std::int64_t> numWeights(GetNumParallelRanges(step.GetNumFaces(), kRange));
-    ParallelForRange(
-        step.GetNumFaces(),
-        [&] {
-            return Scratch{SupportUnion(numSources, _arena), {}};
-        },
-        [&](Scratch &scratch, Index begin, Index end) {
-            std::vector<Support> &supports = scratch.supports;
-            std::int64_t numRangeWeights = 0;
-            for (Index face = begin; face < end; ++face) {
-                Index const *const verts = step.GetFaceVertices(face);
-                int const size = step.GetFaceSize(face);
-                supports.clear();
-                for (int i = 0; i < size; ++i) {
-                    Index const vert = verts[i];
-                    bool const isCovered = before && vert >= numBeforeVVertices &&
-                                           (isCoveredBy(vert, verts[i == 0 ? size - 1 : i - 1]) ||
-                                            isCoveredBy(vert, verts[i + 1 == size ? 0 : i + 1]));
-                    Support const support = parents._ofVertices[vert];
-                    if (!isCovered && (supports.empty() || !(supports.back() == support))) {
-                        supports.push_back(support);
-                    }
-                }
-                scratch.sources.Form(supports.data(), int(supports.size()));
-                _ofFaces[face] = scratch.sources.Keep();
-                numRangeWeights += std::int64_t(size) * _ofFaces[face].size();
+    auto const form = [&](Index face, SupportUnion &sources, std::vector<Support> &supports) {
+        Index const *const verts = step.GetFaceVertices(face);
+        int const size = step.GetFaceSize(face);
+        supports.clear();
+        for (int i = 0; i < size; ++i) {
+            Index const vert = verts[i];
+            bool const isCovered = before && vert >= numBeforeVVertices &&
+                                   (isCoveredBy(vert, verts[i == 0 ? size - 1 : i - 1]) ||
+                                    isCoveredBy(vert, verts[i + 1 == size ? 0 : i + 1]));
+            Support const support = parents._ofVertices[vert];
+            if (!isCovered && (supports.empty() || !(supports.back() == support))) {
+                supports.push_back(support);
             }
-            numWeights[begin / kRange] = numRangeWeights;
-        },
-        kRange);
-    _numWeights = std::accumulate(numWeights.begin(), numWeights.end(), _numWeights);
+        }
+        sources.Form(supports.data(), int(supports.size()));
+        _ofFaces[face] = sources.Keep();
+        return std::int64_t(size) * _ofFaces[face].size();
+    };
+    formUnions(step.GetNumFaces(), numSources, form);
 }
 
 // The faces around a vertex depend on all that the vertex and its neighbors do.
 void StepSupports::formVVertices(StencilStep const &step, StepSupports const &parents,
                                  Index numSources, bool keepsVertices, int *sizes) {
-    struct Scratch {
-        SupportUnion sources;
-        std::vector<Support> supports;
-    };
-    std::vector<std::int64_t> numWeights(GetNumParallelRanges(step.GetNumVVertices(), kRange));
-    ParallelForRange(
-        step.GetNumVVertices(),
-        [&] {
-            return Scratch{SupportUnion(numSources, _arena), {}};
-        },
-        [&](Scratch &scratch, Index begin, Index end) {
-            std::vector<Support> &supports = scratch.supports;
-            std::int64_t numRangeWeights = 0;
-            for (Index vVertex = begin; vVertex < end; ++vVertex) {
-                Index const pVert = step.GetVVertexParent(vVertex);
-                RefinementMask::VertexMask const mask = step.GetVertexMask(pVert);
-                bool const hasFaces = mask.faceWeight > 0 && step.HasVertexFaces(pVert);
-                supports.assign(1, parents._ofVertices[pVert]);
-                if (hasFaces) {
-                    step.ForEachVertexFace(pVert, [&](Index face, Index) {
-                        if (!(_ofFaces[face] == supports[0])) {
-                            supports.push_back(_ofFaces[face]);
-                        }
-                    });
-                } else {
-                    for (int i = 0; i < mask.numNeighbors; ++i) {
-                        supports.push_back(parents._ofVertices[mask.neighbors[i]]);
-                    }
+    auto const form = [&](Index vVertex, SupportUnion &sources, std::vector<Support> &supports) {
+        Index const pVert = step.GetVVertexParent(vVertex);
+        RefinementMask::VertexMask const mask = step.GetVertexMask(pVert);
+        bool const hasFaces = mask.faceWeight > 0 && step.HasVertexFaces(pVert);
+        supports.assign(1, parents._ofVertices[pVert]);
+        if (hasFaces) {
+            step.ForEachVertexFace(pVert, [&](Index face, Index) {
+                if (!(_ofFaces[face] == supports[0])) {
+                    supports.push_back(_ofFaces[face]);
                 }
-                bool const isCovered = hasFaces && supports.size() > 1;
-                SupportUnion &sources = scratch.sources;
-                sources.Form(supports.data() + isCovered, int(supports.size()) - isCovered);
-                if (keepsVertices) {
-                    _ofVertices[vVertex] = sources.Keep();
-                    _coversFaces[vVertex] = hasFaces;
-                } else {
-                    _ofVertices[vVertex] = sources.GetBase();
-                    _added[vVertex] = sources.KeepAdded();
-                }
-                numRangeWeights += sources.size();
-                if (sizes) {
-                    sizes[vVertex] = sources.size();
-                }
+            });
+        } else {
+            for (int i = 0; i < mask.numNeighbors; ++i) {
+                supports.push_back(parents._ofVertices[mask.neighbors[i]]);
             }
-            numWeights[begin / kRange] = numRangeWeights;
-        },
-        kRange);
-    _numWeights = std::accumulate(numWeights.begin(), numWeights.end(), _numWeights);
+        }
+        bool const isCovered = hasFaces && supports.size() > 1;
+        sources.Form(supports.data() + isCovered, int(supports.size()) - isCovered);
+        if (keepsVertices) {
+            _ofVertices[vVertex] = sources.Keep();
+            _coversFaces[vVertex] = hasFaces;
+        } else {
+            _ofVertices[vVertex] = sources.GetBase();
+            _added[vVertex] = sources.KeepAdded();
+        }
+        if (sizes) {
+            sizes[vVertex] = sources.size();
+        }
+        return std::int64_t(sources.size());
+    };
+    formUnions(step.GetNumVVertices(), numSources, form);
 }
 
 // A lower bound: a smooth V-vertex depends on at least what each of its faces does.

@@ -118,6 +118,8 @@ public:
 private:
     StepSupports() = default;
 
+    template <typename FORM>
+    void formUnions(Index count, Index numSources, FORM form);
     void formFaces(StencilStep const &step, StencilStep const *before, StepSupports const &parents,
                    Index numSources);
     void formVVertices(StencilStep const &step, StepSupports const &parents, Index numSources,

@@ -24,7 +24,7 @@ struct SidesOfFFace {
 };
 struct SidesOfEFace {
     LocalIndex operator()(Index /* corner */, int local) const {
-        return local % 3 == 0 ? 0 : kEFaceSideShift;
+        return IsEFaceSideA(local) ? 0 : kEFaceSideShift;
     }
 };
 struct SidesOfCorners {

@@ -289,16 +289,16 @@ template <class ACCESS>
 class EFacePoints {
 public:
     EFacePoints(RefinementTask const &task, LevelTopology const &before)
-        : _points(asConst(task.FVertices())) {
-        _points.data = ACCESS::At(_points, before.ChildIndexing().GetEdgeChildFirstCorner(0, 0, 0));
-    }
+        : _points(asConst(task.FVertices())), _indexing(before.ChildIndexing()) {}
+
     // That of corner \p local of the E-face of \p edge.
     auto Load(Index edge, int local) const {
-        return ACCESS::Load(_points, std::ptrdiff_t(edge) * HexIndexing::kNumEFaceCorners + local);
+        return ACCESS::Load(_points, _indexing.GetEdgeChildFirstCorner(edge, 0, 0) + local);
     }
 
 private:
-    Elements<float const> _points;
+    Elements<float const> const _points;
+    HexIndexing const _indexing;
 };
 
 // Which side of its edge a face is, by corner: F-faces and E-faces of a hexagonal step.
@@ -306,7 +306,9 @@ struct SidesOfFFace {
     static constexpr EFaceSide const &Of(int) { return kEFaceSideA; }
 };
 struct SidesOfEFace {
-    static constexpr EFaceSide const &Of(int i) { return i % 3 == 0 ? kEFaceSideA : kEFaceSideB; }
+    static constexpr EFaceSide const &Of(int i) {
+        return FarExt::IsEFaceSideA(i) ? kEFaceSideA : kEFaceSideB;
+    }
 };
 
 // From the corner of an E-face where a side starts to that where it ends.

@@ -7,11 +7,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
-
-#ifdef __unix__
-#include <sys/wait.h>
-#endif
 
 namespace OpenSubdivHex::Regression {
 
@@ -58,16 +53,7 @@ std::string decodeBase64(std::string const &text) {
 
 class Paper : public Tutorials::TestFolder {
 protected:
-    int run(std::string const &arguments) const {
-        int const status = std::system(("\"" PAPER_PROGRAM "\" " + arguments + " >\"" +
-                                        getPath("stdout") + "\" 2>\"" + getPath("stderr") + "\"")
-                                           .c_str());
-#ifdef __unix__
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-#else
-        return status;
-#endif
-    }
+    int run(std::string const &arguments) const { return runProgram(PAPER_PROGRAM, arguments); }
 };
 
 } // namespace

@@ -5,11 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
+
+#ifdef __unix__
+#include <sys/wait.h>
+#endif
 
 namespace OpenSubdivHex::Tutorials {
 
@@ -36,6 +41,20 @@ protected:
     static std::string getContent(std::string const &path) {
         std::ifstream file(path, std::ios::binary);
         return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    }
+
+    /// Runs \p program with \p arguments, as a shell reads them, and what it prints in the files
+    /// stdout and stderr.  Gives its exit status, -1 if it was killed.
+    int runProgram(std::string const &program, std::string const &arguments,
+                   std::string const &before = "") const {
+        std::string const command = before + "\"" + program + "\" " + arguments + " >\"" +
+                                    getPath("stdout") + "\" 2>\"" + getPath("stderr") + "\"";
+        int const status = std::system(command.c_str());
+#ifdef __unix__
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+#else
+        return status;
+#endif
     }
 
     /// The names in the folder, sorted.

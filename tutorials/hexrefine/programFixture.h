@@ -12,11 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <cstdlib>
-
-#ifdef __unix__
-#include <sys/wait.h>
-#endif
 
 namespace OpenSubdivHex::Tutorials {
 
@@ -31,14 +26,9 @@ struct Result {
 class Hexrefine : public TestFolder {
 protected:
     Result run(std::string const &arguments, std::string const &before = "") const {
+        int const status = runProgram(HEXREFINE_PROGRAM, arguments, before);
         std::string const out = getPath("stdout");
         std::string const error = getPath("stderr");
-        int status = std::system((before + "\"" HEXREFINE_PROGRAM "\" " + arguments + " >\"" + out +
-                                  "\" 2>\"" + error + "\"")
-                                     .c_str());
-#ifdef __unix__
-        status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-#endif
         Result result{status, getContent(out), getContent(error)};
         std::filesystem::remove(out);
         std::filesystem::remove(error);

@@ -7,12 +7,7 @@
 #include <png.h>
 
 #include <array>
-#include <cstdlib>
 #include <set>
-
-#ifdef __unix__
-#include <sys/wait.h>
-#endif
 
 namespace OpenSubdivHex::Tutorials {
 
@@ -56,16 +51,7 @@ double measureSurface(Image const &image) { return measureSurface(image, 0, imag
 
 class Render : public TestFolder {
 protected:
-    int run(std::string const &arguments) const {
-        int const status = std::system(("\"" RENDER_PROGRAM "\" " + arguments + " >\"" +
-                                        getPath("stdout") + "\" 2>\"" + getPath("stderr") + "\"")
-                                           .c_str());
-#ifdef __unix__
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-#else
-        return status;
-#endif
-    }
+    int run(std::string const &arguments) const { return runProgram(RENDER_PROGRAM, arguments); }
 
     Image draw(std::string const &mesh, std::string const &arguments) const {
         std::string const path = getPath("picture.png");
