@@ -56,7 +56,7 @@ struct StencilTask {
 
     StencilRows rows{};
 
-    int numOutputs = 0;
+    int numOutputs = 0; ///< 1, 3 or 6
     Output outputs[kMaxOutputs];
 };
 

@@ -7,6 +7,8 @@
 
 #include <immintrin.h>
 
+#include <type_traits>
+
 namespace OpenSubdivHex::OsdExt::internal {
 namespace {
 
@@ -32,54 +34,68 @@ inline __m128 loadFloats(float const *src) {
         return _mm_loadu_ps(src);
     } else if constexpr (WIDTH == 1) {
         return _mm_load_ss(src);
+    } else if constexpr (WIDTH == 2) {
+        return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<__m128i const *>(src)));
     } else {
-        __m128 const two =
-            _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<__m128i const *>(src)));
-        if constexpr (WIDTH == 2) {
-            return two;
-        } else {
-            return _mm_insert_ps(two, _mm_load_ss(src + 2), 0x20);
-        }
+        return _mm_maskload_ps(src, _mm_setr_epi32(-1, -1, -1, 0));
     }
 }
 
-/// One element of 5 to 8 floats.
+/// Two elements of 5 to 8 floats, each in a vector of its own.
 template <int WIDTH>
 struct WidePacket {
-    static constexpr int kNumElements = 1;
-    static constexpr int kNumSums = 2;
+    static constexpr int kNumElements = 2;
 
-    using Vector = __m256;
+    struct Vector {
+        __m256 first;
+        __m256 second;
+    };
 
-    static Vector Zero() { return _mm256_setzero_ps(); }
+    static Vector Zero() { return {_mm256_setzero_ps(), _mm256_setzero_ps()}; }
 
     template <class SOURCE>
-    static Vector LoadElements(SOURCE src, int const *indices, int /*numElements*/ = 1) {
-        float const *const element = src[*indices];
+    static Vector LoadElements(SOURCE src, int const *indices) {
+        return {load(src[indices[0]]), load(src[indices[1]])};
+    }
+    template <class SOURCE>
+    static Vector LoadElements(SOURCE src, int const *indices, int /*numElements*/) {
+        return {load(src[indices[0]]), _mm256_setzero_ps()};
+    }
+
+    static Vector LoadWeights(float const *weights) {
+        return {_mm256_broadcast_ss(weights), _mm256_broadcast_ss(weights + 1)};
+    }
+    static Vector LoadWeights(float const *weights, int /*numElements*/) {
+        return {_mm256_broadcast_ss(weights), _mm256_setzero_ps()};
+    }
+
+    static Vector MultiplyAdd(Vector elements, Vector weights, Vector sum) {
+        return {_mm256_fmadd_ps(elements.first, weights.first, sum.first),
+                _mm256_fmadd_ps(elements.second, weights.second, sum.second)};
+    }
+    /// Of elements \p first and on alone.
+    static Vector MultiplyAddFrom(int first, Vector elements, Vector weights, Vector sum) {
+        return {first == 0 ? _mm256_fmadd_ps(elements.first, weights.first, sum.first) : sum.first,
+                _mm256_fmadd_ps(elements.second, weights.second, sum.second)};
+    }
+
+    static void StoreSum(float *dst, Vector sum) {
+        __m256 const element = _mm256_add_ps(sum.first, sum.second);
+        if constexpr (WIDTH == 8) {
+            _mm256_storeu_ps(dst, element);
+        } else {
+            _mm_storeu_ps(dst, _mm256_castps256_ps128(element));
+            storeFloats<WIDTH - 4>(dst + 4, _mm256_extractf128_ps(element, 1));
+        }
+    }
+
+private:
+    static __m256 load(float const *element) {
         if constexpr (WIDTH == 8) {
             return _mm256_loadu_ps(element);
         } else {
             return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(element)),
                                         loadFloats<WIDTH - 4>(element + 4), 1);
-        }
-    }
-
-    static Vector LoadWeights(float const *weights, int /*numElements*/ = 1) {
-        return _mm256_broadcast_ss(weights);
-    }
-
-    static Vector MultiplyAdd(Vector elements, Vector weights, Vector sum) {
-        return _mm256_fmadd_ps(elements, weights, sum);
-    }
-
-    static Vector Add(Vector first, Vector second) { return _mm256_add_ps(first, second); }
-
-    static void StoreSum(float *dst, Vector sum) {
-        if constexpr (WIDTH == 8) {
-            _mm256_storeu_ps(dst, sum);
-        } else {
-            _mm_storeu_ps(dst, _mm256_castps256_ps128(sum));
-            storeFloats<WIDTH - 4>(dst + 4, _mm256_extractf128_ps(sum, 1));
         }
     }
 };
@@ -88,7 +104,6 @@ struct WidePacket {
 template <int WIDTH>
 struct NarrowPacket {
     static constexpr int kNumElements = 2;
-    static constexpr int kNumSums = 1;
 
     using Vector = __m256;
 
@@ -112,13 +127,11 @@ struct NarrowPacket {
     static Vector MultiplyAdd(Vector elements, Vector weights, Vector sum) {
         return _mm256_fmadd_ps(elements, weights, sum);
     }
-    /// Of the last element alone.
-    static Vector MultiplyAddLast(Vector elements, Vector weights, Vector sum,
-                                  int /*numElements*/) {
-        return _mm256_blend_ps(sum, _mm256_fmadd_ps(elements, weights, sum), 0xf0);
+    /// Of elements \p first and on alone.
+    static Vector MultiplyAddFrom(int first, Vector elements, Vector weights, Vector sum) {
+        Vector const result = _mm256_fmadd_ps(elements, weights, sum);
+        return first == 0 ? result : _mm256_blend_ps(sum, result, 0xf0);
     }
-
-    static Vector Add(Vector first, Vector second) { return _mm256_add_ps(first, second); }
 
     static void StoreSum(float *dst, Vector sum) {
         storeFloats<WIDTH>(dst,
@@ -132,22 +145,9 @@ private:
     }
 };
 
-template <int WIDTH, bool IS_WIDE>
-struct PacketType {
-    using Type = NarrowPacket<WIDTH>;
-};
-template <int WIDTH>
-struct PacketType<WIDTH, true> {
-    using Type = WidePacket<WIDTH>;
-};
-
 struct Avx2Simd {
     template <int WIDTH>
-    using Packet = typename PacketType<WIDTH, (WIDTH > 4)>::Type;
-
-    static bool EqualIndices(int const *first, int const *second, int size) {
-        return equalIndices(first, second, size);
-    }
+    using Packet = std::conditional_t<(WIDTH > 4), WidePacket<WIDTH>, NarrowPacket<WIDTH>>;
 };
 
 } // namespace

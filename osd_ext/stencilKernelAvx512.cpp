@@ -12,6 +12,8 @@
 #endif
 #include <immintrin.h>
 
+#include <type_traits>
+
 namespace OpenSubdivHex::OsdExt::internal {
 namespace {
 
@@ -21,7 +23,6 @@ constexpr unsigned firstBits(int count) { return (1u << count) - 1; }
 template <int WIDTH>
 struct WidePacket {
     static constexpr int kNumElements = 2;
-    static constexpr int kNumSums = 1;
 
     using Vector = __m512;
 
@@ -47,13 +48,10 @@ struct WidePacket {
     static Vector MultiplyAdd(Vector elements, Vector weights, Vector sum) {
         return _mm512_fmadd_ps(elements, weights, sum);
     }
-    /// Of the last elements alone.
-    static Vector MultiplyAddLast(Vector elements, Vector weights, Vector sum,
-                                  int /*numElements*/) {
-        return _mm512_mask3_fmadd_ps(elements, weights, sum, __mmask16(0xff00));
+    /// Of elements \p first and on alone.
+    static Vector MultiplyAddFrom(int first, Vector elements, Vector weights, Vector sum) {
+        return _mm512_mask3_fmadd_ps(elements, weights, sum, __mmask16(0xffffu << (8 * first)));
     }
-
-    static Vector Add(Vector first, Vector second) { return _mm512_add_ps(first, second); }
 
     static void StoreSum(float *dst, Vector sum) {
         __m256 const upper = _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(sum), 1));
@@ -85,7 +83,6 @@ private:
 template <int WIDTH>
 struct NarrowPacket {
     static constexpr int kNumElements = 4;
-    static constexpr int kNumSums = 1;
 
     using Vector = __m512;
 
@@ -111,13 +108,10 @@ struct NarrowPacket {
     static Vector MultiplyAdd(Vector elements, Vector weights, Vector sum) {
         return _mm512_fmadd_ps(elements, weights, sum);
     }
-    /// Of the last elements alone.
-    static Vector MultiplyAddLast(Vector elements, Vector weights, Vector sum, int numElements) {
-        return _mm512_mask3_fmadd_ps(elements, weights, sum,
-                                     __mmask16(0xffffu << (16 - 4 * numElements)));
+    /// Of elements \p first and on alone.
+    static Vector MultiplyAddFrom(int first, Vector elements, Vector weights, Vector sum) {
+        return _mm512_mask3_fmadd_ps(elements, weights, sum, __mmask16(0xffffu << (4 * first)));
     }
-
-    static Vector Add(Vector first, Vector second) { return _mm512_add_ps(first, second); }
 
     static void StoreSum(float *dst, Vector sum) {
         __m256 const upper = _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(sum), 1));
@@ -148,29 +142,9 @@ private:
     }
 };
 
-template <int WIDTH, bool IS_WIDE>
-struct PacketType {
-    using Type = NarrowPacket<WIDTH>;
-};
-template <int WIDTH>
-struct PacketType<WIDTH, true> {
-    using Type = WidePacket<WIDTH>;
-};
-
 struct Avx512Simd {
     template <int WIDTH>
-    using Packet = typename PacketType<WIDTH, (WIDTH > 4)>::Type;
-
-    static bool EqualIndices(int const *first, int const *second, int size) {
-        for (; size > 16; size -= 16, first += 16, second += 16) {
-            if (_mm512_cmpneq_epi32_mask(_mm512_loadu_si512(first), _mm512_loadu_si512(second))) {
-                return false;
-            }
-        }
-        __mmask16 const mask = __mmask16(firstBits(size));
-        return _mm512_mask_cmpneq_epi32_mask(mask, _mm512_maskz_loadu_epi32(mask, first),
-                                             _mm512_maskz_loadu_epi32(mask, second)) == 0;
-    }
+    using Packet = std::conditional_t<(WIDTH > 4), WidePacket<WIDTH>, NarrowPacket<WIDTH>>;
 };
 
 } // namespace

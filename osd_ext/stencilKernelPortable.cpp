@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stencilKernelTemplate.h"
 
+#include <type_traits>
+
 namespace OpenSubdivHex::OsdExt::internal {
 namespace {
 
@@ -31,11 +33,8 @@ inline Quad operator*(Quad const &a, Quad const &b) {
 /// Reads the first WIDTH floats, 1 to 4; the others are 0.
 template <int WIDTH>
 OPENSUBDIVHEX_INLINE Quad loadFloats(float const *src) {
-    Quad result{};
-    for (int i = 0; i < WIDTH; ++i) {
-        result[i] = src[i];
-    }
-    return result;
+    // Entry by entry into a vector that exists would shuffle it for each of them.
+    return Quad{src[0], WIDTH > 1 ? src[1] : 0, WIDTH > 2 ? src[2] : 0, WIDTH > 3 ? src[3] : 0};
 }
 
 /// Writes the first WIDTH floats, 1 to 4.
@@ -46,63 +45,89 @@ OPENSUBDIVHEX_INLINE void storeFloats(float *dst, Quad const &values) {
     }
 }
 
-/// Plain C++, in a form that compilers turn into the vectors of any machine.
-struct PortableSimd {
-    static bool EqualIndices(int const *first, int const *second, int size) {
-        return equalIndices(first, second, size);
+OPENSUBDIVHEX_INLINE Quad fillQuad(float value) { return Quad{value, value, value, value}; }
+
+/// What packets have in common: eight floats.
+struct PacketBase {
+    struct Vector {
+        Quad first;
+        Quad second;
+    };
+
+    static OPENSUBDIVHEX_INLINE Vector Zero() { return {Quad{}, Quad{}}; }
+
+    static OPENSUBDIVHEX_INLINE Vector MultiplyAdd(Vector const &elements, Vector const &weights,
+                                                   Vector const &sum) {
+        return {sum.first + elements.first * weights.first,
+                sum.second + elements.second * weights.second};
+    }
+};
+
+/// One element of 5 to 8 floats.
+template <int WIDTH>
+struct WidePacket : PacketBase {
+    static constexpr int kNumElements = 1;
+
+    template <class SOURCE>
+    static OPENSUBDIVHEX_INLINE Vector LoadElements(SOURCE src, int const *indices,
+                                                    int /*numElements*/ = 1) {
+        float const *const element = src[*indices];
+        return {loadFloats<4>(element), loadFloats<WIDTH - 4>(element + 4)};
     }
 
+    static OPENSUBDIVHEX_INLINE Vector LoadWeights(float const *weights, int /*numElements*/ = 1) {
+        return {fillQuad(*weights), fillQuad(*weights)};
+    }
+
+    static OPENSUBDIVHEX_INLINE Vector MultiplyAddFrom(int /*first*/, Vector const &elements,
+                                                       Vector const &weights, Vector const &sum) {
+        return MultiplyAdd(elements, weights, sum);
+    }
+
+    static OPENSUBDIVHEX_INLINE void StoreSum(float *dst, Vector const &sum) {
+        storeFloats<4>(dst, sum.first);
+        storeFloats<WIDTH - 4>(dst + 4, sum.second);
+    }
+};
+
+/// Two elements of 1 to 4 floats.
+template <int WIDTH>
+struct NarrowPacket : PacketBase {
+    static constexpr int kNumElements = 2;
+
+    template <class SOURCE>
+    static OPENSUBDIVHEX_INLINE Vector LoadElements(SOURCE src, int const *indices) {
+        return {loadFloats<WIDTH>(src[indices[0]]), loadFloats<WIDTH>(src[indices[1]])};
+    }
+    template <class SOURCE>
+    static OPENSUBDIVHEX_INLINE Vector LoadElements(SOURCE src, int const *indices,
+                                                    int /*numElements*/) {
+        return {loadFloats<WIDTH>(src[indices[0]]), Quad{}};
+    }
+
+    static OPENSUBDIVHEX_INLINE Vector LoadWeights(float const *weights) {
+        return {fillQuad(weights[0]), fillQuad(weights[1])};
+    }
+    static OPENSUBDIVHEX_INLINE Vector LoadWeights(float const *weights, int /*numElements*/) {
+        return {fillQuad(weights[0]), Quad{}};
+    }
+
+    /// Of elements \p first and on alone.
+    static OPENSUBDIVHEX_INLINE Vector MultiplyAddFrom(int first, Vector const &elements,
+                                                       Vector const &weights, Vector const &sum) {
+        Vector const result = MultiplyAdd(elements, weights, sum);
+        return {first == 0 ? result.first : sum.first, result.second};
+    }
+
+    static OPENSUBDIVHEX_INLINE void StoreSum(float *dst, Vector const &sum) {
+        storeFloats<WIDTH>(dst, sum.first + sum.second);
+    }
+};
+
+/// Plain C++, in a form that compilers turn into the vectors of any machine.
+struct PortableSimd {
     template <int WIDTH>
-    struct Packet {
-        static constexpr int kNumElements = 1;
-        static constexpr int kNumSums = WIDTH <= 4 ? 2 : 1;
-        static constexpr int kNumQuads = WIDTH <= 4 ? 1 : 2;
-        static constexpr int kLastWidth = WIDTH - 4 * (kNumQuads - 1);
-
-        struct Vector {
-            Quad first;
-            Quad last;
-        };
-
-        static Vector Zero() { return {Quad{}, Quad{}}; }
-
-        template <class SOURCE>
-        static OPENSUBDIVHEX_INLINE Vector LoadElements(SOURCE src, int const *indices,
-                                                        int /*numElements*/ = 1) {
-            float const *const element = src[*indices];
-            if constexpr (kNumQuads == 1) {
-                return {Quad{}, loadFloats<WIDTH>(element)};
-            } else {
-                return {loadFloats<4>(element), loadFloats<kLastWidth>(element + 4)};
-            }
-        }
-
-        static OPENSUBDIVHEX_INLINE Quad LoadWeights(float const *weights,
-                                                     int /*numElements*/ = 1) {
-            return Quad{*weights, *weights, *weights, *weights};
-        }
-
-        static OPENSUBDIVHEX_INLINE Vector MultiplyAdd(Vector const &elements, Quad const &weights,
-                                                       Vector sum) {
-            if constexpr (kNumQuads > 1) {
-                sum.first = sum.first + elements.first * weights;
-            }
-            sum.last = sum.last + elements.last * weights;
-            return sum;
-        }
-
-        static OPENSUBDIVHEX_INLINE Vector Add(Vector const &first, Vector const &second) {
-            return {first.first + second.first, first.last + second.last};
-        }
-
-        static OPENSUBDIVHEX_INLINE void StoreSum(float *dst, Vector const &sum) {
-            if constexpr (kNumQuads > 1) {
-                storeFloats<4>(dst, sum.first);
-                dst += 4;
-            }
-            storeFloats<kLastWidth>(dst, sum.last);
-        }
-    };
+    using Packet = std::conditional_t<(WIDTH > 4), WidePacket<WIDTH>, NarrowPacket<WIDTH>>;
 };
 
 } // namespace

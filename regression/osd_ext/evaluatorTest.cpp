@@ -341,6 +341,45 @@ TEST(Evaluator, NeedsNoOffsets) {
     }
 }
 
+/// The lists of the stencils lie from last to first, with an unused entry after each.
+TEST(Evaluator, FollowsOffsets) {
+    int const numStencils = 20;
+    std::vector<int> sizes;
+    std::vector<int> offsets(std::size_t(numStencils), 0);
+    std::vector<int> indices;
+    for (int i = 0; i < numStencils; ++i) {
+        sizes.push_back(1 + i % 7);
+    }
+    for (int i = numStencils - 1; i >= 0; --i) {
+        offsets[std::size_t(i)] = int(indices.size());
+        indices.insert(indices.end(), std::size_t(sizes[std::size_t(i)]), i);
+        indices.push_back(0);
+    }
+    std::vector<float> const weights(indices.size(), 1);
+    for (Evaluator const &evaluator : GetOwnEvaluators()) {
+        SCOPED_TRACE(evaluator.name);
+        EvaluatorScope const scope(evaluator);
+        for (int const length : kLengths) {
+            Descriptor const desc(0, length, length);
+            std::vector<float> src(std::size_t(numStencils * length));
+            for (int i = 0; i < numStencils; ++i) {
+                std::fill_n(src.begin() + i * length, length, float(100 + i));
+            }
+            std::vector<float> dst(src.size(), kGuard);
+            ASSERT_TRUE(evaluator.functions.value(src.data(), desc, dst.data(), desc, sizes.data(),
+                                                  offsets.data(), indices.data(), weights.data(), 0,
+                                                  numStencils));
+            for (int i = 0; i < numStencils; ++i) {
+                for (int k = 0; k < length; ++k) {
+                    ASSERT_EQ(dst[std::size_t(i * length + k)],
+                              float(sizes[std::size_t(i)] * (100 + i)))
+                        << "length " << length << " stencil " << i;
+                }
+            }
+        }
+    }
+}
+
 /// The same bits as CpuEvaluator's of all stencils at once.
 void expectSameBits(TestTable const &table, EvaluatorFunctions const &functions, int numOutputs,
                     int stencilsPerCall, Layout const &layout, bool withOffsets) {
