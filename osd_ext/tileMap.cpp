@@ -42,18 +42,22 @@ void append(std::vector<RUN> &runs, RUN const &run) {
 TileMap::TileMap(TopologyLevel const &base, int numTiles)
     : _numTiles(numTiles), _faceOrder(std::size_t(base.GetNumFaces())) {
     std::iota(_faceOrder.begin(), _faceOrder.end(), 0);
-    makeTiles(base);
+    makeTiles(base.GetTopology());
 }
 
 // Cuts the order of the faces into pieces of as many corners each, if there are enough faces.
-void TileMap::makeTiles(TopologyLevel const &level) {
+void TileMap::makeTiles(LevelTopology const &level) {
     std::vector<Tile> tilesOfFaces(_faceOrder.size(), 0);
-    if (level.GetNumFaces() / kMinTileFaces + 1 >= _numTiles) {
+    if (level.numFaces / kMinTileFaces + 1 >= _numTiles) {
         std::int64_t numCorners = 0;
+        Tile tile = 0;
         for (Index const face : _faceOrder) {
-            tilesOfFaces[std::size_t(face)] =
-                Tile(numCorners * _numTiles / level.GetNumFaceVertices());
-            numCorners += level.GetFaceVertices(face).size();
+            while (numCorners * _numTiles >= (tile + 1) * std::int64_t(level.numCorners)) {
+                ++tile;
+            }
+            tilesOfFaces[std::size_t(face)] = tile;
+            numCorners += level.faceFirstCorner[std::size_t(face) + 1] -
+                          level.faceFirstCorner[std::size_t(face)];
         }
         _faceOrder = {};
     }
@@ -61,23 +65,25 @@ void TileMap::makeTiles(TopologyLevel const &level) {
 }
 
 // Makes the runs of a level whose numbering does not tell them.
-void TileMap::makeRuns(TopologyLevel const &level, std::vector<Tile> const &tilesOfFaces) {
+void TileMap::makeRuns(LevelTopology const &level, std::vector<Tile> const &tilesOfFaces) {
     _faceRuns.clear();
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+    Index const *const firstCorners = level.faceFirstCorner.data();
+    for (Index face = 0; face < level.numFaces; ++face) {
         append(_faceRuns, {face, face + 1, tilesOfFaces[std::size_t(face)],
-                           level.GetFaceVertices(face).size()});
+                           firstCorners[face + 1] - firstCorners[face]});
     }
-    std::vector<Tile> tilesOfVertices(std::size_t(level.GetNumVertices()));
-    ParallelFor(level.GetNumVertices(), [&](Index vert) {
-        Far::ConstIndexArray const faces = level.GetVertexFaces(vert);
-        Tile tile = faces.empty() ? kNoTile : tilesOfFaces[std::size_t(faces[0])];
-        for (Index const face : faces) {
-            tile = tilesOfFaces[std::size_t(face)] == tile ? tile : kNoTile;
+    std::vector<Tile> tilesOfVertices(std::size_t(level.numVertices));
+    ParallelFor(level.numVertices, [&](Index vert) {
+        Index const *const faces = level.vertFaces.data();
+        Index const *const first = level.vertFirstFace.data() + vert;
+        Tile tile = first[0] == first[1] ? kNoTile : tilesOfFaces[std::size_t(faces[*first])];
+        for (Index k = first[0]; k < first[1]; ++k) {
+            tile = tilesOfFaces[std::size_t(faces[k])] == tile ? tile : kNoTile;
         }
         tilesOfVertices[std::size_t(vert)] = tile;
     });
     _firstVertexRuns.clear();
-    for (Index vert = 0; vert < level.GetNumVertices(); ++vert) {
+    for (Index vert = 0; vert < level.numVertices; ++vert) {
         append(_firstVertexRuns, {vert, vert + 1, tilesOfVertices[std::size_t(vert)]});
     }
     _fVertexRuns.clear();
@@ -99,11 +105,11 @@ auto TileMap::findTile(Index face) const -> Tile {
 
 void TileMap::Refine(TopologyLevel const &parent) {
     LevelTopology const &topology = parent.GetTopology();
-    TopologyLevel const child(topology.child);
+    LevelTopology const &child = *topology.child;
     if (!_faceOrder.empty()) {
         refineOrder(parent);
         makeTiles(child);
-    } else if (!child.GetTopology().isHexagonal) {
+    } else if (!child.isHexagonal) {
         makeRuns(child, refineTilesOfFaces(parent));
     } else {
         if (_fVertexRuns.empty()) {
@@ -242,15 +248,18 @@ auto TileMap::refineBorders(LevelTopology const &parent) -> std::vector<Run> {
         for (; border != _borders.end() && border->face == face; ++border) {
             edgeTiles[std::size_t(border->local)] = border->edgeTile;
         }
-        // The tile that most of the faces around the F-vertex are in.  A B edge makes none.
+        auto const makesEFace = [&](int local) {
+            return parent.numSharpBoundariesB == 0 || !parent.IsSharpBoundaryB(edges[local]);
+        };
+        // The tile that most of the faces around the F-vertex are in.
         auto const getSpokeTile = [&](int corner) {
             int const before = (corner == 0 ? size : corner) - 1;
             Tile const tileBefore = edgeTiles[std::size_t(before)];
             Tile const tileAfter = edgeTiles[std::size_t(corner)];
-            if (tileBefore == tileAfter || parent.IsSharpBoundaryB(edges[before])) {
+            if (tileBefore == tileAfter || !makesEFace(before)) {
                 return tileAfter;
             }
-            return parent.IsSharpBoundaryB(edges[corner]) ? tileBefore : tile;
+            return makesEFace(corner) ? tile : tileBefore;
         };
         for (int corner = 0; corner < size; ++corner) {
             if (Tile const spokeTile = getSpokeTile(corner); spokeTile != tile) {

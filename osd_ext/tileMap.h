@@ -75,8 +75,8 @@ private:
     };
 
     void refineOrder(FarExt::TopologyLevel const &parent);
-    void makeTiles(FarExt::TopologyLevel const &level);
-    void makeRuns(FarExt::TopologyLevel const &level, std::vector<Tile> const &tilesOfFaces);
+    void makeTiles(LevelTopology const &level);
+    void makeRuns(LevelTopology const &level, std::vector<Tile> const &tilesOfFaces);
     std::vector<Tile> getTilesOfFaces() const;
     std::vector<Tile> refineTilesOfFaces(FarExt::TopologyLevel const &parent) const;
     Tile findTile(Index face) const;
