@@ -24,9 +24,9 @@ constexpr Index kMinTileCorners = 32768;
 constexpr Index kMaxTileCorners = 131072;
 constexpr Index kTilesPerLevel = 16;
 /// Corners of a tile, at least, in the levels before, where tiles are joined.
-constexpr Index kMinJoinedTileCorners = 8192;
+constexpr Index kMinJoinedTileCorners = 4096;
 /// Vertices that a thread takes at a time of those between the tiles.
-constexpr Index kVertexBatch = 1024;
+constexpr Index kVertexBatch = 256;
 
 using Group = int;
 constexpr Group kBetween = -1; ///< of vertices whose faces are in several tiles
