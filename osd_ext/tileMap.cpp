@@ -37,6 +37,22 @@ void append(std::vector<RUN> &runs, RUN const &run) {
     }
 }
 
+// The runs of count components.
+template <class GET_TILE>
+std::vector<TileMap::Run> makeRunsOf(Far::Index count, GET_TILE getTile) {
+    std::vector<TileMap::Run> runs;
+    for (Far::Index begin = 0; begin < count;) {
+        TileMap::Tile const tile = getTile(begin);
+        Far::Index end = begin + 1;
+        while (end < count && getTile(end) == tile) {
+            ++end;
+        }
+        runs.push_back({begin, end, tile});
+        begin = end;
+    }
+    return runs;
+}
+
 } // namespace
 
 TileMap::TileMap(TopologyLevel const &base, int numTiles)
@@ -82,10 +98,8 @@ void TileMap::makeRuns(LevelTopology const &level, std::vector<Tile> const &tile
         }
         tilesOfVertices[std::size_t(vert)] = tile;
     });
-    _firstVertexRuns.clear();
-    for (Index vert = 0; vert < level.numVertices; ++vert) {
-        append(_firstVertexRuns, {vert, vert + 1, tilesOfVertices[std::size_t(vert)]});
-    }
+    _firstVertexRuns = makeRunsOf(level.numVertices,
+                                  [&](Index vert) { return tilesOfVertices[std::size_t(vert)]; });
     _fVertexRuns.clear();
 }
 
@@ -172,15 +186,16 @@ auto TileMap::refineTilesOfFaces(TopologyLevel const &parent) const -> std::vect
 // The tiles of the edges of a level, those of their first faces, and the borders to the others.
 void TileMap::findEdges(LevelTopology const &level) {
     std::vector<Tile> const tiles = getTilesOfFaces();
-    _edgeRuns.clear();
+    auto const getTile = [&](Index edge, std::size_t side) {
+        return tiles[std::size_t(level.edgeFaces[2 * std::size_t(edge) + side])];
+    };
+    _edgeRuns = makeRunsOf(level.numEdges, [&](Index edge) { return getTile(edge, 0); });
     _borders.clear();
     for (Index edge = 0; edge < level.numEdges; ++edge) {
-        Index const *const faces = level.edgeFaces.data() + 2 * std::size_t(edge);
-        Tile const edgeTile = tiles[std::size_t(faces[0])];
-        append(_edgeRuns, {edge, edge + 1, edgeTile});
-        if (!level.IsBoundary(edge) && tiles[std::size_t(faces[1])] != edgeTile) {
-            int const local = level.edgeFaceLocals[2 * std::size_t(edge) + 1];
-            _borders.push_back({faces[1], local, false, tiles[std::size_t(faces[1])], edgeTile});
+        if (!level.IsBoundary(edge) && getTile(edge, 0) != getTile(edge, 1)) {
+            std::size_t const second = 2 * std::size_t(edge) + 1;
+            _borders.push_back({level.edgeFaces[second], int(level.edgeFaceLocals[second]), false,
+                                getTile(edge, 1), getTile(edge, 0)});
         }
     }
     std::sort(_borders.begin(), _borders.end(), [](Border const &a, Border const &b) {
