@@ -61,9 +61,9 @@ public:
     };
 
     /// \brief Prepares for the levels that \p refiner has.  Takes about a quarter of a byte per
-    /// element of levels 1 ... GetMaxLevel(), besides 4 bytes per corner of the first two levels, or
-    /// of all that are refined if they have sharp boundaries; and a quarter of the time of a frame,
-    /// or up to the whole for two levels.
+    /// element of levels 1 ... GetMaxLevel(), besides 4 bytes per corner of the first two levels,
+    /// or of all that are refined if they have sharp boundaries; and a quarter of the time of a
+    /// frame, or up to the whole for two levels.
     ///
     /// \return  null with StatusCode::InvalidArgument for a channel that is not there
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,

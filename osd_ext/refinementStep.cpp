@@ -157,7 +157,7 @@ private:
     std::vector<Group> _groupOf;
 };
 
-// The groups of the vertices between the tiles, behind those of the tiles: batches of some vertices.
+// The groups of the vertices between the tiles, behind those of the tiles: some vertices in each.
 class BatchMaker {
 public:
     explicit BatchMaker(int numTiles) : _numTiles(numTiles) {}

@@ -46,9 +46,8 @@ std::vector<Tile> getTilesOfVertices(TopologyLevel const &level, TileMap const &
     for (TileMap::Run const &run : tileMap.GetFirstVertexRuns()) {
         add(run.end - run.begin, run.tile);
     }
-    auto const &runsByLevel = tileMap.GetFVertexRuns();
-    for (std::size_t i = 0; i < runsByLevel.size(); ++i) {
-        for (TileMap::FaceRun const &run : runsByLevel[i]) {
+    for (std::vector<TileMap::FaceRun> const &runs : tileMap.GetFVertexRuns()) {
+        for (TileMap::FaceRun const &run : runs) {
             add((run.end - run.begin) * run.size, run.tile);
         }
     }
