@@ -60,9 +60,10 @@ public:
         int fvarChannel = 0; ///< for INTERPOLATE_FACE_VARYING, whose elements are the values
     };
 
-    /// \brief Prepares for the levels that \p refiner has.  Takes about half a byte per element of
-    /// levels 1 ... GetMaxLevel(), besides 4 bytes per corner of the first two levels, or of all
-    /// that are refined if they have sharp boundaries; and about half the time of a frame.
+    /// \brief Prepares for the levels that \p refiner has.  Takes about a quarter of a byte per
+    /// element of levels 1 ... GetMaxLevel(), besides 4 bytes per corner of the first two levels,
+    /// or of all that are refined if they have sharp boundaries; and a quarter of the time of a
+    /// frame, or up to the whole for two levels.
     ///
     /// \return  null with StatusCode::InvalidArgument for a channel that is not there
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,

@@ -41,6 +41,7 @@ inline void prefetchAhead([[maybe_unused]] T const *place) {
 using Packet = float __attribute__((vector_size(kPacket * sizeof(float))));
 
 inline Packet spread(float value) { return Packet{value, value, value, value}; }
+inline float getFloat(Packet const &packet, int i) { return packet[i]; }
 #else
 struct Packet {
     float values[kPacket];
@@ -57,6 +58,7 @@ inline Packet forEachFloat(FUNCTION function) {
 inline Packet spread(float value) {
     return forEachFloat([&](int) { return value; });
 }
+inline float getFloat(Packet const &packet, int i) { return packet.values[i]; }
 inline Packet operator+(Packet const &a, Packet const &b) {
     return forEachFloat([&](int i) { return a.values[i] + b.values[i]; });
 }
@@ -97,9 +99,22 @@ inline auto loadExactly(float const *src) {
         return loadNarrow<WIDTH>(src);
     }
 }
-template <int WIDTH, class PACKET>
-inline void storeExactly(float *dst, PACKET const &packet) {
-    std::memcpy(dst, &packet, WIDTH * sizeof(float));
+// Writes the first WIDTH floats.  One by one where there is no such register: compilers take a copy
+// of three for a reason to go through memory.
+template <int WIDTH>
+inline void storeExactly(float *dst, Packet const &packet) {
+    if constexpr (WIDTH == kPacket) {
+        std::memcpy(dst, &packet, sizeof(packet));
+    } else {
+        for (int i = 0; i < WIDTH; ++i) {
+            dst[i] = getFloat(packet, i);
+        }
+    }
+}
+template <int WIDTH>
+inline void storeExactly(float *dst, PacketPair const &pair) {
+    storeExactly<kPacket>(dst, pair.first);
+    storeExactly<WIDTH - kPacket>(dst + kPacket, pair.second);
 }
 
 // How elements of WIDTH floats are read and written.  A packet of three packed floats takes in the
@@ -140,9 +155,21 @@ struct ConsecutiveVertices {
     Index first;
 };
 
+// The weights of a plain face, in registers.
+struct PlainFacePackets {
+    explicit PlainFacePackets(PlainFaceMask const &mask)
+        : self(spread(mask.self)), neighbor(spread(mask.neighbor)), opposite(spread(mask.opposite)),
+          all(spread(mask.all)) {}
+
+    Packet self;
+    Packet neighbor;
+    Packet opposite;
+    Packet all;
+};
+
 // A plain face of 3 to 6 sides.
 template <class ACCESS, int SIZE, bool HAS_OPPOSITE, class VERTICES>
-inline void refineUnrolledFace(PlainFaceMask const &mask, Elements<float const> const &src,
+inline void refineUnrolledFace(PlainFacePackets const &mask, Elements<float const> const &src,
                                VERTICES verts, Elements<float> const &dst, Index corner) {
     decltype(ACCESS::Load(src, 0)) v[SIZE];
     for (int i = 0; i < SIZE; ++i) {
@@ -152,16 +179,14 @@ inline void refineUnrolledFace(PlainFaceMask const &mask, Elements<float const> 
     for (int i = 2; i < SIZE; ++i) {
         sum = sum + v[i];
     }
-    Packet const self = spread(mask.self);
-    Packet const neighbor = spread(mask.neighbor);
-    auto const all = spread(mask.all) * sum;
+    auto const all = mask.all * sum;
     for (int i = 0; i < SIZE; ++i) {
-        auto point = all + self * v[i];
+        auto point = all + mask.self * v[i];
         if (SIZE > kMinPlainSize) {
-            point = point + neighbor * (v[(i + SIZE - 1) % SIZE] + v[(i + 1) % SIZE]);
+            point = point + mask.neighbor * (v[(i + SIZE - 1) % SIZE] + v[(i + 1) % SIZE]);
         }
         if (HAS_OPPOSITE) {
-            point = point + spread(mask.opposite) * v[(i + SIZE / 2) % SIZE];
+            point = point + mask.opposite * v[(i + SIZE / 2) % SIZE];
         }
         if (i + 1 < SIZE) {
             ACCESS::Store(dst, corner + i, point);
@@ -205,7 +230,9 @@ void refineWeightedFace(float const *weights, std::ptrdiff_t rowStep,
 
 // Plain faces of 3 to 6 sides.
 template <class ACCESS, int SIZE, bool HAS_OPPOSITE>
-void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &mask, IndexRun run) {
+void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMask, IndexRun run) {
+    PlainFacePackets const mask(faceMask);
+    Elements<float const> const src = task.src;
     Elements<float> const dst = task.FVertices();
     LevelTopology const &parent = *task.step->parent;
     Index corner = parent.faceFirstCorner[std::size_t(run.begin)];
@@ -215,14 +242,14 @@ void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &mask, 
         for (; corner < end; corner += SIZE) {
             prefetchAhead(ACCESS::At(dst, corner));
             refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(
-                mask, task.src, ConsecutiveVertices{firstVertex + corner}, dst, corner);
+                mask, src, ConsecutiveVertices{firstVertex + corner}, dst, corner);
         }
     } else {
         Index const *verts = parent.faceVerts.data() + corner;
         for (; corner < end; corner += SIZE, verts += SIZE) {
             prefetchAhead(verts);
             prefetchAhead(ACCESS::At(dst, corner));
-            refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(mask, task.src, verts, dst, corner);
+            refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(mask, src, verts, dst, corner);
         }
     }
 }
@@ -268,17 +295,19 @@ inline void refineFVerticesOf(RefinementTask const &task, LevelTopology const &l
     int const size = SIZE != 0 ? SIZE : firstCorner[1] - firstCorner[0];
     Packet const inverse = spread(task.step->masks.verticesInverse[kFVertexFaces]);
     Index const end = *firstCorner + size * (run.end - run.begin);
+    Elements<float const> const src = task.src;
+    Elements<float> const dst = task.dst;
+    Index const firstVert = level.GetCornerChildVertex(0);
     for (Index first = *firstCorner; first < end; first += size) {
-        Index const vert = level.GetCornerChildVertex(first);
-        prefetchAhead(ACCESS::At(task.dst, vert));
+        Index const vert = firstVert + first;
+        prefetchAhead(ACCESS::At(dst, vert));
         for (int i = 0; i < size; ++i) {
             int const prev = (i == 0 ? size : i) - 1;
-            auto const point =
-                inverse * (ACCESS::Load(task.src, vert + i) + sumPoints(first, prev, i));
+            auto const point = inverse * (ACCESS::Load(src, vert + i) + sumPoints(first, prev, i));
             if (i + 1 < size) {
-                ACCESS::Store(task.dst, vert + i, point);
+                ACCESS::Store(dst, vert + i, point);
             } else {
-                ACCESS::StoreExactly(task.dst, vert + i, point);
+                ACCESS::StoreExactly(dst, vert + i, point);
             }
         }
     }
@@ -289,16 +318,18 @@ template <class ACCESS>
 class EFacePoints {
 public:
     EFacePoints(RefinementTask const &task, LevelTopology const &before)
-        : _points(asConst(task.FVertices())), _indexing(before.ChildIndexing()) {}
+        : _points(asConst(task.FVertices())) {
+        _points.data = ACCESS::At(_points, before.ChildIndexing().GetEdgeChildFirstCorner(0, 0, 0));
+    }
 
     // That of corner \p local of the E-face of \p edge.
-    auto Load(Index edge, int local) const {
-        return ACCESS::Load(_points, _indexing.GetEdgeChildFirstCorner(edge, 0, 0) + local);
+    auto Load(std::ptrdiff_t edge, int local) const {
+        float const *const points = ACCESS::At(_points, HexIndexing::kNumEFaceCorners * edge);
+        return ACCESS::Load({points, _points.stride}, local);
     }
 
 private:
-    Elements<float const> const _points;
-    HexIndexing const _indexing;
+    Elements<float const> _points; // of the E-faces
 };
 
 // Which side of its edge a face is, by corner: F-faces and E-faces of a hexagonal step.
@@ -546,6 +577,14 @@ void runKernel(RefinementTask const &task, int length, Groups<ITEM> const &group
     }
 }
 
+void refineVertices(RefinementTask const &task, int length, int group) {
+    RefinementStep const &step = *task.step;
+    runKernel<NewVertexKernel>(task, length, step.newVertexFaces, group);
+    runKernel<OlderVertexKernel>(task, length, step.olderVertexFaces, group);
+    runKernel<VertexKernel>(task, length, step.plainVertices, group);
+    runKernel<VertexKernel>(task, length, step.weightedVertices, group);
+}
+
 } // namespace
 
 void RefineElements(std::vector<RefinementTask> const &tasks, int length) {
@@ -557,24 +596,22 @@ void RefineElements(std::vector<RefinementTask> const &tasks, int length) {
 #endif
     for (RefinementTask const &task : tasks) {
         RefinementStep const &step = *task.step;
+        // Shared out in the same way at each level, so that a thread reads what it has made: 1.07
+        // times as fast with two threads, benchmark table-free.
 #ifdef _OPENMP
-#pragma omp for schedule(dynamic)
+#pragma omp for schedule(static)
 #endif
         for (int tile = 0; tile < step.numTiles; ++tile) {
             runKernel<FaceKernel>(task, length, step.plainFaces, tile);
             runKernel<FaceKernel>(task, length, step.weightedFaces, tile);
-            runKernel<NewVertexKernel>(task, length, step.newVertexFaces, tile);
-            runKernel<OlderVertexKernel>(task, length, step.olderVertexFaces, tile);
-            runKernel<VertexKernel>(task, length, step.plainVertices, tile);
-            runKernel<VertexKernel>(task, length, step.weightedVertices, tile);
+            refineVertices(task, length, tile);
         }
         // Their F-vertices are in several tiles, which are done by now.
 #ifdef _OPENMP
 #pragma omp for schedule(dynamic)
 #endif
         for (int group = step.numTiles; group < step.GetNumVertexGroups(); ++group) {
-            runKernel<VertexKernel>(task, length, step.plainVertices, group);
-            runKernel<VertexKernel>(task, length, step.weightedVertices, group);
+            refineVertices(task, length, group);
         }
     }
 }

@@ -24,9 +24,9 @@ constexpr Index kMinTileCorners = 32768;
 constexpr Index kMaxTileCorners = 131072;
 constexpr Index kTilesPerLevel = 16;
 /// Corners of a tile, at least, in the levels before, where tiles are joined.
-constexpr Index kMinJoinedTileCorners = 8192;
+constexpr Index kMinJoinedTileCorners = 4096;
 /// Vertices that a thread takes at a time of those between the tiles.
-constexpr Index kVertexBatch = 1024;
+constexpr Index kVertexBatch = 256;
 
 using Group = int;
 constexpr Group kBetween = -1; ///< of vertices whose faces are in several tiles
@@ -73,76 +73,67 @@ Groups<ITEM> makeGroups(std::vector<ITEM> const &items, std::vector<Group> const
 // F-faces or others.
 class FaceRunMaker {
 public:
-    explicit FaceRunMaker(LevelTopology const &level)
-        : _firstCorners(level.faceFirstCorner.data()), _numFFaces(GetNumFFaces(level)) {}
+    FaceRunMaker() = default;
+    explicit FaceRunMaker(LevelTopology const &level) : _numFFaces(GetNumFFaces(level)) {}
 
-    void Add(Index begin, Index end, Group group) {
-        while (begin < end) {
-            Index const size = _firstCorners[begin + 1] - _firstCorners[begin];
-            Index const limit = begin < _numFFaces ? std::min(end, _numFFaces) : end;
-            Index runEnd = begin + 1;
-            while (runEnd < limit && _firstCorners[runEnd + 1] - _firstCorners[runEnd] == size) {
-                ++runEnd;
-            }
-            if (begin != _end || group != _group || size != _size || begin == _numFFaces) {
-                _runs.push_back({begin, begin});
-                _groupOf.push_back(group);
-                _group = group;
-                _size = size;
-            }
-            _end = _runs.back().end = begin = runEnd;
+    void Add(Index begin, Index end, int size, Group group) {
+        if (begin < _numFFaces && _numFFaces < end) {
+            append(begin, _numFFaces, size, group);
+            begin = _numFFaces;
         }
+        append(begin, end, size, group);
     }
     Groups<IndexRun> Take(int numGroups) const { return makeGroups(_runs, _groupOf, numGroups); }
 
 private:
-    Index const *_firstCorners;
-    Index _numFFaces;
-    std::vector<IndexRun> _runs;
-    std::vector<Group> _groupOf;
-    // Of the last run.
-    Index _end = Far::INDEX_INVALID;
-    Group _group = 0;
-    Index _size = 0;
-};
-
-// Makes runs of the vertices of a group that follow one another, and groups of those between the
-// tiles.
-class VertexRunMaker {
-public:
-    VertexRunMaker(LevelTopology const &level, int numTiles)
-        : _firstFaces(level.vertFirstFace.data()), _numTiles(numTiles) {}
-
-    void Add(Index begin, Index end, Group group) {
-        if (group != kBetween) {
-            append(begin, end, group);
+    void append(Index begin, Index end, int size, Group group) {
+        if (begin == end) {
             return;
         }
-        while (begin < end) {
-            Index const size = std::min(end - begin, kVertexBatch - _numBetween % kVertexBatch);
-            append(begin, begin + size, nextBatch());
-            _numBetween += size;
-            begin += size;
+        if (begin != _numFFaces && !_runs.empty() && _runs.back().end == begin && _size == size &&
+            _groupOf.back() == group) {
+            _runs.back().end = end;
+        } else {
+            _runs.push_back({begin, end});
+            _groupOf.push_back(group);
+            _size = size;
         }
-    }
-    // The group of a vertex that is not part of any run.
-    Group AddSingle(Group group) {
-        if (group != kBetween) {
-            return group;
-        }
-        Group const batch = nextBatch();
-        ++_numBetween;
-        return batch;
     }
 
-    int GetNumGroups() const { return _numTiles + (_numBetween + kVertexBatch - 1) / kVertexBatch; }
-    std::vector<VertexRun> const &GetRuns() const { return _runs; }
-    std::size_t GetNumCorners() const { return _numCorners; }
-    Groups<VertexRun> Take() const { return makeGroups(_runs, _groupOf, GetNumGroups()); }
+    Index _numFFaces = 0;
+    std::vector<IndexRun> _runs;
+    std::vector<Group> _groupOf;
+    int _size = 0; // of the faces of the last run
+};
+
+// Some of the indices of a level, ascending, that runs are to be parted at, one after the other.
+class Partition {
+public:
+    explicit Partition(std::vector<Index> const &indices)
+        : _next(indices.begin()), _end(indices.end()) {}
+
+    // Calls addSingle(i) for those in [begin, end), and addRest(begin, end) for what lies between.
+    template <class ADD_REST, class ADD_SINGLE>
+    void Part(Index begin, Index end, ADD_REST addRest, ADD_SINGLE addSingle) {
+        for (_next = std::lower_bound(_next, _end, begin); _next != _end && *_next < end; ++_next) {
+            addRest(begin, *_next);
+            addSingle(*_next);
+            begin = *_next + 1;
+        }
+        addRest(begin, end);
+    }
 
 private:
-    Group nextBatch() const { return _numTiles + _numBetween / kVertexBatch; }
-    void append(Index begin, Index end, Group group) {
+    std::vector<Index>::const_iterator _next;
+    std::vector<Index>::const_iterator _end;
+};
+
+// Makes runs of the vertices of a group that follow one another.
+class VertexRunMaker {
+public:
+    explicit VertexRunMaker(LevelTopology const &level) : _firstFaces(level.vertFirstFace.data()) {}
+
+    void Add(Index begin, Index end, Group group) {
         if (begin == end) {
             return;
         }
@@ -155,12 +146,38 @@ private:
         _numCorners += std::size_t(_firstFaces[end] - _firstFaces[begin]);
     }
 
+    std::vector<VertexRun> const &GetRuns() const { return _runs; }
+    std::size_t GetNumCorners() const { return _numCorners; }
+    Groups<VertexRun> Take(int numGroups) const { return makeGroups(_runs, _groupOf, numGroups); }
+
+private:
     Index const *_firstFaces;
-    int _numTiles;
-    Index _numBetween = 0;
     std::size_t _numCorners = 0;
     std::vector<VertexRun> _runs;
     std::vector<Group> _groupOf;
+};
+
+// The groups of the vertices between the tiles, behind those of the tiles: some vertices in each.
+class BatchMaker {
+public:
+    explicit BatchMaker(int numTiles) : _numTiles(numTiles) {}
+
+    // Calls add(begin, end, group) for pieces of [begin, end), things of numVertices vertices each.
+    template <class ADD>
+    void Split(Index begin, Index end, int numVertices, ADD add) {
+        while (begin < end) {
+            Index const room = (kVertexBatch - _numBetween % kVertexBatch) / numVertices;
+            Index const size = std::min(end - begin, std::max(1, room));
+            add(begin, begin + size, _numTiles + _numBetween / kVertexBatch);
+            _numBetween += size * numVertices;
+            begin += size;
+        }
+    }
+    int GetNumGroups() const { return _numTiles + (_numBetween + kVertexBatch - 1) / kVertexBatch; }
+
+private:
+    int _numTiles;
+    Index _numBetween = 0;
 };
 
 void sortUnique(std::vector<Index> &indices) {
@@ -220,22 +237,13 @@ void makeFaces(RefinementMask const &mask, TopologyLevel const &parent,
         }
     };
     FaceRunMaker plain(parent.GetTopology());
-    TileMap::Tile const *const tiles = tileMap.GetTilesOfFaces().data();
-    auto nextWeighted = indices.begin();
-    for (Index begin = 0; begin < parent.GetNumFaces();) {
-        Group const group = groupOfTile[tiles[begin]];
-        if (nextWeighted != indices.end() && *nextWeighted == begin) {
-            addWeighted(begin++, group);
-            ++nextWeighted;
-            continue;
-        }
-        Index const limit = nextWeighted == indices.end() ? parent.GetNumFaces() : *nextWeighted;
-        Index end = begin + 1;
-        while (end < limit && tiles[end] == tiles[begin]) {
-            ++end;
-        }
-        plain.Add(begin, end, group);
-        begin = end;
+    Partition partition(indices);
+    for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
+        Group const group = groupOfTile[run.tile];
+        partition.Part(
+            run.begin, run.end,
+            [&](Index begin, Index end) { plain.Add(begin, end, run.size, group); },
+            [&](Index face) { addWeighted(face, group); });
     }
     step.weightedFaces = makeGroups(weighted, groupOfWeighted, step.numTiles);
     step.plainFaces = plain.Take(step.numTiles);
@@ -265,7 +273,7 @@ public:
         : _mask(mask), _parent(parent.GetTopology()), _groupOfTile(groupOfTile), _step(step),
           _arePlain(_parent.numVVertices == _parent.numVertices),
           _weightedVerts(findWeightedVertices(mask, parent)), _nextWeighted(_weightedVerts.begin()),
-          _plain(_parent, step.numTiles) {
+          _batches(step.numTiles), _plain(_parent) {
         if (_arePlain && step.masks.averagesFaces && _parent.isHexagonal) {
             LevelTopology const *const before = _parent.parent;
             _levelOfNewVertices = before;
@@ -276,61 +284,80 @@ public:
         }
     }
 
-    void AddFirstVertices(std::vector<TileMap::Tile> const &tiles) {
-        for (std::size_t begin = 0; begin < tiles.size();) {
-            std::size_t end = begin + 1;
-            while (end < tiles.size() && tiles[end] == tiles[begin]) {
-                ++end;
-            }
-            add(Index(begin), Index(end), groupOf(tiles[begin]));
-            begin = end;
+    void AddFirstVertices(std::vector<TileMap::Run> const &runs) {
+        for (TileMap::Run const &run : runs) {
+            add(run.begin, run.end, groupOf(run.tile));
         }
     }
     // The F-vertices of the faces of a level before.
-    void AddFVertices(LevelTopology const &level, std::vector<TileMap::Tile> const &tilesOfFaces) {
+    void AddFVertices(LevelTopology const &level, std::vector<TileMap::FaceRun> const &runs) {
         bool const areNew = &level == _levelOfNewVertices;
         bool const areOlder = &level == _levelOfOlderVertices;
-        FaceRunMaker regular(level);
-        for (Index face = 0; face < level.numFaces; ++face) {
-            Group const group = groupOf(tilesOfFaces[std::size_t(face)]);
-            Index const *const corners = level.faceFirstCorner.data() + face;
-            Index const begin = level.GetCornerChildVertex(corners[0]);
-            Index const end = level.GetCornerChildVertex(corners[1]);
-            bool const hasWeighted = _nextWeighted != _weightedVerts.end() && *_nextWeighted < end;
-            if (group != kBetween && !hasWeighted &&
-                (areOlder || (areNew && hasInteriorEdges(level, face)))) {
-                regular.Add(face, face + 1, group);
-            } else {
-                add(begin, end, group);
+        auto const addFVertices = [&](Index begin, Index end, Group group) {
+            Index const *const corners = level.faceFirstCorner.data();
+            add(level.GetCornerChildVertex(corners[begin]),
+                level.GetCornerChildVertex(corners[end]), group);
+        };
+        std::vector<Index> irregular = findFacesOfWeighted(level);
+        if (areNew) {
+            for (Index const edge : level.boundaryEdges) {
+                irregular.push_back(level.edgeFaces[2 * std::size_t(edge)]);
             }
         }
+        sortUnique(irregular);
+        FaceRunMaker regular(level);
+        Partition partition(irregular);
+        for (TileMap::FaceRun const &run : runs) {
+            Group const group = groupOf(run.tile);
+            if (!areNew && !areOlder) {
+                addFVertices(run.begin, run.end, group);
+                continue;
+            }
+            partition.Part(
+                run.begin, run.end,
+                [&](Index begin, Index end) {
+                    addToGroups(begin, end, run.size, group,
+                                [&](Index first, Index last, Group groupOfPart) {
+                                    regular.Add(first, last, run.size, groupOfPart);
+                                });
+                },
+                [&](Index face) { addFVertices(face, face + 1, group); });
+        }
         if (areNew) {
-            _step.newVertexFaces = regular.Take(_step.numTiles);
+            _newVertexFaces = std::move(regular);
             if (!_levelOfOlderVertices) {
                 listStartCorners(level);
             }
-        }
-        if (areOlder) {
-            _step.olderVertexFaces = regular.Take(_step.numTiles);
+        } else if (areOlder) {
+            _olderVertexFaces = std::move(regular);
         }
     }
     void End() {
         if (_step.masks.averagesFaces) {
             listCorners();
         }
-        _step.plainVertices = _plain.Take();
-        _step.weightedVertices = makeGroups(_weighted, _groupOfWeighted, _plain.GetNumGroups());
+        int const numGroups = _batches.GetNumGroups();
+        _step.newVertexFaces = _newVertexFaces.Take(numGroups);
+        _step.olderVertexFaces = _olderVertexFaces.Take(numGroups);
+        _step.plainVertices = _plain.Take(numGroups);
+        _step.weightedVertices = makeGroups(_weighted, _groupOfWeighted, numGroups);
     }
 
 private:
     Group groupOf(TileMap::Tile tile) const {
         return tile == TileMap::kNoTile ? kBetween : _groupOfTile[tile];
     }
-    static bool hasInteriorEdges(LevelTopology const &level, Index face) {
-        return level.boundaryEdges.empty() ||
-               std::none_of(level.faceEdges.begin() + level.faceFirstCorner[std::size_t(face)],
-                            level.faceEdges.begin() + level.faceFirstCorner[std::size_t(face) + 1],
-                            [&](Index edge) { return level.IsBoundary(edge); });
+    // The faces of a level that made vertices with weights of their own.
+    std::vector<Index> findFacesOfWeighted(LevelTopology const &level) const {
+        std::vector<Index> faces;
+        Index const endVert = level.GetCornerChildVertex(level.numCorners);
+        for (auto vert = _nextWeighted; vert != _weightedVerts.end() && *vert < endVert; ++vert) {
+            Index const *const next =
+                std::upper_bound(level.faceFirstCorner.begin(), level.faceFirstCorner.end(),
+                                 level.GetChildVertexCorner(*vert));
+            faces.push_back(Index(next - level.faceFirstCorner.begin()) - 1);
+        }
+        return faces;
     }
     void listStartCorners(LevelTopology const &level) {
         _step.startCorners.Resize(std::size_t(level.numCorners));
@@ -341,18 +368,34 @@ private:
             _step.startCorners[std::size_t(corner)] = _parent.GetVertexCorner(end - 1);
         });
     }
+    // Calls add(begin, end, group) for [begin, end), things of numVertices vertices each, or for
+    // pieces of it.
+    template <class ADD>
+    void addToGroups(Index begin, Index end, int numVertices, Group group, ADD add) {
+        if (group == kBetween) {
+            _batches.Split(begin, end, numVertices, add);
+        } else {
+            add(begin, end, group);
+        }
+    }
+    void addPlain(Index begin, Index end, Group group) {
+        if (_arePlain) {
+            addToGroups(begin, end, 1, group, [&](Index first, Index last, Group groupOfPart) {
+                _plain.Add(first, last, groupOfPart);
+            });
+        }
+    }
     void add(Index begin, Index end, Group group) {
         for (; _nextWeighted != _weightedVerts.end() && *_nextWeighted < end; ++_nextWeighted) {
-            _weighted.push_back(makeWeightedVertex(_mask, _parent, *_nextWeighted));
-            _groupOfWeighted.push_back(_plain.AddSingle(group));
-            if (_arePlain) {
-                _plain.Add(begin, *_nextWeighted, group);
-                begin = *_nextWeighted + 1;
-            }
+            Index const vert = *_nextWeighted;
+            addPlain(begin, vert, group);
+            addToGroups(vert, vert + 1, 1, group, [&](Index, Index, Group groupOfVertex) {
+                _weighted.push_back(makeWeightedVertex(_mask, _parent, vert));
+                _groupOfWeighted.push_back(groupOfVertex);
+            });
+            begin = vert + 1;
         }
-        if (_arePlain) {
-            _plain.Add(begin, end, group);
-        }
+        addPlain(begin, end, group);
     }
     void listCorners() {
         _step.vertCorners.Resize(_plain.GetNumCorners());
@@ -376,7 +419,10 @@ private:
     std::vector<Index>::const_iterator _nextWeighted;
     std::vector<WeightedVertex> _weighted;
     std::vector<Group> _groupOfWeighted;
+    BatchMaker _batches;
     VertexRunMaker _plain;
+    FaceRunMaker _newVertexFaces;
+    FaceRunMaker _olderVertexFaces;
     // Null where their vertices have no kernel of their own.
     LevelTopology const *_levelOfNewVertices = nullptr;
     LevelTopology const *_levelOfOlderVertices = nullptr;
@@ -431,15 +477,15 @@ void MakeRefinementStep(RefinementMask const &mask, TopologyLevel const &parent,
     makeFaces(mask, parent, groupOfTile, tileMap, step);
 
     VertexGrouper vertices(mask, parent, groupOfTile, step);
-    vertices.AddFirstVertices(tileMap.GetTilesOfFirstVertices());
-    std::vector<std::vector<TileMap::Tile>> const &tilesOfFVertices = tileMap.GetTilesOfFVertices();
-    std::vector<LevelTopology const *> levels(tilesOfFVertices.size());
+    vertices.AddFirstVertices(tileMap.GetFirstVertexRuns());
+    std::vector<std::vector<TileMap::FaceRun>> const &fVertexRuns = tileMap.GetFVertexRuns();
+    std::vector<LevelTopology const *> levels(fVertexRuns.size());
     LevelTopology const *level = &topology;
     for (auto it = levels.rbegin(); it != levels.rend(); ++it) {
         *it = level = level->parent;
     }
     for (std::size_t i = 0; i < levels.size(); ++i) {
-        vertices.AddFVertices(*levels[i], tilesOfFVertices[i]);
+        vertices.AddFVertices(*levels[i], fVertexRuns[i]);
     }
     vertices.End();
 }

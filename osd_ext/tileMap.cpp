@@ -8,91 +8,131 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-using Far::Index;
+using FarExt::HexIndexing;
+using FarExt::kEFaceSideB;
+using FarExt::kEFaceSideShift;
 using FarExt::TopologyLevel;
-using FarExt::internal::LevelTopology;
 using FarExt::internal::ParallelFor;
-using FarExt::internal::ParallelSelect;
 
 namespace {
 
 /// The least faces of a tile, on the average, in the level that several tiles are made of.
 constexpr int kMinTileFaces = 64;
 
+bool areAlike(TileMap::Run const &a, TileMap::Run const &b) { return a.tile == b.tile; }
+bool areAlike(TileMap::FaceRun const &a, TileMap::FaceRun const &b) {
+    return a.tile == b.tile && a.size == b.size;
+}
+
+// Adds a run behind the others, or to the last one if it goes on with that.
+template <class RUN>
+void append(std::vector<RUN> &runs, RUN const &run) {
+    if (run.begin == run.end) {
+        return;
+    }
+    if (!runs.empty() && runs.back().end == run.begin && areAlike(runs.back(), run)) {
+        runs.back().end = run.end;
+    } else {
+        runs.push_back(run);
+    }
+}
+
+// The runs of count components.
+template <class GET_TILE>
+std::vector<TileMap::Run> makeRunsOf(Far::Index count, GET_TILE getTile) {
+    std::vector<TileMap::Run> runs;
+    for (Far::Index begin = 0; begin < count;) {
+        TileMap::Tile const tile = getTile(begin);
+        Far::Index end = begin + 1;
+        while (end < count && getTile(end) == tile) {
+            ++end;
+        }
+        runs.push_back({begin, end, tile});
+        begin = end;
+    }
+    return runs;
+}
+
 } // namespace
 
 TileMap::TileMap(TopologyLevel const &base, int numTiles)
     : _numTiles(numTiles), _faceOrder(std::size_t(base.GetNumFaces())) {
     std::iota(_faceOrder.begin(), _faceOrder.end(), 0);
-    makeTiles(base);
+    makeTiles(base.GetTopology());
 }
 
 // Cuts the order of the faces into pieces of as many corners each, if there are enough faces.
-void TileMap::makeTiles(TopologyLevel const &level) {
-    _tilesOfFaces.assign(_faceOrder.size(), 0);
-    if (level.GetNumFaces() / kMinTileFaces + 1 < _numTiles) {
-        _tilesOfFirstVertices.assign(std::size_t(level.GetNumVertices()), 0);
-        return;
+void TileMap::makeTiles(LevelTopology const &level) {
+    std::vector<Tile> tilesOfFaces(_faceOrder.size(), 0);
+    if (level.numFaces / kMinTileFaces + 1 >= _numTiles) {
+        std::int64_t numCorners = 0;
+        Tile tile = 0;
+        for (Index const face : _faceOrder) {
+            while (numCorners * _numTiles >= (tile + 1) * std::int64_t(level.numCorners)) {
+                ++tile;
+            }
+            tilesOfFaces[std::size_t(face)] = tile;
+            numCorners += level.faceFirstCorner[std::size_t(face) + 1] -
+                          level.faceFirstCorner[std::size_t(face)];
+        }
+        _faceOrder = {};
     }
-    std::int64_t numCorners = 0;
-    for (Index const face : _faceOrder) {
-        _tilesOfFaces[std::size_t(face)] =
-            Tile(numCorners * _numTiles / level.GetNumFaceVertices());
-        numCorners += level.GetFaceVertices(face).size();
-    }
-    _faceOrder = {};
-    makeVertexTiles(level);
+    makeRuns(level, tilesOfFaces);
 }
 
-void TileMap::makeVertexTiles(TopologyLevel const &level) {
-    _tilesOfFVertices.clear();
-    _tilesOfFirstVertices.resize(std::size_t(level.GetNumVertices()));
-    ParallelFor(level.GetNumVertices(), [&](Index vert) {
-        Far::ConstIndexArray const faces = level.GetVertexFaces(vert);
-        Tile tile = faces.empty() ? kNoTile : _tilesOfFaces[std::size_t(faces[0])];
-        for (Index const face : faces) {
-            tile = _tilesOfFaces[std::size_t(face)] == tile ? tile : kNoTile;
+// Makes the runs of a level whose numbering does not tell them.
+void TileMap::makeRuns(LevelTopology const &level, std::vector<Tile> const &tilesOfFaces) {
+    _faceRuns.clear();
+    Index const *const firstCorners = level.faceFirstCorner.data();
+    for (Index face = 0; face < level.numFaces; ++face) {
+        append(_faceRuns, {face, face + 1, tilesOfFaces[std::size_t(face)],
+                           firstCorners[face + 1] - firstCorners[face]});
+    }
+    std::vector<Tile> tilesOfVertices(std::size_t(level.numVertices));
+    ParallelFor(level.numVertices, [&](Index vert) {
+        Index const *const faces = level.vertFaces.data();
+        Index const *const first = level.vertFirstFace.data() + vert;
+        Tile tile = first[0] == first[1] ? kNoTile : tilesOfFaces[std::size_t(faces[*first])];
+        for (Index k = first[0]; k < first[1]; ++k) {
+            tile = tilesOfFaces[std::size_t(faces[k])] == tile ? tile : kNoTile;
         }
-        _tilesOfFirstVertices[std::size_t(vert)] = tile;
+        tilesOfVertices[std::size_t(vert)] = tile;
     });
+    _firstVertexRuns = makeRunsOf(level.numVertices,
+                                  [&](Index vert) { return tilesOfVertices[std::size_t(vert)]; });
+    _fVertexRuns.clear();
+}
+
+auto TileMap::getTilesOfFaces() const -> std::vector<Tile> {
+    std::vector<Tile> tiles;
+    for (FaceRun const &run : _faceRuns) {
+        tiles.insert(tiles.end(), std::size_t(run.end - run.begin), run.tile);
+    }
+    return tiles;
+}
+
+auto TileMap::findTile(Index face) const -> Tile {
+    auto const next = std::upper_bound(_faceRuns.begin(), _faceRuns.end(), face,
+                                       [](Index f, FaceRun const &run) { return f < run.begin; });
+    return std::prev(next)->tile;
 }
 
 void TileMap::Refine(TopologyLevel const &parent) {
     LevelTopology const &topology = parent.GetTopology();
-    TopologyLevel const child(topology.child);
+    LevelTopology const &child = *topology.child;
     if (!_faceOrder.empty()) {
         refineOrder(parent);
         makeTiles(child);
-        return;
-    }
-    // The faces around an F-vertex come from a face and two of its edges, those around a V-vertex
-    // from the edges around its parent.  An edge, and its E-face, is where its first face is.
-    std::vector<Tile> tilesOfFVertices = _tilesOfFaces;
-    Index const *const edgeFaces = topology.edgeFaces.data();
-    for (Index const edge : ParallelSelect(topology.numEdges, [&](Index e) {
-             Index const *const faces = edgeFaces + 2 * std::size_t(e);
-             return faces[1] >= 0 &&
-                    _tilesOfFaces[std::size_t(faces[0])] != _tilesOfFaces[std::size_t(faces[1])];
-         })) {
-        tilesOfFVertices[std::size_t(edgeFaces[2 * std::size_t(edge) + 1])] = kNoTile;
-    }
-
-    _tilesOfFaces.resize(std::size_t(child.GetNumFaces()));
-    for (Index cFace = child.GetNumFaces() - child.GetTopology().numVFaces;
-         cFace < child.GetNumFaces(); ++cFace) {
-        _tilesOfFaces[std::size_t(cFace)] =
-            _tilesOfFaces[std::size_t(child.GetFaceParentFace(cFace))];
-    }
-    ParallelFor(topology.numEdges, [&](Index edge) {
-        if (Index const cFace = topology.GetEdgeChildFace(edge); cFace != Far::INDEX_INVALID) {
-            _tilesOfFaces[std::size_t(cFace)] =
-                _tilesOfFaces[std::size_t(edgeFaces[2 * std::size_t(edge)])];
-        }
-    });
-    if (child.GetTopology().isHexagonal) {
-        _tilesOfFVertices.push_back(std::move(tilesOfFVertices));
+    } else if (!child.isHexagonal) {
+        makeRuns(child, refineTilesOfFaces(parent));
     } else {
-        makeVertexTiles(child);
+        if (_fVertexRuns.empty()) {
+            findEdges(topology);
+        } else {
+            refineEdges(*topology.parent);
+        }
+        _fVertexRuns.push_back(getInnerFaceRuns());
+        addEFaces(topology);
     }
 }
 
@@ -119,6 +159,194 @@ void TileMap::refineOrder(TopologyLevel const &parent) {
         order.insert(order.end(), vFaces.begin(), vFaces.end());
     }
     _faceOrder.swap(order);
+}
+
+// The tiles of the faces of the child, whose step may be any.
+auto TileMap::refineTilesOfFaces(TopologyLevel const &parent) const -> std::vector<Tile> {
+    LevelTopology const &topology = parent.GetTopology();
+    TopologyLevel const child(topology.child);
+    std::vector<Tile> const tiles = getTilesOfFaces();
+    std::vector<Tile> cTiles(std::size_t(child.GetNumFaces()));
+    for (Index face = 0; face < topology.numFaces; ++face) {
+        cTiles[std::size_t(topology.faceChildFaces[std::size_t(face)])] = tiles[std::size_t(face)];
+    }
+    ParallelFor(topology.numEdges, [&](Index edge) {
+        if (Index const cFace = topology.GetEdgeChildFace(edge); cFace != Far::INDEX_INVALID) {
+            cTiles[std::size_t(cFace)] =
+                tiles[std::size_t(topology.edgeFaces[2 * std::size_t(edge)])];
+        }
+    });
+    for (Index cFace = child.GetNumFaces() - child.GetTopology().numVFaces;
+         cFace < child.GetNumFaces(); ++cFace) {
+        cTiles[std::size_t(cFace)] = tiles[std::size_t(child.GetFaceParentFace(cFace))];
+    }
+    return cTiles;
+}
+
+// The tiles of the edges of a level, those of their first faces, and the borders to the others.
+void TileMap::findEdges(LevelTopology const &level) {
+    std::vector<Tile> const tiles = getTilesOfFaces();
+    auto const getTile = [&](Index edge, std::size_t side) {
+        return tiles[std::size_t(level.edgeFaces[2 * std::size_t(edge) + side])];
+    };
+    _edgeRuns = makeRunsOf(level.numEdges, [&](Index edge) { return getTile(edge, 0); });
+    _borders.clear();
+    for (Index edge = 0; edge < level.numEdges; ++edge) {
+        if (!level.IsBoundary(edge) && getTile(edge, 0) != getTile(edge, 1)) {
+            std::size_t const second = 2 * std::size_t(edge) + 1;
+            _borders.push_back({level.edgeFaces[second], int(level.edgeFaceLocals[second]), false,
+                                getTile(edge, 1), getTile(edge, 0)});
+        }
+    }
+    std::sort(_borders.begin(), _borders.end(), [](Border const &a, Border const &b) {
+        return a.face != b.face ? a.face < b.face : a.local < b.local;
+    });
+}
+
+// The same of the child that a hexagonal step made of \p parent, whose edges are known.  An edge of
+// an F-face is in the tile of that, and so are most spokes.
+void TileMap::refineEdges(LevelTopology const &parent) {
+    std::vector<Run> const borderSpokes = refineBorders(parent);
+    HexIndexing const indexing = parent.ChildIndexing();
+    std::vector<Run> cornerRuns;
+    for (FaceRun const &run : _faceRuns) {
+        if (run.begin < parent.numFaces) {
+            Index const first = parent.faceFirstCorner[std::size_t(run.begin)];
+            Index const numFaces = std::min(run.end, parent.numFaces) - run.begin;
+            append(cornerRuns, {first, first + numFaces * run.size, run.tile});
+        }
+    }
+    _edgeRuns = cornerRuns;
+    auto spoke = borderSpokes.begin();
+    for (Run const &run : cornerRuns) {
+        Index const end = indexing.GetCornerChildSpoke(run.end);
+        Index begin = indexing.GetCornerChildSpoke(run.begin);
+        for (; spoke != borderSpokes.end() && spoke->begin < end; ++spoke) {
+            append(_edgeRuns, {begin, spoke->begin, run.tile});
+            append(_edgeRuns, *spoke);
+            begin = spoke->end;
+        }
+        append(_edgeRuns, {begin, end, run.tile});
+    }
+    Index cEdge = indexing.GetBoundaryChildEdge(0);
+    for (Index const edge : parent.boundaryEdges) {
+        if (!parent.IsSharpBoundaryB(edge)) {
+            append(_edgeRuns,
+                   {cEdge, cEdge + 1, findTile(parent.edgeFaces[2 * std::size_t(edge)])});
+            ++cEdge;
+        }
+    }
+}
+
+// Goes on from the borders to those of the child, all of which are in the E-faces of their edges,
+// and gives the spokes that are in another tile than the face of their corner, ascending.
+auto TileMap::refineBorders(LevelTopology const &parent) -> std::vector<Run> {
+    struct BorderSide { // of an E-face
+        Index face;
+        bool isSideA;
+        Tile faceTile;
+        Tile endSpokeTile;
+        Tile fFaceEdgeTile;
+        Tile startSpokeTile;
+    };
+    std::vector<Run> spokes;
+    std::vector<BorderSide> sides;
+    std::vector<Tile> edgeTiles; // of the edges of a face
+    for (auto border = _borders.begin(); border != _borders.end();) {
+        Index const face = border->face;
+        Tile const tile = border->faceTile;
+        Index const first = parent.faceFirstCorner[std::size_t(face)];
+        int const size = parent.faceFirstCorner[std::size_t(face) + 1] - first;
+        Index const *const edges = parent.faceEdges.data() + first;
+        auto const begin = border;
+        edgeTiles.assign(std::size_t(size), tile);
+        for (; border != _borders.end() && border->face == face; ++border) {
+            edgeTiles[std::size_t(border->local)] = border->edgeTile;
+        }
+        auto const makesEFace = [&](int local) {
+            return parent.numSharpBoundariesB == 0 || !parent.IsSharpBoundaryB(edges[local]);
+        };
+        // The tile that most of the faces around the F-vertex are in.
+        auto const getSpokeTile = [&](int corner) {
+            int const before = (corner == 0 ? size : corner) - 1;
+            Tile const tileBefore = edgeTiles[std::size_t(before)];
+            Tile const tileAfter = edgeTiles[std::size_t(corner)];
+            if (tileBefore == tileAfter || !makesEFace(before)) {
+                return tileAfter;
+            }
+            return makesEFace(corner) ? tile : tileBefore;
+        };
+        for (int corner = 0; corner < size; ++corner) {
+            if (Tile const spokeTile = getSpokeTile(corner); spokeTile != tile) {
+                Index const spoke = parent.ChildIndexing().GetCornerChildSpoke(first + corner);
+                spokes.push_back({spoke, spoke + 1, spokeTile});
+            }
+        }
+        for (auto it = begin; it != border; ++it) {
+            int const end = it->local + 1 == size ? 0 : it->local + 1;
+            sides.push_back({parent.GetEdgeChildFace(edges[it->local]), it->isSideA, it->edgeTile,
+                             getSpokeTile(end), tile, getSpokeTile(it->local)});
+        }
+    }
+    std::sort(sides.begin(), sides.end(), [](BorderSide const &a, BorderSide const &b) {
+        return a.face != b.face ? a.face < b.face : a.isSideA < b.isSideA;
+    });
+    _borders.clear();
+    for (BorderSide const &side : sides) {
+        auto const addBorder = [&](int localOfB, Tile edgeTile) {
+            if (edgeTile != side.faceTile) {
+                int const local = localOfB + (side.isSideA ? kEFaceSideShift : 0);
+                _borders.push_back(
+                    {side.face, local, FarExt::IsEFaceSideA(local), side.faceTile, edgeTile});
+            }
+        };
+        static_assert(kEFaceSideB.endSpoke < kEFaceSideB.fFaceEdge &&
+                      kEFaceSideB.fFaceEdge < kEFaceSideB.startSpoke);
+        addBorder(kEFaceSideB.endSpoke, side.endSpokeTile);
+        addBorder(kEFaceSideB.fFaceEdge, side.fFaceEdgeTile);
+        addBorder(kEFaceSideB.startSpoke, side.startSpokeTile);
+    }
+    return spokes;
+}
+
+// The runs of the faces, those with a border cut out, for kNoTile.  The faces around an F-vertex
+// come from a face and two of its edges, those around a V-vertex from the edges around its parent.
+auto TileMap::getInnerFaceRuns() const -> std::vector<FaceRun> {
+    std::vector<FaceRun> runs;
+    auto border = _borders.begin();
+    for (FaceRun const &run : _faceRuns) {
+        Index begin = run.begin;
+        for (; border != _borders.end() && border->face < run.end; ++border) {
+            if (border->face >= begin) { // else the last one was of the same face
+                append(runs, {begin, border->face, run.tile, run.size});
+                begin = border->face + 1;
+                append(runs, {border->face, begin, kNoTile, run.size});
+            }
+        }
+        append(runs, {begin, run.end, run.tile, run.size});
+    }
+    return runs;
+}
+
+// Adds the E-faces, of edges whose runs are known.
+void TileMap::addEFaces(LevelTopology const &parent) {
+    Index cFace = parent.numFaces;
+    auto const add = [&](Index numEdges, Tile tile, int size) {
+        append(_faceRuns, {cFace, cFace + numEdges, tile, size});
+        cFace += numEdges;
+    };
+    Index const *boundary = parent.boundaryEdges.begin();
+    for (Run const &run : _edgeRuns) {
+        Index begin = run.begin;
+        for (; boundary != parent.boundaryEdges.end() && *boundary < run.end; ++boundary) {
+            add(*boundary - begin, run.tile, HexIndexing::kNumEFaceCorners);
+            if (!parent.IsSharpBoundaryB(*boundary)) {
+                add(1, run.tile, HexIndexing::kNumBoundaryEFaceCorners);
+            }
+            begin = *boundary + 1;
+        }
+        add(run.end - begin, run.tile, HexIndexing::kNumEFaceCorners);
+    }
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

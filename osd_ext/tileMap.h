@@ -18,10 +18,28 @@ namespace OsdExt::internal {
 ///
 /// They are made of the faces of a level, as soon as there are enough of them; the levels before
 /// are one tile each.  From then on each component is where its parent is.
+///
+/// Components are told in runs.  In hexagonal levels these follow from the numbering: time and
+/// memory are those of the faces along the borders between tiles, not of all.
 class TileMap {
 public:
+    using Index = Far::Index;
     using Tile = std::uint16_t;
     static constexpr Tile kNoTile = 0xffff;
+
+    /// Components [begin, end) in one tile.
+    struct Run {
+        Index begin;
+        Index end;
+        Tile tile;
+    };
+    /// Faces [begin, end) in one tile and of one size.
+    struct FaceRun {
+        Index begin;
+        Index end;
+        Tile tile;
+        int size;
+    };
 
     /// Those of level 0, whose faces are taken for near in space when they are near in their order.
     TileMap(FarExt::TopologyLevel const &base, int numTiles);
@@ -31,29 +49,53 @@ public:
 
     int GetNumTiles() const { return _faceOrder.empty() ? _numTiles : 1; }
 
-    /// By face of the level; ascending in space.
-    std::vector<Tile> const &GetTilesOfFaces() const { return _tilesOfFaces; }
+    /// All faces of the level, ascending; tiles ascend in space.
+    std::vector<FaceRun> const &GetFaceRuns() const { return _faceRuns; }
 
     /// @name The tile that a vertex lies inside
     /// kNoTile for some or all of the vertices whose faces are in several.  The first vertices of
-    /// the level have a tile each, the F-vertices behind them share that of the parent's face.
+    /// the level have runs of their own, the F-vertices behind them share those of their faces.
     /// @{
-    std::vector<Tile> const &GetTilesOfFirstVertices() const { return _tilesOfFirstVertices; }
-    /// By face of the levels from which the other vertices come, the newest last: that many levels
-    /// before this one.
-    std::vector<std::vector<Tile>> const &GetTilesOfFVertices() const { return _tilesOfFVertices; }
+    std::vector<Run> const &GetFirstVertexRuns() const { return _firstVertexRuns; }
+    /// All faces of the levels from which the other vertices come, the newest last: that many
+    /// levels before this one.
+    std::vector<std::vector<FaceRun>> const &GetFVertexRuns() const { return _fVertexRuns; }
     /// @}
 
 private:
+    using LevelTopology = FarExt::internal::LevelTopology;
+
+    /// An edge of a face that is in another tile than the face.
+    struct Border {
+        Index face;
+        int local; ///< place of the edge in the face
+        bool isSideA;
+        Tile faceTile;
+        Tile edgeTile;
+    };
+
     void refineOrder(FarExt::TopologyLevel const &parent);
-    void makeTiles(FarExt::TopologyLevel const &level);
-    void makeVertexTiles(FarExt::TopologyLevel const &level);
+    void makeTiles(LevelTopology const &level);
+    void makeRuns(LevelTopology const &level, std::vector<Tile> const &tilesOfFaces);
+    std::vector<Tile> getTilesOfFaces() const;
+    std::vector<Tile> refineTilesOfFaces(FarExt::TopologyLevel const &parent) const;
+    Tile findTile(Index face) const;
+
+    void findEdges(LevelTopology const &level);
+    void refineEdges(LevelTopology const &parent);
+    std::vector<Run> refineBorders(LevelTopology const &parent);
+    std::vector<FaceRun> getInnerFaceRuns() const;
+    void addEFaces(LevelTopology const &parent);
 
     int _numTiles;
-    std::vector<Far::Index> _faceOrder; ///< until there are tiles
-    std::vector<Tile> _tilesOfFaces;
-    std::vector<Tile> _tilesOfFirstVertices;
-    std::vector<std::vector<Tile>> _tilesOfFVertices;
+    std::vector<Index> _faceOrder; ///< until there are tiles
+    std::vector<FaceRun> _faceRuns;
+    std::vector<Run> _firstVertexRuns;
+    std::vector<std::vector<FaceRun>> _fVertexRuns;
+
+    // Of the level before.
+    std::vector<Run> _edgeRuns;
+    std::vector<Border> _borders; ///< ascending
 };
 
 } // namespace OsdExt::internal

@@ -413,6 +413,20 @@ TEST(RefinementEvaluator, EqualsPrimvarRefinerInManyTiles) {
     }
 }
 
+// Where tiles begin anew in each level, or once more after the first.
+TEST(RefinementEvaluator, EqualsPrimvarRefinerInManyTilesOfOtherSchemes) {
+    FarExt::SchemeOptions dooSabin;
+    dooSabin.schemeType = FarExt::SchemeType::DooSabin;
+    FarExt::SchemeOptions triHexFirst;
+    triHexFirst.triHexFirst = true;
+    for (FarExt::SchemeOptions const schemeOptions : {dooSabin, triHexFirst}) {
+        auto const refiner = createRefiner(GetShape("prism64"), schemeOptions,
+                                           GetTestLevel(GetShape("prism64"), 6, 600000));
+        ASSERT_GT(refiner->GetLevel(refiner->GetMaxLevel()).GetNumFaceVertices(), 150000);
+        ASSERT_NO_FATAL_FAILURE(expectEqualsPrimvarRefiner(*refiner));
+    }
+}
+
 TEST(RefinementEvaluator, HasTheSameBitsInEveryLayout) {
     struct Case {
         Shape const &shape;

@@ -91,6 +91,9 @@ bool HasThreads() { return OsdExt::OmpEvaluator::IsParallel(); }
 void SetNumThreads([[maybe_unused]] int numThreads) {
 #ifdef _OPENMP
     omp_set_num_threads(numThreads);
+    // Starts or wakes them, which the first contestant alone would pay for.
+#pragma omp parallel
+    {}
 #endif
 }
 
