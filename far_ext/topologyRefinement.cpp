@@ -782,7 +782,7 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
     Index const *const pEdgesOfThree = pEdges + numOfAnyValence;
     WriteArray<kValence>(faces + numOfAnyValence, end - endAnyValence, _pastCaches,
                          [=](Index *ofVertex, Index i) {
-                             Index const *const edges = pEdgesOfThree + kValence * i;
+                             Index const *const edges = pEdgesOfThree + kValence * std::size_t(i);
                              WritePair(ofVertex, eFaceOf(edges[1]), eFaceOf(edges[2]));
                              ofVertex[2] = eFaceOf(edges[0]);
                          });
