@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -23,6 +24,12 @@ constexpr std::size_t kBlockSize = 12 * kCacheLine;
 void CopyPastCaches(void *dst, void const *src, std::size_t bytes);
 /// Such copies may be late: to be called before other threads are told of them.
 void FinishCopiesPastCaches();
+
+/// Writes two entries by one store, which compilers do not always make of two.
+inline void WritePair(Far::Index *entries, Far::Index first, Far::Index second) {
+    Far::Index const pair[2] = {first, second};
+    std::memcpy(entries, pair, sizeof(pair));
+}
 
 /// \brief Writes count groups of SIZE entries to \p array, from front to back: calls
 /// fill(entries, i) for i = 0 ... count - 1, which writes group i to entries.

@@ -36,7 +36,10 @@ struct SidesOfCorners {
 
 // Bytes of a level above which it is written past the caches: less than most caches have, but they
 // hold its parent as well.  Not on new pages: the system clears them in the caches.
-constexpr std::size_t kCacheSize = std::size_t(16) << 20;
+//
+// More for levels with all relations, which are read again when they are refined.
+constexpr std::size_t kCacheSizeOfFaces = std::size_t(16) << 20;
+constexpr std::size_t kCacheSizeOfAll = std::size_t(32) << 20;
 
 // An edge as one of its faces sees it.
 struct FaceEdge {
@@ -144,7 +147,8 @@ public:
     Refinement(LevelTopology const &parent, LevelTopology &child)
         : _p(parent), _c(child), _indexing(parent.ChildIndexing()),
           _numVertsOfAnyValence(getNumVertsOfAnyValence(parent)),
-          _pastCaches(child.memory.size() > kCacheSize &&
+          _pastCaches(child.memory.size() >
+                          (child.hasFullTopology ? kCacheSizeOfAll : kCacheSizeOfFaces) &&
                       IsResident(child.memory.data(), child.memory.size())) {}
 
     // Face-vertices alone.
@@ -411,12 +415,13 @@ void Refinement::fillEFaces(Index begin, Index end, Index numBoundaryBefore, GET
     WriteArray<kSize>(&_c.faceVerts[cFirst], end - begin, _pastCaches, [=](Index *verts, Index i) {
         SideCorners const sides = getSides(begin + i);
         std::size_t const k = 2 * std::size_t(begin + i);
+        // From the first place to the last: stores to one cache line in a row cost less.
         verts[kEFaceSideA.startVertex] = indexing.GetVertexChildVertex(pVerts[k]);
-        verts[kEFaceSideA.startFVertex] = indexing.GetCornerChildVertex(sides.startA);
-        verts[kEFaceSideA.endFVertex] = indexing.GetCornerChildVertex(sides.endA);
-        verts[kEFaceSideB.startVertex] = indexing.GetVertexChildVertex(pVerts[k + 1]);
-        verts[kEFaceSideB.startFVertex] = indexing.GetCornerChildVertex(sides.startB);
         verts[kEFaceSideB.endFVertex] = indexing.GetCornerChildVertex(sides.endB);
+        verts[kEFaceSideB.startFVertex] = indexing.GetCornerChildVertex(sides.startB);
+        verts[kEFaceSideB.startVertex] = indexing.GetVertexChildVertex(pVerts[k + 1]);
+        verts[kEFaceSideA.endFVertex] = indexing.GetCornerChildVertex(sides.endA);
+        verts[kEFaceSideA.startFVertex] = indexing.GetCornerChildVertex(sides.startA);
     });
     if constexpr (FULL) {
         Index *const edgesOfRun = &_c.faceEdges[cFirst];
@@ -660,12 +665,11 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
 
     std::size_t const fEdges = 2 * std::size_t(indexing.GetCornerChildEdge(pFirst));
     writeClosedForm(kTwo, &_c.edgeVerts[fEdges], [=](Index *verts, ClosedCorner const &corner) {
-        verts[0] = indexing.GetCornerChildVertex(corner.corner);
-        verts[1] = indexing.GetCornerChildVertex(corner.next);
+        WritePair(verts, indexing.GetCornerChildVertex(corner.corner),
+                  indexing.GetCornerChildVertex(corner.next));
     });
     write(kTwo, &_c.edgeFaces[fEdges], [=](Index *faces, ClosedCorner const &corner) {
-        faces[0] = indexing.GetFaceChildFace(corner.face);
-        faces[1] = eFaceOf(pEdges[corner.corner]);
+        WritePair(faces, indexing.GetFaceChildFace(corner.face), eFaceOf(pEdges[corner.corner]));
     });
     write(kTwo, &_c.edgeFaceLocals[fEdges], [](LocalIndex *locals, ClosedCorner const &corner) {
         locals[0] = corner.local;
@@ -675,12 +679,11 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
     // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
     std::size_t const spokes = 2 * std::size_t(indexing.GetCornerChildSpoke(pFirst));
     write(kTwo, &_c.edgeVerts[spokes], [=](Index *verts, ClosedCorner const &corner) {
-        verts[0] = indexing.GetVertexChildVertex(pVerts[corner.corner]);
-        verts[1] = indexing.GetCornerChildVertex(corner.corner);
+        WritePair(verts, indexing.GetVertexChildVertex(pVerts[corner.corner]),
+                  indexing.GetCornerChildVertex(corner.corner));
     });
     write(kTwo, &_c.edgeFaces[spokes], [=](Index *faces, ClosedCorner const &corner) {
-        faces[0] = eFaceOf(pEdges[corner.prev]);
-        faces[1] = eFaceOf(pEdges[corner.corner]);
+        WritePair(faces, eFaceOf(pEdges[corner.prev]), eFaceOf(pEdges[corner.corner]));
     });
     write(kTwo, &_c.edgeFaceLocals[spokes], [](LocalIndex *locals, ClosedCorner const &corner) {
         locals[0] = corner.InPlace(kEFaceSideA.endSpoke);
@@ -700,8 +703,7 @@ void Refinement::fillClosedCorners(Index begin, Index end, WRITE write,
               });
     }
     write(kThree, &_c.vertFaces[vertex.face], [=](Index *faces, ClosedCorner const &corner) {
-        faces[0] = indexing.GetFaceChildFace(corner.face);
-        faces[1] = eFaceOf(pEdges[corner.prev]);
+        WritePair(faces, indexing.GetFaceChildFace(corner.face), eFaceOf(pEdges[corner.prev]));
         faces[2] = eFaceOf(pEdges[corner.corner]);
     });
     write(kThree, &_c.vertFaceLocals[vertex.face],
@@ -746,40 +748,52 @@ void Refinement::fillClosedVertices(Index begin, Index end, Index numOpenBefore)
         });
 
     EFaceOfEdge const eFaceOf(_p);
-    Index cFace = vertex.face;
+    // Vertices of any valence: written as if all were edges of one vertex, then the last of each
+    // vertex, if it has any; values of a face-varying channel need not have.
     Index const endAnyValence = std::clamp(_numVertsOfAnyValence, begin, end);
-    for (Index pVert = begin; pVert < endAnyValence; ++pVert) {
-        Index const firstEdge = _p.vertFirstEdge[pVert];
-        Index const lastEdge = _p.vertFirstEdge[pVert + 1] - 1;
-        LocalIndex const *const locals = _p.GetVertexEdgeLocals(pVert);
-        auto const addFace = [&](Index k) {
-            _c.vertFaces[cFace] = eFaceOf(_p.vertEdges[k]);
-            _c.vertFaceLocals[cFace++] =
-                locals[k - firstEdge] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex;
-        };
-        for (Index k = firstEdge; k < lastEdge; ++k) {
-            addFace(k + 1);
+    Index const *const pFirstEdges = &_p.vertFirstEdge[begin];
+    Index const *const pEdges = _p.vertEdges.data() + pFirstEdges[0];
+    Index const numOfAnyValence = pFirstEdges[endAnyValence - begin] - pFirstEdges[0];
+    auto const writeRotated = [=](auto *ofEdges, auto ofEdge) {
+        for (Index i = 1; i < numOfAnyValence; ++i) {
+            ofEdges[i - 1] = ofEdge(i);
         }
-        addFace(firstEdge);
+        for (Index i = 0; i < endAnyValence - begin; ++i) {
+            if (pFirstEdges[i] < pFirstEdges[i + 1]) {
+                ofEdges[pFirstEdges[i + 1] - 1 - pFirstEdges[0]] =
+                    ofEdge(pFirstEdges[i] - pFirstEdges[0]);
+            }
+        }
+    };
+    Index *const faces = _c.vertFaces.data() + vertex.face;
+    LocalIndex *const locals = _c.vertFaceLocals.data() + vertex.face;
+    writeRotated(faces, [=](Index i) { return eFaceOf(pEdges[i]); });
+    if (_p.isHexagonal) {
+        std::fill_n(locals, numOfAnyValence, kEFaceSideA.startVertex);
+    } else {
+        LocalIndex const *const pLocals = _p.vertEdgeLocals.data() + pFirstEdges[0];
+        writeRotated(locals, [=](Index i) {
+            return pLocals[i] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex;
+        });
     }
     // V-vertices of the parent are the first vertex of three edges, F-vertices the first, second
     // and second.
     constexpr int kValence = 3;
-    Index const *const pEdges = _p.vertEdges.data() + _p.vertFirstEdge[endAnyValence];
-    WriteArray<kValence>(_c.vertFaces.data() + cFace, end - endAnyValence, _pastCaches,
-                         [=](Index *faces, Index i) {
-                             for (int k = 0; k < kValence; ++k) {
-                                 faces[k] = eFaceOf(pEdges[kValence * i + (k + 1) % kValence]);
-                             }
+    Index const *const pEdgesOfThree = pEdges + numOfAnyValence;
+    WriteArray<kValence>(faces + numOfAnyValence, end - endAnyValence, _pastCaches,
+                         [=](Index *ofVertex, Index i) {
+                             Index const *const edges = pEdgesOfThree + kValence * std::size_t(i);
+                             WritePair(ofVertex, eFaceOf(edges[1]), eFaceOf(edges[2]));
+                             ofVertex[2] = eFaceOf(edges[0]);
                          });
     Index const endVVertices =
         _p.isHexagonal ? std::clamp(_p.parent->numVertices, endAnyValence, end) : end;
     Index const numVVertices = endVVertices - endAnyValence;
-    LocalIndex *const locals = _c.vertFaceLocals.data() + cFace;
-    WriteArray<kValence>(locals, numVVertices, _pastCaches, [](LocalIndex *ofVertex, Index) {
+    LocalIndex *const localsOfThree = locals + numOfAnyValence;
+    WriteArray<kValence>(localsOfThree, numVVertices, _pastCaches, [](LocalIndex *ofVertex, Index) {
         ofVertex[0] = ofVertex[1] = ofVertex[2] = kEFaceSideA.startVertex;
     });
-    WriteArray<kValence>(locals + kValence * std::size_t(numVVertices), end - endVVertices,
+    WriteArray<kValence>(localsOfThree + kValence * std::size_t(numVVertices), end - endVVertices,
                          _pastCaches, [](LocalIndex *ofVertex, Index) {
                              ofVertex[0] = ofVertex[1] = kEFaceSideA.endVertex;
                              ofVertex[2] = kEFaceSideA.startVertex;
