@@ -56,9 +56,7 @@ void SupportUnion::Form(Support const *supports, int numSupports) {
     for (Index source : _base) {
         _stamp[source] = _lastStamp;
     }
-    if (_added.size() < numSources) {
-        _added.resize(2 * numSources);
-    }
+    _added.Resize(numSources);
     Index *const added = _added.data();
     unsigned *const stamp = _stamp.data();
     int numAdded = 0;
@@ -112,18 +110,16 @@ StepSupports StepSupports::MakeSources(std::vector<Index> const &sources) {
     return result;
 }
 
-Support StepSupports::OfVVertex(Index vVertex, std::vector<Index> &scratch) const {
+Support StepSupports::OfVVertex(Index vVertex, Buffer<Index> &scratch) const {
     Support const base = _ofVertices[vVertex];
     if (_added.empty() || _added[vVertex].size() == 0) {
         return base;
     }
     Support const added = _added[vVertex];
     int const size = base.size() + added.size();
-    if (scratch.size() <= std::size_t(size)) {
-        scratch.resize(2 * std::size_t(size));
-    }
+    scratch.Resize(std::size_t(size) + 1);
     scratch[0] = size;
-    std::merge(base.begin(), base.end(), added.begin(), added.end(), scratch.begin() + 1);
+    std::merge(base.begin(), base.end(), added.begin(), added.end(), scratch.data() + 1);
     return Support(scratch.data());
 }
 

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_STENCIL_SUPPORTS_H
 #define OPENSUBDIVHEX_FAR_EXT_STENCIL_SUPPORTS_H
 
+#include "buffer.h"
 #include "stencilStep.h"
 
 #include <algorithm>
@@ -76,7 +77,7 @@ public:
 private:
     Support _base;
     int _numAdded = 0;
-    std::vector<Index> _added;
+    Buffer<Index> _added;         ///< shares no cache line with that of another thread
     std::vector<unsigned> _stamp; ///< by source: _lastStamp for those in the union
     unsigned _lastStamp = 0;
     SupportArena::Writer _writer;
@@ -109,7 +110,7 @@ public:
     /// Of all rows; for a step with keepsVertices.
     std::vector<Support> const &OfVertices() const { return _ofVertices; }
     /// Of a V-vertex; valid until \p scratch is used again.
-    Support OfVVertex(Index vVertex, std::vector<Index> &scratch) const;
+    Support OfVVertex(Index vVertex, Buffer<Index> &scratch) const;
 
     /// The length of parallel ranges of faces and V-vertices: their stencils take some hundred
     /// nanoseconds each, and their weights fit into the second cache.

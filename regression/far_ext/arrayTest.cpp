@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #ifdef __GLIBC__
@@ -21,6 +23,7 @@ using FarExt::internal::Buffer;
 using FarExt::internal::IsResident;
 using FarExt::internal::kCacheLine;
 using FarExt::internal::PlaceArrays;
+using FarExt::internal::ResizeLarge;
 using FarExt::internal::WriteArray;
 using FarExt::internal::WriteSequence;
 
@@ -33,6 +36,24 @@ TEST(Buffer, KeepsItsMemoryUntilItNeedsMore) {
     EXPECT_EQ(buffer.size(), 10u);
     buffer.Resize(100);
     EXPECT_EQ(buffer.data(), memory);
+}
+
+// One that grew without being written is a vector like any other.
+TEST(ResizeLarge, MakesAVectorOfExactSize) {
+    for (std::size_t size : {std::size_t(0), std::size_t(1), std::size_t(1000000)}) {
+        std::vector<int> array;
+        ResizeLarge(array, size);
+        ASSERT_EQ(array.size(), size);
+        EXPECT_EQ(array.capacity(), size);
+        EXPECT_EQ(std::size_t(array.end() - array.begin()), size);
+        std::iota(array.begin(), array.end(), 0);
+        std::vector<int> const copy = array;
+        ASSERT_EQ(copy.size(), size);
+        array.push_back(-1);
+        ASSERT_EQ(array.size(), size + 1);
+        EXPECT_TRUE(std::equal(copy.begin(), copy.end(), array.begin()));
+        EXPECT_EQ(array.back(), -1);
+    }
 }
 
 TEST(Buffer, IsAlignedToCacheLines) {

@@ -48,7 +48,8 @@ double GetRatio(Cost const &own, Cost const &peer) {
     return GetMedian(ratios);
 }
 
-std::vector<Cost> RunContest(benchmark::State &state, std::vector<Contestant> const &contestants) {
+std::vector<Cost> RunContest(benchmark::State &state, std::vector<Contestant> const &contestants,
+                             bool returnsMemory) {
     std::vector<Cost> costs;
     std::vector<double> numItems;
     std::vector<double> movedBytes;
@@ -70,6 +71,10 @@ std::vector<Cost> RunContest(benchmark::State &state, std::vector<Contestant> co
     for ([[maybe_unused]] auto const &iteration : state) {
         double turnSeconds = 0;
         for (std::size_t i = 0; i < contestants.size(); ++i) {
+            if (returnsMemory) {
+                measureSeconds(contestants[i]);
+                callIfThere(contestants[i].release);
+            }
             double const seconds = measureSeconds(contestants[i]);
             callIfThere(contestants[i].release);
             costs[i].nanoseconds.push_back(seconds / numItems[i] * 1e9);

@@ -42,9 +42,15 @@ double GetRatio(Cost const &own, Cost const &peer);
 /// \brief Runs the contestants in turns, so that all of them see the same machine: once to validate
 /// what they make and to touch their memory, then once in each iteration of \p state.
 ///
+/// \param returnsMemory  whether the work takes its memory from the system and gives it back.  Then
+///                       each runs once more before it is timed, else it would be timed with what
+///                       the one before it gave back: a virtual machine hands free pages to its
+///                       host, and to have them again costs more than the work.
+///
 /// The benchmark must be registered with UseManualTime(); its time is that of a whole turn, and
 /// each contestant has a counter with its median in nanoseconds per item.
-std::vector<Cost> RunContest(benchmark::State &state, std::vector<Contestant> const &contestants);
+std::vector<Cost> RunContest(benchmark::State &state, std::vector<Contestant> const &contestants,
+                             bool returnsMemory);
 
 /// Whether the library works with several threads.
 bool HasThreads();

@@ -58,6 +58,7 @@ int main(int argc, char **argv) {
     Environment environment = DescribeEnvironment();
     environment.emplace_back("command", "`" + command + "`");
     Suite suite(options);
+    AddTablePeakBenchmarks(suite);
     AddCopyBenchmarks(suite);
     AddPhaseBenchmarks(suite);
     AddTopologyBenchmarks(suite);

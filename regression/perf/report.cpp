@@ -299,10 +299,12 @@ benchmark run one after the other. The verdict is that of the worst of the meshe
 least* or *below*. Bounds with `<=` are limits, and figures in brackets are the peer's own.
 
 Sizes: small is about 100,000 vertices at the last level, large 1 to 2 million. Memory:
-*default* is malloc as it is: arrays beyond 32 MiB get fresh pages in each turn. *warm* is a heap
-that keeps what was freed (no mmap, no trimming), so that pages have been touched before. *resident*
-means that the work takes no memory: sources, tables and results have been touched before. Each turn
-has a new object, for own and peer alike.
+*default* is malloc as it is: arrays beyond 32 MiB get fresh pages in each turn. Each contestant
+then runs twice and the second time counts, so that its pages are those it has just given back: a
+virtual machine hands free pages to its host, and who comes behind a peer that used more of them
+would wait for them. *warm* is a heap that keeps what was freed (no mmap, no trimming), so that
+pages have been touched before. *resident* means that the work takes no memory: sources, tables and
+results have been touched before. Each turn has a new object, for own and peer alike.
 
 )";
 

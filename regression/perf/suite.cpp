@@ -66,7 +66,8 @@ void Suite::AddContest(Setting const &setting, std::function<Contest()> const &m
     int const numTurns = _options.isQuick ? 1 : isSmall ? 3 * _options.numTurns : _options.numTurns;
     add(setting, numTurns, [this, setting, makeContest](benchmark::State &state) {
         Contest const contest = makeContest();
-        std::vector<Cost> costs = RunContest(state, contest.contestants);
+        std::vector<Cost> costs =
+            RunContest(state, contest.contestants, setting.memory == Memory::Default);
         for (Pairing const &pairing : contest.pairings) {
             std::size_t const peer = *std::min_element(
                 pairing.peers.begin(), pairing.peers.end(), [&](std::size_t a, std::size_t b) {

@@ -117,6 +117,7 @@ private:
 
 /// @name The benchmarks, added to a suite
 /// @{
+void AddTablePeakBenchmarks(Suite &suite);
 void AddCopyBenchmarks(Suite &suite);
 void AddPhaseBenchmarks(Suite &suite);
 void AddTopologyBenchmarks(Suite &suite);
