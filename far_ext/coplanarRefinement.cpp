@@ -185,28 +185,29 @@ bool TopologyRefiner::refineCoplanar(REAL const *restPositions, CoplanarOptions 
     if (!result.IsOk()) {
         return internal::Report(result, status);
     }
-    Unrefine();
-    std::vector<internal::SizeChecker> checkers = makeSizeCheckers();
-    for (int level = 1; level <= options.refinementLevel; ++level) {
-        internal::PolygonRules rules;
-        rules.flatEdges = findFlatEdges(GetLevel(level - 1), positions, options.angleTolerance);
-        rules.closeGaps = options.closeGaps;
-        bool const isLast = level == options.refinementLevel;
-        result =
-            refineToPolygons(level, !isLast || options.fullTopologyInLastLevel, rules, checkers);
-        if (!result.IsOk()) {
-            Unrefine();
-            return internal::Report(result, status);
+    result = replaceLevels([&] {
+        std::vector<internal::SizeChecker> checkers = makeSizeCheckers();
+        for (int level = 1; level <= options.refinementLevel; ++level) {
+            internal::PolygonRules rules;
+            rules.flatEdges = findFlatEdges(GetLevel(level - 1), positions, options.angleTolerance);
+            rules.closeGaps = options.closeGaps;
+            bool const isLast = level == options.refinementLevel;
+            Status levelStatus = refineToPolygons(level, !isLast || options.fullTopologyInLastLevel,
+                                                  rules, checkers);
+            if (!levelStatus.IsOk()) {
+                return levelStatus;
+            }
+            setNumLevels(level + 1);
+            if (!isLast) {
+                std::vector<Vector> refined(GetLevel(level).GetNumVertices());
+                PrimvarRefinerReal<double>(*this).Interpolate(level, positions, refined);
+                positions.swap(refined);
+            }
         }
-        setNumLevels(level + 1);
-        if (!isLast) {
-            std::vector<Vector> refined(GetLevel(level).GetNumVertices());
-            PrimvarRefinerReal<double>(*this).Interpolate(level, positions, refined);
-            positions.swap(refined);
-        }
-    }
-    _isUniform = false;
-    return internal::Report(Status(), status);
+        _isUniform = false;
+        return Status();
+    });
+    return internal::Report(result, status);
 }
 
 bool TopologyRefiner::RefineCoplanar(float const *restPositions, CoplanarOptions options,

@@ -218,29 +218,30 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
     if (!result.IsOk()) {
         return internal::Report(result, status);
     }
-    Unrefine();
-    std::vector<SizeChecker> checkers = makeSizeCheckers();
-    for (int level = 1; level <= refinementLevel && result.IsOk(); ++level) {
-        bool const fullTopology = level < refinementLevel || options.fullTopologyInLastLevel;
-        internal::PolygonRules rules;
-        rules.scheme = _schemeOptions.GetSchemeOfLevel(level);
-        if (level == 2 && rules.scheme == SchemeType::Hexagonal) {
-            // All sizes are known by now, of borders too.
-            result = checkHexagonalSizes(*_topologies[1], checkers, refinementLevel);
-            if (!result.IsOk()) {
-                break;
+    result = replaceLevels([&] {
+        std::vector<SizeChecker> checkers = makeSizeCheckers();
+        for (int level = 1; level <= refinementLevel; ++level) {
+            bool const fullTopology = level < refinementLevel || options.fullTopologyInLastLevel;
+            internal::PolygonRules rules;
+            rules.scheme = _schemeOptions.GetSchemeOfLevel(level);
+            bool const isHexagonal = rules.scheme == SchemeType::Hexagonal;
+            Status levelStatus;
+            if (level == 2 && isHexagonal) {
+                // All sizes are known by now, of borders too.
+                levelStatus = checkHexagonalSizes(*_topologies[1], checkers, refinementLevel);
+            }
+            if (levelStatus.IsOk()) {
+                levelStatus = isHexagonal ? refineHexagonally(level, fullTopology, checkers)
+                                          : refineToPolygons(level, fullTopology, rules, checkers);
+            }
+            if (!levelStatus.IsOk()) {
+                return levelStatus;
             }
         }
-        result = rules.scheme == SchemeType::Hexagonal
-                     ? refineHexagonally(level, fullTopology, checkers)
-                     : refineToPolygons(level, fullTopology, rules, checkers);
-    }
-    if (result.IsOk()) {
         setNumLevels(refinementLevel + 1);
         _uniformOptions = options;
-    } else {
-        Unrefine();
-    }
+        return Status();
+    });
     return internal::Report(result, status);
 }
 

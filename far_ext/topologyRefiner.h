@@ -75,7 +75,8 @@ public:
     ///          StatusCode::TooLarge, which names the level and the count, when a size or the sum
     ///          of a size over the levels exceeds 2^31 - 1.  No memory is taken then and the
     ///          levels are as before.  With borders the sizes of a tri-hex step and what follows
-    ///          are known only once it is made: there the base alone is left.
+    ///          are known only once it is made: there the base alone is left, as it is when
+    ///          std::bad_alloc is thrown.
     bool RefineUniform(UniformOptions options, Status *status = nullptr);
 
     /// The options of the last successful RefineUniform; of level 0 after RefineCoplanar and
@@ -108,8 +109,8 @@ public:
     ///          between 0 and 180, a coordinate that is not finite (its vertex is named) or a null
     ///          pointer; Unsupported for other schemes than Hexagonal; TooLarge, as RefineUniform,
     ///          for sizes that are too large whichever edges are flat; the levels are then as
-    ///          before.  Other sizes are known only once the level before is made: False with
-    ///          TooLarge, and the base alone is left.
+    ///          before.  Other sizes are known only once the level before is made: false with
+    ///          TooLarge, and the base alone is left, as it is when std::bad_alloc is thrown.
     bool RefineCoplanar(float const *restPositions, CoplanarOptions options,
                         Status *status = nullptr);
     bool RefineCoplanar(double const *restPositions, CoplanarOptions options,
@@ -133,6 +134,21 @@ private:
                             std::vector<internal::SizeChecker> &checkers);
     template <typename REAL>
     bool refineCoplanar(REAL const *restPositions, CoplanarOptions const &options, Status *status);
+    /// Calls refine(), which makes levels; when it fails or throws, the base alone is left.
+    template <typename REFINE>
+    Status replaceLevels(REFINE refine) {
+        Unrefine();
+        try {
+            Status status = refine();
+            if (!status.IsOk()) {
+                Unrefine();
+            }
+            return status;
+        } catch (...) {
+            Unrefine();
+            throw;
+        }
+    }
     void setNumLevels(int numLevels);
     int total(int (TopologyLevel::*count)() const) const;
 
