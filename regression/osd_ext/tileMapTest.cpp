@@ -19,7 +19,7 @@ using Tile = TileMap::Tile;
 
 namespace {
 
-constexpr int kNumTiles = 7;
+constexpr int kNumsOfTiles[] = {2, 7};
 constexpr int kManyFaces = 16000; ///< of which most are no longer beside another tile
 
 std::vector<Tile> getTilesOfFaces(TopologyLevel const &level, TileMap const &tileMap) {
@@ -85,17 +85,19 @@ void expectTiles(Shape const &shape, Sdc::Options sdcOptions, FarExt::SchemeOpti
     FarExt::TopologyRefiner::UniformOptions uniform(GetTestLevel(shape, 6, 200000));
     uniform.fullTopologyInLastLevel = true;
     ASSERT_TRUE(refiner && refiner->RefineUniform(uniform));
-    TileMap tileMap(refiner->GetLevel(0), kNumTiles);
-    for (int level = 0; level <= refiner->GetMaxLevel(); ++level) {
-        if (level > 0) {
-            tileMap.Refine(refiner->GetLevel(level - 1));
-        }
-        TopologyLevel const &mesh = refiner->GetLevel(level);
-        int const numInside = expectInside(mesh, tileMap);
-        ASSERT_FALSE(testing::Test::HasFailure()) << "level " << level;
-        if (mesh.GetNumFaces() > kManyFaces) {
-            EXPECT_EQ(tileMap.GetNumTiles(), kNumTiles);
-            EXPECT_GT(numInside, mesh.GetNumVertices() / 2);
+    for (int numTiles : kNumsOfTiles) {
+        TileMap tileMap(refiner->GetLevel(0), numTiles);
+        for (int level = 0; level <= refiner->GetMaxLevel(); ++level) {
+            if (level > 0) {
+                tileMap.Refine(refiner->GetLevel(level - 1));
+            }
+            TopologyLevel const &mesh = refiner->GetLevel(level);
+            int const numInside = expectInside(mesh, tileMap);
+            ASSERT_FALSE(testing::Test::HasFailure()) << numTiles << " tiles, level " << level;
+            if (mesh.GetNumFaces() > kManyFaces) {
+                EXPECT_EQ(tileMap.GetNumTiles(), numTiles);
+                EXPECT_GT(numInside, mesh.GetNumVertices() / 2);
+            }
         }
     }
 }
