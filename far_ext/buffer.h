@@ -37,7 +37,8 @@ void ResizeLarge(std::vector<T> &array, std::size_t size) {
     PrepareArray(array.data(), size * sizeof(T));
 #if defined(__GLIBCXX__) && !defined(_GLIBCXX_DEBUG) && !defined(_GLIBCXX_SANITIZE_VECTOR)
     // resize() would write all elements once more: benchmark table/quad/large/warm with 2 threads
-    // is 1.25 times as fast without.  A C cast may go to a base class that is not accessible.
+    // is 1.25 times as fast without.  Folly's resizeWithoutInitialization() relies on the same two
+    // members.  A C cast may go to a base class that is not accessible.
     auto &memory = (std::_Vector_base<T, std::allocator<T>> &)array;
     memory._M_impl._M_finish = memory._M_impl._M_start + size;
 #else
