@@ -236,13 +236,13 @@ void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMa
     Elements<float> const dst = task.FVertices();
     LevelTopology const &parent = *task.step->parent;
     Index corner = parent.faceFirstCorner[std::size_t(run.begin)];
-    Index const end = corner + SIZE * (run.end - run.begin);
+    Index const end = parent.faceFirstCorner[std::size_t(run.end)];
     if (run.begin < GetNumFFaces(parent)) {
-        Index const firstVertex = parent.parent->GetCornerChildVertex(0);
+        HexIndexing const indexing = parent.parent->ChildIndexing();
         for (; corner < end; corner += SIZE) {
             prefetchAhead(ACCESS::At(dst, corner));
             refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(
-                mask, src, ConsecutiveVertices{firstVertex + corner}, dst, corner);
+                mask, src, ConsecutiveVertices{indexing.GetCornerChildVertex(corner)}, dst, corner);
         }
     } else {
         Index const *verts = parent.faceVerts.data() + corner;
@@ -294,12 +294,12 @@ inline void refineFVerticesOf(RefinementTask const &task, LevelTopology const &l
     Index const *const firstCorner = level.faceFirstCorner.data() + run.begin;
     int const size = SIZE != 0 ? SIZE : firstCorner[1] - firstCorner[0];
     Packet const inverse = spread(task.step->masks.verticesInverse[kFVertexFaces]);
-    Index const end = *firstCorner + size * (run.end - run.begin);
+    Index const end = firstCorner[run.end - run.begin];
     Elements<float const> const src = task.src;
     Elements<float> const dst = task.dst;
-    Index const firstVert = level.GetCornerChildVertex(0);
+    HexIndexing const indexing = level.ChildIndexing();
     for (Index first = *firstCorner; first < end; first += size) {
-        Index const vert = firstVert + first;
+        Index const vert = indexing.GetCornerChildVertex(first);
         prefetchAhead(ACCESS::At(dst, vert));
         for (int i = 0; i < size; ++i) {
             int const prev = (i == 0 ? size : i) - 1;
@@ -318,18 +318,16 @@ template <class ACCESS>
 class EFacePoints {
 public:
     EFacePoints(RefinementTask const &task, LevelTopology const &before)
-        : _points(asConst(task.FVertices())) {
-        _points.data = ACCESS::At(_points, before.ChildIndexing().GetEdgeChildFirstCorner(0, 0, 0));
-    }
+        : _points(asConst(task.FVertices())), _indexing(before.ChildIndexing()) {}
 
     // That of corner \p local of the E-face of \p edge.
-    auto Load(std::ptrdiff_t edge, int local) const {
-        float const *const points = ACCESS::At(_points, HexIndexing::kNumEFaceCorners * edge);
-        return ACCESS::Load({points, _points.stride}, local);
+    auto Load(Index edge, int local) const {
+        return ACCESS::Load(_points, _indexing.GetEdgeChildFirstCorner(edge, 0, 0) + local);
     }
 
 private:
-    Elements<float const> _points; // of the E-faces
+    Elements<float const> const _points;
+    HexIndexing const _indexing;
 };
 
 // Which side of its edge a face is, by corner: F-faces and E-faces of a hexagonal step.

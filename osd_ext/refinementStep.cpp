@@ -361,10 +361,10 @@ private:
     }
     void listStartCorners(LevelTopology const &level) {
         _step.startCorners.Resize(std::size_t(level.numCorners));
-        Index const firstVertex = level.GetCornerChildVertex(0);
         ParallelFor(level.numCorners, [&](Index corner) {
             // The last of three faces around an F-vertex is the E-face of the edge from its corner.
-            Index const end = _parent.vertFirstFace[std::size_t(firstVertex + corner) + 1];
+            Index const vert = level.GetCornerChildVertex(corner);
+            Index const end = _parent.vertFirstFace[std::size_t(vert) + 1];
             _step.startCorners[std::size_t(corner)] = _parent.GetVertexCorner(end - 1);
         });
     }

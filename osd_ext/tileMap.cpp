@@ -211,9 +211,9 @@ void TileMap::refineEdges(LevelTopology const &parent) {
     std::vector<Run> cornerRuns;
     for (FaceRun const &run : _faceRuns) {
         if (run.begin < parent.numFaces) {
-            Index const first = parent.faceFirstCorner[std::size_t(run.begin)];
-            Index const numFaces = std::min(run.end, parent.numFaces) - run.begin;
-            append(cornerRuns, {first, first + numFaces * run.size, run.tile});
+            Index const end = std::min(run.end, parent.numFaces);
+            append(cornerRuns, {parent.faceFirstCorner[std::size_t(run.begin)],
+                                parent.faceFirstCorner[std::size_t(end)], run.tile});
         }
     }
     _edgeRuns = cornerRuns;
