@@ -19,6 +19,47 @@ inline Far::Index GetNumParallelRanges(Far::Index count, Far::Index length = kPa
     return count / length + (count % length != 0);
 }
 
+/// \brief Keeps the first of the exceptions that pieces of work throw in threads, to be thrown again
+/// behind the region of OpenMP, which no exception may leave.
+class ExceptionKeeper {
+public:
+    /// Calls work() in any thread.
+    template <typename WORK>
+    void Run(WORK work) noexcept {
+        try {
+            work();
+        } catch (...) {
+#ifdef _OPENMP
+#pragma omp critical(OpenSubdivHexException)
+#endif
+            if (!_exception) {
+                _exception = std::current_exception();
+            }
+        }
+    }
+
+    /// Throws what was kept; outside of all regions.
+    void Rethrow() const {
+        if (_exception) {
+            std::rethrow_exception(_exception);
+        }
+    }
+
+private:
+    std::exception_ptr _exception;
+};
+
+/// Calls work() while no other thread does so; what it throws reaches the caller.
+template <typename WORK>
+void RunExclusively(WORK work) {
+    ExceptionKeeper exceptions;
+#ifdef _OPENMP
+#pragma omp critical(OpenSubdivHexExclusive)
+#endif
+    exceptions.Run(work);
+    exceptions.Rethrow();
+}
+
 /// \brief Calls function(state, begin, end) for ranges that together are 0 ... count, in parallel
 /// with OpenMP where that is there.  Range number i begins at i \p length; each thread has a state
 /// of its own, made by makeState().
@@ -30,43 +71,25 @@ template <typename MAKE_STATE, typename FUNCTION>
 void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function,
                       Far::Index length = kParallelRange) {
     Far::Index const numRanges = GetNumParallelRanges(count, length);
-    // An exception must not leave a parallel region: the first is kept and thrown behind it.
-    std::exception_ptr exception;
-    auto const keepException = [&exception] {
-#ifdef _OPENMP
-#pragma omp critical(OpenSubdivHexParallelException)
-#endif
-        if (!exception) {
-            exception = std::current_exception();
-        }
-    };
+    ExceptionKeeper exceptions;
 #ifdef _OPENMP
 #pragma omp parallel if (numRanges > 4)
 #endif
     {
         std::optional<decltype(makeState())> state;
-        try {
-            state.emplace(makeState());
-        } catch (...) {
-            keepException();
-        }
+        exceptions.Run([&] { state.emplace(makeState()); });
 #ifdef _OPENMP
 #pragma omp for schedule(dynamic, 2)
 #endif
         for (Far::Index range = 0; range < numRanges; ++range) {
             Far::Index const begin = range * length;
-            try {
-                if (state) {
-                    function(*state, begin, begin + std::min(count - begin, length));
-                }
-            } catch (...) {
-                keepException();
+            if (state) {
+                exceptions.Run(
+                    [&] { function(*state, begin, begin + std::min(count - begin, length)); });
             }
         }
     }
-    if (exception) {
-        std::rethrow_exception(exception);
-    }
+    exceptions.Rethrow();
 }
 
 /// Calls function(begin, end) in the same way, for ranges without a state.

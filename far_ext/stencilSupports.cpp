@@ -13,10 +13,7 @@ using Far::Index;
 Index *SupportArena::addBlock(std::size_t size) {
     std::unique_ptr<Index[]> block(new Index[size]);
     Index *const result = block.get();
-#ifdef _OPENMP
-#pragma omp critical(OpenSubdivHexSupportArena)
-#endif
-    _blocks.push_back(std::move(block));
+    RunExclusively([&] { _blocks.push_back(std::move(block)); });
     return result;
 }
 

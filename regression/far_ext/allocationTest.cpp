@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// An allocation that fails in any thread reaches the caller as std::bad_alloc.  A program of its
+// own, since it replaces operator new.
+#include "referenceMatch.h"
+
+#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/parallel.h"
+#include "far_ext/stencilTableFactory.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+namespace {
+
+constexpr std::int64_t kNever = -1;
+
+// Allocations until one fails, counted down by all threads.
+std::atomic<std::int64_t> numBeforeFailure = kNever;
+
+void *allocate(std::size_t size) {
+    if (numBeforeFailure.load() != kNever && numBeforeFailure.fetch_sub(1) == 0) {
+        throw std::bad_alloc();
+    }
+    if (void *const memory = std::malloc(size > 0 ? size : 1)) {
+        return memory;
+    }
+    throw std::bad_alloc();
+}
+
+} // namespace
+
+void *operator new(std::size_t size) { return allocate(size); }
+void *operator new[](std::size_t size) { return allocate(size); }
+void operator delete(void *memory) noexcept { std::free(memory); }
+void operator delete[](void *memory) noexcept { std::free(memory); }
+void operator delete(void *memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void *memory, std::size_t) noexcept { std::free(memory); }
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+void setNumThreads([[maybe_unused]] int numThreads) {
+#ifdef _OPENMP
+    omp_set_num_threads(numThreads);
+#endif
+}
+
+/// Whether work() throws std::bad_alloc when the allocation after \p numBefore others fails.
+template <typename WORK>
+bool failsAt(std::int64_t numBefore, WORK work) {
+    bool fails = false;
+    numBeforeFailure = numBefore;
+    try {
+        work();
+    } catch (std::bad_alloc const &) {
+        fails = true;
+    }
+    numBeforeFailure = kNever;
+    return fails;
+}
+
+/// Lets one allocation of work() after the other fail: all of the first ones, then some.
+template <typename WORK>
+void expectBadAllocs(WORK work) {
+    for (int numThreads : {1, 2}) {
+        setNumThreads(numThreads);
+        work(); // has the threads started
+        std::int64_t numBefore = 0;
+        while (failsAt(numBefore, work)) {
+            numBefore += 1 + numBefore / 100;
+        }
+        EXPECT_GT(numBefore, 20);
+    }
+}
+
+} // namespace
+
+TEST(Allocation, OfStencilTablesMayFail) {
+    auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Average, 5);
+    expectBadAllocs([&] { FarExt::StencilTableFactory::Create(*refiner); });
+}
+
+TEST(Allocation, OfLimitStencilTablesMayFail) {
+    auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Average, 1);
+    FarExt::LimitStencilTableFactory::Options options;
+    options.level = 1;
+    options.generateFaceCenters = true;
+    expectBadAllocs([&] { FarExt::LimitStencilTableFactory::Create(*refiner, options); });
+}
+
+TEST(Allocation, OfWhatRunsExclusivelyMayFail) {
+    std::vector<int> values;
+    EXPECT_THROW(FarExt::internal::ParallelFor(100000,
+                                               [&](Far::Index i) {
+                                                   FarExt::internal::RunExclusively([&] {
+                                                       if (i == 50000) {
+                                                           throw std::bad_alloc();
+                                                       }
+                                                       values.push_back(i);
+                                                   });
+                                               }),
+                 std::bad_alloc);
+    EXPECT_GT(values.size(), 90000);
+    FarExt::internal::RunExclusively([&] { values.clear(); }); // not locked any more
+    EXPECT_TRUE(values.empty());
+}
+
+} // namespace OpenSubdivHex::Regression
