@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -68,69 +69,46 @@ double sum(Vector const &a) { return dot(a, Vector(a.size(), 1.0)); }
 constexpr int kMaxIterations = 20000;
 constexpr double kConverged = 1e-15;
 
+// Calls step(), which returns by how much it changed vectors with \p size elements and of length 1,
+// until that is as little as rounding lets it be.  Returns whether it came so far.
+template <typename STEP>
+bool iterate(int size, STEP step) {
+    for (int i = 0; i < kMaxIterations; ++i) {
+        if (step() < kConverged * size) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Assigns next to vector and returns how far they were apart.
+double replace(Vector &vector, Vector &next) {
+    addScaled(vector, -1, next);
+    double const change = std::sqrt(dot(vector, vector));
+    vector.swap(next);
+    return change;
+}
+
 // A left and a right eigenvector of the same eigenvalue.
 struct Mode {
     Vector left;
     Vector right;
 };
 
-// Removes from a left vector what belongs to the modes.
-void deflate(Vector &left, std::vector<Mode> const &modes) {
-    for (Mode const &mode : modes) {
-        addScaled(left, -dot(left, mode.right), mode.left);
-    }
-}
+// Removes from a left vector what belongs to the mode.
+void deflate(Vector &left, Mode const &mode) { addScaled(left, -dot(left, mode.right), mode.left); }
 
 // The mode of the eigenvalue 1: all rows of a step sum to 1.
-Mode findPointMode(Cycle &cycle, int numVerts) {
-    Mode mode = {Vector(numVerts, 0.0), Vector(numVerts, 1.0)};
+bool findPointMode(Cycle &cycle, int numVerts, Mode &mode) {
+    mode = {Vector(numVerts, 0.0), Vector(numVerts, 1.0)};
     mode.left[0] = 1;
     Vector next;
-    for (int i = 0; i < kMaxIterations; ++i) {
+    return iterate(numVerts, [&] {
         next = mode.left;
         cycle.ApplyLeft(next);
         scale(next, 1 / sum(next));
-        addScaled(mode.left, -1, next);
-        double const change = std::sqrt(dot(mode.left, mode.left));
-        mode.left.swap(next);
-        if (change < kConverged) {
-            break;
-        }
-    }
-    return mode;
-}
-
-// The mode of the largest eigenvalue that modes leave, from start vectors with a part in it.
-Mode findNextMode(Cycle &cycle, std::vector<Mode> const &modes, Vector left, Vector right) {
-    Vector next;
-    double const converged = kConverged * double(left.size());
-    double change = 1;
-    for (int i = 0; i < kMaxIterations && change >= converged; ++i) {
-        deflate(left, modes);
-        normalize(left);
-        next = left;
-        cycle.ApplyLeft(next);
-        deflate(next, modes);
-        normalize(next);
-        addScaled(left, -1, next);
-        change = std::sqrt(dot(left, left));
-        left.swap(next);
-    }
-    change = 1;
-    for (int i = 0; i < kMaxIterations && change >= converged; ++i) {
-        for (Mode const &mode : modes) {
-            addScaled(right, -dot(right, mode.left), mode.right);
-        }
-        normalize(right);
-        next = right;
-        cycle.ApplyRight(next);
-        normalize(next);
-        addScaled(right, -1, next);
-        change = std::sqrt(dot(right, right));
-        right.swap(next);
-    }
-    scale(left, 1 / dot(left, right));
-    return {left, right};
+        return replace(mode.left, next);
+    });
 }
 
 // Where the vertices of a patch of hexagons, of its part on one side of vertex 0, lie in the plane:
@@ -197,11 +175,14 @@ private:
                          level.faceVerts.begin() + level.faceFirstCorner[face + 1]);
         }
         std::rotate(verts.begin(), std::find(verts.begin(), verts.end(), 0), verts.end());
-        // The other end of the last edge is placed later, but at the same place.
+        // The other end of the last edge is placed later, but at the same place.  A vertex is as far
+        // away in a half as in the whole: the layout has the symmetry of the patch.
         int const last = int(verts.size()) - 2;
+        double const angleInFace = item.isHalf ? kPi / 2 : kPi;
         for (int i = 1; i < last; ++i) {
             double const part = double(i) / last;
-            place(verts[i + 1], 1 + std::sin(kPi * part), begin + part * (end - begin), true);
+            place(verts[i + 1], 1 + std::sin(angleInFace * part), begin + part * (end - begin),
+                  true);
         }
     }
 
@@ -223,31 +204,24 @@ private:
 // Finds the masks of the tangents on one side of a vertex.
 class TangentFinder {
 public:
-    TangentFinder(LevelTopology const &level, VertexSide const &side, Cycle &cycle,
-                  Mode const &pointMode)
-        : _level(level), _side(side), _rule(findRule(level)),
-          _layout(level, side, _rule == Crease::RULE_CORNER), _cycle(cycle), _modes({pointMode}) {}
+    TangentFinder(LevelTopology const &level, VertexSide const &side, FaceMask faceMask,
+                  Cycle &cycle, Mode const &pointMode)
+        : _side(side), _faceMask(faceMask), _rule(findRule(level)),
+          _layout(level, side, _rule == Crease::RULE_CORNER), _cycle(cycle), _pointMode(pointMode) {
+    }
 
-    LimitMask::Tangents Find() {
-        LimitMask::Tangents tangents = {Vector(_level.numVertices, 0.0),
-                                        Vector(_level.numVertices, 0.0)};
-        if (_side.isAllAround && _rule == Crease::RULE_CORNER) {
-            removeConeMode();
+    // Returns whether the iterations converge to tangents with different directions.
+    bool Find(LimitMask::Tangents &tangents) {
+        tangents = {_layout.x, _layout.y};
+        bool hasConverged = false;
+        if (_rule != Crease::RULE_CORNER && _rule != Crease::RULE_CREASE) {
+            hasConverged = iterateBoth(tangents, [this](Vector &left) { removePoint(left); });
+        } else if (_side.isAllAround) {
+            hasConverged = findAllAround(tangents);
+        } else {
+            hasConverged = findAlong(_side.items.front(), tangents.du) && findAcross(tangents);
         }
-        bool const isBounded = startAlongCurve(tangents.du);
-        for (Index vert = 0; vert < _level.numVertices; ++vert) {
-            if (!isBounded) {
-                tangents.du[vert] = _layout.x[vert];
-            }
-            tangents.dv[vert] = _layout.isInside[vert] ? _layout.y[vert] : 0;
-        }
-        iterate(tangents, isBounded);
-        bool const isCorner = _rule == Crease::RULE_CORNER;
-        if (isBounded && (isCorner ? _layout.size >= 2 : _layout.size < 1.5)) {
-            takeChord(tangents.dv);
-        }
-        scaleToLayout(tangents);
-        return tangents;
+        return hasConverged && scaleToLayout(tangents);
     }
 
 private:
@@ -256,103 +230,153 @@ private:
         return sharp ? sharp->rule : Crease::RULE_SMOOTH;
     }
 
-    // The faces around a corner without sharp edges approach a cone, whose tip has no tangent
-    // plane: the plane of the next modes is that at right angles to the axis of a regular cone.
-    void removeConeMode() {
-        Vector start(_level.numVertices, 0.0);
-        for (Index vert = 1; vert < _level.numVertices; ++vert) {
-            start[vert] = _layout.isPlaced[vert];
+    void removePoint(Vector &left) const { deflate(left, _pointMode); }
+
+    // As if what is on sharp edges and beyond did not move.
+    void keepInside(Vector &vector) const {
+        for (std::size_t i = 0; i < vector.size(); ++i) {
+            if (!_layout.isInside[i]) {
+                vector[i] = 0;
+            }
         }
-        _modes.push_back(findNextMode(_cycle, _modes, start, start));
     }
 
-    // What lies on a sharp curve depends on the curve alone, so that du stays on it: on the edge
-    // where the side begins and, at a crease, on that where it ends.
-    bool startAlongCurve(Vector &du) const {
-        RingItem const &begin = _side.items.front();
-        RingItem const &end = _side.items.back();
-        bool const hasBegin = !begin.isFace && Crease::IsInfinite(begin.sharpness);
-        bool const hasEnd = !end.isFace && Crease::IsInfinite(end.sharpness);
-        if (_side.isAllAround || (!hasBegin && !hasEnd)) {
+    // What lies on a sharp curve depends on the curve alone: of its modes the first is the tangent.
+    bool findAlong(RingItem const &edge, Vector &tangent) {
+        tangent.assign(_layout.x.size(), 0.0);
+        tangent[edge.neighbor] = 1;
+        return iterateOne(tangent, [this](Vector &left) { removePoint(left); });
+    }
+
+    bool findAcross(LimitMask::Tangents &tangents) {
+        Vector &dv = tangents.dv;
+        bool const isNarrow = _layout.size < (_rule == Crease::RULE_CREASE ? 1.5 : 2);
+        if (_rule == Crease::RULE_CREASE && !(isNarrow && _faceMask == FaceMask::Average)) {
+            return findBesideCurve(tangents.du, dv);
+        }
+        if (_rule == Crease::RULE_CORNER && isNarrow) {
+            return findAlong(_side.items.back(), dv);
+        }
+        // To the middle of the faces.  At a wide corner the mode across is the largest, and the
+        // tangents of both curves make no plane with it: du may be that of either.  On one face
+        // beside a crease the eigenvalues across and of the curve's bend are .3273 and .3062 with
+        // Average: what the mode across is shows after dozens of levels alone.
+        bool const hasConverged = iterateOne(dv, [this](Vector &left) { keepInside(left); });
+        dv[0] = -sum(dv);
+        return hasConverged;
+    }
+
+    // The next mode beside the tangent of the curve.  Of a crease where several sheets meet each
+    // has copies of the curve's vertices, which have the same values but modes of their own.
+    bool findBesideCurve(Vector const &du, Vector &dv) {
+        Vector copy;
+        if (!findAlong(_side.items.back(), copy)) {
             return false;
         }
-        if (hasBegin) {
-            du[begin.neighbor] += 1;
+        removeDirection(copy, du);
+        bool const isCopy = dot(copy, copy) > kLeastDifference;
+        if (isCopy) {
+            normalize(copy);
         }
-        if (hasEnd && (!hasBegin || _rule == Crease::RULE_CREASE)) {
-            du[end.neighbor] -= 1;
+        keepInside(dv);
+        return iterateOne(dv, [&](Vector &left) {
+            removePoint(left);
+            removeDirection(left, du);
+            if (isCopy) {
+                removeDirection(left, copy);
+            }
+        });
+    }
+
+    static void removeDirection(Vector &vector, Vector const &direction) {
+        addScaled(vector, -dot(vector, direction), direction);
+    }
+
+    // The faces around a vertex that does not depend on them approach a cone, whose tip has no
+    // tangent plane: the plane of the next modes is that at right angles to the axis of a regular
+    // cone.  With a sharp edge among the faces du is along it, and dv across.
+    bool findAllAround(LimitMask::Tangents &tangents) {
+        Mode axis;
+        if (!findAxis(axis)) {
+            return false;
         }
-        du[0] -= sum(du);
+        auto const reduce = [&](Vector &left) {
+            keepInside(left);
+            deflate(left, axis);
+        };
+        RingItem const &first = _side.items.front();
+        bool const hasEdge = !first.isFace && Crease::IsInfinite(first.sharpness);
+        if (!(hasEdge ? findAlong(first, tangents.du) && iterateOne(tangents.dv, reduce)
+                      : iterateBoth(tangents, reduce))) {
+            return false;
+        }
+        for (Vector *tangent : {&tangents.du, &tangents.dv}) {
+            (*tangent)[0] -= sum(*tangent);
+        }
         return true;
     }
 
-    // Simultaneous iteration: du tends to the left eigenvector of the largest eigenvalue that its
-    // start has a part in, both together to the space of the two largest.  With du on a curve, that
-    // one is the curve's own.
-    void iterate(LimitMask::Tangents &tangents, bool isBounded) {
-        Vector du = tangents.du;
-        Vector dv = tangents.dv;
-        orthonormalize(du, dv);
-        double const converged = kConverged * double(du.size());
-        for (int i = 0; i < kMaxIterations; ++i) {
-            tangents = {du, dv};
+    // The largest mode inside, away from the vertex on all sides at once.
+    bool findAxis(Mode &axis) {
+        auto const reduce = [this](Vector &vector) { keepInside(vector); };
+        axis.left.assign(_layout.x.size(), 1.0);
+        axis.right.assign(_layout.x.size(), 1.0);
+        bool const hasConverged =
+            iterateOne(axis.left, reduce) && iterateOne(axis.right, reduce, &Cycle::ApplyRight);
+        scale(axis.left, 1 / dot(axis.left, axis.right));
+        return hasConverged;
+    }
+
+    // Tends to the mode of the largest eigenvalue that reduce(vector) leaves.
+    template <typename REDUCE>
+    bool iterateOne(Vector &vector, REDUCE reduce,
+                    void (Cycle::*apply)(Vector &) = &Cycle::ApplyLeft) {
+        reduce(vector);
+        normalize(vector);
+        Vector next;
+        return iterate(int(vector.size()), [&] {
+            next = vector;
+            (_cycle.*apply)(next);
+            reduce(next);
+            normalize(next);
+            return replace(vector, next);
+        });
+    }
+
+    // Simultaneous iteration, to the space of the modes of the two largest eigenvalues.
+    template <typename REDUCE>
+    bool iterateBoth(LimitMask::Tangents &tangents, REDUCE reduce) {
+        Vector &du = tangents.du;
+        Vector &dv = tangents.dv;
+        auto const orthonormalize = [&] {
+            reduce(du);
+            normalize(du);
+            reduce(dv);
+            removeDirection(dv, du);
+            normalize(dv);
+        };
+        orthonormalize();
+        return iterate(int(du.size()), [&] {
+            LimitMask::Tangents const previous = tangents;
             _cycle.ApplyLeft(du);
             _cycle.ApplyLeft(dv);
-            orthonormalize(du, dv);
-            if (measureDistance(du, tangents, isBounded) < converged &&
-                measureDistance(dv, tangents, false) < converged) {
-                break;
-            }
-        }
-        tangents = {du, dv};
+            orthonormalize();
+            return std::max(measureDistance(du, previous), measureDistance(dv, previous));
+        });
     }
 
-    // On a narrow side the modes of the curve bury that across it.  At a wide corner both sharp
-    // edges may have the same direction.  Then dv is no eigenvector but goes to the middle of the
-    // faces around; their weights are those of the eigenvector on a curve that does not move.
-    void takeChord(Vector &dv) {
-        auto const removeCurve = [this](Vector &vector) {
-            for (std::size_t i = 0; i < vector.size(); ++i) {
-                if (!_layout.isInside[i]) {
-                    vector[i] = 0;
-                }
-            }
-            normalize(vector);
-        };
-        dv = _layout.y;
-        removeCurve(dv);
-        double const converged = kConverged * double(dv.size());
-        double change = 1;
-        for (int i = 0; i < kMaxIterations && change >= converged; ++i) {
-            Vector next = dv;
-            _cycle.ApplyLeft(next);
-            removeCurve(next);
-            addScaled(dv, -1, next);
-            change = std::sqrt(dot(dv, dv));
-            dv.swap(next);
-        }
-        dv[0] = -sum(dv);
-    }
-
-    void orthonormalize(Vector &du, Vector &dv) const {
-        deflate(du, _modes);
-        normalize(du);
-        deflate(dv, _modes);
-        addScaled(dv, -dot(du, dv), du);
-        normalize(dv);
-    }
-
-    // Of a vector from the span of both tangents, or from that of du.
-    static double measureDistance(Vector vector, LimitMask::Tangents const &tangents, bool fromDu) {
-        double const du = dot(vector, tangents.du);
-        double const dv = fromDu ? 0 : dot(vector, tangents.dv);
-        addScaled(vector, -du, tangents.du);
-        addScaled(vector, -dv, tangents.dv);
+    // Of a vector from the span of both tangents.
+    static double measureDistance(Vector vector, LimitMask::Tangents const &tangents) {
+        removeDirection(vector, tangents.du);
+        removeDirection(vector, tangents.dv);
         return std::sqrt(dot(vector, vector));
     }
 
-    // Makes the masks those of the derivatives by x and y of the layout.
-    void scaleToLayout(LimitMask::Tangents &tangents) const {
+    // Makes the masks those of the derivatives by x and y of the layout.  Returns whether these are
+    // far enough from the same direction.
+    bool scaleToLayout(LimitMask::Tangents &tangents) const {
+        normalize(tangents.du);
+        normalize(tangents.dv);
         double const ux = dot(tangents.du, _layout.x);
         double const uy = dot(tangents.du, _layout.y);
         double const vx = dot(tangents.dv, _layout.x);
@@ -363,27 +387,35 @@ private:
         addScaled(tangents.du, -uy / determinant, tangents.dv);
         scale(tangents.dv, ux / determinant);
         addScaled(tangents.dv, -vx / determinant, du);
+        return std::abs(determinant) > kLeastDeterminant;
     }
 
-    LevelTopology const &_level;
+    static constexpr double kLeastDeterminant = 1e-3;
+    static constexpr double kLeastDifference = 1e-12; // squared, of directions that are different
+
     VertexSide const &_side;
+    FaceMask const _faceMask;
     Crease::Rule const _rule;
     Layout const _layout;
     Cycle &_cycle;
-    std::vector<Mode> _modes;
+    Mode const &_pointMode;
 };
 
 using Node = LimitMaskFinder::Node;
 
-// The mask of the first of nodes, whose last step leads back to it.
-LimitMask solve(std::vector<Node> const &nodes) {
+// The mask of the first of nodes, whose last step leads back to it; nothing where iterations do not
+// converge.
+std::optional<LimitMask> solve(std::vector<Node> const &nodes, FaceMask faceMask) {
     LevelTopology level;
     BuildPatchLevel(nodes.front().patch, level);
     Cycle once;
     for (Node const &node : nodes) {
         once.Add(node.step);
     }
-    Mode const pointMode = findPointMode(once, level.numVertices);
+    Mode pointMode;
+    if (!findPointMode(once, level.numVertices, pointMode)) {
+        return {};
+    }
     LimitMask mask;
     mask.weights = pointMode.left;
     std::vector<VertexSide> const sides = FindVertexSides(level, 0);
@@ -398,7 +430,11 @@ LimitMask solve(std::vector<Node> const &nodes) {
                 side = node.step.sides[side];
             }
         } while (side != first);
-        mask.sides.push_back(TangentFinder(level, sides[first], cycle, pointMode).Find());
+        mask.sides.emplace_back();
+        if (!TangentFinder(level, sides[first], faceMask, cycle, pointMode)
+                 .Find(mask.sides.back())) {
+            return {};
+        }
     }
     return mask;
 }
@@ -428,7 +464,7 @@ bool isOnFreeBoundary(LevelTopology const &level, Index vert) {
 }
 
 // The vertex itself, and the mean plane of its faces: du across them from the last neighbour to the
-// first, dv to their centroids.
+// first, dv to their centroids.  All around, both are means by the cosine and the sine.
 LimitMask makeFreeBoundaryMask(LevelTopology const &level) {
     LimitMask mask;
     mask.weights.assign(level.numVertices, 0.0);
@@ -436,22 +472,29 @@ LimitMask makeFreeBoundaryMask(LevelTopology const &level) {
     for (VertexSide const &side : FindVertexSides(level, 0)) {
         LimitMask::Tangents tangents = {Vector(level.numVertices, 0.0),
                                         Vector(level.numVertices, 0.0)};
-        tangents.du[side.items.front().neighbor] += 0.5;
-        tangents.du[side.items.back().neighbor] -= 0.5;
-        auto const numFaces = std::count_if(side.items.begin(), side.items.end(),
-                                            [](RingItem const &item) { return item.isFace; });
-        int i = 0;
+        auto const numFaces =
+            double(std::count_if(side.items.begin(), side.items.end(),
+                                 [](RingItem const &item) { return item.isFace; }));
+        double const angleOfFace = (side.isAllAround ? 2 : 1) * kPi / numFaces;
+        if (!side.isAllAround) {
+            tangents.du[side.items.front().neighbor] += 0.5;
+            tangents.du[side.items.back().neighbor] -= 0.5;
+        }
+        double angle = 0;
         for (RingItem const &item : side.items) {
             if (item.isFace) {
                 Index const face = FindFaceOfCorner(level, item.corner);
                 Index const first = level.faceFirstCorner[face];
                 Index const end = level.faceFirstCorner[face + 1];
-                double const weight =
-                    std::sin(kPi * (i++ + 0.5) / double(numFaces)) / double(numFaces);
+                double const weight = std::sin(angle + angleOfFace / 2) / numFaces;
                 for (Index corner = first; corner < end; ++corner) {
                     tangents.dv[level.faceVerts[corner]] += weight / double(end - first);
                 }
                 tangents.dv[0] -= weight;
+                angle += angleOfFace;
+            } else if (side.isAllAround) {
+                tangents.du[item.neighbor] += std::cos(angle) / numFaces;
+                tangents.du[0] -= std::cos(angle) / numFaces;
             }
         }
         mask.sides.push_back(std::move(tangents));
@@ -461,9 +504,9 @@ LimitMask makeFreeBoundaryMask(LevelTopology const &level) {
 
 } // namespace
 
-LimitMask const &LimitMaskFinder::Find(LimitPatch const &patch) {
+LimitMask const *LimitMaskFinder::Find(LimitPatch const &patch) {
     if (auto const found = _masks.find(patch.signature); found != _masks.end()) {
-        return found->second;
+        return &found->second;
     }
     if (_masks.size() > kMaxMasks) {
         _masks.clear();
@@ -471,38 +514,46 @@ LimitMask const &LimitMaskFinder::Find(LimitPatch const &patch) {
     LevelTopology level;
     BuildPatchLevel(patch, level);
     if (isOnFreeBoundary(level, 0)) {
-        return _masks.emplace(patch.signature, makeFreeBoundaryMask(level)).first->second;
+        return &_masks.emplace(patch.signature, makeFreeBoundaryMask(level)).first->second;
     }
     std::vector<Node> nodes;
     nodes.push_back({patch, {}});
-    for (;;) {
+    while (int(nodes.size()) <= kMaxSteps) {
         LimitPatch next;
         nodes.back().step = RefinePatch(nodes.back().patch, _sdcOptions, _schemeOptions, next);
         auto const begin = std::find_if(nodes.begin(), nodes.end(), [&](Node const &node) {
             return node.patch.signature == next.signature;
         });
         if (begin != nodes.end()) {
-            addCycle({begin, nodes.end()});
+            if (!addCycle({begin, nodes.end()})) {
+                return nullptr;
+            }
             nodes.erase(begin, nodes.end());
         }
         if (auto const known = _masks.find(next.signature); known != _masks.end()) {
-            return addStepsBefore(nodes, known->second);
+            return &addStepsBefore(nodes, known->second);
         }
         nodes.push_back({std::move(next), {}});
     }
+    return nullptr;
 }
 
 // The same for any patch that the cycle was found from: it begins with the least signature.
-void LimitMaskFinder::addCycle(std::vector<Node> nodes) {
+bool LimitMaskFinder::addCycle(std::vector<Node> nodes) {
     auto const least =
         std::min_element(nodes.begin(), nodes.end(), [](Node const &a, Node const &b) {
             return a.patch.signature < b.patch.signature;
         });
     std::rotate(nodes.begin(), least, nodes.end());
+    std::optional<LimitMask> solution = solve(nodes, _schemeOptions.faceMask);
+    if (!solution) {
+        return false;
+    }
     LimitMask const &mask =
-        _masks.insert_or_assign(nodes.front().patch.signature, solve(nodes)).first->second;
+        _masks.insert_or_assign(nodes.front().patch.signature, std::move(*solution)).first->second;
     nodes.erase(nodes.begin()); // keeps the steps of the others, which lead back to it
     addStepsBefore(nodes, mask);
+    return true;
 }
 
 // The mask of the first of the nodes, whose last step leads to a patch of the given mask.

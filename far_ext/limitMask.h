@@ -36,8 +36,9 @@ public:
     LimitMaskFinder(Sdc::Options sdcOptions, SchemeOptions const &schemeOptions)
         : _sdcOptions(sdcOptions), _schemeOptions(schemeOptions) {}
 
-    /// Valid until the next call.
-    LimitMask const &Find(LimitPatch const &patch);
+    /// \brief Valid until the next call; null where the patches do not repeat themselves within
+    /// kMaxSteps steps, or a step that repeats itself has no eigenvectors that iteration finds.
+    LimitMask const *Find(LimitPatch const &patch);
 
     /// A patch, and the step that leads to the next.
     struct Node {
@@ -46,8 +47,11 @@ public:
     };
 
 private:
-    void addCycle(std::vector<Node> nodes);
+    bool addCycle(std::vector<Node> nodes);
     LimitMask const &addStepsBefore(std::vector<Node> const &nodes, LimitMask const &lastMask);
+
+    // Sharpness that is not infinite ends in ten steps, other irregularities in two.
+    static constexpr int kMaxSteps = 64;
 
     // Patches of large, irregular base meshes may all be different: then old ones are forgotten.
     static constexpr std::size_t kMaxMasks = 4096;

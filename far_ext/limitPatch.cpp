@@ -36,22 +36,52 @@ void fillTags(std::vector<float> const &from, Buffer<float> &to) {
 
 bool isBreak(RingItem const &item) { return !item.isFace && Crease::IsInfinite(item.sharpness); }
 
+int countBreaks(FanItems const &fan) {
+    return int(std::count_if(fan.items.begin(), fan.items.end(), isBreak));
+}
+
+// As FindVertexSides makes them.
+int countSides(FanItems const &fan) {
+    int const numBreaks = countBreaks(fan);
+    if (numBreaks < 2) {
+        return 1;
+    }
+    return fan.isClosed ? numBreaks
+                        : numBreaks - 1 + !isBreak(fan.items.front()) + !isBreak(fan.items.back());
+}
+
 } // namespace
 
-// A closed fan has no first face of its own: that with the least sequence of what is around the
-// vertex is taken.
-int LimitPatchGatherer::findFirstFace(Index vert, int &firstSide) {
-    firstSide = 0;
-    Index const begin = _level.vertFirstFace[vert];
-    int const numFaces = _level.vertFirstFace[vert + 1] - begin;
-    int numFans = 0;
+// The fans one after the other, as the level has them, but closed ones from their first face on.
+void LimitPatchGatherer::orderFans(Index vert, LimitPatch &patch) {
+    _ringFaces.clear();
+    _ringEdges.clear();
+    Index firstEdge = _level.vertFirstEdge[vert];
     ForEachFan(_level, vert, [&](VertexFan const &fan) {
-        ++numFans;
         GatherFanItems(_level, fan, _fan);
+        int const numFaces = fan.end - fan.begin;
+        int const numEdges = numFaces + !fan.isClosed;
+        int firstSide = 0;
+        int const first = fan.isClosed ? findFirstFace(fan, firstSide) : 0;
+        for (int i = 0; i < numFaces; ++i) {
+            _ringFaces.push_back(fan.begin + (first + i) % numFaces);
+        }
+        for (int i = 0; i < numEdges; ++i) {
+            _ringEdges.push_back(_level.vertEdges[firstEdge + (first + i) % numEdges]);
+        }
+        firstEdge += numEdges;
+        int const begin = int(patch.sides.size());
+        int const numSides = countSides(_fan);
+        for (int side = 0; side < numSides; ++side) {
+            patch.sides.push_back(begin + (side + numSides - firstSide % numSides) % numSides);
+        }
     });
-    if (numFaces < 2 || numFans != 1 || !_fan.isClosed) {
-        return 0;
-    }
+}
+
+// A closed fan has no first face of its own: that with the least sequence of what is around the
+// vertex is taken.  firstSide is the side of the level that begins there or next.
+int LimitPatchGatherer::findFirstFace(VertexFan const &fan, int &firstSide) {
+    int const numFaces = fan.end - fan.begin;
     struct Key {
         int numbers[4];
         int numBreaks;
@@ -59,7 +89,7 @@ int LimitPatchGatherer::findFirstFace(Index vert, int &firstSide) {
     std::vector<Key> keys;
     for (RingItem const &item : _fan.items) {
         if (item.isFace && item.half < 0) {
-            Index const face = _level.vertFaces[begin + Index(keys.size()) - 1];
+            Index const face = _level.vertFaces[fan.begin + Index(keys.size()) - 1];
             keys.back().numbers[1] =
                 _level.faceFirstCorner[face + 1] - _level.faceFirstCorner[face];
             keys.back().numbers[2] =
@@ -218,28 +248,20 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
 
     // The vertices whose faces are all there come first: vertex 0 and its neighbours.
     addVertex(vert, patch);
-    int const firstFace = findFirstFace(vert, patch.firstSide);
-    Index const beginEdge = _level.vertFirstEdge[vert];
-    int const numEdges = _level.vertFirstEdge[vert + 1] - beginEdge;
-    auto const edgeOf = [&](int i) {
-        return _level.vertEdges[beginEdge + (firstFace + i) % numEdges];
-    };
-    for (int i = 0; i < numEdges; ++i) {
-        std::size_t const edge = 2 * std::size_t(edgeOf(i));
+    orderFans(vert, patch);
+    for (Index ringEdge : _ringEdges) {
+        std::size_t const edge = 2 * std::size_t(ringEdge);
         addVertex(_level.edgeVerts[edge], patch);
         addVertex(_level.edgeVerts[edge + 1], patch);
     }
     _numComplete = int(patch.sources.size());
 
-    auto const addFacesOf = [&](Index center, int first) {
-        Index const begin = _level.vertFirstFace[center];
-        int const numFaces = _level.vertFirstFace[center + 1] - begin;
-        for (int i = 0; i < numFaces; ++i) {
-            Index const k = begin + (first + i) % numFaces;
-            addFace(_level.vertFaces[k], _level.vertFaceLocals[k], center == vert, patch);
-        }
+    auto const addFaceAt = [&](Index k, bool isRing) {
+        addFace(_level.vertFaces[k], _level.vertFaceLocals[k], isRing, patch);
     };
-    addFacesOf(vert, firstFace);
+    for (Index k : _ringFaces) {
+        addFaceAt(k, true);
+    }
     for (int i = 1; i < _numComplete; ++i) {
         Index const neighbor = patch.sources[i];
         // From an edge of the vertex on, where the neighbour has it.
@@ -253,7 +275,11 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
                 break;
             }
         }
-        addFacesOf(neighbor, first);
+        Index const beginFace = _level.vertFirstFace[neighbor];
+        int const numFaces = _level.vertFirstFace[neighbor + 1] - beginFace;
+        for (int k = 0; k < numFaces; ++k) {
+            addFaceAt(beginFace + (first + k) % numFaces, false);
+        }
     }
     for (Index corner = 0; corner < Index(_corners.size()); ++corner) {
         addEdge(corner, _level.faceEdges[_corners[corner]], patch);
@@ -393,20 +419,10 @@ std::vector<int> mapSides(LevelTopology const &pLevel, LimitPatch const &cPatch)
     std::vector<int> result;
     ForEachFanItems(pLevel, 0, [&](FanItems const &fan) {
         int const first = int(result.size());
-        int const numBreaks = int(std::count_if(fan.items.begin(), fan.items.end(), isBreak));
-        if (fan.isClosed && numBreaks >= 2) {
-            int const shift = int(isBreak(fan.items[0])) + cPatch.firstSide;
-            for (int side = 0; side < numBreaks; ++side) {
-                result.push_back(first + (side + 2 * numBreaks - shift) % numBreaks);
-            }
-        } else {
-            int numSides = 1;
-            if (!fan.isClosed && numBreaks >= 2) {
-                numSides = numBreaks - 1 + !isBreak(fan.items.front()) + !isBreak(fan.items.back());
-            }
-            for (int side = 0; side < numSides; ++side) {
-                result.push_back(first + side);
-            }
+        int const numSides = countSides(fan);
+        int const shift = fan.isClosed && isBreak(fan.items.front());
+        for (int side = 0; side < numSides; ++side) {
+            result.push_back(cPatch.sides[first + (side + numSides - shift) % numSides]);
         }
     });
     return result;
@@ -442,14 +458,16 @@ std::vector<VertexSide> FindVertexSides(LevelTopology const &level, Index vert) 
     int fanIndex = 0;
     ForEachFanItems(level, vert, [&](FanItems &fan) {
         std::vector<RingItem> &items = fan.items;
-        int const numBreaks = int(std::count_if(items.begin(), items.end(), isBreak));
+        int const numBreaks = countBreaks(fan);
+        if (fan.isClosed && numBreaks > 0) {
+            std::rotate(items.begin(), std::find_if(items.begin(), items.end(), isBreak),
+                        items.end());
+        }
         if (numBreaks < 2) {
             sides.push_back({items, fan.isClosed, fanIndex++});
             return;
         }
         if (fan.isClosed) {
-            std::rotate(items.begin(), std::find_if(items.begin(), items.end(), isBreak),
-                        items.end());
             items.push_back(items.front());
         }
         auto begin = items.begin();

@@ -22,8 +22,8 @@ struct LimitPatch {
     using Index = Far::Index;
 
     std::vector<Index> sources; ///< the level's vertex of each vertex of the patch
-    /// The sides of a vertex in a closed fan begin with another of the level's: this one.
-    int firstSide = 0;
+    /// By side of the level's vertex, the side of vertex 0: in closed fans they begin elsewhere.
+    std::vector<int> sides;
 
     std::vector<int> faceSizes;
     std::vector<Index> faceVerts;     ///< of all faces in turn
@@ -35,7 +35,7 @@ struct LimitPatch {
     std::vector<SectorCorner> sectorCorners; ///< ascending
     std::vector<SharpVertex> sharpVerts;     ///< ascending; of vertex 0 and its neighbours
 
-    /// All of the above but the sources, firstSide and the masks of sharpVerts, which follow from
+    /// All of the above but the sources, the sides and the masks of sharpVerts, which follow from
     /// the rest.
     std::vector<int> signature;
 };
@@ -73,7 +73,8 @@ private:
         int _round = 0;
     };
 
-    int findFirstFace(Index vert, int &firstSide);
+    void orderFans(Index vert, LimitPatch &patch);
+    int findFirstFace(VertexFan const &fan, int &firstSide);
     Index addVertex(Index vert, LimitPatch &patch);
     void addFace(Index face, int local, bool isRing, LimitPatch &patch);
     void addEdge(Index corner, Index edge, LimitPatch &patch);
@@ -87,7 +88,10 @@ private:
     IndexMap _edges;             // the first corner of each
     int _numComplete = 0;        // vertices, the first ones, all of whose faces are in the patch
     std::vector<Index> _corners; // the level's corner of each corner of the patch
-    FanItems _fan;
+    // Of the vertex that the patch is for: positions in vertFaces, and edges.
+    std::vector<Index> _ringFaces;
+    std::vector<Index> _ringEdges;
+    FanItems _fan = {{}, false};
 };
 
 /// Makes a level of a patch, with all that a step of refinement needs.
@@ -116,7 +120,7 @@ LimitStep RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
 /// side.
 struct VertexSide {
     /// From the edge (or diagonal) where the side begins, counter-clockwise to that where it ends;
-    /// of a closed fan that is one side, to the last face.
+    /// of a closed fan that is one side, from its sharp edge, where it has one, to the last face.
     std::vector<RingItem> items;
     bool isAllAround;
     int fan;

@@ -165,8 +165,7 @@ public:
         : _refiner(refiner), _level(refiner.GetLevel(level)), _stencils(stencils),
           _hasDerivatives(hasDerivatives) {}
 
-    // Each returns whether the weights are as few as Far's offsets reach.
-    bool AddSides(LimitSides const *sides) {
+    Status AddSides(LimitSides const *sides) {
         struct State {
             internal::LimitPatchGatherer gatherer;
             internal::LimitMaskFinder finder;
@@ -174,18 +173,23 @@ public:
             LimitPatch patch;
         };
         Index const numVertices = _level.GetNumVertices();
-        auto const addSide = [&](State &state, Index vert, int side, Rows<REAL> &rows) {
+        auto const addSide = [&](State &state, Index vert, int side, Rows<REAL> &rows) -> Status {
             if (_level.GetVertexFaces(vert).empty()) {
                 LimitMask::Tangents const none = {{0}, {0}};
                 state.builder.Add(&vert, {1.0}, derivativesOf(none), rows);
-                return;
+                return Status();
             }
             state.gatherer.Gather(vert, state.patch);
-            LimitMask const &mask = state.finder.Find(state.patch);
-            int const numSides = int(mask.sides.size());
-            int const patchSide = (side + numSides - state.patch.firstSide) % numSides;
-            state.builder.Add(state.patch.sources, mask.weights,
-                              derivativesOf(mask.sides[patchSide]), rows);
+            LimitMask const *const mask = state.finder.Find(state.patch);
+            if (!mask) {
+                return Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
+                              "the limit of vertex " + std::to_string(vert) + " of level " +
+                                  std::to_string(_level.GetDepth()) +
+                                  " cannot be computed: the steps around it do not converge");
+            }
+            state.builder.Add(state.patch.sources, mask->weights,
+                              derivativesOf(mask->sides[state.patch.sides[side]]), rows);
+            return Status();
         };
         return addRows(
             sides ? sides->GetNumSides() : numVertices,
@@ -197,12 +201,12 @@ public:
                              {}};
             },
             [&](State &state, Index i, Rows<REAL> &rows) {
-                addSide(state, sides ? sides->GetVertex(i) : i, sides ? sides->GetLocalSide(i) : 0,
-                        rows);
+                return addSide(state, sides ? sides->GetVertex(i) : i,
+                               sides ? sides->GetLocalSide(i) : 0, rows);
             });
     }
 
-    bool AddFaceCenters() {
+    Status AddFaceCenters() {
         internal::FaceLimitMaskFinder const finder(_level, _refiner.GetSchemeOptions(),
                                                    hexagonalSteps(_refiner));
         return addRows(
@@ -211,10 +215,9 @@ public:
                 LimitMask const mask = finder.Find(face);
                 builder.Add(_level.GetFaceVertices(face), mask.weights,
                             derivativesOf(mask.sides.front()), rows);
+                return Status();
             });
     }
-
-    std::int64_t GetNumWeights() const { return _numWeights; }
 
     std::unique_ptr<WritableLimitTable<REAL>> Make() {
         std::vector<Index> offsets;
@@ -233,20 +236,30 @@ private:
         return _hasDerivatives ? &tangents : nullptr;
     }
 
+    // The status is that of the first row that fails.
     template <typename MAKE_STATE, typename ADD_ROW>
-    bool addRows(Index count, MAKE_STATE makeState, ADD_ROW addRow) {
+    Status addRows(Index count, MAKE_STATE makeState, ADD_ROW addRow) {
         std::vector<Rows<REAL>> ranges(internal::GetNumParallelRanges(count));
+        std::vector<Status> statuses(ranges.size());
         internal::ParallelForRange(count, makeState, [&](auto &state, Index begin, Index end) {
-            Rows<REAL> &rows = ranges[begin / internal::kParallelRange];
-            for (Index i = begin; i < end; ++i) {
-                addRow(state, i, rows);
+            std::size_t const range = std::size_t(begin / internal::kParallelRange);
+            for (Index i = begin; i < end && statuses[range].IsOk(); ++i) {
+                statuses[range] = addRow(state, i, ranges[range]);
             }
         });
+        for (Status const &status : statuses) {
+            if (!status.IsOk()) {
+                return status;
+            }
+        }
         for (Rows<REAL> const &rows : ranges) {
             _numWeights += std::int64_t(rows.weights.size());
         }
         if (_numWeights > std::numeric_limits<Index>::max()) {
-            return false;
+            return Status(StatusCode::TooLarge, ComponentType::Level, _level.GetDepth(),
+                          "the limit stencils of level " + std::to_string(_level.GetDepth()) +
+                              " would have at least " + std::to_string(_numWeights) +
+                              " weights, more than Far's 32-bit offsets reach");
         }
         reserve(&_rows.indices);
         reserve(&_rows.weights);
@@ -260,7 +273,7 @@ private:
             append(rows.dvWeights, _rows.dvWeights);
             rows = {};
         }
-        return true;
+        return Status();
     }
     template <typename T>
     void reserve(std::vector<T> *array) const {
@@ -328,14 +341,14 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
         sides = std::make_unique<LimitSides>(refiner.GetLevel(options.level));
     }
     TableBuilder<REAL> builder(refiner, options.level, *stencils, options.generate1stDerivatives);
-    if ((options.generateVertices && !builder.AddSides(sides.get())) ||
-        (options.generateFaceCenters && !builder.AddFaceCenters())) {
-        internal::Report(Status(StatusCode::TooLarge, ComponentType::Level, options.level,
-                                "the limit stencils of level " + std::to_string(options.level) +
-                                    " would have at least " +
-                                    std::to_string(builder.GetNumWeights()) +
-                                    " weights, more than Far's 32-bit offsets reach"),
-                         status);
+    Status result;
+    if (options.generateVertices) {
+        result = builder.AddSides(sides.get());
+    }
+    if (result.IsOk() && options.generateFaceCenters) {
+        result = builder.AddFaceCenters();
+    }
+    if (!internal::Report(result, status)) {
         return nullptr;
     }
     return builder.Make();
