@@ -32,3 +32,27 @@ if(OPENSUBDIVHEX_TUTORIALS)
     COMMAND ${consumerDir}/prefix/${CMAKE_INSTALL_BINDIR}/hexrefine --help)
   set_tests_properties(consumer.hexrefine PROPERTIES FIXTURES_REQUIRED installed)
 endif()
+
+# What the shared libraries export, and that an OpenSubdiv outside the system's folders is found.
+if(UNIX AND NOT APPLE)
+  get_target_property(libraryType far_ext TYPE)
+  if(libraryType STREQUAL "SHARED_LIBRARY")
+    set(libraries far_ext osd_ext)
+    set(publicNames 22TopologyRefinerFactory6Create 19RefinementEvaluator6Create)
+    foreach(library publicName IN ZIP_LISTS libraries publicNames)
+      add_test(NAME consumer.exports.${library}
+        COMMAND ${CMAKE_COMMAND} -D nm=${CMAKE_NM} -D library=$<TARGET_FILE:${library}>
+          -D public=${publicName} -P ${PROJECT_SOURCE_DIR}/regression/consumer/exports.cmake)
+    endforeach()
+  endif()
+  add_test(NAME consumer.elsewhere
+    COMMAND ${CMAKE_COMMAND}
+      -D sourceDir=${PROJECT_SOURCE_DIR}/regression/consumer/elsewhere
+      -D workDir=${consumerDir}/elsewhere
+      -D library=$<TARGET_FILE:OpenSubdiv::osdCPU>
+      -D includeDir=${OpenSubdiv_INCLUDE_DIR}
+      -D compiler=${CMAKE_CXX_COMPILER}
+      -D generator=${CMAKE_GENERATOR}
+      -P ${PROJECT_SOURCE_DIR}/regression/consumer/elsewhere.cmake)
+  set_tests_properties(consumer.elsewhere PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: ")
+endif()
