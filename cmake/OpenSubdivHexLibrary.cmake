@@ -10,8 +10,13 @@ function(opensubdivhex_add_library name)
     VERSION ${PROJECT_VERSION}
     SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
     POSITION_INDEPENDENT_CODE ON
+    CXX_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON
     WINDOWS_EXPORT_ALL_SYMBOLS ON)
   target_compile_features(${name} PUBLIC cxx_std_17)
+  # For export.h.
+  target_compile_definitions(${name} PRIVATE
+    $<$<STREQUAL:$<TARGET_PROPERTY:${name},TYPE>,SHARED_LIBRARY>:OPENSUBDIVHEX_IS_SHARED>)
 
   set(headers ${ARGN})
   list(FILTER headers INCLUDE REGEX "\\.h$")
@@ -22,6 +27,17 @@ function(opensubdivhex_add_library name)
     install(TARGETS ${name} EXPORT OpenSubdivHexTargets
       FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex)
   endif()
+endfunction()
+
+# opensubdivhex_link_objects(TARGET LIBRARY...): links all of the libraries, what shared ones do not
+# export too: for tests of that.
+function(opensubdivhex_link_objects target)
+  foreach(library IN LISTS ARGN)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${library}>)
+    target_include_directories(${target} PRIVATE
+      $<TARGET_PROPERTY:${library},INTERFACE_INCLUDE_DIRECTORIES>)
+    target_link_libraries(${target} PRIVATE $<TARGET_PROPERTY:${library},LINK_LIBRARIES>)
+  endforeach()
 endfunction()
 
 # Gives OpenMP to a library that uses it, unless it is switched off or not there.

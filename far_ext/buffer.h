@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_BUFFER_H
 #define OPENSUBDIVHEX_FAR_EXT_BUFFER_H
 
+#include "export.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,8 +16,8 @@ constexpr std::size_t kCacheLine = 64; ///< bytes; the least alignment of an arr
 
 /// Memory for a large array: not initialized, on huge pages where the system offers them.
 /// Throws std::bad_alloc.
-void *AllocateArray(std::size_t bytes);
-void FreeArray(void *memory);
+OPENSUBDIVHEX_API void *AllocateArray(std::size_t bytes);
+OPENSUBDIVHEX_API void FreeArray(void *memory);
 
 /// Has the system put pages behind memory that was not written yet, in parallel and huge ones where
 /// it offers them.  Whoever writes it first need not wait for them then.  Content is kept.

@@ -25,7 +25,7 @@ struct LimitStencilTableTypes<float> {
 /// counted around the vertex, in the order of its faces and from the first sharp edge on.  Side 0
 /// has the index of its vertex; the further sides of all vertices, in their order, follow the
 /// vertices.
-class LimitSides {
+class OPENSUBDIVHEX_API LimitSides {
 public:
     using Index = Far::Index;
 
@@ -106,7 +106,7 @@ private:
 ///
 /// Vertex interpolation alone; varying and face-varying data have no limit stencils.
 template <typename REAL>
-class LimitStencilTableFactoryReal {
+class OPENSUBDIVHEX_API LimitStencilTableFactoryReal {
 public:
     using Table = typename LimitStencilTableTypes<REAL>::Table;
 

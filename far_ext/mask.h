@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_MASK_H
 #define OPENSUBDIVHEX_FAR_EXT_MASK_H
 
-#include <vector>
+#include "export.h"
 
 namespace OpenSubdivHex::FarExt {
 
@@ -30,7 +30,8 @@ enum class Interpolation {
 /// \brief Writes the \p n weights of the vertices 0 ... n-1 steps around a face of \p n sides.
 ///
 /// The weights are non-negative, symmetric (w[j] == w[n-j]) and sum to 1.  \p n is at least 3.
-void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, double *weights);
+OPENSUBDIVHEX_API void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n,
+                                             double *weights);
 
 /// \brief Writes the 4 x 4 weights of a half face V, W, Q, P, a half-hexagon whose long side V-W is
 /// a sharp boundary or crease: row i has the weights of the four vertices for the F-vertex of
@@ -39,14 +40,15 @@ void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, do
 /// On the long side P_V = (3 V + W)/4.  The other two corners follow the mask of the hexagon that
 /// is completed by the ghosts Q* = (3 V + W)/2 - P and P* = (V + 3 W)/2 - Q, in the order
 /// V, Q*, P*, W, Q, P; the weights come out non-negative.
-void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, double *weights);
+OPENSUBDIVHEX_API void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation,
+                                                 double *weights);
 
 /// \brief Writes the \p n weights for the new point of the edge from vertex 0 to vertex 1 of a
 /// face, in the tri-hex scheme: P = (V_0 + V_1 + centroid)/3, for vertex and for varying data.
 ///
 /// The masks of Claes, Beets and Van Reeth (2002) are not public; of the masks on one face that are
 /// symmetric and reproduce linear functions this is the smoothest.
-void ComputeTriHexMask(int n, double *weights);
+OPENSUBDIVHEX_API void ComputeTriHexMask(int n, double *weights);
 
 /// \brief The least sector that ComputeSectorShrink is for.
 inline constexpr double kMinShrunkSector = 3;
@@ -63,7 +65,7 @@ inline constexpr double kMinShrunkSector = 3;
 ///
 /// the first mode across has the eigenvalue 1/2 (within 0.002) for every k, the next less.  The
 /// constants are a fit to numerical solutions for k = 3 ... 12.  Curve and topology are untouched.
-double ComputeSectorShrink(FaceMask mask, double sectorSize);
+OPENSUBDIVHEX_API double ComputeSectorShrink(FaceMask mask, double sectorSize);
 
 /// \brief The mask of an old vertex: V' = vertexWeight V + sum over its faces of faceWeight P_i.
 struct VertexVertexMask {
@@ -73,7 +75,8 @@ struct VertexVertexMask {
 
 /// \brief Returns the mask of a vertex with \p numFaces incident faces: both weights are
 /// 1/(numFaces + 1) for vertex data (the paper's stage 2); 1 and 0 for varying data.
-VertexVertexMask ComputeVertexVertexMask(Interpolation interpolation, int numFaces);
+OPENSUBDIVHEX_API VertexVertexMask ComputeVertexVertexMask(Interpolation interpolation,
+                                                           int numFaces);
 
 } // namespace OpenSubdivHex::FarExt
 

@@ -11,7 +11,7 @@ namespace OpenSubdivHex::FarExt::internal {
 
 /// \brief Joins the masks to the components of a parent level: which vertices make an F-vertex or
 /// a V-vertex, and with which weights.  PrimvarRefiner and the stencil factory both read it.
-class RefinementMask {
+class OPENSUBDIVHEX_API RefinementMask {
 public:
     using Index = Far::Index;
 

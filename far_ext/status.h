@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_STATUS_H
 #define OPENSUBDIVHEX_FAR_EXT_STATUS_H
 
+#include "export.h"
+
 #include <opensubdiv/far/error.h>
 #include <opensubdiv/far/types.h>
 #include <opensubdiv/sdc/options.h>
@@ -65,13 +67,13 @@ private:
 /// errors of this library are passed to Far::Error only once a callback was installed here.
 /// A null pointer restores Far's default and silences this library.  Not thread-safe, as
 /// Far::SetErrorCallback is not.
-void SetErrorCallback(Far::ErrorCallbackFunc callback);
+OPENSUBDIVHEX_API void SetErrorCallback(Far::ErrorCallbackFunc callback);
 
 namespace internal {
 
 /// Assigns \p result to \p status (when given) and sends a failure to the installed callback.
 /// Returns result.IsOk().
-bool Report(Status const &result, Status *status);
+OPENSUBDIVHEX_API bool Report(Status const &result, Status *status);
 
 } // namespace internal
 } // namespace FarExt

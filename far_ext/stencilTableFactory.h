@@ -27,7 +27,7 @@ enum StencilMode { INTERPOLATE_VERTEX, INTERPOLATE_VARYING, INTERPOLATE_FACE_VAR
 
 /// \brief Makes Far stencil tables of hexagonal refinements, for any Osd evaluator.
 template <typename REAL>
-class StencilTableFactoryReal {
+class OPENSUBDIVHEX_API StencilTableFactoryReal {
 public:
     using Table = typename StencilTableTypes<REAL>::Table;
 

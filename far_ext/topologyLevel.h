@@ -23,7 +23,7 @@ enum class FaceKind {
 /// The last level has only face-vertices unless UniformOptions::fullTopologyInLastLevel was set:
 /// its other relations are then empty arrays, and queries of edges and vertices, IsFaceHalf and the
 /// face-varying match queries are not answered (HasFullTopology() tells).
-class TopologyLevel {
+class OPENSUBDIVHEX_API TopologyLevel {
 public:
     using Index = Far::Index;
     using ConstIndexArray = Far::ConstIndexArray;

@@ -25,7 +25,7 @@ namespace OsdExt {
 /// table whose stencils share no lists, as those of Catmull-Clark, gets larger.
 ///
 /// It is this library's own: other evaluators, on GPUs for one, take the Far::StencilTable.
-class CompactStencilTable {
+class OPENSUBDIVHEX_API CompactStencilTable {
 public:
     /// Makes the table of the stencils of \p table, which is not needed afterwards.
     static std::unique_ptr<CompactStencilTable const> Create(Far::StencilTable const &table);

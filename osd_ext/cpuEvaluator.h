@@ -9,7 +9,7 @@ namespace OpenSubdivHex::OsdExt {
 /// \brief Evaluates stencils on the calling thread, in ascending order: a faster
 /// Osd::CpuEvaluator.  See StencilEvaluator for its functions, SimdLevel for the instructions that
 /// it uses.
-class CpuEvaluator : public StencilEvaluator<CpuEvaluator> {
+class OPENSUBDIVHEX_API CpuEvaluator : public StencilEvaluator<CpuEvaluator> {
     friend class StencilEvaluator<CpuEvaluator>;
     static void run(internal::StencilTask const &task, int begin, int end);
 };

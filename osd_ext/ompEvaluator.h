@@ -15,7 +15,7 @@ namespace OpenSubdivHex::OsdExt {
 ///
 /// The class is there without OpenMP, too, so that no program need ask: it then does what
 /// CpuEvaluator does, and IsParallel() is false.
-class OmpEvaluator : public StencilEvaluator<OmpEvaluator> {
+class OPENSUBDIVHEX_API OmpEvaluator : public StencilEvaluator<OmpEvaluator> {
 public:
     /// Whether this library was built with OpenMP.
     static bool IsParallel();

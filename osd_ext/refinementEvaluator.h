@@ -48,7 +48,7 @@ namespace OsdExt {
 ///
 /// **Lifetime.** The evaluator refers to the refiner, and is valid until that refines again or is
 /// destroyed.
-class RefinementEvaluator {
+class OPENSUBDIVHEX_API RefinementEvaluator {
     /// So that a pointer to floats is not taken for one to a buffer.
     template <class BUFFER>
     using IfBuffer = decltype(std::declval<BUFFER &>().BindCpuBuffer());

@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_STENCIL_KERNEL_H
 #define OPENSUBDIVHEX_OSD_EXT_STENCIL_KERNEL_H
 
+#include "far_ext/export.h"
+
 #include <opensubdiv/osd/bufferDescriptor.h>
 
 #include <cstddef>
@@ -62,9 +64,11 @@ struct StencilTask {
 
 /// \brief Makes \p task of the arguments of an evaluator for stencils, or blocks, [start, end).
 /// \return  whether StencilEvaluator, which says when it is false, can evaluate them
-bool MakeStencilTask(float const *src, OpenSubdiv::Osd::BufferDescriptor const &srcDesc,
-                     StencilOutput const *outputs, int numOutputs, StencilRows const &rows,
-                     int start, int end, StencilTask *task);
+OPENSUBDIVHEX_API bool MakeStencilTask(float const *src,
+                                       OpenSubdiv::Osd::BufferDescriptor const &srcDesc,
+                                       StencilOutput const *outputs, int numOutputs,
+                                       StencilRows const &rows, int start, int end,
+                                       StencilTask *task);
 
 /// Where the indices of stencil \p stencil start; 0 when it need not be known.
 std::size_t FindFirstWeight(StencilRows const &rows, int stencil);

@@ -6,6 +6,7 @@
 #include <far_ext/primvarRefiner.h>
 #include <far_ext/stencilTableFactory.h>
 #include <far_ext/topologyRefinerFactory.h>
+#include <far_ext/version.h>
 #include <osd_ext/stencilEvaluation.h>
 #include <osd_ext/triangleIndices.h>
 
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -154,7 +156,11 @@ void checkHex(Far::TopologyRefiner const &base) {
 
 } // namespace
 
+static_assert(OPENSUBDIVHEX_VERSION_NUMBER >= 100, "the release that the package asks for");
+
 int main() {
+    expect(std::strcmp(OPENSUBDIVHEX_VERSION, PACKAGE_VERSION) == 0,
+           "the headers have the version of the package");
     Far::TopologyDescriptor descriptor;
     descriptor.numVertices = 8;
     descriptor.numFaces = 6;

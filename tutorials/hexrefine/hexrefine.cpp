@@ -7,6 +7,7 @@
 #include "creaseAngle.h"
 #include "evaluation.h"
 #include "far_ext/topologyRefinerFactory.h"
+#include "far_ext/version.h"
 #include "levelMesh.h"
 #include "picture.h"
 #include "progress.h"
@@ -202,7 +203,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
             throw CLI::ValidationError("--limit", "needs a stencil table, not --evaluator primvar");
         }
     });
-    app.set_version_flag("--version", "hexrefine " HEXREFINE_VERSION);
+    app.set_version_flag("--version", "hexrefine " OPENSUBDIVHEX_VERSION);
     app.footer("Exit status: 0 success, 1 bad input or failed output, 2 bad usage.");
 }
 

@@ -3,6 +3,9 @@
 // Runs the program hexrefine as its users do.
 #include "programFixture.h"
 
+#include "far_ext/version.h"
+#include "osd_ext/simdLevel.h"
+
 #ifdef __has_feature
 #if __has_feature(address_sanitizer)
 #define HAS_ADDRESS_SANITIZER
@@ -20,7 +23,7 @@ TEST_F(Hexrefine, PrintsHelpAndVersion) {
                                "--evaluator", "--threads", "--stats", "--quiet", "--version"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
-    EXPECT_EQ(run("--version").out, "hexrefine " HEXREFINE_VERSION "\n");
+    EXPECT_EQ(run("--version").out, "hexrefine " OPENSUBDIVHEX_VERSION "\n");
 }
 
 TEST_F(Hexrefine, RefinesCube) {
