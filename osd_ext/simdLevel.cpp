@@ -2,9 +2,12 @@
 #include "simdLevel.h"
 
 #include <atomic>
+#include <cstdlib>
 
 namespace OpenSubdivHex::OsdExt {
 namespace {
+
+constexpr SimdLevel kSimdLevels[] = {SimdLevel::Portable, SimdLevel::Avx2, SimdLevel::Avx512};
 
 SimdLevel detectMaxSimdLevel() {
 #ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
@@ -19,8 +22,15 @@ SimdLevel detectMaxSimdLevel() {
     return SimdLevel::Portable;
 }
 
+SimdLevel readInitialSimdLevel() {
+    SimdLevel level = GetMaxSimdLevel();
+    char const *const name = std::getenv("OPENSUBDIVHEX_SIMD");
+    bool const isUsable = name && FindSimdLevel(name, &level) && level <= GetMaxSimdLevel();
+    return isUsable ? level : GetMaxSimdLevel();
+}
+
 std::atomic<SimdLevel> &currentSimdLevel() {
-    static std::atomic<SimdLevel> level(GetMaxSimdLevel());
+    static std::atomic<SimdLevel> level(readInitialSimdLevel());
     return level;
 }
 
@@ -39,6 +49,28 @@ bool SetSimdLevel(SimdLevel level) {
     }
     currentSimdLevel() = level;
     return true;
+}
+
+char const *GetSimdLevelName(SimdLevel level) {
+    switch (level) {
+    case SimdLevel::Avx512:
+        return "avx512";
+    case SimdLevel::Avx2:
+        return "avx2";
+    case SimdLevel::Portable:
+        break;
+    }
+    return "portable";
+}
+
+bool FindSimdLevel(std::string const &name, SimdLevel *level) {
+    for (SimdLevel const known : kSimdLevels) {
+        if (name == GetSimdLevelName(known)) {
+            *level = known;
+            return true;
+        }
+    }
+    return false;
 }
 
 } // namespace OpenSubdivHex::OsdExt

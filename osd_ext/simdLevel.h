@@ -2,16 +2,23 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_SIMD_LEVEL_H
 #define OPENSUBDIVHEX_OSD_EXT_SIMD_LEVEL_H
 
+#include "far_ext/export.h"
+
+#include <string>
+
 namespace OpenSubdivHex::OsdExt {
 
-/// \brief The instructions that the evaluators of this library use, each level above the one
-/// before it.
+/// \brief The instructions that CpuEvaluator and OmpEvaluator use, each level above the one before
+/// it.
 ///
 /// Avx2 and Avx512 are there when the library was built by GCC or Clang for x86-64.
 ///
 /// Results are the same, bit for bit, for any number of threads, ranges and buffers, at one level.
 /// Levels differ in the last bits: above Portable, products are fused with sums (FMA), and the
 /// terms of a stencil are summed in another order.
+///
+/// RefinementEvaluator knows no levels: its code is compiled once, for the processors that the whole
+/// library is compiled for, and its results are the same at every level.
 enum class SimdLevel {
     Portable, ///< what the compiler makes of plain C++, on any machine
     Avx2,     ///< AVX2 and FMA
@@ -19,16 +26,29 @@ enum class SimdLevel {
 };
 
 /// The highest level that both this build and this machine have.
-SimdLevel GetMaxSimdLevel();
+OPENSUBDIVHEX_API SimdLevel GetMaxSimdLevel();
 
-/// The level in use: GetMaxSimdLevel() until SetSimdLevel() was called.
-SimdLevel GetSimdLevel();
+/// \brief The level in use.
+///
+/// Until SetSimdLevel() was called it is the one that the environment variable OPENSUBDIVHEX_SIMD
+/// names when the level is first needed, else GetMaxSimdLevel().  A name that FindSimdLevel() does
+/// not know, or that of a level above GetMaxSimdLevel(), counts as none: a program that wants to
+/// tell its user of it compares the name of this level with the variable.
+OPENSUBDIVHEX_API SimdLevel GetSimdLevel();
 
 /// \brief Sets the level for all evaluations of the process that start from now on.  Meant for
 /// tests and comparisons.  Safe to call from any thread.
 ///
 /// \return  false if \p level is above GetMaxSimdLevel(); the level in use then stays
-bool SetSimdLevel(SimdLevel level);
+OPENSUBDIVHEX_API bool SetSimdLevel(SimdLevel level);
+
+/// @name Names of levels
+/// "portable", "avx2" and "avx512": spelled so in OPENSUBDIVHEX_SIMD, and by hexrefine.
+/// @{
+OPENSUBDIVHEX_API char const *GetSimdLevelName(SimdLevel level);
+/// \return  false, with \p level as it was, if no level has this name
+OPENSUBDIVHEX_API bool FindSimdLevel(std::string const &name, SimdLevel *level);
+/// @}
 
 } // namespace OpenSubdivHex::OsdExt
 

@@ -9,6 +9,7 @@
 #include "far_ext/topologyRefinerFactory.h"
 #include "far_ext/version.h"
 #include "levelMesh.h"
+#include "osd_ext/simdLevel.h"
 #include "picture.h"
 #include "progress.h"
 #include "ruleNames.h"
@@ -31,6 +32,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <new>
 
@@ -55,6 +57,7 @@ struct Arguments {
     std::optional<std::string> fvarInterpolation;
     std::string evaluator = kRefinement;
     std::optional<int> numThreads;
+    std::optional<std::string> simd;
     std::string png;
     std::string stats;
     bool isLimit = false;
@@ -77,6 +80,16 @@ std::string checkAngle(std::string const &word) {
     return ParseFiniteFloat(word, &angle) && angle >= 0 && angle <= 180
                ? ""
                : "'" + word + "' is not an angle from 0 to 180";
+}
+
+std::string checkSimdLevel(std::string const &word) {
+    OsdExt::SimdLevel const max = OsdExt::GetMaxSimdLevel();
+    OsdExt::SimdLevel level = max;
+    if (!OsdExt::FindSimdLevel(word, &level)) {
+        return "'" + word + "' is not portable, avx2 or avx512";
+    }
+    return level <= max ? ""
+                        : "there is no " + word + " here, at most " + OsdExt::GetSimdLevelName(max);
 }
 
 void addSchemeOptions(CLI::App &app, Arguments *arguments) {
@@ -179,6 +192,11 @@ void addOptions(CLI::App &app, Arguments *arguments) {
             return std::string();
         })
         ->default_str("those of OpenMP: OMP_NUM_THREADS, or all processors");
+    app.add_option("--simd", arguments->simd,
+                   "Instructions of --evaluator stencil and --limit: portable, avx2 or avx512")
+        ->check(checkSimdLevel)
+        ->type_name("LEVEL")
+        ->default_str("that of OPENSUBDIVHEX_SIMD, or the highest of the processor");
     app.add_option("--png", arguments->png, "File for a ray traced picture of the last level")
         ->check([](std::string const &) {
             return std::string(HasRenderer() ? "" : "this program was built without Embree");
@@ -198,6 +216,12 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         }
         if (arguments->isCoplanar && (arguments->scheme != "hex" || arguments->isTriHexFirst)) {
             throw CLI::ValidationError("--coplanar", "is for the hexagonal scheme alone");
+        }
+        // The library takes a name that it cannot use for none.
+        char const *const simd = std::getenv("OPENSUBDIVHEX_SIMD");
+        std::string const simdError = simd ? checkSimdLevel(simd) : "";
+        if (!arguments->simd && !simdError.empty()) {
+            throw CLI::ValidationError("OPENSUBDIVHEX_SIMD", simdError);
         }
         if (arguments->isLimit && arguments->evaluator == "primvar") {
             throw CLI::ValidationError("--limit", "needs a stencil table, not --evaluator primvar");
@@ -383,6 +407,13 @@ void writeStatistics(Statistics const &statistics, std::string const &path) {
     file.Commit();
 }
 
+/// Sets the level that --simd names, which is checked.
+void setSimdLevel(std::string const &name) {
+    OsdExt::SimdLevel level = OsdExt::GetSimdLevel();
+    OsdExt::FindSimdLevel(name, &level);
+    OsdExt::SetSimdLevel(level);
+}
+
 /// Throws FileError and std::bad_alloc.
 void run(Arguments const &arguments) {
     Statistics statistics;
@@ -499,6 +530,9 @@ int main(int argc, char **argv) {
         omp_set_num_threads(*arguments.numThreads);
     }
 #endif
+    if (arguments.simd) {
+        setSimdLevel(*arguments.simd);
+    }
     try {
         run(arguments);
     } catch (FileError const &error) {

@@ -17,10 +17,11 @@ namespace OpenSubdivHex::Tutorials {
 TEST_F(Hexrefine, PrintsHelpAndVersion) {
     Result const help = run("--help");
     EXPECT_EQ(help.status, 0);
-    for (char const *option : {"INPUT", "-l,--level", "-o,--output", "--mask", "--scheme",
-                               "--tri-hex-first", "--coplanar", "--tolerance", "--open-gaps",
-                               "--boundary", "--crease-angle", "--fvar-interpolation", "--tags",
-                               "--evaluator", "--threads", "--stats", "--quiet", "--version"}) {
+    for (char const *option :
+         {"INPUT", "-l,--level", "-o,--output", "--mask", "--scheme", "--tri-hex-first",
+          "--coplanar", "--tolerance", "--open-gaps", "--boundary", "--crease-angle",
+          "--fvar-interpolation", "--tags", "--evaluator", "--threads", "--simd", "--stats",
+          "--quiet", "--version"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
     EXPECT_EQ(run("--version").out, "hexrefine " OPENSUBDIVHEX_VERSION "\n");
@@ -244,6 +245,41 @@ TEST_F(Hexrefine, ThreadsDoNotChangeTheOutput) {
             EXPECT_TRUE(getContent(getPath("out.ply")) == expected) << evaluator << number;
         }
     }
+}
+
+TEST_F(Hexrefine, SimdChoosesTheKernel) {
+    std::string const output = " -l 3 --quiet -o " + getPath("out.ply");
+    auto const refine = [&](std::string const &options, std::string const &before = "") {
+        Result const result = run(LANTERN_FILE + output + options, before);
+        EXPECT_EQ(result.status, 0) << result.error;
+        return getContent(getPath("out.ply"));
+    };
+    using OsdExt::SimdLevel;
+    SimdLevel const max = OsdExt::GetMaxSimdLevel();
+    std::string const stencil = " --evaluator stencil";
+    std::string const highest = refine(stencil);
+    for (SimdLevel const level : {SimdLevel::Portable, SimdLevel::Avx2, SimdLevel::Avx512}) {
+        std::string const name = OsdExt::GetSimdLevelName(level);
+        std::string const option = " --simd " + name;
+        std::string const variable = "OPENSUBDIVHEX_SIMD=" + name + " ";
+        if (level > max) {
+            expectBadUsage(LANTERN_FILE + output + option, "there is no " + name + " here");
+            continue;
+        }
+        std::string const chosen = refine(stencil + option);
+        if (level == max || level == SimdLevel::Portable) {
+            // Above portable, products are fused with sums.
+            EXPECT_EQ(chosen == highest, level == max) << name;
+        }
+        EXPECT_TRUE(refine(stencil, variable) == chosen) << name;
+        EXPECT_TRUE(refine(stencil + option, "OPENSUBDIVHEX_SIMD=portable ") == chosen) << name;
+        EXPECT_TRUE(refine(option) == refine("")) << name;
+    }
+    Result const result = run(LANTERN_FILE + output, "OPENSUBDIVHEX_SIMD=sse ");
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.error.find("OPENSUBDIVHEX_SIMD"), std::string::npos) << result.error;
+    EXPECT_NE(result.error.find("'sse' is not portable, avx2 or avx512"), std::string::npos);
+    expectBadUsage(LANTERN_FILE + output + " --simd AVX2", "'AVX2' is not portable");
 }
 
 TEST_F(Hexrefine, LanternIsClosedAndOfFourFaceSizes) {
