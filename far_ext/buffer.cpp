@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "buffer.h"
 
+#include "threads.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -78,7 +80,8 @@ void PrepareArray(void *memory, std::size_t bytes) {
     // A system too old to make pages ready makes them at first touch.
     constexpr std::size_t kPagesPerCall = 8;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic) if (pages.count > kPagesPerCall)
+#pragma omp parallel for schedule(dynamic) if (pages.count > kPagesPerCall)                        \
+    num_threads(GetNumThreads())
 #endif
     for (std::size_t page = 0; page < pages.count; page += kPagesPerCall) {
         madvise(pages.begin + page * kHugePage,

@@ -105,6 +105,8 @@ private:
 /// mesh.
 ///
 /// Vertex interpolation alone; varying and face-varying data have no limit stencils.
+///
+/// Several threads may call it at once, also for the same refiner.  std::bad_alloc passes through.
 template <typename REAL>
 class OPENSUBDIVHEX_API LimitStencilTableFactoryReal {
 public:

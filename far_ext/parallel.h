@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_PARALLEL_H
 
 #include "status.h"
+#include "threads.h"
 
 #include <algorithm>
 #include <exception>
@@ -73,7 +74,7 @@ void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function,
     Far::Index const numRanges = GetNumParallelRanges(count, length);
     ExceptionKeeper exceptions;
 #ifdef _OPENMP
-#pragma omp parallel if (numRanges > 4)
+#pragma omp parallel if (numRanges > 4) num_threads(GetNumThreads())
 #endif
     {
         std::optional<decltype(makeState())> state;

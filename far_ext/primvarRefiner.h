@@ -15,6 +15,9 @@ namespace OpenSubdivHex::FarExt {
 /// of \p dst must also take an element of \p dst, since V-vertices average new points.
 /// \p REAL is the type of the weights.  Arguments are not checked.
 ///
+/// Works on the calling thread.  Several threads may use one primvar refiner at once, for elements
+/// of their own.  What the elements throw passes through, and std::bad_alloc.
+///
 /// \code
 ///     PrimvarRefiner primvarRefiner(refiner);
 ///     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {

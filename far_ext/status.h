@@ -33,6 +33,15 @@ enum class ComponentType { None, Face, Edge, Vertex, Level };
 ///
 /// Every function that can fail takes an optional `Status *` and assigns it on success as well as
 /// on failure.  Nothing in this library prints.
+///
+/// **What throws.** std::bad_alloc alone, where memory is short: every function that makes or fills
+/// something lets it pass, and leaves nothing behind.  Objects that it worked on can be used again;
+/// TopologyRefiner says which levels it then has.  What the user's own types throw, as primvars do,
+/// passes through, too.
+///
+/// **Threads.** Functions that make something, and const ones, may be called by several threads at
+/// once, for the same arguments, too; others by one thread while no other uses the object.  See
+/// SetNumThreads() for how many threads a call uses itself.
 class Status {
 public:
     /// Ok, no component, empty message.

@@ -26,6 +26,8 @@ struct StencilTableTypes<float> {
 enum StencilMode { INTERPOLATE_VERTEX, INTERPOLATE_VARYING, INTERPOLATE_FACE_VARYING };
 
 /// \brief Makes Far stencil tables of hexagonal refinements, for any Osd evaluator.
+///
+/// Several threads may call it at once, also for the same refiner.  std::bad_alloc passes through.
 template <typename REAL>
 class OPENSUBDIVHEX_API StencilTableFactoryReal {
 public:

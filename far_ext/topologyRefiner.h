@@ -20,9 +20,12 @@ class SizeChecker;
 /// \brief The topology of a mesh and of its hexagonal refinements, level by level.
 ///
 /// Made by TopologyRefinerFactory, which copies what it needs: nothing refers to the base refiner
-/// or descriptor afterwards.  All queries are const and safe to call from several threads; indices,
-/// channels and levels are not checked, as in Far.
-class TopologyRefiner {
+/// or descriptor afterwards.  Indices, channels and levels are not checked, as in Far.
+///
+/// All queries are const and may be called by several threads at once, as may all that makes tables
+/// or evaluators of a refiner.  RefineUniform, RefineCoplanar and Unrefine are called by one thread
+/// while no other uses the refiner or its levels.
+class OPENSUBDIVHEX_API TopologyRefiner {
 public:
     /// Takes the base level.  Use TopologyRefinerFactory, which validates it.
     TopologyRefiner(std::unique_ptr<internal::LevelTopology> baseLevel, Sdc::Options sdcOptions,

@@ -13,7 +13,9 @@ namespace OpenSubdivHex::FarExt {
 ///
 /// Level 0 keeps the base's numbering of vertices, edges, faces, corners and face-varying values;
 /// INDEXING.md says what becomes of non-manifold edges.
-class TopologyRefinerFactory {
+///
+/// Several threads may call it at once, also for the same base.  std::bad_alloc passes through.
+class OPENSUBDIVHEX_API TopologyRefinerFactory {
 public:
     struct Options {
         SchemeOptions schemeOptions;

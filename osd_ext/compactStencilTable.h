@@ -24,6 +24,8 @@ namespace OsdExt {
 /// evaluation is 1.1 to 1.7 times as fast on one thread (benchmark evaluation, compact table).  A
 /// table whose stencils share no lists, as those of Catmull-Clark, gets larger.
 ///
+/// Several threads may make, and evaluate, the same table at once.  std::bad_alloc passes through.
+///
 /// It is this library's own: other evaluators, on GPUs for one, take the Far::StencilTable.
 class OPENSUBDIVHEX_API CompactStencilTable {
 public:

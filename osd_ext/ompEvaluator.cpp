@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ompEvaluator.h"
 
+#include "far_ext/threads.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <vector>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 namespace OpenSubdivHex::OsdExt {
 namespace {
@@ -17,12 +15,6 @@ namespace {
 constexpr std::int64_t kMinBatch = 256;
 constexpr std::int64_t kMaxBatch = 4096;
 constexpr int kBatchesPerThread = 16;
-
-#ifdef _OPENMP
-int getMaxThreads() { return omp_get_max_threads(); }
-#else
-int getMaxThreads() { return 1; }
-#endif
 
 } // namespace
 
@@ -37,7 +29,7 @@ bool OmpEvaluator::IsParallel() {
 void OmpEvaluator::run(internal::StencilTask const &task, int begin, int end) {
     internal::StencilKernel const kernel = internal::GetStencilKernel();
     std::int64_t const numStencils = std::int64_t(end) - begin;
-    std::int64_t const numThreads = getMaxThreads();
+    std::int64_t const numThreads = FarExt::GetNumThreads();
     int const batchSize =
         int(std::clamp(numStencils / (numThreads * kBatchesPerThread), kMinBatch, kMaxBatch));
     int const numBatches = int((numStencils + batchSize - 1) / batchSize);
@@ -58,7 +50,7 @@ void OmpEvaluator::run(internal::StencilTask const &task, int begin, int end) {
         }
     }
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) num_threads(FarExt::GetNumThreads())
 #endif
     for (int batch = 0; batch < numBatches; ++batch) {
         int const batchBegin = begin + batch * batchSize;

@@ -6,9 +6,9 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-/// \brief Evaluates stencils on the threads of OpenMP, as many as omp_set_num_threads() and
-/// OMP_NUM_THREADS say: a faster Osd::OmpEvaluator.  See StencilEvaluator for its functions,
-/// SimdLevel for the instructions that it uses.
+/// \brief Evaluates stencils on the threads of OpenMP, as many as FarExt::SetNumThreads() and OpenMP
+/// say: a faster Osd::OmpEvaluator.  See StencilEvaluator for its functions, SimdLevel for the
+/// instructions that it uses.
 ///
 /// Results are those of CpuEvaluator, bit for bit.  Ranges of few stencils are evaluated on the
 /// calling thread.

@@ -2,6 +2,7 @@
 #include "refinementKernel.h"
 
 #include "far_ext/indexing.h"
+#include "far_ext/threads.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -590,7 +591,7 @@ void RefineElements(std::vector<RefinementTask> const &tasks, int length) {
         std::any_of(tasks.begin(), tasks.end(),
                     [](RefinementTask const &task) { return task.step->numTiles > 1; });
 #ifdef _OPENMP
-#pragma omp parallel if (isLarge)
+#pragma omp parallel if (isLarge) num_threads(FarExt::GetNumThreads())
 #endif
     for (RefinementTask const &task : tasks) {
         RefinementStep const &step = *task.step;

@@ -42,6 +42,10 @@ namespace OsdExt {
 /// that results are the same, bit for bit, for both evaluators and for any number of threads,
 /// range, stride and offset.
 ///
+/// **Threads.** Several threads may evaluate at once, also the same table and from the same source,
+/// into elements of their own.  Nothing throws but OmpEvaluator, std::bad_alloc for a table without
+/// offsets; nothing is written then.
+///
 /// **Return value.** True if all went well, also where there is nothing to do: an empty table, and
 /// end <= start.  False, with nothing written, if
 ///  - the lengths of the descriptors differ, or are less than 1,

@@ -34,9 +34,9 @@ struct TriangleOptions {
 ///
 /// A hexagon that a crease, or a seam of the chosen channel, crosses is split along that diagonal
 /// first, so that normals and values may differ to both sides.  Triangles are in the order of the
-/// faces.
-TriangleIndices CreateTriangleIndices(FarExt::TopologyLevel const &level,
-                                      TriangleOptions options = TriangleOptions());
+/// faces.  Works on the calling thread; several may call it at once.  std::bad_alloc passes through.
+OPENSUBDIVHEX_API TriangleIndices CreateTriangleIndices(
+    FarExt::TopologyLevel const &level, TriangleOptions options = TriangleOptions());
 
 } // namespace OpenSubdivHex::OsdExt
 
