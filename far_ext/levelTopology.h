@@ -44,6 +44,13 @@ struct SectorCorner {
     float weight;     ///< share of the thresholds; the entries of a corner sum to 1 at most
 };
 
+/// \brief A boundary edge where an edge of level 0 came apart into one for each of its faces.  Edges
+/// of one line run along one curve.
+struct LineEdge {
+    Far::Index edge;
+    Far::Index line; ///< the edge of level 0, in the numbering of the base
+};
+
 /// @name The places of vertices in their edges, where a hexagonal step made both without boundaries
 /// @{
 /// All edges of a V-vertex are spokes, which begin there.
@@ -137,6 +144,14 @@ struct LevelTopology {
         return std::size_t(v) < vertSharpness.size() ? vertSharpness[v] : 0;
     }
 
+    /// The line of edge \p e, INDEX_INVALID when it has none.
+    Index GetEdgeLine(Index e) const {
+        auto const found =
+            std::lower_bound(lineEdges.begin(), lineEdges.end(), e,
+                             [](LineEdge const &line, Index edge) { return line.edge < edge; });
+        return found != lineEdges.end() && found->edge == e ? found->line : Far::INDEX_INVALID;
+    }
+
     /// The sharp vertex \p v, null when its rule is the smooth one.
     SharpVertex const *FindSharpVertex(Index v) const {
         auto const found = std::lower_bound(
@@ -206,8 +221,9 @@ struct LevelTopology {
     Buffer<float> vertSharpness;     ///< of the vertices of level 0, the only ones that have any
     Buffer<unsigned char> faceHoles; ///< numFaces
     std::vector<Index> nonManifoldVerts; ///< ascending
-    std::vector<Index> partedVerts; ///< those that the gaps of an open refinement part into fans
+    std::vector<Index> partedVerts; ///< those that gaps of the step to the level part into fans
     std::vector<Index> nonManifoldEdges; ///< ascending; of level 0 alone
+    std::vector<LineEdge> lineEdges;     ///< ascending; of levels with full topology
 
     std::vector<SharpVertex> sharpVerts; ///< ascending; all vertices with a rule but RULE_SMOOTH
 

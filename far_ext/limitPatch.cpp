@@ -181,6 +181,15 @@ void LimitPatchGatherer::addEdge(Index corner, Index edge, LimitPatch &patch) {
     bool const isKept = _level.IsBoundary(edge) && (isComplete || _level.IsSharpBoundaryB(edge));
     patch.otherCorners.push_back(isKept ? _level.edgeFaces[2 * std::size_t(edge) + 1]
                                         : Index(kFreeBoundary));
+    Index const line = _level.GetEdgeLine(edge);
+    if (isKept && line != Far::INDEX_INVALID) {
+        auto const found = std::find(_lines.begin(), _lines.end(), line);
+        patch.lineCorners.push_back(corner);
+        patch.lines.push_back(Index(found - _lines.begin()));
+        if (found == _lines.end()) {
+            _lines.push_back(line);
+        }
+    }
 }
 
 void LimitPatchGatherer::addTags(LimitPatch &patch) {
@@ -233,6 +242,8 @@ void LimitPatchGatherer::addSignature(LimitPatch &patch) {
     addIfAny(patch.diagonalSharpness);
     addIfAny(patch.vertSharpness);
     add(patch.nonManifoldVerts);
+    add(patch.lineCorners);
+    add(patch.lines);
     for (SectorCorner const &sector : patch.sectorCorners) {
         signature.insert(signature.end(),
                          {sector.corner, getBits(sector.sectorSize), getBits(sector.weight)});
@@ -244,6 +255,7 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
     _faces.Clear(_level.numFaces);
     _edges.Clear(_level.numEdges);
     _corners.clear();
+    _lines.clear();
     patch = LimitPatch();
 
     // The vertices whose faces are all there come first: vertex 0 and its neighbours.
@@ -321,6 +333,10 @@ void BuildPatchLevel(LimitPatch const &patch, LevelTopology &level) {
     fillTags(patch.diagonalSharpness, level.diagonalSharpness);
     fillTags(patch.vertSharpness, level.vertSharpness);
     level.nonManifoldVerts = patch.nonManifoldVerts;
+    level.lineEdges.clear();
+    for (std::size_t i = 0; i < patch.lines.size(); ++i) {
+        level.lineEdges.push_back({level.faceEdges[patch.lineCorners[i]], patch.lines[i]});
+    }
     level.sharpVerts = patch.sharpVerts;
     level.sectorCorners = patch.sectorCorners;
 }

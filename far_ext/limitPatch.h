@@ -32,6 +32,8 @@ struct LimitPatch {
     std::vector<float> diagonalSharpness;    ///< by face
     std::vector<float> vertSharpness;        ///< by vertex
     std::vector<Index> nonManifoldVerts;     ///< ascending
+    std::vector<Index> lineCorners;          ///< ascending; those whose edge has a line
+    std::vector<Index> lines;                ///< of these, in the order of their first corners
     std::vector<SectorCorner> sectorCorners; ///< ascending
     std::vector<SharpVertex> sharpVerts;     ///< ascending; of vertex 0 and its neighbours
 
@@ -88,6 +90,7 @@ private:
     IndexMap _edges;             // the first corner of each
     int _numComplete = 0;        // vertices, the first ones, all of whose faces are in the patch
     std::vector<Index> _corners; // the level's corner of each corner of the patch
+    std::vector<Index> _lines;   // the level's line of each line of the patch
     // Of the vertex that the patch is for: positions in vertFaces, and edges.
     std::vector<Index> _ringFaces;
     std::vector<Index> _ringEdges;

@@ -544,17 +544,14 @@ void PolygonStep::Builder<FULL>::finishEdges() {
 
 namespace {
 
-// The vertices whose faces the gaps of an open refinement have parted, now or in a level before.
+// The vertices whose faces the gaps of an open refinement part.
 void findPartedVertices(LevelTopology const &parent, LevelTopology &child) {
-    auto const contains = [](std::vector<Index> const &verts, Index vert) {
-        return std::binary_search(verts.begin(), verts.end(), vert);
-    };
     child.partedVerts = ParallelSelect(parent.numVVertices, [&](Index cVert) {
         Index const pVert = parent.GetVVertexParent(cVert);
         int numFans = 0;
         ForEachFan(child, cVert, [&](VertexFan const &) { ++numFans; });
-        bool const wasOne = !contains(parent.nonManifoldVerts, pVert);
-        return numFans > 1 && (wasOne || contains(parent.partedVerts, pVert));
+        return numFans > 1 && !std::binary_search(parent.nonManifoldVerts.begin(),
+                                                  parent.nonManifoldVerts.end(), pVert);
     });
 }
 

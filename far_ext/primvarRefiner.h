@@ -15,6 +15,10 @@ namespace OpenSubdivHex::FarExt {
 /// of \p dst must also take an element of \p dst, since V-vertices average new points.
 /// \p REAL is the type of the weights.  Arguments are not checked.
 ///
+/// Two meshes that share a sharp border line, with the same sharpness at its vertices, get the same
+/// values on it, bit for bit, however either numbers and orients it, as long as AddWithWeight()
+/// rounds the product before it adds (no fused multiply-add).
+///
 /// Works on the calling thread.  Several threads may use one primvar refiner at once, for elements
 /// of their own.  What the elements throw passes through, and std::bad_alloc.
 ///
@@ -117,10 +121,11 @@ void PrimvarRefinerReal<REAL>::interpolate(TopologyLevel const &pLevel, Interpol
         auto const weights = mask.GetVertexMask(pVert);
         auto &&point = dst[cVert];
         point.Clear();
-        point.AddWithWeight(src[pVert], REAL(weights.vertexWeight));
+        // The neighbors first, so that it does not matter which of them is left and right.
         for (int i = 0; i < weights.numNeighbors; ++i) {
             point.AddWithWeight(src[weights.neighbors[i]], REAL(weights.neighborWeights[i]));
         }
+        point.AddWithWeight(src[pVert], REAL(weights.vertexWeight));
         if (weights.faceWeight > 0) {
             for (int i = 0; i < pLevel.GetVertexFaces(pVert).size(); ++i) {
                 Far::Index const corner = pLevel.GetVertexCorner(pVert, i);

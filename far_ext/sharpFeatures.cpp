@@ -24,23 +24,37 @@ struct SharpEdges {
     int GetSize() const { return int(neighbors.size()); }
 };
 
-// Where three or more sheets meet along a crease, each fan has a boundary to either side, all with
-// the same curve: those of the first fan stand for all.  The fans of a parted vertex are one sheet.
+// At a non-manifold vertex several fans may end in the same line, which counts once.
 SharpEdges gatherSharpEdges(LevelTopology const &level, Index vert) {
     SharpEdges result;
-    bool const isParted =
-        std::binary_search(level.partedVerts.begin(), level.partedVerts.end(), vert);
-    bool hasBoundary = false;
-    ForEachFanItems(level, vert, [&](FanItems const &fan) {
-        bool const isOtherSheet = !isParted && !fan.isClosed && hasBoundary;
-        for (RingItem const &item : fan.items) {
-            bool const isBoundary =
-                !fan.isClosed && (&item == &fan.items.front() || &item == &fan.items.back());
-            if (isSharp(item) && !(isBoundary && isOtherSheet)) {
-                result.neighbors.push_back(item.neighbor);
-                result.isLong.push_back(item.isLong);
-                result.sharpness.push_back(item.sharpness);
-                hasBoundary |= isBoundary;
+    bool const isNonManifold =
+        std::binary_search(level.nonManifoldVerts.begin(), level.nonManifoldVerts.end(), vert);
+    std::vector<Index> lines;
+    auto const isRepeated = [&](Index edge) {
+        Index const line = isNonManifold ? level.GetEdgeLine(edge) : Far::INDEX_INVALID;
+        if (line == Far::INDEX_INVALID) {
+            return false;
+        }
+        bool const isKnown = std::find(lines.begin(), lines.end(), line) != lines.end();
+        lines.push_back(line);
+        return isKnown;
+    };
+    FanItems items;
+    ForEachFan(level, vert, [&](VertexFan const &fan) {
+        GatherFanItems(level, fan, items);
+        auto begin = items.items.begin();
+        auto end = items.items.end();
+        if (!fan.isClosed) {
+            Index const lastCorner = level.GetVertexCorner(fan.end - 1);
+            begin += isRepeated(level.faceEdges[level.GetVertexCorner(fan.begin)]);
+            end -= isRepeated(
+                level.faceEdges[level.GetPrevCorner(level.vertFaces[fan.end - 1], lastCorner)]);
+        }
+        for (auto item = begin; item != end; ++item) {
+            if (isSharp(*item)) {
+                result.neighbors.push_back(item->neighbor);
+                result.isLong.push_back(item->isLong);
+                result.sharpness.push_back(item->sharpness);
             }
         }
     });
@@ -182,12 +196,16 @@ void addSectorCorners(LevelTopology const &level, SharpnessLayer layer, FanItems
 }
 
 // Adds the corners of wide sectors at a vertex where sharp edges meet.
-void addSectorCorners(LevelTopology const &level, Index vert, SharpEdges const &edges,
-                      std::vector<SectorCorner> &result) {
+void addSectorCorners(LevelTopology const &level, Index vert, std::vector<SectorCorner> &result) {
+    // Of each fan, since a sector may lie between two ends of a fan on the same line.
     std::vector<float> sharpness;
-    for (float value : edges.sharpness) {
-        sharpness.push_back(std::min(1.0f, value));
-    }
+    ForEachFanItems(level, vert, [&](FanItems const &fan) {
+        for (RingItem const &item : fan.items) {
+            if (isSharp(item)) {
+                sharpness.push_back(std::min(1.0f, item.sharpness));
+            }
+        }
+    });
     std::sort(sharpness.begin(), sharpness.end());
     float lower = 0;
     // The sharpest edge of all is alone in its layer.
@@ -212,7 +230,7 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, LevelTopology &level) {
         int const numFaces = level.vertFirstFace[vert + 1] - level.vertFirstFace[vert];
         float const vertSharpness = level.GetVertexSharpness(vert);
         SharpEdges const edges = gatherSharpEdges(level, vert);
-        addSectorCorners(level, vert, edges, level.sectorCorners);
+        addSectorCorners(level, vert, level.sectorCorners);
         Crease::Rule const rule = creasing.DetermineVertexVertexRule(vertSharpness, edges.GetSize(),
                                                                      edges.sharpness.data());
         SharpVertex mask = maskOfRule(creasing, rule, vert, numFaces, edges, edges.sharpness);
@@ -349,6 +367,29 @@ void refineEdges(LevelTopology const &parent, SharpnessRefiner const &refiner,
     dropIfSmooth(child.edgeSharpness);
 }
 
+// A boundary of phase A has a child of phase B, in a half face; one of phase B has one in the F-face
+// of its half face, and the spokes at its ends.
+void refineLines(LevelTopology const &parent, LevelTopology &child) {
+    for (LineEdge const &pEdge : parent.lineEdges) {
+        Index const eFace = parent.GetEdgeChildFace(pEdge.edge);
+        if (eFace != Far::INDEX_INVALID) {
+            Index const corner = child.faceFirstCorner[eFace] + kHalfFaceLongEdge;
+            child.lineEdges.push_back({child.faceEdges[corner], pEdge.line});
+            continue;
+        }
+        Index const face = parent.edgeFaces[2 * std::size_t(pEdge.edge)];
+        Index const corner = parent.faceFirstCorner[face] + kHalfFaceLongEdge;
+        Index const fFaceEdge =
+            child.faceEdges[child.faceFirstCorner[parent.faceChildFaces[face]] + kHalfFaceLongEdge];
+        for (Index edge :
+             {fFaceEdge, findSpoke(parent, corner, child), findSpoke(parent, corner + 1, child)}) {
+            child.lineEdges.push_back({edge, pEdge.line});
+        }
+    }
+    std::sort(child.lineEdges.begin(), child.lineEdges.end(),
+              [](LineEdge const &a, LineEdge const &b) { return a.edge < b.edge; });
+}
+
 void refineHoles(LevelTopology const &parent, LevelTopology &child) {
     child.faceHoles.Resize(child.numFaces);
     for (Index face = 0; face < parent.numFaces; ++face) {
@@ -397,6 +438,10 @@ void RefineTags(LevelTopology const &parent, Sdc::Options sdcOptions, LevelTopol
     std::sort(verts.begin(), verts.end());
     verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
 
+    child.lineEdges.clear();
+    if (child.hasFullTopology) {
+        refineLines(parent, child);
+    }
     SharpnessRefiner const refiner(parent, sdcOptions);
     if (!parent.edgeSharpness.empty() || !parent.diagonalSharpness.empty()) {
         refineDiagonals(parent, refiner, child);

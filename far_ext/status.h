@@ -8,7 +8,10 @@
 #include <opensubdiv/far/types.h>
 #include <opensubdiv/sdc/options.h>
 
+#include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace OpenSubdivHex {
 
@@ -29,7 +32,22 @@ enum class StatusCode {
 /// \brief The kind of mesh component that a Status points at.
 enum class ComponentType { None, Face, Edge, Vertex, Level };
 
-/// \brief The outcome of an operation: a code, the component that caused it and one sentence.
+/// \brief What a Warning is about.
+enum class WarningCode {
+    InconsistentOrientation ///< edges that both of their faces run in the same direction
+};
+
+/// \brief Something that was noticed without a failure: the result is what the message says.
+struct Warning {
+    WarningCode code;
+    ComponentType component; ///< kind of the components concerned
+    Far::Index index;        ///< of the first of them in the input
+    std::int64_t count;      ///< how many there are
+    std::string message;     ///< one sentence that names the count and the first
+};
+
+/// \brief The outcome of an operation: a code, the component that caused it and one sentence; and
+/// what was noticed on the way, of which a Status that is Ok may have some, too.
 ///
 /// Every function that can fail takes an optional `Status *` and assigns it on success as well as
 /// on failure.  Nothing in this library prints.
@@ -63,11 +81,16 @@ public:
     /// One sentence that names the component and the cause; empty when Ok.
     std::string const &GetMessage() const { return _message; }
 
+    /// What was noticed, one entry for each WarningCode at most.
+    std::vector<Warning> const &GetWarnings() const { return _warnings; }
+    void AddWarning(Warning warning) { _warnings.push_back(std::move(warning)); }
+
 private:
     StatusCode _code = StatusCode::Ok;
     ComponentType _component = ComponentType::None;
     Far::Index _index = Far::INDEX_INVALID;
     std::string _message;
+    std::vector<Warning> _warnings;
 };
 
 /// \brief Installs \p callback as Far's error callback and has this library report through it too.
@@ -83,6 +106,13 @@ namespace internal {
 /// Assigns \p result to \p status (when given) and sends a failure to the installed callback.
 /// Returns result.IsOk().
 OPENSUBDIVHEX_API bool Report(Status const &result, Status *status);
+
+/// Whether \p value, which a cast may have made of any number, is one of an enumeration that goes
+/// from 0 to \p last.
+template <typename ENUM>
+bool IsInEnum(int value, ENUM last) {
+    return 0 <= value && value <= int(last);
+}
 
 } // namespace internal
 } // namespace FarExt

@@ -321,11 +321,12 @@ void StepBuilder<REAL>::fillVVertex(Index vVertex, Scratch &scratch) const {
             sumOfSource[sources[k]] += weight * double(weights[k]);
         }
     };
-    add(mask.vertexWeight, parentWeights(pVert), _pSupports.OfVertices()[pVert]);
+    // The neighbors first, so that it does not matter which of them is left and right.
     for (int i = 0; i < mask.numNeighbors; ++i) {
         Index const neighbor = mask.neighbors[i];
         add(mask.neighborWeights[i], parentWeights(neighbor), _pSupports.OfVertices()[neighbor]);
     }
+    add(mask.vertexWeight, parentWeights(pVert), _pSupports.OfVertices()[pVert]);
     if (mask.faceWeight > 0) {
         _step.ForEachVertexFace(pVert, [&](Index face, Index row) {
             add(mask.faceWeight, _rows.GetWeights(row), _supports.OfFaces()[face]);
@@ -541,6 +542,11 @@ Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
     if (options.maxLevel < 0) {
         return Status(StatusCode::InvalidArgument, ComponentType::Level, options.maxLevel,
                       "maxLevel " + std::to_string(options.maxLevel) + " is negative");
+    }
+    if (!internal::IsInEnum(options.interpolationMode, INTERPOLATE_FACE_VARYING)) {
+        return Status(StatusCode::InvalidArgument, ComponentType::None, Far::INDEX_INVALID,
+                      "there is no interpolationMode " +
+                          std::to_string(int(options.interpolationMode)));
     }
     bool const hasChannel =
         0 <= options.fvarChannel && options.fvarChannel < refiner.GetNumFVarChannels();

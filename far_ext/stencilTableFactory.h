@@ -23,7 +23,7 @@ struct StencilTableTypes<float> {
 };
 
 /// \brief What the stencils interpolate, spelled as in Far::StencilTableFactory.
-enum StencilMode { INTERPOLATE_VERTEX, INTERPOLATE_VARYING, INTERPOLATE_FACE_VARYING };
+enum StencilMode : int { INTERPOLATE_VERTEX, INTERPOLATE_VARYING, INTERPOLATE_FACE_VARYING };
 
 /// \brief Makes Far stencil tables of hexagonal refinements, for any Osd evaluator.
 ///
@@ -62,7 +62,12 @@ public:
     /// The indices of a stencil ascend; weights are non-negative and sum to 1.  All new points of a
     /// face have the same indices, so that some weights at borders and creases are 0.
     ///
-    /// \return  null on failure: InvalidArgument (negative maxLevel, channel out of range) or
+    /// On a sharp border line that two meshes share, with the same sharpness at its vertices, the
+    /// weights of the same control vertices are the same, bit for bit.  The values are so up to the
+    /// order of the sum alone, which is that of the indices; PrimvarRefiner and
+    /// OsdExt::RefinementEvaluator give the same values, bit for bit.
+    ///
+    /// \return  null on failure: InvalidArgument (negative maxLevel, mode or channel out of range) or
     ///          TooLarge (more than 2^31 - 1 stencils or weights up to the level that the status
     ///          names).
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,

@@ -25,13 +25,16 @@ public:
     /// that accepts its faces (Catmark takes all), with its sharpness, holes and face-varying
     /// channels.  Boundary, crease and face-varying rules are those of base.GetSchemeOptions().
     ///
-    /// Non-manifold edges and vertices are infinitely sharp, as in Far.  With VTX_BOUNDARY_NONE
+    /// Non-manifold edges and vertices are infinitely sharp, as in Far: vertices stay, unless they lie
+    /// inside of a curve that three or more sheets share.  An edge that its two faces run in the same
+    /// direction is non-manifold; \p status then has a Warning of WarningCode::InconsistentOrientation.
+    /// A vertex that a face has several times is non-manifold and stays.  With VTX_BOUNDARY_NONE
     /// all boundaries follow the paper's rule, whatever sharpness they have, and holes beside a
     /// boundary are not taken over, since Far tags all faces there as holes.
     ///
-    /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices,
-    ///          two faces that run an edge in the same direction, an edge without a face),
-    ///          TooLarge, or Unsupported (creases, interior corners, non-manifold edges or
+    /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices, an
+    ///          edge without a face, a sharpness that is negative or not a number), InvalidArgument
+    ///          (an option that is none of its enumeration's values), TooLarge, or Unsupported (creases, interior corners, non-manifold edges or
     ///          face-varying channels with other steps than hexagonal ones).
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    Options options, Status *status = nullptr);
@@ -45,7 +48,7 @@ public:
     ///
     /// Additionally refuses, with InvalidTopology, indices out of range: of vertices in faces,
     /// creases and corners, of faces that are holes, and of face-varying values; a crease that is
-    /// no edge; and, with InvalidArgument, a descriptor without its arrays of faces.
+    /// no edge; and, with InvalidArgument, a descriptor without an array that it has a count for.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyDescriptor const &descriptor,
                                                    Sdc::Options sdcOptions, Options options,
                                                    Status *status = nullptr);

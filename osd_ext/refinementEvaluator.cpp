@@ -62,8 +62,11 @@ void copyElements(internal::Elements<float const> src, int length, Index count,
 std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner const &refiner,
                                                                  Options options, Status *status) {
     Status result;
-    if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING &&
-        (options.fvarChannel < 0 || options.fvarChannel >= refiner.GetNumFVarChannels())) {
+    if (!FarExt::internal::IsInEnum(options.interpolationMode, FarExt::INTERPOLATE_FACE_VARYING)) {
+        result = invalidArgument("there is no interpolationMode " +
+                                 std::to_string(int(options.interpolationMode)));
+    } else if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING &&
+               (options.fvarChannel < 0 || options.fvarChannel >= refiner.GetNumFVarChannels())) {
         result = invalidArgument("there is no face-varying channel " +
                                  std::to_string(options.fvarChannel) + " among the refiner's " +
                                  std::to_string(refiner.GetNumFVarChannels()));
@@ -185,6 +188,9 @@ bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescrip
     if (!FarExt::internal::Report(
             check(src, srcDesc, dst, dstDesc, GetMaxLevel(), GetNumElementsAllLevels()), status)) {
         return false;
+    }
+    if (GetMaxLevel() == 0) {
+        return true;
     }
     int const length = srcDesc.length;
     Source values = toVertices({src + srcDesc.offset, srcDesc.stride}, length);

@@ -25,7 +25,8 @@ namespace OsdExt {
 ///
 /// Values are those that a stencil table of the same refiner gives, with all rules for
 /// boundaries, creases, corners and face-varying seams, up to the rounding of floats (1e-6 of the
-/// largest control value).
+/// largest control value).  Two meshes that share a sharp border line, with the same sharpness at its
+/// vertices, get the same values on it, bit for bit, however either numbers and orients it.
 ///
 /// \code
 ///     auto const evaluator = RefinementEvaluator::Create(refiner);
@@ -67,7 +68,8 @@ public:
     /// or of all that are refined if they have sharp boundaries; and a quarter of the time of a
     /// frame, or up to the whole for two levels.
     ///
-    /// \return  null with StatusCode::InvalidArgument for a channel that is not there
+    /// \return  null with StatusCode::InvalidArgument for a channel that is not there, or an
+    ///          interpolationMode that is none
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                        Options options,
                                                        FarExt::Status *status = nullptr);

@@ -223,7 +223,10 @@ void refineWeightedFace(float const *weights, std::ptrdiff_t rowStep,
     for (int i = 0; i < size; ++i, weights += rowStep) {
         auto point = spread(weights[0]) * ACCESS::LoadExactly(src, verts[0]);
         for (int j = 1; j < size; ++j) {
-            point = point + spread(weights[j]) * ACCESS::LoadExactly(src, verts[j]);
+            // What weighs nothing has no part in the sign of a zero either.
+            if (weights[j] != 0) {
+                point = point + spread(weights[j]) * ACCESS::LoadExactly(src, verts[j]);
+            }
         }
         ACCESS::StoreExactly(dst, corner + i, point);
     }
@@ -422,11 +425,13 @@ void refinePlainVertices(RefinementTask const &task, VertexRun const &run) {
 template <class ACCESS>
 void refineWeightedVertex(RefinementTask const &task, WeightedVertex const &vertex) {
     auto point = spread(vertex.vertexWeight) * ACCESS::LoadExactly(task.src, vertex.vert);
-    for (int i = 0; i < 2; ++i) {
-        if (vertex.neighborWeights[i] != 0) {
-            point = point + spread(vertex.neighborWeights[i]) *
-                                ACCESS::LoadExactly(task.src, vertex.neighbors[i]);
-        }
+    if (vertex.neighborWeights[0] != 0) {
+        // Two neighbors that may change places.
+        auto const atNeighbor = [&](int i) {
+            return spread(vertex.neighborWeights[i]) *
+                   ACCESS::LoadExactly(task.src, vertex.neighbors[i]);
+        };
+        point = (atNeighbor(0) + atNeighbor(1)) + point;
     }
     LevelTopology const &parent = *task.step->parent;
     Index const *const firstFace = parent.vertFirstFace.data() + vertex.vert;

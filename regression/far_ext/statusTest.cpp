@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
 
@@ -6,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <string>
 
 namespace OpenSubdivHex::Regression {
@@ -172,7 +174,8 @@ TEST_F(StatusTest, NoArrays) {
     descriptor.numVertices = 3;
     descriptor.numFaces = 1;
     EXPECT_FALSE(TopologyRefinerFactory::Create(descriptor, Sdc::Options(), &status));
-    expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::None, -1, {"arrays"}});
+    expectRefusal(status,
+                  {StatusCode::InvalidArgument, ComponentType::None, -1, {"numVertsPerFace"}});
 }
 
 TEST_F(StatusTest, FaceTooSmall) {
@@ -220,17 +223,179 @@ TEST_F(StatusTest, VertexOutOfRange) {
         {StatusCode::InvalidTopology, ComponentType::Face, 2, {"face 2", "vertex -7"}});
 }
 
-TEST_F(StatusTest, InconsistentOrientation) {
-    Shape const shape = makeShape(4, {{0, 1, 2}, {1, 2, 3}});
-    int edge = -1;
-    {
-        auto const base = CreateFarRefiner(shape);
-        edge = base->GetLevel(0).FindEdge(1, 2);
+TEST_F(StatusTest, InconsistentOrientationIsAWarning) {
+    Shape const shape = makeShape(5, {{0, 1, 2}, {1, 2, 3}, {2, 3, 4}});
+    auto const base = CreateFarRefiner(shape);
+    int const edge = base->GetLevel(0).FindEdge(1, 2);
+    ShapeDescriptor const descriptor(shape);
+    FarExt::SetErrorCallback(recordError);
+    for (bool const isFromBase : {false, true}) {
+        Status status;
+        EXPECT_TRUE(
+            isFromBase ? TopologyRefinerFactory::Create(*base, &status)
+                       : TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), &status));
+        EXPECT_TRUE(status.IsOk());
+        ASSERT_EQ(status.GetWarnings().size(), 1U);
+        FarExt::Warning const &warning = status.GetWarnings()[0];
+        EXPECT_EQ(warning.code, FarExt::WarningCode::InconsistentOrientation);
+        EXPECT_EQ(warning.component, ComponentType::Edge);
+        EXPECT_EQ(warning.index, edge);
+        EXPECT_EQ(warning.count, 2);
+        std::vector<std::string> const words = {"2 edges", "edge " + std::to_string(edge),
+                                                "vertices 1 and 2", "faces 0 and 1",
+                                                "same direction"};
+        for (std::string const &word : words) {
+            EXPECT_NE(warning.message.find(word), std::string::npos) << warning.message;
+        }
     }
-    expectRefused(shape, {StatusCode::InvalidTopology,
-                          ComponentType::Edge,
-                          edge,
-                          {"faces 0 and 1", "vertices 1 and 2", "same direction"}});
+    EXPECT_EQ(numErrors, 0);
+    // As other schemes treat any non-manifold edge; what was noticed does not outlive a success.
+    expectRefusedByOtherSchemes(shape, {StatusCode::Unsupported,
+                                        ComponentType::Edge,
+                                        edge,
+                                        {"edge " + std::to_string(edge), "non-manifold"}});
+    Status status;
+    status.AddWarning(
+        {FarExt::WarningCode::InconsistentOrientation, ComponentType::Edge, 1, 1, ""});
+    EXPECT_TRUE(TopologyRefinerFactory::Create(*CreateFarRefiner(GetShape("cube")), &status));
+    EXPECT_TRUE(status.GetWarnings().empty());
+}
+
+TEST_F(StatusTest, NullArraysAreNamed) {
+    Shape shape = GetShape("cube");
+    shape.creaseVertexPairs = {0, 1};
+    shape.creaseSharpness = {1};
+    shape.cornerVertices = {0};
+    shape.cornerSharpness = {1};
+    shape.holeFaces = {0};
+    shape.fvarChannels.push_back(
+        {2, std::vector<double>(16), std::vector<int>(shape.faceVertices)});
+    ShapeDescriptor const descriptor(shape);
+    using Descriptor = Far::TopologyDescriptor;
+    auto const expectNamed = [&](Descriptor const &broken, std::string const &name) {
+        Status status;
+        EXPECT_FALSE(TopologyRefinerFactory::Create(broken, Sdc::Options(), &status)) << name;
+        expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::None, -1, {name}});
+    };
+    auto const expectNeeded = [&](auto Descriptor::*array, std::string const &name) {
+        Descriptor broken = descriptor.Get();
+        broken.*array = nullptr;
+        expectNamed(broken, name);
+    };
+    expectNeeded(&Descriptor::numVertsPerFace, "numVertsPerFace");
+    expectNeeded(&Descriptor::vertIndicesPerFace, "vertIndicesPerFace");
+    expectNeeded(&Descriptor::creaseVertexIndexPairs, "creaseVertexIndexPairs");
+    expectNeeded(&Descriptor::creaseWeights, "creaseWeights");
+    expectNeeded(&Descriptor::cornerVertexIndices, "cornerVertexIndices");
+    expectNeeded(&Descriptor::cornerWeights, "cornerWeights");
+    expectNeeded(&Descriptor::holeIndices, "holeIndices");
+    expectNeeded(&Descriptor::fvarChannels, "fvarChannels");
+    auto const expectCounted = [&](int Descriptor::*count, std::string const &name) {
+        Descriptor broken = descriptor.Get();
+        broken.*count = -3;
+        expectNamed(broken, name);
+    };
+    expectCounted(&Descriptor::numCreases, "creaseVertexIndexPairs");
+    expectCounted(&Descriptor::numCorners, "cornerVertexIndices");
+    expectCounted(&Descriptor::numHoles, "holeIndices");
+    expectCounted(&Descriptor::numFVarChannels, "fvarChannels");
+    Descriptor::FVarChannel channel;
+    channel.numValues = 8;
+    Descriptor broken = descriptor.Get();
+    broken.fvarChannels = &channel;
+    expectNamed(broken, "channel 0 has no array valueIndices");
+    channel.valueIndices = shape.faceVertices.data();
+    channel.numValues = -1;
+    expectNamed(broken, "channel 0 has -1 values");
+    // Without a count no array is needed.
+    broken = descriptor.Get();
+    broken.numCreases = broken.numCorners = broken.numHoles = broken.numFVarChannels = 0;
+    broken.creaseVertexIndexPairs = broken.cornerVertexIndices = broken.holeIndices = nullptr;
+    broken.creaseWeights = broken.cornerWeights = nullptr;
+    broken.fvarChannels = nullptr;
+    EXPECT_TRUE(TopologyRefinerFactory::Create(broken));
+}
+
+TEST_F(StatusTest, SharpnessMustBeANumber) {
+    for (float sharpness : {-1.0f, -0.001f, std::nanf("")}) {
+        Shape shape = GetShape("cube");
+        shape.creaseVertexPairs = {shape.faceVertices[1], shape.faceVertices[2]};
+        shape.creaseSharpness = {sharpness};
+        expectDescriptorRefused(shape, {StatusCode::InvalidTopology,
+                                        ComponentType::Vertex,
+                                        shape.faceVertices[1],
+                                        {"crease 0", "sharpness"}});
+        shape.creaseSharpness = {1};
+        shape.cornerVertices = {3};
+        shape.cornerSharpness = {sharpness};
+        expectDescriptorRefused(shape, {StatusCode::InvalidTopology,
+                                        ComponentType::Vertex,
+                                        3,
+                                        {"corner 0", "vertex 3", "sharpness"}});
+        // A base that has it already.
+        shape.cornerSharpness = {1};
+        auto const base = CreateFarRefiner(shape);
+        auto &level = const_cast<OpenSubdiv::Vtr::internal::Level &>(base->getLevel(0));
+        level.getVertexSharpness(3) = sharpness;
+        Status status;
+        EXPECT_FALSE(TopologyRefinerFactory::Create(*base, &status));
+        expectRefusal(status,
+                      {StatusCode::InvalidTopology, ComponentType::Vertex, 3, {"vertex 3"}});
+        level.getVertexSharpness(3) = 0;
+        level.getEdgeSharpness(5) = sharpness;
+        EXPECT_FALSE(TopologyRefinerFactory::Create(*base, &status));
+        expectRefusal(status, {StatusCode::InvalidTopology, ComponentType::Edge, 5, {"edge 5"}});
+    }
+}
+
+TEST_F(StatusTest, OptionsOutsideOfTheirEnumerationsAreNamed) {
+    Shape const &shape = GetShape("cube");
+    ShapeDescriptor const descriptor(shape);
+    auto const expectNamed = [&](SchemeOptions scheme, Sdc::Options sdcOptions,
+                                 std::string const &name) {
+        TopologyRefinerFactory::Options options;
+        options.schemeOptions = scheme;
+        Status status;
+        EXPECT_FALSE(
+            TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status));
+        expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::None, -1, {name, "9"}});
+    };
+    SchemeOptions scheme;
+    scheme.schemeType = FarExt::SchemeType(9);
+    expectNamed(scheme, Sdc::Options(), "schemeType");
+    Status status;
+    EXPECT_FALSE(TopologyRefinerFactory::Create(*CreateFarRefiner(shape), {scheme}, &status));
+    expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::None, -1, {"schemeType"}});
+    scheme = SchemeOptions();
+    scheme.faceMask = FarExt::FaceMask(9);
+    expectNamed(scheme, Sdc::Options(), "faceMask");
+    Sdc::Options sdcOptions;
+    std::memset(static_cast<void *>(&sdcOptions), 9, sizeof sdcOptions);
+    expectNamed(SchemeOptions(), sdcOptions, "VtxBoundaryInterpolation");
+    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
+    expectNamed(SchemeOptions(), sdcOptions, "FVarLinearInterpolation");
+    sdcOptions.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_NONE);
+    expectNamed(SchemeOptions(), sdcOptions, "CreasingMethod");
+
+    auto const refiner = TopologyRefinerFactory::Create(descriptor.Get());
+    refiner->RefineUniform(1);
+    FarExt::StencilTableFactory::Options options;
+    for (int mode : {77, 3, -1}) {
+        StatusTest::Refusal const refusal = {StatusCode::InvalidArgument,
+                                             ComponentType::None,
+                                             -1,
+                                             {"interpolationMode " + std::to_string(mode)}};
+        options.interpolationMode = FarExt::StencilMode(mode);
+        EXPECT_FALSE(FarExt::StencilTableFactory::Create(*refiner, options, &status));
+        expectRefusal(status, refusal);
+        EXPECT_FALSE(FarExt::StencilTableFactory::CreateOfFaces(*refiner, {}, options, &status));
+        expectRefusal(status, refusal);
+        EXPECT_EQ(FarExt::StencilTableFactory::EstimateSize(*refiner, options, &status).numStencils,
+                  0);
+        expectRefusal(status, refusal);
+        FarExt::StencilTableFactory::GetVerticesOfFaces(*refiner, {}, options, 0, &status);
+        expectRefusal(status, refusal);
+    }
 }
 
 TEST_F(StatusTest, EveryShapeAndBoundaryRuleIsTaken) {

@@ -28,9 +28,21 @@ std::vector<int> rightHanded(Shape const &shape, std::vector<int> corners) {
     return corners;
 }
 
+/// Whether a face has a vertex several times.  Far takes some edges of such faces for non-manifold
+/// that are not.
+bool hasRepeatedVertex(Shape const &shape) {
+    auto first = shape.faceVertices.begin();
+    bool result = false;
+    for (int size : shape.faceSizes) {
+        result = result || int(std::set<int>(first, first + size).size()) < size;
+        first += size;
+    }
+    return result;
+}
+
 /// Far's own tags tell which values its FVarLinearInterpolation keeps in place.
 std::vector<float> valueSharpness(Far::TopologyRefiner const &base, int channel,
-                                  std::vector<float> const &vertexSharpness) {
+                                  TaggedMesh const &mesh) {
     Far::TopologyLevel const &level = base.GetLevel(0);
     OpenSubdiv::Vtr::internal::FVarLevel const &values = base.getLevel(0).getFVarLevel(channel);
     std::vector<float> sharpness(level.GetNumFVarValues(channel), 0.0f);
@@ -41,9 +53,12 @@ std::vector<float> valueSharpness(Far::TopologyRefiner const &base, int channel,
         auto const indices = values.getVertexValues(v);
         auto const tags = values.getVertexValueTags(v);
         for (int i = 0; i < indices.size(); ++i) {
-            float own = vertexSharpness[v];
+            float own = mesh.vertices[v].sharpness;
             if (tags[i].isMismatch() && !tags[i].isSemiSharp()) {
                 own = tags[i].isInfSharp() ? kInfiniteSharpness : 0;
+            }
+            if (indices.size() == 1 && mesh.vertices[v].isNonManifold && IsPinned(mesh, v)) {
+                own = kInfiniteSharpness;
             }
             sharpness[indices[i]] = std::max(sharpness[indices[i]], own);
         }
@@ -70,7 +85,6 @@ TaggedMatch::TaggedMatch(Shape const &shape, FarExt::TopologyRefiner const &refi
 void TaggedMatch::makeBase(Shape const &shape) {
     Sdc::Options const options = _refiner.GetSchemeOptions();
     auto const farBase = CreateFarRefiner(shape, options);
-    Far::TopologyLevel const &farLevel = farBase->GetLevel(0);
     TaggedBase base;
     base.numVertices = shape.GetNumVertices();
     base.faceSizes = shape.faceSizes;
@@ -78,6 +92,13 @@ void TaggedMatch::makeBase(Shape const &shape) {
     base.creasePairs = shape.creaseVertexPairs;
     base.creaseSharpness = shape.creaseSharpness;
     base.holes = shape.holeFaces;
+    Far::TopologyLevel const &farLevel = farBase->GetLevel(0);
+    for (int e = 0; e < farLevel.GetNumEdges() && hasRepeatedVertex(shape); ++e) {
+        if (farLevel.IsEdgeNonManifold(e)) {
+            base.nonManifoldPairs.push_back(farLevel.GetEdgeVertices(e)[0]);
+            base.nonManifoldPairs.push_back(farLevel.GetEdgeVertices(e)[1]);
+        }
+    }
     auto const boundary = options.GetVtxBoundaryInterpolation();
     base.freeBoundaries = boundary == Sdc::Options::VTX_BOUNDARY_NONE;
     base.chaikin = options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
@@ -90,20 +111,16 @@ void TaggedMatch::makeBase(Shape const &shape) {
         ++numFaces[v];
     }
     for (int v = 0; v < base.numVertices; ++v) {
-        base.nonManifoldVertices.push_back(farLevel.IsVertexNonManifold(v));
-        bool const isCorner =
-            boundary == Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER && numFaces[v] == 1;
-        bool const isPinned = base.nonManifoldVertices[v] && farLevel.IsVertexInfSharp(v);
-        if (isPinned || isCorner) {
+        if (boundary == Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER && numFaces[v] == 1) {
             base.vertexSharpness[v] = kInfiniteSharpness;
         }
     }
     _levels.push_back(MakeTaggedMesh(base));
     if (_channel >= 0) {
         TaggedMesh const mesh = _levels[0];
-        _levels[0] = MakeValueMesh(
-            mesh, rightHanded(shape, shape.fvarChannels[_channel].valueIndices),
-            valueSharpness(*farBase, _channel, base.vertexSharpness), _valuesOfVertices);
+        _levels[0] =
+            MakeValueMesh(mesh, rightHanded(shape, shape.fvarChannels[_channel].valueIndices),
+                          valueSharpness(*farBase, _channel, mesh), _valuesOfVertices);
     }
 }
 

@@ -24,7 +24,6 @@ TaggedMesh makeMesh(Shape const &shape) {
     base.faceSizes = shape.faceSizes;
     base.faceVertices = shape.faceVertices;
     base.vertexSharpness.resize(base.numVertices);
-    base.nonManifoldVertices.resize(base.numVertices);
     base.freeBoundaries = true;
     return MakeTaggedMesh(base);
 }

@@ -114,46 +114,66 @@ TaggedRule ruleOf(float vertexSharpness, std::size_t numSharpEdges) {
     return rules[numSharpEdges];
 }
 
-/// Where three and more sheets meet along a line, each has a boundary along it in either direction,
-/// all with the same points: those of one sheet count, and creases that meet them.
-std::vector<SharpEdge> withoutOtherSheets(TaggedMesh const &mesh, int vertex,
-                                          std::vector<SharpEdge> const &edges) {
-    if (!mesh.vertices[vertex].isNonManifold || mesh.vertices[vertex].isParted) {
+/// The lines that end in a vertex: the boundaries that the faces of one base edge got are one, but
+/// for the vertices in the middle of a line, which a sheet has for itself.
+std::vector<SharpEdge> linesOf(TaggedMesh const &mesh, int vertex,
+                               std::vector<SharpEdge> const &edges) {
+    if (!mesh.vertices[vertex].isNonManifold) {
         return edges;
     }
-    auto isBoundary = [&](int edge) { return mesh.edges[edge].sides.size() == 1; };
+    std::set<int> known;
     std::vector<SharpEdge> lines;
     for (SharpEdge const &edge : edges) {
-        if (!isBoundary(edge.edge)) {
+        int const line = mesh.edges[edge.edge].line;
+        if (line < 0 || known.insert(line).second) {
             lines.push_back(edge);
         }
     }
-    for (Side corner : mesh.vertices[vertex].corners) {
-        int const out = mesh.faces[corner.face].edges[corner.place];
-        if (!isBoundary(out)) {
-            continue;
-        }
-        // Around the sheet to its other boundary.
-        int in = -1;
-        while (true) {
-            Face const &face = mesh.faces[corner.face];
-            int const before = previousPlace(face, corner.place);
-            in = face.edges[before];
-            Edge const &edge = mesh.edges[in];
-            if (isBoundary(in)) {
-                break;
-            }
-            bool const isFirst = edge.sides[0].face == corner.face && edge.sides[0].place == before;
-            corner = edge.sides[isFirst ? 1 : 0];
-        }
-        for (SharpEdge const &edge : edges) {
-            if (edge.edge == out || edge.edge == in) {
-                lines.push_back(edge);
-            }
-        }
-        break;
-    }
     return lines;
+}
+
+/// Faces of a vertex that follow one another counter-clockwise.
+struct Fan {
+    std::vector<Side> corners;
+    bool isClosed;
+};
+
+std::vector<Fan> findFans(TaggedMesh const &mesh, int vertex) {
+    using Place = std::pair<int, int>;
+    // The corner behind the edge that comes in to a corner.
+    auto nextAround = [&](Side corner) {
+        Face const &face = mesh.faces[corner.face];
+        int const before = previousPlace(face, corner.place);
+        Edge const &edge = mesh.edges[face.edges[before]];
+        if (edge.sides.size() == 1) {
+            return Side{-1, -1};
+        }
+        bool const isFirst = edge.sides[0].face == corner.face && edge.sides[0].place == before;
+        return edge.sides[isFirst ? 1 : 0];
+    };
+    std::vector<Fan> fans;
+    std::set<Place> done;
+    auto add = [&](Side start) {
+        Fan fan{{}, false};
+        Side corner = start;
+        while (corner.face >= 0 && done.insert({corner.face, corner.place}).second) {
+            fan.corners.push_back(corner);
+            corner = nextAround(corner);
+        }
+        fan.isClosed = corner.face >= 0;
+        if (!fan.corners.empty()) {
+            fans.push_back(fan);
+        }
+    };
+    for (Side corner : mesh.vertices[vertex].corners) {
+        if (mesh.edges[mesh.faces[corner.face].edges[corner.place]].sides.size() == 1) {
+            add(corner);
+        }
+    }
+    for (Side corner : mesh.vertices[vertex].corners) {
+        add(corner);
+    }
+    return fans;
 }
 
 /// The two ends of an edge, the smaller first.
@@ -168,7 +188,6 @@ TaggedMesh MakeTaggedMesh(TaggedBase const &base) {
     mesh.vertices.resize(base.numVertices);
     for (int v = 0; v < base.numVertices; ++v) {
         mesh.vertices[v].sharpness = base.vertexSharpness[v];
-        mesh.vertices[v].isNonManifold = base.nonManifoldVertices[v];
     }
     std::map<std::pair<int, int>, std::vector<Side>> sides;
     auto vertex = base.faceVertices.begin();
@@ -190,15 +209,23 @@ TaggedMesh MakeTaggedMesh(TaggedBase const &base) {
         creases[pairOf(base.creasePairs[2 * i], base.creasePairs[2 * i + 1])] =
             base.creaseSharpness[i];
     }
+    std::set<std::pair<int, int>> apart;
+    for (std::size_t i = 0; i < base.nonManifoldPairs.size(); i += 2) {
+        apart.insert(pairOf(base.nonManifoldPairs[i], base.nonManifoldPairs[i + 1]));
+    }
+    int numLines = 0;
+    std::vector<std::vector<int>> lineEnds(base.numVertices); // by vertex: where its lines lead
     for (auto const &[ends, edgeSides] : sides) {
-        bool const isLoop = ends.first == ends.second;
-        if (edgeSides.size() == 1 && !isLoop) {
+        bool const isApart = ends.first == ends.second || apart.count(ends) > 0;
+        bool const isTwoFaces = edgeSides.size() == 2 && edgeSides[0].face != edgeSides[1].face;
+        if (edgeSides.size() == 1 && !isApart) {
             Edge edge;
             edge.sides = edgeSides;
             edge.isFree = base.freeBoundaries;
             edge.sharpness = edge.isFree ? 0 : kInfiniteSharpness;
             mesh.edges.push_back(edge);
-        } else if (edgeSides.size() == 2 && !isLoop && edgeSides[0].face != edgeSides[1].face) {
+        } else if (isTwoFaces && !isApart &&
+                   mesh.GetStart(edgeSides[0]) != mesh.GetStart(edgeSides[1])) {
             Edge edge;
             edge.sides = edgeSides;
             auto const crease = creases.find(ends);
@@ -209,11 +236,46 @@ TaggedMesh MakeTaggedMesh(TaggedBase const &base) {
                 Edge edge;
                 edge.sides.push_back(side);
                 edge.sharpness = kInfiniteSharpness;
+                edge.line = numLines;
                 mesh.edges.push_back(edge);
             }
+            // One that a face runs twice counts as more than one.
+            std::set<int> faces;
+            for (Side side : edgeSides) {
+                if (faces.empty() || !faces.insert(side.face).second) {
+                    faces.insert(side.face);
+                    lineEnds[ends.first].push_back(ends.second);
+                    lineEnds[ends.second].push_back(ends.first);
+                }
+            }
+            ++numLines;
         }
     }
     connect(mesh);
+    std::vector<int> numInterior(base.numVertices);
+    std::vector<bool> hasBoundary(base.numVertices);
+    for (Edge const &edge : mesh.edges) {
+        for (int end : {mesh.GetStart(edge.sides[0]), mesh.GetEnd(edge.sides[0])}) {
+            numInterior[end] += edge.sides.size() == 2;
+            hasBoundary[end] = hasBoundary[end] || (edge.sides.size() == 1 && edge.line < 0);
+        }
+    }
+    for (int v = 0; v < base.numVertices; ++v) {
+        std::vector<int> const &ends = lineEnds[v];
+        TaggedMesh::Vertex &tags = mesh.vertices[v];
+        std::set<int> faces;
+        for (Side corner : tags.corners) {
+            faces.insert(corner.face);
+        }
+        tags.isNonManifold =
+            !ends.empty() || findFans(mesh, v).size() != 1 || faces.size() != tags.corners.size();
+        bool const isCurve = faces.size() == tags.corners.size() && ends.size() == 2 &&
+                             ends[0] != ends[1] && ends[0] != v && ends[1] != v &&
+                             !hasBoundary[v] && int(tags.corners.size()) > 2 + numInterior[v];
+        if (tags.isNonManifold && !isCurve) {
+            tags.sharpness = kInfiniteSharpness;
+        }
+    }
     return mesh;
 }
 
@@ -304,50 +366,6 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
 
 namespace {
 
-/// Faces of a vertex that follow one another counter-clockwise.
-struct Fan {
-    std::vector<Side> corners;
-    bool isClosed;
-};
-
-std::vector<Fan> findFans(TaggedMesh const &mesh, int vertex) {
-    using Place = std::pair<int, int>;
-    // The corner behind the edge that comes in to a corner.
-    auto nextAround = [&](Side corner) {
-        Face const &face = mesh.faces[corner.face];
-        int const before = previousPlace(face, corner.place);
-        Edge const &edge = mesh.edges[face.edges[before]];
-        if (edge.sides.size() == 1) {
-            return Side{-1, -1};
-        }
-        bool const isFirst = edge.sides[0].face == corner.face && edge.sides[0].place == before;
-        return edge.sides[isFirst ? 1 : 0];
-    };
-    std::vector<Fan> fans;
-    std::set<Place> done;
-    auto add = [&](Side start) {
-        Fan fan{{}, false};
-        Side corner = start;
-        while (corner.face >= 0 && done.insert({corner.face, corner.place}).second) {
-            fan.corners.push_back(corner);
-            corner = nextAround(corner);
-        }
-        fan.isClosed = corner.face >= 0;
-        if (!fan.corners.empty()) {
-            fans.push_back(fan);
-        }
-    };
-    for (Side corner : mesh.vertices[vertex].corners) {
-        if (mesh.edges[mesh.faces[corner.face].edges[corner.place]].sides.size() == 1) {
-            add(corner);
-        }
-    }
-    for (Side corner : mesh.vertices[vertex].corners) {
-        add(corner);
-    }
-    return fans;
-}
-
 /// Builds the child of a mesh, first with all half faces apart.
 class Refinement {
 public:
@@ -433,7 +451,6 @@ void Refinement::makeVertices() {
         TaggedMesh::Vertex vertex;
         vertex.sharpness = decremented(_parent.vertices[v].sharpness);
         vertex.isNonManifold = _parent.vertices[v].isNonManifold;
-        vertex.isParted = _parent.vertices[v].isParted;
         _child.vertices.push_back(vertex);
         _child.vertexOrigins.push_back({v, -1, -1});
     }
@@ -473,6 +490,7 @@ void Refinement::makeFFaces() {
                 _placed.insert({side.face, 0});
             }
             child.isLong = true;
+            child.line = edge.line;
             child.sharpness = decremented(edge.sharpness);
             _child.edges.push_back(child);
         }
@@ -516,6 +534,7 @@ void Refinement::makeEFaces() {
             _placed.insert({face, 0});
         }
         child.isFree = edge.isFree;
+        child.line = edge.line;
         child.isLong = !edge.isFree;
         child.sharpness = isInfinite(edge.sharpness)
                               ? edge.sharpness
@@ -613,6 +632,7 @@ void Refinement::joinSides() {
         TaggedMesh::VertexOrigin const &origin = _child.vertexOrigins[ends.second];
         if (start.face < 0 && _parent.faces[origin.face].isHalf && origin.place < 2) {
             Edge const &line = _parent.edges[_parent.faces[origin.face].edges[0]];
+            edge.line = line.line;
             edge.sharpness = childSharpness(_parent, start.vertex, line.sharpness);
         } else if (edgeSides.size() == 1) {
             edge.isFree = isHexagonal() || _parent.freeBoundaries;
@@ -675,7 +695,6 @@ void Refinement::tagPartedVertices() {
         TaggedMesh::Vertex &vertex = _child.vertices[v];
         if (!vertex.isNonManifold && findFans(_child, int(v)).size() > 1) {
             vertex.isNonManifold = true;
-            vertex.isParted = true;
         }
     }
 }
@@ -894,7 +913,7 @@ private:
 
     Point movedVertex(int v) const {
         std::vector<SharpEdge> const all = sharpEdges(_mesh, v);
-        std::vector<SharpEdge> const lines = withoutOtherSheets(_mesh, v, all);
+        std::vector<SharpEdge> const lines = linesOf(_mesh, v, all);
         float const sharpness = _mesh.vertices[v].sharpness;
         float const childVertexSharpness = decremented(sharpness);
         TaggedRule const rule = ruleOf(sharpness, lines.size());
@@ -979,7 +998,14 @@ std::vector<bool> FindFlatEdges(TaggedMesh const &mesh, ReferenceValues const &p
 
 TaggedRule GetRule(TaggedMesh const &mesh, int vertex) {
     return ruleOf(mesh.vertices[vertex].sharpness,
-                  withoutOtherSheets(mesh, vertex, sharpEdges(mesh, vertex)).size());
+                  linesOf(mesh, vertex, sharpEdges(mesh, vertex)).size());
+}
+
+bool IsPinned(TaggedMesh const &mesh, int vertex) {
+    std::vector<SharpEdge> const lines = linesOf(mesh, vertex, sharpEdges(mesh, vertex));
+    return isInfinite(mesh.vertices[vertex].sharpness) ||
+           std::count_if(lines.begin(), lines.end(),
+                         [](SharpEdge const &line) { return isInfinite(line.sharpness); }) > 2;
 }
 
 ReferenceValues Interpolate(TaggedMesh const &mesh, TaggedMesh const &child, ReferenceMask mask,

@@ -36,12 +36,12 @@ struct TaggedMesh {
         std::vector<Side> sides; ///< one of a boundary, two of an interior edge
         bool isLong = false;     ///< phase B
         bool isFree = false;     ///< a boundary that follows the paper's rule
-        float sharpness = 0;     ///< infinite for boundaries that are not free
+        int line = -1; ///< the same for all boundaries of a base edge that came apart; else -1
+        float sharpness = 0; ///< infinite for boundaries that are not free
     };
     struct Vertex {
         float sharpness = 0;
         bool isNonManifold = false;
-        bool isParted = false;     ///< into several fans, by gaps that a step left open
         std::vector<Side> corners; ///< faces of the vertex, and where it is in them
     };
     /// What a vertex was made from: an old vertex, or the corner of a face.
@@ -88,15 +88,20 @@ struct TaggedBase {
     std::vector<int> faceVertices;
     std::vector<int> creasePairs;
     std::vector<float> creaseSharpness;
-    std::vector<float> vertexSharpness;    ///< by vertex; infinite for those that are to stay
-    std::vector<bool> nonManifoldVertices; ///< by vertex
+    std::vector<float> vertexSharpness; ///< by vertex; infinite for those that are to stay
     std::vector<int> holes;
-    bool freeBoundaries = false; ///< the paper's rule for boundaries
+    std::vector<int> nonManifoldPairs; ///< edges that come apart in any case, two vertices each
+    bool freeBoundaries = false;       ///< the paper's rule for boundaries
     bool chaikin = false;
 };
 
 /// \brief The mesh of a base.  An edge that is no boundary and does not join two faces that run it
 /// in opposite directions comes apart into a sharp boundary for each face.
+///
+/// A vertex where such an edge ends, or whose faces are not one fan, is non-manifold.  It stays,
+/// unless exactly two such edges and no boundary end there and it has more faces than the base has
+/// edges there: a curve that several sheets share goes on through it.  One that a face has several
+/// times stays, and so do the ends of an edge that a face runs twice.
 TaggedMesh MakeTaggedMesh(TaggedBase const &base);
 
 /// \brief A face-varying channel as a mesh: that of \p mesh, cut where the values on both sides of
@@ -133,6 +138,9 @@ std::vector<bool> FindFlatEdges(TaggedMesh const &mesh, ReferenceValues const &p
 /// How many sharp edges make which rule.
 enum class TaggedRule { Smooth, Dart, Crease, Corner };
 TaggedRule GetRule(TaggedMesh const &mesh, int vertex);
+
+/// Whether the vertex stays for ever: it is infinitely sharp, or more than two such lines meet there.
+bool IsPinned(TaggedMesh const &mesh, int vertex);
 
 /// Values of Refine(mesh) from those of \p mesh, a row per vertex.
 ReferenceValues Interpolate(TaggedMesh const &mesh, TaggedMesh const &child, ReferenceMask mask,

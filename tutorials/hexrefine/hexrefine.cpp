@@ -280,6 +280,9 @@ std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Arguments const &argument
     if (!refiner) {
         throw FileError(arguments.input, status.GetMessage());
     }
+    for (FarExt::Warning const &warning : status.GetWarnings()) {
+        std::cerr << "hexrefine: " << arguments.input << ": warning: " << warning.message << "\n";
+    }
     return refiner;
 }
 

@@ -335,8 +335,6 @@ TEST_F(Hexrefine, RefusesBadInput) {
     std::string const vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
     std::string path = makeFile("index.obj", vertices + "f 1 2 9\n");
     expectFailure(path + output, path, "line 5: vertex index 9");
-    path = makeFile("flipped.obj", vertices + "f 1 2 3\nf 1 2 4\n");
-    expectFailure(path + output, path, "edge");
     path = makeFile("tag.obj", vertices + "f 1 2 3\nt crease 2/1/0 0 3 1\n");
     expectFailure(path + output, path, "line 6: no face has an edge");
     path = makeFile("uv.obj", vertices + "vt 0 0\nf 1/1 2/1 3/1\nf 1 3 4\n");
@@ -346,6 +344,19 @@ TEST_F(Hexrefine, RefusesBadInput) {
     path = makeCubeFile();
     expectFailure(path + output + " -l 20", path, "level 14");
     EXPECT_FALSE(std::filesystem::exists(getPath("out.obj")));
+}
+
+TEST_F(Hexrefine, WarnsOfInconsistentOrientation) {
+    std::string const path = makeFile("flipped.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                                                     "f 1 2 3\nf 1 2 4\nf 2 3 4\n");
+    Result const result = run(path + " -l 2 -o " + getPath("out.obj"));
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.error.rfind("hexrefine: " + path + ": warning: ", 0), 0u) << result.error;
+    EXPECT_NE(result.error.find("between vertices 0 and 1, of faces 0 and 1"), std::string::npos)
+        << result.error;
+    EXPECT_EQ(result.error.find('\n'), result.error.size() - 1) << result.error;
+    EXPECT_EQ(run(makeCubeFile() + " -o " + getPath("out.obj")).error, "");
+    expectFailure(path + " --scheme doo-sabin", path, "non-manifold");
 }
 
 TEST_F(Hexrefine, FailedOutputLeavesNothing) {
