@@ -25,17 +25,20 @@ public:
     /// that accepts its faces (Catmark takes all), with its sharpness, holes and face-varying
     /// channels.  Boundary, crease and face-varying rules are those of base.GetSchemeOptions().
     ///
-    /// Non-manifold edges and vertices are infinitely sharp, as in Far: vertices stay, unless they lie
-    /// inside of a curve that three or more sheets share.  An edge that its two faces run in the same
-    /// direction is non-manifold; \p status then has a Warning of WarningCode::InconsistentOrientation.
-    /// A vertex that a face has several times is non-manifold and stays.  With VTX_BOUNDARY_NONE
-    /// all boundaries follow the paper's rule, whatever sharpness they have, and holes beside a
-    /// boundary are not taken over, since Far tags all faces there as holes.
+    /// Non-manifold edges and vertices are infinitely sharp, as in Far: vertices stay, unless they
+    /// lie inside of a curve that three or more sheets share.  An edge that its two faces run in the
+    /// same direction is non-manifold; \p status then has a Warning of
+    /// WarningCode::InconsistentOrientation.  A vertex that a face has several times is non-manifold
+    /// and stays.  With VTX_BOUNDARY_NONE all boundaries follow the paper's rule, whatever sharpness
+    /// they have, and holes beside a boundary are not taken over, since Far tags all faces there as
+    /// holes.
     ///
     /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices, an
     ///          edge without a face, a sharpness that is negative or not a number), InvalidArgument
-    ///          (an option that is none of its enumeration's values), TooLarge, or Unsupported (creases, interior corners, non-manifold edges or
-    ///          face-varying channels with other steps than hexagonal ones).
+    ///          (an option that is none of its enumeration's values), TooLarge, or Unsupported
+    ///          (creases, interior corners, non-manifold edges or face-varying channels with other
+    ///          steps than hexagonal ones; a channel without a seam at a vertex inside of such a
+    ///          curve, where a semi-sharp crease meets it or some faces meet one end alone).
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    Options options, Status *status = nullptr);
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Meshes that are no manifolds: soups of faces under all their orders, inconsistent orientation,
-// vertices that a face has several times.
+// Meshes at the edge of what is taken: soups of faces under all their orders, inconsistent
+// orientation, vertices that a face has several times or that have tens of thousands of faces.
 #include "expectations.h"
 
 #include "regression/shapes/shapeDescriptor.h"
@@ -215,6 +215,7 @@ void expectSoupsEqualToReference(unsigned firstSeed, int count, bool repeatsVert
     }
 }
 
+/// The number in the environment, for longer runs by hand, or else \p count.
 int getCount(int count) {
     char const *const more = std::getenv("OPENSUBDIVHEX_SOUPS");
     return more ? std::atoi(more) : count;
@@ -456,6 +457,25 @@ TEST(NonManifold, HolesOfABaseRefinerAreKeptButAtFreeBorders) {
         }
     }
     EXPECT_GT(numKept, 10);
+}
+
+TEST(NonManifold, VertexOfTensOfThousandsOfFacesEqualsReference) {
+    // More than 16 bits with a sign count, in one open fan.
+    constexpr int kNumFaces = 33000;
+    Shape fan;
+    fan.positions = {0, 0, 1};
+    for (int i = 0; i <= kNumFaces; ++i) {
+        double const angle = 3.0 * i / kNumFaces;
+        fan.positions.insert(fan.positions.end(), {std::cos(angle), std::sin(angle), 0});
+    }
+    Faces faces;
+    for (int i = 1; i <= kNumFaces; ++i) {
+        faces.push_back({0, i, i + 1});
+    }
+    setFaces(faces, fan);
+    for (auto rule : {kNone, kEdgeOnly}) {
+        ASSERT_NO_FATAL_FAILURE(expectEqualToReference(fan, boundary(rule), 1));
+    }
 }
 
 TEST(NonManifold, VertexThatAFaceRepeatsIsTagged) {
