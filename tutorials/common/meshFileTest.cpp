@@ -3,7 +3,6 @@
 // Mesh files: what is written is what is read, and what cannot be read as it stands is refused.
 #include "meshFileFixture.h"
 #include "meshWriter.h"
-#include "outputFile.h"
 #include "shapes.h"
 
 #include <cmath>
@@ -11,13 +10,6 @@
 #include <limits>
 #include <numeric>
 #include <random>
-
-#ifdef __unix__
-#include <csignal>
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <unistd.h>
-#endif
 
 namespace OpenSubdivHex::Tutorials {
 
@@ -371,95 +363,6 @@ TEST_F(MeshFile, RefusesEveryDamagedFile) {
             }
         }
     }
-}
-
-TEST_F(MeshFile, WriterReplacesFilesAndFollowsLinks) {
-    std::string const target = makeFile("target.obj", "old");
-    std::filesystem::create_symlink(target, getPath("link.obj"));
-    WriteMesh(MakeCube(), getPath("link.obj"));
-    EXPECT_TRUE(std::filesystem::is_symlink(getPath("link.obj")));
-    expectEqual(ReadMesh(target), MakeCube());
-    EXPECT_EQ(listFiles(), (std::vector<std::string>{"link.obj", "target.obj"}));
-}
-
-TEST_F(MeshFile, AbandonedOutputLeavesNothing) {
-    std::string const path = makeFile("a.obj", "old");
-    {
-        OutputFile file(path);
-        file.Write("half");
-        EXPECT_EQ(getContent(path), "old");
-    }
-    EXPECT_EQ(getContent(path), "old");
-    EXPECT_EQ(listFiles(), std::vector<std::string>{"a.obj"});
-}
-
-#ifdef O_TMPFILE
-TEST_F(MeshFile, KilledOutputLeavesNothing) {
-    int const unnamed = open(getPath("").c_str(), O_TMPFILE | O_WRONLY, 0600);
-    if (unnamed < 0) {
-        GTEST_SKIP() << "the disk has no files without a name";
-    }
-    close(unnamed);
-    std::string const path = makeFile("a.obj", "old");
-    auto const writeAndDie = [&] {
-        OutputFile file(path);
-        file.Write("half");
-        std::raise(SIGKILL);
-    };
-    EXPECT_EXIT(writeAndDie(), testing::KilledBySignal(SIGKILL), "");
-    EXPECT_EQ(getContent(path), "old");
-    EXPECT_EQ(listFiles(), std::vector<std::string>{"a.obj"});
-}
-#endif
-
-TEST_F(MeshFile, OutputKeepsTemporaryFilesOfOthers) {
-    std::string const path = makeFile("a.obj", "old");
-    makeFile("a.obj.part0", "of others");
-    OutputFile file(path);
-    file.Write("new");
-    file.Commit();
-    EXPECT_EQ(getContent(path), "new");
-    EXPECT_EQ(getContent(path + ".part0"), "of others");
-    EXPECT_EQ(listFiles(), (std::vector<std::string>{"a.obj", "a.obj.part0"}));
-}
-
-// As other files that a program makes, not as temporary ones.
-#ifdef __unix__
-TEST_F(MeshFile, OutputHasUsualPermissions) {
-    WriteMesh(MakeCube(), getPath("a.obj"));
-    makeFile("usual", "");
-    EXPECT_EQ(std::filesystem::status(getPath("a.obj")).permissions(),
-              std::filesystem::status(getPath("usual")).permissions());
-}
-#endif
-
-TEST_F(MeshFile, FailedOutputLeavesNothing) {
-    std::string const path = makeFile("a.obj", "old");
-    Mesh const cube = MakeCube();
-    EXPECT_THROW(WriteMesh(cube, getPath("missing/a.obj")), FileError);
-    EXPECT_THROW(WriteMesh(cube, path + "/a.obj"), FileError);
-    std::filesystem::create_directory(getPath("folder.obj"));
-    EXPECT_THROW(WriteMesh(cube, getPath("folder.obj")), FileError);
-#ifdef __unix__
-    // A full disk: the system lets the process write no more than 4 KiB to a file.
-    rlimit old{};
-    getrlimit(RLIMIT_FSIZE, &old);
-    rlimit limit = old;
-    limit.rlim_cur = 4096;
-    setrlimit(RLIMIT_FSIZE, &limit);
-    auto *const oldHandler = std::signal(SIGXFSZ, SIG_IGN);
-    for (char const *name : {"a.obj", "a.off", "a.ply"}) {
-        EXPECT_THROW(WriteMesh(makeSoup(70000), getPath(name)), FileError) << name;
-    }
-    std::signal(SIGXFSZ, oldHandler);
-    setrlimit(RLIMIT_FSIZE, &old);
-    if (std::filesystem::exists("/dev/full")) {
-        OutputFile file("/dev/full");
-        EXPECT_THROW(file.Write("x"), FileError);
-    }
-#endif
-    EXPECT_EQ(listFiles(), (std::vector<std::string>{"a.obj", "folder.obj"}));
-    EXPECT_EQ(getContent(path), "old");
 }
 
 } // namespace OpenSubdivHex::Tutorials

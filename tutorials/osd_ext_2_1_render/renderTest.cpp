@@ -218,6 +218,9 @@ TEST_F(Render, RefusesBadInput) {
     std::string const unwritable = getPath("none/out.png");
     EXPECT_EQ(run(mesh + "-l 0 --size 8x8 -o \"" + unwritable + "\""), 1);
     EXPECT_NE(getContent(getPath("stderr")).find(unwritable), std::string::npos);
+    std::filesystem::create_symlink("loop.png", getPath("loop.png"));
+    EXPECT_EQ(run(mesh + "-l 0 --size 8x8 -o \"" + getPath("loop.png") + "\""), 1);
+    EXPECT_NE(getContent(getPath("stderr")).find("loop.png: cannot be written"), std::string::npos);
 }
 
 TEST_F(Render, RefusesBadUsage) {
