@@ -131,8 +131,7 @@ internal::LevelSizes getLeastChildSizes(internal::LevelSizes const &parent, bool
     return sizes;
 }
 
-Status checkSizes(internal::LevelTopology const &base,
-                  TopologyRefiner::CoplanarOptions const &options) {
+Status checkLeastSizes(internal::LevelTopology const &base, bool closeGaps, int refinementLevel) {
     // A vertex with two faces makes a digon in one level, or in none: most edges are missing then
     // when all do in the first.
     std::int64_t numDigons = 0;
@@ -144,8 +143,8 @@ Status checkSizes(internal::LevelTopology const &base,
     internal::LevelSizes sizes = internal::GetSizes(base);
     internal::SizeChecker checker(sizes, " or more");
     Status status;
-    for (int level = 1; level <= options.refinementLevel && status.IsOk(); ++level) {
-        sizes = getLeastChildSizes(sizes, options.closeGaps, level == 1 ? numDigons : 0);
+    for (int level = 1; level <= refinementLevel && status.IsOk(); ++level) {
+        sizes = getLeastChildSizes(sizes, closeGaps, level == 1 ? numDigons : 0);
         status = checker.Add(sizes);
     }
     return status;
@@ -180,7 +179,9 @@ bool TopologyRefiner::refineCoplanar(REAL const *restPositions, CoplanarOptions 
         result = importPositions(restPositions, GetLevel(0).GetNumVertices(), positions);
     }
     if (result.IsOk()) {
-        result = checkSizes(GetLevel(0).GetTopology(), options);
+        result = checkSizes(options.refinementLevel, [&](int level) {
+            return checkLeastSizes(GetLevel(0).GetTopology(), options.closeGaps, level);
+        });
     }
     if (!result.IsOk()) {
         return internal::Report(result, status);
