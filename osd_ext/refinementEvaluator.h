@@ -25,7 +25,7 @@ namespace OsdExt {
 ///
 /// Values are those that a stencil table of the same refiner gives, with all rules for
 /// boundaries, creases, corners and face-varying seams, up to the rounding of floats (1e-6 of the
-/// largest control value).
+/// largest control value), for values up to half of the largest float.
 ///
 /// \code
 ///     auto const evaluator = RefinementEvaluator::Create(refiner);
@@ -138,7 +138,7 @@ private:
     FarExt::Status check(float const *src, Osd::BufferDescriptor const &srcDesc, float const *dst,
                          Osd::BufferDescriptor const &dstDesc, int level,
                          std::int64_t numWritten) const;
-    Source toVertices(Source src, int length);
+    Source toVertices(Source src, int length, float scale);
 
     FarExt::TopologyRefiner const &_refiner;
     int _numRefinements;                          ///< of the refiner, when the evaluator was made
