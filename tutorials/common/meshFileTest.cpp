@@ -337,6 +337,38 @@ TEST_F(MeshFile, RefusesWhatIsNoMeshFile) {
     EXPECT_THROW(WriteMesh(MakeCube(), getPath("a.stl.gz")), FileError);
 }
 
+TEST_F(MeshFile, WritesNothingThatItWouldNotRead) {
+    auto const expectRefusedMesh = [&](Mesh const &mesh, std::string const &cause) {
+        for (char const *name : {"a.obj", "a.off", "a.ply"}) {
+            try {
+                WriteMesh(mesh, getPath(name));
+                ADD_FAILURE() << name << " was written";
+            } catch (FileError const &error) {
+                EXPECT_EQ(error.what(), getPath(name) + ": " + cause);
+            }
+        }
+    };
+    for (float number : {std::numeric_limits<float>::infinity(),
+                         -std::numeric_limits<float>::infinity(), std::nanf("")}) {
+        Mesh mesh = MakeCube();
+        mesh.positions[7] = number;
+        expectRefusedMesh(mesh, "vertex 2 has a coordinate that is not a finite number");
+        mesh = MakeCube();
+        mesh.vertexNormals.assign(mesh.positions.size(), 1);
+        mesh.vertexNormals.back() = number;
+        expectRefusedMesh(mesh, "vertex 7 has a normal that is not a finite number");
+        mesh = MakeCube();
+        mesh.channels.push_back({FVarKind::Uv, 2, {0, 0, 1, number}, {}});
+        mesh.channels[0].faceValues.assign(mesh.faceVertices.size(), 1);
+        expectRefusedMesh(mesh, "texture coordinate 1 has a part that is not a finite number");
+    }
+    Mesh empty = MakeCube();
+    empty.faceSizes.clear();
+    empty.faceVertices.clear();
+    expectRefusedMesh(empty, "has no faces");
+    EXPECT_EQ(listFiles(), std::vector<std::string>());
+}
+
 TEST_F(MeshFile, RefusesEveryDamagedFile) {
     // Any byte changed: either the file is refused or it still says something that can be read.
     std::mt19937 random(1);

@@ -16,6 +16,7 @@
 #include "statistics.h"
 #include "tagText.h"
 #include "tutorials/common/fileError.h"
+#include "tutorials/common/meshCheck.h"
 #include "tutorials/common/meshFormat.h"
 #include "tutorials/common/meshReader.h"
 #include "tutorials/common/meshText.h"
@@ -496,6 +497,7 @@ void run(Arguments const &arguments) {
             sides.emplace(lastLevel);
             normals = evaluateLimit(arguments, *refiner, *sides, &mesh, progress, &statistics);
         }
+        CheckFinite(mesh, arguments.input, "level " + std::to_string(arguments.level) + ": ");
 
         if (!arguments.output.empty()) {
             milliseconds.write = measure(progress, "writing", [&] {
@@ -503,6 +505,9 @@ void run(Arguments const &arguments) {
                     copyFacesWithNormals(arguments, lastLevel, *sides, std::move(normals), &mesh);
                 } else {
                     CopyFaces(lastLevel, &mesh);
+                }
+                if (mesh.faceSizes.empty()) {
+                    throw FileError(arguments.input, "all faces are holes, none is left to write");
                 }
                 WriteMesh(mesh, arguments.output);
             });
