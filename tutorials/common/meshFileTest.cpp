@@ -146,6 +146,13 @@ TEST_F(MeshFile, ReadsObj) {
                 {0, 0, 1, 2, 0, 1, 2, 0, 1, 2});
 }
 
+TEST_F(MeshFile, FormFeedsAreSpaces) {
+    std::string const vertices = "v 0 0 0\nv\f1 0\v0\nv 1 1 0\nv 0 1 0\n";
+    expectFaces("a.obj", vertices + "f 1 2 3\f4\nf\v1 2 \f3\n", 4, {4, 3}, {0, 1, 2, 3, 0, 1, 2});
+    expectFaces("a.off", "OFF\f4 1\n0 0\v0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2\f3\n", 4, {4},
+                {0, 1, 2, 3});
+}
+
 TEST_F(MeshFile, RefusesBadObj) {
     std::string const vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
     expectRefused("a.obj", vertices + "f 1 2 4\n", "line 4: vertex index 4 is out of range");
