@@ -341,6 +341,7 @@ TEST_F(MeshFile, RefusesWhatIsNoMeshFile) {
     }
     expectRefused("a.stl", "solid", "is not a .obj, .off or .ply file");
     expectRefused("obj", "v 0 0 0", "is not a .obj, .off or .ply file");
+    expectRefused("/dev/zero", "is not a .obj, .off or .ply file");
     EXPECT_THROW(WriteMesh(MakeCube(), getPath("a.stl.gz")), FileError);
 }
 

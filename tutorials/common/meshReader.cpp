@@ -22,19 +22,27 @@ Mesh readContent(std::string const &path, MeshFormat format, std::string *conten
     return internal::ReadPly(path, content);
 }
 
-} // namespace
-
-Mesh ReadMesh(std::string const &path) { return internal::ParseMesh(path, ReadFile(path)); }
-
-Mesh internal::ParseMesh(std::string const &path, std::string content) {
+MeshFormat findFormat(std::string const &path) {
     std::optional<MeshFormat> const format = FindMeshFormat(path);
     if (!format) {
         throw FileError(path, std::string("is not a ") + kMeshExtensions + " file");
     }
+    return *format;
+}
+
+} // namespace
+
+Mesh ReadMesh(std::string const &path) {
+    findFormat(path); // before a file that need not be a mesh is read, or a device without end
+    return internal::ParseMesh(path, ReadFile(path));
+}
+
+Mesh internal::ParseMesh(std::string const &path, std::string content) {
+    MeshFormat const format = findFormat(path);
     if (content.empty()) {
         throw FileError(path, "is empty");
     }
-    Mesh mesh = readContent(path, *format, &content);
+    Mesh mesh = readContent(path, format, &content);
     CheckMesh(mesh, path);
     return mesh;
 }

@@ -21,6 +21,7 @@
 #include "tutorials/common/program.h"
 #include "tutorials/common/renderer.h"
 #include "tutorials/common/topologyDescriptor.h"
+#include "tutorials/common/unitSize.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>
@@ -336,7 +337,8 @@ std::string findFramePath(Arguments const &arguments, int frame) {
 }
 
 void run(Arguments const &arguments) {
-    Mesh const mesh = ReadMesh(arguments.input);
+    Mesh mesh = ReadMesh(arguments.input);
+    ScaleToUnitSize(&mesh.positions);
     std::vector<std::unique_ptr<Panel>> panels;
     for (PanelSettings const &settings : arguments.panels) {
         panels.push_back(std::make_unique<Panel>(mesh, settings, arguments.input));
