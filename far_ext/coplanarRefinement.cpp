@@ -29,12 +29,12 @@ struct Vector {
 
 Vector operator-(Vector const &a, Vector const &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 double dot(Vector const &a, Vector const &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-double length(Vector const &a) { return std::sqrt(dot(a, a)); }
+double length(Vector const &a) { return std::hypot(a.x, a.y, a.z); }
 Vector cross(Vector const &a, Vector const &b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// The vector area of a face, twice; zero when it is nothing but rounding errors.
+// The direction of the vector area of a face, 1 long; zero when that is nothing but rounding errors.
 Vector faceNormal(TopologyLevel const &level, Index face, std::vector<Vector> const &positions) {
     constexpr double kRounding = 1e-12;
     Far::ConstIndexArray const verts = level.GetFaceVertices(face);
@@ -47,7 +47,9 @@ Vector faceNormal(TopologyLevel const &level, Index face, std::vector<Vector> co
         normal.AddWithWeight(cross(side0, side1), 1);
         size += dot(side0, side0) + dot(side1, side1);
     }
-    return length(normal) > kRounding * size ? normal : Vector();
+    double const area = length(normal);
+    return area > kRounding * size ? Vector{normal.x / area, normal.y / area, normal.z / area}
+                                   : Vector();
 }
 
 bool isParallel(Vector const &normal0, Vector const &normal1, double angleTolerance) {
@@ -131,8 +133,7 @@ internal::LevelSizes getLeastChildSizes(internal::LevelSizes const &parent, bool
     return sizes;
 }
 
-Status checkSizes(internal::LevelTopology const &base,
-                  TopologyRefiner::CoplanarOptions const &options) {
+Status checkLeastSizes(internal::LevelTopology const &base, bool closeGaps, int refinementLevel) {
     // A vertex with two faces makes a digon in one level, or in none: most edges are missing then
     // when all do in the first.
     std::int64_t numDigons = 0;
@@ -144,8 +145,8 @@ Status checkSizes(internal::LevelTopology const &base,
     internal::LevelSizes sizes = internal::GetSizes(base);
     internal::SizeChecker checker(sizes, " or more");
     Status status;
-    for (int level = 1; level <= options.refinementLevel && status.IsOk(); ++level) {
-        sizes = getLeastChildSizes(sizes, options.closeGaps, level == 1 ? numDigons : 0);
+    for (int level = 1; level <= refinementLevel && status.IsOk(); ++level) {
+        sizes = getLeastChildSizes(sizes, closeGaps, level == 1 ? numDigons : 0);
         status = checker.Add(sizes);
     }
     return status;
@@ -180,7 +181,9 @@ bool TopologyRefiner::refineCoplanar(REAL const *restPositions, CoplanarOptions 
         result = importPositions(restPositions, GetLevel(0).GetNumVertices(), positions);
     }
     if (result.IsOk()) {
-        result = checkSizes(GetLevel(0).GetTopology(), options);
+        result = checkSizes(options.refinementLevel, [&](int level) {
+            return checkLeastSizes(GetLevel(0).GetTopology(), options.closeGaps, level);
+        });
     }
     if (!result.IsOk()) {
         return internal::Report(result, status);

@@ -131,6 +131,15 @@ Status TopologyRefiner::checkLevel(int refinementLevel) {
                   "refinement level " + std::to_string(refinementLevel) + " is negative");
 }
 
+Status TopologyRefiner::checkLastLevel(int refinementLevel) {
+    if (refinementLevel <= kLastLevel) {
+        return Status();
+    }
+    return Status(StatusCode::TooLarge, ComponentType::Level, refinementLevel,
+                  "refinement level " + std::to_string(refinementLevel) + " is beyond level " +
+                      std::to_string(kLastLevel) + ", the last that is made");
+}
+
 void TopologyRefiner::setNumLevels(int numLevels) {
     _levels.clear();
     for (int level = 0; level < numLevels; ++level) {
@@ -210,10 +219,12 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
     int const refinementLevel = options.refinementLevel;
     Status result = checkLevel(refinementLevel);
     if (result.IsOk()) {
-        result = _schemeOptions.IsHexagonal()
-                     ? checkHexagonalSizes(*_topologies[0], makeSizeCheckers(), refinementLevel)
-                     : checkSchemeSizes(*_topologies[0], _schemeOptions, makeSizeCheckers()[0],
-                                        refinementLevel);
+        LevelTopology const &base = *_topologies[0];
+        result = checkSizes(refinementLevel, [&](int level) {
+            return _schemeOptions.IsHexagonal()
+                       ? checkHexagonalSizes(base, makeSizeCheckers(), level)
+                       : checkSchemeSizes(base, _schemeOptions, makeSizeCheckers()[0], level);
+        });
     }
     if (!result.IsOk()) {
         return internal::Report(result, status);

@@ -7,6 +7,7 @@
 
 #include <opensubdiv/sdc/options.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -64,6 +65,9 @@ public:
     /// \p level is 0 ... GetMaxLevel().
     TopologyLevel const &GetLevel(int level) const { return _levels[level]; }
 
+    /// The last level that any refinement makes.  Levels that grow are too large long before it.
+    static constexpr int kLastLevel = 100;
+
     /// \brief Options of RefineUniform, as Far::TopologyRefiner::UniformOptions.
     struct UniformOptions {
         UniformOptions(int level) : refinementLevel(level) {}
@@ -76,8 +80,8 @@ public:
     ///
     /// \return  false with StatusCode::InvalidArgument for a negative level, and with
     ///          StatusCode::TooLarge, which names the level and the count, when a size or the sum
-    ///          of a size over the levels exceeds 2^31 - 1.  No memory is taken then and the
-    ///          levels are as before.  With borders the sizes of a tri-hex step and what follows
+    ///          of a size over the levels exceeds 2^31 - 1, or for a level beyond kLastLevel.  No
+    ///          memory is taken then and the levels are as before.  With borders the sizes of a tri-hex step and what follows
     ///          are known only once it is made: there the base alone is left, as it is when
     ///          std::bad_alloc is thrown.
     bool RefineUniform(UniformOptions options, Status *status = nullptr);
@@ -111,8 +115,8 @@ public:
     /// \return  false with StatusCode::InvalidArgument for a negative level, an angle that is not
     ///          between 0 and 180, a coordinate that is not finite (its vertex is named) or a null
     ///          pointer; Unsupported for other schemes than Hexagonal; TooLarge, as RefineUniform,
-    ///          for sizes that are too large whichever edges are flat; the levels are then as
-    ///          before.  Other sizes are known only once the level before is made: false with
+    ///          for sizes that are too large whichever edges are flat, or for a level beyond
+    ///          kLastLevel; the levels are then as before.  Other sizes are known only once the level before is made: false with
     ///          TooLarge, and the base alone is left, as it is when std::bad_alloc is thrown.
     bool RefineCoplanar(float const *restPositions, CoplanarOptions options,
                         Status *status = nullptr);
@@ -128,6 +132,14 @@ public:
 
 private:
     static Status checkLevel(int refinementLevel);
+    /// Whether check(level), which goes through the sizes of the levels up to that one, and the
+    /// number of levels let the refiner refine so far.
+    template <typename CHECK>
+    static Status checkSizes(int refinementLevel, CHECK check) {
+        Status status = check(std::min(refinementLevel, kLastLevel));
+        return status.IsOk() ? checkLastLevel(refinementLevel) : status;
+    }
+    static Status checkLastLevel(int refinementLevel);
 
     std::vector<internal::SizeChecker> makeSizeCheckers() const;
     internal::LevelTopology &getLevelToFill(int level);

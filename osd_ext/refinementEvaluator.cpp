@@ -5,6 +5,9 @@
 #include "far_ext/parallel.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -50,11 +53,57 @@ FarExt::Interpolation getInterpolation(TopologyRefiner const &refiner,
 }
 
 void copyElements(internal::Elements<float const> src, int length, Index count,
-                  Index const *sources, internal::Elements<float> dst) {
+                  Index const *sources, float scale, internal::Elements<float> dst) {
     FarExt::internal::ParallelFor(count, [&](Index i) {
-        std::copy_n(src.data + (sources ? sources[i] : i) * src.stride, length,
-                    dst.data + i * dst.stride);
+        float const *const from = src.data + (sources ? sources[i] : i) * src.stride;
+        std::transform(from, from + length, dst.data + i * dst.stride,
+                       [scale](float value) { return scale * value; });
     });
+}
+
+// Control values are multiplied by it before sums of them are too large for floats where their mean
+// is not: one of a face, or of a vertex and its faces, has less than 2^17 values.
+constexpr float kScaleOfLarge = 0x1p-17f;
+
+bool hasLarge(internal::Elements<float const> src, int length, Index begin, Index end) {
+    constexpr float kLarge = std::numeric_limits<float>::max() * kScaleOfLarge;
+    bool const isPacked = src.stride == length;
+    std::ptrdiff_t const size = isPacked ? std::ptrdiff_t(end - begin) * length : length;
+    int result = 0;
+    for (Index i = begin; i < (isPacked ? begin + 1 : end); ++i) {
+        float const *const values = src.data + i * src.stride;
+        for (std::ptrdiff_t k = 0; k < size; ++k) {
+            result |= int(std::fabs(values[k]) > kLarge);
+        }
+    }
+    return result != 0;
+}
+
+float findScale(internal::Elements<float const> src, int length, Index count) {
+    std::atomic<bool> isLarge = false;
+    auto const check = [&](Index begin, Index end) {
+        if (hasLarge(src, length, begin, end)) {
+            isLarge = true;
+        }
+    };
+    // Small meshes do without a parallel region, which takes longer than they do.
+    if (count <= FarExt::internal::kParallelRange) {
+        check(0, count);
+    } else {
+        FarExt::internal::ParallelForRange(count, check);
+    }
+    return isLarge ? kScaleOfLarge : 1.0f;
+}
+
+// Of elements behind one another.
+void undoScale(float scale, internal::Elements<float> dst, int length, std::int64_t count) {
+    if (scale != 1) {
+        for (std::int64_t i = 0; i < count; ++i) {
+            float *const element = dst.data + i * dst.stride;
+            std::transform(element, element + length, element,
+                           [scale](float value) { return value / scale; });
+        }
+    }
 }
 
 } // namespace
@@ -138,15 +187,16 @@ Status RefinementEvaluator::check(float const *src, Osd::BufferDescriptor const 
     return Status();
 }
 
-// The control values by vertex of the mesh of level 0.
-auto RefinementEvaluator::toVertices(Source src, int length) -> Source {
-    if (!_valuesOfVertices) {
+// The control values by vertex of the mesh of level 0, multiplied by \p scale.
+auto RefinementEvaluator::toVertices(Source src, int length, float scale) -> Source {
+    if (!_valuesOfVertices && scale == 1) {
         return src;
     }
-    std::size_t const numVertices = _valuesOfVertices->size();
-    _controlValues.Resize(numVertices * std::size_t(length));
-    copyElements(src, length, Index(numVertices), _valuesOfVertices->data(),
-                 {_controlValues.data(), length});
+    Index const numVertices =
+        _valuesOfVertices ? Index(_valuesOfVertices->size()) : GetNumElements(0);
+    _controlValues.Resize(std::size_t(numVertices) * std::size_t(length));
+    copyElements(src, length, numVertices, _valuesOfVertices ? _valuesOfVertices->data() : nullptr,
+                 scale, {_controlValues.data(), length});
     return {_controlValues.data(), length};
 }
 
@@ -162,10 +212,11 @@ bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const
     Source values = {src + srcDesc.offset, srcDesc.stride};
     Destination const result = {dst + dstDesc.offset, dstDesc.stride};
     if (level == 0) {
-        copyElements(values, length, GetNumElements(0), nullptr, result);
+        copyElements(values, length, GetNumElements(0), nullptr, 1, result);
         return true;
     }
-    values = toVertices(values, length);
+    float const scale = findScale(values, length, GetNumElements(0));
+    values = toVertices(values, length, scale);
     // The levels grow: the last two below the one asked for have room for those before.
     for (int below = std::max(1, level - 2); below < level; ++below) {
         _scratch[below % 2].Resize(std::size_t(GetNumElements(below)) * std::size_t(length));
@@ -179,6 +230,7 @@ bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const
         values = {next.data, next.stride};
     }
     internal::RefineElements(tasks, length);
+    undoScale(scale, result, length, numWritten);
     return true;
 }
 
@@ -193,8 +245,11 @@ bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescrip
         return true;
     }
     int const length = srcDesc.length;
-    Source values = toVertices({src + srcDesc.offset, srcDesc.stride}, length);
-    Destination next = {dst + dstDesc.offset, dstDesc.stride};
+    Source values = {src + srcDesc.offset, srcDesc.stride};
+    float const scale = findScale(values, length, GetNumElements(0));
+    values = toVertices(values, length, scale);
+    Destination const result = {dst + dstDesc.offset, dstDesc.stride};
+    Destination next = result;
     std::vector<internal::RefinementTask> tasks;
     for (int step = 0; step < GetMaxLevel(); ++step) {
         tasks.push_back({&_steps[std::size_t(step)], values, next});
@@ -202,6 +257,7 @@ bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescrip
         next.data += GetNumElements(step + 1) * next.stride;
     }
     internal::RefineElements(tasks, length);
+    undoScale(scale, result, length, GetNumElementsAllLevels());
     return true;
 }
 

@@ -25,7 +25,7 @@ namespace OsdExt {
 ///
 /// Values are those that a stencil table of the same refiner gives, with all rules for
 /// boundaries, creases, corners and face-varying seams, up to the rounding of floats (1e-6 of the
-/// largest control value).  Two meshes that share a sharp border line, with the same sharpness at its
+/// largest control value), for values up to half of the largest float.  Two meshes that share a sharp border line, with the same sharpness at its
 /// vertices, get the same values on it, bit for bit, however either numbers and orients it.
 ///
 /// \code
@@ -140,7 +140,7 @@ private:
     FarExt::Status check(float const *src, Osd::BufferDescriptor const &srcDesc, float const *dst,
                          Osd::BufferDescriptor const &dstDesc, int level,
                          std::int64_t numWritten) const;
-    Source toVertices(Source src, int length);
+    Source toVertices(Source src, int length, float scale);
 
     FarExt::TopologyRefiner const &_refiner;
     int _numRefinements;                          ///< of the refiner, when the evaluator was made

@@ -347,6 +347,26 @@ TEST(Coplanar, FacesWithoutAreaHaveNoNormal) {
     EXPECT_EQ(numQuads, 2);
 }
 
+TEST(Coplanar, TheSizeOfTheMeshDoesNotMatter) {
+    for (char const *name : {"cube", "icosahedron", "quadGrid", "mixedPatch"}) {
+        for (double tolerance : {5.0, 50.0, 80.0, 100.0}) {
+            SCOPED_TRACE(testing::Message() << name << ", " << tolerance);
+            Shape const &shape = GetShape(name);
+            CoplanarOptions const options = makeOptions(2, tolerance);
+            auto const expected = createRefiner(shape, ReferenceMask::Average, options);
+            // Areas are still doubles, their squares are not.
+            for (int exponent : {-400, 400}) {
+                Shape scaled = shape;
+                for (double &position : scaled.positions) {
+                    position = std::ldexp(position, exponent);
+                }
+                auto const refiner = createRefiner(scaled, ReferenceMask::Average, options);
+                EXPECT_EQ(counts(refiner->GetLevel(2)), counts(expected->GetLevel(2))) << exponent;
+            }
+        }
+    }
+}
+
 TEST(Coplanar, RefinesAgain) {
     Shape const &box = GetFlatShapes()[1];
     auto const refiner = createRefiner(box, ReferenceMask::Average, makeOptions(3, 0.1));

@@ -191,7 +191,7 @@ TEST(PartialTable, RowsAreThoseOfTheWhole) {
 }
 
 TEST(PartialTable, SelectionsShareNoFaceAndLeaveNoneOut) {
-    Shape const &shape = GetShape("suzanne");
+    Shape const &shape = GetShape("truncatedIcosahedron");
     auto const refiner = FarExt::TopologyRefinerFactory::Create(*CreateFarRefiner(shape));
     ASSERT_TRUE(refiner->RefineUniform(2));
     std::vector<int> faces[2];

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string>
 
 namespace OpenSubdivHex::Regression {
@@ -666,6 +667,27 @@ TEST_F(StatusTest, TooManyLevelsOfOtherSchemes) {
             EXPECT_EQ(refiner->GetMaxLevel(), 2);
             EXPECT_EQ(refiner->GetLevel(2).GetNumVertices(), numVertices);
         }
+    }
+}
+
+TEST_F(StatusTest, LevelsThatDoNotGrowHaveALast) {
+    // A face that shares no edge makes one such face in each level.
+    ShapeDescriptor const descriptor(GetShape("polygon3"));
+    for (FarExt::SchemeType scheme : {FarExt::SchemeType::DooSabin, FarExt::SchemeType::TriHex}) {
+        TopologyRefinerFactory::Options options;
+        options.schemeOptions.schemeType = scheme;
+        auto const refiner =
+            TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
+        for (int level : {TopologyRefiner::kLastLevel + 1, std::numeric_limits<int>::max()}) {
+            Status status;
+            EXPECT_FALSE(refiner->RefineUniform(level, &status));
+            expectRefusal(status, {StatusCode::TooLarge,
+                                   ComponentType::Level,
+                                   level,
+                                   {"level " + std::to_string(level), "level 100"}});
+        }
+        ASSERT_TRUE(refiner->RefineUniform(TopologyRefiner::kLastLevel));
+        EXPECT_EQ(refiner->GetLevel(TopologyRefiner::kLastLevel).GetNumFaces(), 1);
     }
 }
 

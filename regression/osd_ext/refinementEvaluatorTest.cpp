@@ -145,6 +145,38 @@ void expectEqualsTable(TopologyRefiner const &refiner, FarExt::StencilMode mode,
     ASSERT_NO_FATAL_FAILURE(expectSameLevelByLevel(*evaluator, values, length));
 }
 
+/// Values near the largest float have the bits of small ones but for the exponent, in packed
+/// elements and others.
+void expectScales(TopologyRefiner const &refiner, FarExt::StencilMode mode, int length) {
+    constexpr int kExponent = 127;
+    auto const evaluator = createEvaluator(refiner, mode);
+    std::vector<float> expected = evaluateAll(*evaluator, length);
+    for (float &value : expected) {
+        value = std::ldexp(value, kExponent);
+    }
+    for (int stride : {length, length + 1}) {
+        Descriptor const desc = {0, length, stride};
+        std::vector<float> const small = makeControlValues(evaluator->GetNumElements(0), length);
+        std::vector<float> src(std::size_t(evaluator->GetNumElements(0) * stride), kGuard);
+        for (std::size_t i = 0; i < small.size(); ++i) {
+            src[i / length * stride + i % length] = std::ldexp(small[i], kExponent);
+        }
+        std::vector<float> dst(std::size_t(evaluator->GetNumElementsAllLevels() * stride));
+        ASSERT_TRUE(evaluator->EvaluateAllLevels(src.data(), desc, dst.data(), desc));
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            ASSERT_EQ(dst[i / length * stride + i % length], expected[i]) << i;
+        }
+        int const last = evaluator->GetNumElements(evaluator->GetMaxLevel());
+        ASSERT_TRUE(
+            evaluator->Evaluate(src.data(), desc, dst.data(), desc, evaluator->GetMaxLevel()));
+        for (std::size_t i = 0; i < std::size_t(last * length); ++i) {
+            ASSERT_EQ(dst[i / length * stride + i % length],
+                      expected[expected.size() - std::size_t(last * length) + i])
+                << i;
+        }
+    }
+}
+
 /// Calls check(shape, options) for every shape and boundary rule.
 template <class CHECK>
 void forEachShape(CHECK const &check) {
@@ -237,6 +269,21 @@ void expectInLayout(Layout const &layout, int numSources, std::vector<float> con
     }
     ASSERT_TRUE(evaluate(srcArray.data(), layout.src, dstArray.data(), layout.dst));
     ASSERT_TRUE(haveSameBits(dstArray.data(), after.data(), after.size()));
+}
+
+TEST(RefinementEvaluator, LargeValuesAreAsSmallOnes) {
+    forEachShape([](Shape const &shape, Sdc::Options options) {
+        for (FaceMask mask : kMasks) {
+            auto const refiner = createRefiner(shape, mask, GetTestLevel(shape, 2), options);
+            for (int length : {1, 3}) {
+                ASSERT_NO_FATAL_FAILURE(expectScales(*refiner, FarExt::INTERPOLATE_VERTEX, length));
+            }
+            if (!shape.fvarChannels.empty()) {
+                ASSERT_NO_FATAL_FAILURE(
+                    expectScales(*refiner, FarExt::INTERPOLATE_FACE_VARYING, 2));
+            }
+        }
+    });
 }
 
 TEST(RefinementEvaluator, EqualsTables) {

@@ -6,20 +6,15 @@
 #include "sections.h"
 #include "settings.h"
 
-#include "tutorials/common/fileError.h"
 #include "tutorials/common/outputFile.h"
-
-#include <CLI/CLI.hpp>
+#include "tutorials/common/program.h"
 
 #include <chrono>
 #include <cstdio>
-#include <iostream>
 
 namespace OpenSubdivHex::Regression {
 
 namespace {
-
-constexpr char kName[] = "paper";
 
 void addOptions(CLI::App &app, std::string *output, Settings *settings) {
     auto const addNumber = [&](char const *option, int *value, int low, int high,
@@ -71,25 +66,14 @@ std::string makePage(Settings const &settings) {
 
 int main(int argc, char **argv) {
     using namespace OpenSubdivHex;
-    enum ExitCode { kSuccess = 0, kFailure = 1, kBadUsage = 2 };
 
     std::string output;
     Regression::Settings settings;
-    CLI::App app("Writes the report on the paper.", Regression::kName);
+    CLI::App app("Writes the report on the paper.", "paper");
     Regression::addOptions(app, &output, &settings);
-    try {
-        app.parse(argc, argv);
-    } catch (CLI::ParseError const &error) {
-        return app.exit(error) == 0 ? kSuccess : kBadUsage;
-    }
-    try {
-        std::string const page = Regression::makePage(settings);
-        Tutorials::OutputFile file(output);
-        file.Write(page);
+    return Tutorials::RunProgram(app, argc, argv, [&] {
+        Tutorials::OutputFile file(output); // fails before the work, not after it
+        file.Write(Regression::makePage(settings));
         file.Commit();
-    } catch (std::exception const &error) {
-        std::cerr << Regression::kName << ": " << error.what() << "\n";
-        return kFailure;
-    }
-    return kSuccess;
+    });
 }

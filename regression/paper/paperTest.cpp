@@ -120,6 +120,16 @@ TEST_F(Paper, PageIsComplete) {
     EXPECT_EQ(listFiles(), (std::vector<std::string>{"index.html", "stderr", "stdout"}));
 }
 
+TEST_F(Paper, RefusesWhatCannotBeWritten) {
+    std::filesystem::create_symlink("loop.html", getPath("loop.html"));
+    for (std::string const &path : {getPath("missing/a.html"), getPath("loop.html")}) {
+        EXPECT_EQ(run("-o " + path), 1);
+        std::string const message = getContent(getPath("stderr"));
+        EXPECT_EQ(message.rfind("paper: " + path + ": cannot be written", 0), 0u) << message;
+        EXPECT_EQ(getContent(getPath("stdout")), "");
+    }
+}
+
 TEST_F(Paper, RefusesBadUsage) {
     EXPECT_EQ(run(""), 2);
     EXPECT_NE(getContent(getPath("stderr")).find("--output"), std::string::npos);

@@ -4,24 +4,52 @@
 #include "report.h"
 #include "suite.h"
 
-#include <CLI/CLI.hpp>
+#include "tutorials/common/program.h"
 
 #include <fstream>
 #include <iostream>
 #include <regex>
+#include <stdexcept>
 
 namespace OpenSubdivHex::Regression {
 namespace {
 
-bool writeFile(std::string const &path, std::string const &text) {
+void writeFile(std::string const &path, std::string const &text) {
     std::ofstream file(path, std::ios::binary);
     file << text;
     file.close();
     if (!file) {
-        std::cerr << "perf: " << path << ": cannot be written\n";
-        return false;
+        throw std::runtime_error(path + ": cannot be written");
     }
-    return true;
+}
+
+void run(Suite::Options const &options, std::string const &command, std::string const &jsonPath,
+         std::string const &markdownPath) {
+    Environment environment = DescribeEnvironment();
+    environment.emplace_back("command", "`" + command + "`");
+    Suite suite(options);
+    AddTablePeakBenchmarks(suite);
+    AddCopyBenchmarks(suite);
+    AddPhaseBenchmarks(suite);
+    AddTopologyBenchmarks(suite);
+    AddPositionBenchmarks(suite);
+    AddStencilTableBenchmarks(suite);
+    AddEvaluationBenchmarks(suite);
+    AddTableFreeBenchmarks(suite);
+    AddGrowthBenchmarks(suite);
+    bool const isComplete = suite.Run();
+
+    std::string const markdown = FormatMarkdown(suite, environment);
+    std::cout << markdown << std::flush;
+    if (!markdownPath.empty()) {
+        writeFile(markdownPath, markdown);
+    }
+    if (!jsonPath.empty()) {
+        writeFile(jsonPath, FormatJson(suite, environment));
+    }
+    if (!isComplete) {
+        throw std::runtime_error("not complete, see above");
+    }
 }
 
 } // namespace
@@ -53,32 +81,6 @@ int main(int argc, char **argv) {
     app.add_option("--json", jsonPath, "File for the results as JSON")->type_name("FILE");
     app.add_option("--markdown", markdownPath, "File for the printed text")->type_name("FILE");
     app.add_option("--command", command, "Command to name in the results")->group("");
-    CLI11_PARSE(app, argc, argv);
-
-    Environment environment = DescribeEnvironment();
-    environment.emplace_back("command", "`" + command + "`");
-    Suite suite(options);
-    AddTablePeakBenchmarks(suite);
-    AddCopyBenchmarks(suite);
-    AddPhaseBenchmarks(suite);
-    AddTopologyBenchmarks(suite);
-    AddPositionBenchmarks(suite);
-    AddStencilTableBenchmarks(suite);
-    AddEvaluationBenchmarks(suite);
-    AddTableFreeBenchmarks(suite);
-    AddGrowthBenchmarks(suite);
-    bool isComplete = suite.Run();
-
-    std::string const markdown = FormatMarkdown(suite, environment);
-    std::cout << markdown << std::flush;
-    if (!markdownPath.empty()) {
-        isComplete = writeFile(markdownPath, markdown) && isComplete;
-    }
-    if (!jsonPath.empty()) {
-        isComplete = writeFile(jsonPath, FormatJson(suite, environment)) && isComplete;
-    }
-    if (!isComplete) {
-        std::cerr << "perf: not complete, see above\n";
-    }
-    return isComplete ? 0 : 1;
+    return OpenSubdivHex::Tutorials::RunProgram(
+        app, argc, argv, [&] { run(options, command, jsonPath, markdownPath); });
 }

@@ -2,11 +2,9 @@
 #include "meshReader.h"
 
 #include "fileError.h"
+#include "meshCheck.h"
 #include "meshFormat.h"
 #include "meshText.h"
-
-#include <algorithm>
-#include <limits>
 
 namespace OpenSubdivHex::Tutorials {
 
@@ -24,25 +22,28 @@ Mesh readContent(std::string const &path, MeshFormat format, std::string *conten
     return internal::ReadPly(path, content);
 }
 
-} // namespace
-
-Mesh ReadMesh(std::string const &path) {
+MeshFormat findFormat(std::string const &path) {
     std::optional<MeshFormat> const format = FindMeshFormat(path);
-    std::string content = ReadFile(path);
     if (!format) {
         throw FileError(path, std::string("is not a ") + kMeshExtensions + " file");
     }
+    return *format;
+}
+
+} // namespace
+
+Mesh ReadMesh(std::string const &path) {
+    findFormat(path); // before a file that need not be a mesh is read, or a device without end
+    return internal::ParseMesh(path, ReadFile(path));
+}
+
+Mesh internal::ParseMesh(std::string const &path, std::string content) {
+    MeshFormat const format = findFormat(path);
     if (content.empty()) {
         throw FileError(path, "is empty");
     }
-    Mesh mesh = readContent(path, *format, &content);
-    if (mesh.faceSizes.empty()) {
-        throw FileError(path, "has no faces");
-    }
-    if (std::max(mesh.positions.size() / 3, mesh.faceVertices.size()) >
-        std::size_t(std::numeric_limits<int>::max())) {
-        throw FileError(path, "has more than 2147483647 vertices or face corners");
-    }
+    Mesh mesh = readContent(path, format, &content);
+    CheckMesh(mesh, path);
     return mesh;
 }
 

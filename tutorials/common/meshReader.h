@@ -25,6 +25,9 @@ Mesh ReadMesh(std::string const &path);
 
 namespace internal {
 
+/// What ReadMesh makes of a file with this content.
+Mesh ParseMesh(std::string const &path, std::string content);
+
 /// The readers of the formats.  \p content is the content of the file \p path and is changed.
 Mesh ReadObj(std::string const &path, std::string *content);
 Mesh ReadOff(std::string const &path, std::string *content);

@@ -55,7 +55,7 @@ void NormalizeText(std::string const &path, std::string *text) {
                 ++in;
             }
         }
-        (*text)[out++] = c;
+        (*text)[out++] = c == '\v' || c == '\f' ? ' ' : c;
     }
     text->resize(out);
     if (!text->empty() && text->back() != '\n') {
@@ -81,7 +81,7 @@ std::string_view TakeLine(std::string_view *text) {
 }
 
 std::string_view TakeWord(std::string_view *text) {
-    constexpr char kSpace[] = " \t\n\r\v\f";
+    constexpr char kSpace[] = " \t\n\r";
     text->remove_prefix(std::min(text->find_first_not_of(kSpace), text->size()));
     std::string_view const word = text->substr(0, text->find_first_of(kSpace));
     text->remove_prefix(word.size());

@@ -11,7 +11,8 @@ namespace OpenSubdivHex::Tutorials {
 /// \brief The whole file as it is.  Throws FileError.
 std::string ReadFile(std::string const &path);
 
-/// \brief Makes every line of a text file end in '\n' and drops a byte order mark.
+/// \brief Makes every line of a text file end in '\n' and drops a byte order mark.  Form feeds and
+/// vertical tabs, which readers see differently, become spaces.
 /// Throws FileError when it holds a zero byte: it is no text then.
 void NormalizeText(std::string const &path, std::string *text);
 

@@ -2,6 +2,7 @@
 #include "meshWriter.h"
 
 #include "fileError.h"
+#include "meshCheck.h"
 #include "meshFormat.h"
 #include "outputFile.h"
 
@@ -254,6 +255,7 @@ void WriteMesh(Mesh const &mesh, std::string const &path) {
     if (!format) {
         throw FileError(path, std::string("is not a ") + kMeshExtensions + " file");
     }
+    CheckMesh(mesh, path);
     OutputFile file(path);
     switch (*format) {
     case MeshFormat::Obj:

@@ -18,7 +18,7 @@ bool HasChannels(std::string const &path);
 /// are written to none.
 ///
 /// Text has as many digits as it takes to read the same floats again.  The file appears whole or
-/// not at all.  Throws FileError.
+/// not at all.  Throws FileError, also for what CheckMesh refuses: ReadMesh would do so.
 void WriteMesh(Mesh const &mesh, std::string const &path);
 
 } // namespace OpenSubdivHex::Tutorials

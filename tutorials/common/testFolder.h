@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -18,15 +19,20 @@
 
 namespace OpenSubdivHex::Tutorials {
 
-/// \brief A test with a folder of its own, empty before it and removed after it.
+/// \brief A test with a folder of its own, made for it and removed after it.
 class TestFolder : public ::testing::Test {
 protected:
     TestFolder() {
         ::testing::TestInfo const &info = *::testing::UnitTest::GetInstance()->current_test_info();
-        _folder = std::filesystem::path(::testing::TempDir()) /
-                  (std::string("OpenSubdivHex.") + info.test_suite_name() + "." + info.name());
-        std::filesystem::remove_all(_folder);
-        std::filesystem::create_directories(_folder);
+        std::string name =
+            std::string("OpenSubdivHex.") + info.test_suite_name() + "." + info.name();
+        std::replace(name.begin(), name.end(), '/', '.'); // of tests with parameters
+        // Other users and other builds run the same tests.
+        std::random_device random;
+        do {
+            _folder = std::filesystem::path(::testing::TempDir()) /
+                      (name + "." + std::to_string(random()));
+        } while (!std::filesystem::create_directories(_folder));
     }
     ~TestFolder() override { std::filesystem::remove_all(_folder); }
 

@@ -21,7 +21,8 @@ Vector cross(Vector const &a, Vector const &b) {
 
 double dot(Vector const &a, Vector const &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Newell's normal, from the first vertex of the face so that its place costs no precision.
+/// Newell's normal, 1 long or 0, from the first vertex of the face so that its place costs no
+/// precision.
 Vector computeNormal(Mesh const &mesh, int const *vertices, int size) {
     auto const edgeTo = [&](int i) {
         Vector vector;
@@ -37,6 +38,10 @@ Vector computeNormal(Mesh const &mesh, int const *vertices, int size) {
         for (std::size_t k = 0; k < 3; ++k) {
             normal[k] += area[k];
         }
+    }
+    double const length = std::hypot(normal[0], normal[1], normal[2]);
+    for (double &number : normal) {
+        number /= length > 0 ? length : 1;
     }
     return normal;
 }

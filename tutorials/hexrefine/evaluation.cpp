@@ -79,6 +79,13 @@ bool evaluateRefinement(FarExt::TopologyRefiner const &refiner, Primvar const &p
     return isEvaluated;
 }
 
+void setNormalized(double const (&vector)[3], float *result) {
+    double const length = std::hypot(vector[0], vector[1], vector[2]);
+    for (int k = 0; k < 3; ++k) {
+        result[k] = float(length > 0 ? vector[k] / length : vector[k]);
+    }
+}
+
 } // namespace
 
 bool NeedsStencils(std::string const &evaluator) {
@@ -166,13 +173,14 @@ std::vector<float> EvaluateLimit(Far::LimitStencilTable const &table,
     }
     std::vector<float> normals(3 * std::size_t(sides.GetNumSides()));
     for (std::size_t i = 0; i < normals.size(); i += 3) {
+        double normal[3]; // products of floats need not be floats
         for (std::size_t k = 0; k < 3; ++k) {
             std::size_t const a = i + (k + 1) % 3;
             std::size_t const b = i + (k + 2) % 3;
-            normals[i + k] = du[a] * dv[b] - du[b] * dv[a];
+            normal[k] = double(du[a]) * double(dv[b]) - double(du[b]) * double(dv[a]);
         }
+        setNormalized(normal, normals.data() + i);
     }
-    Normalize(&normals);
     // The points of further sides are those of their vertices.
     points.resize(3 * std::size_t(sides.GetNumVertices()));
     *positions = std::move(points);
@@ -182,10 +190,8 @@ std::vector<float> EvaluateLimit(Far::LimitStencilTable const &table,
 void Normalize(std::vector<float> *vectors) {
     for (std::size_t i = 0; i + 2 < vectors->size(); i += 3) {
         float *const vector = vectors->data() + i;
-        double const length = std::hypot(double(vector[0]), double(vector[1]), double(vector[2]));
-        for (int k = 0; k < 3 && length > 0; ++k) {
-            vector[k] = float(vector[k] / length);
-        }
+        double const numbers[3] = {vector[0], vector[1], vector[2]};
+        setNormalized(numbers, vector);
     }
 }
 

@@ -16,14 +16,14 @@
 #include "statistics.h"
 #include "tagText.h"
 #include "tutorials/common/fileError.h"
+#include "tutorials/common/meshCheck.h"
 #include "tutorials/common/meshFormat.h"
 #include "tutorials/common/meshReader.h"
 #include "tutorials/common/meshText.h"
 #include "tutorials/common/meshWriter.h"
 #include "tutorials/common/outputFile.h"
+#include "tutorials/common/program.h"
 #include "tutorials/common/topologyDescriptor.h"
-
-#include <CLI/CLI.hpp>
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -31,7 +31,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <new>
@@ -39,8 +38,6 @@
 namespace OpenSubdivHex::Tutorials {
 
 namespace {
-
-enum ExitCode { kSuccess = 0, kFailure = 1, kBadUsage = 2 };
 
 struct Arguments {
     std::string input;
@@ -113,6 +110,28 @@ void addSchemeOptions(CLI::App &app, Arguments *arguments) {
         ->capture_default_str();
     app.add_flag("--open-gaps", arguments->hasOpenGaps, "Leave the gaps of --coplanar open")
         ->needs(coplanar);
+}
+
+/// No file may be written twice, or be the input and something else than a mesh.
+void checkFiles(Arguments const &arguments) {
+    struct File {
+        char const *option;
+        std::string path;
+    };
+    File const files[] = {{"INPUT", arguments.input},
+                          {"--output", arguments.output},
+                          {"--png", arguments.png},
+                          {"--stats", arguments.stats == "-" ? "" : arguments.stats}};
+    for (File const &file : files) {
+        for (File const *other = files; other != &file; ++other) {
+            bool const isMesh = &file == files + 1 && other == files;
+            if (!isMesh && !file.path.empty() && !other->path.empty() &&
+                IsSameOutput(file.path, other->path)) {
+                throw CLI::ValidationError(file.option, "'" + file.path + "' is the file of " +
+                                                            other->option + ", too");
+            }
+        }
+    }
 }
 
 void addOptions(CLI::App &app, Arguments *arguments) {
@@ -208,6 +227,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                  "Print creases, corners, holes, rules and channels, as lines for an .obj file");
     app.add_flag("--quiet", arguments->isQuiet, "Print no summary and show no progress");
     app.callback([arguments] {
+        checkFiles(*arguments);
         if (arguments->printsTags && arguments->stats == "-") {
             throw CLI::ValidationError("--tags", "standard output is taken by --stats -");
         }
@@ -417,7 +437,6 @@ void setSimdLevel(std::string const &name) {
     OsdExt::SetSimdLevel(level);
 }
 
-/// Throws FileError and std::bad_alloc.
 void run(Arguments const &arguments) {
     Statistics statistics;
     statistics.scheme = arguments.scheme;
@@ -481,6 +500,7 @@ void run(Arguments const &arguments) {
             sides.emplace(lastLevel);
             normals = evaluateLimit(arguments, *refiner, *sides, &mesh, progress, &statistics);
         }
+        CheckFinite(mesh, arguments.input, "level " + std::to_string(arguments.level) + ": ");
 
         if (!arguments.output.empty()) {
             milliseconds.write = measure(progress, "writing", [&] {
@@ -488,6 +508,9 @@ void run(Arguments const &arguments) {
                     copyFacesWithNormals(arguments, lastLevel, *sides, std::move(normals), &mesh);
                 } else {
                     CopyFaces(lastLevel, &mesh);
+                }
+                if (mesh.faceSizes.empty()) {
+                    throw FileError(arguments.input, "all faces are holes, none is left to write");
                 }
                 WriteMesh(mesh, arguments.output);
             });
@@ -506,9 +529,11 @@ void run(Arguments const &arguments) {
         writeStatistics(statistics, arguments.stats);
     }
     if (!arguments.isQuiet && arguments.stats != "-") {
-        print(FormatSummary(statistics) +
-              (arguments.output.empty() ? "" : "wrote " + arguments.output + "\n") +
-              (arguments.png.empty() ? "" : "wrote " + arguments.png + "\n"));
+        std::string summary = FormatSummary(statistics);
+        for (std::string const &path : {arguments.output, arguments.png}) {
+            summary += path.empty() ? "" : "wrote " + EscapeControls(path) + "\n";
+        }
+        print(summary);
     }
 }
 
@@ -523,28 +548,20 @@ int main(int argc, char **argv) {
     CLI::App app("Refines a polygon mesh with the hexagonal vertex-to-vertex subdivision scheme.",
                  "hexrefine");
     addOptions(app, &arguments);
-    try {
-        app.parse(argc, argv);
-    } catch (CLI::ParseError const &error) {
-        return app.exit(error) == 0 ? kSuccess : kBadUsage;
-    }
+    return RunProgram(app, argc, argv, [&] {
 #ifdef _OPENMP
-    if (arguments.numThreads) {
-        omp_set_num_threads(*arguments.numThreads);
-    }
+        if (arguments.numThreads) {
+            omp_set_num_threads(*arguments.numThreads);
+        }
 #endif
-    if (arguments.simd) {
-        setSimdLevel(*arguments.simd);
-    }
-    try {
-        run(arguments);
-    } catch (FileError const &error) {
-        std::cerr << "hexrefine: " << error.what() << "\n";
-        return kFailure;
-    } catch (std::bad_alloc const &) {
-        std::cerr << "hexrefine: " << arguments.input << ": not enough memory for level "
-                  << arguments.level << "\n";
-        return kFailure;
-    }
-    return kSuccess;
+        if (arguments.simd) {
+            setSimdLevel(*arguments.simd);
+        }
+        try {
+            run(arguments);
+        } catch (std::bad_alloc const &) {
+            throw FileError(arguments.input,
+                            "not enough memory for level " + std::to_string(arguments.level));
+        }
+    });
 }

@@ -6,6 +6,7 @@
 #ifdef HEXREFINE_HAS_RENDERER
 #include "tutorials/common/pngFile.h"
 #include "tutorials/common/renderer.h"
+#include "tutorials/common/unitSize.h"
 #endif
 
 namespace OpenSubdivHex::Tutorials {
@@ -14,8 +15,9 @@ namespace OpenSubdivHex::Tutorials {
 
 bool HasRenderer() { return true; }
 
-void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> const &positions,
+void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> positions,
                   std::string const &path) {
+    ScaleToUnitSize(&positions);
     constexpr int kWidth = 800;
     constexpr int kHeight = 600;
     Surface surface(level);
@@ -30,8 +32,7 @@ void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> const &
 
 bool HasRenderer() { return false; }
 
-void WritePicture(FarExt::TopologyLevel const &, std::vector<float> const &,
-                  std::string const &path) {
+void WritePicture(FarExt::TopologyLevel const &, std::vector<float>, std::string const &path) {
     throw FileError(path, "cannot be made: this program was built without Embree and libpng");
 }
 

@@ -18,7 +18,7 @@ bool HasRenderer();
 /// \param positions  x y z of each vertex of the level
 ///
 /// Throws FileError.
-void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> const &positions,
+void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> positions,
                   std::string const &path);
 
 } // namespace OpenSubdivHex::Tutorials

@@ -2,6 +2,7 @@
 #include "statistics.h"
 
 #include "tagText.h"
+#include "tutorials/common/fileError.h"
 
 #include <nlohmann/json.hpp>
 
@@ -171,9 +172,9 @@ std::string formatTags(Statistics const &statistics) {
 } // namespace
 
 std::string FormatSummary(Statistics const &statistics) {
-    std::string summary = statistics.input + ": scheme " + formatScheme(statistics) + ", mask " +
-                          statistics.mask + ", boundary " + statistics.boundary + ", evaluator " +
-                          statistics.evaluator + "\n\n" +
+    std::string summary = EscapeControls(statistics.input) + ": scheme " +
+                          formatScheme(statistics) + ", mask " + statistics.mask + ", boundary " +
+                          statistics.boundary + ", evaluator " + statistics.evaluator + "\n\n" +
                           "level    vertices       edges       faces    boundary  faces by size\n";
     for (std::size_t i = 0; i < statistics.levels.size(); ++i) {
         LevelStatistics const &level = statistics.levels[i];

@@ -18,20 +18,19 @@
 #include "tutorials/common/meshReader.h"
 #include "tutorials/common/meshText.h"
 #include "tutorials/common/pngFile.h"
+#include "tutorials/common/program.h"
 #include "tutorials/common/renderer.h"
 #include "tutorials/common/topologyDescriptor.h"
+#include "tutorials/common/unitSize.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>
-
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <new>
 
 namespace OpenSubdivHex::Tutorials {
@@ -41,8 +40,6 @@ namespace {
 namespace Osd = OpenSubdiv::Osd;
 
 constexpr char kName[] = "osd_ext_2_1_render";
-
-enum ExitCode { kSuccess = 0, kFailure = 1, kBadUsage = 2 };
 
 // What may differ from one panel of a picture to the next.
 struct PanelSettings {
@@ -339,9 +336,9 @@ std::string findFramePath(Arguments const &arguments, int frame) {
     return result.replace_filename(path.stem().string() + number + ".png").string();
 }
 
-// Throws FileError, std::bad_alloc and std::runtime_error.
 void run(Arguments const &arguments) {
-    Mesh const mesh = ReadMesh(arguments.input);
+    Mesh mesh = ReadMesh(arguments.input);
+    ScaleToUnitSize(&mesh.positions);
     std::vector<std::unique_ptr<Panel>> panels;
     for (PanelSettings const &settings : arguments.panels) {
         panels.push_back(std::make_unique<Panel>(mesh, settings, arguments.input));
@@ -404,8 +401,8 @@ void run(Arguments const &arguments) {
         }
         std::string const path = findFramePath(arguments, frame);
         WritePng(picture, path);
-        std::printf("wrote %s: evaluated in %.0f ms, rendered in %.0f ms\n", path.c_str(),
-                    updateTime, renderTime);
+        std::printf("wrote %s: evaluated in %.0f ms, rendered in %.0f ms\n",
+                    EscapeControls(path).c_str(), updateTime, renderTime);
     }
 }
 
@@ -419,8 +416,7 @@ int main(int argc, char **argv) {
     Arguments arguments;
     CLI::App app("Renders a polygon mesh, refined with the hexagonal subdivision scheme.", kName);
     addOptions(app, &arguments);
-    try {
-        app.parse(argc, argv);
+    return RunProgram(app, argc, argv, [&] {
         for (std::string const &text : arguments.panelTexts) {
             arguments.panels.push_back(parsePanel(text, arguments.settings));
         }
@@ -428,20 +424,10 @@ int main(int argc, char **argv) {
             arguments.panels.push_back(arguments.settings);
         }
         checkArguments(arguments);
-    } catch (CLI::ParseError const &error) {
-        return app.exit(error) == 0 ? kSuccess : kBadUsage;
-    }
-    try {
-        run(arguments);
-    } catch (FileError const &error) {
-        std::cerr << kName << ": " << error.what() << "\n";
-        return kFailure;
-    } catch (std::bad_alloc const &) {
-        std::cerr << kName << ": " << arguments.input << ": not enough memory\n";
-        return kFailure;
-    } catch (std::runtime_error const &error) {
-        std::cerr << kName << ": " << arguments.input << ": " << error.what() << "\n";
-        return kFailure;
-    }
-    return kSuccess;
+        try {
+            run(arguments);
+        } catch (std::bad_alloc const &) {
+            throw FileError(arguments.input, "not enough memory");
+        }
+    });
 }

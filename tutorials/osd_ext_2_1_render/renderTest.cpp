@@ -2,11 +2,14 @@
 //
 // Runs the program osd_ext_2_1_render as its users do, and looks at its pictures.
 #include "tutorials/common/image.h"
+#include "tutorials/common/meshReader.h"
+#include "tutorials/common/meshWriter.h"
 #include "tutorials/common/testFolder.h"
 
 #include <png.h>
 
 #include <array>
+#include <cmath>
 #include <set>
 
 namespace OpenSubdivHex::Tutorials {
@@ -201,6 +204,23 @@ TEST_F(Render, Animates) {
     }
 }
 
+TEST_F(Render, TheSizeOfTheMeshDoesNotMatter) {
+    std::string const options = "-l 2 --size 60x45 --samples 4 --cage";
+    Mesh const mesh = ReadMesh(MESHES_DIR "/ring.obj");
+    Image const expected = draw("ring.obj", options);
+    for (int exponent : {-100, 120}) {
+        Mesh scaled = mesh;
+        for (float &position : scaled.positions) {
+            position = std::ldexp(position, exponent);
+        }
+        std::string const output = getPath("out.png");
+        WriteMesh(scaled, getPath("scaled.obj"));
+        ASSERT_EQ(run("\"" + getPath("scaled.obj") + "\" " + options + " -o \"" + output + "\""),
+                  0);
+        EXPECT_EQ(readPng(output).pixels, expected.pixels) << exponent;
+    }
+}
+
 TEST_F(Render, RefusesBadInput) {
     std::string const output = getPath("out.png");
     EXPECT_EQ(run("no.obj -o \"" + output + "\""), 1);
@@ -218,6 +238,9 @@ TEST_F(Render, RefusesBadInput) {
     std::string const unwritable = getPath("none/out.png");
     EXPECT_EQ(run(mesh + "-l 0 --size 8x8 -o \"" + unwritable + "\""), 1);
     EXPECT_NE(getContent(getPath("stderr")).find(unwritable), std::string::npos);
+    std::filesystem::create_symlink("loop.png", getPath("loop.png"));
+    EXPECT_EQ(run(mesh + "-l 0 --size 8x8 -o \"" + getPath("loop.png") + "\""), 1);
+    EXPECT_NE(getContent(getPath("stderr")).find("loop.png: cannot be written"), std::string::npos);
 }
 
 TEST_F(Render, RefusesBadUsage) {

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The readers of mesh files on bytes: what they refuse, they refuse with one line; what they take
+// is written and read again, and refined, written and read once more.
+#include "apart.h"
+#include "damagedFile.h"
+
+#include "far_ext/topologyRefinerFactory.h"
+#include "tutorials/common/fileError.h"
+#include "tutorials/common/meshReader.h"
+#include "tutorials/common/meshWriter.h"
+#include "tutorials/common/topologyDescriptor.h"
+#include "tutorials/hexrefine/evaluation.h"
+#include "tutorials/hexrefine/levelMesh.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+using Tutorials::FileError;
+using Tutorials::FVarChannel;
+using Tutorials::Mesh;
+
+void require(bool isTrue, char const *what) {
+    if (!isTrue) {
+        throw std::logic_error(what);
+    }
+}
+
+/// A folder of this process for the files that are written, removed at its end.
+class Folder {
+public:
+    Folder() {
+        std::random_device random;
+        do {
+            _path = std::filesystem::temp_directory_path() /
+                    ("OpenSubdivHex.readerFuzz." + std::to_string(random()));
+        } while (!std::filesystem::create_directories(_path));
+    }
+    ~Folder() {
+        std::error_code error;
+        std::filesystem::remove_all(_path, error);
+    }
+    Folder(Folder const &) = delete;
+    Folder &operator=(Folder const &) = delete;
+
+    std::string GetPath(std::string const &name) const { return (_path / name).string(); }
+
+private:
+    std::filesystem::path _path;
+};
+
+bool areIndices(std::vector<int> const &indices, int count) {
+    return std::all_of(indices.begin(), indices.end(),
+                       [=](int index) { return index >= 0 && index < count; });
+}
+
+bool areFinite(std::vector<float> const &values) {
+    return std::all_of(values.begin(), values.end(),
+                       [](float value) { return std::isfinite(value); });
+}
+
+void requireValid(Mesh const &mesh) {
+    std::size_t const numCorners = mesh.faceVertices.size();
+    require(mesh.GetNumFaces() > 0, "a mesh has no faces");
+    require(std::accumulate(mesh.faceSizes.begin(), mesh.faceSizes.end(), std::size_t(0)) ==
+                numCorners,
+            "the sizes of faces do not match their corners");
+    require(*std::min_element(mesh.faceSizes.begin(), mesh.faceSizes.end()) >= 3,
+            "a face has fewer than three corners");
+    require(mesh.positions.size() % 3 == 0 && areFinite(mesh.positions), "positions are not valid");
+    require(areIndices(mesh.faceVertices, mesh.GetNumVertices()), "a vertex is out of range");
+    for (FVarChannel const &channel : mesh.channels) {
+        require(channel.faceValues.size() == numCorners && areFinite(channel.values) &&
+                    areIndices(channel.faceValues, channel.GetNumValues()),
+                "a channel is not valid");
+    }
+    require(areIndices(mesh.tags.creaseVertices, mesh.GetNumVertices()) &&
+                areIndices(mesh.tags.cornerVertices, mesh.GetNumVertices()) &&
+                areIndices(mesh.tags.holes, mesh.GetNumFaces()),
+            "a tag is out of range");
+}
+
+bool haveSameBits(std::vector<float> const &a, std::vector<float> const &b) {
+    return a.size() == b.size() &&
+           std::equal(a.begin(), a.end(), b.begin(), [](float value, float other) {
+               return std::memcmp(&value, &other, sizeof value) == 0;
+           });
+}
+
+constexpr char const *kNames[] = {"mesh.obj", "mesh.off", "mesh.ply"};
+
+std::string getPath(std::string const &name) {
+    static Folder const folder;
+    return folder.GetPath(name);
+}
+
+void requireRefused(Mesh const &mesh) {
+    for (char const *name : kNames) {
+        bool isWritten = true;
+        try {
+            Tutorials::WriteMesh(mesh, getPath(name));
+        } catch (FileError const &) {
+            isWritten = false;
+        }
+        require(!isWritten, "a mesh is written that would not be read");
+    }
+}
+
+/// Writes the mesh in all formats, and reads it again.
+void requireRoundTrip(Mesh const &mesh) {
+    for (char const *name : kNames) {
+        std::string const path = getPath(name);
+        Tutorials::WriteMesh(mesh, path);
+        Mesh const copy = Tutorials::ReadMesh(path);
+        require(haveSameBits(copy.positions, mesh.positions), "positions are not read as written");
+        require(copy.faceSizes == mesh.faceSizes && copy.faceVertices == mesh.faceVertices,
+                "faces are not read as written");
+        std::size_t const numChannels = Tutorials::HasChannels(path) ? mesh.channels.size() : 0;
+        require(copy.channels.size() == numChannels, "channels are not read as written");
+        for (std::size_t i = 0; i < numChannels; ++i) {
+            require(copy.channels[i].width == mesh.channels[i].width &&
+                        haveSameBits(copy.channels[i].values, mesh.channels[i].values) &&
+                        copy.channels[i].faceValues == mesh.channels[i].faceValues,
+                    "values are not read as written");
+        }
+    }
+}
+
+/// One level of \p mesh; false if the library refuses it.
+bool refine(Mesh *mesh) {
+    auto descriptor = Tutorials::DescribeTopology(*mesh);
+    auto const channels = Tutorials::DescribeChannels(*mesh);
+    descriptor.numFVarChannels = int(channels.size());
+    descriptor.fvarChannels = channels.data();
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(
+        mesh->tags.boundary.value_or(Sdc::Options::VTX_BOUNDARY_NONE));
+    options.SetFVarLinearInterpolation(
+        mesh->tags.fvarInterpolation.value_or(Sdc::Options::FVAR_LINEAR_ALL));
+    options.SetCreasingMethod(mesh->tags.creasingMethod.value_or(Sdc::Options::CREASE_UNIFORM));
+    FarExt::Status status;
+    auto const refiner = FarExt::TopologyRefinerFactory::Create(descriptor, options, &status);
+    if (!refiner) {
+        require(!status.GetMessage().empty(), "a mesh is refused without a cause");
+        return false;
+    }
+    require(refiner->RefineUniform(1, &status), "a small mesh is not refined");
+    auto const evaluate = [&](Tutorials::Primvar const &primvar) {
+        require(Tutorials::EvaluateLevels(*refiner, Tutorials::kRefinement, primvar, &status),
+                "a small mesh is not evaluated");
+    };
+    evaluate({3, -1, &mesh->positions});
+    for (std::size_t i = 0; i < mesh->channels.size(); ++i) {
+        evaluate({mesh->channels[i].width, int(i), &mesh->channels[i].values});
+    }
+    Tutorials::CopyFaces(refiner->GetLevel(1), mesh);
+    mesh->tags = {};
+    return true;
+}
+
+} // namespace
+
+void TestFile(std::string const &name, std::string const &content) {
+    Mesh mesh;
+    try {
+        mesh = Tutorials::internal::ParseMesh(name, content);
+    } catch (FileError const &error) {
+        std::string const message = error.what();
+        require(message.rfind(name + ": ", 0) == 0 && message.size() > name.size() + 2,
+                "a message does not begin with the file");
+        require(message == Tutorials::EscapeControls(message), "a message is more than one line");
+        return;
+    }
+    requireValid(mesh);
+    requireRoundTrip(mesh);
+    std::size_t const numHoles = mesh.tags.holes.size();
+    std::size_t const numFaces = mesh.faceSizes.size();
+    if (!refine(&mesh)) {
+        return;
+    }
+    require((numHoles == numFaces) == mesh.faceSizes.empty(), "holes are not left out");
+    bool const isFinite =
+        std::all_of(mesh.channels.begin(), mesh.channels.end(),
+                    [](FVarChannel const &channel) { return areFinite(channel.values); });
+    // The largest floats may be rounded up to infinity.
+    if (mesh.faceSizes.empty() || !isFinite || !areFinite(mesh.positions)) {
+        requireRefused(mesh);
+        return;
+    }
+    requireValid(mesh);
+    requireRoundTrip(mesh);
+}
+
+} // namespace OpenSubdivHex::Regression
+
+extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const *data, std::size_t size) {
+    using namespace OpenSubdivHex::Regression;
+#ifdef _OPENMP
+    omp_set_num_threads(1); // more only cost time: the meshes are small
+#endif
+    DamagedFile const file = MakeDamagedFile(data, size);
+    TestFile(file.name, file.content);
+    return 0;
+}
+
+extern "C" void FuzzReport(unsigned char const *data, unsigned long size) {
+    using namespace OpenSubdivHex::Regression;
+    DamagedFile const file = MakeDamagedFile(data, size);
+    std::fprintf(stderr, "%s, %zu bytes:\n", file.name.c_str(), file.content.size());
+    std::fwrite(file.content.data(), 1, file.content.size(), stderr);
+}
