@@ -328,7 +328,7 @@ OracleCase MakeOracleCase(std::uint8_t const *data, std::size_t size) {
                                        : SchemeType::Hexagonal;
     result.triHexFirst = scheme == 13;
     result.isCoplanar = scheme == 11 || scheme == 12;
-    result.angleTolerance = scheme == 11 ? 0.1 : 60;
+    result.angleTolerance = scheme == 11 ? 0.1 : 50; // of no two coarse faces
     result.closeGaps = scheme == 11 || bytes.Choose(2) == 0;
     int const level = bytes.Choose(32);
     result.level = level == 31 ? 3 : level > 24 ? 2 : level == 24 ? 0 : 1;
