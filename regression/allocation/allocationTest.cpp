@@ -313,8 +313,8 @@ TEST(Allocation, FailsOnceOnOneThread) {
 
 // A level that is large enough for several threads.
 TEST(Allocation, FailsOnceOnThreads) {
-    Subject const subject(GetFeatureShape("cubeOfCharts"), 5, 3);
-    runSteps(subject, 6);
+    Subject const subject(GetFeatureShape("cubeOfCharts"), 6, 3);
+    runSteps(subject, 4);
 }
 
 } // namespace OpenSubdivHex::Regression

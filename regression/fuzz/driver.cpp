@@ -89,8 +89,8 @@ void report(Bytes const &bytes) {
 }
 
 int fuzz(std::uint64_t firstSeed, std::uint64_t numCases, double numSeconds) {
-    void *const shared = mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE,
-                              MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    void *const shared =
+        mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (shared == MAP_FAILED) {
         std::cerr << "fuzz: no shared memory\n";
         return 2;

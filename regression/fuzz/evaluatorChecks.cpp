@@ -121,11 +121,10 @@ private:
     Buffer evaluate(Evaluator const &evaluator, int begin, int end) {
         EvaluatorScope const scope(evaluator);
         Buffer result = _destination;
-        if (!evaluator.functions.value(_source.floats.data(), _source.desc, result.floats.data(),
-                                       result.desc, _table.GetSizes().data(),
-                                       _table.GetOffsets().data(),
-                                       _table.GetControlIndices().data(),
-                                       _table.GetWeights().data(), begin, end)) {
+        if (!evaluator.functions.value(
+                _source.floats.data(), _source.desc, result.floats.data(), result.desc,
+                _table.GetSizes().data(), _table.GetOffsets().data(),
+                _table.GetControlIndices().data(), _table.GetWeights().data(), begin, end)) {
             Fail(evaluator.name, " refuses stencils ", begin, " to ", end);
         }
         checkBuffer(result, begin, end, _expected, begin, _allowed, evaluator.name);

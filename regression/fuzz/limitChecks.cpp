@@ -79,8 +79,8 @@ LimitLevel makeLimit(TopologyRefiner const &refiner, int level, ReferenceValues 
 
 /// A vertex on a boundary of the paper's rule has no limit.
 bool isFree(TopologyRefiner const &refiner, TopologyLevel const &level, int vert) {
-    bool const isRule = refiner.GetSchemeOptions().GetVtxBoundaryInterpolation() ==
-                        Sdc::Options::VTX_BOUNDARY_NONE;
+    bool const isRule =
+        refiner.GetSchemeOptions().GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE;
     auto const edges = level.GetVertexEdges(vert);
     return isRule && std::any_of(edges.begin(), edges.end(), [&](int edge) {
                return level.IsEdgeBoundary(edge) && !level.IsEdgeInfSharp(edge);
@@ -95,7 +95,8 @@ void checkNextLevel(OracleLevels const &levels, int depth, LimitLevel const &par
     // with.
     bool const isChaikin =
         levels.refiner.GetSchemeOptions().GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
-    double const allowed = (isChaikin ? 1e-5 : 1e-10) * std::max(1.0, GetSize(levels.values[0].levels[0]));
+    double const allowed =
+        (isChaikin ? 1e-5 : 1e-10) * std::max(1.0, GetSize(levels.values[0].levels[0]));
     for (int side = 0; side < parent.sides.GetNumSides(); ++side) {
         int const vert = parent.sides.GetVertex(side);
         if (!isFree(levels.refiner, level, vert) &&
@@ -119,8 +120,8 @@ void checkNextLevel(OracleLevels const &levels, int depth, LimitLevel const &par
         double const area = parent.du.row(row).norm() * parent.dv.row(row).norm();
         if (normal.norm() > 0.05 * area && area > 1e-3 &&
             !((normal.normalized() - cNormal.normalized()).norm() < (isChaikin ? 1e-2 : 1e-6))) {
-            Fail("the normal of face ", face, " is ", normal.normalized().transpose(),
-                 " at level ", depth, ", and then ", cNormal.normalized().transpose());
+            Fail("the normal of face ", face, " is ", normal.normalized().transpose(), " at level ",
+                 depth, ", and then ", cNormal.normalized().transpose());
         }
     }
 }

@@ -134,10 +134,10 @@ std::vector<OracleLevels::Values> interpolate(OracleCase const &oracleCase,
     values.push_back({FarExt::INTERPOLATE_VARYING, 0,
                       InterpolateLevels(refiner, positions, ValueKind::Varying)});
     for (int channel = 0; channel < refiner.GetNumFVarChannels(); ++channel) {
-        values.push_back({FarExt::INTERPOLATE_FACE_VARYING, channel,
-                          InterpolateLevels(refiner,
-                                            GetValues(oracleCase.shape.fvarChannels[channel]),
-                                            ValueKind::FaceVarying, channel)});
+        values.push_back(
+            {FarExt::INTERPOLATE_FACE_VARYING, channel,
+             InterpolateLevels(refiner, GetValues(oracleCase.shape.fvarChannels[channel]),
+                               ValueKind::FaceVarying, channel)});
     }
     return values;
 }
@@ -171,7 +171,7 @@ void CheckOracleCase(OracleCase const &oracleCase) {
     if (isHexagonal && !oracleCase.isCoplanar && dice.IsOneOf(8)) {
         CheckLimits(levels);
     }
-    if (dice.IsOneOf(512)) {
+    if (dice.IsOneOf(2048)) {
         CheckThreads(oracleCase);
     }
 }

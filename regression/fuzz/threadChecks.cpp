@@ -95,7 +95,7 @@ Made make(OracleCase const &oracleCase, int numThreads) {
 void CheckThreads(OracleCase const &oracleCase) {
     OracleCase large = oracleCase;
     // From there on all parallel loops have work for several threads.
-    large.level = oracleCase.shape.GetNumCorners() > 16 ? 5 : 6;
+    large.level = oracleCase.shape.GetNumCorners() > 12 ? 6 : 7;
     Made const expected = make(large, 1);
     for (int numThreads : {2, 3}) {
         Made const made = make(large, numThreads);
