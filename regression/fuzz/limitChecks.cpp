@@ -17,8 +17,8 @@ using FarExt::TopologyRefiner;
 
 namespace {
 
-/// No weight of a table that is of use is larger.
-constexpr double kLargestWeight = 1e4;
+/// The bound that LimitStencilTableFactory documents for derivatives, and some roundings.
+constexpr double kLargestWeight = 8 + 1e-5;
 
 /// Points and derivatives at the vertices, further sides and face centres of a level.
 struct LimitLevel {
@@ -38,7 +38,9 @@ ReferenceValues apply(TABLE const &table, std::vector<REAL> const &weights,
         for (int k = offset; k < offset + table.GetSizes()[std::size_t(i)]; ++k) {
             double const weight = weights[std::size_t(k)];
             int const index = table.GetControlIndices()[std::size_t(k)];
-            if (!(std::abs(weight) < kLargestWeight) || index < 0 || index >= base.rows()) {
+            double const smallest = expectedSum == 1 ? -1e-9 : -kLargestWeight;
+            if (!(weight >= smallest && weight <= kLargestWeight) || index < 0 ||
+                index >= base.rows()) {
                 Fail(name, ": row ", i, " has weight ", weight, " of ", index);
             }
             values.row(i) += weight * base.row(index);
