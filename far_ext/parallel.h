@@ -25,10 +25,12 @@ inline Far::Index GetNumParallelRanges(Far::Index count, Far::Index length = kPa
 class ExceptionKeeper {
 public:
     /// Calls work() in any thread.
+    /// \return  whether it threw nothing
     template <typename WORK>
-    void Run(WORK work) noexcept {
+    bool Run(WORK work) noexcept {
         try {
             work();
+            return true;
         } catch (...) {
 #ifdef _OPENMP
 #pragma omp critical(OpenSubdivHexException)
@@ -36,6 +38,7 @@ public:
             if (!_exception) {
                 _exception = std::current_exception();
             }
+            return false;
         }
     }
 
@@ -84,9 +87,11 @@ void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function,
 #endif
         for (Far::Index range = 0; range < numRanges; ++range) {
             Far::Index const begin = range * length;
-            if (state) {
-                exceptions.Run(
-                    [&] { function(*state, begin, begin + std::min(count - begin, length)); });
+            // What a call has thrown out of may have left its state in pieces.
+            if (state && !exceptions.Run([&] {
+                    function(*state, begin, begin + std::min(count - begin, length));
+                })) {
+                state.reset();
             }
         }
     }

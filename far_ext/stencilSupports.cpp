@@ -23,8 +23,9 @@ Index *SupportArena::Writer::Add(int size) {
     if (needed > _numFree) {
         // The first block is small, for steps that need little.
         _blockSize = std::min(2 * _blockSize, kMaxBlock);
-        _numFree = std::max(needed, _blockSize);
-        _free = _arena.addBlock(_numFree);
+        std::size_t const numFree = std::max(needed, _blockSize);
+        _free = _arena.addBlock(numFree); // may throw; the free part of the last block stays then
+        _numFree = numFree;
     }
     Index *const list = _free;
     *list = size;

@@ -81,9 +81,9 @@ public:
     /// \return  false with StatusCode::InvalidArgument for a negative level, and with
     ///          StatusCode::TooLarge, which names the level and the count, when a size or the sum
     ///          of a size over the levels exceeds 2^31 - 1, or for a level beyond kLastLevel.  No
-    ///          memory is taken then and the levels are as before.  With borders the sizes of a tri-hex step and what follows
-    ///          are known only once it is made: there the base alone is left, as it is when
-    ///          std::bad_alloc is thrown.
+    ///          memory is taken then and the levels are as before.  With borders the sizes of a
+    ///          tri-hex step and what follows are known only once it is made: there the base alone
+    ///          is left.  When std::bad_alloc is thrown, it is, too, unless all levels are as before.
     bool RefineUniform(UniformOptions options, Status *status = nullptr);
 
     /// The options of the last successful RefineUniform; of level 0 after RefineCoplanar and
@@ -116,8 +116,9 @@ public:
     ///          between 0 and 180, a coordinate that is not finite (its vertex is named) or a null
     ///          pointer; Unsupported for other schemes than Hexagonal; TooLarge, as RefineUniform,
     ///          for sizes that are too large whichever edges are flat, or for a level beyond
-    ///          kLastLevel; the levels are then as before.  Other sizes are known only once the level before is made: false with
-    ///          TooLarge, and the base alone is left, as it is when std::bad_alloc is thrown.
+    ///          kLastLevel; the levels are then as before.  Other sizes are known only once the
+    ///          level before is made: false with TooLarge, and the base alone is left.  When
+    ///          std::bad_alloc is thrown, it is, too, unless all levels are as before.
     bool RefineCoplanar(float const *restPositions, CoplanarOptions options,
                         Status *status = nullptr);
     bool RefineCoplanar(double const *restPositions, CoplanarOptions options,

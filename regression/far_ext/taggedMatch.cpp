@@ -40,27 +40,27 @@ bool hasRepeatedVertex(Shape const &shape) {
     return result;
 }
 
-/// Far's own tags tell which values its FVarLinearInterpolation keeps in place.
+/// By corner: Far's own tags tell which values its FVarLinearInterpolation keeps in place.
 std::vector<float> valueSharpness(Far::TopologyRefiner const &base, int channel,
                                   TaggedMesh const &mesh) {
     Far::TopologyLevel const &level = base.GetLevel(0);
     OpenSubdiv::Vtr::internal::FVarLevel const &values = base.getLevel(0).getFVarLevel(channel);
-    std::vector<float> sharpness(level.GetNumFVarValues(channel), 0.0f);
-    if (values.isLinear()) {
-        return sharpness;
-    }
-    for (int v = 0; v < level.GetNumVertices(); ++v) {
-        auto const indices = values.getVertexValues(v);
+    std::vector<float> sharpness(level.GetNumFaceVertices(), 0.0f);
+    for (int v = 0; v < level.GetNumVertices() && !values.isLinear(); ++v) {
+        auto const faces = level.GetVertexFaces(v);
         auto const tags = values.getVertexValueTags(v);
-        for (int i = 0; i < indices.size(); ++i) {
+        auto const siblings = values.getVertexFaceSiblings(v);
+        for (int i = 0; i < faces.size(); ++i) {
+            auto const tag = tags[siblings[i]];
             float own = mesh.vertices[v].sharpness;
-            if (tags[i].isMismatch() && !tags[i].isSemiSharp()) {
-                own = tags[i].isInfSharp() ? kInfiniteSharpness : 0;
+            if (tag.isMismatch() && !tag.isSemiSharp()) {
+                own = tag.isInfSharp() ? kInfiniteSharpness : 0;
             }
-            if (indices.size() == 1 && mesh.vertices[v].isNonManifold && IsPinned(mesh, v)) {
+            if (tags.size() == 1 && mesh.vertices[v].isNonManifold && IsPinned(mesh, v)) {
                 own = kInfiniteSharpness;
             }
-            sharpness[indices[i]] = std::max(sharpness[indices[i]], own);
+            int const local = level.GetVertexFaceLocalIndices(v)[i];
+            sharpness[base.getLevel(0).getOffsetOfFaceVertices(faces[i]) + local] = own;
         }
     }
     return sharpness;

@@ -328,6 +328,7 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
     }
     std::map<int, int> vertices;
     valuesOfVertices.clear();
+    result.vertices.resize(numCorners);
     for (std::size_t f = 0; f < result.faces.size(); ++f) {
         for (std::size_t i = 0; i < result.faces[f].vertices.size(); ++i) {
             int const corner = firstCorner[f] + int(i);
@@ -337,12 +338,11 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
                 valuesOfVertices.push_back(valueIndices[corner]);
             }
             result.faces[f].vertices[i] = place->second;
+            float &sharpness = result.vertices[place->second].sharpness;
+            sharpness = std::max(sharpness, valueSharpness[corner]);
         }
     }
     result.vertices.resize(valuesOfVertices.size());
-    for (std::size_t v = 0; v < valuesOfVertices.size(); ++v) {
-        result.vertices[v].sharpness = valueSharpness[valuesOfVertices[v]];
-    }
     connect(result);
     // A seam that ends in a boundary of the paper's rule has no curve to follow.
     for (TaggedMesh::Vertex &vertex : result.vertices) {

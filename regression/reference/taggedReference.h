@@ -108,7 +108,7 @@ TaggedMesh MakeTaggedMesh(TaggedBase const &base);
 /// an edge differ.  Each fan of faces that share a value is a vertex.
 ///
 /// \param valueIndices     value of each corner, face by face
-/// \param valueSharpness   infinite for values that stay
+/// \param valueSharpness   by corner; infinite for values that stay
 /// \param valuesOfVertices gets the value of each vertex of the result
 TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIndices,
                          std::vector<float> const &valueSharpness,

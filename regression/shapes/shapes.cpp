@@ -452,6 +452,7 @@ int GetTestLevel(Shape const &shape, int maxLevel, double maxCorners) {
     // C' = C + 6 Ei + 4 Eb where C = 2 Ei + Eb, so C' = 4C + Eb; Eb stays as it is.
     double const numBoundaryEdges = CountBoundaryEdges(shape);
     double corners = shape.GetNumCorners();
+    maxCorners /= OPENSUBDIVHEX_TEST_DIVISOR;
     int level = 0;
     while (level < maxLevel && 4 * corners + numBoundaryEdges <= maxCorners) {
         corners = 4 * corners + numBoundaryEdges;

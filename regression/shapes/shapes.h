@@ -63,7 +63,8 @@ std::vector<Shape> const &GetManifoldShapes();
 /// The shape of that name; throws std::out_of_range if there is none.
 Shape const &GetShape(std::string const &name);
 
-/// The largest level, at most \p maxLevel, that has no more than \p maxCorners face-vertices.
+/// The largest level, at most \p maxLevel, that has no more than \p maxCorners face-vertices,
+/// divided by the build's OPENSUBDIVHEX_TEST_DIVISOR.
 int GetTestLevel(Shape const &shape, int maxLevel, double maxCorners = 60000);
 
 } // namespace OpenSubdivHex::Regression

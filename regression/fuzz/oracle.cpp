@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle.h"
+
+#include "osd_ext/triangleIndices.h"
+#include "regression/far_ext/taggedMatch.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <opensubdiv/far/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::Status;
+using FarExt::StatusCode;
+using FarExt::TopologyLevel;
+using FarExt::TopologyRefiner;
+
+namespace {
+
+/// What is the same up to some roundings, in double precision.
+constexpr double kTolerance = 1e-12;
+
+/// Far prints what it finds about meshes unless it is told not to.
+void silenceFar() {
+    static bool const isSilent = [] {
+        Far::SetErrorCallback([](Far::ErrorType, char const *) {});
+        Far::SetWarningCallback([](char const *) {});
+        return true;
+    }();
+    static_cast<void>(isSilent);
+}
+
+/// A refusal says what it is about, and is one of those that are documented.
+void checkRefusal(OracleCase const &oracleCase, Status const &status) {
+    if (status.IsOk() || status.GetMessage().empty()) {
+        Fail("no refiner, and no cause");
+    }
+    bool const isHexagonal =
+        oracleCase.schemeType == FarExt::SchemeType::Hexagonal && !oracleCase.triHexFirst;
+    if (status.GetCode() == StatusCode::Unsupported && !isHexagonal) {
+        return;
+    }
+    // A channel that does not come apart where its mesh does.
+    if (status.GetCode() == StatusCode::Unsupported && !oracleCase.shape.fvarChannels.empty() &&
+        status.GetComponentType() == FarExt::ComponentType::Vertex &&
+        CreateFarRefiner(oracleCase.shape, oracleCase.sdcOptions)
+            ->GetLevel(0)
+            .IsVertexNonManifold(status.GetComponentIndex())) {
+        return;
+    }
+    Fail("refused: ", status.GetMessage());
+}
+
+void checkLevels(TopologyRefiner const &refiner) {
+    for (int level = 0; level <= refiner.GetMaxLevel(); ++level) {
+        Status status;
+        if (!refiner.GetLevel(level).Validate(&status)) {
+            Fail("level ", level, " is not valid: ", status.GetMessage());
+        }
+    }
+}
+
+/// The base of the faces that draw each level, and how many there are.
+void checkTriangles(TopologyRefiner const &refiner) {
+    TopologyLevel const &level = refiner.GetLevel(refiner.GetMaxLevel());
+    OsdExt::TriangleOptions options;
+    options.fvarChannel = refiner.GetNumFVarChannels() - 1;
+    OsdExt::TriangleIndices const triangles = OsdExt::CreateTriangleIndices(level, options);
+    std::size_t next = 0;
+    for (int face = 0; face < level.GetNumFaces(); ++face) {
+        auto const verts = level.GetFaceVertices(face);
+        for (int i = 2; i < verts.size() && !level.IsFaceHole(face); ++i, ++next) {
+            if (next >= triangles.faces.size() || triangles.faces[next] != face ||
+                triangles.baseFaces[next] != level.GetFaceBaseFace(face)) {
+                Fail("triangle ", next, " is not one of face ", face);
+            }
+            for (int k = 0; k < 3; ++k) {
+                if (verts.FindIndex(triangles.vertices[3 * next + std::size_t(k)]) < 0) {
+                    Fail("triangle ", next, " has a vertex that is not one of face ", face);
+                }
+            }
+        }
+    }
+    if (next != triangles.faces.size()) {
+        Fail(triangles.faces.size(), " triangles instead of ", next);
+    }
+}
+
+void checkRows(std::vector<ReferenceValues> const &actual,
+               std::vector<ReferenceValues> const &expected, std::string const &what) {
+    double const allowed = kTolerance * std::max(1.0, GetSize(expected[0]));
+    for (std::size_t level = 0; level < expected.size(); ++level) {
+        for (Eigen::Index i = 0; i < expected[level].rows(); ++i) {
+            // Rows that the reference does not know are those of values that no corner has.
+            if (!std::isnan(expected[level](i, 0)) &&
+                !(GetDifference(actual[level].row(i), expected[level].row(i)) <= allowed)) {
+                Fail(what, " differ from the reference: level ", level, ", row ", i, ": ",
+                     actual[level].row(i), ", not ", expected[level].row(i));
+            }
+        }
+    }
+}
+
+/// Topology and values of one mode against the reference.
+void checkReference(OracleLevels const &levels, OracleLevels::Values const &values,
+                    TaggedMatch const &match) {
+    if (!match.GetError().empty()) {
+        Fail("topology differs from the reference, channel ", values.channel, ": ",
+             match.GetError());
+    }
+    bool const isLinear = values.mode == FarExt::INTERPOLATE_VARYING ||
+                          (values.mode == FarExt::INTERPOLATE_FACE_VARYING &&
+                           levels.refiner.GetFVarLinearInterpolation(values.channel) ==
+                               Sdc::Options::FVAR_LINEAR_ALL);
+    ReferenceValues const &base = values.levels[0];
+    checkRows(values.levels,
+              isLinear ? match.InterpolateVaryingAll(base)
+                       : match.InterpolateAll(levels.oracleCase.mask, base),
+              "values of mode " + std::to_string(values.mode));
+}
+
+void checkReferences(OracleLevels const &levels) {
+    OracleCase const &oracleCase = levels.oracleCase;
+    TaggedMatch const match(oracleCase.shape, levels.refiner, -1, oracleCase.closeGaps);
+    checkReference(levels, levels.values[0], match);
+    checkReference(levels, levels.values[1], match);
+    for (std::size_t i = 2; i < levels.values.size(); ++i) {
+        int const channel = levels.values[i].channel;
+        checkReference(
+            levels, levels.values[i],
+            TaggedMatch(oracleCase.shape, levels.refiner, channel, oracleCase.closeGaps));
+    }
+}
+
+std::vector<OracleLevels::Values> interpolate(OracleCase const &oracleCase,
+                                              TopologyRefiner const &refiner) {
+    ReferenceValues const positions = GetPositions(oracleCase.shape);
+    std::vector<OracleLevels::Values> values;
+    values.push_back({FarExt::INTERPOLATE_VERTEX, 0, InterpolateLevels(refiner, positions)});
+    values.push_back({FarExt::INTERPOLATE_VARYING, 0,
+                      InterpolateLevels(refiner, positions, ValueKind::Varying)});
+    for (int channel = 0; channel < refiner.GetNumFVarChannels(); ++channel) {
+        values.push_back(
+            {FarExt::INTERPOLATE_FACE_VARYING, channel,
+             InterpolateLevels(refiner, GetValues(oracleCase.shape.fvarChannels[channel]),
+                               ValueKind::FaceVarying, channel)});
+    }
+    return values;
+}
+
+} // namespace
+
+double GetDifference(Eigen::RowVectorXd const &a, Eigen::RowVectorXd const &b) {
+    double const difference = (a - b).cwiseAbs().maxCoeff();
+    return std::isfinite(difference) ? difference : std::numeric_limits<double>::infinity();
+}
+
+void CheckOracleCase(OracleCase const &oracleCase) {
+    silenceFar();
+    Status status;
+    auto const refiner = CreateRefiner(oracleCase, &status);
+    if (!refiner) {
+        checkRefusal(oracleCase, status);
+        return;
+    }
+    checkLevels(*refiner);
+    checkTriangles(*refiner);
+    OracleLevels const levels{oracleCase, *refiner, interpolate(oracleCase, *refiner)};
+    Dice dice(oracleCase.checks);
+    checkReferences(levels);
+    CheckTables(levels, dice);
+    CheckEvaluators(levels, dice);
+    bool const isHexagonal = refiner->GetHexSchemeOptions().IsHexagonal();
+    if (isHexagonal && dice.IsOneOf(4)) {
+        CheckOrders(levels, dice);
+    }
+    if (isHexagonal && !oracleCase.isCoplanar && dice.IsOneOf(8)) {
+        CheckLimits(levels);
+    }
+    if (dice.IsOneOf(2048)) {
+        CheckThreads(oracleCase);
+    }
+}
+
+} // namespace OpenSubdivHex::Regression

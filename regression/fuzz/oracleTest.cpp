@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The oracle itself: that bytes make many kinds of cases, that it prints and shrinks them, and the
+// inputs on which it failed once.
+#include "oracle.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+OracleCase makeCase(unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<std::uint8_t> bytes(120);
+    for (std::uint8_t &byte : bytes) {
+        byte = std::uint8_t(random() >> 8);
+    }
+    return MakeOracleCase(bytes.data(), bytes.size());
+}
+
+} // namespace
+
+TEST(Oracle, BytesMakeCasesOfAllKinds) {
+    std::set<int> faceSizes;
+    std::set<int> schemes;
+    std::set<int> options;
+    int numNonManifold = 0;
+    int numWithAllTags = 0;
+    int numRefined = 0;
+    for (unsigned seed = 0; seed < 2000; ++seed) {
+        OracleCase const oracleCase = makeCase(seed);
+        Shape const &shape = oracleCase.shape;
+        faceSizes.insert(shape.faceSizes.begin(), shape.faceSizes.end());
+        schemes.insert(int(oracleCase.schemeType) + 3 * int(oracleCase.triHexFirst) +
+                       6 * int(oracleCase.isCoplanar));
+        options.insert(int(oracleCase.sdcOptions.GetVtxBoundaryInterpolation()) +
+                       3 * int(oracleCase.sdcOptions.GetCreasingMethod()) +
+                       6 * int(oracleCase.sdcOptions.GetFVarLinearInterpolation()) +
+                       36 * int(oracleCase.mask));
+        numWithAllTags += !shape.creaseSharpness.empty() && !shape.cornerSharpness.empty() &&
+                          !shape.holeFaces.empty() && !shape.fvarChannels.empty();
+        FarExt::Status status;
+        auto const refiner = CreateRefiner(oracleCase, &status);
+        numRefined += refiner != nullptr;
+        for (int v = 0; refiner && v < shape.GetNumVertices(); ++v) {
+            if (refiner->GetLevel(0).IsVertexNonManifold(v)) {
+                ++numNonManifold;
+                break;
+            }
+        }
+    }
+    EXPECT_EQ(faceSizes, (std::set<int>{3, 4, 5, 6, 7, 8}));
+    EXPECT_EQ(schemes, (std::set<int>{0, 1, 2, 3, 6}));
+    EXPECT_EQ(int(options.size()), 108);
+    EXPECT_GT(numNonManifold, 300);
+    EXPECT_GT(numWithAllTags, 15);
+    EXPECT_GT(numRefined, 1000);
+}
+
+TEST(Oracle, NoBytesMakeACase) {
+    OracleCase const oracleCase = MakeOracleCase(nullptr, 0);
+    EXPECT_EQ(oracleCase.shape.GetNumFaces(), 1);
+    EXPECT_NO_THROW(CheckOracleCase(oracleCase));
+}
+
+TEST(Oracle, ShrinksToWhatMatters) {
+    // The last face, its crease and the second channel.
+    int numShrunk = 0;
+    for (unsigned seed = 0; seed < 200; ++seed) {
+        OracleCase const oracleCase = makeCase(seed);
+        auto const fails = [](OracleCase const &candidate) {
+            Shape const &shape = candidate.shape;
+            return std::count(shape.creaseSharpness.begin(), shape.creaseSharpness.end(), 0.5f) >
+                       0 &&
+                   shape.fvarChannels.size() == 1;
+        };
+        if (!fails(oracleCase)) {
+            continue;
+        }
+        ++numShrunk;
+        Shape const shape = Shrink(oracleCase, fails).shape;
+        EXPECT_EQ(shape.faceSizes, std::vector<int>{3});
+        EXPECT_EQ(shape.GetNumVertices(), 3);
+        EXPECT_EQ(shape.creaseSharpness, std::vector<float>{0.5f});
+        EXPECT_TRUE(shape.cornerVertices.empty());
+        EXPECT_TRUE(shape.holeFaces.empty());
+        EXPECT_EQ(shape.fvarChannels[0].valueIndices.size(), 3u);
+    }
+    EXPECT_GT(numShrunk, 3);
+}
+
+TEST(Oracle, PrintsStatements) {
+    OracleCase oracleCase = MakeOracleCase(nullptr, 0);
+    oracleCase.shape.creaseVertexPairs = {0, 1};
+    oracleCase.shape.creaseSharpness = {0.5f};
+    std::string const text = Print(oracleCase);
+    for (char const *part :
+         {"oracleCase.shape.faceSizes = {", "oracleCase.shape.creaseSharpness = {0.5};",
+          "VTX_BOUNDARY_NONE", "CheckOracleCase(oracleCase);"}) {
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    }
+}
+
+} // namespace OpenSubdivHex::Regression
