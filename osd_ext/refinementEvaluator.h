@@ -25,8 +25,9 @@ namespace OsdExt {
 ///
 /// Values are those that a stencil table of the same refiner gives, with all rules for
 /// boundaries, creases, corners and face-varying seams, up to the rounding of floats (1e-6 of the
-/// largest control value), for values up to half of the largest float.  Two meshes that share a sharp border line, with the same sharpness at its
-/// vertices, get the same values on it, bit for bit, however either numbers and orients it.
+/// largest control value), for values up to half of the largest float.  Two meshes that share a
+/// sharp border line, with the same sharpness at its vertices, get the same values on it, bit for
+/// bit, however either numbers and orients it.
 ///
 /// \code
 ///     auto const evaluator = RefinementEvaluator::Create(refiner);
