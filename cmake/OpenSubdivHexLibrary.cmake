@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # opensubdivhex_add_library(NAME SOURCES...): a library of this project, OpenSubdivHex::NAME to all
-# who link it, installed with every header among its sources.  Users include <NAME/header.h>.
+# who link it, installed with the headers at the top of its folder; those in subfolders are its own.
+# Users include <NAME/header.h>.
 function(opensubdivhex_add_library name)
   add_library(${name} ${ARGN})
   add_library(OpenSubdivHex::${name} ALIAS ${name})
@@ -19,7 +20,7 @@ function(opensubdivhex_add_library name)
     $<$<STREQUAL:$<TARGET_PROPERTY:${name},TYPE>,SHARED_LIBRARY>:OPENSUBDIVHEX_IS_SHARED>)
 
   set(headers ${ARGN})
-  list(FILTER headers INCLUDE REGEX "\\.h$")
+  list(FILTER headers INCLUDE REGEX "^[^/]*\\.h$")
   target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
 
   # The file set puts the project's root on the include path; installed, it is DESTINATION.

@@ -23,3 +23,6 @@ install(FILES
   ${PROJECT_SOURCE_DIR}/cmake/FindOpenSubdiv.cmake
   DESTINATION ${packageDir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Beside the headers that name it.
+install(FILES ${PROJECT_SOURCE_DIR}/far_ext/INDEXING.md
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex/far_ext)

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitStencilTableFactory.h"
 
-#include "limitMask.h"
-#include "parallel.h"
 #include "stencilTableFactory.h"
+
+#include "far_ext/limit/limitMask.h"
+#include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/parallel.h"
 
 #include <limits>
 
@@ -14,7 +16,7 @@ using internal::LimitMask;
 using internal::LimitPatch;
 
 LimitSides::LimitSides(TopologyLevel const &level) : _numVertices(level.GetNumVertices()) {
-    internal::LevelTopology const &topology = level.GetTopology();
+    internal::Level const &topology = level.GetLevel();
     for (internal::SharpVertex const &sharp : topology.sharpVerts) {
         auto const sides = internal::FindVertexSides(topology, sharp.vert);
         if (sides.size() < 2) {
@@ -60,8 +62,8 @@ Index LimitSides::FindSide(TopologyLevel const &level, Index face, int local, in
 namespace {
 
 // The options of the steps from a level on to its limit, the first of which is not that of level 0.
-SchemeOptions hexagonalSteps(TopologyRefiner const &refiner) {
-    SchemeOptions options = refiner.GetHexSchemeOptions();
+HexSchemeOptions hexagonalSteps(TopologyRefiner const &refiner) {
+    HexSchemeOptions options = refiner.GetHexSchemeOptions();
     options.triHexFirst = false;
     return options;
 }
@@ -162,8 +164,8 @@ class TableBuilder {
 public:
     TableBuilder(TopologyRefiner const &refiner, int level,
                  Far::StencilTableReal<double> const &stencils, bool hasDerivatives)
-        : _refiner(refiner), _level(refiner.GetLevel(level)), _stencils(stencils),
-          _hasDerivatives(hasDerivatives) {}
+        : _refiner(refiner), _level(refiner.GetHierarchy().mesh.levels[std::size_t(level)]),
+          _stencils(stencils), _hasDerivatives(hasDerivatives) {}
 
     Status AddSides(LimitSides const *sides) {
         struct State {
@@ -172,9 +174,9 @@ public:
             RowBuilder<REAL> builder;
             LimitPatch patch;
         };
-        Index const numVertices = _level.GetNumVertices();
+        Index const numVertices = _level.numVertices;
         auto const addSide = [&](State &state, Index vert, int side, Rows<REAL> &rows) -> Status {
-            if (_level.GetVertexFaces(vert).empty()) {
+            if (_level.GetNumVertexFaces(vert) == 0) {
                 LimitMask::Tangents const none = {{0}, {0}};
                 state.builder.Add(&vert, {1.0}, derivativesOf(none), rows);
                 return Status();
@@ -184,7 +186,7 @@ public:
             if (!mask) {
                 return Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
                               "the limit of vertex " + std::to_string(vert) + " of level " +
-                                  std::to_string(_level.GetDepth()) +
+                                  std::to_string(_level.depth) +
                                   " cannot be computed: the steps around it do not converge");
             }
             state.builder.Add(state.patch.sources, mask->weights,
@@ -194,7 +196,7 @@ public:
         return addRows(
             sides ? sides->GetNumSides() : numVertices,
             [&] {
-                return State{internal::LimitPatchGatherer(_level.GetTopology()),
+                return State{internal::LimitPatchGatherer(_level),
                              internal::LimitMaskFinder(_refiner.GetSchemeOptions(),
                                                        hexagonalSteps(_refiner)),
                              RowBuilder<REAL>(_stencils),
@@ -210,7 +212,7 @@ public:
         internal::FaceLimitMaskFinder const finder(_level, _refiner.GetSchemeOptions(),
                                                    hexagonalSteps(_refiner));
         return addRows(
-            _level.GetNumFaces(), [&] { return RowBuilder<REAL>(_stencils); },
+            _level.numFaces, [&] { return RowBuilder<REAL>(_stencils); },
             [&](RowBuilder<REAL> &builder, Index face, Rows<REAL> &rows) {
                 LimitMask const mask = finder.Find(face);
                 builder.Add(_level.GetFaceVertices(face), mask.weights,
@@ -256,8 +258,8 @@ private:
             _numWeights += std::int64_t(rows.weights.size());
         }
         if (_numWeights > std::numeric_limits<Index>::max()) {
-            return Status(StatusCode::TooLarge, ComponentType::Level, _level.GetDepth(),
-                          "the limit stencils of level " + std::to_string(_level.GetDepth()) +
+            return Status(StatusCode::TooLarge, ComponentType::Level, _level.depth,
+                          "the limit stencils of level " + std::to_string(_level.depth) +
                               " would have at least " + std::to_string(_numWeights) +
                               " weights, more than Far's 32-bit offsets reach");
         }
@@ -285,7 +287,7 @@ private:
     }
 
     TopologyRefiner const &_refiner;
-    TopologyLevel const &_level;
+    internal::Level const &_level;
     Far::StencilTableReal<double> const &_stencils;
     bool const _hasDerivatives;
     std::int64_t _numWeights = 0;
@@ -302,7 +304,7 @@ Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
         return fail(level + " is not one of the levels 0 to " +
                     std::to_string(refiner.GetMaxLevel()) + " of the refiner");
     }
-    SchemeOptions const scheme = refiner.GetHexSchemeOptions();
+    HexSchemeOptions const scheme = refiner.GetHexSchemeOptions();
     if (scheme.GetSchemeOfLevel(options.level + 1) != SchemeType::Hexagonal) {
         return Status(StatusCode::Unsupported, ComponentType::Level, options.level,
                       level +

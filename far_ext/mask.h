@@ -8,7 +8,7 @@ namespace OpenSubdivHex::FarExt {
 
 /// \brief The circulant mask that makes a face's new points (F-vertices) from its vertices.
 ///
-/// With theta_j = 2 pi j / n, the weight of the vertex j steps around a face of n sides is
+/// With theta_j = 2 pi j / n, the weight of the vertex j places around a face of n sides is
 ///
 /// | mask    | w_0                      | w_j                                                   |
 /// |---------|--------------------------|-------------------------------------------------------|
@@ -27,7 +27,7 @@ enum class Interpolation {
     Varying ///< linear: V' = V and P = (V + centroid)/2
 };
 
-/// \brief Writes the \p n weights of the vertices 0 ... n-1 steps around a face of \p n sides.
+/// \brief Writes the \p n weights of the vertices 0 ... n-1 places around a face of \p n sides.
 ///
 /// The weights are non-negative, symmetric (w[j] == w[n-j]) and sum to 1.  \p n is at least 3.
 OPENSUBDIVHEX_API void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n,

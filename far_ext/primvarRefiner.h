@@ -2,11 +2,52 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PRIMVAR_REFINER_H
 #define OPENSUBDIVHEX_FAR_EXT_PRIMVAR_REFINER_H
 
-#include "fvarLevel.h"
-#include "refinementMask.h"
 #include "topologyRefiner.h"
 
+#include <memory>
+#include <vector>
+
 namespace OpenSubdivHex::FarExt {
+
+namespace internal {
+
+/// \brief The weights that make the points of a level, some points at a time.
+class OPENSUBDIVHEX_API PrimvarRows {
+public:
+    /// The sources of a point: first elements of the level before, then points of its own level,
+    /// which earlier rows made.
+    struct Row {
+        Far::Index point;
+        int numSources;
+        int numPoints;
+    };
+
+    /// \param channel  face-varying channel, whose values are the points; -1: vertices are
+    PrimvarRows(TopologyRefiner const &refiner, int level, Interpolation interpolation,
+                int channel);
+    ~PrimvarRows();
+
+    PrimvarRows(PrimvarRows const &) = delete;
+    PrimvarRows &operator=(PrimvarRows const &) = delete;
+
+    /// Goes on to the next rows; false when there are none.
+    bool Next();
+
+    std::vector<Row> const &GetRows() const { return _rows; }
+    /// Of all these rows in turn.
+    Far::Index const *GetSources() const { return _sources.data(); }
+    double const *GetWeights() const { return _weights.data(); }
+
+private:
+    struct Reader;
+
+    std::unique_ptr<Reader> _reader;
+    std::vector<Row> _rows;
+    std::vector<Far::Index> _sources;
+    std::vector<double> _weights;
+};
+
+} // namespace internal
 
 /// \brief Computes primvar data of one level from that of the level before, without tables.
 ///
@@ -40,14 +81,14 @@ public:
     /// of the scheme.  1 <= level <= GetMaxLevel().
     template <class T, class U>
     void Interpolate(int level, T const &src, U &dst) const {
-        interpolate(_refiner.GetLevel(level - 1), Interpolation::Vertex, src, dst);
+        interpolate(level, Interpolation::Vertex, -1, src, dst);
     }
 
     /// \brief Varying data: linear, V' = V and P = (V + centroid)/2, for half faces the centroid of
     /// the whole hexagon; on a sharp boundary P = (3 V + W)/4.
     template <class T, class U>
     void InterpolateVarying(int level, T const &src, U &dst) const {
-        interpolate(_refiner.GetLevel(level - 1), Interpolation::Varying, src, dst);
+        interpolate(level, Interpolation::Varying, -1, src, dst);
     }
 
     /// \brief Face-uniform data: dst[f] is a copy of src[GetFaceParentFace(f)], for an E-face the
@@ -64,77 +105,35 @@ public:
     /// those of level - 1, by the channel's FVarLinearInterpolation.
     template <class T, class U>
     void InterpolateFaceVarying(int level, T const &src, U &dst, int channel = 0) const {
-        internal::FVarLevel const &pChannel =
-            *_refiner.GetLevel(level - 1).GetTopology().fvarLevels[channel];
-        Interpolation const interpolation =
-            pChannel.linearInterpolation == Sdc::Options::FVAR_LINEAR_ALL ? Interpolation::Varying
-                                                                          : Interpolation::Vertex;
-        TopologyLevel const pValues(&pChannel.topology);
-        if (level == 1) {
-            ValuesOfVertices<T> const values{src, pChannel.valuesOfVertices.data()};
-            interpolate(pValues, interpolation, values, dst);
-        } else {
-            interpolate(pValues, interpolation, src, dst);
-        }
+        bool const isLinear =
+            _refiner.GetFVarLinearInterpolation(channel) == Sdc::Options::FVAR_LINEAR_ALL;
+        interpolate(level, isLinear ? Interpolation::Varying : Interpolation::Vertex, channel, src,
+                    dst);
     }
 
 private:
-    // The values of level 0 as seen from the vertices of its value mesh.
-    template <class T>
-    struct ValuesOfVertices {
-        decltype(auto) operator[](Far::Index vert) const { return src[values[vert]]; }
-        T const &src;
-        Far::Index const *values;
-    };
-
     template <class T, class U>
-    void interpolate(TopologyLevel const &pLevel, Interpolation interpolation, T const &src,
-                     U &dst) const;
-
-    TopologyRefiner const &_refiner;
-};
-
-template <typename REAL>
-template <class T, class U>
-void PrimvarRefinerReal<REAL>::interpolate(TopologyLevel const &pLevel, Interpolation interpolation,
-                                           T const &src, U &dst) const {
-    internal::LevelTopology const &topology = pLevel.GetTopology();
-    internal::RefinementMask const mask(pLevel, _refiner.GetHexSchemeOptions(), interpolation);
-    std::vector<double> scratch;
-
-    for (Far::Index pFace = 0; pFace < pLevel.GetNumFaces(); ++pFace) {
-        Far::ConstIndexArray const pVerts = pLevel.GetFaceVertices(pFace);
-        for (int i = 0; i < pVerts.size(); ++i) {
-            Far::Index const corner = pLevel.GetFaceFirstCorner(pFace) + i;
-            double const *weights = mask.GetFaceVertexWeights(pFace, i, scratch);
-            auto &&point = dst[topology.GetCornerChildVertex(corner)];
-            point.Clear();
-            for (int j = 0; j < pVerts.size(); ++j) {
-                if (weights[j] > 0) {
-                    point.AddWithWeight(src[pVerts[j]], REAL(weights[j]));
+    void interpolate(int level, Interpolation interpolation, int channel, T const &src,
+                     U &dst) const {
+        internal::PrimvarRows rows(_refiner, level, interpolation, channel);
+        while (rows.Next()) {
+            Far::Index const *source = rows.GetSources();
+            double const *weight = rows.GetWeights();
+            for (internal::PrimvarRows::Row const &row : rows.GetRows()) {
+                auto &&point = dst[row.point];
+                point.Clear();
+                for (int i = 0; i < row.numSources; ++i) {
+                    point.AddWithWeight(src[*source++], REAL(*weight++));
+                }
+                for (int i = 0; i < row.numPoints; ++i) {
+                    point.AddWithWeight(dst[*source++], REAL(*weight++));
                 }
             }
         }
     }
-    for (Far::Index cVert = 0; cVert < topology.numVVertices; ++cVert) {
-        Far::Index const pVert = topology.GetVVertexParent(cVert);
-        auto const weights = mask.GetVertexMask(pVert);
-        auto &&point = dst[cVert];
-        point.Clear();
-        // The neighbors first, so that it does not matter which of them is left and right.
-        for (int i = 0; i < weights.numNeighbors; ++i) {
-            point.AddWithWeight(src[weights.neighbors[i]], REAL(weights.neighborWeights[i]));
-        }
-        point.AddWithWeight(src[pVert], REAL(weights.vertexWeight));
-        if (weights.faceWeight > 0) {
-            for (int i = 0; i < pLevel.GetVertexFaces(pVert).size(); ++i) {
-                Far::Index const corner = pLevel.GetVertexCorner(pVert, i);
-                point.AddWithWeight(dst[topology.GetCornerChildVertex(corner)],
-                                    REAL(weights.faceWeight));
-            }
-        }
-    }
-}
+
+    TopologyRefiner const &_refiner;
+};
 
 using PrimvarRefiner = PrimvarRefinerReal<float>;
 

@@ -107,6 +107,11 @@ namespace internal {
 /// Returns result.IsOk().
 OPENSUBDIVHEX_API bool Report(Status const &result, Status *status);
 
+/// A failure that no single component is to blame for.
+inline Status Failure(StatusCode code, std::string message) {
+    return Status(code, ComponentType::None, Far::INDEX_INVALID, std::move(message));
+}
+
 /// Whether \p value, which a cast may have made of any number, is one of an enumeration that goes
 /// from 0 to \p last.
 template <typename ENUM>

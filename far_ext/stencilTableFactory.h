@@ -2,11 +2,11 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_STENCIL_TABLE_FACTORY_H
 #define OPENSUBDIVHEX_FAR_EXT_STENCIL_TABLE_FACTORY_H
 
-#include "stencilTableSize.h"
 #include "topologyRefiner.h"
 
 #include <opensubdiv/far/stencilTable.h>
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -24,6 +24,14 @@ struct StencilTableTypes<float> {
 
 /// \brief What the stencils interpolate, spelled as in Far::StencilTableFactory.
 enum StencilMode : int { INTERPOLATE_VERTEX, INTERPOLATE_VARYING, INTERPOLATE_FACE_VARYING };
+
+/// \brief What a stencil table holds and takes: see StencilTableFactoryReal::EstimateSize.
+struct StencilTableSize {
+    std::int64_t numStencils = 0;
+    std::int64_t numWeights = 0;
+    std::int64_t numBytes = 0;     ///< of the table's arrays
+    std::int64_t numPeakBytes = 0; ///< of all that its making takes at once, the table included
+};
 
 /// \brief Makes Far stencil tables of hexagonal refinements, for any Osd evaluator.
 ///
@@ -80,9 +88,9 @@ public:
     /// \brief Says how large a table will be before it is made, also one that is too large to make.
     ///
     /// The number of stencils is exact.  Factorized, that of weights is exact for meshes of up to
-    /// 128 faces and up to level 4.  Else it is an estimate from 128 faces, spread over their
-    /// indices, up to 32 of the largest, and the growth up to level 4: within 10 % on the test
-    /// shapes, worse where few faces differ much from most.  Not factorized, it is an upper bound,
+    /// 512 faces and up to level 4.  Else it is an estimate from 512 faces, spread over their
+    /// indices, and the growth up to level 4: within 10 % on the test shapes, worse where few faces
+    /// differ much from most.  Not factorized, it is an upper bound,
     /// exact unless faces at one vertex share more than the edges there.
     ///
     /// Bytes follow from the weights; the peak is within 15 % of what was seen with glibc.  The

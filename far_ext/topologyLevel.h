@@ -2,9 +2,19 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_TOPOLOGY_LEVEL_H
 #define OPENSUBDIVHEX_FAR_EXT_TOPOLOGY_LEVEL_H
 
-#include "levelTopology.h"
+#include "indexing.h"
+
+#include <opensubdiv/sdc/crease.h>
+#include <opensubdiv/vtr/types.h>
 
 namespace OpenSubdivHex::FarExt {
+
+namespace internal {
+struct Hierarchy;
+struct Level;
+struct Refinement;
+struct FVarLevel;
+} // namespace internal
 
 /// \brief What a face of a refined level was made from.
 enum class FaceKind {
@@ -29,34 +39,45 @@ public:
     using ConstIndexArray = Far::ConstIndexArray;
     using ConstLocalIndexArray = Far::ConstLocalIndexArray;
 
-    explicit TopologyLevel(internal::LevelTopology const *topology) : _topology(topology) {}
+    /// An array of one index, or of none.
+    class ChildFaceArray {
+    public:
+        explicit ChildFaceArray(Index face) : _face(face) {}
+
+        int size() const { return _face == Far::INDEX_INVALID ? 0 : 1; }
+        bool empty() const { return size() == 0; }
+        Index operator[](int) const { return _face; }
+        Index const *begin() const { return &_face; }
+        Index const *end() const { return &_face + size(); }
+
+    private:
+        Index _face;
+    };
+
+    /// Level number \p depth of those of a refiner.
+    TopologyLevel(internal::Hierarchy const &hierarchy, int depth);
 
     /// @name Inventory
     /// @{
-    int GetNumVertices() const { return _topology->numVertices; }
-    int GetNumFaces() const { return _topology->numFaces; }
-    int GetNumEdges() const { return _topology->numEdges; }
+    int GetNumVertices() const { return _numVertices; }
+    int GetNumFaces() const { return _numFaces; }
+    int GetNumEdges() const { return _numEdges; }
     /// Sum of all face sizes: the number of corners.
-    int GetNumFaceVertices() const { return _topology->numCorners; }
+    int GetNumFaceVertices() const { return _faceFirstCorner[_numFaces]; }
     /// Edges with one face.
-    int GetNumBoundaryEdges() const {
-        return _topology->numFreeBoundaries + _topology->numSharpBoundariesA +
-               _topology->numSharpBoundariesB;
-    }
+    int GetNumBoundaryEdges() const;
     /// Depth of this level; 0 is the base.
-    int GetDepth() const { return _topology->depth; }
+    int GetDepth() const { return _depth; }
     /// Whether all relations are there, not face-vertices alone.
-    bool HasFullTopology() const { return _topology->hasFullTopology; }
+    bool HasFullTopology() const;
     /// @}
 
     /// @name Incident components and their local indices, as in Far::TopologyLevel
     /// @{
     ConstIndexArray GetFaceVertices(Index f) const {
-        return span(_topology->faceVerts, _topology->faceFirstCorner, f);
+        return {_faceVerts + _faceFirstCorner[f], _faceFirstCorner[f + 1] - _faceFirstCorner[f]};
     }
-    ConstIndexArray GetFaceEdges(Index f) const {
-        return span(_topology->faceEdges, _topology->faceFirstCorner, f);
-    }
+    ConstIndexArray GetFaceEdges(Index f) const;
     /// The first face of the edge runs from the first vertex to the second.
     ConstIndexArray GetEdgeVertices(Index e) const;
     ConstIndexArray GetEdgeFaces(Index e) const;
@@ -68,12 +89,9 @@ public:
     /// The edge between two vertices, or INDEX_INVALID.
     Index FindEdge(Index v0, Index v1) const;
     /// Position of the face's first vertex in the level's array of all face-vertices.
-    Index GetFaceFirstCorner(Index f) const { return _topology->faceFirstCorner[f]; }
+    Index GetFaceFirstCorner(Index f) const { return _faceFirstCorner[f]; }
     /// The corner (position in the array of all face-vertices) of a vertex in its i'th face.
-    Index GetVertexCorner(Index v, int i) const {
-        Index const k = _topology->vertFirstFace[v] + i;
-        return GetFaceFirstCorner(_topology->vertFaces[k]) + _topology->vertFaceLocals[k];
-    }
+    Index GetVertexCorner(Index v, int i) const;
     /// @}
 
     /// @name Topological properties, as in Far::TopologyLevel
@@ -97,29 +115,27 @@ public:
     /// Sharpness of the edge at this level; infinite for sharp boundaries, 0 for those that follow
     /// the paper's rule (VTX_BOUNDARY_NONE).
     float GetEdgeSharpness(Index e) const;
-    float GetVertexSharpness(Index v) const { return _topology->GetVertexSharpness(v); }
+    float GetVertexSharpness(Index v) const;
     bool IsEdgeInfSharp(Index e) const { return Sdc::Crease::IsInfinite(GetEdgeSharpness(e)); }
     bool IsEdgeSemiSharp(Index e) const { return Sdc::Crease::IsSemiSharp(GetEdgeSharpness(e)); }
     bool IsVertexInfSharp(Index v) const { return Sdc::Crease::IsInfinite(GetVertexSharpness(v)); }
     bool IsVertexSemiSharp(Index v) const {
         return Sdc::Crease::IsSemiSharp(GetVertexSharpness(v));
     }
-    bool IsFaceHole(Index f) const {
-        return !_topology->faceHoles.empty() && _topology->faceHoles[f];
-    }
+    bool IsFaceHole(Index f) const;
     /// The rule that moves the vertex to the next level.  At a free boundary it is RULE_SMOOTH.
     Sdc::Crease::Rule GetVertexRule(Index v) const;
 
     /// Sharpness of the crease that crosses a hexagon from its vertex 0 to its vertex 3; 0 where
     /// none does.
-    float GetFaceDiagonalSharpness(Index f) const { return _topology->GetDiagonalSharpness(f); }
+    float GetFaceDiagonalSharpness(Index f) const;
     /// Whether the face is half a hexagon, cut by a sharp boundary along its edge 0.
-    bool IsFaceHalf(Index f) const { return HasFullTopology() && _topology->IsHalfFace(f); }
+    bool IsFaceHalf(Index f) const;
     /// @}
 
     /// @name Face-varying data, as in Far::TopologyLevel
     /// @{
-    int GetNumFVarChannels() const { return int(_topology->fvarLevels.size()); }
+    int GetNumFVarChannels() const;
     int GetNumFVarValues(int channel = 0) const;
     /// The values of a face, by corner.  Of a face that a seam crosses, the two corners on the seam
     /// have a value to either side; those of the first half are given here.
@@ -152,11 +168,13 @@ public:
     Index GetFaceParentVertex(Index f) const;
 
     /// The numbering of the next level, made or not, when the hexagonal step makes it.
-    HexIndexing GetChildIndexing() const { return _topology->ChildIndexing(); }
+    HexIndexing GetChildIndexing() const {
+        return HexIndexing(_numVertices, _numFaces, GetNumFaceVertices());
+    }
 
     /// The F-face of a face: one element.  Empty in a level that was not refined, as are the
     /// relations below.
-    ConstIndexArray GetFaceChildFaces(Index f) const;
+    ChildFaceArray GetFaceChildFaces(Index f) const;
     /// The F-vertices of a face, in the order of its vertices.
     ConstIndexArray GetFaceChildVertices(Index f) const;
     /// The edges of the F-face, in the order of its vertices.
@@ -182,21 +200,21 @@ public:
     bool Validate(Status *status = nullptr) const;
 
     /// The arrays of the level, for the library's own use.
-    internal::LevelTopology const &GetTopology() const { return *_topology; }
+    internal::Level const &GetLevel() const { return *_level; }
 
 private:
-    template <typename T>
-    using View = OpenSubdiv::Vtr::ConstArray<T>;
+    internal::Refinement const *refinementTo() const;
+    internal::Refinement const *refinementFrom() const;
+    internal::FVarLevel const &fvarLevel(int channel) const;
 
-    /// The part of \p array that the offsets \p first give to component \p i.
-    template <typename T>
-    static View<T> span(internal::Buffer<T> const &array, internal::Buffer<Index> const &first,
-                        Index i) {
-        return array.empty() ? View<T>()
-                             : View<T>(array.data() + first[i], first[i + 1] - first[i]);
-    }
-
-    internal::LevelTopology const *_topology;
+    internal::Hierarchy const *_hierarchy;
+    internal::Level const *_level;
+    int _depth;
+    Index _numVertices;
+    Index _numEdges;
+    Index _numFaces;
+    Index const *_faceFirstCorner;
+    Index const *_faceVerts;
 };
 
 } // namespace OpenSubdivHex::FarExt

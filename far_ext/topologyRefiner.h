@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_TOPOLOGY_REFINER_H
 #define OPENSUBDIVHEX_FAR_EXT_TOPOLOGY_REFINER_H
 
-#include "schemeOptions.h"
+#include "hexSchemeOptions.h"
 #include "topologyLevel.h"
 
 #include <opensubdiv/sdc/options.h>
@@ -12,11 +12,6 @@
 #include <vector>
 
 namespace OpenSubdivHex::FarExt {
-
-namespace internal {
-struct PolygonRules;
-class SizeChecker;
-} // namespace internal
 
 /// \brief The topology of a mesh and of its hexagonal refinements, level by level.
 ///
@@ -28,15 +23,15 @@ class SizeChecker;
 /// while no other uses the refiner or its levels.
 class OPENSUBDIVHEX_API TopologyRefiner {
 public:
-    /// Takes the base level.  Use TopologyRefinerFactory, which validates it.
-    TopologyRefiner(std::unique_ptr<internal::LevelTopology> baseLevel, Sdc::Options sdcOptions,
-                    SchemeOptions schemeOptions);
+    /// Takes level 0.  Use TopologyRefinerFactory, which makes and validates it.
+    TopologyRefiner(std::unique_ptr<internal::Hierarchy> base, Sdc::Options sdcOptions,
+                    HexSchemeOptions schemeOptions);
     ~TopologyRefiner();
 
     TopologyRefiner(TopologyRefiner const &) = delete;
     TopologyRefiner &operator=(TopologyRefiner const &) = delete;
 
-    SchemeOptions GetHexSchemeOptions() const { return _schemeOptions; }
+    HexSchemeOptions GetHexSchemeOptions() const { return _schemeOptions; }
     /// The boundary, crease and face-varying options of the base mesh.
     Sdc::Options GetSchemeOptions() const { return _sdcOptions; }
 
@@ -46,7 +41,7 @@ public:
     bool IsUniform() const { return _isUniform; }
 
     /// Whether the base has faces tagged as holes.
-    bool HasHoles() const { return !_topologies[0]->faceHoles.empty(); }
+    bool HasHoles() const;
 
     /// @name Face-varying channels, as in Far::TopologyRefiner
     /// @{
@@ -131,50 +126,22 @@ public:
     /// Removes all levels but the base; their memory is kept for the next refinement.
     void Unrefine();
 
-private:
-    static Status checkLevel(int refinementLevel);
-    /// Whether check(level), which goes through the sizes of the levels up to that one, and the
-    /// number of levels let the refiner refine so far.
-    template <typename CHECK>
-    static Status checkSizes(int refinementLevel, CHECK check) {
-        Status status = check(std::min(refinementLevel, kLastLevel));
-        return status.IsOk() ? checkLastLevel(refinementLevel) : status;
-    }
-    static Status checkLastLevel(int refinementLevel);
+    /// All levels, for the library's own use.
+    internal::Hierarchy const &GetHierarchy() const { return *_hierarchy; }
 
-    std::vector<internal::SizeChecker> makeSizeCheckers() const;
-    internal::LevelTopology &getLevelToFill(int level);
-    Status refineHexagonally(int level, bool fullTopology,
-                             std::vector<internal::SizeChecker> &checkers);
-    Status refineToPolygons(int level, bool fullTopology, internal::PolygonRules const &rules,
-                            std::vector<internal::SizeChecker> &checkers);
+private:
     template <typename REAL>
     bool refineCoplanar(REAL const *restPositions, CoplanarOptions const &options, Status *status);
-    /// Calls refine(), which makes levels; when it fails or throws, the base alone is left.
     template <typename REFINE>
-    Status replaceLevels(REFINE refine) {
-        Unrefine();
-        try {
-            Status status = refine();
-            if (!status.IsOk()) {
-                Unrefine();
-            }
-            return status;
-        } catch (...) {
-            Unrefine();
-            throw;
-        }
-    }
-    void setNumLevels(int numLevels);
+    Status replaceLevels(REFINE refine);
     int total(int (TopologyLevel::*count)() const) const;
 
+    std::unique_ptr<internal::Hierarchy> _hierarchy;
     Sdc::Options _sdcOptions;
-    SchemeOptions _schemeOptions;
+    HexSchemeOptions _schemeOptions;
     UniformOptions _uniformOptions{0};
     bool _isUniform = true;
     int _numRefinements = 0;
-    /// Arrays of all levels ever made (the memory is reused), the first _levels.size() in use.
-    std::vector<std::unique_ptr<internal::LevelTopology>> _topologies;
     std::vector<TopologyLevel> _levels;
 };
 

@@ -18,7 +18,7 @@ namespace OpenSubdivHex::FarExt {
 class OPENSUBDIVHEX_API TopologyRefinerFactory {
 public:
     struct Options {
-        SchemeOptions schemeOptions;
+        HexSchemeOptions schemeOptions;
     };
 
     /// \brief Takes level 0 of \p base, which need not be refined and may have any Sdc scheme type

@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compactStencilTable.h"
 
+#include "osd_ext/stencil/stencilKernel.h"
+
 #include <algorithm>
 
 namespace OpenSubdivHex::OsdExt {
 
 using internal::StencilBlock;
 using internal::StencilTask;
+
+CompactStencilTable::CompactStencilTable() = default;
+CompactStencilTable::~CompactStencilTable() = default;
+
+int CompactStencilTable::GetNumBlocks() const { return int(_blocks.size()); }
+
+internal::StencilRows CompactStencilTable::getRows() const {
+    return {nullptr, nullptr, _indices.data(), _blocks.data()};
+}
 
 std::unique_ptr<CompactStencilTable const>
 CompactStencilTable::Create(Far::StencilTable const &table) {

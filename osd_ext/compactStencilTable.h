@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_COMPACT_STENCIL_TABLE_H
 #define OPENSUBDIVHEX_OSD_EXT_COMPACT_STENCIL_TABLE_H
 
-#include "stencilKernel.h"
+#include "far_ext/export.h"
 
 #include <opensubdiv/far/stencilTable.h>
 
@@ -15,6 +15,24 @@ namespace OpenSubdivHex {
 namespace Far = OpenSubdiv::Far;
 
 namespace OsdExt {
+
+namespace internal {
+
+struct StencilBlock;
+
+/// \brief The stencils of a table: as StencilEvaluator takes them or, if there are blocks, in
+/// these.
+struct StencilRows {
+    /// Whether the weights of a stencil are found without a look at those before it.
+    bool HasPlaces() const { return offsets || blocks; }
+
+    int const *sizes;
+    int const *offsets; ///< may be null
+    int const *indices;
+    StencilBlock const *blocks = nullptr; ///< sizes and offsets are not read then
+};
+
+} // namespace internal
 
 /// \brief A stencil table in blocks: stencils that follow each other and have the same indices, as
 /// those of the corners of a face do, share one list of them.
@@ -29,12 +47,14 @@ namespace OsdExt {
 /// It is this library's own: other evaluators, on GPUs for one, take the Far::StencilTable.
 class OPENSUBDIVHEX_API CompactStencilTable {
 public:
+    ~CompactStencilTable();
+
     /// Makes the table of the stencils of \p table, which is not needed afterwards.
     static std::unique_ptr<CompactStencilTable const> Create(Far::StencilTable const &table);
 
     int GetNumStencils() const { return _numStencils; }
     int GetNumControlVertices() const { return _numControlVertices; }
-    int GetNumBlocks() const { return int(_blocks.size()); }
+    int GetNumBlocks() const;
     /// Of all arrays.
     std::size_t GetNumBytes() const;
 
@@ -42,11 +62,9 @@ private:
     template <class EVALUATOR>
     friend class StencilEvaluator;
 
-    CompactStencilTable() = default;
+    CompactStencilTable();
 
-    internal::StencilRows getRows() const {
-        return {nullptr, nullptr, _indices.data(), _blocks.data()};
-    }
+    internal::StencilRows getRows() const;
 
     int _numStencils = 0;
     int _numControlVertices = 0;

@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cpuEvaluator.h"
 
+#include "osd_ext/stencil/stencilKernel.h"
+
 namespace OpenSubdivHex::OsdExt {
 
-void CpuEvaluator::run(internal::StencilTask const &task, int begin, int end) {
-    internal::GetStencilKernel()(task, begin, end, internal::FindFirstWeight(task.rows, begin));
+bool CpuEvaluator::run(float const *src, Osd::BufferDescriptor const &srcDesc,
+                       internal::StencilOutput const *outputs, int numOutputs,
+                       internal::StencilRows const &rows, int start, int end) {
+    internal::StencilTask task;
+    if (!internal::MakeStencilTask(src, srcDesc, outputs, numOutputs, rows, start, end, &task)) {
+        return false;
+    }
+    if (start < end) {
+        internal::GetStencilKernel()(task, start, end, internal::FindFirstWeight(rows, start));
+    }
+    return true;
 }
 
 } // namespace OpenSubdivHex::OsdExt

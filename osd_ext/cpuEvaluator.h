@@ -11,7 +11,9 @@ namespace OpenSubdivHex::OsdExt {
 /// it uses.
 class OPENSUBDIVHEX_API CpuEvaluator : public StencilEvaluator<CpuEvaluator> {
     friend class StencilEvaluator<CpuEvaluator>;
-    static void run(internal::StencilTask const &task, int begin, int end);
+    static bool run(float const *src, Osd::BufferDescriptor const &srcDesc,
+                    internal::StencilOutput const *outputs, int numOutputs,
+                    internal::StencilRows const &rows, int start, int end);
 };
 
 } // namespace OpenSubdivHex::OsdExt

@@ -2,6 +2,7 @@
 #include "ompEvaluator.h"
 
 #include "far_ext/threads.h"
+#include "osd_ext/stencil/stencilKernel.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -16,17 +17,8 @@ constexpr std::int64_t kMinBatch = 256;
 constexpr std::int64_t kMaxBatch = 4096;
 constexpr int kBatchesPerThread = 16;
 
-} // namespace
-
-bool OmpEvaluator::IsParallel() {
-#ifdef _OPENMP
-    return true;
-#else
-    return false;
-#endif
-}
-
-void OmpEvaluator::run(internal::StencilTask const &task, int begin, int end) {
+// Evaluates stencils, or blocks of them, [begin, end), at least one.
+void evaluate(internal::StencilTask const &task, int begin, int end) {
     internal::StencilKernel const kernel = internal::GetStencilKernel();
     std::int64_t const numStencils = std::int64_t(end) - begin;
     std::int64_t const numThreads = FarExt::GetNumThreads();
@@ -58,6 +50,29 @@ void OmpEvaluator::run(internal::StencilTask const &task, int begin, int end) {
         std::size_t const first = firstWeights.empty() ? 0 : firstWeights[std::size_t(batch)];
         kernel(task, batchBegin, batchEnd, first);
     }
+}
+
+} // namespace
+
+bool OmpEvaluator::IsParallel() {
+#ifdef _OPENMP
+    return true;
+#else
+    return false;
+#endif
+}
+
+bool OmpEvaluator::run(float const *src, Osd::BufferDescriptor const &srcDesc,
+                       internal::StencilOutput const *outputs, int numOutputs,
+                       internal::StencilRows const &rows, int start, int end) {
+    internal::StencilTask task;
+    if (!internal::MakeStencilTask(src, srcDesc, outputs, numOutputs, rows, start, end, &task)) {
+        return false;
+    }
+    if (start < end) {
+        evaluate(task, start, end);
+    }
+    return true;
 }
 
 } // namespace OpenSubdivHex::OsdExt

@@ -22,7 +22,9 @@ public:
 
 private:
     friend class StencilEvaluator<OmpEvaluator>;
-    static void run(internal::StencilTask const &task, int begin, int end);
+    static bool run(float const *src, Osd::BufferDescriptor const &srcDesc,
+                    internal::StencilOutput const *outputs, int numOutputs,
+                    internal::StencilRows const &rows, int start, int end);
 };
 
 } // namespace OpenSubdivHex::OsdExt

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "refinementEvaluator.h"
 
-#include "far_ext/fvarLevel.h"
-#include "far_ext/parallel.h"
+#include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/parallel.h"
+#include "osd_ext/refinement/refinementKernel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -17,30 +18,15 @@ using Far::Index;
 using FarExt::ComponentType;
 using FarExt::Status;
 using FarExt::StatusCode;
-using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
-using FarExt::internal::FVarLevel;
+using FarExt::internal::FVarChannel;
+using FarExt::internal::MeshLevels;
+using FarExt::internal::Refinement;
 
 namespace {
 
 Status invalidArgument(std::string const &message) {
-    return Status(StatusCode::InvalidArgument, ComponentType::None, Far::INDEX_INVALID, message);
-}
-
-// The meshes that are refined, by level: those of the refiner, or the value meshes of a channel.
-std::vector<TopologyLevel> getMeshes(TopologyRefiner const &refiner,
-                                     RefinementEvaluator::Options options) {
-    std::vector<TopologyLevel> meshes;
-    for (int level = 0; level < refiner.GetNumLevels(); ++level) {
-        TopologyLevel const &mesh = refiner.GetLevel(level);
-        if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING) {
-            meshes.emplace_back(
-                &mesh.GetTopology().fvarLevels[std::size_t(options.fvarChannel)]->topology);
-        } else {
-            meshes.push_back(mesh);
-        }
-    }
-    return meshes;
+    return FarExt::internal::Failure(StatusCode::InvalidArgument, message);
 }
 
 FarExt::Interpolation getInterpolation(TopologyRefiner const &refiner,
@@ -108,60 +94,75 @@ void undoScale(float scale, internal::Elements<float> dst, int length, std::int6
 
 } // namespace
 
-std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner const &refiner,
-                                                                 Options options, Status *status) {
-    Status result;
-    if (!FarExt::internal::IsInEnum(options.interpolationMode, FarExt::INTERPOLATE_FACE_VARYING)) {
-        result = invalidArgument("there is no interpolationMode " +
-                                 std::to_string(int(options.interpolationMode)));
-    } else if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING &&
-               (options.fvarChannel < 0 || options.fvarChannel >= refiner.GetNumFVarChannels())) {
-        result = invalidArgument("there is no face-varying channel " +
-                                 std::to_string(options.fvarChannel) + " among the refiner's " +
-                                 std::to_string(refiner.GetNumFVarChannels()));
-    }
-    if (!FarExt::internal::Report(result, status)) {
-        return nullptr;
-    }
-    return std::unique_ptr<RefinementEvaluator>(new RefinementEvaluator(refiner, options));
-}
+class RefinementEvaluator::Impl {
+public:
+    Impl(TopologyRefiner const &refiner, Options options);
 
-RefinementEvaluator::RefinementEvaluator(TopologyRefiner const &refiner, Options options)
-    : _refiner(refiner), _numRefinements(refiner.GetNumRefinements()) {
-    std::vector<TopologyLevel> const meshes = getMeshes(refiner, options);
-    _steps.resize(meshes.size() - 1);
+    Status Check(float const *src, Osd::BufferDescriptor const &srcDesc, float const *dst,
+                 Osd::BufferDescriptor const &dstDesc, int level, std::int64_t numWritten) const;
+    void Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                  Osd::BufferDescriptor const &dstDesc, int level);
+    void EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                           Osd::BufferDescriptor const &dstDesc);
+
+    TopologyRefiner const &refiner;
+    std::vector<int> numElements; // by level
+
+    int GetMaxLevel() const { return int(numElements.size()) - 1; }
+
+private:
+    using Source = internal::Elements<float const>;
+    using Destination = internal::Elements<float>;
+
+    Source toVertices(Source src, int length, float scale);
+
+    int const _numRefinements; // of the refiner, when the evaluator was made
+    std::vector<internal::PreparedRefinement> _refinements; // by level of the parent
+
+    // Of a face-varying channel some of whose values several vertices of its value mesh share: the
+    // value of each, see FarExt::internal::FVarLevel.
+    FarExt::internal::Buffer<Index> const *_valuesOfVertices = nullptr;
+
+    FarExt::internal::Buffer<float> _controlValues; // by vertex of that value mesh
+    FarExt::internal::Buffer<float> _scratch[2];    // levels below the one asked for
+};
+
+RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options options)
+    : refiner(topologyRefiner), _numRefinements(refiner.GetNumRefinements()) {
+    bool const isFaceVarying = options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING;
+    int const maxLevel = refiner.GetMaxLevel();
+    MeshLevels const &mesh =
+        refiner.GetHierarchy().GetMesh(isFaceVarying ? options.fvarChannel : -1);
+    _refinements.resize(std::size_t(maxLevel));
     internal::TileMap tileMap(
-        meshes[0],
-        internal::GetNumTiles(meshes[std::size_t(std::max(0, refiner.GetMaxLevel() - 1))]));
-    for (std::size_t level = 0; level < _steps.size(); ++level) {
+        mesh.levels[0], internal::GetNumTiles(mesh.levels[std::size_t(std::max(0, maxLevel - 1))]));
+    std::vector<Refinement const *> refinements; // up to the level that is made
+    for (std::size_t level = 0; level < _refinements.size(); ++level) {
         if (level > 0) {
-            tileMap.Refine(meshes[level - 1]);
+            tileMap.Refine(*refinements[level - 1], level > 1 ? refinements[level - 2] : nullptr);
         }
-        FarExt::internal::RefinementMask const mask(meshes[level], refiner.GetHexSchemeOptions(),
-                                                    getInterpolation(refiner, options));
-        internal::MakeRefinementStep(mask, meshes[level], tileMap, _steps[level]);
+        refinements.push_back(&mesh.refinements[level]);
+        FarExt::internal::RefinementMask const mask(
+            mesh.levels[level], refiner.GetHexSchemeOptions(), getInterpolation(refiner, options));
+        internal::PrepareRefinement(mask, refinements, tileMap, _refinements[level]);
     }
-    for (TopologyLevel const &mesh : meshes) {
-        _numElements.push_back(mesh.GetNumVertices());
+    for (int level = 0; level <= maxLevel; ++level) {
+        numElements.push_back(mesh.levels[std::size_t(level)].numVertices);
     }
-    if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING) {
-        FVarLevel const &values =
-            *refiner.GetLevel(0).GetTopology().fvarLevels[std::size_t(options.fvarChannel)];
-        _numElements[0] = values.numValues;
-        if (values.numValues != values.topology.numVertices) {
-            _valuesOfVertices = &values.valuesOfVertices;
+    if (isFaceVarying) {
+        FVarChannel const &channel =
+            refiner.GetHierarchy().channels[std::size_t(options.fvarChannel)];
+        numElements[0] = channel.numValues;
+        if (channel.numValues != mesh.levels[0].numVertices) {
+            _valuesOfVertices = &channel.valuesOfVertices;
         }
     }
 }
 
-std::int64_t RefinementEvaluator::GetNumElementsAllLevels() const {
-    return std::accumulate(_numElements.begin() + 1, _numElements.end(), std::int64_t(0));
-}
-
-Status RefinementEvaluator::check(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                  float const *dst, Osd::BufferDescriptor const &dstDesc, int level,
-                                  std::int64_t numWritten) const {
-    if (_refiner.GetNumRefinements() != _numRefinements) {
+Status RefinementEvaluator::Impl::Check(float const *src, Osd::BufferDescriptor const &srcDesc,
+                                        float const *dst, Osd::BufferDescriptor const &dstDesc,
+                                        int level, std::int64_t numWritten) const {
+    if (refiner.GetNumRefinements() != _numRefinements) {
         return invalidArgument("the refiner has refined again since the evaluator was made");
     }
     if (level < 0 || level > GetMaxLevel()) {
@@ -187,17 +188,100 @@ Status RefinementEvaluator::check(float const *src, Osd::BufferDescriptor const 
     return Status();
 }
 
-// The control values by vertex of the mesh of level 0, multiplied by \p scale.
-auto RefinementEvaluator::toVertices(Source src, int length, float scale) -> Source {
+// The control values by vertex of the mesh of level 0, multiplied by scale.
+auto RefinementEvaluator::Impl::toVertices(Source src, int length, float scale) -> Source {
     if (!_valuesOfVertices && scale == 1) {
         return src;
     }
-    Index const numVertices =
-        _valuesOfVertices ? Index(_valuesOfVertices->size()) : GetNumElements(0);
+    Index const numVertices = _valuesOfVertices ? Index(_valuesOfVertices->size()) : numElements[0];
     _controlValues.Resize(std::size_t(numVertices) * std::size_t(length));
     copyElements(src, length, numVertices, _valuesOfVertices ? _valuesOfVertices->data() : nullptr,
                  scale, {_controlValues.data(), length});
     return {_controlValues.data(), length};
+}
+
+void RefinementEvaluator::Impl::Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc,
+                                         float *dst, Osd::BufferDescriptor const &dstDesc,
+                                         int level) {
+    int const length = srcDesc.length;
+    Source values = {src + srcDesc.offset, srcDesc.stride};
+    Destination const result = {dst + dstDesc.offset, dstDesc.stride};
+    if (level == 0) {
+        copyElements(values, length, numElements[0], nullptr, 1, result);
+        return;
+    }
+    float const scale = findScale(values, length, numElements[0]);
+    values = toVertices(values, length, scale);
+    // The levels grow: the last two below the one asked for have room for those before.
+    for (int below = std::max(1, level - 2); below < level; ++below) {
+        _scratch[below % 2].Resize(std::size_t(numElements[std::size_t(below)]) *
+                                   std::size_t(length));
+    }
+    std::vector<internal::RefinementTask> tasks;
+    for (int made = 1; made <= level; ++made) {
+        Destination const next =
+            made == level ? result : Destination{_scratch[made % 2].data(), length};
+        tasks.push_back({&_refinements[std::size_t(made) - 1], values, next});
+        values = {next.data, next.stride};
+    }
+    internal::RefineElements(tasks, length);
+    undoScale(scale, result, length, numElements[std::size_t(level)]);
+}
+
+void RefinementEvaluator::Impl::EvaluateAllLevels(float const *src,
+                                                  Osd::BufferDescriptor const &srcDesc, float *dst,
+                                                  Osd::BufferDescriptor const &dstDesc) {
+    int const length = srcDesc.length;
+    Source values = {src + srcDesc.offset, srcDesc.stride};
+    float const scale = findScale(values, length, numElements[0]);
+    values = toVertices(values, length, scale);
+    Destination const result = {dst + dstDesc.offset, dstDesc.stride};
+    Destination next = result;
+    std::vector<internal::RefinementTask> tasks;
+    for (int made = 1; made <= GetMaxLevel(); ++made) {
+        tasks.push_back({&_refinements[std::size_t(made) - 1], values, next});
+        values = {next.data, next.stride};
+        next.data += numElements[std::size_t(made)] * next.stride;
+    }
+    internal::RefineElements(tasks, length);
+    undoScale(scale, result, length,
+              std::accumulate(numElements.begin() + 1, numElements.end(), std::int64_t(0)));
+}
+
+std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner const &refiner,
+                                                                 Options options, Status *status) {
+    Status result;
+    if (!FarExt::internal::IsInEnum(options.interpolationMode, FarExt::INTERPOLATE_FACE_VARYING)) {
+        result = invalidArgument("there is no interpolationMode " +
+                                 std::to_string(int(options.interpolationMode)));
+    } else if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING &&
+               (options.fvarChannel < 0 || options.fvarChannel >= refiner.GetNumFVarChannels())) {
+        result = invalidArgument("there is no face-varying channel " +
+                                 std::to_string(options.fvarChannel) + " among the refiner's " +
+                                 std::to_string(refiner.GetNumFVarChannels()));
+    }
+    if (!FarExt::internal::Report(result, status)) {
+        return nullptr;
+    }
+    return std::unique_ptr<RefinementEvaluator>(
+        new RefinementEvaluator(std::make_unique<Impl>(refiner, options)));
+}
+
+RefinementEvaluator::RefinementEvaluator(std::unique_ptr<Impl> impl) : _impl(std::move(impl)) {}
+
+RefinementEvaluator::~RefinementEvaluator() = default;
+
+TopologyRefiner const &RefinementEvaluator::GetTopologyRefiner() const { return _impl->refiner; }
+
+int RefinementEvaluator::GetMaxLevel() const { return _impl->GetMaxLevel(); }
+
+int RefinementEvaluator::GetNumElements(int level) const {
+    return _impl->numElements[std::size_t(level)];
+}
+
+std::int64_t RefinementEvaluator::GetNumElementsAllLevels() const {
+    return std::accumulate(_impl->numElements.begin() + 1, _impl->numElements.end(),
+                           std::int64_t(0));
 }
 
 bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc,
@@ -205,59 +289,25 @@ bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const
                                    Status *status) {
     bool const isLevel = level >= 0 && level <= GetMaxLevel();
     std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
-    if (!FarExt::internal::Report(check(src, srcDesc, dst, dstDesc, level, numWritten), status)) {
+    Status const result = _impl->Check(src, srcDesc, dst, dstDesc, level, numWritten);
+    if (!FarExt::internal::Report(result, status)) {
         return false;
     }
-    int const length = srcDesc.length;
-    Source values = {src + srcDesc.offset, srcDesc.stride};
-    Destination const result = {dst + dstDesc.offset, dstDesc.stride};
-    if (level == 0) {
-        copyElements(values, length, GetNumElements(0), nullptr, 1, result);
-        return true;
-    }
-    float const scale = findScale(values, length, GetNumElements(0));
-    values = toVertices(values, length, scale);
-    // The levels grow: the last two below the one asked for have room for those before.
-    for (int below = std::max(1, level - 2); below < level; ++below) {
-        _scratch[below % 2].Resize(std::size_t(GetNumElements(below)) * std::size_t(length));
-    }
-    std::vector<internal::RefinementTask> tasks;
-    for (int step = 0; step < level; ++step) {
-        int const made = step + 1;
-        Destination const next =
-            made == level ? result : Destination{_scratch[made % 2].data(), length};
-        tasks.push_back({&_steps[std::size_t(step)], values, next});
-        values = {next.data, next.stride};
-    }
-    internal::RefineElements(tasks, length);
-    undoScale(scale, result, length, numWritten);
+    _impl->Evaluate(src, srcDesc, dst, dstDesc, level);
     return true;
 }
 
 bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc,
                                             float *dst, Osd::BufferDescriptor const &dstDesc,
                                             Status *status) {
-    if (!FarExt::internal::Report(
-            check(src, srcDesc, dst, dstDesc, GetMaxLevel(), GetNumElementsAllLevels()), status)) {
+    Status const result =
+        _impl->Check(src, srcDesc, dst, dstDesc, GetMaxLevel(), GetNumElementsAllLevels());
+    if (!FarExt::internal::Report(result, status)) {
         return false;
     }
-    if (GetMaxLevel() == 0) {
-        return true;
+    if (GetMaxLevel() > 0) {
+        _impl->EvaluateAllLevels(src, srcDesc, dst, dstDesc);
     }
-    int const length = srcDesc.length;
-    Source values = {src + srcDesc.offset, srcDesc.stride};
-    float const scale = findScale(values, length, GetNumElements(0));
-    values = toVertices(values, length, scale);
-    Destination const result = {dst + dstDesc.offset, dstDesc.stride};
-    Destination next = result;
-    std::vector<internal::RefinementTask> tasks;
-    for (int step = 0; step < GetMaxLevel(); ++step) {
-        tasks.push_back({&_steps[std::size_t(step)], values, next});
-        values = {next.data, next.stride};
-        next.data += GetNumElements(step + 1) * next.stride;
-    }
-    internal::RefineElements(tasks, length);
-    undoScale(scale, result, length, GetNumElementsAllLevels());
     return true;
 }
 

@@ -2,8 +2,6 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_EVALUATOR_H
 #define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_EVALUATOR_H
 
-#include "refinementKernel.h"
-
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefiner.h"
 
@@ -12,7 +10,6 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
-#include <vector>
 
 namespace OpenSubdivHex {
 
@@ -79,12 +76,14 @@ public:
         return Create(refiner, Options(), status);
     }
 
-    FarExt::TopologyRefiner const &GetTopologyRefiner() const { return _refiner; }
+    ~RefinementEvaluator();
+
+    FarExt::TopologyRefiner const &GetTopologyRefiner() const;
 
     /// The last level that can be evaluated, that of the refiner.
-    int GetMaxLevel() const { return int(_numElements.size()) - 1; }
+    int GetMaxLevel() const;
     /// Elements of a level: its vertices or face-varying values.  Those of level 0 are the source.
-    int GetNumElements(int level) const { return _numElements[std::size_t(level)]; }
+    int GetNumElements(int level) const;
     /// Elements of levels 1 ... GetMaxLevel() together.
     std::int64_t GetNumElementsAllLevels() const;
 
@@ -128,32 +127,16 @@ public:
     /// @}
 
 private:
-    using Source = internal::Elements<float const>;
-    using Destination = internal::Elements<float>;
+    class Impl;
 
-    RefinementEvaluator(FarExt::TopologyRefiner const &refiner, Options options);
+    explicit RefinementEvaluator(std::unique_ptr<Impl> impl);
 
     template <class BUFFER>
     static float *bind(BUFFER *buffer) {
         return buffer ? buffer->BindCpuBuffer() : nullptr;
     }
 
-    FarExt::Status check(float const *src, Osd::BufferDescriptor const &srcDesc, float const *dst,
-                         Osd::BufferDescriptor const &dstDesc, int level,
-                         std::int64_t numWritten) const;
-    Source toVertices(Source src, int length, float scale);
-
-    FarExt::TopologyRefiner const &_refiner;
-    int _numRefinements;                          ///< of the refiner, when the evaluator was made
-    std::vector<internal::RefinementStep> _steps; ///< by level of the parent
-    std::vector<int> _numElements;                ///< by level
-
-    /// Of a face-varying channel some of whose values several vertices of its value mesh share: the
-    /// value of each, see FarExt::internal::FVarLevel.
-    FarExt::internal::Buffer<Far::Index> const *_valuesOfVertices = nullptr;
-
-    FarExt::internal::Buffer<float> _controlValues; ///< by vertex of that value mesh
-    FarExt::internal::Buffer<float> _scratch[2];    ///< levels below the one asked for
+    std::unique_ptr<Impl> _impl;
 };
 
 } // namespace OsdExt

@@ -15,6 +15,17 @@ namespace Osd = OpenSubdiv::Osd;
 
 namespace OsdExt {
 
+namespace internal {
+
+/// \brief A set of weights and where their sums go: the value or one of its derivatives.
+struct StencilOutput {
+    float *dst;
+    Osd::BufferDescriptor desc;
+    float const *weights;
+};
+
+} // namespace internal
+
 /// \brief The static functions of CpuEvaluator and OmpEvaluator, which are its EVALUATOR.
 ///
 /// They have the signatures of Osd::CpuEvaluator, so that templates over the evaluator, such as
@@ -210,15 +221,7 @@ private:
     static bool eval(float const *src, Osd::BufferDescriptor const &srcDesc,
                      std::initializer_list<internal::StencilOutput> outputs,
                      internal::StencilRows const &rows, int start, int end) {
-        internal::StencilTask task;
-        if (!internal::MakeStencilTask(src, srcDesc, outputs.begin(), int(outputs.size()), rows,
-                                       start, end, &task)) {
-            return false;
-        }
-        if (start < end) {
-            EVALUATOR::run(task, start, end);
-        }
-        return true;
+        return EVALUATOR::run(src, srcDesc, outputs.begin(), int(outputs.size()), rows, start, end);
     }
 };
 

@@ -48,7 +48,7 @@ struct Subject {
     }
 
     std::unique_ptr<TopologyRefiner> CreateUnrefined() const {
-        FarExt::SchemeOptions scheme;
+        FarExt::HexSchemeOptions scheme;
         scheme.faceMask = FarExt::FaceMask::Smooth;
         return FarExt::TopologyRefinerFactory::Create(*base, {scheme});
     }

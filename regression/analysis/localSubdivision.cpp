@@ -101,7 +101,7 @@ double findTurn(FarExt::SchemeType scheme, TopologyLevel const &level, MeshCente
 
 } // namespace
 
-LocalSubdivision MakeLocalSubdivision(FarExt::SchemeOptions const &schemeOptions,
+LocalSubdivision MakeLocalSubdivision(FarExt::HexSchemeOptions const &schemeOptions,
                                       CenterKind baseKind, int order) {
     // Both have other irregularities, at a distance that grows by 2, or by sqrt(3) in tri-hex.
     int const pDepth = schemeOptions.schemeType == FarExt::SchemeType::TriHex ? 6 : 4;

@@ -4,7 +4,7 @@
 
 #include "meshCenter.h"
 
-#include "far_ext/schemeOptions.h"
+#include "far_ext/hexSchemeOptions.h"
 
 #include <Eigen/Core>
 
@@ -45,7 +45,7 @@ struct LocalSubdivision {
 ///
 /// \param order  3 or more
 /// \throws std::runtime_error  if the neighbourhood is not the same at both levels
-LocalSubdivision MakeLocalSubdivision(FarExt::SchemeOptions const &schemeOptions,
+LocalSubdivision MakeLocalSubdivision(FarExt::HexSchemeOptions const &schemeOptions,
                                       CenterKind baseKind, int order);
 
 } // namespace OpenSubdivHex::Regression

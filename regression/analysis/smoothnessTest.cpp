@@ -16,7 +16,7 @@ namespace OpenSubdivHex::Regression {
 namespace {
 
 using FarExt::FaceMask;
-using FarExt::SchemeOptions;
+using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
 namespace Sdc = OpenSubdiv::Sdc;
 
@@ -49,7 +49,7 @@ double computeLoopEigenvalue(int n, int m) { return (3 + 2 * std::cos(2 * kPi * 
 } // namespace
 
 TEST(Smoothness, Prism) {
-    PolygonMesh const mesh = RefineSurface(MakePrism(6), SchemeOptions(), 0)[0].mesh;
+    PolygonMesh const mesh = RefineSurface(MakePrism(6), HexSchemeOptions(), 0)[0].mesh;
     Smoothness const smoothness = MeasureSmoothness(mesh);
     EXPECT_NEAR(smoothness.maxNormalAngle, kPi / 2, 1e-12);
     // Between a side, whose centroid is sqrt(3/4) from the axis, and the top, 0.8 above it.
@@ -85,7 +85,7 @@ TEST(Smoothness, PrincipalCurvaturesOfAQuadric) {
             shape.positions[3 * i + 2] =
                 0.5 * (kSmaller * along * along + kLarger * across * across);
         }
-        PolygonMesh const mesh = RefineSurface(shape, SchemeOptions(), 0)[0].mesh;
+        PolygonMesh const mesh = RefineSurface(shape, HexSchemeOptions(), 0)[0].mesh;
         auto const [smaller, larger] = EstimateCurvatures(mesh, vertex);
         EXPECT_NEAR(smaller, kSmaller, 2e-5);
         EXPECT_NEAR(larger, kLarger, 2e-5);
@@ -106,14 +106,15 @@ TEST(Smoothness, CenterIsFollowed) {
                    : level.mesh.vertexFirst[index + 1] - level.mesh.vertexFirst[index];
     };
     CenterKind kind;
-    for (AnyScheme const &scheme : {AnyScheme(SchemeOptions()), AnyScheme(Sdc::SCHEME_CATMARK),
+    for (AnyScheme const &scheme : {AnyScheme(HexSchemeOptions()), AnyScheme(Sdc::SCHEME_CATMARK),
                                     AnyScheme(Sdc::SCHEME_LOOP)}) {
         EXPECT_EQ(getSize(scheme, &kind), n);
         EXPECT_EQ(kind, CenterKind::Vertex);
     }
-    EXPECT_EQ(getSize(SchemeOptions{FaceMask::Cosine, SchemeType::DooSabin}, &kind), n);
+    EXPECT_EQ(getSize(HexSchemeOptions{FaceMask::Cosine, SchemeType::DooSabin}, &kind), n);
     EXPECT_EQ(kind, CenterKind::Face);
-    EXPECT_EQ(getSize(SchemeOptions{FaceMask::Cosine, SchemeType::Hexagonal, true}, &kind), 2 * n);
+    EXPECT_EQ(getSize(HexSchemeOptions{FaceMask::Cosine, SchemeType::Hexagonal, true}, &kind),
+              2 * n);
     EXPECT_EQ(kind, CenterKind::Face);
     EXPECT_THROW(RefineSurface(MakeSaddleBipyramid(n), Sdc::SCHEME_LOOP, 1, {CenterKind::Face, 0}),
                  std::runtime_error);
@@ -130,7 +131,7 @@ TEST(Smoothness, CurvatureGrowsAsForetold) {
         double const loop = computeLoopEigenvalue(n, 2) / std::pow(computeLoopEigenvalue(n, 1), 2);
         EXPECT_NEAR(findLastGrowth(measureTip(n, Sdc::SCHEME_LOOP, kLevel)), loop, 0.06);
         for (FaceMask mask : {FaceMask::Average, FaceMask::Cosine, FaceMask::Smooth}) {
-            SchemeOptions const scheme{mask, SchemeType::Hexagonal, false};
+            HexSchemeOptions const scheme{mask, SchemeType::Hexagonal, false};
             Spectrum const spectrum =
                 ComputeSpectrum(MakeLocalSubdivision(scheme, CenterKind::Vertex, n));
             EXPECT_NEAR(findLastGrowth(measureTip(n, scheme, kLevel)),
@@ -194,7 +195,7 @@ TEST(Smoothness, MasksOnTheRegularHoneycomb) {
     constexpr int kLevel = 6;
     auto const findGrowth = [](FaceMask mask) {
         std::vector<SurfaceLevel> const levels =
-            RefineSurface(GetShape("hexTorus"), SchemeOptions{mask}, kLevel);
+            RefineSurface(GetShape("hexTorus"), HexSchemeOptions{mask}, kLevel);
         Smoothness const before = MeasureSmoothness(levels[kLevel - 1].mesh);
         Smoothness const after = MeasureSmoothness(levels[kLevel].mesh);
         return Smoothness{after.maxNormalAngle / before.maxNormalAngle,

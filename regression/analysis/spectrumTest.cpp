@@ -15,7 +15,7 @@ namespace OpenSubdivHex::Regression {
 namespace {
 
 using FarExt::FaceMask;
-using FarExt::SchemeOptions;
+using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
 
 constexpr FaceMask kMasks[] = {FaceMask::Average, FaceMask::Cosine, FaceMask::Smooth};
@@ -23,20 +23,20 @@ constexpr int kMinOrder = 3;
 constexpr int kMaxOrder = 12;
 double const kPi = std::acos(-1.0);
 
-SchemeOptions hexagonal(FaceMask mask) { return {mask, SchemeType::Hexagonal, false}; }
-SchemeOptions triHexFirst(FaceMask mask) { return {mask, SchemeType::Hexagonal, true}; }
-SchemeOptions dooSabin(FaceMask mask) { return {mask, SchemeType::DooSabin, false}; }
-SchemeOptions triHex() { return {FaceMask::Average, SchemeType::TriHex, false}; }
+HexSchemeOptions hexagonal(FaceMask mask) { return {mask, SchemeType::Hexagonal, false}; }
+HexSchemeOptions triHexFirst(FaceMask mask) { return {mask, SchemeType::Hexagonal, true}; }
+HexSchemeOptions dooSabin(FaceMask mask) { return {mask, SchemeType::DooSabin, false}; }
+HexSchemeOptions triHex() { return {FaceMask::Average, SchemeType::TriHex, false}; }
 
-std::vector<SchemeOptions> allSchemes() {
-    std::vector<SchemeOptions> schemes{triHex()};
+std::vector<HexSchemeOptions> allSchemes() {
+    std::vector<HexSchemeOptions> schemes{triHex()};
     for (FaceMask mask : kMasks) {
         schemes.insert(schemes.end(), {hexagonal(mask), triHexFirst(mask), dooSabin(mask)});
     }
     return schemes;
 }
 
-std::string describe(SchemeOptions const &scheme, CenterKind kind, int order) {
+std::string describe(HexSchemeOptions const &scheme, CenterKind kind, int order) {
     return "scheme " + std::to_string(int(scheme.schemeType)) + ", mask " +
            std::to_string(int(scheme.faceMask)) + (scheme.triHexFirst ? ", tri-hex first" : "") +
            (kind == CenterKind::Vertex ? ", vertex " : ", face ") + std::to_string(order);
@@ -45,7 +45,7 @@ std::string describe(SchemeOptions const &scheme, CenterKind kind, int order) {
 /// Calls \p check for every scheme, mask and center.
 template <class CHECK>
 void forAll(CHECK const &check) {
-    for (SchemeOptions const &scheme : allSchemes()) {
+    for (HexSchemeOptions const &scheme : allSchemes()) {
         for (CenterKind kind : {CenterKind::Vertex, CenterKind::Face}) {
             for (int order = kMinOrder; order <= kMaxOrder; ++order) {
                 SCOPED_TRACE(describe(scheme, kind, order));
@@ -55,7 +55,7 @@ void forAll(CHECK const &check) {
     }
 }
 
-double computeSubdominant(SchemeOptions const &scheme, CenterKind kind, int order) {
+double computeSubdominant(HexSchemeOptions const &scheme, CenterKind kind, int order) {
     return ComputeSpectrum(MakeLocalSubdivision(scheme, kind, order)).subdominant;
 }
 
@@ -112,7 +112,7 @@ TEST(Spectrum, CentersBecomeWhatTheSchemesMakeOfThem) {
         }
     });
     int const order = 5;
-    auto const make = [&](SchemeOptions const &scheme) {
+    auto const make = [&](HexSchemeOptions const &scheme) {
         return MakeLocalSubdivision(scheme, CenterKind::Vertex, order);
     };
     EXPECT_EQ(make(hexagonal(FaceMask::Smooth)).centerKind, CenterKind::Vertex);
@@ -153,7 +153,7 @@ TEST(Spectrum, FaceEigenvaluesFollowTheMasks) {
         }
         std::vector<double> const expected[] = {average, cosine, smooth};
         for (FaceMask mask : kMasks) {
-            for (SchemeOptions const &scheme : {hexagonal(mask), dooSabin(mask)}) {
+            for (HexSchemeOptions const &scheme : {hexagonal(mask), dooSabin(mask)}) {
                 LocalSubdivision const face = MakeLocalSubdivision(scheme, CenterKind::Face, n);
                 EXPECT_EQ(face.matrix.topRightCorner(n, face.GetNumVertices() - n).norm(), 0);
                 expectNear(computeFaceEigenvalues(face), expected[int(mask)]);
@@ -230,7 +230,7 @@ TEST(Spectrum, LimitMasksOfVertices) {
 }
 
 TEST(Spectrum, LimitOfAFaceIsItsCentroid) {
-    for (SchemeOptions const &scheme : allSchemes()) {
+    for (HexSchemeOptions const &scheme : allSchemes()) {
         for (int n = kMinOrder; n <= kMaxOrder; ++n) {
             LocalSubdivision const face = MakeLocalSubdivision(scheme, CenterKind::Face, n);
             Eigen::VectorXd centroid = Eigen::VectorXd::Zero(face.GetNumVertices());

@@ -85,7 +85,7 @@ std::vector<SurfaceLevel> makeLevels(REFINER const &refiner, Shape const &shape,
     return levels;
 }
 
-std::vector<SurfaceLevel> refine(Shape const &shape, FarExt::SchemeOptions const &options,
+std::vector<SurfaceLevel> refine(Shape const &shape, FarExt::HexSchemeOptions const &options,
                                  int maxLevel, MeshCenter center) {
     FarExt::Status status;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(),

@@ -34,7 +34,7 @@ struct PolygonMesh {
 };
 
 /// One of this library's schemes, or one of OpenSubdiv's: Catmull-Clark or Loop.
-using AnyScheme = std::variant<FarExt::SchemeOptions, OpenSubdiv::Sdc::SchemeType>;
+using AnyScheme = std::variant<FarExt::HexSchemeOptions, OpenSubdiv::Sdc::SchemeType>;
 
 struct SurfaceLevel {
     PolygonMesh mesh;

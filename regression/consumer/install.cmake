@@ -2,20 +2,13 @@
 #
 # cmake -D buildDir=... -D sourceDir=... -D prefix=... -D config=... -P install.cmake
 #
-# Installs buildDir, moves the result to prefix, and checks that no header was left out and that the
-# package files name no folder of this machine.
+# Installs buildDir, moves the result to prefix, and checks that the package files name no folder of
+# this machine.
 file(REMOVE_RECURSE ${prefix} ${prefix}.first)
 execute_process(
   COMMAND ${CMAKE_COMMAND} --install ${buildDir} --prefix ${prefix}.first --config ${config}
   COMMAND_ERROR_IS_FATAL ANY)
 file(RENAME ${prefix}.first ${prefix})
-
-file(GLOB headers RELATIVE ${sourceDir} ${sourceDir}/far_ext/*.h ${sourceDir}/osd_ext/*.h)
-foreach(header IN LISTS headers)
-  if(NOT EXISTS ${prefix}/include/opensubdivhex/${header})
-    message(SEND_ERROR "${header} is not installed: it is missing in its folder's CMakeLists.txt")
-  endif()
-endforeach()
 
 file(GLOB_RECURSE packageFiles ${prefix}/*.cmake)
 if(NOT packageFiles)

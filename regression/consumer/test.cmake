@@ -27,7 +27,17 @@ add_test(NAME consumer.build
     --test-command ${consumerDir}/build/consumer)
 set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed)
 set_tests_properties(consumer.build PROPERTIES FIXTURES_REQUIRED installed)
-if(OPENSUBDIVHEX_TUTORIALS)
+get_target_property(opensubdivDirs OpenSubdiv::osdCPU INTERFACE_INCLUDE_DIRECTORIES)
+list(TRANSFORM opensubdivDirs PREPEND -I)
+add_test(NAME consumer.headers
+  COMMAND ${CMAKE_COMMAND}
+    -D sourceDir=${PROJECT_SOURCE_DIR}
+    -D includeDir=${consumerDir}/prefix/${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex
+    -D compiler=${CMAKE_CXX_COMPILER}
+    -D "flags=${opensubdivDirs}"
+    -P ${PROJECT_SOURCE_DIR}/regression/consumer/headers.cmake)
+set_tests_properties(consumer.headers PROPERTIES FIXTURES_REQUIRED installed)
+if(OPENSUBDIVHEX_TOOLS)
   add_test(NAME consumer.hexrefine
     COMMAND ${consumerDir}/prefix/${CMAKE_INSTALL_BINDIR}/hexrefine --help)
   set_tests_properties(consumer.hexrefine PROPERTIES FIXTURES_REQUIRED installed)

@@ -5,8 +5,8 @@
 #include "referenceMatch.h"
 
 #include "far_ext/limitStencilTableFactory.h"
-#include "far_ext/parallel.h"
 #include "far_ext/stencilTableFactory.h"
+#include "far_ext/vtr/parallel.h"
 
 #include <gtest/gtest.h>
 
@@ -109,7 +109,9 @@ TEST(Allocation, OfWhatRunsExclusivelyMayFail) {
                                                    });
                                                }),
                  std::bad_alloc);
-    EXPECT_GT(values.size(), 90000);
+    // The other threads may have gone on.
+    EXPECT_GE(values.size(), 4096);
+    EXPECT_LT(values.size(), 100000);
     FarExt::internal::RunExclusively([&] { values.clear(); }); // not locked any more
     EXPECT_TRUE(values.empty());
 }

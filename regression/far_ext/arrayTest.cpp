@@ -2,8 +2,8 @@
 //
 // The memory of levels: buffers, arrays placed in one, and writing past the caches; and sets of
 // indices.
-#include "far_ext/arrayWriter.h"
-#include "far_ext/indexSet.h"
+#include "far_ext/vtr/arrayWriter.h"
+#include "far_ext/vtr/indexSet.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 // RefineCoplanar: every shape against the reference, and what DESIGN.md and the header promise.
 #include "expectations.h"
 
+#include "far_ext/vtr/level.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -15,7 +16,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-using FarExt::SchemeOptions;
+using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
 using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
@@ -269,7 +270,7 @@ TEST(Coplanar, AllFlatIsDooSabin) {
             // The quads of a dihedron have no area.
             bool const isDihedron = shape.name.rfind("dihedron", 0) == 0;
             int const level = isDihedron ? 1 : GetTestLevel(shape, 2, 10000);
-            SchemeOptions schemeOptions;
+            HexSchemeOptions schemeOptions;
             schemeOptions.schemeType = SchemeType::DooSabin;
             auto const dooSabin =
                 CreateRefiner(shape, ReferenceMask::Cosine, level, Sdc::Options(), schemeOptions);
@@ -400,8 +401,8 @@ TEST(Coplanar, LastLevelNeedsFaceVerticesOnly) {
             options.fullTopologyInLastLevel = false;
             auto const refiner = createRefiner(*shape, ReferenceMask::Cosine, options, sdcOptions);
             EXPECT_FALSE(refiner->GetLevel(2).HasFullTopology());
-            FarExt::internal::LevelTopology const &faces = refiner->GetLevel(2).GetTopology();
-            FarExt::internal::LevelTopology const &all = full->GetLevel(2).GetTopology();
+            FarExt::internal::Level const &faces = refiner->GetLevel(2).GetLevel();
+            FarExt::internal::Level const &all = full->GetLevel(2).GetLevel();
             EXPECT_EQ(faces.numFreeBoundaries, all.numFreeBoundaries);
             EXPECT_EQ(faces.numSharpBoundariesA, all.numSharpBoundariesA);
             EXPECT_EQ(faces.numSharpBoundariesB, all.numSharpBoundariesB);

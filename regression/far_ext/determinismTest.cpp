@@ -4,6 +4,7 @@
 #include "referenceMatch.h"
 
 #include "far_ext/stencilTableFactory.h"
+#include "far_ext/vtr/hierarchy.h"
 #include "regression/shapes/flatShapes.h"
 
 #include <gtest/gtest.h>
@@ -40,23 +41,30 @@ void setNumThreads(int numThreads) {
 #endif
 }
 
-/// The arrays of a level.
+/// The arrays of a level and of the refinement to the next, if there is one.
 struct Arrays {
-    std::vector<std::vector<int>> arrays;
+    std::vector<std::vector<std::byte>> arrays;
 
-    explicit Arrays(FarExt::TopologyLevel const &level) {
-        FarExt::internal::LevelTopology const &t = level.GetTopology();
-        add(t.faceFirstCorner, t.faceVerts, t.faceEdges, t.edgeVerts, t.edgeFaces, t.edgeFaceLocals,
-            t.boundaryEdges, t.halfFaces, t.vertFirstFace, t.vertFaces, t.vertFaceLocals,
-            t.vertFirstEdge, t.vertEdges, t.vertEdgeLocals, t.faceChildFaces, t.edgeChildFaces,
-            t.edgeSharpness, t.vertSharpness, t.faceHoles, t.nonManifoldVerts, t.nonManifoldEdges,
-            t.vertChildVerts, t.vVertexParents, t.partedVerts);
-    }
-    template <typename... ARRAYS>
-    void add(ARRAYS const &...added) {
-        (arrays.emplace_back(added.begin(), added.end()), ...);
+    Arrays(FarExt::TopologyRefiner const &refiner, int depth) {
+        FarExt::internal::MeshLevels const &mesh = refiner.GetHierarchy().mesh;
+        FarExt::internal::Level const &level = mesh.levels[std::size_t(depth)];
+        FarExt::internal::Level::ForEachRelation(
+            level, [this](auto const &array, std::size_t) { add(array); });
+        FarExt::internal::Level::ForEachTag(level, [this](auto const &array) { add(array); });
+        add(level.faceSizes);
+        if (depth < refiner.GetMaxLevel()) {
+            FarExt::internal::Refinement::ForEachArray(mesh.refinements[std::size_t(depth)],
+                                                       [this](auto const &array) { add(array); });
+        }
     }
     bool operator==(Arrays const &other) const { return arrays == other.arrays; }
+
+private:
+    template <typename ARRAY>
+    void add(ARRAY const &array) {
+        auto const *const bytes = reinterpret_cast<std::byte const *>(array.data());
+        arrays.emplace_back(bytes, bytes + array.size() * sizeof(*array.data()));
+    }
 };
 
 Result gather(FarExt::TopologyRefiner const &refiner) {
@@ -151,7 +159,7 @@ Shape splitEdges(Shape shape) {
 /// refine(refiner, fullTopology) makes the same levels of \p shape with any number of threads, of
 /// which the last step has work for several, and the same faces without full topology.
 template <typename REFINE>
-void expectSameLevels(Shape const &shape, FarExt::SchemeOptions schemeOptions,
+void expectSameLevels(Shape const &shape, FarExt::HexSchemeOptions schemeOptions,
                       REFINE const &refine) {
     auto const create = [&](int numThreads, bool fullTopology) {
         setNumThreads(numThreads);
@@ -169,29 +177,29 @@ void expectSameLevels(Shape const &shape, FarExt::SchemeOptions schemeOptions,
         SCOPED_TRACE(std::to_string(numThreads) + " threads");
         auto const refiner = create(numThreads, true);
         for (int level = 0; level <= maxLevel; ++level) {
-            ASSERT_TRUE(Arrays(refiner->GetLevel(level)) == Arrays(expected->GetLevel(level)));
+            ASSERT_TRUE(Arrays(*refiner, level) == Arrays(*expected, level));
         }
         auto const facesAlone = create(numThreads, false);
         FarExt::TopologyLevel const &faces = facesAlone->GetLevel(maxLevel);
         EXPECT_FALSE(faces.HasFullTopology());
-        EXPECT_EQ(Arrays(faces).arrays[0], Arrays(last).arrays[0]);
-        EXPECT_EQ(Arrays(faces).arrays[1], Arrays(last).arrays[1]);
+        EXPECT_EQ(Arrays(*facesAlone, maxLevel).arrays[0], Arrays(*expected, maxLevel).arrays[0]);
+        EXPECT_EQ(Arrays(*facesAlone, maxLevel).arrays[1], Arrays(*expected, maxLevel).arrays[1]);
         EXPECT_EQ(faces.GetNumEdges(), last.GetNumEdges());
         EXPECT_EQ(faces.GetNumBoundaryEdges(), last.GetNumBoundaryEdges());
-        EXPECT_EQ(faces.GetTopology().faceSizes, last.GetTopology().faceSizes);
+        EXPECT_EQ(faces.GetLevel().faceSizes, last.GetLevel().faceSizes);
     }
 }
 
 } // namespace
 
 TEST(Determinism, SameBitsOfOtherSchemes) {
-    FarExt::SchemeOptions const schemes[] = {
+    FarExt::HexSchemeOptions const schemes[] = {
         {FarExt::FaceMask::Smooth, FarExt::SchemeType::DooSabin, false},
         {FarExt::FaceMask::Smooth, FarExt::SchemeType::TriHex, false},
         {FarExt::FaceMask::Smooth, FarExt::SchemeType::Hexagonal, true}};
     Shape const shapes[] = {MakeBox(54, 54, 54), splitEdges(MakeBox(54, 54, 54)),
                             makeGridWithHoles(140)};
-    for (FarExt::SchemeOptions const &scheme : schemes) {
+    for (FarExt::HexSchemeOptions const &scheme : schemes) {
         SCOPED_TRACE(testing::Message()
                      << "scheme " << int(scheme.schemeType) << ", first " << scheme.triHexFirst);
         expectSameBits([&] {
@@ -226,7 +234,7 @@ TEST(Determinism, SameBitsOfCoplanarRefinement) {
         });
         for (Shape const &shape : shapes) {
             SCOPED_TRACE(shape.name + ", " + std::to_string(shape.GetNumFaces()) + " faces");
-            expectSameLevels(shape, FarExt::SchemeOptions(),
+            expectSameLevels(shape, FarExt::HexSchemeOptions(),
                              [&](FarExt::TopologyRefiner &refiner, bool fullTopology) {
                                  FarExt::TopologyRefiner::CoplanarOptions options(1);
                                  options.closeGaps = closeGaps;
@@ -251,18 +259,18 @@ TEST(Determinism, LargeLevelsAreValidAndTheSame) {
             setNumThreads(1);
             ASSERT_TRUE(refiner->RefineUniform(uniform));
             FarExt::TopologyLevel const &level = refiner->GetLevel(7);
-            EXPECT_GT(level.GetTopology().memory.size(), std::size_t(16) << 20);
+            EXPECT_GT(level.GetLevel().memory.size(), std::size_t(16) << 20);
             FarExt::Status status;
             EXPECT_TRUE(level.Validate(&status)) << status.GetMessage();
-            Arrays const expected(level);
+            Arrays const expected(*refiner, 7);
             for (int numThreads : {2, 3, 8}) {
                 SCOPED_TRACE(std::to_string(numThreads) + " threads");
                 setNumThreads(numThreads);
                 ASSERT_TRUE(refiner->RefineUniform(uniform));
-                ASSERT_TRUE(Arrays(refiner->GetLevel(7)) == expected);
+                ASSERT_TRUE(Arrays(*refiner, 7) == expected);
                 // Without the relations: the same faces, in the same memory.
                 ASSERT_TRUE(refiner->RefineUniform(7));
-                Arrays const faces(refiner->GetLevel(7));
+                Arrays const faces(*refiner, 7);
                 EXPECT_EQ(faces.arrays[0], expected.arrays[0]);
                 EXPECT_EQ(faces.arrays[1], expected.arrays[1]);
                 EXPECT_TRUE(faces.arrays[2].empty());
@@ -279,7 +287,7 @@ TEST(Determinism, SameImportForAnyNumberOfThreads) {
     for (int numThreads : {2, 3, 8}) {
         setNumThreads(numThreads);
         auto const refiner = CreateRefiner(grid, ReferenceMask::Smooth, 0);
-        EXPECT_TRUE(Arrays(refiner->GetLevel(0)) == Arrays(expected->GetLevel(0))) << numThreads;
+        EXPECT_TRUE(Arrays(*refiner, 0) == Arrays(*expected, 0)) << numThreads;
     }
 }
 

@@ -578,7 +578,7 @@ TEST(Limit, RefusesBadOptions) {
 
 TEST(Limit, IsOfHexagonalStepsAlone) {
     FarExt::TopologyRefinerFactory::Options refinerOptions;
-    FarExt::SchemeOptions &scheme = refinerOptions.schemeOptions;
+    FarExt::HexSchemeOptions &scheme = refinerOptions.schemeOptions;
     scheme.faceMask = FarExt::FaceMask::Smooth;
     auto const createRefiner = [&] {
         ShapeDescriptor const descriptor(GetShape("prism5"));

@@ -35,7 +35,7 @@ char const *ToString(ReferenceMask mask) {
 
 std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(Shape const &shape, ReferenceMask mask,
                                                        int level, Sdc::Options sdcOptions,
-                                                       FarExt::SchemeOptions schemeOptions) {
+                                                       FarExt::HexSchemeOptions schemeOptions) {
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions = schemeOptions;
     options.schemeOptions.faceMask = ToFaceMask(mask);

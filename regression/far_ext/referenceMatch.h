@@ -23,7 +23,7 @@ char const *ToString(ReferenceMask mask);
 std::unique_ptr<FarExt::TopologyRefiner>
 CreateRefiner(Shape const &shape, ReferenceMask mask, int level,
               Sdc::Options options = Sdc::Options(),
-              FarExt::SchemeOptions schemeOptions = FarExt::SchemeOptions());
+              FarExt::HexSchemeOptions schemeOptions = FarExt::HexSchemeOptions());
 
 /// The positions of a shape, a row per vertex.
 ReferenceValues GetPositions(Shape const &shape);

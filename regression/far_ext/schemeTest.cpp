@@ -13,7 +13,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-using FarExt::SchemeOptions;
+using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
 using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
@@ -34,7 +34,7 @@ constexpr NamedScheme kSchemes[] = {{"Doo-Sabin", SchemeType::DooSabin, false},
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, ReferenceMask mask,
                                                NamedScheme const &scheme, int level,
                                                Sdc::Options options = Sdc::Options()) {
-    SchemeOptions schemeOptions;
+    HexSchemeOptions schemeOptions;
     schemeOptions.schemeType = scheme.schemeType;
     schemeOptions.triHexFirst = scheme.triHexFirst;
     return CreateRefiner(shape, mask, level, options, schemeOptions);

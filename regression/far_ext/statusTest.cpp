@@ -14,7 +14,7 @@
 namespace OpenSubdivHex::Regression {
 
 using FarExt::ComponentType;
-using FarExt::SchemeOptions;
+using FarExt::HexSchemeOptions;
 using FarExt::Status;
 using FarExt::StatusCode;
 using FarExt::TopologyRefiner;
@@ -22,7 +22,7 @@ using FarExt::TopologyRefinerFactory;
 
 namespace {
 
-SchemeOptions const kOtherSchemes[] = {
+HexSchemeOptions const kOtherSchemes[] = {
     {FarExt::FaceMask::Average, FarExt::SchemeType::DooSabin, false},
     {FarExt::FaceMask::Average, FarExt::SchemeType::TriHex, false},
     {FarExt::FaceMask::Average, FarExt::SchemeType::Hexagonal, true}};
@@ -115,7 +115,7 @@ protected:
         auto const base = CreateFarRefiner(shape);
         ASSERT_TRUE(base);
         ShapeDescriptor const descriptor(shape);
-        for (SchemeOptions const &scheme : kOtherSchemes) {
+        for (HexSchemeOptions const &scheme : kOtherSchemes) {
             TopologyRefinerFactory::Options options;
             options.schemeOptions = scheme;
             Status status;
@@ -352,7 +352,7 @@ TEST_F(StatusTest, SharpnessMustBeANumber) {
 TEST_F(StatusTest, OptionsOutsideOfTheirEnumerationsAreNamed) {
     Shape const &shape = GetShape("cube");
     ShapeDescriptor const descriptor(shape);
-    auto const expectNamed = [&](SchemeOptions scheme, Sdc::Options sdcOptions,
+    auto const expectNamed = [&](HexSchemeOptions scheme, Sdc::Options sdcOptions,
                                  std::string const &name) {
         TopologyRefinerFactory::Options options;
         options.schemeOptions = scheme;
@@ -361,22 +361,22 @@ TEST_F(StatusTest, OptionsOutsideOfTheirEnumerationsAreNamed) {
             TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status));
         expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::None, -1, {name, "9"}});
     };
-    SchemeOptions scheme;
+    HexSchemeOptions scheme;
     scheme.schemeType = FarExt::SchemeType(9);
     expectNamed(scheme, Sdc::Options(), "schemeType");
     Status status;
     EXPECT_FALSE(TopologyRefinerFactory::Create(*CreateFarRefiner(shape), {scheme}, &status));
     expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::None, -1, {"schemeType"}});
-    scheme = SchemeOptions();
+    scheme = HexSchemeOptions();
     scheme.faceMask = FarExt::FaceMask(9);
     expectNamed(scheme, Sdc::Options(), "faceMask");
     Sdc::Options sdcOptions;
     std::memset(static_cast<void *>(&sdcOptions), 9, sizeof sdcOptions);
-    expectNamed(SchemeOptions(), sdcOptions, "VtxBoundaryInterpolation");
+    expectNamed(HexSchemeOptions(), sdcOptions, "VtxBoundaryInterpolation");
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
-    expectNamed(SchemeOptions(), sdcOptions, "FVarLinearInterpolation");
+    expectNamed(HexSchemeOptions(), sdcOptions, "FVarLinearInterpolation");
     sdcOptions.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_NONE);
-    expectNamed(SchemeOptions(), sdcOptions, "CreasingMethod");
+    expectNamed(HexSchemeOptions(), sdcOptions, "CreasingMethod");
 
     auto const refiner = TopologyRefinerFactory::Create(descriptor.Get());
     refiner->RefineUniform(1);
@@ -554,7 +554,7 @@ TEST_F(StatusTest, OtherSchemesTakeSharpBorders) {
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
     ShapeDescriptor const descriptor(shape);
-    for (SchemeOptions const &scheme : kOtherSchemes) {
+    for (HexSchemeOptions const &scheme : kOtherSchemes) {
         TopologyRefinerFactory::Options options;
         options.schemeOptions = scheme;
         Status status;
@@ -620,7 +620,7 @@ TEST_F(StatusTest, CoplanarArguments) {
 TEST_F(StatusTest, OtherSchemesRefuseCoplanarRefinement) {
     Shape const &cube = GetShape("cube");
     ShapeDescriptor const descriptor(cube);
-    for (SchemeOptions const &scheme : kOtherSchemes) {
+    for (HexSchemeOptions const &scheme : kOtherSchemes) {
         TopologyRefinerFactory::Options options;
         options.schemeOptions = scheme;
         auto const refiner =
@@ -641,7 +641,7 @@ TEST_F(StatusTest, TooManyLevelsOfOtherSchemes) {
     // Edges of the cube: 12 4^L with Doo-Sabin; a tri-hex step first makes 36 of 12.  With tri-hex
     // it has 24 3^L face-vertices.
     struct Case {
-        SchemeOptions scheme;
+        HexSchemeOptions scheme;
         int level;
         std::string count;
     };
@@ -748,7 +748,7 @@ TEST_F(StatusTest, TooManyCoplanarLevels) {
 TEST_F(StatusTest, TooManyLevelsSeenFromAnyLevel) {
     // The refusals of a mesh and of its own refinement as a base name the same sizes, so that these
     // are right however many levels lie between.
-    auto const create = [](Shape const &shape, SchemeOptions const &scheme) {
+    auto const create = [](Shape const &shape, HexSchemeOptions const &scheme) {
         TopologyRefinerFactory::Options options;
         options.schemeOptions = scheme;
         ShapeDescriptor const descriptor(shape);
@@ -767,11 +767,11 @@ TEST_F(StatusTest, TooManyLevelsSeenFromAnyLevel) {
         std::size_t const place = status.GetMessage().find(before) + before.size();
         return std::stoll(status.GetMessage().substr(place));
     };
-    SchemeOptions const dooSabin = kOtherSchemes[0];
-    SchemeOptions const triHex = kOtherSchemes[1];
+    HexSchemeOptions const dooSabin = kOtherSchemes[0];
+    HexSchemeOptions const triHex = kOtherSchemes[1];
     struct Case {
         char const *name;
-        SchemeOptions scheme;
+        HexSchemeOptions scheme;
     };
     for (Case const &test :
          {Case{"mixedPatch", dooSabin}, Case{"quadGrid", dooSabin}, Case{"closedAndOpen", dooSabin},

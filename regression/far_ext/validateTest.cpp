@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "referenceMatch.h"
 
+#include "far_ext/vtr/validator.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +15,10 @@ using FarExt::Status;
 using FarExt::StatusCode;
 using FarExt::TopologyLevel;
 using FarExt::internal::Buffer;
-using FarExt::internal::LevelTopology;
+using FarExt::internal::IndexPair;
+using FarExt::internal::Level;
+using FarExt::internal::LocalIndexPair;
+using FarExt::internal::Refinement;
 
 namespace {
 
@@ -22,54 +27,48 @@ void append(std::vector<T> &to, VALUES const &values) {
     to.insert(to.end(), values.begin(), values.end());
 }
 
-template <typename T>
-void assign(Buffer<T> &buffer, std::vector<T> const &values) {
-    buffer.Resize(values.size());
-    std::copy(values.begin(), values.end(), buffer.data());
-}
-
 /// The arrays of a level, as its public queries tell them.
-std::unique_ptr<LevelTopology> copyLevel(TopologyLevel const &level) {
-    auto copy = std::make_unique<LevelTopology>();
+std::unique_ptr<Level> copyLevel(TopologyLevel const &level) {
+    auto copy = std::make_unique<Level>();
+    Level const &original = level.GetLevel();
     copy->numVertices = level.GetNumVertices();
     copy->numEdges = level.GetNumEdges();
     copy->numFaces = level.GetNumFaces();
     copy->numCorners = level.GetNumFaceVertices();
-    copy->numFreeBoundaries = level.GetTopology().numFreeBoundaries;
-    copy->numSharpBoundariesA = level.GetTopology().numSharpBoundariesA;
-    copy->numSharpBoundariesB = level.GetTopology().numSharpBoundariesB;
+    copy->numFreeBoundaries = original.numFreeBoundaries;
+    copy->numSharpBoundariesA = original.numSharpBoundariesA;
+    copy->numSharpBoundariesB = original.numSharpBoundariesB;
     copy->depth = level.GetDepth();
     copy->hasFullTopology = true;
-    copy->isHexagonal = level.GetTopology().isHexagonal;
-    copy->numVVertices = level.GetTopology().numVVertices;
-    copy->numVFaces = level.GetTopology().numVFaces;
+    copy->isHexagonal = original.isHexagonal;
+    copy->numVVertices = original.numVVertices;
+    copy->numFFaces = original.numFFaces;
+    copy->numVFaces = original.numVFaces;
 
     using Indices = std::vector<Far::Index>;
     using LocalIndices = std::vector<Far::LocalIndex>;
-    Indices faceFirstCorner{0}, faceVerts, faceEdges;
+    Indices faceFirstCorner{0}, faceVerts, faceEdges, halfFaces;
     for (int f = 0; f < level.GetNumFaces(); ++f) {
         append(faceVerts, level.GetFaceVertices(f));
         append(faceEdges, level.GetFaceEdges(f));
         faceFirstCorner.push_back(int(faceVerts.size()));
-    }
-    Indices edgeVerts, edgeFaces, boundaryEdges;
-    LocalIndices edgeFaceLocals;
-    for (int e = 0; e < level.GetNumEdges(); ++e) {
-        append(edgeVerts, level.GetEdgeVertices(e));
-        append(edgeFaces, level.GetEdgeFaces(e));
-        append(edgeFaceLocals, level.GetEdgeFaceLocalIndices(e));
-        if (level.IsEdgeBoundary(e)) {
-            boundaryEdges.push_back(e);
-            edgeFaces.push_back(level.GetTopology().edgeFaces[2 * std::size_t(e) + 1]);
-            edgeFaceLocals.push_back(0);
-        }
-    }
-    Indices const faceChildFaces(level.GetTopology().faceChildFaces.begin(),
-                                 level.GetTopology().faceChildFaces.end());
-    Indices halfFaces;
-    for (int f = 0; f < level.GetNumFaces(); ++f) {
         if (level.IsFaceHalf(f)) {
             halfFaces.push_back(f);
+        }
+    }
+    std::vector<IndexPair> edgeVerts, edgeFaces;
+    std::vector<LocalIndexPair> edgeFaceLocals;
+    Indices boundaryEdges;
+    for (int e = 0; e < level.GetNumEdges(); ++e) {
+        auto const verts = level.GetEdgeVertices(e);
+        auto const faces = level.GetEdgeFaces(e);
+        auto const locals = level.GetEdgeFaceLocalIndices(e);
+        bool const isBoundary = level.IsEdgeBoundary(e);
+        edgeVerts.push_back({verts[0], verts[1]});
+        edgeFaces.push_back({faces[0], isBoundary ? original.edgeFaces[e][1] : faces[1]});
+        edgeFaceLocals.push_back({locals[0], isBoundary ? Far::LocalIndex(0) : locals[1]});
+        if (isBoundary) {
+            boundaryEdges.push_back(e);
         }
     }
     Indices vertFirstFace{0}, vertFaces, vertFirstEdge{0}, vertEdges;
@@ -82,78 +81,102 @@ std::unique_ptr<LevelTopology> copyLevel(TopologyLevel const &level) {
         vertFirstFace.push_back(int(vertFaces.size()));
         vertFirstEdge.push_back(int(vertEdges.size()));
     }
-    assign(copy->faceFirstCorner, faceFirstCorner);
-    assign(copy->faceVerts, faceVerts);
-    assign(copy->faceEdges, faceEdges);
-    assign(copy->edgeVerts, edgeVerts);
-    assign(copy->edgeFaces, edgeFaces);
-    assign(copy->edgeFaceLocals, edgeFaceLocals);
-    assign(copy->boundaryEdges, boundaryEdges);
-    assign(copy->halfFaces, halfFaces);
-    assign(copy->vertFirstFace, vertFirstFace);
-    assign(copy->vertFaces, vertFaces);
-    assign(copy->vertFaceLocals, vertFaceLocals);
-    assign(copy->vertFirstEdge, vertFirstEdge);
-    assign(copy->vertEdges, vertEdges);
-    assign(copy->vertEdgeLocals, vertEdgeLocals);
-    assign(copy->faceChildFaces, faceChildFaces);
+    copy->faceFirstCorner.Assign(faceFirstCorner);
+    copy->faceVerts.Assign(faceVerts);
+    copy->faceEdges.Assign(faceEdges);
+    copy->edgeVerts.Assign(edgeVerts);
+    copy->edgeFaces.Assign(edgeFaces);
+    copy->edgeFaceLocals.Assign(edgeFaceLocals);
+    copy->boundaryEdges.Assign(boundaryEdges);
+    copy->halfFaces.Assign(halfFaces);
+    copy->vertFirstFace.Assign(vertFirstFace);
+    copy->vertFaces.Assign(vertFaces);
+    copy->vertFaceLocals.Assign(vertFaceLocals);
+    copy->vertFirstEdge.Assign(vertFirstEdge);
+    copy->vertEdges.Assign(vertEdges);
+    if (!copy->HasImpliedVertexEdges()) {
+        copy->vertEdgeLocals.Assign(vertEdgeLocals);
+    }
     return copy;
 }
 
 /// Leaves the face-vertices alone, as in a last level.
-void clearRelations(LevelTopology &level) {
+void clearRelations(Level &level) {
     level.hasFullTopology = false;
-    for (Buffer<Far::Index> *array : {&level.faceEdges, &level.edgeVerts, &level.edgeFaces,
-                                      &level.boundaryEdges, &level.halfFaces, &level.vertFirstFace,
-                                      &level.vertFaces, &level.vertFirstEdge, &level.vertEdges}) {
-        array->Resize(0);
-    }
-    for (Buffer<Far::LocalIndex> *array :
-         {&level.edgeFaceLocals, &level.vertFaceLocals, &level.vertEdgeLocals}) {
-        array->Resize(0);
-    }
+    Level::ForEachRelation(level, [](auto &array, std::size_t size) {
+        if (size == 0) {
+            array.Resize(0);
+        }
+    });
+    level.vertFirstEdge.Resize(0);
 }
 
-bool isValid(LevelTopology const &topology, Status *status = nullptr) {
-    return TopologyLevel(&topology).Validate(status);
+bool isValid(Level const &level, Refinement const *refinement, Status *status = nullptr) {
+    Status const result = FarExt::internal::Validate(level, refinement);
+    if (status) {
+        *status = result;
+    }
+    return result.IsOk();
+}
+bool isValid(Level const &level, Status *status = nullptr) {
+    return isValid(level, nullptr, status);
+}
+
+/// Entries of arrays of numbers, and of pairs of numbers.
+template <typename T>
+std::size_t countEntries(Buffer<T> const &buffer) {
+    return buffer.size();
+}
+template <typename T>
+T &getEntry(Buffer<T> &buffer, std::size_t i) {
+    return buffer[i];
+}
+template <typename T>
+std::size_t countEntries(Buffer<std::array<T, 2>> const &buffer) {
+    return 2 * buffer.size();
+}
+template <typename T>
+T &getEntry(Buffer<std::array<T, 2>> &buffer, std::size_t i) {
+    return buffer[i / 2][i % 2];
 }
 
 /// Puts wrong values in every place of an array, one at a time; each must be found.
 template <typename T>
-void expectEveryChangeIsFound(LevelTopology const &topology, Buffer<T> &buffer, char const *name,
+void expectEveryChangeIsFound(Level const &topology, Buffer<T> &buffer, char const *name,
                               std::function<bool(std::size_t)> const &isMeaningful) {
-    for (std::size_t i = 0; i < buffer.size(); ++i) {
+    for (std::size_t i = 0; i < countEntries(buffer); ++i) {
         if (!isMeaningful(i)) {
             continue;
         }
-        T const original = buffer[i];
+        auto &entry = getEntry(buffer, i);
+        auto const original = entry;
         // Negative entries tell kinds of boundary; which of them is a tag.
         for (int wrong : {int(original) + 1, int(original) - 1, 60000}) {
             if (int(original) < 0 && wrong < 0) {
                 continue;
             }
-            buffer[i] = T(wrong);
+            entry = static_cast<std::decay_t<decltype(entry)>>(wrong);
             Status status;
             EXPECT_FALSE(isValid(topology, &status))
                 << name << "[" << i << "] = " << wrong << " instead of " << original;
             EXPECT_EQ(status.GetCode(), StatusCode::InvalidTopology);
             EXPECT_FALSE(status.GetMessage().empty());
         }
-        buffer[i] = original;
+        entry = original;
     }
     EXPECT_TRUE(isValid(topology));
     std::vector<T> const all(buffer.begin(), buffer.end());
     if (!all.empty()) {
         buffer.Resize(all.size() - 1);
         EXPECT_FALSE(isValid(topology)) << name << " one short";
-        assign(buffer, all);
+        buffer.Assign(all);
     }
 }
 
-void expectEveryChangeIsFound(LevelTopology &topology) {
+void expectEveryChangeIsFound(Level &topology) {
     auto const always = [](std::size_t) { return true; };
     // The place of the second face of a boundary edge has no meaning.
-    auto const hasFace = [&](std::size_t i) { return topology.edgeFaces[i] >= 0; };
+    auto const hasFace = [&](std::size_t i) { return getEntry(topology.edgeFaces, i) >= 0; };
     expectEveryChangeIsFound(topology, topology.faceFirstCorner, "faceFirstCorner", always);
     expectEveryChangeIsFound(topology, topology.faceVerts, "faceVerts", always);
     expectEveryChangeIsFound(topology, topology.faceEdges, "faceEdges", always);
@@ -213,22 +236,23 @@ TEST(Validate, FindsFacesThatAreNotTheParents) {
     auto const refiner = CreateRefiner(GetShape("mixedPatch"), ReferenceMask::Average, 2);
     auto const parent = copyLevel(refiner->GetLevel(0));
     auto const child = copyLevel(refiner->GetLevel(1));
-    child->parent = parent.get();
-    parent->child = child.get();
+    Refinement refinement;
+    refinement.parent = parent.get();
+    refinement.child = child.get();
     clearRelations(*child);
-    ASSERT_TRUE(isValid(*child));
+    ASSERT_TRUE(isValid(*child, &refinement));
     for (int f = 0; f < child->numFaces; ++f) {
         // Another valid start of the same face is another numbering, so it is wrong too.
         auto *const first = child->faceVerts.data() + child->faceFirstCorner[f];
         auto *const last = child->faceVerts.data() + child->faceFirstCorner[f + 1];
         std::rotate(first, first + 1, last);
         Status status;
-        EXPECT_FALSE(isValid(*child, &status)) << f;
+        EXPECT_FALSE(isValid(*child, &refinement, &status)) << f;
         EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Face);
         EXPECT_EQ(status.GetComponentIndex(), f);
         std::rotate(first, last - 1, last);
     }
-    EXPECT_TRUE(isValid(*child));
+    EXPECT_TRUE(isValid(*child, &refinement));
 }
 
 TEST(Validate, NamesTheComponent) {

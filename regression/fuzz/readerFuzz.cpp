@@ -6,12 +6,12 @@
 #include "damagedFile.h"
 
 #include "far_ext/topologyRefinerFactory.h"
-#include "tutorials/common/fileError.h"
-#include "tutorials/common/meshReader.h"
-#include "tutorials/common/meshWriter.h"
-#include "tutorials/common/topologyDescriptor.h"
-#include "tutorials/hexrefine/evaluation.h"
-#include "tutorials/hexrefine/levelMesh.h"
+#include "tools/hexrefine/evaluation.h"
+#include "tools/hexrefine/levelMesh.h"
+#include "tools/mesh/fileError.h"
+#include "tools/mesh/meshReader.h"
+#include "tools/mesh/meshWriter.h"
+#include "tools/mesh/topologyDescriptor.h"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -31,9 +31,9 @@ namespace OpenSubdivHex::Regression {
 
 namespace {
 
-using Tutorials::FileError;
-using Tutorials::FVarChannel;
-using Tutorials::Mesh;
+using Tools::FileError;
+using Tools::FVarChannel;
+using Tools::Mesh;
 
 void require(bool isTrue, char const *what) {
     if (!isTrue) {
@@ -113,7 +113,7 @@ void requireRefused(Mesh const &mesh) {
     for (char const *name : kNames) {
         bool isWritten = true;
         try {
-            Tutorials::WriteMesh(mesh, getPath(name));
+            Tools::WriteMesh(mesh, getPath(name));
         } catch (FileError const &) {
             isWritten = false;
         }
@@ -125,12 +125,12 @@ void requireRefused(Mesh const &mesh) {
 void requireRoundTrip(Mesh const &mesh) {
     for (char const *name : kNames) {
         std::string const path = getPath(name);
-        Tutorials::WriteMesh(mesh, path);
-        Mesh const copy = Tutorials::ReadMesh(path);
+        Tools::WriteMesh(mesh, path);
+        Mesh const copy = Tools::ReadMesh(path);
         require(haveSameBits(copy.positions, mesh.positions), "positions are not read as written");
         require(copy.faceSizes == mesh.faceSizes && copy.faceVertices == mesh.faceVertices,
                 "faces are not read as written");
-        std::size_t const numChannels = Tutorials::HasChannels(path) ? mesh.channels.size() : 0;
+        std::size_t const numChannels = Tools::HasChannels(path) ? mesh.channels.size() : 0;
         require(copy.channels.size() == numChannels, "channels are not read as written");
         for (std::size_t i = 0; i < numChannels; ++i) {
             require(copy.channels[i].width == mesh.channels[i].width &&
@@ -143,8 +143,8 @@ void requireRoundTrip(Mesh const &mesh) {
 
 /// One level of \p mesh; false if the library refuses it.
 bool refine(Mesh *mesh) {
-    auto descriptor = Tutorials::DescribeTopology(*mesh);
-    auto const channels = Tutorials::DescribeChannels(*mesh);
+    auto descriptor = Tools::DescribeTopology(*mesh);
+    auto const channels = Tools::DescribeChannels(*mesh);
     descriptor.numFVarChannels = int(channels.size());
     descriptor.fvarChannels = channels.data();
     Sdc::Options options;
@@ -160,15 +160,15 @@ bool refine(Mesh *mesh) {
         return false;
     }
     require(refiner->RefineUniform(1, &status), "a small mesh is not refined");
-    auto const evaluate = [&](Tutorials::Primvar const &primvar) {
-        require(Tutorials::EvaluateLevels(*refiner, Tutorials::kRefinement, primvar, &status),
+    auto const evaluate = [&](Tools::Primvar const &primvar) {
+        require(Tools::EvaluateLevels(*refiner, Tools::kRefinement, primvar, &status),
                 "a small mesh is not evaluated");
     };
     evaluate({3, -1, &mesh->positions});
     for (std::size_t i = 0; i < mesh->channels.size(); ++i) {
         evaluate({mesh->channels[i].width, int(i), &mesh->channels[i].values});
     }
-    Tutorials::CopyFaces(refiner->GetLevel(1), mesh);
+    Tools::CopyFaces(refiner->GetLevel(1), mesh);
     mesh->tags = {};
     return true;
 }
@@ -178,12 +178,12 @@ bool refine(Mesh *mesh) {
 void TestFile(std::string const &name, std::string const &content) {
     Mesh mesh;
     try {
-        mesh = Tutorials::internal::ParseMesh(name, content);
+        mesh = Tools::internal::ParseMesh(name, content);
     } catch (FileError const &error) {
         std::string const message = error.what();
         require(message.rfind(name + ": ", 0) == 0 && message.size() > name.size() + 2,
                 "a message does not begin with the file");
-        require(message == Tutorials::EscapeControls(message), "a message is more than one line");
+        require(message == Tools::EscapeControls(message), "a message is more than one line");
         return;
     }
     requireValid(mesh);

@@ -6,6 +6,7 @@
 #include "osd_ext/compactStencilTable.h"
 #include "osd_ext/cpuEvaluator.h"
 #include "osd_ext/ompEvaluator.h"
+#include "osd_ext/stencil/stencilKernel.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/far/stencilTableFactory.h>

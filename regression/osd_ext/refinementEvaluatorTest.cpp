@@ -41,7 +41,7 @@ constexpr float kGuard = -12345.678f;
 
 /// Without the relations of the last level, which nobody may read.
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape,
-                                               FarExt::SchemeOptions schemeOptions, int level,
+                                               FarExt::HexSchemeOptions schemeOptions, int level,
                                                Sdc::Options sdcOptions = Sdc::Options()) {
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions = schemeOptions;
@@ -57,7 +57,7 @@ std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape,
 
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, FaceMask mask, int level,
                                                Sdc::Options sdcOptions = Sdc::Options()) {
-    FarExt::SchemeOptions schemeOptions;
+    FarExt::HexSchemeOptions schemeOptions;
     schemeOptions.faceMask = mask;
     return createRefiner(shape, schemeOptions, level, sdcOptions);
 }
@@ -149,6 +149,9 @@ void expectEqualsTable(TopologyRefiner const &refiner, FarExt::StencilMode mode,
 /// elements and others.
 void expectScales(TopologyRefiner const &refiner, FarExt::StencilMode mode, int length) {
     constexpr int kExponent = 127;
+    if (refiner.GetMaxLevel() == 0) {
+        return; // of a shape that is too large for this test
+    }
     auto const evaluator = createEvaluator(refiner, mode);
     std::vector<float> expected = evaluateAll(*evaluator, length);
     for (float &value : expected) {
@@ -338,7 +341,7 @@ TEST(RefinementEvaluator, EqualsTablesOfOtherSchemes) {
         for (auto const schemeType : {FarExt::SchemeType::DooSabin, FarExt::SchemeType::TriHex,
                                       FarExt::SchemeType::Hexagonal}) {
             SCOPED_TRACE(testing::Message() << shape.name << ", scheme " << int(schemeType));
-            FarExt::SchemeOptions schemeOptions;
+            FarExt::HexSchemeOptions schemeOptions;
             schemeOptions.faceMask = kMasks[seed % 3];
             schemeOptions.schemeType = schemeType;
             schemeOptions.triHexFirst = schemeType == FarExt::SchemeType::Hexagonal;
@@ -462,11 +465,11 @@ TEST(RefinementEvaluator, EqualsPrimvarRefinerInManyTiles) {
 
 // Where tiles begin anew in each level, or once more after the first.
 TEST(RefinementEvaluator, EqualsPrimvarRefinerInManyTilesOfOtherSchemes) {
-    FarExt::SchemeOptions dooSabin;
+    FarExt::HexSchemeOptions dooSabin;
     dooSabin.schemeType = FarExt::SchemeType::DooSabin;
-    FarExt::SchemeOptions triHexFirst;
+    FarExt::HexSchemeOptions triHexFirst;
     triHexFirst.triHexFirst = true;
-    for (FarExt::SchemeOptions const schemeOptions : {dooSabin, triHexFirst}) {
+    for (FarExt::HexSchemeOptions const schemeOptions : {dooSabin, triHexFirst}) {
         auto const refiner = createRefiner(GetShape("prism64"), schemeOptions,
                                            GetTestLevel(GetShape("prism64"), 6, 600000));
         ASSERT_GT(refiner->GetLevel(refiner->GetMaxLevel()).GetNumFaceVertices(), 150000);

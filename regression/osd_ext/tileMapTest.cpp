@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The runs of TileMap against the faces around each vertex.
-#include "osd_ext/tileMap.h"
+#include "osd_ext/refinement/tileMap.h"
 #include "far_ext/topologyRefinerFactory.h"
+#include "far_ext/vtr/hierarchy.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 
@@ -76,7 +77,8 @@ int expectInside(TopologyLevel const &level, TileMap const &tileMap) {
     return numInside;
 }
 
-void expectTiles(Shape const &shape, Sdc::Options sdcOptions, FarExt::SchemeOptions schemeOptions) {
+void expectTiles(Shape const &shape, Sdc::Options sdcOptions,
+                 FarExt::HexSchemeOptions schemeOptions) {
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions = schemeOptions;
     ShapeDescriptor const descriptor(shape);
@@ -86,10 +88,12 @@ void expectTiles(Shape const &shape, Sdc::Options sdcOptions, FarExt::SchemeOpti
     uniform.fullTopologyInLastLevel = true;
     ASSERT_TRUE(refiner && refiner->RefineUniform(uniform));
     for (int numTiles : kNumsOfTiles) {
-        TileMap tileMap(refiner->GetLevel(0), numTiles);
+        FarExt::internal::MeshLevels const &levels = refiner->GetHierarchy().mesh;
+        TileMap tileMap(levels.levels[0], numTiles);
         for (int level = 0; level <= refiner->GetMaxLevel(); ++level) {
             if (level > 0) {
-                tileMap.Refine(refiner->GetLevel(level - 1));
+                tileMap.Refine(levels.refinements[std::size_t(level) - 1],
+                               level > 1 ? &levels.refinements[std::size_t(level) - 2] : nullptr);
             }
             TopologyLevel const &mesh = refiner->GetLevel(level);
             int const numInside = expectInside(mesh, tileMap);
@@ -111,15 +115,15 @@ TEST(TileMap, KnowsWhichVerticesLieInside) {
             SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
             Sdc::Options options;
             options.SetVtxBoundaryInterpolation(boundary);
-            ASSERT_NO_FATAL_FAILURE(expectTiles(shape, options, FarExt::SchemeOptions()));
+            ASSERT_NO_FATAL_FAILURE(expectTiles(shape, options, FarExt::HexSchemeOptions()));
         }
     }
 }
 
 TEST(TileMap, KnowsItInLevelsOfOtherSchemes) {
-    FarExt::SchemeOptions dooSabin;
+    FarExt::HexSchemeOptions dooSabin;
     dooSabin.schemeType = FarExt::SchemeType::DooSabin;
-    FarExt::SchemeOptions triHexFirst;
+    FarExt::HexSchemeOptions triHexFirst;
     triHexFirst.triHexFirst = true;
     for (Shape const *const shape : {&GetShape("cube"), &GetShape("prism64")}) {
         SCOPED_TRACE(shape->name);

@@ -155,7 +155,7 @@ void AddCountSection(Page *page, Settings const &settings) {
     struct Entry {
         std::string name;
         std::string formula;
-        SchemeOptions scheme;
+        HexSchemeOptions scheme;
         int color;
         std::vector<Counts> counts;
     };
@@ -234,7 +234,7 @@ void AddCountSection(Page *page, Settings const &settings) {
 
 void AddEigenvalueSection(Page *page, Settings const &settings) {
     page->BeginSection("eigenvalues", "Matrices and eigenvalues");
-    auto const makeFace = [](SchemeOptions const &scheme, int n) {
+    auto const makeFace = [](HexSchemeOptions const &scheme, int n) {
         return MakeLocalSubdivision(scheme, CenterKind::Face, n);
     };
     page->AddParagraph(
@@ -292,7 +292,7 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
     // Sub-dominant eigenvalues and the growth of curvature by valence.
     struct Line {
         std::string name;
-        SchemeOptions scheme;
+        HexSchemeOptions scheme;
         CenterKind kind;
         int color;
         bool isDashed;
@@ -358,7 +358,7 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
         "3 to 12.  After one tri-hex step every irregularity is a face of an otherwise 3-valent "
         "mesh, and the factor is 1 everywhere.");
     page->AddTable(table);
-    SchemeOptions const smooth = MakeHexagonal(FaceMask::Smooth);
+    HexSchemeOptions const smooth = MakeHexagonal(FaceMask::Smooth);
     page->AddFigure(
         {Captioned(drawCharacteristicMap(MakeLocalSubdivision(smooth, CenterKind::Vertex, 5)),
                    "vertex with 5 faces"),

@@ -6,8 +6,8 @@
 #include "sections.h"
 #include "settings.h"
 
-#include "tutorials/common/outputFile.h"
-#include "tutorials/common/program.h"
+#include "tools/mesh/outputFile.h"
+#include "tools/mesh/program.h"
 
 #include <chrono>
 #include <cstdio>
@@ -71,8 +71,8 @@ int main(int argc, char **argv) {
     Regression::Settings settings;
     CLI::App app("Writes the report on the paper.", "paper");
     Regression::addOptions(app, &output, &settings);
-    return Tutorials::RunProgram(app, argc, argv, [&] {
-        Tutorials::OutputFile file(output); // fails before the work, not after it
+    return Tools::RunProgram(app, argc, argv, [&] {
+        Tools::OutputFile file(output); // fails before the work, not after it
         file.Write(Regression::makePage(settings));
         file.Commit();
     });

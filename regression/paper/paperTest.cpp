@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Runs the program that makes the report, with little work, and looks at the page.
-#include "tutorials/common/testFolder.h"
+#include "tools/mesh/testFolder.h"
 
 #include <png.h>
 
@@ -51,7 +51,7 @@ std::string decodeBase64(std::string const &text) {
     return bytes;
 }
 
-class Paper : public Tutorials::TestFolder {
+class Paper : public Tools::TestFolder {
 protected:
     int run(std::string const &arguments) const { return runProgram(PAPER_PROGRAM, arguments); }
 };

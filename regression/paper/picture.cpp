@@ -2,7 +2,7 @@
 #include "picture.h"
 
 #include "far_ext/topologyRefinerFactory.h"
-#include "tutorials/common/pngFile.h"
+#include "tools/render/pngFile.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -11,7 +11,7 @@ namespace OpenSubdivHex::Regression {
 
 namespace {
 
-using namespace Tutorials;
+using namespace Tools;
 
 std::vector<float> getPositions(PolygonMesh const &mesh) {
     std::vector<float> positions;

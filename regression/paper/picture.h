@@ -4,8 +4,8 @@
 
 #include "regression/analysis/surfaceLevels.h"
 #include "settings.h"
-#include "tutorials/common/camera.h"
-#include "tutorials/common/renderer.h"
+#include "tools/render/camera.h"
+#include "tools/render/renderer.h"
 
 #include <string>
 
@@ -13,8 +13,8 @@ namespace OpenSubdivHex::Regression {
 
 /// \brief How a mesh is looked at.
 struct PictureOptions {
-    Tutorials::View view;
-    Tutorials::SurfaceLook look = Tutorials::SurfaceLook::Flat;
+    Tools::View view;
+    Tools::SurfaceLook look = Tools::SurfaceLook::Flat;
     bool hasWireframe = false;
     bool isTinted = false; ///< colours faces that are no hexagons
     double aspect = 1.25;  ///< width by height

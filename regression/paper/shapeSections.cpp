@@ -150,7 +150,7 @@ void AddMeshSection(Page *page, Settings const &settings) {
     struct Entry {
         std::string name;
         Shape shape;
-        Tutorials::View view;
+        Tools::View view;
     };
     std::vector<Entry> entries{{"lantern", LoadTutorialMesh("lantern"), {30, 15, 1}},
                                {"ring", LoadTutorialMesh("ring"), {20, 35, 1}},
@@ -213,7 +213,7 @@ void AddFactorSection(Page *page, Settings const &) {
         "hexagonal vertex-to-vertex scheme, which keeps the old vertices.  Cosine mask.");
 
     Shape const torus = GetShape("hexTorus");
-    auto const getFaces = [&](SchemeOptions const &scheme) {
+    auto const getFaces = [&](HexSchemeOptions const &scheme) {
         return double(RefineSurface(torus, scheme, 1)[1].mesh.GetNumFaces()) / torus.GetNumFaces();
     };
     double const factorThree = getFaces(MakeTriHex());

@@ -161,7 +161,7 @@ void AddTipSection(Page *page, Settings const &settings) {
                 std::string &text = growing[*type == Sdc::SCHEME_LOOP ? 1 : 0];
                 text += (text.empty() ? "at n = " : ", ") + std::to_string(n);
             }
-            if (auto const *options = std::get_if<SchemeOptions>(&contestant.scheme)) {
+            if (auto const *options = std::get_if<HexSchemeOptions>(&contestant.scheme)) {
                 cell += " (" +
                         FormatNumber(
                             ComputeSpectrum(MakeLocalSubdivision(*options, CenterKind::Vertex, n))
@@ -180,7 +180,7 @@ void AddTipSection(Page *page, Settings const &settings) {
     Plot traced{"Many steps of the local matrix, 12 triangles", "step", "curvature", true, {}};
     std::vector<double> bounded, dooSabin;
     for (Contestant const &contestant : contestants) {
-        if (auto const *options = std::get_if<SchemeOptions>(&contestant.scheme)) {
+        if (auto const *options = std::get_if<HexSchemeOptions>(&contestant.scheme)) {
             std::vector<double> const curvatures =
                 TraceCurvature(MakeLocalSubdivision(*options, CenterKind::Vertex, 12), kNumSteps);
             Series series{contestant.name, {}, contestant.color, contestant.isDashed};
@@ -230,7 +230,7 @@ void AddTipSection(Page *page, Settings const &settings) {
 
     PictureOptions options;
     options.view = {0, 68, 1.9f};
-    options.look = Tutorials::SurfaceLook::Zebra;
+    options.look = Tools::SurfaceLook::Zebra;
     std::vector<std::string> pictures;
     Shape const tip = MakeSaddleBipyramid(orders.back());
     for (Contestant const &contestant : contestants) {
@@ -255,7 +255,7 @@ void AddMaskSection(Page *page, Settings const &settings) {
     Shape const ring = LoadTutorialMesh("ring");
     struct Entry {
         char const *name;
-        SchemeOptions scheme;
+        HexSchemeOptions scheme;
     };
     std::vector<Entry> const entries{{"Average", MakeHexagonal(FaceMask::Average)},
                                      {"Cosine", MakeHexagonal(FaceMask::Cosine)},
@@ -267,9 +267,9 @@ void AddMaskSection(Page *page, Settings const &settings) {
         auto const levels = RefineSurface(ring, entry.scheme, settings.maskLevel);
         PolygonMesh const &mesh = levels.back().mesh;
         options.view = {20, 35, 1.12f};
-        options.look = Tutorials::SurfaceLook::Smooth;
+        options.look = Tools::SurfaceLook::Smooth;
         shaded.push_back(Captioned(DrawMesh(mesh, levels[0].mesh, options, settings), entry.name));
-        options.look = Tutorials::SurfaceLook::Zebra;
+        options.look = Tools::SurfaceLook::Zebra;
         lines.push_back(DrawMesh(mesh, levels[0].mesh, options, settings));
         options.view.zoom = 3;
         close.push_back(

@@ -10,7 +10,7 @@
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
-#include "tutorials/common/point.h"
+#include "tools/mesh/point.h"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -33,8 +33,8 @@ double median(std::vector<double> values) {
 /// \brief One way to refine a shape, ready to be timed.
 class Runner {
 public:
-    Runner(std::string runnerName, int runnerColor, Shape const &shape, SchemeOptions const &scheme,
-           bool isGeneral)
+    Runner(std::string runnerName, int runnerColor, Shape const &shape,
+           HexSchemeOptions const &scheme, bool isGeneral)
         : name(std::move(runnerName)), color(runnerColor), _isGeneral(isGeneral) {
         _refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(),
                                                           Sdc::Options(), {scheme});
@@ -81,9 +81,9 @@ public:
 private:
     std::unique_ptr<FarExt::TopologyRefiner> _refiner;
     bool _isGeneral;
-    std::vector<Tutorials::Point> _base;
+    std::vector<Tools::Point> _base;
     std::vector<float> _restPositions;
-    std::vector<std::vector<Tutorials::Point>> _positions;
+    std::vector<std::vector<Tools::Point>> _positions;
 };
 
 /// One thread while it lives, since not all steps can use several.
@@ -117,7 +117,7 @@ void AddTimingSection(Page *page, Settings const &settings) {
     [[maybe_unused]] OneThread const oneThread;
     Shape solid = MakeDodecahedron();
     Deform(solid); // so that no two normals agree exactly
-    SchemeOptions const hexagonal = MakeHexagonal(FaceMask::Average);
+    HexSchemeOptions const hexagonal = MakeHexagonal(FaceMask::Average);
     std::vector<Runner> runners;
     runners.emplace_back("hexagonal, its own step", 0, solid, hexagonal, false);
     runners.emplace_back("hexagonal, general builder", 3, solid, hexagonal, true);

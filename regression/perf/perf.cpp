@@ -4,7 +4,7 @@
 #include "report.h"
 #include "suite.h"
 
-#include "tutorials/common/program.h"
+#include "tools/mesh/program.h"
 
 #include <fstream>
 #include <iostream>
@@ -81,6 +81,6 @@ int main(int argc, char **argv) {
     app.add_option("--json", jsonPath, "File for the results as JSON")->type_name("FILE");
     app.add_option("--markdown", markdownPath, "File for the printed text")->type_name("FILE");
     app.add_option("--command", command, "Command to name in the results")->group("");
-    return OpenSubdivHex::Tutorials::RunProgram(
-        app, argc, argv, [&] { run(options, command, jsonPath, markdownPath); });
+    return OpenSubdivHex::Tools::RunProgram(app, argc, argv,
+                                            [&] { run(options, command, jsonPath, markdownPath); });
 }

@@ -49,7 +49,7 @@ void runOnThreads(std::function<void(int)> const &run) {
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, int level) {
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
-    FarExt::SchemeOptions scheme;
+    FarExt::HexSchemeOptions scheme;
     scheme.faceMask = FarExt::FaceMask::Smooth;
     auto refiner =
         FarExt::TopologyRefinerFactory::Create(*CreateFarRefiner(shape, options), {scheme});

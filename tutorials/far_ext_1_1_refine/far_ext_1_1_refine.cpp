@@ -10,7 +10,7 @@
 //     tell what they were made from.
 //
 #include "far_ext/topologyRefinerFactory.h"
-#include "tutorials/common/shapes.h"
+#include "tools/mesh/shapes.h"
 
 #include <cstdio>
 
@@ -19,7 +19,7 @@ using namespace OpenSubdivHex;
 namespace {
 
 // The base mesh as OpenSubdiv programs describe it.
-std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Tutorials::Mesh const &mesh) {
+std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Tools::Mesh const &mesh) {
     Far::TopologyDescriptor descriptor;
     descriptor.numVertices = mesh.GetNumVertices();
     descriptor.numFaces = mesh.GetNumFaces();
@@ -56,7 +56,7 @@ bool areFacesSeparatedByHexagons(FarExt::TopologyLevel const &level) {
 } // namespace
 
 int main() {
-    std::unique_ptr<FarExt::TopologyRefiner> const refiner = createRefiner(Tutorials::MakeCube());
+    std::unique_ptr<FarExt::TopologyRefiner> const refiner = createRefiner(Tools::MakeCube());
     if (!refiner) {
         return 1;
     }

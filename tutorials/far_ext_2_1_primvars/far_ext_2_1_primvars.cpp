@@ -11,8 +11,8 @@
 //
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "tutorials/common/shapes.h"
-#include "tutorials/common/topologyDescriptor.h"
+#include "tools/mesh/shapes.h"
+#include "tools/mesh/topologyDescriptor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +48,8 @@ struct LevelData {
 } // namespace
 
 int main() {
-    Tutorials::Mesh const cube = Tutorials::MakeCube();
-    auto const refiner = FarExt::TopologyRefinerFactory::Create(Tutorials::DescribeTopology(cube));
+    Tools::Mesh const cube = Tools::MakeCube();
+    auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(cube));
     if (!refiner || !refiner->RefineUniform(4)) {
         return 1;
     }

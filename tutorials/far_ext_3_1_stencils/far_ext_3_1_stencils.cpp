@@ -12,20 +12,20 @@
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "tutorials/common/point.h"
-#include "tutorials/common/shapes.h"
-#include "tutorials/common/topologyDescriptor.h"
+#include "tools/mesh/point.h"
+#include "tools/mesh/shapes.h"
+#include "tools/mesh/topologyDescriptor.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 using namespace OpenSubdivHex;
-using Tutorials::Point;
+using Tools::Point;
 
 int main() {
-    Tutorials::Mesh const cube = Tutorials::MakeCube();
-    auto const refiner = FarExt::TopologyRefinerFactory::Create(Tutorials::DescribeTopology(cube));
+    Tools::Mesh const cube = Tools::MakeCube();
+    auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(cube));
     if (!refiner || !refiner->RefineUniform(3)) {
         return 1;
     }
@@ -51,7 +51,7 @@ int main() {
 
     // Evaluate the table, and compare with refinement level by level.
     std::vector<std::vector<Point>> levels(refiner->GetNumLevels());
-    levels[0] = Tutorials::CopyPoints(cube);
+    levels[0] = Tools::CopyPoints(cube);
     std::vector<Point> points(table->GetNumStencils());
     table->UpdateValues(levels[0].data(), points.data());
 
@@ -62,7 +62,7 @@ int main() {
     }
     float difference = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        difference = std::max(difference, Tutorials::ComputeDistance(points[i], levels.back()[i]));
+        difference = std::max(difference, Tools::ComputeDistance(points[i], levels.back()[i]));
     }
     std::printf("largest difference from level by level refinement: %g\n", double(difference));
     return points.size() == levels.back().size() && difference < 1e-5f && std::fabs(sum - 1) < 1e-5f

@@ -11,8 +11,8 @@
 //
 #include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "tutorials/common/shapes.h"
-#include "tutorials/common/topologyDescriptor.h"
+#include "tools/mesh/shapes.h"
+#include "tools/mesh/topologyDescriptor.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>
@@ -25,8 +25,8 @@ using namespace OpenSubdivHex;
 namespace Osd = OpenSubdiv::Osd;
 
 int main() {
-    Tutorials::Mesh const cube = Tutorials::MakeCube();
-    auto const refiner = FarExt::TopologyRefinerFactory::Create(Tutorials::DescribeTopology(cube));
+    Tools::Mesh const cube = Tools::MakeCube();
+    auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(cube));
     // What lies around a vertex must be known: the last level needs its full topology too.
     FarExt::TopologyRefiner::UniformOptions refineOptions(1);
     refineOptions.fullTopologyInLastLevel = true;

@@ -17,9 +17,9 @@
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "tutorials/common/point.h"
-#include "tutorials/common/shapes.h"
-#include "tutorials/common/topologyDescriptor.h"
+#include "tools/mesh/point.h"
+#include "tools/mesh/shapes.h"
+#include "tools/mesh/topologyDescriptor.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>
@@ -29,9 +29,9 @@
 
 using namespace OpenSubdiv;
 namespace FarExt = OpenSubdivHex::FarExt;
-namespace Tutorials = OpenSubdivHex::Tutorials;
-using Tutorials::Mesh;
-using Tutorials::Point;
+namespace Tools = OpenSubdivHex::Tools;
+using Tools::Mesh;
+using Tools::Point;
 
 namespace {
 
@@ -41,7 +41,7 @@ constexpr int kLevel = 3;
 std::unique_ptr<Far::TopologyRefiner> createBase(Mesh const &mesh) {
     using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
     return std::unique_ptr<Far::TopologyRefiner>(Factory::Create(
-        Tutorials::DescribeTopology(mesh), Factory::Options(Sdc::SCHEME_CATMARK, Sdc::Options())));
+        Tools::DescribeTopology(mesh), Factory::Options(Sdc::SCHEME_CATMARK, Sdc::Options())));
 }
 
 std::unique_ptr<Osd::CpuVertexBuffer> evaluate(Mesh const &mesh) {
@@ -75,7 +75,7 @@ std::unique_ptr<Osd::CpuVertexBuffer> evaluate(Mesh const &mesh) {
 std::vector<Point> refineLevelByLevel(Mesh const &mesh) {
     auto const refiner = FarExt::TopologyRefinerFactory::Create(*createBase(mesh));
     refiner->RefineUniform(kLevel);
-    std::vector<Point> points = Tutorials::CopyPoints(mesh);
+    std::vector<Point> points = Tools::CopyPoints(mesh);
     for (int level = 1; level <= kLevel; ++level) {
         std::vector<Point> const parents = points;
         points.resize(refiner->GetLevel(level).GetNumVertices());
@@ -87,7 +87,7 @@ std::vector<Point> refineLevelByLevel(Mesh const &mesh) {
 } // namespace
 
 int main() {
-    Mesh const cube = Tutorials::MakeCube();
+    Mesh const cube = Tools::MakeCube();
     std::unique_ptr<Osd::CpuVertexBuffer> const result = evaluate(cube);
     std::vector<Point> const points = refineLevelByLevel(cube);
 
@@ -99,7 +99,7 @@ int main() {
     float const *position = result->BindCpuBuffer();
     for (Point const &point : points) {
         Point const evaluated = {position[0], position[1], position[2]};
-        difference = std::max(difference, Tutorials::ComputeDistance(evaluated, point));
+        difference = std::max(difference, Tools::ComputeDistance(evaluated, point));
         position += 3;
     }
     std::printf("evaluated %d vertices, largest difference from level by level refinement: %g\n",

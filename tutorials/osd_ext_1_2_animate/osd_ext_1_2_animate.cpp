@@ -13,8 +13,8 @@
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/stencilEvaluation.h"
 #include "osd_ext/triangleIndices.h"
-#include "tutorials/common/shapes.h"
-#include "tutorials/common/topologyDescriptor.h"
+#include "tools/mesh/shapes.h"
+#include "tools/mesh/topologyDescriptor.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>
@@ -59,8 +59,8 @@ double sumVolumes(OsdExt::TriangleIndices const &triangles, float const *positio
 
 int main() {
     // Once: topology, table, buffers.
-    Tutorials::Mesh const cube = Tutorials::MakeCube();
-    auto const refiner = FarExt::TopologyRefinerFactory::Create(Tutorials::DescribeTopology(cube));
+    Tools::Mesh const cube = Tools::MakeCube();
+    auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(cube));
     if (!refiner || !refiner->RefineUniform(4)) {
         return 1;
     }

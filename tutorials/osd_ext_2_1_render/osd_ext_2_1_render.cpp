@@ -14,14 +14,14 @@
 //
 #include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "tutorials/common/fileError.h"
-#include "tutorials/common/meshReader.h"
-#include "tutorials/common/meshText.h"
-#include "tutorials/common/pngFile.h"
-#include "tutorials/common/program.h"
-#include "tutorials/common/renderer.h"
-#include "tutorials/common/topologyDescriptor.h"
-#include "tutorials/common/unitSize.h"
+#include "tools/mesh/fileError.h"
+#include "tools/mesh/meshReader.h"
+#include "tools/mesh/meshText.h"
+#include "tools/mesh/program.h"
+#include "tools/mesh/topologyDescriptor.h"
+#include "tools/render/pngFile.h"
+#include "tools/render/renderer.h"
+#include "tools/render/unitSize.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>
@@ -33,7 +33,7 @@
 #include <filesystem>
 #include <new>
 
-namespace OpenSubdivHex::Tutorials {
+namespace OpenSubdivHex::Tools {
 
 namespace {
 
@@ -408,10 +408,10 @@ void run(Arguments const &arguments) {
 
 } // namespace
 
-} // namespace OpenSubdivHex::Tutorials
+} // namespace OpenSubdivHex::Tools
 
 int main(int argc, char **argv) {
-    using namespace OpenSubdivHex::Tutorials;
+    using namespace OpenSubdivHex::Tools;
 
     Arguments arguments;
     CLI::App app("Renders a polygon mesh, refined with the hexagonal subdivision scheme.", kName);

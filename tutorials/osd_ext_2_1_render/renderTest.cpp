@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Runs the program osd_ext_2_1_render as its users do, and looks at its pictures.
-#include "tutorials/common/image.h"
-#include "tutorials/common/meshReader.h"
-#include "tutorials/common/meshWriter.h"
-#include "tutorials/common/testFolder.h"
+#include "tools/mesh/meshReader.h"
+#include "tools/mesh/meshWriter.h"
+#include "tools/mesh/testFolder.h"
+#include "tools/render/image.h"
 
 #include <png.h>
 
@@ -12,7 +12,7 @@
 #include <cmath>
 #include <set>
 
-namespace OpenSubdivHex::Tutorials {
+namespace OpenSubdivHex::Tools {
 
 namespace {
 
@@ -229,7 +229,7 @@ TEST_F(Render, RefusesBadInput) {
     EXPECT_EQ(message.find('\n'), message.size() - 1) << message;
 
     std::string const broken =
-        makeFile("broken.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3\n");
+        makeFile("broken.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n");
     EXPECT_EQ(run("\"" + broken + "\" -o \"" + output + "\""), 1);
     EXPECT_EQ(getContent(getPath("stderr")).rfind("osd_ext_2_1_render: " + broken + ": ", 0), 0u);
     EXPECT_FALSE(std::filesystem::exists(output));
@@ -262,4 +262,4 @@ TEST_F(Render, RefusesBadUsage) {
     expectBadUsage("a.obj -o a.png --size 2x2 --panel cage --panel flat --panel tint", "2x2");
 }
 
-} // namespace OpenSubdivHex::Tutorials
+} // namespace OpenSubdivHex::Tools

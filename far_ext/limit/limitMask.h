@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_MASK_H
+#define OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_MASK_H
+
+#include "far_ext/vtr/refinementMask.h"
+#include "limitPatch.h"
+
+#include <map>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief Weights of a patch's or a face's vertices for a point of the limit surface, and for the
+/// first derivatives there, on each side of the point.  LimitStencilTableFactory says what they are
+/// derivatives by.
+struct LimitMask {
+    struct Tangents {
+        std::vector<double> du;
+        std::vector<double> dv;
+    };
+    std::vector<double> weights;
+    std::vector<Tangents> sides;
+};
+
+/// \brief Finds limit masks of vertices.
+///
+/// A semi-sharp crease becomes smooth after so many steps as its sharpness says, and two steps
+/// after a feature has left the patch all faces there are hexagons or halves of hexagons: then
+/// patches repeat themselves after one step or, where A and B edges alternate, a few.  The steps of
+/// such a cycle, multiplied, have the eigenvalue 1, whose left eigenvector is the mask of the
+/// point, and the next largest eigenvalues, whose left eigenvectors span the masks of the tangents.
+///  Steps before are multiplied to that.
+///
+/// All masks found are kept, so that a patch that looks like one before costs its signature alone.
+class LimitMaskFinder {
+public:
+    LimitMaskFinder(Sdc::Options sdcOptions, HexSchemeOptions const &schemeOptions)
+        : _sdcOptions(sdcOptions), _schemeOptions(schemeOptions) {}
+
+    /// \brief Valid until the next call; null where the patches do not repeat themselves within
+    /// kMaxSteps steps, or a step that repeats itself has no eigenvectors that iteration finds.
+    LimitMask const *Find(LimitPatch const &patch);
+
+    /// A patch, and the step that leads to the next.
+    struct Node {
+        LimitPatch patch;
+        PatchRefinement step;
+    };
+
+private:
+    bool addCycle(std::vector<Node> nodes);
+    LimitMask const &addStepsBefore(std::vector<Node> const &nodes, LimitMask const &lastMask);
+
+    // Sharpness that is not infinite ends in ten steps, other irregularities in two.
+    static constexpr int kMaxSteps = 64;
+
+    // Patches of large, irregular base meshes may all be different: then old ones are forgotten.
+    static constexpr std::size_t kMaxMasks = 4096;
+
+    Sdc::Options const _sdcOptions;
+    HexSchemeOptions const _schemeOptions;
+    std::map<std::vector<int>, LimitMask> _masks; ///< by signature
+};
+
+/// \brief Finds limit masks of the centres of faces: in closed form, but for faces with sector
+/// corners and semi-sharp diagonals, which take steps before.
+class FaceLimitMaskFinder {
+public:
+    FaceLimitMaskFinder(Level const &level, Sdc::Options sdcOptions,
+                        HexSchemeOptions const &schemeOptions)
+        : _level(level), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions),
+          _mask(level, schemeOptions, Interpolation::Vertex) {}
+
+    /// Of a face with an infinitely sharp diagonal the sides are half 0 and half 1; others have
+    /// one.
+    LimitMask Find(Far::Index face) const;
+
+private:
+    LimitMask findAfterStep(Far::Index face) const;
+    std::vector<double> stepBack(std::vector<double> const &cWeights, Far::Index face) const;
+
+    Level const &_level;
+    Sdc::Options const _sdcOptions;
+    HexSchemeOptions const _schemeOptions;
+    RefinementMask const _mask;
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

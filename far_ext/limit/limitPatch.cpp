@@ -1,0 +1,469 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitPatch.h"
+
+#include "far_ext/vtr/baseLevel.h"
+#include "far_ext/vtr/hexRefinement.h"
+#include "far_ext/vtr/indexSet.h"
+#include "far_ext/vtr/refinementRows.h"
+
+#include <cstring>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Far::Index;
+using Sdc::Crease;
+
+int getBits(float value) {
+    static_assert(sizeof(int) == sizeof(float));
+    int bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+// Tags that are all smooth are left out, as in every level.
+void fillTags(std::vector<float> const &from, Buffer<float> &to) {
+    if (std::any_of(from.begin(), from.end(), Crease::IsSharp)) {
+        to.Assign(from);
+    }
+}
+
+bool isBreak(RingItem const &item) { return !item.isFace && Crease::IsInfinite(item.sharpness); }
+
+int countBreaks(FanItems const &fan) {
+    return int(std::count_if(fan.items.begin(), fan.items.end(), isBreak));
+}
+
+// As FindVertexSides makes them.
+int countSides(FanItems const &fan) {
+    int const numBreaks = countBreaks(fan);
+    if (numBreaks < 2) {
+        return 1;
+    }
+    return fan.isClosed ? numBreaks
+                        : numBreaks - 1 + !isBreak(fan.items.front()) + !isBreak(fan.items.back());
+}
+
+} // namespace
+
+// The fans one after the other, as the level has them, but closed ones from their first face on.
+void LimitPatchGatherer::orderFans(Index vert, LimitPatch &patch) {
+    _ringFaces.clear();
+    _ringEdges.clear();
+    Index firstEdge = _level.vertFirstEdge[vert];
+    ForEachFan(_level, vert, [&](VertexFan const &fan) {
+        GatherFanItems(_level, fan, _fan);
+        int const numFaces = fan.end - fan.begin;
+        int const numEdges = numFaces + !fan.isClosed;
+        int firstSide = 0;
+        int const first = fan.isClosed ? findFirstFace(fan, firstSide) : 0;
+        for (int i = 0; i < numFaces; ++i) {
+            _ringFaces.push_back(fan.begin + (first + i) % numFaces);
+        }
+        for (int i = 0; i < numEdges; ++i) {
+            _ringEdges.push_back(_level.vertEdges[firstEdge + (first + i) % numEdges]);
+        }
+        firstEdge += numEdges;
+        int const begin = int(patch.sides.size());
+        int const numSides = countSides(_fan);
+        for (int side = 0; side < numSides; ++side) {
+            patch.sides.push_back(begin + (side + numSides - firstSide % numSides) % numSides);
+        }
+    });
+}
+
+// A closed fan has no first face of its own: that with the least sequence of what is around the
+// vertex is taken.  firstSide is the side of the level that begins there or next.
+int LimitPatchGatherer::findFirstFace(VertexFan const &fan, int &firstSide) {
+    int const numFaces = fan.end - fan.begin;
+    struct Key {
+        int numbers[4];
+        int numBreaks;
+    };
+    std::vector<Key> keys;
+    for (RingItem const &item : _fan.items) {
+        if (item.isFace && item.half < 0) {
+            Index const face = _level.vertFaces[fan.begin + Index(keys.size()) - 1];
+            keys.back().numbers[1] =
+                _level.faceFirstCorner[face + 1] - _level.faceFirstCorner[face];
+            keys.back().numbers[2] =
+                _level.IsHalfFace(face) ? 1 + item.corner - _level.faceFirstCorner[face] : 0;
+        } else if (item.isLong) {
+            keys.back().numbers[3] = getBits(item.sharpness);
+            keys.back().numBreaks += isBreak(item);
+        } else if (!item.isFace) {
+            keys.push_back({{getBits(item.sharpness), 0, 0, 0}, isBreak(item)});
+        }
+    }
+    auto const compare = [&](int first, int second) {
+        for (int i = 0; i < numFaces; ++i) {
+            int const order =
+                std::memcmp(keys[(first + i) % numFaces].numbers,
+                            keys[(second + i) % numFaces].numbers, sizeof keys[0].numbers);
+            if (order != 0) {
+                return order;
+            }
+        }
+        return 0;
+    };
+    int best = 0;
+    bool const isUniform = std::all_of(keys.begin(), keys.end(), [&](Key const &key) {
+        return std::memcmp(key.numbers, keys[0].numbers, sizeof key.numbers) == 0;
+    });
+    for (int i = 1; i < numFaces && !isUniform; ++i) {
+        if (compare(i, best) < 0) {
+            best = i;
+        }
+    }
+    for (int i = 0; i < best; ++i) {
+        firstSide += keys[i].numBreaks;
+    }
+    return best;
+}
+
+Index LimitPatchGatherer::addVertex(Index vert, LimitPatch &patch) {
+    Index found = _verts.Find(vert);
+    if (found == Far::INDEX_INVALID) {
+        found = Index(patch.sources.size());
+        _verts.Set(vert, found);
+        patch.sources.push_back(vert);
+    }
+    return found;
+}
+
+// The corners of a face begin at local, unless corner 0 stands out.
+void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch &patch) {
+    if (_faces.Find(face) != Far::INDEX_INVALID) {
+        return;
+    }
+    _faces.Set(face, Index(patch.faceSizes.size()));
+    Index const first = _level.faceFirstCorner[face];
+    int const size = _level.faceFirstCorner[face + 1] - first;
+    float const diagonal = _level.GetDiagonalSharpness(face);
+    if (_level.IsHalfFace(face) || Crease::IsSharp(diagonal)) {
+        local = 0;
+    }
+    Index const patchFirst = Index(patch.faceVerts.size());
+    for (int i = 0; i < size; ++i) {
+        Index const corner = first + (local + i) % size;
+        _corners.push_back(corner);
+        Index const vert = addVertex(_level.faceVerts[corner], patch);
+        patch.faceVerts.push_back(vert);
+        // Of the faces further out, only the corners at the neighbours of vertex 0 matter.
+        if (isRing || vert < _numComplete) {
+            for (SectorCorner const &sector : _level.GetSectorCorners(corner, corner + 1)) {
+                patch.sectorCorners.push_back({patchFirst + i, sector.sectorSize, sector.weight});
+            }
+        }
+    }
+    patch.faceSizes.push_back(size);
+    patch.diagonalSharpness.push_back(diagonal);
+}
+
+void LimitPatchGatherer::addEdge(Index corner, Index edge, LimitPatch &patch) {
+    Index const size = Index(patch.otherCorners.size());
+    Index const other = _edges.Find(edge);
+    bool const isComplete = _verts.Find(_level.edgeVerts[edge][0]) < _numComplete ||
+                            _verts.Find(_level.edgeVerts[edge][1]) < _numComplete;
+    patch.edgeSharpness.push_back(isComplete ? _level.GetEdgeSharpness(edge) : 0);
+    if (other != Far::INDEX_INVALID) {
+        patch.otherCorners.push_back(other);
+        patch.otherCorners[other] = corner;
+        return;
+    }
+    _edges.Set(edge, size);
+    bool const isKept = _level.IsBoundary(edge) && (isComplete || _level.IsSharpBoundaryB(edge));
+    patch.otherCorners.push_back(isKept ? _level.edgeFaces[edge][1] : Index(kFreeBoundary));
+    Index const line = _level.GetEdgeLine(edge);
+    if (isKept && line != Far::INDEX_INVALID) {
+        auto const found = std::find(_lines.begin(), _lines.end(), line);
+        patch.lineCorners.push_back(corner);
+        patch.lines.push_back(Index(found - _lines.begin()));
+        if (found == _lines.end()) {
+            _lines.push_back(line);
+        }
+    }
+}
+
+void LimitPatchGatherer::addTags(LimitPatch &patch) {
+    for (Index vert = 0; vert < Index(patch.sources.size()); ++vert) {
+        Index const source = patch.sources[vert];
+        bool const isComplete = vert < _numComplete;
+        patch.vertSharpness.push_back(isComplete ? _level.GetVertexSharpness(source) : 0);
+        if (isComplete && std::binary_search(_level.nonManifoldVerts.begin(),
+                                             _level.nonManifoldVerts.end(), source)) {
+            patch.nonManifoldVerts.push_back(vert);
+        }
+    }
+}
+
+void LimitPatchGatherer::addSharpVertices(LimitPatch &patch) {
+    for (Index vert = 0; vert < _numComplete; ++vert) {
+        SharpVertex const *const sharp = _level.FindSharpVertex(patch.sources[vert]);
+        if (!sharp) {
+            continue;
+        }
+        SharpVertex mask = *sharp;
+        mask.vert = vert;
+        for (int i = 0; i < 2; ++i) {
+            mask.neighbors[i] =
+                mask.neighborWeights[i] > 0 ? _verts.Find(sharp->neighbors[i]) : vert;
+        }
+        patch.sharpVerts.push_back(mask);
+    }
+}
+
+void LimitPatchGatherer::addSignature(LimitPatch &patch) {
+    std::vector<int> &signature = patch.signature;
+    auto const add = [&](auto const &numbers) {
+        signature.push_back(int(numbers.size()));
+        for (auto number : numbers) {
+            if constexpr (std::is_same_v<decltype(number), float>) {
+                signature.push_back(getBits(number));
+            } else {
+                signature.push_back(number);
+            }
+        }
+    };
+    auto const addIfAny = [&](std::vector<float> const &tags) {
+        add(std::any_of(tags.begin(), tags.end(), Crease::IsSharp) ? tags : std::vector<float>());
+    };
+    add(patch.faceSizes);
+    add(patch.faceVerts);
+    add(patch.otherCorners);
+    addIfAny(patch.edgeSharpness);
+    addIfAny(patch.diagonalSharpness);
+    addIfAny(patch.vertSharpness);
+    add(patch.nonManifoldVerts);
+    add(patch.lineCorners);
+    add(patch.lines);
+    for (SectorCorner const &sector : patch.sectorCorners) {
+        signature.insert(signature.end(),
+                         {sector.corner, getBits(sector.sectorSize), getBits(sector.weight)});
+    }
+}
+
+void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
+    _verts.Clear(_level.numVertices);
+    _faces.Clear(_level.numFaces);
+    _edges.Clear(_level.numEdges);
+    _corners.clear();
+    _lines.clear();
+    patch = LimitPatch();
+
+    // The vertices whose faces are all there come first: vertex 0 and its neighbours.
+    addVertex(vert, patch);
+    orderFans(vert, patch);
+    for (Index ringEdge : _ringEdges) {
+        for (Index end : _level.edgeVerts[ringEdge]) {
+            addVertex(end, patch);
+        }
+    }
+    _numComplete = int(patch.sources.size());
+
+    auto const addFaceAt = [&](Index k, bool isRing) {
+        addFace(_level.vertFaces[k], _level.vertFaceLocals[k], isRing, patch);
+    };
+    for (Index k : _ringFaces) {
+        addFaceAt(k, true);
+    }
+    for (int i = 1; i < _numComplete; ++i) {
+        Index const neighbor = patch.sources[i];
+        // From an edge of the vertex on, where the neighbour has it.
+        Index const begin = _level.vertFirstEdge[neighbor];
+        Index const *const edges = _level.vertEdges.data();
+        int first = 0;
+        for (Index k = begin; k < _level.vertFirstEdge[neighbor + 1]; ++k) {
+            IndexPair const &ends = _level.edgeVerts[edges[k]];
+            if (ends[0] == vert || ends[1] == vert) {
+                first = k - begin;
+                break;
+            }
+        }
+        Index const beginFace = _level.vertFirstFace[neighbor];
+        int const numFaces = _level.vertFirstFace[neighbor + 1] - beginFace;
+        for (int k = 0; k < numFaces; ++k) {
+            addFaceAt(beginFace + (first + k) % numFaces, false);
+        }
+    }
+    for (Index corner = 0; corner < Index(_corners.size()); ++corner) {
+        addEdge(corner, _level.faceEdges[_corners[corner]], patch);
+    }
+    std::stable_sort(
+        patch.sectorCorners.begin(), patch.sectorCorners.end(),
+        [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
+    addTags(patch);
+    addSharpVertices(patch);
+    addSignature(patch);
+}
+
+void BuildPatchLevel(LimitPatch const &patch, Level &level) {
+    level.numVertices = Index(patch.sources.size());
+    level.numFaces = Index(patch.faceSizes.size());
+    level.numCorners = Index(patch.faceVerts.size());
+    level.faceFirstCorner.Resize(patch.faceSizes.size() + 1);
+    Index first = 0;
+    for (Index face = 0; face < level.numFaces; ++face) {
+        level.faceFirstCorner[face] = first;
+        first += patch.faceSizes[face];
+    }
+    level.faceFirstCorner[level.numFaces] = first;
+    level.faceVerts.Assign(patch.faceVerts);
+
+    std::vector<EdgeSides> edges;
+    std::vector<float> edgeSharpness;
+    for (Index corner = 0; corner < level.numCorners; ++corner) {
+        Index const other = patch.otherCorners[corner];
+        if (other < 0 || other > corner) {
+            edges.push_back({{corner, other}});
+            edgeSharpness.push_back(patch.edgeSharpness[corner]);
+        }
+    }
+    BuildBaseLevel({edges.data(), Index(edges.size())}, level);
+    fillTags(edgeSharpness, level.edgeSharpness);
+    fillTags(patch.diagonalSharpness, level.diagonalSharpness);
+    fillTags(patch.vertSharpness, level.vertSharpness);
+    level.nonManifoldVerts = patch.nonManifoldVerts;
+    level.lineEdges.clear();
+    for (std::size_t i = 0; i < patch.lines.size(); ++i) {
+        level.lineEdges.push_back({level.faceEdges[patch.lineCorners[i]], patch.lines[i]});
+    }
+    level.sharpVerts = patch.sharpVerts;
+    level.sectorCorners = patch.sectorCorners;
+}
+
+void PatchRefinement::ApplyLeft(std::vector<double> const &left,
+                                std::vector<double> &result) const {
+    result.assign(numParentVerts, 0.0);
+    for (std::size_t row = 0; row < left.size(); ++row) {
+        for (int k = firsts[row]; k < firsts[row + 1]; ++k) {
+            result[verts[k]] += left[row] * weights[k];
+        }
+    }
+}
+
+void PatchRefinement::ApplyRight(std::vector<double> const &right,
+                                 std::vector<double> &result) const {
+    result.assign(firsts.size() - 1, 0.0);
+    for (std::size_t row = 0; row < result.size(); ++row) {
+        for (int k = firsts[row]; k < firsts[row + 1]; ++k) {
+            result[row] += weights[k] * right[verts[k]];
+        }
+    }
+}
+
+namespace {
+
+// A row of a matrix that is being formed: the sum of what was added, by column.
+struct SparseRow {
+    void Clear() { entries.clear(); }
+    void AddWithWeight(Index column, double weight) { entries.emplace_back(column, weight); }
+    void AddWithWeight(SparseRow const &row, double weight) {
+        for (auto const &[column, rowWeight] : row.entries) {
+            entries.emplace_back(column, weight * rowWeight);
+        }
+    }
+
+    std::vector<std::pair<Index, double>> entries;
+};
+
+// The vertices of a patch are the columns.
+struct Columns {
+    Index operator[](Index vert) const { return verts[std::size_t(vert)]; }
+
+    std::vector<Index> const &verts;
+};
+
+// Appends a row, its columns ascending, to a step.
+void addRow(SparseRow row, PatchRefinement &step) {
+    std::stable_sort(row.entries.begin(), row.entries.end(),
+                     [](auto const &a, auto const &b) { return a.first < b.first; });
+    std::size_t const first = step.verts.size();
+    for (auto const &[column, weight] : row.entries) {
+        if (step.verts.size() == first || step.verts.back() != column) {
+            step.verts.push_back(column);
+            step.weights.push_back(weight);
+        } else {
+            step.weights.back() += weight;
+        }
+    }
+    step.firsts.push_back(int(step.verts.size()));
+}
+
+// Around a V-vertex the children of edges take the place of faces: the first edge of a closed fan
+// comes last, and so does the side that begins there.
+std::vector<int> mapSides(Level const &pLevel, LimitPatch const &cPatch) {
+    std::vector<int> result;
+    ForEachFanItems(pLevel, 0, [&](FanItems const &fan) {
+        int const first = int(result.size());
+        int const numSides = countSides(fan);
+        int const shift = fan.isClosed && isBreak(fan.items.front());
+        for (int side = 0; side < numSides; ++side) {
+            result.push_back(cPatch.sides[first + (side + numSides - shift) % numSides]);
+        }
+    });
+    return result;
+}
+
+} // namespace
+
+PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
+                            HexSchemeOptions const &schemeOptions, LimitPatch &cPatch) {
+    Level parent;
+    Level child;
+    Refinement refinement;
+    BuildPatchLevel(pPatch, parent);
+    RefineHexagonally(parent, sdcOptions, true, refinement, child);
+    LimitPatchGatherer(child).Gather(refinement.GetVertexChildVertex(0), cPatch);
+
+    std::vector<Index> wanted = cPatch.sources;
+    SortUnique(wanted);
+    RefinementRows::Part const part =
+        FindPart(refinement, schemeOptions, Interpolation::Vertex, wanted);
+    RefinementRows const rows(refinement, schemeOptions, Interpolation::Vertex, part);
+    std::vector<SparseRow> sparseRows(std::size_t(rows.GetNumRows()));
+    Interpolate<double>(rows, Columns{part.verts}, sparseRows);
+
+    PatchRefinement step;
+    step.numParentVerts = parent.numVertices;
+    step.firsts.push_back(0);
+    std::vector<Index> const made = GetMadeVertices(refinement, part);
+    for (Index cVert : cPatch.sources) {
+        auto const place = std::lower_bound(made.begin(), made.end(), cVert);
+        addRow(std::move(sparseRows[std::size_t(place - made.begin())]), step);
+    }
+    step.sides = mapSides(parent, cPatch);
+    return step;
+}
+
+std::vector<VertexSide> FindVertexSides(Level const &level, Index vert) {
+    std::vector<VertexSide> sides;
+    int fanIndex = 0;
+    ForEachFanItems(level, vert, [&](FanItems &fan) {
+        std::vector<RingItem> &items = fan.items;
+        int const numBreaks = countBreaks(fan);
+        if (fan.isClosed && numBreaks > 0) {
+            std::rotate(items.begin(), std::find_if(items.begin(), items.end(), isBreak),
+                        items.end());
+        }
+        if (numBreaks < 2) {
+            sides.push_back({items, fan.isClosed, fanIndex++});
+            return;
+        }
+        if (fan.isClosed) {
+            items.push_back(items.front());
+        }
+        auto begin = items.begin();
+        for (auto item = begin + 1; item != items.end(); ++item) {
+            if (isBreak(*item) || item + 1 == items.end()) {
+                sides.push_back({std::vector<RingItem>(begin, item + 1), false, fanIndex});
+                begin = item;
+            }
+        }
+        ++fanIndex;
+    });
+    return sides;
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

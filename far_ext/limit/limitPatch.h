@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_PATCH_H
+#define OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_PATCH_H
+
+#include "far_ext/hexSchemeOptions.h"
+#include "far_ext/vtr/vertexFan.h"
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief What the limit at a vertex depends on: the faces around it and around its neighbours.
+/// (Not so on free boundaries, where a neighbour stays a neighbour and has another beyond.)
+///
+/// The patch of a vertex makes the patch of its V-vertex: the faces there are the E-faces of its
+/// edges, and the neighbours are its F-vertices, with the F-faces of its faces besides.  Their
+/// vertices depend on faces of the parent patch alone, and so do their tags.  Hence the steps from
+/// patch to patch give the limit.
+///
+/// The patch is a mesh of its own: vertex 0 is the one that it is made for, and it is cut off along
+/// free boundaries.  Its numbering and content do not depend on those of the level, as far as that
+/// is cheap to achieve: patches that look alike have the same signature.
+struct LimitPatch {
+    using Index = Far::Index;
+
+    std::vector<Index> sources; ///< the level's vertex of each vertex of the patch
+    /// By side of the level's vertex, the side of vertex 0: in closed fans they begin elsewhere.
+    std::vector<int> sides;
+
+    std::vector<int> faceSizes;
+    std::vector<Index> faceVerts;     ///< of all faces in turn
+    std::vector<Index> otherCorners;  ///< by corner, across the edge from it; or a BoundaryKind
+    std::vector<float> edgeSharpness; ///< by corner, of the edge from it; the same on both sides
+    std::vector<float> diagonalSharpness;    ///< by face
+    std::vector<float> vertSharpness;        ///< by vertex
+    std::vector<Index> nonManifoldVerts;     ///< ascending
+    std::vector<Index> lineCorners;          ///< ascending; those whose edge has a line
+    std::vector<Index> lines;                ///< of these, in the order of their first corners
+    std::vector<SectorCorner> sectorCorners; ///< ascending
+    std::vector<SharpVertex> sharpVerts;     ///< ascending; of vertex 0 and its neighbours
+
+    /// All of the above but the sources, the sides and the masks of sharpVerts, which follow from
+    /// the rest.
+    std::vector<int> signature;
+};
+
+/// \brief Cuts patches out of a level, which has full topology.
+class LimitPatchGatherer {
+public:
+    using Index = Far::Index;
+
+    explicit LimitPatchGatherer(Level const &level) : _level(level) {}
+
+    void Gather(Index vert, LimitPatch &patch);
+
+private:
+    // Numbers the components of a level that are in the patch; forgets them all at once.
+    class IndexMap {
+    public:
+        void Clear(std::size_t size) {
+            if (_entries.size() < size) {
+                _entries.resize(size);
+            }
+            ++_round;
+        }
+        Index Find(Index i) const {
+            return _entries[i].round == _round ? _entries[i].value : Far::INDEX_INVALID;
+        }
+        void Set(Index i, Index value) { _entries[i] = {_round, value}; }
+
+    private:
+        struct Entry {
+            int round = 0;
+            Index value = 0;
+        };
+        std::vector<Entry> _entries;
+        int _round = 0;
+    };
+
+    void orderFans(Index vert, LimitPatch &patch);
+    int findFirstFace(VertexFan const &fan, int &firstSide);
+    Index addVertex(Index vert, LimitPatch &patch);
+    void addFace(Index face, int local, bool isRing, LimitPatch &patch);
+    void addEdge(Index corner, Index edge, LimitPatch &patch);
+    void addTags(LimitPatch &patch);
+    void addSharpVertices(LimitPatch &patch);
+    static void addSignature(LimitPatch &patch);
+
+    Level const &_level;
+    IndexMap _verts;
+    IndexMap _faces;
+    IndexMap _edges;             // the first corner of each
+    int _numComplete = 0;        // vertices, the first ones, all of whose faces are in the patch
+    std::vector<Index> _corners; // the level's corner of each corner of the patch
+    std::vector<Index> _lines;   // the level's line of each line of the patch
+    // Of the vertex that the patch is for: positions in vertFaces, and edges.
+    std::vector<Index> _ringFaces;
+    std::vector<Index> _ringEdges;
+    FanItems _fan = {{}, false};
+};
+
+/// Makes a level of a patch, with all that a step of refinement needs.
+void BuildPatchLevel(LimitPatch const &patch, Level &level);
+
+/// \brief A step from a patch to that of the V-vertex of its vertex 0, as a sparse matrix.
+struct PatchRefinement {
+    int numParentVerts = 0;
+    std::vector<int> firsts; ///< by vertex of the child patch, and the end
+    std::vector<int> verts;  ///< of the parent patch
+    std::vector<double> weights;
+    std::vector<int> sides; ///< which side of the child patch each side of the parent becomes
+
+    /// result = left A: what the vertices of the child patch weigh, in terms of the parent's.
+    void ApplyLeft(std::vector<double> const &left, std::vector<double> &result) const;
+    /// result = A right: values of the child patch's vertices from those of the parent's.
+    void ApplyRight(std::vector<double> const &right, std::vector<double> &result) const;
+};
+
+/// Refines \p pPatch to \p cPatch.
+PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
+                            HexSchemeOptions const &schemeOptions, LimitPatch &cPatch);
+
+/// \brief What lies at a vertex between two infinitely sharp edges, or all around it: the limit
+/// surface has a tangent plane for each.  A fan of faces with fewer than two such edges is one
+/// side.
+struct VertexSide {
+    /// From the edge (or diagonal) where the side begins, counter-clockwise to that where it ends;
+    /// of a closed fan that is one side, from its sharp edge, where it has one, to the last face.
+    std::vector<RingItem> items;
+    bool isAllAround;
+    int fan;
+};
+
+/// The sides of a vertex, in the order of its fans; in a closed fan from the first sharp edge on.
+std::vector<VertexSide> FindVertexSides(Level const &level, Far::Index vert);
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_STENCIL_STENCIL_PLAN_H
+#define OPENSUBDIVHEX_FAR_EXT_STENCIL_STENCIL_PLAN_H
+
+#include "far_ext/hexSchemeOptions.h"
+#include "far_ext/mask.h"
+#include "far_ext/vtr/hierarchy.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief Which levels of which mesh a stencil table is made of.
+struct StencilPlan {
+    using Index = Far::Index;
+
+    /// The level of the mesh or, for face-varying stencils, of the value mesh.
+    Level const &GetLevel(int level) const { return hierarchy.GetMesh(channel).levels[level]; }
+    /// The refinement that makes a level of these, 1 or more.
+    Refinement const &GetRefinement(int level) const {
+        return hierarchy.GetMesh(channel).refinements[level - 1];
+    }
+    /// What a stencil is made for, and what stencils refer to.
+    Index GetNumVertices(int level) const {
+        return channel >= 0 && level == 0 ? hierarchy.channels[channel].numValues
+                                          : GetLevel(level).numVertices;
+    }
+    /// What vertices of a level stand for as sources; of values, those that the user has.
+    std::vector<Index> GetSources(int level, std::vector<Index> verts) const;
+    /// The same of all vertices.
+    std::vector<Index> GetSources(int level) const;
+    /// How many sources the stencils of a level have to choose from.
+    Index GetNumSources(int level) const { return GetNumVertices(factorize ? 0 : level - 1); }
+
+    /// Whether the stencils of a level are made from those of the level before.
+    bool HasParentStencils(int level) const { return factorize && level > firstBuilt; }
+
+    Hierarchy const &hierarchy;
+    HexSchemeOptions schemeOptions;
+    int channel; ///< face-varying channel, or -1
+    Interpolation interpolation;
+    bool factorize;
+    int lastLevel;
+    int firstStored;          ///< in the table, behind the control vertices
+    int firstBuilt;           ///< as a source of later levels, or to be stored
+    Index numControlStencils; ///< that come first in the table
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

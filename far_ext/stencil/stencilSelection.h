@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_STENCIL_STENCIL_SELECTION_H
+#define OPENSUBDIVHEX_FAR_EXT_STENCIL_STENCIL_SELECTION_H
+
+#include "stencilPlan.h"
+
+#include "far_ext/vtr/refinementRows.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// Of levels 0 ... \p lastLevel, the faces that lie in one of \p baseFaces, in ascending order.  The
+/// work is proportional to their number, but for a logarithm where there are V-faces.
+std::vector<std::vector<Far::Index>>
+FindFacesOfBaseFaces(MeshLevels const &mesh, Far::ConstIndexArray baseFaces, int lastLevel);
+
+/// The vertices of faces of a level or, with a \p channel of 0 or more, their values; ascending.
+std::vector<Far::Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int level, int channel,
+                                            std::vector<Far::Index> const &faces);
+
+/// \brief The least parts of all refinements that make wanted vertices, in terms of the control
+/// vertices.
+struct StencilSelection {
+    /// \param wanted  vertices of each level of the plan, ascending
+    StencilSelection(StencilPlan const &plan, std::vector<std::vector<Far::Index>> wanted);
+
+    std::vector<RefinementRows::Part> parts; ///< of the refinements that make levels 1, 2 ...
+    std::vector<Far::Index> sources;         ///< of parts[0].verts, as numbers in indices
+    std::vector<Far::Index> indices;         ///< ascending; what the stencils refer to
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_BASE_LEVEL_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_BASE_LEVEL_H
+
+#include "level.h"
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief The sides of an edge of level 0, each by the corner where its face begins to run along
+/// the edge.  A boundary edge has a BoundaryKind in place of the second corner.
+struct EdgeSides {
+    Far::Index corners[2];
+};
+
+/// \brief Derives all relations of \p level from its faces (numVertices, numFaces, numCorners,
+/// faceFirstCorner and faceVerts, which the caller has filled) and from its edges.
+///
+/// Every corner is a side of exactly one edge; a B boundary is edge 0 of its face.  The faces of a
+/// vertex are joined to fans across interior edges; edges that are joined nowhere else may share
+/// both vertices.
+void BuildBaseLevel(OpenSubdiv::Vtr::ConstArray<EdgeSides> edges, Level &level);
+
+/// \brief Finds the sizes of the faces of \p level that occur.
+void FindFaceSizes(Level &level);
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

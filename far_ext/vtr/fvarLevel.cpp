@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fvarLevel.h"
+
+#include "baseLevel.h"
+#include "hierarchy.h"
+#include "sharpFeatures.h"
+#include "vertexFan.h"
+
+#include <numeric>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Far::Index;
+
+// The edges of the value mesh: an edge of the mesh whose sides differ in a value falls into two.
+// meshEdges gets the mesh edge that each comes from.
+std::vector<EdgeSides> cutSeams(Level const &mesh, std::vector<Index> const &faceValues,
+                                std::vector<Index> &meshEdges) {
+    std::vector<EdgeSides> result;
+    std::vector<EdgeSides> secondSides;
+    std::vector<Index> secondMeshEdges;
+    for (Index edge = 0; edge < mesh.numEdges; ++edge) {
+        EdgeSides sides = {{mesh.GetSideCorner(edge, 0), mesh.GetSideCorner(edge, 1)}};
+        if (sides.corners[1] >= 0) {
+            Index const next0 = mesh.GetNextCorner(mesh.edgeFaces[edge][0], sides.corners[0]);
+            Index const next1 = mesh.GetNextCorner(mesh.edgeFaces[edge][1], sides.corners[1]);
+            if (faceValues[sides.corners[0]] != faceValues[next1] ||
+                faceValues[sides.corners[1]] != faceValues[next0]) {
+                secondSides.push_back({{sides.corners[1], kSharpBoundaryA}});
+                secondMeshEdges.push_back(edge);
+                sides.corners[1] = kSharpBoundaryA;
+            }
+        }
+        result.push_back(sides);
+        meshEdges.push_back(edge);
+    }
+    result.insert(result.end(), secondSides.begin(), secondSides.end());
+    meshEdges.insert(meshEdges.end(), secondMeshEdges.begin(), secondMeshEdges.end());
+    return result;
+}
+
+// Gives every fan of faces around a vertex of the value mesh a vertex of its own: the first keeps
+// the index, others are appended.
+void splitFans(std::vector<EdgeSides> const &edges, Level &level, FVarChannel &channel) {
+    std::vector<Index> valuesOfVertices(channel.numValues);
+    std::iota(valuesOfVertices.begin(), valuesOfVertices.end(), 0);
+    for (Index vert = 0; vert < channel.numValues; ++vert) {
+        ForEachFan(level, vert, [&](VertexFan const &fan) {
+            if (fan.begin == level.vertFirstFace[vert]) {
+                return;
+            }
+            for (Index i = fan.begin; i < fan.end; ++i) {
+                level.faceVerts[level.GetVertexCorner(i)] = Index(valuesOfVertices.size());
+            }
+            valuesOfVertices.push_back(vert);
+        });
+    }
+    channel.valuesOfVertices.Assign(valuesOfVertices);
+    if (Index(valuesOfVertices.size()) > channel.numValues) {
+        level.numVertices = Index(valuesOfVertices.size());
+        BuildBaseLevel({edges.data(), Index(edges.size())}, level);
+    }
+}
+
+bool meetsFreeBoundary(Level const &level, Index vert, bool &meetsSharp) {
+    bool meetsFree = false;
+    meetsSharp = false;
+    for (Index i = level.vertFirstEdge[vert]; i < level.vertFirstEdge[vert + 1]; ++i) {
+        Index const edge = level.vertEdges[i];
+        if (level.IsBoundary(edge)) {
+            bool const isFree = level.edgeFaces[edge][1] == kFreeBoundary;
+            (isFree ? meetsFree : meetsSharp) = true;
+        }
+    }
+    return meetsFree;
+}
+
+} // namespace
+
+void BuildFVarChannel(Level const &mesh, Index numValues, std::vector<Index> const &faceValues,
+                      std::vector<float> const &sharpness, Sdc::Options sdcOptions,
+                      FVarChannel &channel) {
+    Level &level = channel.values.levels.emplace_back();
+    FVarLevel &fvarLevel = channel.levels.emplace_back();
+    channel.numValues = numValues;
+    channel.linearInterpolation = sdcOptions.GetFVarLinearInterpolation();
+    channel.faceValues.Assign(faceValues);
+    fvarLevel.values = &level;
+    fvarLevel.valueFaces.Resize(mesh.numFaces);
+    std::iota(fvarLevel.valueFaces.data(), fvarLevel.valueFaces.data() + mesh.numFaces, 0);
+
+    level.numVertices = numValues;
+    level.numFaces = mesh.numFaces;
+    level.numCorners = mesh.numCorners;
+    level.faceFirstCorner.Assign(mesh.faceFirstCorner);
+    level.faceVerts.Assign(faceValues);
+    std::vector<Index> meshEdges;
+    std::vector<EdgeSides> const edges = cutSeams(mesh, faceValues, meshEdges);
+    BuildBaseLevel({edges.data(), Index(edges.size())}, level);
+    splitFans(edges, level, channel);
+
+    // The tags of the mesh; a seam is sharp without one.
+    if (!mesh.edgeSharpness.empty()) {
+        level.edgeSharpness.Resize(level.numEdges);
+        for (Index edge = 0; edge < level.numEdges; ++edge) {
+            level.edgeSharpness[edge] =
+                level.IsBoundary(edge) ? 0 : mesh.GetEdgeSharpness(meshEdges[edge]);
+        }
+    }
+    level.vertSharpness.Resize(level.numVertices);
+    std::fill_n(level.vertSharpness.data(), level.numVertices, Sdc::Crease::SHARPNESS_SMOOTH);
+    for (Index corner = 0; corner < level.numCorners; ++corner) {
+        level.vertSharpness[level.faceVerts[corner]] = sharpness[corner];
+    }
+    for (Index vert = 0; vert < level.numVertices; ++vert) {
+        // Where a seam meets a boundary that follows the paper's rule no curve goes on: a corner.
+        bool meetsSharp;
+        if (meetsFreeBoundary(level, vert, meetsSharp) && meetsSharp) {
+            level.vertSharpness[vert] = Sdc::Crease::SHARPNESS_INFINITE;
+        }
+    }
+    ComputeSharpMasks(sdcOptions, level);
+}
+
+namespace {
+
+// A V-face has the F-vertices of corners that no other V-face has.  No seam crosses these faces.
+void relateVFaces(Refinement const &mesh, Refinement const &values, FVarLevel const &pLevel,
+                  FVarLevel &cLevel) {
+    Level const &pMesh = *mesh.parent;
+    Level const &cMesh = *mesh.child;
+    Level const &pValues = *values.parent;
+    Level const &cValues = *values.child;
+    if (cMesh.numVFaces == 0) {
+        return;
+    }
+    std::vector<Index> vFaceOfCorner(pValues.numCorners, Far::INDEX_INVALID);
+    for (Index face = cValues.numFaces - cValues.numVFaces; face < cValues.numFaces; ++face) {
+        vFaceOfCorner[values.GetFaceParentCorner(face)] = face;
+    }
+    std::vector<Index> vFaceOfMeshCorner(pMesh.numCorners);
+    for (Index face = 0; face < pMesh.numFaces; ++face) {
+        Index const first = pMesh.faceFirstCorner[face];
+        for (Index i = 0; i < pMesh.GetFaceSize(face) && !pLevel.FindSplitFace(face); ++i) {
+            vFaceOfMeshCorner[first + i] =
+                vFaceOfCorner[pValues.faceFirstCorner[pLevel.valueFaces[face]] + i];
+        }
+    }
+    for (Index face = cMesh.numFaces - cMesh.numVFaces; face < cMesh.numFaces; ++face) {
+        cLevel.valueFaces[face] = vFaceOfMeshCorner[mesh.GetFaceParentCorner(face)];
+    }
+}
+
+} // namespace
+
+void RefineFVarLevel(Refinement const &mesh, Refinement const &values, FVarLevel const &pLevel,
+                     FVarLevel &cLevel) {
+    Level const &pMesh = *mesh.parent;
+    Level const &cValues = *values.child;
+    cLevel.values = &cValues;
+    cLevel.valueFaces.Resize(mesh.child->numFaces);
+    cLevel.splitFaces.clear();
+
+    auto const addSplitFace = [&](Index cFace, Index first, Index second) {
+        FVarLevel::SplitFace split = {cFace, {first, second}, {}};
+        for (int half = 1; half >= 0; --half) {
+            for (int i = 0; i < HexIndexing::kNumBoundaryEFaceCorners; ++i) {
+                split.cornerValues[kHexagonHalves[half][i]] =
+                    cValues.GetFaceVertices(split.valueFaces[half])[i];
+            }
+        }
+        cLevel.splitFaces.push_back(split);
+    };
+
+    // F-faces have the indices of their parents.
+    std::copy(pLevel.valueFaces.begin(), pLevel.valueFaces.end(), cLevel.valueFaces.data());
+    for (FVarLevel::SplitFace const &split : pLevel.splitFaces) {
+        addSplitFace(split.face, split.valueFaces[0], split.valueFaces[1]);
+    }
+    for (Index pEdge = 0; pEdge < pMesh.numEdges; ++pEdge) {
+        Index const cFace = mesh.GetEdgeChildFace(pEdge);
+        if (cFace == Far::INDEX_INVALID) {
+            continue;
+        }
+        auto const valueEdgeOf = [&](int side) {
+            return pLevel.GetFaceEdge(pMesh.edgeFaces[pEdge][side],
+                                      pMesh.edgeFaceLocals[pEdge][side]);
+        };
+        Index const valueEdge = valueEdgeOf(0);
+        cLevel.valueFaces[cFace] = values.GetEdgeChildFace(valueEdge);
+        if (!pMesh.IsBoundary(pEdge)) {
+            if (Index const otherEdge = valueEdgeOf(1); otherEdge != valueEdge) {
+                addSplitFace(cFace, cLevel.valueFaces[cFace], values.GetEdgeChildFace(otherEdge));
+            }
+        }
+    }
+    relateVFaces(mesh, values, pLevel, cLevel);
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

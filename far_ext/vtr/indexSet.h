@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_INDEX_SET_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_INDEX_SET_H
+
+#include "far_ext/status.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief A set of indices in pages of bits: what it takes is proportional to the indices, but for
+/// one entry per page of the range that they are from.
+class IndexSet {
+public:
+    using Index = Far::Index;
+
+    /// For indices below \p end; empty.
+    explicit IndexSet(Index end) : _pages(end / kPageBits + 1, -1) {}
+
+    void Insert(Index index);
+
+    /// All indices, ascending.
+    std::vector<Index> GetIndices() const;
+
+private:
+    friend class IndexNumbering;
+
+    using Word = std::uint64_t;
+    static constexpr Index kWordBits = 64;
+    static constexpr Index kPageWords = 8;
+    static constexpr Index kPageBits = kWordBits * kPageWords;
+
+    // The word that has an index of a page that is there.
+    std::size_t findWord(Index index) const {
+        return std::size_t(_pages[index / kPageBits]) * kPageWords + index % kPageBits / kWordBits;
+    }
+
+    std::vector<Index> _pages; // number of each page among those that are there, or -1
+    std::vector<Word> _words;
+    Index _numPages = 0;
+};
+
+/// \brief The place of each index in an ascending list.
+class IndexNumbering {
+public:
+    using Index = Far::Index;
+
+    /// \p ascending has no index twice, and all are below \p end.
+    IndexNumbering(std::vector<Index> const &ascending, Index end);
+
+    /// The place of an index that the list has.
+    Index operator()(Index index) const;
+
+private:
+    IndexSet _set;
+    std::vector<Index> _numBefore; // each word of the set
+};
+
+/// Sorts indices and removes repeated ones.
+OPENSUBDIVHEX_API void SortUnique(std::vector<Far::Index> &indices);
+/// The same of many indices, all below \p end.
+void SortUnique(std::vector<Far::Index> &indices, Far::Index end);
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_LEVEL_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_LEVEL_H
+
+#include "buffer.h"
+
+#include "far_ext/indexing.h"
+
+#include <opensubdiv/sdc/crease.h>
+#include <opensubdiv/vtr/types.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief How a boundary edge refines.  Stands in Level::edgeFaces in place of the second
+/// face.  The phases A and B of sharp boundaries alternate as INDEXING.md shows.
+enum BoundaryKind : Far::Index {
+    kFreeBoundary = Far::INDEX_INVALID, ///< the paper's rule: stays one edge for ever
+    kSharpBoundaryA = -2,               ///< runs along an edge of the hexagonal lattice
+    kSharpBoundaryB = -3                ///< cuts a hexagon in two: its face is a half face
+};
+
+/// \brief The mask of a vertex on a sharp feature:
+/// V' = vertexWeight V + faceWeight (sum of its F-vertices) + sum of neighborWeights neighbors.
+struct SharpVertex {
+    Far::Index vert;
+    Sdc::Crease::Rule rule;
+    double vertexWeight;
+    double faceWeight;
+    Far::Index neighbors[2]; ///< along the crease; meaningless where the weight is 0
+    double neighborWeights[2];
+};
+
+/// \brief A corner whose F-vertex is drawn towards its vertex, because that has many faces between
+/// two sharp edges: see ComputeSectorShrink in mask.h.
+///
+/// Edges whose sharpness is below 1 take part in proportion to it: the corner has an entry for each
+/// set of edges that are at least as sharp as some threshold in (0, 1].
+struct SectorCorner {
+    Far::Index corner;
+    float sectorSize; ///< faces between the sharp edges; a half hexagon counts half
+    float weight;     ///< share of the thresholds; the entries of a corner sum to 1 at most
+};
+
+/// \brief A boundary edge where an edge of level 0 came apart into one for each of its faces.  Edges
+/// of one line run along one curve.
+struct LineEdge {
+    Far::Index edge;
+    Far::Index line; ///< the edge of level 0, in the numbering of the base
+};
+
+/// @name The places of vertices in their edges, where a hexagonal step made both without boundaries
+/// @{
+/// All edges of a V-vertex are spokes, which begin there.
+inline constexpr std::array<Far::LocalIndex, OpenSubdiv::Vtr::VALENCE_LIMIT> kVVertexEdgeLocals{};
+/// An F-vertex has the edge of the F-face to the next corner, that from the corner before, a spoke.
+inline constexpr std::array<Far::LocalIndex, 3> kFVertexEdgeLocals = {0, 1, 1};
+/// @}
+
+/// Two of something, for the two ends or sides of an edge.
+using IndexPair = std::array<Far::Index, 2>;
+using LocalIndexPair = std::array<Far::LocalIndex, 2>;
+
+/// \brief The relations, tags and masks of one level of a mesh.  It is not changed once it is
+/// filled.  What relates it to other levels is in Refinement; TopologyLevel is the public view.
+///
+/// Invariants of every level, level 0 included:
+///  - a face's vertices run in its orientation; its edge i joins its vertices i and i + 1;
+///  - an edge's first face runs from the edge's first vertex to its second, the other face back;
+///    a boundary edge has a BoundaryKind in place of the second face;
+///  - the edges and faces of a vertex are in counter-clockwise order: face i lies between edges i
+///    and i + 1; at a boundary vertex the first and the last edge are boundaries.  The fans of a
+///    non-manifold vertex follow one another, each in this order.
+struct Level {
+    using Index = Far::Index;
+    using LocalIndex = Far::LocalIndex;
+
+    Level() = default;
+    Level(Level const &) = delete; // its arrays may lie in its memory
+    Level &operator=(Level const &) = delete;
+
+    /// The numbering of a child that the hexagonal refinement makes.
+    HexIndexing ChildIndexing() const { return HexIndexing(numVertices, numFaces, numCorners); }
+
+    int GetFaceSize(Index f) const { return faceFirstCorner[f + 1] - faceFirstCorner[f]; }
+    Far::ConstIndexArray GetFaceVertices(Index f) const {
+        return {faceVerts.data() + faceFirstCorner[f], GetFaceSize(f)};
+    }
+    int GetNumVertexFaces(Index v) const { return vertFirstFace[v + 1] - vertFirstFace[v]; }
+    Far::ConstIndexArray GetVertexFaces(Index v) const {
+        return {vertFaces.data() + vertFirstFace[v], GetNumVertexFaces(v)};
+    }
+    Far::ConstIndexArray GetVertexEdges(Index v) const {
+        return {vertEdges.data() + vertFirstEdge[v], vertFirstEdge[v + 1] - vertFirstEdge[v]};
+    }
+
+    /// The face that a corner is in.
+    Index FindFaceOfCorner(Index corner) const {
+        Index const *const first = faceFirstCorner.begin();
+        return Index(std::upper_bound(first, faceFirstCorner.end(), corner) - first) - 1;
+    }
+    /// The corners before and after a corner of a face.
+    Index GetPrevCorner(Index f, Index corner) const {
+        return (corner == faceFirstCorner[f] ? faceFirstCorner[f + 1] : corner) - 1;
+    }
+    Index GetNextCorner(Index f, Index corner) const {
+        return corner + 1 == faceFirstCorner[f + 1] ? faceFirstCorner[f] : corner + 1;
+    }
+    /// The corner of a vertex in the face at position \p k of vertFaces.
+    Index GetVertexCorner(Index k) const {
+        return faceFirstCorner[vertFaces[k]] + vertFaceLocals[k];
+    }
+    /// The corner where side \p side of an edge starts; a BoundaryKind, negative, where there is
+    /// none.
+    Index GetSideCorner(Index e, int side) const {
+        Index const face = edgeFaces[e][side];
+        return face < 0 ? face : faceFirstCorner[face] + edgeFaceLocals[e][side];
+    }
+
+    /// The place of a vertex, 0 or 1, in each of its edges.
+    LocalIndex const *GetVertexEdgeLocals(Index v) const {
+        if (!vertEdgeLocals.empty()) {
+            return vertEdgeLocals.data() + vertFirstEdge[v];
+        }
+        return v < numVVertices ? kVVertexEdgeLocals.data() : kFVertexEdgeLocals.data();
+    }
+
+    bool IsBoundary(Index e) const { return edgeFaces[e][1] < 0; }
+    bool IsSharpBoundaryB(Index e) const { return edgeFaces[e][1] == kSharpBoundaryB; }
+    bool IsHalfFace(Index f) const {
+        return !halfFaces.empty() &&
+               IsSharpBoundaryB(faceEdges[faceFirstCorner[f] + kHalfFaceLongEdge]);
+    }
+    int GetNumBoundaries() const {
+        return numFreeBoundaries + numSharpBoundariesA + numSharpBoundariesB;
+    }
+    /// Whether any face of the level has another mask than that of its size.
+    bool HasFeatures() const {
+        return !halfFaces.empty() || !diagonalSharpness.empty() || !sectorCorners.empty();
+    }
+    float GetEdgeSharpness(Index e) const { return edgeSharpness.empty() ? 0 : edgeSharpness[e]; }
+    float GetDiagonalSharpness(Index f) const {
+        return diagonalSharpness.empty() ? 0 : diagonalSharpness[f];
+    }
+    float GetVertexSharpness(Index v) const {
+        return std::size_t(v) < vertSharpness.size() ? vertSharpness[v] : 0;
+    }
+    /// The line of edge \p e, INDEX_INVALID when it has none.
+    Index GetEdgeLine(Index e) const {
+        auto const found =
+            std::lower_bound(lineEdges.begin(), lineEdges.end(), e,
+                             [](LineEdge const &line, Index edge) { return line.edge < edge; });
+        return found != lineEdges.end() && found->edge == e ? found->line : Far::INDEX_INVALID;
+    }
+    bool IsNonManifold(Index v) const {
+        return std::binary_search(nonManifoldVerts.begin(), nonManifoldVerts.end(), v);
+    }
+
+    /// The sharp vertex \p v, null when its rule is the smooth one.
+    SharpVertex const *FindSharpVertex(Index v) const {
+        auto const found = std::lower_bound(
+            sharpVerts.begin(), sharpVerts.end(), v,
+            [](SharpVertex const &sharp, Index vert) { return sharp.vert < vert; });
+        return found != sharpVerts.end() && found->vert == v ? &*found : nullptr;
+    }
+    /// The entries of the corners from \p begin to \p end - 1 that lie in wide sectors.
+    OpenSubdiv::Vtr::ConstArray<SectorCorner> GetSectorCorners(Index begin, Index end) const {
+        auto const isBefore = [](SectorCorner const &sector, Index c) { return sector.corner < c; };
+        auto const first =
+            std::lower_bound(sectorCorners.begin(), sectorCorners.end(), begin, isBefore);
+        auto const last = std::lower_bound(first, sectorCorners.end(), end, isBefore);
+        return {sectorCorners.data() + (first - sectorCorners.begin()), int(last - first)};
+    }
+
+    /// Whether the level has no orders of edges around vertices of its own: where a hexagonal
+    /// refinement made it without boundaries, vertices have as many edges as faces, and their
+    /// places in these are known.
+    bool HasImpliedVertexEdges() const { return isHexagonal && GetNumBoundaries() == 0; }
+
+    /// \brief Calls function(array, size) for the arrays of all relations of \p level, a Level or a
+    /// constant one, with the number of entries that follows from its counts: 0 for those that it
+    /// does not have.
+    ///
+    /// Where HasImpliedVertexEdges(), vertFirstEdge lies in the place of vertFirstFace.
+    template <typename LEVEL, typename FUNCTION>
+    static void ForEachRelation(LEVEL &level, FUNCTION const &function) {
+        auto const numVertices = std::size_t(level.numVertices);
+        auto const numFaces = std::size_t(level.numFaces);
+        auto const numCorners = std::size_t(level.numCorners);
+        auto const numEdges = std::size_t(level.hasFullTopology ? level.numEdges : 0);
+        std::size_t const numFullCorners = level.hasFullTopology ? numCorners : 0;
+        bool const hasVertexEdges = level.hasFullTopology && !level.HasImpliedVertexEdges();
+        function(level.faceFirstCorner, numFaces + 1);
+        function(level.faceVerts, numCorners);
+        function(level.faceEdges, numFullCorners);
+        function(level.edgeVerts, numEdges);
+        function(level.edgeFaces, numEdges);
+        function(level.edgeFaceLocals, numEdges);
+        function(level.boundaryEdges, level.hasFullTopology ? level.GetNumBoundaries() : 0);
+        function(level.halfFaces, level.hasFullTopology ? level.numSharpBoundariesB : 0);
+        function(level.vertFirstFace, level.hasFullTopology ? numVertices + 1 : 0);
+        function(level.vertFaces, numFullCorners);
+        function(level.vertFaceLocals, numFullCorners);
+        function(level.vertEdges, 2 * numEdges);
+        function(level.vertFirstEdge, hasVertexEdges ? numVertices + 1 : 0);
+        function(level.vertEdgeLocals, hasVertexEdges ? 2 * numEdges : 0);
+    }
+    /// Calls function(array) for the arrays of all tags and masks.
+    template <typename LEVEL, typename FUNCTION>
+    static void ForEachTag(LEVEL &level, FUNCTION const &function) {
+        function(level.edgeSharpness);
+        function(level.diagonalSharpness);
+        function(level.vertSharpness);
+        function(level.faceHoles);
+        function(level.nonManifoldVerts);
+        function(level.partedVerts);
+        function(level.nonManifoldEdges);
+        function(level.lineEdges);
+        function(level.sharpVerts);
+        function(level.sectorCorners);
+    }
+
+    int depth = 0;
+
+    Index numVertices = 0;
+    Index numEdges = 0;
+    Index numFaces = 0;
+    Index numCorners = 0;        ///< entries of faceVerts
+    Index numFreeBoundaries = 0; ///< boundary edges by their BoundaryKind
+    Index numSharpBoundariesA = 0;
+    Index numSharpBoundariesB = 0;
+
+    // What the numbering tells of how a refined level was made.
+    bool isHexagonal = false;  ///< by a hexagonal refinement, whose E-faces' sides are known
+    Index numVVertices = 0;    ///< the first vertices, made of vertices; F-vertices follow
+    Index numFFaces = 0;       ///< the first faces, made of faces; they have ...
+    Index numFFaceCorners = 0; ///< ... the first corners, and from each of these an edge
+    Index numVFaces = 0;       ///< the last faces, made for vertices
+    /// The vertices of the last level that was not made by a hexagonal refinement; those behind
+    /// them have three faces, or two at a boundary.
+    Index numVertsOfAnyValence = 0;
+
+    /// False when only the face-vertices were made (the last level, unless asked for more).
+    bool hasFullTopology = false;
+
+    Buffer<std::byte> memory; ///< of the relations that a hexagonal refinement makes
+
+    Buffer<Index> faceFirstCorner; ///< positions in faceVerts and faceEdges
+    Buffer<Index> faceVerts;
+    Buffer<Index> faceEdges;
+
+    Buffer<IndexPair> edgeVerts;
+    Buffer<IndexPair> edgeFaces;
+    Buffer<LocalIndexPair> edgeFaceLocals; ///< the edge's place in each face
+    Buffer<Index> boundaryEdges;           ///< all kinds, ascending
+    Buffer<Index> halfFaces;               ///< faces with a B edge, ascending
+
+    Buffer<Index> vertFirstFace; ///< positions in vertFaces and vertFaceLocals
+    Buffer<Index> vertFaces;
+    Buffer<LocalIndex> vertFaceLocals; ///< the vertex's place in each of its faces
+    Buffer<Index> vertFirstEdge;       ///< positions in vertEdges and vertEdgeLocals
+    Buffer<Index> vertEdges;
+    Buffer<LocalIndex> vertEdgeLocals; ///< see GetVertexEdgeLocals
+
+    std::vector<Index> faceSizes; ///< ascending; all that occur in the level, perhaps more
+
+    // Tags; each array is empty in a level that has none of its kind.
+    Buffer<float> edgeSharpness;     ///< by edge, of interior ones
+    Buffer<float> diagonalSharpness; ///< by face
+    Buffer<float> vertSharpness;     ///< of the vertices of level 0, the only ones that have any
+    Buffer<unsigned char> faceHoles; ///< by face
+    std::vector<Index> nonManifoldVerts; ///< ascending
+    std::vector<Index> partedVerts;      ///< those that gaps of the refinement part into fans
+    std::vector<Index> nonManifoldEdges; ///< ascending; of level 0 alone
+    std::vector<LineEdge> lineEdges;     ///< ascending; of levels with full topology
+
+    std::vector<SharpVertex> sharpVerts;     ///< ascending; all with a rule but RULE_SMOOTH
+    std::vector<SectorCorner> sectorCorners; ///< ascending
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "levelRefiner.h"
+
+#include "hexRefinement.h"
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+// An element of a deque, perhaps a new one behind its last.
+template <typename T>
+T &getOrAdd(std::deque<T> &deque, std::size_t i) {
+    return i < deque.size() ? deque[i] : deque.emplace_back();
+}
+
+// The level behind the last one in use, and what leads to it.  Their memory is that of an earlier
+// refinement, where there was one.
+struct NextLevel {
+    NextLevel(MeshLevels &mesh, int numLevels)
+        : parent(mesh.levels[std::size_t(numLevels) - 1]),
+          child(getOrAdd(mesh.levels, std::size_t(numLevels))),
+          refinement(getOrAdd(mesh.refinements, std::size_t(numLevels) - 1)) {}
+
+    Level const &parent;
+    Level &child;
+    Refinement &refinement;
+};
+
+} // namespace
+
+LevelRefiner::LevelRefiner(Hierarchy &hierarchy, Sdc::Options sdcOptions)
+    : _hierarchy(hierarchy), _sdcOptions(sdcOptions) {
+    _checkers.emplace_back(GetSizes(hierarchy.mesh.levels[0]), "");
+    for (std::size_t channel = 0; channel < hierarchy.channels.size(); ++channel) {
+        _checkers.emplace_back(GetSizes(hierarchy.channels[channel].values.levels[0]),
+                               " in face-varying channel " + std::to_string(channel));
+    }
+}
+
+Status LevelRefiner::CheckSizes(HexSchemeOptions schemeOptions, int refinementLevel) const {
+    for (std::size_t i = 0; i < _checkers.size(); ++i) {
+        SizeChecker checker = _checkers[i];
+        Level const &last = _hierarchy.GetMesh(int(i) - 1).levels[std::size_t(_numLevels) - 1];
+        ExpectedSizes sizes(last);
+        if (!schemeOptions.IsHexagonal()) {
+            sizes.CountFans(last);
+        }
+        for (int level = last.depth + 1; level <= refinementLevel; ++level) {
+            SchemeType const scheme = schemeOptions.GetSchemeOfLevel(level);
+            if (scheme == SchemeType::TriHex && !sizes.IsClosed()) {
+                break;
+            }
+            sizes.Refine(scheme);
+            if (Status status = checker.Add(sizes.sizes); !status.IsOk()) {
+                return status;
+            }
+        }
+    }
+    return Status();
+}
+
+Status LevelRefiner::CheckLeastSizes(bool closeGaps, int refinementLevel) const {
+    Level const &base = _hierarchy.mesh.levels[0];
+    ExpectedSizes sizes(base);
+    sizes.CountFans(base);
+    SizeChecker checker(sizes.sizes, " or more");
+    Status status;
+    for (int level = 1; level <= refinementLevel && status.IsOk(); ++level) {
+        sizes.RefineToLeast(closeGaps);
+        status = checker.Add(sizes.sizes);
+    }
+    return status;
+}
+
+Status LevelRefiner::AddLevel(PolygonRules const &rules, bool fullTopology) {
+    bool const isPlain = rules.scheme == SchemeType::Hexagonal && rules.flatEdges.empty();
+    Status status =
+        isPlain ? addHexagonalLevel(fullTopology) : addPolygonLevel(rules, fullTopology);
+    if (status.IsOk()) {
+        relateChannels();
+        _hierarchy.numLevels = ++_numLevels;
+    }
+    return status;
+}
+
+Status LevelRefiner::addHexagonalLevel(bool fullTopology) {
+    auto const refine = [&](MeshLevels &mesh, SizeChecker &checker) {
+        NextLevel next(mesh, _numLevels);
+        Status status = checker.Add(GetHexagonalSizes(GetSizes(next.parent)));
+        if (status.IsOk()) {
+            RefineHexagonally(next.parent, _sdcOptions, fullTopology, next.refinement, next.child);
+        }
+        return status;
+    };
+    Status status = refine(_hierarchy.mesh, _checkers[0]);
+    for (std::size_t i = 0; i < _hierarchy.channels.size() && status.IsOk(); ++i) {
+        status = refine(_hierarchy.channels[i].values, _checkers[i + 1]);
+    }
+    return status;
+}
+
+Status LevelRefiner::addPolygonLevel(PolygonRules const &rules, bool fullTopology) {
+    std::size_t const last = std::size_t(_numLevels) - 1;
+    Level const &mesh = _hierarchy.mesh.levels[last];
+    std::deque<PolygonRefiner> refiners;
+    refiners.emplace_back(mesh, rules, _sdcOptions);
+    for (FVarChannel const &channel : _hierarchy.channels) {
+        refiners.emplace_back(channel.values.levels[last],
+                              GetRulesOfChannel(mesh, rules, channel.levels[last]), _sdcOptions);
+    }
+    for (std::size_t i = 0; i < refiners.size(); ++i) {
+        if (Status status = _checkers[i].Add(refiners[i].GetSizes()); !status.IsOk()) {
+            return status;
+        }
+    }
+    auto const refine = [&](PolygonRefiner &refiner, MeshLevels &levels) {
+        NextLevel next(levels, _numLevels);
+        refiner.Refine(fullTopology, next.refinement, next.child);
+    };
+    refine(refiners[0], _hierarchy.mesh);
+    for (std::size_t i = 0; i < _hierarchy.channels.size(); ++i) {
+        refine(refiners[i + 1], _hierarchy.channels[i].values);
+    }
+    return Status();
+}
+
+void LevelRefiner::relateChannels() {
+    auto const child = std::size_t(_numLevels);
+    for (FVarChannel &channel : _hierarchy.channels) {
+        FVarLevel &cLevel = getOrAdd(channel.levels, child);
+        RefineFVarLevel(_hierarchy.mesh.refinements[child - 1],
+                        channel.values.refinements[child - 1], channel.levels[child - 1], cLevel);
+    }
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_POLYGON_REFINEMENT_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_POLYGON_REFINEMENT_H
+
+#include "far_ext/hexSchemeOptions.h"
+#include "refinement.h"
+#include "vertexFan.h"
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief Which polygons a refinement makes, beside the F-face of every face.
+struct PolygonRules {
+    SchemeType scheme = SchemeType::Hexagonal;
+    /// Of Hexagonal, by edge: whether an interior edge makes a quad, of its F-vertices alone.
+    /// Empty when none does.
+    std::vector<unsigned char> flatEdges;
+    /// Of Hexagonal: whether faces at the vertices close the gaps that quads leave.
+    bool closeGaps = true;
+};
+
+struct FVarLevel;
+
+/// The same rules for the value mesh of a channel of \p mesh; no seam is among the flat edges.
+PolygonRules GetRulesOfChannel(Level const &mesh, PolygonRules const &rules,
+                               FVarLevel const &channel);
+
+/// \brief Makes refinements to polygons of any kind: all but the plain hexagonal one, which
+/// RefineHexagonally makes at once.
+///
+/// An interior edge makes a hexagon, a quad or, in tri-hex, no face; a boundary edge what it makes
+/// in the hexagonal step and, in the other schemes, nothing.  At each vertex follow V-faces:
+///  - Doo-Sabin: per closed fan of k faces the polygon of its k F-vertices;
+///  - tri-hex: likewise, with two F-vertices of each face;
+///  - hexagonal: per maximal run of quad edges the polygon of the V-vertex and the F-vertices of
+///    the faces between which they run; with quads all around a vertex that of the F-vertices
+///    alone, in place of the V-vertex.
+/// Where it would have two vertices alone there is no V-face: the two quads share an edge.
+///
+/// The last vertex of a V-face is the F-vertex of a corner at its vertex.  INDEXING.md has the
+/// numbering.
+///
+/// What a component makes is counted first and then written to places that follow from the counts,
+/// so that components can be taken in parallel.
+class PolygonRefiner {
+public:
+    /// Counts what the refinement of \p parent, which it refers to, makes.
+    PolygonRefiner(Level const &parent, PolygonRules rules, Sdc::Options sdcOptions);
+
+    LevelSizes GetSizes() const { return _sizes; }
+
+    /// Makes \p child, whose sizes must fit 32 bits, as RefineHexagonally does.  Once.
+    void Refine(bool fullTopology, Refinement &refinement, Level &child);
+
+private:
+    using Index = Far::Index;
+    template <bool FULL>
+    class Builder;
+
+    /// What components of the parent make.
+    struct Counts {
+        Counts &operator+=(Counts const &other) {
+            vertices += other.vertices;
+            edges += other.edges;
+            faces += other.faces;
+            corners += other.corners;
+            digons += other.digons;
+            return *this;
+        }
+
+        std::int64_t vertices = 0;
+        std::int64_t edges = 0;
+        std::int64_t faces = 0;
+        std::int64_t corners = 0;
+        std::int64_t digons = 0;
+    };
+    /// Two ends of edges, as positions in _endEdges, at a vertex with two faces: the quads there
+    /// share the edge of the first, which has the lower position.
+    struct Digon {
+        std::size_t end;
+        std::size_t joinedEnd;
+    };
+    /// The faces around a vertex that a V-face joins: part of a fan, or all of it.
+    struct VFace {
+        VertexFan fan;
+        Index begin; ///< position in Level::vertFaces; the end of the fan leads to its begin
+        Index count;
+        bool hasVVertex; ///< in the polygon too
+    };
+
+    bool isHexagonal() const { return _rules.scheme == SchemeType::Hexagonal; }
+    bool isTriHex() const { return _rules.scheme == SchemeType::TriHex; }
+    bool isQuad(Index pEdge) const {
+        return isHexagonal() ? !_rules.flatEdges.empty() && _rules.flatEdges[std::size_t(pEdge)]
+                             : !isTriHex() && !_parent.IsBoundary(pEdge);
+    }
+    bool makesEFace(Index pEdge) const;
+    bool makesVVertex(Index pVert) const;
+    std::size_t findEnd(Index startCorner) const;
+    /// Of edges that have no such parent.
+    BoundaryKind getBoundaryKind() const;
+
+    template <typename ADD_VFACE, typename ADD_DIGON>
+    void forEachVFace(Index pVert, bool hasVVertex, ADD_VFACE addVFace, ADD_DIGON addDigon) const;
+    template <typename FUNCTION>
+    void forEachRunOfQuads(VertexFan const &fan, FUNCTION function) const;
+    template <typename FUNCTION>
+    void forEachSpoke(Index beginFace, Index endFace, FUNCTION function) const;
+
+    void countVertices();
+    void findDigons();
+    void markEndEdges();
+    void countEdges();
+    void countSpokes();
+    void countBoundaries();
+    void relate(Refinement &refinement) const;
+    void numberEdges();
+
+    Level const &_parent;
+    PolygonRules const _rules;
+    Sdc::Options const _sdcOptions;
+    LevelSizes _sizes{};
+
+    // What the ranges of components before a range make, by range.
+    std::vector<Counts> _vertexCounts; ///< V-vertices, V-faces and digons
+    std::vector<Counts> _edgeCounts;   ///< edges of _endEdges, E-faces
+    std::vector<Counts> _spokeCounts;  ///< spokes, by range of faces
+
+    /// By edge and end: the edge that joins the F-vertices of its faces there; in tri-hex one for
+    /// both ends; of a boundary edge, first, the one that stays on the boundary.
+    Buffer<Index> _endEdges;
+    std::vector<Digon> _digons; ///< by joinedEnd, ascending
+    Buffer<Index> _spokes;      ///< by corner, INDEX_INVALID when there is none
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

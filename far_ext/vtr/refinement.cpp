@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinement.h"
+
+#include "sharpFeatures.h"
+
+namespace OpenSubdivHex::FarExt::internal {
+
+void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopology,
+                     Refinement &refinement, Level &child) {
+    using Index = Far::Index;
+    refinement.parent = &parent;
+    refinement.child = &child;
+    child.depth = parent.depth + 1;
+    child.numVertices = Index(sizes.vertices);
+    child.numEdges = Index(sizes.edges);
+    child.numFaces = Index(sizes.faces);
+    child.numCorners = Index(sizes.corners);
+    child.numFreeBoundaries = Index(sizes.freeBoundaries);
+    child.numSharpBoundariesA = Index(sizes.sharpBoundariesA);
+    child.numSharpBoundariesB = Index(sizes.sharpBoundariesB);
+    child.numFFaces = parent.numFaces;
+    child.numFFaceCorners = parent.numCorners;
+    child.partedVerts.clear();
+    child.hasFullTopology = fullTopology;
+}
+
+void EndRefinement(Sdc::Options sdcOptions, Refinement const &refinement, Level &child) {
+    RefineTags(refinement, sdcOptions, child);
+    if (child.hasFullTopology) {
+        ComputeSharpMasks(sdcOptions, child);
+    } else {
+        child.sharpVerts.clear();
+        child.sectorCorners.clear();
+    }
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

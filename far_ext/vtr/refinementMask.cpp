@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinementMask.h"
+
+#include "indexSet.h"
+
+#include <algorithm>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+RefinementMask::RefinementMask(Level const &parent, HexSchemeOptions schemeOptions,
+                               Interpolation interpolation)
+    : _level(parent), _faceMask(schemeOptions.faceMask), _interpolation(interpolation) {
+    SchemeType const scheme = schemeOptions.GetSchemeOfLevel(parent.depth + 1);
+    _hasFeatures = scheme == SchemeType::Hexagonal && _level.HasFeatures();
+    _hasSharpVertices = interpolation == Interpolation::Vertex && !_level.sharpVerts.empty();
+    for (int numFaces = 0; numFaces < kNumKept; ++numFaces) {
+        _plainVertexMasks[numFaces] = ComputeVertexVertexMask(interpolation, numFaces);
+    }
+
+    _faceMasks.resize(_level.faceSizes.empty() ? 0 : _level.faceSizes.back() + 1);
+    for (Index size : _level.faceSizes) {
+        std::vector<double> &mask = _faceMasks[size];
+        mask.resize(2 * std::size_t(size));
+        if (scheme == SchemeType::TriHex) {
+            ComputeTriHexMask(size, mask.data());
+        } else {
+            ComputeFaceVertexMask(_faceMask, interpolation, size, mask.data());
+        }
+        std::copy_n(mask.begin(), size, mask.begin() + size);
+    }
+
+    constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
+    constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
+    ComputeHalfFaceVertexMask(_faceMask, interpolation, &_halfFaceWeights[0][0]);
+    // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
+    // V and W are the ends of the diagonal, Q and P the two vertices between them.
+    std::fill_n(&_diagonalWeights[0][0], kHexagon * kHexagon, 0.0);
+    for (auto const &half : kHexagonHalves) {
+        for (int i = 0; i < kTrapezoid; ++i) {
+            for (int j = 0; j < kTrapezoid; ++j) {
+                _diagonalWeights[half[i]][half[j]] = _halfFaceWeights[i][j];
+            }
+        }
+    }
+}
+
+double const *RefinementMask::GetFaceVertexWeights(Index face, int corner,
+                                                   std::vector<double> &scratch) const {
+    return _hasFeatures ? featureWeights(face, corner, scratch)
+                        : smoothWeights(_level.GetFaceSize(face), corner);
+}
+
+bool RefinementMask::hasFeatures(Index face) const {
+    if (_level.IsHalfFace(face)) {
+        return true;
+    }
+    if (_interpolation == Interpolation::Varying) {
+        return false;
+    }
+    return Sdc::Crease::IsSharp(_level.GetDiagonalSharpness(face)) ||
+           !_level.GetSectorCorners(_level.faceFirstCorner[face], _level.faceFirstCorner[face + 1])
+                .empty();
+}
+
+double const *RefinementMask::featureWeights(Index face, int corner,
+                                             std::vector<double> &scratch) const {
+    int const size = _level.GetFaceSize(face);
+    if (_level.IsHalfFace(face)) {
+        return _halfFaceWeights[corner];
+    }
+    double const *smooth = smoothWeights(size, corner);
+    if (_interpolation == Interpolation::Varying) {
+        return smooth;
+    }
+    double const sharp = std::min(1.0f, _level.GetDiagonalSharpness(face));
+    double towards = 0;
+    Index const levelCorner = _level.faceFirstCorner[face] + corner;
+    for (SectorCorner const &sector : _level.GetSectorCorners(levelCorner, levelCorner + 1)) {
+        towards += sector.weight * (1 - ComputeSectorShrink(_faceMask, sector.sectorSize));
+    }
+    scratch.assign(smooth, smooth + size);
+    for (double &weight : scratch) {
+        weight *= 1 - sharp - towards;
+    }
+    scratch[corner] += towards;
+    for (int j = 0; j < size && sharp > 0; ++j) {
+        scratch[j] += sharp * _diagonalWeights[corner][j];
+    }
+    return scratch.data();
+}
+
+auto RefinementMask::sharpMask(SharpVertex const &sharp) -> VertexMask {
+    VertexMask mask = {sharp.faceWeight, 0, {}, {}};
+    auto const add = [&mask](Index source, double weight) {
+        mask.sources[mask.numSources] = source;
+        mask.weights[mask.numSources++] = weight;
+    };
+    for (int i = 0; i < 2; ++i) {
+        if (sharp.neighborWeights[i] > 0) {
+            add(sharp.neighbors[i], sharp.neighborWeights[i]);
+        }
+    }
+    add(sharp.vert, sharp.vertexWeight);
+    return mask;
+}
+
+std::vector<Far::Index> RefinementMask::FindFeatureFaces() const {
+    if (!_hasFeatures) {
+        return {};
+    }
+    std::vector<Index> faces(_level.halfFaces.begin(), _level.halfFaces.end());
+    if (_interpolation == Interpolation::Varying) {
+        return faces;
+    }
+    for (std::size_t face = 0; face < _level.diagonalSharpness.size(); ++face) {
+        if (Sdc::Crease::IsSharp(_level.diagonalSharpness[face])) {
+            faces.push_back(Index(face));
+        }
+    }
+    for (SectorCorner const &sector : _level.sectorCorners) {
+        faces.push_back(_level.FindFaceOfCorner(sector.corner));
+    }
+    SortUnique(faces);
+    return faces;
+}
+
+std::vector<Far::Index> RefinementMask::FindFeatureVertices() const {
+    std::vector<Index> verts;
+    if (_interpolation == Interpolation::Vertex) {
+        for (SharpVertex const &sharp : _level.sharpVerts) {
+            verts.push_back(sharp.vert);
+        }
+    }
+    return verts;
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

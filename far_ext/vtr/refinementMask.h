@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_REFINEMENT_MASK_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_REFINEMENT_MASK_H
+
+#include "level.h"
+
+#include "far_ext/hexSchemeOptions.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief The masks of one refinement: with which weights the vertices of a parent level make an
+/// F-vertex or a V-vertex.  RefinementRows adds the components that are made.
+class OPENSUBDIVHEX_API RefinementMask {
+public:
+    using Index = Far::Index;
+
+    /// The mask of a V-vertex: V' = the sum of weights[i] sources[i], i < numSources, and faceWeight
+    /// times the sum of the F-vertices around it.  The last source is its parent: neighbors come
+    /// first, so that it does not matter for the sum which of them is left and right.
+    struct VertexMask {
+        double faceWeight;
+        int numSources;
+        Index sources[3];
+        double weights[3];
+    };
+
+    /// Makes the masks of the refinement of \p parent, to which it refers.
+    RefinementMask(Level const &parent, HexSchemeOptions schemeOptions,
+                   Interpolation interpolation);
+
+    /// Weights of the vertices of \p face, in their order, for the F-vertex of its corner number
+    /// \p corner.  The result is valid until \p scratch is used again.
+    double const *GetFaceVertexWeights(Index face, int corner, std::vector<double> &scratch) const;
+
+    VertexMask GetVertexMask(Index vert) const {
+        SharpVertex const *sharp = _hasSharpVertices ? _level.FindSharpVertex(vert) : nullptr;
+        if (sharp) {
+            return sharpMask(*sharp);
+        }
+        VertexVertexMask const mask = GetPlainVertexMask(_level.GetNumVertexFaces(vert));
+        return {mask.faceWeight, 1, {vert}, {mask.vertexWeight}};
+    }
+
+    /// @name The plain majority and the rest
+    /// All faces of a size have the same weights, and all vertices with as many faces the same mask
+    /// of one source, but for those that a feature gives others.
+    /// @{
+
+    /// The weights of corner 0 of a plain face; those of corner i lie i places further around.
+    double const *GetPlainFaceWeights(int faceSize) const { return smoothWeights(faceSize, 0); }
+    VertexVertexMask GetPlainVertexMask(int numFaces) const {
+        return numFaces < kNumKept ? _plainVertexMasks[numFaces]
+                                   : ComputeVertexVertexMask(_interpolation, numFaces);
+    }
+    bool IsFacePlain(Index face) const { return !_hasFeatures || !hasFeatures(face); }
+    /// All faces and vertices that are not plain, and perhaps some that are; ascending.
+    std::vector<Index> FindFeatureFaces() const;
+    std::vector<Index> FindFeatureVertices() const;
+    /// @}
+
+private:
+    double const *smoothWeights(int faceSize, int corner) const {
+        // The mask stands twice in a row, so that every rotation of it is contiguous.
+        return _faceMasks[faceSize].data() + faceSize - corner;
+    }
+
+    static VertexMask sharpMask(SharpVertex const &sharp);
+    bool hasFeatures(Index face) const;
+    double const *featureWeights(Index face, int corner, std::vector<double> &scratch) const;
+
+    Level const &_level;
+    FaceMask _faceMask;
+    bool _hasFeatures;
+    bool _hasSharpVertices;
+    Interpolation _interpolation;
+    static constexpr int kNumKept = 8;
+    VertexVertexMask _plainVertexMasks[kNumKept]; ///< by number of faces
+    std::vector<std::vector<double>> _faceMasks;  ///< by face size
+
+    // One row of weights per corner of a half face and of a hexagon with a sharp diagonal.
+    double _halfFaceWeights[HexIndexing::kNumBoundaryEFaceCorners]
+                           [HexIndexing::kNumBoundaryEFaceCorners];
+    double _diagonalWeights[HexIndexing::kNumEFaceCorners][HexIndexing::kNumEFaceCorners];
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

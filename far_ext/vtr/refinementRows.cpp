@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinementRows.h"
+
+#include "indexSet.h"
+
+#include <algorithm>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+using Far::Index;
+
+RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions schemeOptions,
+                               Interpolation interpolation)
+    : _mask(*refinement.parent, schemeOptions, interpolation) {
+    Level const &parent = *refinement.parent;
+    _numFaces = parent.numFaces;
+    _numVVertices = refinement.child->numVVertices;
+    _faceFirstCorner = parent.faceFirstCorner.data();
+    _faceVerts = parent.faceVerts.data();
+    _vVertexParents =
+        refinement.vVertexParents.empty() ? nullptr : refinement.vVertexParents.data();
+    _vertFirstFace = parent.vertFirstFace.data();
+    _vertFaces = parent.vertFaces.data();
+    _vertFaceLocals = parent.vertFaceLocals.data();
+}
+
+RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions schemeOptions,
+                               Interpolation interpolation, Part part)
+    : _mask(*refinement.parent, schemeOptions, interpolation), _part(std::move(part)) {
+    Level const &parent = *refinement.parent;
+    _numFaces = Index(_part.faces.size());
+    _numVVertices = Index(_part.vVertices.size());
+    IndexNumbering const numberOfVert(_part.verts, parent.numVertices);
+    IndexNumbering const numberOfFace(_part.faces, parent.numFaces);
+    _partFaceFirstCorner.push_back(0);
+    for (Index face : _part.faces) {
+        for (Index vert : parent.GetFaceVertices(face)) {
+            _partFaceVerts.push_back(numberOfVert(vert));
+        }
+        _partFaceFirstCorner.push_back(Index(_partFaceVerts.size()));
+    }
+    _partVertFirstFace.assign(_part.verts.size() + 1, 0);
+    Index nextVert = 0;
+    for (Index vVertex : _part.vVertices) {
+        Index const pVert = refinement.GetVVertexParent(vVertex);
+        Index const vert = numberOfVert(pVert);
+        _partVVertexParents.push_back(vert);
+        for (; nextVert <= vert; ++nextVert) {
+            _partVertFirstFace[nextVert] = Index(_partVertFaces.size());
+        }
+        // None are there when the mask does not ask for them.
+        if (_mask.GetVertexMask(pVert).faceWeight > 0) {
+            for (Index k = parent.vertFirstFace[pVert]; k < parent.vertFirstFace[pVert + 1]; ++k) {
+                _partVertFaces.push_back(numberOfFace(parent.vertFaces[k]));
+                _partVertFaceLocals.push_back(parent.vertFaceLocals[k]);
+            }
+        }
+    }
+    std::fill(_partVertFirstFace.begin() + nextVert, _partVertFirstFace.end(),
+              Index(_partVertFaces.size()));
+    _faceFirstCorner = _partFaceFirstCorner.data();
+    _faceVerts = _partFaceVerts.data();
+    _vVertexParents = _partVVertexParents.data();
+    _vertFirstFace = _partVertFirstFace.data();
+    _vertFaces = _partVertFaces.data();
+    _vertFaceLocals = _partVertFaceLocals.data();
+}
+
+RefinementMask::VertexMask RefinementRows::partVertexMask(Index vert) const {
+    RefinementMask::VertexMask mask = _mask.GetVertexMask(_part.verts[vert]);
+    int const last = mask.numSources - 1;
+    mask.sources[last] = vert;
+    for (int i = 0; i < last; ++i) {
+        auto const place =
+            std::lower_bound(_part.verts.begin(), _part.verts.end(), mask.sources[i]);
+        mask.sources[i] = Index(place - _part.verts.begin());
+    }
+    return mask;
+}
+
+RefinementRows::Part FindPart(Refinement const &refinement, HexSchemeOptions schemeOptions,
+                              Interpolation interpolation, std::vector<Index> const &wanted) {
+    Level const &parent = *refinement.parent;
+    RefinementMask const mask(parent, schemeOptions, interpolation);
+    RefinementRows::Part part;
+    Index endOfFace = 0; // of the last corner, past its face
+    for (Index cVert : wanted) {
+        if (cVert >= refinement.child->numVVertices) {
+            Index const corner = refinement.GetChildVertexCorner(cVert);
+            if (corner >= endOfFace) {
+                part.faces.push_back(parent.FindFaceOfCorner(corner));
+                endOfFace = parent.faceFirstCorner[part.faces.back() + 1];
+            }
+            continue;
+        }
+        part.vVertices.push_back(cVert);
+        Index const pVert = refinement.GetVVertexParent(cVert);
+        RefinementMask::VertexMask const weights = mask.GetVertexMask(pVert);
+        part.verts.insert(part.verts.end(), weights.sources, weights.sources + weights.numSources);
+        if (weights.faceWeight > 0) {
+            for (Index face : parent.GetVertexFaces(pVert)) {
+                part.faces.push_back(face);
+            }
+        }
+    }
+    SortUnique(part.faces, parent.numFaces);
+    for (Index face : part.faces) {
+        for (Index vert : parent.GetFaceVertices(face)) {
+            part.verts.push_back(vert);
+        }
+    }
+    SortUnique(part.verts, parent.numVertices);
+    return part;
+}
+
+std::vector<Index> GetMadeVertices(Refinement const &refinement, RefinementRows::Part const &part) {
+    Level const &parent = *refinement.parent;
+    std::vector<Index> verts = part.vVertices;
+    for (Index face : part.faces) {
+        Index const end = parent.faceFirstCorner[face + 1];
+        for (Index corner = parent.faceFirstCorner[face]; corner < end; ++corner) {
+            verts.push_back(refinement.GetCornerChildVertex(corner));
+        }
+    }
+    return verts;
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

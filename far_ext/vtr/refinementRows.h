@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_REFINEMENT_ROWS_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_REFINEMENT_ROWS_H
+
+#include "refinement.h"
+#include "refinementMask.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief A refinement as a matrix: for each vertex that it makes, the *row* of its sources and
+/// their weights.  The one place that joins masks to components: primvars are refined, stencils
+/// multiplied and limits found through it.
+///
+/// Rows are those of the V-vertices and then of the F-vertices, face by face.  Of a refinement that
+/// is taken whole, all numbers are those of the levels.  Of a part, the vertices, faces and
+/// V-vertices of the part are numbered without gaps, in the order that they have in the levels, so
+/// that sums come out the same.
+class RefinementRows {
+public:
+    using Index = Far::Index;
+    using LocalIndex = Far::LocalIndex;
+
+    /// A part of a refinement: faces and vertices of the parent level, ascending.
+    struct Part {
+        std::vector<Index> verts;     ///< those that the faces have, and the parents of V-vertices
+        std::vector<Index> faces;     ///< whose F-vertices are made
+        std::vector<Index> vVertices; ///< V-vertices, by their index in the child level
+    };
+
+    /// The whole of \p refinement, which the rows refer to, as to its parent level.
+    RefinementRows(Refinement const &refinement, HexSchemeOptions schemeOptions,
+                   Interpolation interpolation);
+    RefinementRows(Refinement const &refinement, HexSchemeOptions schemeOptions,
+                   Interpolation interpolation, Part part);
+
+    RefinementRows(RefinementRows const &) = delete;
+    RefinementRows &operator=(RefinementRows const &) = delete;
+
+    Index GetNumFaces() const { return _numFaces; }
+    Index GetNumVVertices() const { return _numVVertices; }
+    Index GetNumRows() const { return GetFaceFirstRow(_numFaces); }
+
+    /// The row of the first F-vertex of a face; of number GetNumFaces(), the end of all rows.
+    Index GetFaceFirstRow(Index face) const { return _numVVertices + _faceFirstCorner[face]; }
+    int GetFaceSize(Index face) const {
+        return _faceFirstCorner[face + 1] - _faceFirstCorner[face];
+    }
+    Index const *GetFaceVertices(Index face) const { return _faceVerts + _faceFirstCorner[face]; }
+    /// The vertex of the corner that an F-vertex was made of.
+    Index GetFVertexParent(Index row) const { return _faceVerts[row - _numVVertices]; }
+    Index GetVVertexParent(Index vVertex) const {
+        return _vVertexParents ? _vVertexParents[vVertex] : vVertex;
+    }
+
+    /// Calls function(face, row) for the faces around a parent of a V-vertex, in their order, with
+    /// the F-vertex of each at the vertex.
+    template <typename FUNCTION>
+    void ForEachVertexFace(Index vert, FUNCTION function) const {
+        for (Index k = _vertFirstFace[vert]; k < _vertFirstFace[vert + 1]; ++k) {
+            function(_vertFaces[k], GetFaceFirstRow(_vertFaces[k]) + _vertFaceLocals[k]);
+        }
+    }
+    bool HasVertexFaces(Index vert) const {
+        return _vertFirstFace[vert] < _vertFirstFace[vert + 1];
+    }
+
+    /// As in RefinementMask, with the numbers of the rows.
+    bool IsFacePlain(Index face) const { return _mask.IsFacePlain(faceId(face)); }
+    double const *GetPlainFaceWeights(int faceSize) const {
+        return _mask.GetPlainFaceWeights(faceSize);
+    }
+    double const *GetFaceVertexWeights(Index face, int corner, std::vector<double> &scratch) const {
+        return _mask.GetFaceVertexWeights(faceId(face), corner, scratch);
+    }
+    RefinementMask::VertexMask GetVertexMask(Index vert) const {
+        return _part.verts.empty() ? _mask.GetVertexMask(vert) : partVertexMask(vert);
+    }
+
+private:
+    RefinementMask::VertexMask partVertexMask(Index vert) const;
+    Index faceId(Index face) const { return _part.faces.empty() ? face : _part.faces[face]; }
+
+    RefinementMask const _mask;
+    Part _part; // empty when the refinement is taken whole
+    Index _numFaces;
+    Index _numVVertices;
+    Index const *_faceFirstCorner;
+    Index const *_faceVerts;
+    Index const *_vVertexParents; // null: their own indices
+    Index const *_vertFirstFace;
+    Index const *_vertFaces;
+    LocalIndex const *_vertFaceLocals;
+
+    // The arrays of a part.
+    std::vector<Index> _partFaceFirstCorner;
+    std::vector<Index> _partFaceVerts;
+    std::vector<Index> _partVVertexParents;
+    std::vector<Index> _partVertFirstFace;
+    std::vector<Index> _partVertFaces;
+    std::vector<LocalIndex> _partVertFaceLocals;
+};
+
+/// The faces and V-vertices that make \p wanted vertices of the child, which ascend, and all that
+/// these depend on in the parent.
+RefinementRows::Part FindPart(Refinement const &refinement, HexSchemeOptions schemeOptions,
+                              Interpolation interpolation, std::vector<Far::Index> const &wanted);
+
+/// The vertices that a part makes, as indices of the child level, by row: they ascend.
+std::vector<Far::Index> GetMadeVertices(Refinement const &refinement,
+                                        RefinementRows::Part const &part);
+
+/// \brief Writes dst[row] for the F-vertices of faces [begin, end) from src, which has the values of
+/// the parent's vertices.
+///
+/// The elements follow Far's protocol: Clear() and AddWithWeight(element, REAL).  An element of
+/// \p dst takes elements of \p src and of \p dst.
+template <typename REAL, class SRC, class DST>
+void InterpolateFaces(RefinementRows const &rows, Far::Index begin, Far::Index end, SRC const &src,
+                      DST &dst) {
+    std::vector<double> scratch;
+    for (Far::Index face = begin; face < end; ++face) {
+        Far::Index const *const verts = rows.GetFaceVertices(face);
+        int const size = rows.GetFaceSize(face);
+        for (int i = 0; i < size; ++i) {
+            double const *const weights = rows.GetFaceVertexWeights(face, i, scratch);
+            auto &&point = dst[rows.GetFaceFirstRow(face) + i];
+            point.Clear();
+            for (int j = 0; j < size; ++j) {
+                if (weights[j] > 0) {
+                    point.AddWithWeight(src[verts[j]], REAL(weights[j]));
+                }
+            }
+        }
+    }
+}
+
+/// The same for V-vertices [begin, end), whose F-vertices are there.
+template <typename REAL, class SRC, class DST>
+void InterpolateVVertices(RefinementRows const &rows, Far::Index begin, Far::Index end,
+                          SRC const &src, DST &dst) {
+    for (Far::Index vVertex = begin; vVertex < end; ++vVertex) {
+        Far::Index const pVert = rows.GetVVertexParent(vVertex);
+        RefinementMask::VertexMask const mask = rows.GetVertexMask(pVert);
+        auto &&point = dst[vVertex];
+        point.Clear();
+        for (int i = 0; i < mask.numSources; ++i) {
+            point.AddWithWeight(src[mask.sources[i]], REAL(mask.weights[i]));
+        }
+        if (mask.faceWeight > 0) {
+            rows.ForEachVertexFace(pVert, [&](Far::Index, Far::Index row) {
+                point.AddWithWeight(dst[row], REAL(mask.faceWeight));
+            });
+        }
+    }
+}
+
+/// The same for all rows.
+template <typename REAL, class SRC, class DST>
+void Interpolate(RefinementRows const &rows, SRC const &src, DST &dst) {
+    InterpolateFaces<REAL>(rows, 0, rows.GetNumFaces(), src, dst);
+    InterpolateVVertices<REAL>(rows, 0, rows.GetNumVVertices(), src, dst);
+}
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

@@ -1,0 +1,454 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sharpFeatures.h"
+
+#include "far_ext/mask.h"
+#include "indexSet.h"
+#include "vertexFan.h"
+
+#include <algorithm>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Far::Index;
+using Sdc::Crease;
+
+bool isSharp(RingItem const &item) { return Crease::IsSharp(item.sharpness); }
+
+// The sharp edges that meet in a vertex: boundaries, crease edges and crease diagonals.
+struct SharpEdges {
+    std::vector<Index> neighbors;
+    std::vector<bool> isLong; // a diagonal or a B boundary
+    std::vector<float> sharpness;
+
+    int GetSize() const { return int(neighbors.size()); }
+};
+
+// At a non-manifold vertex several fans may end in the same line, which counts once.
+SharpEdges gatherSharpEdges(Level const &level, Index vert) {
+    SharpEdges result;
+    bool const isNonManifold =
+        std::binary_search(level.nonManifoldVerts.begin(), level.nonManifoldVerts.end(), vert);
+    std::vector<Index> lines;
+    auto const isRepeated = [&](Index edge) {
+        Index const line = isNonManifold ? level.GetEdgeLine(edge) : Far::INDEX_INVALID;
+        if (line == Far::INDEX_INVALID) {
+            return false;
+        }
+        bool const isKnown = std::find(lines.begin(), lines.end(), line) != lines.end();
+        lines.push_back(line);
+        return isKnown;
+    };
+    FanItems items;
+    ForEachFan(level, vert, [&](VertexFan const &fan) {
+        GatherFanItems(level, fan, items);
+        auto begin = items.items.begin();
+        auto end = items.items.end();
+        if (!fan.isClosed) {
+            Index const lastCorner = level.GetVertexCorner(fan.end - 1);
+            begin += isRepeated(level.faceEdges[level.GetVertexCorner(fan.begin)]);
+            end -= isRepeated(
+                level.faceEdges[level.GetPrevCorner(level.vertFaces[fan.end - 1], lastCorner)]);
+        }
+        for (auto item = begin; item != end; ++item) {
+            if (isSharp(*item)) {
+                result.neighbors.push_back(item->neighbor);
+                result.isLong.push_back(item->isLong);
+                result.sharpness.push_back(item->sharpness);
+            }
+        }
+    });
+    return result;
+}
+
+// The vertices that may need a rule of their own, ascending.
+std::vector<Index> findSharpVertices(Level const &level) {
+    std::vector<Index> verts = level.nonManifoldVerts;
+    auto addEdge = [&](std::size_t edge) {
+        verts.insert(verts.end(), level.edgeVerts[edge].begin(), level.edgeVerts[edge].end());
+    };
+    for (Index edge : level.boundaryEdges) {
+        if (level.edgeFaces[edge][1] != kFreeBoundary) {
+            addEdge(edge);
+        }
+    }
+    for (std::size_t edge = 0; edge < level.edgeSharpness.size(); ++edge) {
+        if (Crease::IsSharp(level.edgeSharpness[edge])) {
+            addEdge(edge);
+        }
+    }
+    for (std::size_t face = 0; face < level.diagonalSharpness.size(); ++face) {
+        if (Crease::IsSharp(level.diagonalSharpness[face])) {
+            verts.push_back(level.faceVerts[level.faceFirstCorner[face] + kDiagonalStart]);
+            verts.push_back(level.faceVerts[level.faceFirstCorner[face] + kDiagonalEnd]);
+        }
+    }
+    for (std::size_t vert = 0; vert < level.vertSharpness.size(); ++vert) {
+        if (Crease::IsSharp(level.vertSharpness[vert])) {
+            verts.push_back(Index(vert));
+        }
+    }
+    SortUnique(verts);
+    return verts;
+}
+
+SharpVertex smoothMask(Index vert, int numFaces) {
+    VertexVertexMask const mask = ComputeVertexVertexMask(Interpolation::Vertex, numFaces);
+    return {vert, Crease::RULE_SMOOTH, mask.vertexWeight, mask.faceWeight, {vert, vert}, {0, 0}};
+}
+
+SharpVertex cornerMask(Index vert) {
+    return {vert, Crease::RULE_CORNER, 1, 0, {vert, vert}, {0, 0}};
+}
+
+SharpVertex creaseMask(Index vert, SharpEdges const &edges, int const pair[2]) {
+    SharpVertex mask = {vert, Crease::RULE_CREASE, 0, 0, {vert, vert}, {0, 0}};
+    bool const isLong[2] = {edges.isLong[pair[0]], edges.isLong[pair[1]]};
+    for (int i = 0; i < 2; ++i) {
+        mask.neighbors[i] = edges.neighbors[pair[i]];
+        if (isLong[i]) {
+            mask.neighborWeights[i] = isLong[1 - i] ? 3.0 / 32 : 1.0 / 8;
+        } else {
+            mask.neighborWeights[i] = isLong[1 - i] ? 2.0 / 8 : 1.0 / 8;
+        }
+    }
+    mask.vertexWeight = 1 - mask.neighborWeights[0] - mask.neighborWeights[1];
+    return mask;
+}
+
+SharpVertex maskOfRule(Crease const &creasing, Crease::Rule rule, Index vert, int numFaces,
+                       SharpEdges const &edges, std::vector<float> const &sharpness) {
+    if (rule == Crease::RULE_CORNER) {
+        return cornerMask(vert);
+    }
+    if (rule == Crease::RULE_CREASE) {
+        int pair[2] = {0, 1};
+        creasing.GetSharpEdgePairOfCrease(sharpness.data(), int(sharpness.size()), pair);
+        return creaseMask(vert, edges, pair);
+    }
+    SharpVertex mask = smoothMask(vert, numFaces);
+    mask.rule = rule;
+    return mask;
+}
+
+SharpVertex blend(SharpVertex const &parent, SharpVertex const &child, double parentWeight) {
+    // Of two rules in sequence at most one is a crease, so that its neighbours stand alone; a
+    // corner and a smooth mask have neighbours of weight 0.
+    SharpVertex result = parent.rule == Crease::RULE_CREASE ? parent : child;
+    double const childWeight = 1 - parentWeight;
+    result.rule = parent.rule;
+    result.vertexWeight = parentWeight * parent.vertexWeight + childWeight * child.vertexWeight;
+    result.faceWeight = parentWeight * parent.faceWeight + childWeight * child.faceWeight;
+    for (int i = 0; i < 2; ++i) {
+        result.neighborWeights[i] =
+            parentWeight * parent.neighborWeights[i] + childWeight * child.neighborWeights[i];
+    }
+    return result;
+}
+
+// Thresholds of sharpness, from lower up to upper, between which the same edges are sharp.
+struct SharpnessLayer {
+    float lower;
+    float upper;
+
+    bool IsSharp(float sharpness) const { return sharpness >= upper; }
+};
+
+// Adds the corners of wide sectors between two edges of a fan that are sharp in the layer.
+void addSectorCorners(Level const &level, SharpnessLayer layer, FanItems &fan,
+                      std::vector<SectorCorner> &result) {
+    std::vector<RingItem> &items = fan.items;
+    auto const isSharpInLayer = [&](RingItem const &item) { return layer.IsSharp(item.sharpness); };
+    auto start = std::find_if(items.begin(), items.end(), isSharpInLayer);
+    if (fan.isClosed && start != items.end()) {
+        // All around, from a sharp edge back to it.
+        std::rotate(items.begin(), start, items.end());
+        items.push_back(items.front());
+        start = items.begin();
+    }
+    while (start != items.end()) {
+        auto const end = std::find_if(start + 1, items.end(), isSharpInLayer);
+        if (end == items.end()) {
+            return;
+        }
+        float size = 0;
+        for (auto item = start; item != end; ++item) {
+            if (item->isFace) {
+                size += item->isHalf ? 0.5f : 1.0f;
+            }
+        }
+        Index lastCorner = Far::INDEX_INVALID;
+        for (auto item = start; item != end && size >= kMinShrunkSector; ++item) {
+            // The halves beside a diagonal that is less sharp are one corner.
+            if (!item->isFace || item->corner == lastCorner || level.IsHalfFace(item->face)) {
+                continue;
+            }
+            lastCorner = item->corner;
+            float const lower = std::max(layer.lower, level.GetDiagonalSharpness(item->face));
+            if (lower < layer.upper) {
+                result.push_back({item->corner, size, layer.upper - lower});
+            }
+        }
+        start = end;
+    }
+}
+
+// Adds the corners of wide sectors at a vertex where sharp edges meet.
+void addSectorCorners(Level const &level, Index vert, std::vector<SectorCorner> &result) {
+    // Of each fan, since a sector may lie between two ends of a fan on the same line.
+    std::vector<float> sharpness;
+    ForEachFanItems(level, vert, [&](FanItems const &fan) {
+        for (RingItem const &item : fan.items) {
+            if (isSharp(item)) {
+                sharpness.push_back(std::min(1.0f, item.sharpness));
+            }
+        }
+    });
+    std::sort(sharpness.begin(), sharpness.end());
+    float lower = 0;
+    // The sharpest edge of all is alone in its layer.
+    for (int i = 0; i + 1 < int(sharpness.size()); ++i) {
+        if (sharpness[i] > lower) {
+            SharpnessLayer const layer = {lower, sharpness[i]};
+            ForEachFanItems(level, vert,
+                            [&](FanItems &fan) { addSectorCorners(level, layer, fan, result); });
+            lower = layer.upper;
+        }
+    }
+}
+
+} // namespace
+
+void ComputeSharpMasks(Sdc::Options sdcOptions, Level &level) {
+    Crease const creasing(sdcOptions);
+    std::vector<float> childSharpness;
+    level.sharpVerts.clear();
+    level.sectorCorners.clear();
+    for (Index vert : findSharpVertices(level)) {
+        int const numFaces = level.vertFirstFace[vert + 1] - level.vertFirstFace[vert];
+        float const vertSharpness = level.GetVertexSharpness(vert);
+        SharpEdges const edges = gatherSharpEdges(level, vert);
+        addSectorCorners(level, vert, level.sectorCorners);
+        Crease::Rule const rule = creasing.DetermineVertexVertexRule(vertSharpness, edges.GetSize(),
+                                                                     edges.sharpness.data());
+        SharpVertex mask = maskOfRule(creasing, rule, vert, numFaces, edges, edges.sharpness);
+
+        float const childVertSharpness = creasing.SubdivideVertexSharpness(vertSharpness);
+        childSharpness.resize(edges.sharpness.size());
+        creasing.SubdivideEdgeSharpnessesAroundVertex(edges.GetSize(), edges.sharpness.data(),
+                                                      childSharpness.data());
+        Crease::Rule const childRule = creasing.DetermineVertexVertexRule(
+            childVertSharpness, edges.GetSize(), childSharpness.data());
+        if (childRule != rule) {
+            float const weight = creasing.ComputeFractionalWeightAtVertex(
+                vertSharpness, childVertSharpness, edges.GetSize(), edges.sharpness.data(),
+                childSharpness.data());
+            mask =
+                blend(mask, maskOfRule(creasing, childRule, vert, numFaces, edges, childSharpness),
+                      weight);
+        }
+        if (mask.rule != Crease::RULE_SMOOTH) {
+            level.sharpVerts.push_back(mask);
+        }
+    }
+    std::stable_sort(
+        level.sectorCorners.begin(), level.sectorCorners.end(),
+        [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
+}
+
+namespace {
+
+// Sharpness after one step, as seen at the ends of a sharp edge.
+class SharpnessRefiner {
+public:
+    SharpnessRefiner(Level const &level, Sdc::Options sdcOptions)
+        : _level(level), _creasing(sdcOptions) {}
+
+    // Of a part of the edge that ends in the vertex.
+    float AtVertex(float sharpness, Index vert) const {
+        if (_creasing.IsUniform()) {
+            return Along(sharpness);
+        }
+        SharpEdges const edges = gatherSharpEdges(_level, vert);
+        return _creasing.SubdivideEdgeSharpnessAtVertex(sharpness, edges.GetSize(),
+                                                        edges.sharpness.data());
+    }
+    // Of a part of the edge that ends in neither vertex.
+    float Along(float sharpness) const { return _creasing.SubdivideUniformSharpness(sharpness); }
+    // Of the whole edge: the mean of both ends.
+    float Between(float sharpness, Index vert0, Index vert1) const {
+        if (Crease::IsInfinite(sharpness)) {
+            return sharpness;
+        }
+        return 0.5f * (AtVertex(sharpness, vert0) + AtVertex(sharpness, vert1));
+    }
+
+private:
+    Level const &_level;
+    Crease const _creasing;
+};
+
+void fillZero(Buffer<float> &array, std::size_t size) {
+    array.Resize(size);
+    std::fill_n(array.data(), size, 0.0f);
+}
+
+// An array without any sharp entry is dropped, so that levels without tags have none.
+void dropIfSmooth(Buffer<float> &array) {
+    if (std::none_of(array.begin(), array.end(), Crease::IsSharp)) {
+        array.Resize(0);
+    }
+}
+
+void refineDiagonals(Refinement const &refinement, SharpnessRefiner const &refiner, Level &child) {
+    Level const &parent = *refinement.parent;
+    fillZero(child.diagonalSharpness, child.numFaces);
+    for (std::size_t face = 0; face < parent.diagonalSharpness.size(); ++face) {
+        child.diagonalSharpness[face] = refiner.Along(parent.diagonalSharpness[face]);
+    }
+    for (std::size_t edge = 0; edge < parent.edgeSharpness.size(); ++edge) {
+        if (Crease::IsSharp(parent.edgeSharpness[edge])) {
+            child.diagonalSharpness[refinement.GetEdgeChildFace(Index(edge))] = refiner.Between(
+                parent.edgeSharpness[edge], parent.edgeVerts[edge][0], parent.edgeVerts[edge][1]);
+        }
+    }
+    dropIfSmooth(child.diagonalSharpness);
+}
+
+// The sharp vertices of level 0 and their children are the first of their level.
+void refineVertices(Refinement const &refinement, SharpnessRefiner const &refiner, Level &child) {
+    Level const &parent = *refinement.parent;
+    child.vertSharpness.Resize(parent.vertSharpness.size());
+    std::size_t size = 0;
+    for (std::size_t vert = 0; vert < parent.vertSharpness.size(); ++vert) {
+        if (refinement.GetVertexChildVertex(Index(vert)) != Far::INDEX_INVALID) {
+            child.vertSharpness[size++] = refiner.Along(parent.vertSharpness[vert]);
+        }
+    }
+    child.vertSharpness.Resize(size);
+    dropIfSmooth(child.vertSharpness);
+}
+
+// The child edge from the V-vertex to the F-vertex of a corner.
+Index findSpoke(Refinement const &refinement, Index corner, Level const &child) {
+    Index const vVertex = refinement.GetVertexChildVertex(refinement.parent->faceVerts[corner]);
+    Index const fVertex = refinement.GetCornerChildVertex(corner);
+    Far::LocalIndex const *local = child.GetVertexEdgeLocals(fVertex);
+    for (Index i = child.vertFirstEdge[fVertex]; i < child.vertFirstEdge[fVertex + 1]; ++i) {
+        Index const edge = child.vertEdges[i];
+        if (child.edgeVerts[edge][1 - *local++] == vVertex) {
+            return edge;
+        }
+    }
+    return Far::INDEX_INVALID;
+}
+
+void refineEdges(Refinement const &refinement, SharpnessRefiner const &refiner, Level &child) {
+    Level const &parent = *refinement.parent;
+    if (parent.diagonalSharpness.empty()) {
+        return;
+    }
+    fillZero(child.edgeSharpness, child.numEdges);
+    for (Index face = 0; face < parent.numFaces; ++face) {
+        float const sharpness = parent.diagonalSharpness[face];
+        if (!Crease::IsSharp(sharpness)) {
+            continue;
+        }
+        for (int local : {kDiagonalStart, kDiagonalEnd}) {
+            Index const corner = parent.faceFirstCorner[face] + local;
+            Index const spoke = findSpoke(refinement, corner, child);
+            child.edgeSharpness[spoke] = refiner.AtVertex(sharpness, parent.faceVerts[corner]);
+        }
+    }
+    dropIfSmooth(child.edgeSharpness);
+}
+
+// A boundary of phase A has a child of phase B, in a half face; one of phase B has one in the F-face
+// of its half face, and the spokes at its ends.
+void refineLines(Refinement const &refinement, Level &child) {
+    Level const &parent = *refinement.parent;
+    for (LineEdge const &pEdge : parent.lineEdges) {
+        Index const eFace = refinement.GetEdgeChildFace(pEdge.edge);
+        if (eFace != Far::INDEX_INVALID) {
+            Index const corner = child.faceFirstCorner[eFace] + kHalfFaceLongEdge;
+            child.lineEdges.push_back({child.faceEdges[corner], pEdge.line});
+            continue;
+        }
+        Index const face = parent.edgeFaces[pEdge.edge][0];
+        Index const corner = parent.faceFirstCorner[face] + kHalfFaceLongEdge;
+        Index const fFaceEdge = child.faceEdges[child.faceFirstCorner[face] + kHalfFaceLongEdge];
+        for (Index edge : {fFaceEdge, findSpoke(refinement, corner, child),
+                           findSpoke(refinement, corner + 1, child)}) {
+            child.lineEdges.push_back({edge, pEdge.line});
+        }
+    }
+    std::sort(child.lineEdges.begin(), child.lineEdges.end(),
+              [](LineEdge const &a, LineEdge const &b) { return a.edge < b.edge; });
+}
+
+void refineHoles(Refinement const &refinement, Level &child) {
+    Level const &parent = *refinement.parent;
+    child.faceHoles.Resize(child.numFaces);
+    for (Index face = 0; face < parent.numFaces; ++face) {
+        child.faceHoles[face] = parent.faceHoles[face];
+    }
+    for (Index edge = 0; edge < parent.numEdges; ++edge) {
+        if (Index const cFace = refinement.GetEdgeChildFace(edge); cFace != Far::INDEX_INVALID) {
+            Index const face0 = parent.edgeFaces[edge][0];
+            Index const face1 = parent.edgeFaces[edge][1];
+            child.faceHoles[cFace] =
+                parent.faceHoles[face0] && (face1 < 0 || parent.faceHoles[face1]);
+        }
+    }
+    // A V-face has F-vertices of faces around one vertex: a hole when all of these are.
+    for (Index cFace = child.numFaces - child.numVFaces; cFace < child.numFaces; ++cFace) {
+        child.faceHoles[cFace] = true;
+        for (Index k = child.faceFirstCorner[cFace]; k < child.faceFirstCorner[cFace + 1]; ++k) {
+            if (Index const cVert = child.faceVerts[k]; cVert >= child.numVVertices) {
+                Index const pFace = parent.FindFaceOfCorner(refinement.GetChildVertexCorner(cVert));
+                child.faceHoles[cFace] &= parent.faceHoles[pFace];
+            }
+        }
+    }
+}
+
+} // namespace
+
+void RefineTags(Refinement const &refinement, Sdc::Options sdcOptions, Level &child) {
+    Level const &parent = *refinement.parent;
+    child.edgeSharpness.Resize(0);
+    child.diagonalSharpness.Resize(0);
+    child.vertSharpness.Resize(0);
+    child.faceHoles.Resize(0);
+    child.nonManifoldVerts.clear();
+    for (Index vert : parent.nonManifoldVerts) {
+        if (Index const cVert = refinement.GetVertexChildVertex(vert);
+            cVert != Far::INDEX_INVALID) {
+            child.nonManifoldVerts.push_back(cVert);
+        }
+    }
+    std::vector<Index> &verts = child.nonManifoldVerts;
+    verts.insert(verts.end(), child.partedVerts.begin(), child.partedVerts.end());
+    SortUnique(verts);
+
+    child.lineEdges.clear();
+    if (child.hasFullTopology) {
+        refineLines(refinement, child);
+    }
+    SharpnessRefiner const refiner(parent, sdcOptions);
+    if (!parent.edgeSharpness.empty() || !parent.diagonalSharpness.empty()) {
+        refineDiagonals(refinement, refiner, child);
+        if (child.hasFullTopology) {
+            refineEdges(refinement, refiner, child);
+        }
+    }
+    if (!parent.vertSharpness.empty()) {
+        refineVertices(refinement, refiner, child);
+    }
+    if (!parent.faceHoles.empty()) {
+        refineHoles(refinement, child);
+    }
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vertexFan.h"
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Far::Index;
+using Sdc::Crease;
+
+RingItem faceItem(Index face, Index corner, bool isHalf, int half) {
+    return {true, face, corner, isHalf, half, Far::INDEX_INVALID, false, 0};
+}
+
+RingItem lineItem(Index neighbor, bool isLong, float sharpness) {
+    return {false, Far::INDEX_INVALID, Far::INDEX_INVALID, false, -1, neighbor, isLong, sharpness};
+}
+
+RingItem edgeItem(Level const &level, Index edge, Index neighbor) {
+    Index const kind = level.edgeFaces[edge][1];
+    float sharpness = level.GetEdgeSharpness(edge);
+    if (kind < 0) {
+        sharpness = kind == kFreeBoundary ? 0 : Crease::SHARPNESS_INFINITE;
+    }
+    return lineItem(neighbor, kind == kSharpBoundaryB, sharpness);
+}
+
+} // namespace
+
+void GatherFanItems(Level const &level, VertexFan const &fan, FanItems &result) {
+    std::vector<RingItem> &items = result.items;
+    items.clear();
+    result.isClosed = fan.isClosed;
+    for (Index i = fan.begin; i < fan.end; ++i) {
+        Index const face = level.vertFaces[i];
+        int const local = level.vertFaceLocals[i];
+        Index const corner = level.GetVertexCorner(i);
+        Index const next = level.GetNextCorner(face, corner);
+        Index const prev = level.GetPrevCorner(face, corner);
+        Index const outEdge = level.faceEdges[corner];
+        Index const inEdge = level.faceEdges[prev];
+        items.push_back(edgeItem(level, outEdge, level.faceVerts[next]));
+        float const diagonal = level.GetDiagonalSharpness(face);
+        if ((local == kDiagonalStart || local == kDiagonalEnd) && Crease::IsSharp(diagonal)) {
+            // Seen from the start of the diagonal, half 1 comes first, from its end half 0.
+            int const half = local == kDiagonalStart ? 1 : 0;
+            Index const end = corner - local + kDiagonalStart + kDiagonalEnd - local;
+            items.push_back(faceItem(face, corner, true, half));
+            items.push_back(lineItem(level.faceVerts[end], true, diagonal));
+            items.push_back(faceItem(face, corner, true, 1 - half));
+        } else {
+            bool const isHalf = level.IsSharpBoundaryB(outEdge) || level.IsSharpBoundaryB(inEdge);
+            items.push_back(faceItem(face, corner, isHalf, -1));
+        }
+        if (i + 1 == fan.end && !fan.isClosed) {
+            items.push_back(edgeItem(level, inEdge, level.faceVerts[prev]));
+        }
+    }
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

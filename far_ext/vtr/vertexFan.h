@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_VERTEX_FAN_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_VERTEX_FAN_H
+
+#include "level.h"
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief Faces around a vertex, counter-clockwise, each joined to the next by an edge: from
+/// boundary to boundary or, when closed, all around.
+struct VertexFan {
+    Far::Index begin; ///< positions in Level::vertFaces
+    Far::Index end;
+    bool isClosed;
+};
+
+/// Calls function(fan) for the fans of a vertex, in their order.
+template <typename FUNCTION>
+void ForEachFan(Level const &level, Far::Index vert, FUNCTION function) {
+    Far::Index const end = level.vertFirstFace[vert + 1];
+    Far::Index i = level.vertFirstFace[vert];
+    while (i < end) {
+        VertexFan fan = {i, end, false};
+        Far::Index const firstEdge = level.faceEdges[level.GetVertexCorner(i)];
+        while (i < end) {
+            Far::Index const corner = level.GetVertexCorner(i);
+            Far::Index const inEdge =
+                level.faceEdges[level.GetPrevCorner(level.vertFaces[i], corner)];
+            ++i;
+            fan.isClosed = inEdge == firstEdge && !level.IsBoundary(inEdge);
+            if (fan.isClosed || level.IsBoundary(inEdge)) {
+                break;
+            }
+        }
+        fan.end = i;
+        function(fan);
+    }
+}
+
+/// \brief What is met on the way around a vertex: its faces, and between them edges and diagonals.
+struct RingItem {
+    bool isFace;
+    Far::Index face;     ///< of a face
+    Far::Index corner;   ///< of a face: where the vertex is in it
+    bool isHalf;         ///< a half face, or one side of a sharp diagonal
+    int half;            ///< of a hexagon with a sharp diagonal, as in kHexagonHalves; else -1
+    Far::Index neighbor; ///< at the other end of an edge or diagonal
+    bool isLong;         ///< a diagonal or a B boundary
+    float sharpness;     ///< of an edge or diagonal; 0 for smooth ones and free boundaries
+};
+
+/// \brief What is met on the way through a fan: from boundary to boundary or, when closed, from the
+/// edge before the first face to the last face.
+struct FanItems {
+    std::vector<RingItem> items;
+    bool isClosed;
+};
+
+void GatherFanItems(Level const &level, VertexFan const &fan, FanItems &result);
+
+/// Calls function(fanItems) for the fans of a vertex, in their order.
+template <typename FUNCTION>
+void ForEachFanItems(Level const &level, Far::Index vert, FUNCTION function) {
+    FanItems items;
+    ForEachFan(level, vert, [&](VertexFan const &fan) {
+        GatherFanItems(level, fan, items);
+        function(items);
+    });
+}
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

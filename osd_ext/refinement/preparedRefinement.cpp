@@ -1,0 +1,465 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "preparedRefinement.h"
+
+#include "far_ext/vtr/indexSet.h"
+#include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/runs.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+using Far::Index;
+using FarExt::internal::ForEachRun;
+using FarExt::internal::Level;
+using FarExt::internal::ParallelFor;
+using FarExt::internal::Refinement;
+using FarExt::internal::RefinementMask;
+using FarExt::internal::SortUnique;
+
+namespace {
+
+constexpr int kMinPlainSize = 3;
+constexpr int kMaxUnrolledSize = 6;
+/// Corners of a tile in the last level that is refined, a sixteenth of the level's between these
+/// bounds: 1.5 MiB of new points of length 3 at most.
+constexpr Index kMinTileCorners = 32768;
+constexpr Index kMaxTileCorners = 131072;
+constexpr Index kTilesPerLevel = 16;
+/// Corners of a tile, at least, in the levels before, where tiles are joined.
+constexpr Index kMinJoinedTileCorners = 4096;
+/// Vertices that a thread takes at a time of those between the tiles.
+constexpr Index kVertexBatch = 256;
+
+using Group = int;
+constexpr Group kBetween = -1; ///< of vertices whose faces are in several tiles
+
+PlainFaceMask makePlainFaceMask(double const *weights, int size) {
+    PlainFaceMask mask;
+    bool const hasOpposite = size == kMaxUnrolledSize;
+    bool isOrdinary = weights[1] == weights[size - 1];
+    for (int j = 2; j <= size - 2; ++j) {
+        isOrdinary &= weights[j] == weights[2] || (hasOpposite && j == size / 2);
+    }
+    if (!isOrdinary) {
+        mask.weights.assign(weights, weights + size);
+        mask.weights.insert(mask.weights.end(), weights, weights + size);
+        return mask;
+    }
+    double const all = weights[size > kMinPlainSize ? 2 : 1];
+    mask.self = float(weights[0] - all);
+    mask.neighbor = float(weights[1] - all);
+    mask.opposite = hasOpposite ? float(weights[size / 2] - all) : 0;
+    mask.all = float(all);
+    return mask;
+}
+
+// Sorts items into groups, in the order in which they stand: number i is in group groupOf[i].
+template <class ITEM>
+Groups<ITEM> makeGroups(std::vector<ITEM> const &items, std::vector<Group> const &groupOf,
+                        int numGroups) {
+    Groups<ITEM> groups;
+    groups.firsts.assign(std::size_t(numGroups) + 1, 0);
+    for (Group const group : groupOf) {
+        ++groups.firsts[std::size_t(group) + 1];
+    }
+    std::partial_sum(groups.firsts.begin(), groups.firsts.end(), groups.firsts.begin());
+    groups.items.Resize(items.size());
+    std::vector<std::size_t> next = groups.firsts;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        groups.items[next[std::size_t(groupOf[i])]++] = items[i];
+    }
+    return groups;
+}
+
+// Makes runs of the faces of a group that follow one another, each of faces of one size, and of
+// F-faces or others.
+class FaceRunMaker {
+public:
+    FaceRunMaker() = default;
+    explicit FaceRunMaker(Level const &level) : _numFFaces(GetNumFFaces(level)) {}
+
+    void Add(Index begin, Index end, int size, Group group) {
+        if (begin < _numFFaces && _numFFaces < end) {
+            append(begin, _numFFaces, size, group);
+            begin = _numFFaces;
+        }
+        append(begin, end, size, group);
+    }
+    Groups<IndexRun> Take(int numGroups) const { return makeGroups(_runs, _groupOf, numGroups); }
+
+private:
+    void append(Index begin, Index end, int size, Group group) {
+        if (begin == end) {
+            return;
+        }
+        if (begin != _numFFaces && !_runs.empty() && _runs.back().end == begin && _size == size &&
+            _groupOf.back() == group) {
+            _runs.back().end = end;
+        } else {
+            _runs.push_back({begin, end});
+            _groupOf.push_back(group);
+            _size = size;
+        }
+    }
+
+    Index _numFFaces = 0;
+    std::vector<IndexRun> _runs;
+    std::vector<Group> _groupOf;
+    int _size = 0; // of the faces of the last run
+};
+
+// Makes runs of the vertices of a group that follow one another.
+class VertexRunMaker {
+public:
+    explicit VertexRunMaker(Level const &level) : _firstFaces(level.vertFirstFace.data()) {}
+
+    void Add(Index begin, Index end, Group group) {
+        if (begin == end) {
+            return;
+        }
+        if (!_runs.empty() && _runs.back().end == begin && _groupOf.back() == group) {
+            _runs.back().end = end;
+        } else {
+            _runs.push_back({begin, end, _numCorners});
+            _groupOf.push_back(group);
+        }
+        _numCorners += std::size_t(_firstFaces[end] - _firstFaces[begin]);
+    }
+
+    std::vector<VertexRun> const &GetRuns() const { return _runs; }
+    std::size_t GetNumCorners() const { return _numCorners; }
+    Groups<VertexRun> Take(int numGroups) const { return makeGroups(_runs, _groupOf, numGroups); }
+
+private:
+    Index const *_firstFaces;
+    std::size_t _numCorners = 0;
+    std::vector<VertexRun> _runs;
+    std::vector<Group> _groupOf;
+};
+
+// The groups of the vertices between the tiles, behind those of the tiles: some vertices in each.
+class BatchMaker {
+public:
+    explicit BatchMaker(int numTiles) : _numTiles(numTiles) {}
+
+    // Calls add(begin, end, group) for pieces of [begin, end), things of numVertices vertices each.
+    template <class ADD>
+    void Split(Index begin, Index end, int numVertices, ADD add) {
+        while (begin < end) {
+            Index const room = (kVertexBatch - _numBetween % kVertexBatch) / numVertices;
+            Index const size = std::min(end - begin, std::max(1, room));
+            add(begin, begin + size, _numTiles + _numBetween / kVertexBatch);
+            _numBetween += size * numVertices;
+            begin += size;
+        }
+    }
+    int GetNumGroups() const { return _numTiles + (_numBetween + kVertexBatch - 1) / kVertexBatch; }
+
+private:
+    int _numTiles;
+    Index _numBetween = 0;
+};
+
+// The faces that need weights of their own, or exact access (see PreparedRefinement).
+std::vector<Index> findWeightedFaces(RefinementMask const &mask, Level const &parent) {
+    std::vector<Index> faces = mask.FindFeatureFaces();
+    if (parent.numVertices > 0) {
+        for (Index const face : parent.GetVertexFaces(parent.numVertices - 1)) {
+            if (parent.GetFaceSize(face) <= kMaxUnrolledSize) {
+                faces.push_back(face);
+            }
+        }
+    }
+    SortUnique(faces);
+    return faces;
+}
+
+std::vector<Index> findWeightedVertices(RefinementMask const &mask, Refinement const &refinement) {
+    Level const &parent = *refinement.parent;
+    if (!refinement.vVertexParents.empty()) {
+        // All, since those that are plain keep their index.
+        return std::vector<Index>(refinement.vVertexParents.begin(),
+                                  refinement.vVertexParents.end());
+    }
+    std::vector<Index> verts;
+    if (refinement.child->numVVertices > 0) {
+        verts = mask.FindFeatureVertices();
+        verts.push_back(parent.numVertices - 1);
+        if (parent.numCorners > 0) {
+            verts.push_back(parent.faceVerts[parent.numCorners - 1]);
+        }
+        SortUnique(verts);
+    }
+    return verts;
+}
+
+// Groups all faces of the level, and makes the weights of those that need their own.
+void makeFaces(RefinementMask const &mask, Level const &parent,
+               std::vector<Group> const &groupOfTile, TileMap const &tileMap,
+               PreparedRefinement &prepared) {
+    std::vector<Index> const indices = findWeightedFaces(mask, parent);
+    std::vector<WeightedFace> weighted;
+    std::vector<Group> groupOfWeighted;
+    std::vector<double> scratch;
+    auto const addWeighted = [&](Index face, Group group) {
+        Far::ConstIndexArray const verts = parent.GetFaceVertices(face);
+        int const size = verts.size();
+        weighted.push_back({parent.faceFirstCorner[std::size_t(face)], size, verts.begin(),
+                            prepared.faceWeights.size()});
+        groupOfWeighted.push_back(group);
+        for (int corner = 0; corner < size; ++corner) {
+            double const *const weights = mask.GetFaceVertexWeights(face, corner, scratch);
+            prepared.faceWeights.insert(prepared.faceWeights.end(), weights, weights + size);
+        }
+    };
+    FaceRunMaker plain(parent);
+    for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
+        Group const group = groupOfTile[run.tile];
+        ForEachRun(
+            run.begin, run.end, indices,
+            [&](Index begin, Index end, Index) { plain.Add(begin, end, run.size, group); },
+            [&](Index face, Index) { addWeighted(face, group); });
+    }
+    prepared.weightedFaces = makeGroups(weighted, groupOfWeighted, prepared.numTiles);
+    prepared.plainFaces = plain.Take(prepared.numTiles);
+}
+
+WeightedVertex makeWeightedVertex(RefinementMask const &mask, Refinement const &refinement,
+                                  Index vert) {
+    RefinementMask::VertexMask const weights = mask.GetVertexMask(vert);
+    WeightedVertex vertex = {vert,
+                             refinement.GetVertexChildVertex(vert),
+                             float(weights.weights[weights.numSources - 1]),
+                             float(weights.faceWeight),
+                             {vert, vert},
+                             {0, 0}};
+    for (int i = 0; i + 1 < weights.numSources; ++i) {
+        vertex.neighbors[i] = weights.sources[i];
+        vertex.neighborWeights[i] = float(weights.weights[i]);
+    }
+    return vertex;
+}
+
+// Groups all vertices of a level that make a V-vertex, from first to last.
+class VertexGrouper {
+public:
+    VertexGrouper(RefinementMask const &mask, Refinement const &refinement,
+                  std::vector<Group> const &groupOfTile, PreparedRefinement &prepared)
+        : _mask(mask), _refinement(refinement), _parent(*refinement.parent),
+          _groupOfTile(groupOfTile), _prepared(prepared),
+          _arePlain(refinement.child->numVVertices == _parent.numVertices),
+          _weightedVerts(findWeightedVertices(mask, refinement)),
+          _nextWeighted(_weightedVerts.begin()), _batches(prepared.numTiles), _plain(_parent) {
+        if (_arePlain && prepared.masks.averagesFaces && _parent.isHexagonal) {
+            _levelOfNewVertices = prepared.before;
+            if (prepared.before->isHexagonal && prepared.before->numSharpBoundariesA == 0 &&
+                prepared.before->numSharpBoundariesB == 0) {
+                _levelOfOlderVertices = prepared.beforeThat;
+            }
+        }
+    }
+
+    void AddFirstVertices(std::vector<TileMap::Run> const &runs) {
+        for (TileMap::Run const &run : runs) {
+            add(run.begin, run.end, groupOf(run.tile));
+        }
+    }
+    // The F-vertices that an earlier refinement made of the faces of its parent.
+    void AddFVertices(Refinement const &earlier, std::vector<TileMap::FaceRun> const &runs) {
+        Level const &level = *earlier.parent;
+        bool const areNew = &level == _levelOfNewVertices;
+        bool const areOlder = &level == _levelOfOlderVertices;
+        auto const addFVertices = [&](Index begin, Index end, Group group) {
+            Index const *const corners = level.faceFirstCorner.data();
+            add(earlier.GetCornerChildVertex(corners[begin]),
+                earlier.GetCornerChildVertex(corners[end]), group);
+        };
+        std::vector<Index> irregular = findFacesOfWeighted(earlier);
+        if (areNew) {
+            for (Index const edge : level.boundaryEdges) {
+                irregular.push_back(level.edgeFaces[std::size_t(edge)][0]);
+            }
+        }
+        SortUnique(irregular);
+        FaceRunMaker regular(level);
+        for (TileMap::FaceRun const &run : runs) {
+            Group const group = groupOf(run.tile);
+            if (!areNew && !areOlder) {
+                addFVertices(run.begin, run.end, group);
+                continue;
+            }
+            ForEachRun(
+                run.begin, run.end, irregular,
+                [&](Index begin, Index end, Index) {
+                    addToGroups(begin, end, run.size, group,
+                                [&](Index first, Index last, Group groupOfPart) {
+                                    regular.Add(first, last, run.size, groupOfPart);
+                                });
+                },
+                [&](Index face, Index) { addFVertices(face, face + 1, group); });
+        }
+        if (areNew) {
+            _newVertexFaces = std::move(regular);
+            if (!_levelOfOlderVertices) {
+                listStartCorners(earlier);
+            }
+        } else if (areOlder) {
+            _olderVertexFaces = std::move(regular);
+        }
+    }
+    void End() {
+        if (_prepared.masks.averagesFaces) {
+            listCorners();
+        }
+        int const numGroups = _batches.GetNumGroups();
+        _prepared.newVertexFaces = _newVertexFaces.Take(numGroups);
+        _prepared.olderVertexFaces = _olderVertexFaces.Take(numGroups);
+        _prepared.plainVertices = _plain.Take(numGroups);
+        _prepared.weightedVertices = makeGroups(_weighted, _groupOfWeighted, numGroups);
+    }
+
+private:
+    Group groupOf(TileMap::Tile tile) const {
+        return tile == TileMap::kNoTile ? kBetween : _groupOfTile[tile];
+    }
+    // The faces that made vertices with weights of their own.
+    std::vector<Index> findFacesOfWeighted(Refinement const &earlier) const {
+        std::vector<Index> faces;
+        Index const endVert = earlier.GetCornerChildVertex(earlier.parent->numCorners);
+        for (auto vert = _nextWeighted; vert != _weightedVerts.end() && *vert < endVert; ++vert) {
+            faces.push_back(earlier.parent->FindFaceOfCorner(earlier.GetChildVertexCorner(*vert)));
+        }
+        return faces;
+    }
+    void listStartCorners(Refinement const &earlier) {
+        Index const numCorners = earlier.parent->numCorners;
+        _prepared.startCorners.Resize(std::size_t(numCorners));
+        ParallelFor(numCorners, [&](Index corner) {
+            // The last of three faces around an F-vertex is the E-face of the edge from its corner.
+            Index const vert = earlier.GetCornerChildVertex(corner);
+            Index const end = _parent.vertFirstFace[std::size_t(vert) + 1];
+            _prepared.startCorners[std::size_t(corner)] = _parent.GetVertexCorner(end - 1);
+        });
+    }
+    // Calls add(begin, end, group) for [begin, end), things of numVertices vertices each, or for
+    // pieces of it.
+    template <class ADD>
+    void addToGroups(Index begin, Index end, int numVertices, Group group, ADD add) {
+        if (group == kBetween) {
+            _batches.Split(begin, end, numVertices, add);
+        } else {
+            add(begin, end, group);
+        }
+    }
+    void addPlain(Index begin, Index end, Group group) {
+        if (_arePlain) {
+            addToGroups(begin, end, 1, group, [&](Index first, Index last, Group groupOfPart) {
+                _plain.Add(first, last, groupOfPart);
+            });
+        }
+    }
+    void add(Index begin, Index end, Group group) {
+        for (; _nextWeighted != _weightedVerts.end() && *_nextWeighted < end; ++_nextWeighted) {
+            Index const vert = *_nextWeighted;
+            addPlain(begin, vert, group);
+            addToGroups(vert, vert + 1, 1, group, [&](Index, Index, Group groupOfVertex) {
+                _weighted.push_back(makeWeightedVertex(_mask, _refinement, vert));
+                _groupOfWeighted.push_back(groupOfVertex);
+            });
+            begin = vert + 1;
+        }
+        addPlain(begin, end, group);
+    }
+    void listCorners() {
+        _prepared.vertCorners.Resize(_plain.GetNumCorners());
+        ParallelFor(Index(_plain.GetRuns().size()), [&](Index i) {
+            VertexRun const &run = _plain.GetRuns()[std::size_t(i)];
+            Index const first = _parent.vertFirstFace[std::size_t(run.begin)];
+            Index const last = _parent.vertFirstFace[std::size_t(run.end)];
+            for (Index k = first; k < last; ++k) {
+                _prepared.vertCorners[run.firstCorner + std::size_t(k - first)] =
+                    _parent.GetVertexCorner(k);
+            }
+        });
+    }
+
+    RefinementMask const &_mask;
+    Refinement const &_refinement;
+    Level const &_parent;
+    std::vector<Group> const &_groupOfTile;
+    PreparedRefinement &_prepared;
+    bool const _arePlain; // those that are not weighted; else there are no others
+    std::vector<Index> const _weightedVerts;
+    std::vector<Index>::const_iterator _nextWeighted;
+    std::vector<WeightedVertex> _weighted;
+    std::vector<Group> _groupOfWeighted;
+    BatchMaker _batches;
+    VertexRunMaker _plain;
+    FaceRunMaker _newVertexFaces;
+    FaceRunMaker _olderVertexFaces;
+    // Null where their vertices have no kernel of their own.
+    Level const *_levelOfNewVertices = nullptr;
+    Level const *_levelOfOlderVertices = nullptr;
+};
+
+PlainMasks makePlainMasks(RefinementMask const &mask, Level const &parent) {
+    PlainMasks masks;
+    // F-vertices of a hexagonal refinement have three faces at most.
+    int maxValence = parent.isHexagonal ? 3 : 0;
+    Index const end = parent.isHexagonal ? parent.numVVertices : parent.numVertices;
+    for (Index vert = 0; vert < end; ++vert) {
+        maxValence = std::max(maxValence, parent.GetNumVertexFaces(vert));
+    }
+    for (int numFaces = 0; numFaces <= maxValence; ++numFaces) {
+        FarExt::VertexVertexMask const vertexMask = mask.GetPlainVertexMask(numFaces);
+        masks.verticesInverse.push_back(float(vertexMask.vertexWeight));
+    }
+    masks.averagesFaces = mask.GetPlainVertexMask(1).faceWeight != 0;
+    for (Index const size : parent.faceSizes) {
+        masks.faces.resize(std::size_t(size) + 1);
+        masks.faces[std::size_t(size)] = makePlainFaceMask(mask.GetPlainFaceWeights(size), size);
+    }
+    return masks;
+}
+
+} // namespace
+
+int GetNumTiles(Level const &lastParent) {
+    Index const numCorners = lastParent.numCorners;
+    return numCorners / std::clamp(numCorners / kTilesPerLevel, kMinTileCorners, kMaxTileCorners) +
+           1;
+}
+
+Index GetNumFFaces(Level const &level) { return level.isHexagonal ? level.numFFaces : 0; }
+
+void PrepareRefinement(RefinementMask const &mask,
+                       std::vector<Refinement const *> const &refinements, TileMap const &tileMap,
+                       PreparedRefinement &prepared) {
+    Refinement const &refinement = *refinements.back();
+    Level const &parent = *refinement.parent;
+    std::size_t const numBefore = refinements.size() - 1;
+    prepared.numVVertices = refinement.child->numVVertices;
+    prepared.masks = makePlainMasks(mask, parent);
+    prepared.parent = &parent;
+    prepared.before = numBefore > 0 ? refinements[numBefore - 1]->parent : nullptr;
+    prepared.beforeThat = numBefore > 1 ? refinements[numBefore - 2]->parent : nullptr;
+    prepared.numTiles =
+        std::min(parent.numCorners / kMinJoinedTileCorners + 1, tileMap.GetNumTiles());
+    std::vector<Group> groupOfTile(std::size_t(tileMap.GetNumTiles()));
+    for (int tile = 0; tile < tileMap.GetNumTiles(); ++tile) {
+        groupOfTile[std::size_t(tile)] = tile * prepared.numTiles / tileMap.GetNumTiles();
+    }
+    makeFaces(mask, parent, groupOfTile, tileMap, prepared);
+
+    VertexGrouper vertices(mask, refinement, groupOfTile, prepared);
+    vertices.AddFirstVertices(tileMap.GetFirstVertexRuns());
+    std::vector<std::vector<TileMap::FaceRun>> const &fVertexRuns = tileMap.GetFVertexRuns();
+    for (std::size_t i = 0; i < fVertexRuns.size(); ++i) {
+        vertices.AddFVertices(*refinements[numBefore - fVertexRuns.size() + i], fVertexRuns[i]);
+    }
+    vertices.End();
+}
+
+} // namespace OpenSubdivHex::OsdExt::internal

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_SIMD_QUAD_H
+#define OPENSUBDIVHEX_OSD_EXT_SIMD_QUAD_H
+
+#include <cstring>
+
+#if defined(__GNUC__)
+#define OPENSUBDIVHEX_INLINE inline __attribute__((always_inline))
+#else
+#define OPENSUBDIVHEX_INLINE inline
+#endif
+
+namespace OpenSubdivHex::OsdExt::internal {
+// Files that are compiled for other processors have quads of their own: none may be linked with
+// the code of another.
+namespace {
+
+constexpr int kQuad = 4; ///< floats
+
+/// Four floats, in a register where the machine has such.
+#if defined(__GNUC__)
+using Quad = float __attribute__((vector_size(kQuad * sizeof(float))));
+#else
+struct Quad {
+    float values[kQuad];
+
+    float &operator[](int i) { return values[i]; }
+    float operator[](int i) const { return values[i]; }
+};
+
+inline Quad operator+(Quad const &a, Quad const &b) {
+    return {{a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}};
+}
+inline Quad operator*(Quad const &a, Quad const &b) {
+    return {{a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]}};
+}
+#endif
+
+OPENSUBDIVHEX_INLINE Quad Spread(float value) { return Quad{value, value, value, value}; }
+
+/// Reads the first WIDTH floats, 1 to 4, and not one more; the others are 0.
+template <int WIDTH>
+OPENSUBDIVHEX_INLINE Quad LoadFloats(float const *src) {
+    if constexpr (WIDTH == kQuad) {
+        Quad result;
+        std::memcpy(&result, src, sizeof(result));
+        return result;
+    } else {
+        return Quad{src[0], WIDTH > 1 ? src[1] : 0, WIDTH > 2 ? src[2] : 0, 0};
+    }
+}
+
+/// Writes the first WIDTH floats, 1 to 4.  One by one where there is no such register: compilers
+/// take a copy of three for a reason to go through memory.
+template <int WIDTH>
+OPENSUBDIVHEX_INLINE void StoreFloats(float *dst, Quad const &packet) {
+    if constexpr (WIDTH == kQuad) {
+        std::memcpy(dst, &packet, sizeof(packet));
+    } else {
+        for (int i = 0; i < WIDTH; ++i) {
+            dst[i] = packet[i];
+        }
+    }
+}
+
+} // namespace
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# The installed headers are those at the top of the layers' folders, no internal ones, and each
+# compiles alone:
+# cmake -D sourceDir=DIR -D includeDir=DIR -D compiler=PATH -D flags=LIST -P headers.cmake
+file(GLOB expected RELATIVE ${sourceDir} ${sourceDir}/far_ext/*.h ${sourceDir}/osd_ext/*.h)
+list(APPEND expected far_ext/version.h)
+list(SORT expected)
+file(GLOB_RECURSE installed RELATIVE ${includeDir} ${includeDir}/*.h)
+list(SORT installed)
+list(JOIN installed "\n  " shown)
+message("installed headers:\n  ${shown}")
+if(NOT installed STREQUAL expected)
+  list(JOIN expected "\n  " shown)
+  message(FATAL_ERROR "expected were:\n  ${shown}")
+endif()
+
+foreach(header IN LISTS installed)
+  file(WRITE ${includeDir}/../alone.cpp "#include <${header}>\nint main() {}\n")
+  execute_process(
+    COMMAND ${compiler} -std=c++17 -fsyntax-only -Wall -Wextra -Werror ${flags} -I${includeDir}
+      ${includeDir}/../alone.cpp
+    RESULT_VARIABLE result)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${header} does not compile alone")
+  endif()
+endforeach()

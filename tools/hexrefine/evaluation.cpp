@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation.h"
+
+#include "far_ext/primvarRefiner.h"
+#include "far_ext/stencilTableFactory.h"
+#include "osd_ext/ompEvaluator.h"
+#include "osd_ext/refinementEvaluator.h"
+
+#include <opensubdiv/osd/cpuEvaluator.h>
+#ifdef HEXREFINE_HAS_OPENMP
+#include <opensubdiv/osd/ompEvaluator.h>
+#endif
+
+#include <cmath>
+
+namespace OpenSubdivHex::Tools {
+
+namespace {
+
+namespace Far = OpenSubdiv::Far;
+namespace Osd = OpenSubdiv::Osd;
+
+/// What the primvar refiner adds up.
+template <int WIDTH>
+struct Value {
+    float numbers[WIDTH];
+
+    void Clear() {
+        for (float &number : numbers) {
+            number = 0;
+        }
+    }
+    void AddWithWeight(Value const &value, float weight) {
+        for (int i = 0; i < WIDTH; ++i) {
+            numbers[i] += weight * value.numbers[i];
+        }
+    }
+};
+
+template <int WIDTH>
+void evaluateLevels(FarExt::TopologyRefiner const &refiner, Primvar const &primvar) {
+    static_assert(sizeof(Value<WIDTH>) == WIDTH * sizeof(float), "read as an array of floats");
+    FarExt::PrimvarRefiner const primvarRefiner(refiner);
+    for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
+        FarExt::TopologyLevel const &topology = refiner.GetLevel(level);
+        bool const isFaceVarying = primvar.fvarChannel >= 0;
+        int const numValues = isFaceVarying ? topology.GetNumFVarValues(primvar.fvarChannel)
+                                            : topology.GetNumVertices();
+        std::vector<float> values(WIDTH * std::size_t(numValues));
+        auto const *const source = reinterpret_cast<Value<WIDTH> const *>(primvar.values->data());
+        auto *const destination = reinterpret_cast<Value<WIDTH> *>(values.data());
+        if (isFaceVarying) {
+            primvarRefiner.InterpolateFaceVarying(level, source, destination, primvar.fvarChannel);
+        } else {
+            primvarRefiner.Interpolate(level, source, destination);
+        }
+        *primvar.values = std::move(values);
+    }
+}
+
+bool evaluateRefinement(FarExt::TopologyRefiner const &refiner, Primvar const &primvar,
+                        FarExt::Status *status) {
+    OsdExt::RefinementEvaluator::Options options;
+    if (primvar.fvarChannel >= 0) {
+        options.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
+        options.fvarChannel = primvar.fvarChannel;
+    }
+    auto const evaluator = OsdExt::RefinementEvaluator::Create(refiner, options, status);
+    if (!evaluator) {
+        return false;
+    }
+    int const level = evaluator->GetMaxLevel();
+    int const width = primvar.width;
+    std::vector<float> values(std::size_t(width) * std::size_t(evaluator->GetNumElements(level)));
+    Osd::BufferDescriptor const desc(0, width, width);
+    bool const isEvaluated =
+        evaluator->Evaluate(primvar.values->data(), desc, values.data(), desc, level, status);
+    *primvar.values = std::move(values);
+    return isEvaluated;
+}
+
+void setNormalized(double const (&vector)[3], float *result) {
+    double const length = std::hypot(vector[0], vector[1], vector[2]);
+    for (int k = 0; k < 3; ++k) {
+        result[k] = float(length > 0 ? vector[k] / length : vector[k]);
+    }
+}
+
+} // namespace
+
+bool NeedsStencils(std::string const &evaluator) {
+    return evaluator == kStencil || evaluator == kStencilCpu || evaluator == kStencilOmp;
+}
+
+bool EvaluateLevels(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
+                    Primvar const &primvar, FarExt::Status *status) {
+    if (evaluator == kRefinement) {
+        return evaluateRefinement(refiner, primvar, status);
+    }
+    if (primvar.width == 2) {
+        evaluateLevels<2>(refiner, primvar);
+    } else {
+        evaluateLevels<3>(refiner, primvar);
+    }
+    return true;
+}
+
+std::unique_ptr<Far::StencilTable const> CreateStencils(FarExt::TopologyRefiner const &refiner,
+                                                        Primvar const &primvar,
+                                                        FarExt::Status *status) {
+    FarExt::StencilTableFactory::Options options;
+    options.generateIntermediateLevels = false;
+    if (primvar.fvarChannel >= 0) {
+        options.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
+        options.fvarChannel = primvar.fvarChannel;
+    }
+    return FarExt::StencilTableFactory::Create(refiner, options, status);
+}
+
+void EvaluateStencils(Far::StencilTable const &table, std::string const &evaluator,
+                      Primvar const &primvar) {
+    int const width = primvar.width;
+    std::vector<float> values(std::size_t(width) * std::size_t(table.GetNumStencils()));
+    Osd::BufferDescriptor const desc(0, width, width);
+    auto evaluate = [&](auto const &evaluateRange) {
+        evaluateRange(primvar.values->data(), desc, values.data(), desc, table.GetSizes().data(),
+                      table.GetOffsets().data(), table.GetControlIndices().data(),
+                      table.GetWeights().data(), 0, table.GetNumStencils());
+        *primvar.values = std::move(values);
+    };
+    if (evaluator == kStencil) {
+        evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });
+        return;
+    }
+#ifdef HEXREFINE_HAS_OPENMP
+    if (evaluator == kStencilOmp) {
+        evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
+        return;
+    }
+#endif
+    evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
+}
+
+std::unique_ptr<Far::LimitStencilTable const>
+CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::Status *status) {
+    FarExt::LimitStencilTableFactory::Options options;
+    options.level = refiner.GetMaxLevel();
+    options.generateFurtherSides = true;
+    return FarExt::LimitStencilTableFactory::Create(refiner, options, status);
+}
+
+std::vector<float> EvaluateLimit(Far::LimitStencilTable const &table,
+                                 FarExt::LimitSides const &sides, std::string const &evaluator,
+                                 std::vector<float> *positions) {
+    std::size_t const size = 3 * std::size_t(table.GetNumStencils());
+    std::vector<float> points(size), du(size), dv(size);
+    Osd::BufferDescriptor const desc(0, 3, 3);
+    auto evaluate = [&](auto const &evaluateRange) {
+        evaluateRange(positions->data(), desc, points.data(), desc, du.data(), desc, dv.data(),
+                      desc, table.GetSizes().data(), table.GetOffsets().data(),
+                      table.GetControlIndices().data(), table.GetWeights().data(),
+                      table.GetDuWeights().data(), table.GetDvWeights().data(), 0,
+                      table.GetNumStencils());
+    };
+    if (evaluator == kStencilCpu) {
+        evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
+#ifdef HEXREFINE_HAS_OPENMP
+    } else if (evaluator == kStencilOmp) {
+        evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
+#endif
+    } else {
+        evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });
+    }
+    std::vector<float> normals(3 * std::size_t(sides.GetNumSides()));
+    for (std::size_t i = 0; i < normals.size(); i += 3) {
+        double normal[3]; // products of floats need not be floats
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::size_t const a = i + (k + 1) % 3;
+            std::size_t const b = i + (k + 2) % 3;
+            normal[k] = double(du[a]) * double(dv[b]) - double(du[b]) * double(dv[a]);
+        }
+        setNormalized(normal, normals.data() + i);
+    }
+    // The points of further sides are those of their vertices.
+    points.resize(3 * std::size_t(sides.GetNumVertices()));
+    *positions = std::move(points);
+    return normals;
+}
+
+void Normalize(std::vector<float> *vectors) {
+    for (std::size_t i = 0; i + 2 < vectors->size(); i += 3) {
+        float *const vector = vectors->data() + i;
+        double const numbers[3] = {vector[0], vector[1], vector[2]};
+        setNormalized(numbers, vector);
+    }
+}
+
+} // namespace OpenSubdivHex::Tools

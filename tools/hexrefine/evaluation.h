@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TOOLS_EVALUATION_H
+#define OPENSUBDIVHEX_TOOLS_EVALUATION_H
+
+#include "far_ext/limitStencilTableFactory.h"
+
+#include <opensubdiv/far/stencilTable.h>
+
+#include <string>
+#include <vector>
+
+namespace OpenSubdivHex::Tools {
+
+/// Values of level 0, \p width floats each, that go with the vertices or with a face-varying
+/// channel.
+struct Primvar {
+    int width = 3;
+    int fvarChannel = -1; ///< -1: of the vertices
+    std::vector<float> *values = nullptr;
+};
+
+/// \brief The values of --evaluator.
+/// @{
+inline constexpr char kRefinement[] = "refinement";  ///< OsdExt::RefinementEvaluator
+inline constexpr char kStencil[] = "stencil";        ///< OsdExt::OmpEvaluator
+inline constexpr char kStencilCpu[] = "stencil-cpu"; ///< Osd::CpuEvaluator
+inline constexpr char kStencilOmp[] = "stencil-omp"; ///< Osd::OmpEvaluator
+inline constexpr char kPrimvar[] = "primvar";        ///< FarExt::PrimvarRefiner
+/// @}
+
+/// Whether \p evaluator takes a stencil table.
+bool NeedsStencils(std::string const &evaluator);
+
+/// \brief Replaces \p primvar's values by those of the refiner's last level, without a table.
+/// \param evaluator  refinement, or primvar for a width of 2 or 3
+/// \return           false with a status, as from RefinementEvaluator
+bool EvaluateLevels(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
+                    Primvar const &primvar, FarExt::Status *status);
+
+/// The table that holds the last level of \p primvar alone; null with a status, as from
+/// StencilTableFactory.
+std::unique_ptr<OpenSubdiv::Far::StencilTable const>
+CreateStencils(FarExt::TopologyRefiner const &refiner, Primvar const &primvar,
+               FarExt::Status *status);
+
+/// \brief Replaces \p primvar's values by those that \p table, from CreateStencils, makes of them.
+/// \param evaluator  one that takes a table
+void EvaluateStencils(OpenSubdiv::Far::StencilTable const &table, std::string const &evaluator,
+                      Primvar const &primvar);
+
+/// The limit points of the refiner's last level, which has full topology, and the derivatives on
+/// each of its LimitSides; null with a status, as from LimitStencilTableFactory.
+std::unique_ptr<OpenSubdiv::Far::LimitStencilTable const>
+CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::Status *status);
+
+/// \brief Replaces \p positions by the limit points of \p table, from CreateLimitStencils.
+/// \param evaluator  stencil-cpu or stencil-omp
+/// \return  a normal for each side, 1 long; 0 where there is no tangent plane
+std::vector<float> EvaluateLimit(OpenSubdiv::Far::LimitStencilTable const &table,
+                                 FarExt::LimitSides const &sides, std::string const &evaluator,
+                                 std::vector<float> *positions);
+
+/// Makes vectors of three floats 1 long; those without a direction stay 0.
+void Normalize(std::vector<float> *vectors);
+
+} // namespace OpenSubdivHex::Tools
+
+#endif

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TOOLS_LEVEL_MESH_H
+#define OPENSUBDIVHEX_TOOLS_LEVEL_MESH_H
+
+#include "far_ext/limitStencilTableFactory.h"
+#include "tools/mesh/mesh.h"
+
+namespace OpenSubdivHex::Tools {
+
+/// \brief Replaces the faces of \p mesh, whose channels are those of \p level, by the faces of
+/// \p level.
+///
+/// Holes are left out.  A hexagon that a seam of a channel crosses becomes two quads, its halves,
+/// since a mesh has one value per corner; other faces stay whole.
+void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh);
+
+/// \brief The same, with a further channel, the last of \p mesh, whose values are those of \p
+/// sides.
+///
+/// Hexagons that a sharp crease crosses become two quads as well.
+void CopyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const &sides, Mesh *mesh);
+
+} // namespace OpenSubdivHex::Tools
+
+#endif

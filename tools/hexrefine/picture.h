@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TOOLS_PICTURE_H
+#define OPENSUBDIVHEX_TOOLS_PICTURE_H
+
+#include "far_ext/topologyLevel.h"
+
+#include <string>
+#include <vector>
+
+namespace OpenSubdivHex::Tools {
+
+/// Whether this program has the renderer, which needs Embree and libpng.
+bool HasRenderer();
+
+/// \brief Ray traces a level, which has full topology, and writes the picture, 800 x 600 pixels, to
+/// \p path.
+///
+/// \param positions  x y z of each vertex of the level
+///
+/// Throws FileError.
+void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> positions,
+                  std::string const &path);
+
+} // namespace OpenSubdivHex::Tools
+
+#endif

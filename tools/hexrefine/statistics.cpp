@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "statistics.h"
+
+#include "tagText.h"
+#include "tools/mesh/fileError.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+#if defined(__unix__) || defined(__APPLE__)
+#include <sys/resource.h>
+#endif
+
+namespace OpenSubdivHex::Tools {
+
+std::vector<LevelStatistics> CountLevels(FarExt::TopologyRefiner const &refiner) {
+    std::vector<LevelStatistics> levels;
+    for (int i = 0; i < refiner.GetNumLevels(); ++i) {
+        FarExt::TopologyLevel const &level = refiner.GetLevel(i);
+        std::map<int, int> facesBySize;
+        for (int f = 0; f < level.GetNumFaces(); ++f) {
+            ++facesBySize[level.GetFaceVertices(f).size()];
+        }
+        levels.push_back({level.GetNumVertices(), level.GetNumEdges(), level.GetNumFaces(),
+                          level.GetNumFaceVertices(), level.GetNumBoundaryEdges(), facesBySize});
+    }
+    return levels;
+}
+
+std::vector<int> CountHoles(FarExt::TopologyRefiner const &refiner) {
+    std::vector<int> holes;
+    for (int i = 0; i < refiner.GetNumLevels(); ++i) {
+        FarExt::TopologyLevel const &level = refiner.GetLevel(i);
+        holes.push_back(0);
+        for (int f = 0; f < level.GetNumFaces(); ++f) {
+            holes.back() += level.IsFaceHole(f) ? 1 : 0;
+        }
+    }
+    return holes;
+}
+
+std::vector<ChannelStatistics> CountChannels(FarExt::TopologyRefiner const &refiner,
+                                             Mesh const &mesh) {
+    std::vector<ChannelStatistics> channels;
+    for (FVarChannel const &channel : mesh.channels) {
+        std::vector<int> values;
+        values.reserve(refiner.GetNumLevels());
+        for (int i = 0; i < refiner.GetNumLevels(); ++i) {
+            values.push_back(refiner.GetLevel(i).GetNumFVarValues(int(channels.size())));
+        }
+        channels.push_back({GetChannelName(channel.kind), channel.width, values});
+    }
+    return channels;
+}
+
+std::int64_t GetPeakMemoryBytes() {
+#if defined(__unix__) || defined(__APPLE__)
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+    return usage.ru_maxrss;
+#else
+    return std::int64_t(usage.ru_maxrss) * 1024;
+#endif
+#else
+    return 0;
+#endif
+}
+
+std::string FormatJson(Statistics const &statistics) {
+    using Json = nlohmann::ordered_json;
+
+    Json levels = Json::array();
+    for (LevelStatistics const &level : statistics.levels) {
+        Json facesBySize = Json::object();
+        for (auto const &[size, numFaces] : level.facesBySize) {
+            facesBySize[std::to_string(size)] = numFaces;
+        }
+        levels.push_back({{"level", levels.size()},
+                          {"vertices", level.vertices},
+                          {"edges", level.edges},
+                          {"faces", level.faces},
+                          {"corners", level.corners},
+                          {"boundaryEdges", level.boundaryEdges},
+                          {"facesBySize", facesBySize}});
+    }
+    Json channels = Json::array();
+    for (ChannelStatistics const &channel : statistics.channels) {
+        channels.push_back(
+            {{"name", channel.name}, {"width", channel.width}, {"values", channel.values}});
+    }
+    Json coplanar;
+    if (statistics.coplanar) {
+        coplanar = {{"tolerance", statistics.coplanar->tolerance},
+                    {"openGaps", statistics.coplanar->hasOpenGaps}};
+    }
+    auto const &milliseconds = statistics.milliseconds;
+    Json const json = {{"scheme", statistics.scheme},
+                       {"mask", statistics.mask},
+                       {"boundary", statistics.boundary},
+                       {"evaluator", statistics.evaluator},
+                       {"input", statistics.input},
+                       {"levels", levels},
+                       {"milliseconds",
+                        {{"read", milliseconds.read},
+                         {"validate", milliseconds.validate},
+                         {"refine", milliseconds.refine},
+                         {"stencils", milliseconds.stencils},
+                         {"evaluate", milliseconds.evaluate},
+                         {"write", milliseconds.write},
+                         {"render", milliseconds.render}}},
+                       {"stencils", statistics.stencils},
+                       {"weights", statistics.weights},
+                       {"peakMemoryBytes", GetPeakMemoryBytes()},
+                       {"creasingMethod", statistics.creasingMethod},
+                       {"creases", statistics.creases},
+                       {"corners", statistics.corners},
+                       {"holes", statistics.holes},
+                       {"fvarInterpolation", statistics.fvarInterpolation},
+                       {"fvarChannels", channels},
+                       {"fvarChannelsLeftOut", statistics.channelsLeftOut},
+                       {"triHexFirst", statistics.isTriHexFirst},
+                       {"coplanar", coplanar}};
+    // A path need not be UTF-8, JSON must be.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+namespace {
+
+template <typename... ARGS>
+std::string format(char const *pattern, ARGS... args) {
+    char line[256];
+    std::snprintf(line, sizeof line, pattern, args...);
+    return line;
+}
+
+std::string formatScheme(Statistics const &statistics) {
+    std::string text = statistics.scheme;
+    if (statistics.isTriHexFirst) {
+        text += " after a tri-hex step";
+    }
+    if (statistics.coplanar) {
+        text += format(", coplanar within %g degrees", statistics.coplanar->tolerance);
+        text += statistics.coplanar->hasOpenGaps ? ", gaps open" : "";
+    }
+    return text;
+}
+
+/// A line for each thing that there is.
+std::string formatTags(Statistics const &statistics) {
+    std::string lines;
+    if (statistics.creases > 0 || statistics.corners > 0) {
+        lines += format("%d creases (%s), %d corners\n", statistics.creases,
+                        statistics.creasingMethod.c_str(), statistics.corners);
+    }
+    if (!statistics.holes.empty() && statistics.holes[0] > 0) {
+        lines += format("%d holes; without them the last level has %d faces\n", statistics.holes[0],
+                        statistics.levels.back().faces - statistics.holes.back());
+    }
+    for (ChannelStatistics const &channel : statistics.channels) {
+        lines += format("channel %s: %d values, %d in the last level, linear interpolation %s\n",
+                        channel.name.c_str(), channel.values.front(), channel.values.back(),
+                        statistics.fvarInterpolation.c_str());
+    }
+    for (std::string const &channel : statistics.channelsLeftOut) {
+        lines += "channel " + channel + ": left out, only .obj files hold it\n";
+    }
+    return lines;
+}
+
+} // namespace
+
+std::string FormatSummary(Statistics const &statistics) {
+    std::string summary = EscapeControls(statistics.input) + ": scheme " +
+                          formatScheme(statistics) + ", mask " + statistics.mask + ", boundary " +
+                          statistics.boundary + ", evaluator " + statistics.evaluator + "\n\n" +
+                          "level    vertices       edges       faces    boundary  faces by size\n";
+    for (std::size_t i = 0; i < statistics.levels.size(); ++i) {
+        LevelStatistics const &level = statistics.levels[i];
+        summary += format("%5d %11d %11d %11d %11d ", int(i), level.vertices, level.edges,
+                          level.faces, level.boundaryEdges);
+        for (auto const &[size, numFaces] : level.facesBySize) {
+            summary += format(" %d:%d", size, numFaces);
+        }
+        summary += "\n";
+    }
+    summary += "\n" + formatTags(statistics);
+    if (statistics.stencils > 0) {
+        summary += format("%d stencils, %lld weights\n", statistics.stencils,
+                          static_cast<long long>(statistics.weights));
+    }
+    auto const &ms = statistics.milliseconds;
+    summary +=
+        format("ms: read %.1f, validate %.1f, refine %.1f, stencils %.1f, evaluate %.1f, "
+               "write %.1f, render %.1f\n",
+               ms.read, ms.validate, ms.refine, ms.stencils, ms.evaluate, ms.write, ms.render);
+    if (std::int64_t const bytes = GetPeakMemoryBytes()) {
+        summary += format("peak memory %.1f MiB\n", double(bytes) / (1024 * 1024));
+    }
+    return summary;
+}
+
+} // namespace OpenSubdivHex::Tools

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meshCheck.h"
+
+#include "fileError.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace OpenSubdivHex::Tools {
+
+void CheckFinite(Mesh const &mesh, std::string const &path, std::string const &place) {
+    auto const check = [&](char const *name, char const *number, std::vector<float> const &values,
+                           int width) {
+        auto const bad = std::find_if(values.begin(), values.end(),
+                                      [](float value) { return !std::isfinite(value); });
+        if (bad != values.end()) {
+            throw FileError(path, place + name + " " +
+                                      std::to_string((bad - values.begin()) / width) + " has a " +
+                                      number + " that is not a finite number");
+        }
+    };
+    check("vertex", "coordinate", mesh.positions, 3);
+    check("vertex", "normal", mesh.vertexNormals, 3);
+    for (FVarChannel const &channel : mesh.channels) {
+        bool const isUv = channel.kind == FVarKind::Uv;
+        check(isUv ? "texture coordinate" : "normal", "part", channel.values, channel.width);
+    }
+}
+
+void CheckMesh(Mesh const &mesh, std::string const &path) {
+    if (mesh.faceSizes.empty()) {
+        throw FileError(path, "has no faces");
+    }
+    std::size_t count = std::max(mesh.positions.size() / 3, mesh.faceVertices.size());
+    for (FVarChannel const &channel : mesh.channels) {
+        count = std::max(count, channel.values.size() / std::size_t(channel.width));
+    }
+    if (count > std::size_t(std::numeric_limits<int>::max())) {
+        throw FileError(path, "has more than 2147483647 vertices, values or face corners");
+    }
+    CheckFinite(mesh, path);
+}
+
+} // namespace OpenSubdivHex::Tools

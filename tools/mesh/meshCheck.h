@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TOOLS_MESH_CHECK_H
+#define OPENSUBDIVHEX_TOOLS_MESH_CHECK_H
+
+#include "mesh.h"
+
+#include <string>
+
+namespace OpenSubdivHex::Tools {
+
+/// \brief Throws FileError for the file \p path, which names the vertex or the value, if a number
+/// of \p mesh is not finite.  \p place, such as "level 3: ", goes before the cause.
+void CheckFinite(Mesh const &mesh, std::string const &path, std::string const &place = "");
+
+/// \brief Throws FileError unless a file may hold \p mesh: it has faces, no more vertices, values
+/// and corners than 31 bits count, and finite numbers.  What is read and what is written meets it.
+void CheckMesh(Mesh const &mesh, std::string const &path);
+
+} // namespace OpenSubdivHex::Tools
+
+#endif

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fileError.h"
+#include "meshReader.h"
+#include "meshText.h"
+#include "objTags.h"
+
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <utility>
+
+namespace OpenSubdivHex::Tools::internal {
+
+namespace {
+
+/// Statements that say nothing about what Mesh holds.
+constexpr std::array<std::string_view, 17> kSkippedStatements = {
+    "vp",    "g",        "o",        "s",          "mg",        "usemtl", "mtllib", "usemap", "lod",
+    "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj", "l",      "p",      "maplib"};
+
+/// Joins lines that end in a backslash with the next, keeping the number of lines.
+void joinContinuedLines(std::string *text) {
+    if (text->find("\\\n") == std::string::npos) {
+        return;
+    }
+    std::string joined;
+    joined.reserve(text->size());
+    std::size_t numJoined = 0;
+    for (std::size_t i = 0; i < text->size(); ++i) {
+        if (text->compare(i, 2, "\\\n") == 0) {
+            joined.push_back(' ');
+            ++numJoined;
+            ++i;
+        } else if ((*text)[i] == '\n') {
+            joined.append(numJoined + 1, '\n');
+            numJoined = 0;
+        } else {
+            joined.push_back((*text)[i]);
+        }
+    }
+    *text = std::move(joined);
+}
+
+/// What the corners of faces have beside their vertices.
+struct Attribute {
+    FVarKind kind;
+    char const *name;
+    std::size_t minNumbers;      ///< that a value needs, of 3
+    std::vector<float> values{}; ///< x y z of each
+    std::vector<int> faceValues{};
+    int numValuesSoFar = 0;
+    int firstFaceWith = -1;
+    int firstFaceWithout = -1;
+
+    int GetNumValues() const { return int(values.size() / 3); }
+};
+
+/// The file as tinyobj's callbacks give it, beside what they do not give.
+struct ObjContent {
+    std::string const &path;
+    Mesh mesh{};
+    std::vector<int> faceLines{};
+    int numVerticesSoFar = 0;
+    Attribute uvs{FVarKind::Uv, "texture coordinate", 1};
+    Attribute normals{FVarKind::Normal, "normal", 3};
+    ObjTagReader tags{path};
+
+    [[noreturn]] void Refuse(int line, std::string const &cause) const {
+        throw FileError(path, "line " + std::to_string(line) + ": " + cause);
+    }
+    [[noreturn]] void RefuseIndex(int line, char const *name, int index) const {
+        Refuse(line, std::string(name) + " index " + std::to_string(index) + " is out of range");
+    }
+
+    /// The index, from 0, of what a corner of the face that comes next names as \p index: counted
+    /// from 1, or back from the last one so far.
+    int Resolve(char const *name, int index, int numSoFar, int numTotal) const {
+        int const result = index > 0 ? index - 1 : numSoFar + index;
+        if (index == 0 || result < 0 || result >= numTotal) {
+            RefuseIndex(faceLines[mesh.faceSizes.size()], name, index);
+        }
+        return result;
+    }
+};
+
+/// Refuses \p word unless it is `v`, `v/t`, `v//n` or `v/t/n` with ints, t and n not 0.
+void checkCorner(ObjContent const &content, int line, std::string_view word) {
+    std::string_view rest = word;
+    for (int i = 0; i < 3; ++i) {
+        std::size_t const slash = i < 2 ? rest.find('/') : std::string_view::npos;
+        std::string_view const number = rest.substr(0, slash);
+        int index = 0;
+        bool const isLeftOut = i == 1 && number.empty() && slash != std::string_view::npos;
+        if (!isLeftOut && !ParseInt(number, &index)) {
+            content.Refuse(line, "'" + std::string(word) + "' is not a vertex of a face");
+        }
+        if (i > 0 && !isLeftOut && index == 0) {
+            // Tinyobj gives 0 for what is left out, too.
+            content.RefuseIndex(line, i == 1 ? content.uvs.name : content.normals.name, 0);
+        }
+        if (slash == std::string_view::npos) {
+            return;
+        }
+        rest.remove_prefix(slash + 1);
+    }
+}
+
+/// Refuses \p words unless they are finite numbers, and appends the first three to \p values, with
+/// 0 for those that are missing.
+void readNumbers(ObjContent const &content, int line, std::vector<std::string_view> const &words,
+                 std::vector<float> *values) {
+    for (std::size_t i = 0; i < std::max(words.size(), std::size_t(3)); ++i) {
+        float value = 0;
+        if (i < words.size() && !ParseFiniteFloat(words[i], &value)) {
+            content.Refuse(line, "'" + std::string(words[i]) + "' is not a finite number");
+        }
+        if (i < 3) {
+            values->push_back(value);
+        }
+    }
+}
+
+void readAttribute(ObjContent const &content, int line, std::vector<std::string_view> const &words,
+                   Attribute *attribute) {
+    if (words.size() < attribute->minNumbers || words.size() > 3) {
+        content.Refuse(line, std::string("a ") + attribute->name + " needs " +
+                                 (attribute->minNumbers == 3 ? "three" : "one to three") +
+                                 " numbers, this one has " + std::to_string(words.size()));
+    }
+    readNumbers(content, line, words, &attribute->values);
+}
+
+/// \brief Refuses what tinyobj would read as something else without a word, and fills in the
+/// numbers, the tags and the lines of the faces.
+///
+/// Tinyobj takes a number that it cannot parse, or that is missing, as 0, rounds some numbers to
+/// a neighbour of the nearest float, and skips statements that it does not know.
+void readStatements(std::string_view text, ObjContent *content) {
+    for (int line = 1; !text.empty(); ++line) {
+        std::string_view rest = TakeLine(&text);
+        std::string_view const statement = TakeWord(&rest);
+        std::vector<std::string_view> const words = SplitWords(rest);
+        if (statement == "v") {
+            if (words.size() < 3) {
+                content->Refuse(line, "a vertex needs three coordinates");
+            }
+            readNumbers(*content, line, words, &content->mesh.positions);
+        } else if (statement == "vt") {
+            readAttribute(*content, line, words, &content->uvs);
+        } else if (statement == "vn") {
+            readAttribute(*content, line, words, &content->normals);
+        } else if (statement == "f") {
+            for (std::string_view word : words) {
+                checkCorner(*content, line, word);
+            }
+            if (words.size() < 3) {
+                content->Refuse(line, "a face needs three corners, this one has " +
+                                          std::to_string(words.size()));
+            }
+            content->faceLines.push_back(line);
+        } else if (statement == "t") {
+            content->tags.Read(line, rest);
+        } else if (!statement.empty() &&
+                   std::find(kSkippedStatements.begin(), kSkippedStatements.end(), statement) ==
+                       kSkippedStatements.end()) {
+            content->Refuse(line, "statement '" + std::string(statement.substr(0, 40)) +
+                                      "' is not supported");
+        }
+    }
+}
+
+void countVertex(void *data, float, float, float, float) {
+    ++static_cast<ObjContent *>(data)->numVerticesSoFar;
+}
+void countUv(void *data, float, float, float) {
+    ++static_cast<ObjContent *>(data)->uvs.numValuesSoFar;
+}
+void countNormal(void *data, float, float, float) {
+    ++static_cast<ObjContent *>(data)->normals.numValuesSoFar;
+}
+
+/// Either all corners of all faces have the attribute, or none.
+void addFaceValues(ObjContent const &content, tinyobj::index_t const *corners, int numCorners,
+                   int tinyobj::index_t::*index, Attribute *attribute) {
+    int const face = content.mesh.GetNumFaces();
+    for (int i = 0; i < numCorners; ++i) {
+        bool const hasValue = corners[i].*index != 0;
+        int &first = hasValue ? attribute->firstFaceWith : attribute->firstFaceWithout;
+        first = first < 0 ? face : first;
+        if (attribute->firstFaceWith >= 0 && attribute->firstFaceWithout >= 0) {
+            int const other =
+                content
+                    .faceLines[hasValue ? attribute->firstFaceWithout : attribute->firstFaceWith];
+            content.Refuse(content.faceLines[face],
+                           std::string("a corner has ") + (hasValue ? "a " : "no ") +
+                               attribute->name + ", one in line " + std::to_string(other) +
+                               (hasValue ? " has none" : " has one"));
+        }
+        if (hasValue) {
+            attribute->faceValues.push_back(content.Resolve(attribute->name, corners[i].*index,
+                                                            attribute->numValuesSoFar,
+                                                            attribute->GetNumValues()));
+        }
+    }
+}
+
+void addFace(void *data, tinyobj::index_t *corners, int numCorners) {
+    ObjContent &content = *static_cast<ObjContent *>(data);
+    Mesh &mesh = content.mesh;
+    for (int i = 0; i < numCorners; ++i) {
+        mesh.faceVertices.push_back(content.Resolve(
+            "vertex", corners[i].vertex_index, content.numVerticesSoFar, mesh.GetNumVertices()));
+    }
+    addFaceValues(content, corners, numCorners, &tinyobj::index_t::texcoord_index, &content.uvs);
+    addFaceValues(content, corners, numCorners, &tinyobj::index_t::normal_index, &content.normals);
+    mesh.faceSizes.push_back(numCorners);
+}
+
+/// Texture coordinates become two numbers wide, unless the third is used.
+void addChannel(Attribute *attribute, Mesh *mesh) {
+    if (attribute->faceValues.empty()) {
+        return;
+    }
+    FVarChannel channel;
+    channel.kind = attribute->kind;
+    channel.width = 3;
+    channel.values = std::move(attribute->values);
+    channel.faceValues = std::move(attribute->faceValues);
+    std::vector<float> &values = channel.values;
+    bool isFlat = attribute->kind == FVarKind::Uv;
+    for (std::size_t i = 2; i < values.size(); i += 3) {
+        isFlat = isFlat && values[i] == 0;
+    }
+    if (isFlat) {
+        channel.width = 2;
+        for (std::size_t i = 0; i < values.size() / 3; ++i) {
+            values[2 * i] = values[3 * i];
+            values[2 * i + 1] = values[3 * i + 1];
+        }
+        values.resize(values.size() / 3 * 2);
+    }
+    mesh->channels.push_back(std::move(channel));
+}
+
+} // namespace
+
+Mesh ReadObj(std::string const &path, std::string *content) {
+    NormalizeText(path, content);
+    BlankComments(content);
+    joinContinuedLines(content);
+    ObjContent obj{path};
+    readStatements(*content, &obj);
+
+    // The callbacks give the corners of a face as they stand.  LoadObj does not: it keeps the
+    // number of corners in 8 bits.
+    tinyobj::callback_t callbacks;
+    callbacks.vertex_cb = &countVertex;
+    callbacks.texcoord_cb = &countUv;
+    callbacks.normal_cb = &countNormal;
+    callbacks.index_cb = &addFace;
+    std::istringstream stream(*content);
+    std::string warning;
+    std::string error;
+    if (!tinyobj::LoadObjWithCallback(stream, callbacks, &obj, nullptr, &warning, &error)) {
+        throw FileError(path, "cannot be parsed: " + error.substr(0, error.find('\n')));
+    }
+    if (obj.numVerticesSoFar != obj.mesh.GetNumVertices() ||
+        obj.uvs.numValuesSoFar != obj.uvs.GetNumValues() ||
+        obj.normals.numValuesSoFar != obj.normals.GetNumValues() ||
+        obj.mesh.faceSizes.size() != obj.faceLines.size()) {
+        throw FileError(path, "cannot be parsed: vertices, values or faces were skipped");
+    }
+    addChannel(&obj.uvs, &obj.mesh);
+    addChannel(&obj.normals, &obj.mesh);
+    obj.tags.Finish(&obj.mesh);
+    return std::move(obj.mesh);
+}
+
+} // namespace OpenSubdivHex::Tools::internal

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace OpenSubdivHex::Tools {
+
+namespace {
+
+float computeAngle(Vec3 a, Vec3 b) { return std::atan2(Length(Cross(a, b)), Dot(a, b)); }
+
+float computeSegmentDistance(Vec3 point, Vec3 a, Vec3 b) {
+    Vec3 const edge = b - a;
+    float const squaredLength = Dot(edge, edge);
+    float const t = squaredLength > 0 ? Dot(point - a, edge) / squaredLength : 0;
+    return Length(point - (a + std::clamp(t, 0.0f, 1.0f) * edge));
+}
+
+} // namespace
+
+Surface::Surface(FarExt::TopologyLevel const &level)
+    : _level(level), _sides(level), _triangles(OsdExt::CreateTriangleIndices(level)) {
+    _triangleNormals.reserve(_triangles.vertices.size());
+    for (int triangle = 0; triangle < _triangles.GetNumTriangles(); ++triangle) {
+        int const face = _triangles.faces[triangle];
+        Far::ConstIndexArray const vertices = _level.GetFaceVertices(face);
+        int corners[3];
+        bool isHalf1 = true; // all corners are among those of half 1
+        for (int i = 0; i < 3; ++i) {
+            corners[i] = vertices.FindIndex(_triangles.vertices[3 * std::size_t(triangle) + i]);
+            isHalf1 = isHalf1 && corners[i] <= FarExt::kDiagonalEnd;
+        }
+        for (int corner : corners) {
+            _triangleNormals.push_back(_sides.FindSide(_level, face, corner, isHalf1 ? 1 : 0));
+        }
+    }
+}
+
+void Surface::SetPositions(float const *positions, float const *du, float const *dv) {
+    _positions.assign(positions, positions + 3 * std::ptrdiff_t(_level.GetNumVertices()));
+    findPolygonNormals();
+    if (du && dv) {
+        for (int side = 0; side < _sides.GetNumSides(); ++side) {
+            _normals[side] = Normalize(Cross(GetVec3(du, side), GetVec3(dv, side)));
+        }
+    }
+}
+
+void Surface::findPolygonNormals() {
+    float const *const positions = _positions.data();
+    _faceNormals.assign(_level.GetNumFaces(), Vec3());
+    std::vector<Vec3> vertexNormals(_level.GetNumVertices());
+    for (int face = 0; face < _level.GetNumFaces(); ++face) {
+        Far::ConstIndexArray const vertices = _level.GetFaceVertices(face);
+        int const size = vertices.size();
+        Vec3 const first = GetVec3(positions, vertices[0]);
+        Vec3 normal;
+        for (int i = 2; i < size; ++i) {
+            normal = normal + Cross(GetVec3(positions, vertices[i - 1]) - first,
+                                    GetVec3(positions, vertices[i]) - first);
+        }
+        _faceNormals[face] = Normalize(normal);
+        // A vertex normal is the mean of the faces' normals, weighted by their angles there.
+        for (int i = 0; i < size; ++i) {
+            Vec3 const point = GetVec3(positions, vertices[i]);
+            Vec3 const next = GetVec3(positions, vertices[(i + 1) % size]);
+            Vec3 const previous = GetVec3(positions, vertices[(i + size - 1) % size]);
+            Vec3 &vertexNormal = vertexNormals[vertices[i]];
+            vertexNormal =
+                vertexNormal + computeAngle(next - point, previous - point) * _faceNormals[face];
+        }
+    }
+    _normals.clear();
+    for (int side = 0; side < _sides.GetNumSides(); ++side) {
+        _normals.push_back(Normalize(vertexNormals[_sides.GetVertex(side)]));
+    }
+}
+
+Vec3 Surface::GetSmoothNormal(int triangle, float u, float v) const {
+    int const *normals = _triangleNormals.data() + 3 * std::ptrdiff_t(triangle);
+    return Normalize((1 - u - v) * _normals[normals[0]] + u * _normals[normals[1]] +
+                     v * _normals[normals[2]]);
+}
+
+Vec3 Surface::GetFlatNormal(int triangle) const { return _faceNormals[_triangles.faces[triangle]]; }
+
+int Surface::GetFaceSize(int triangle) const {
+    return _level.GetFaceVertices(_triangles.faces[triangle]).size();
+}
+
+float Surface::GetEdgeDistance(int triangle, Vec3 point) const {
+    Far::ConstIndexArray const vertices = _level.GetFaceVertices(_triangles.faces[triangle]);
+    Vec3 end = GetVec3(_positions.data(), vertices[vertices.size() - 1]);
+    float distance = Length(point - end);
+    for (int vertex : vertices) {
+        Vec3 const start = end;
+        end = GetVec3(_positions.data(), vertex);
+        distance = std::min(distance, computeSegmentDistance(point, start, end));
+    }
+    return distance;
+}
+
+} // namespace OpenSubdivHex::Tools
