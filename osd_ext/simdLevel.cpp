@@ -44,7 +44,7 @@ SimdLevel GetMaxSimdLevel() {
 SimdLevel GetSimdLevel() { return currentSimdLevel(); }
 
 bool SetSimdLevel(SimdLevel level) {
-    if (level > GetMaxSimdLevel()) {
+    if (level < SimdLevel::Portable || level > GetMaxSimdLevel()) {
         return false;
     }
     currentSimdLevel() = level;

@@ -39,7 +39,8 @@ OPENSUBDIVHEX_API SimdLevel GetSimdLevel();
 /// \brief Sets the level for all evaluations of the process that start from now on.  Meant for
 /// tests and comparisons.  Safe to call from any thread.
 ///
-/// \return  false if \p level is above GetMaxSimdLevel(); the level in use then stays
+/// \return  false if \p level is above GetMaxSimdLevel() or no level at all; the level in use then
+///          stays
 OPENSUBDIVHEX_API bool SetSimdLevel(SimdLevel level);
 
 /// @name Names of levels

@@ -626,6 +626,16 @@ TEST(Evaluator, AddressesIn64Bits) {
 }
 #endif
 
+TEST(SimdLevel, NumbersThatAreNoLevelAreRefused) {
+    using OsdExt::SimdLevel;
+    SimdLevel const before = OsdExt::GetSimdLevel();
+    for (int number : {-1, 77, int(OsdExt::GetMaxSimdLevel()) + 1}) {
+        EXPECT_FALSE(OsdExt::SetSimdLevel(SimdLevel(number))) << number;
+        EXPECT_EQ(OsdExt::GetSimdLevel(), before);
+        OsdExt::SetSimdLevel(before);
+    }
+}
+
 TEST(SimdLevel, CanBeForced) {
     SimdLevel const before = OsdExt::GetSimdLevel();
     EXPECT_EQ(before, OsdExt::GetMaxSimdLevel());
