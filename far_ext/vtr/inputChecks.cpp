@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inputChecks.h"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <set>
 
@@ -40,19 +42,76 @@ public:
                                "face " + str(face) + " refers to vertex " + str(vert) +
                                    ", but vertices go from 0 to " + str(_numFaces.size() - 1));
             }
-            // Far counts the edges of a vertex, of which a boundary vertex has one more.
-            if (++_numFaces[vert] >= OpenSubdiv::Vtr::VALENCE_LIMIT) {
-                return Status(StatusCode::TooLarge, ComponentType::Vertex, vert,
-                              "vertex " + str(vert) + " has " + str(_numFaces[vert]) +
-                                  " faces, as many as OpenSubdiv's valences reach");
+            if (++_numFaces[vert] < kManyFaces) {
+                continue;
+            }
+            _hasManyFaces = true;
+            if (_numFaces[vert] > OpenSubdiv::Vtr::VALENCE_LIMIT) {
+                return tooLarge(vert, _numFaces[vert], "faces");
             }
         }
         return Status();
     }
 
+    // Checks what Far would print about: the numbers of edges of the vertices.  All faces of the
+    // descriptor are checked already.
+    Status CheckEdges(Far::TopologyDescriptor const &descriptor) const;
+
 private:
-    std::vector<int> _numFaces; // of a vertex
+    // Every face of a vertex has two edges there at most, so that with fewer faces there are not
+    // too many edges.
+    static constexpr int kManyFaces = (OpenSubdiv::Vtr::VALENCE_LIMIT + 1) / 2;
+
+    static Status tooLarge(Index vert, std::int64_t count, std::string const &what) {
+        return Status(StatusCode::TooLarge, ComponentType::Vertex, vert,
+                      "vertex " + str(vert) + " has " + str(count) + " " + what +
+                          ", more than the " + str(OpenSubdiv::Vtr::VALENCE_LIMIT) +
+                          " that OpenSubdiv's valences reach");
+    }
+
+    std::vector<int> _numFaces; // of a vertex, which a face may have several times
+    bool _hasManyFaces = false; // whether a vertex has kManyFaces or more
 };
+
+// Counts as Far does, which gives each degenerate edge, and each repetition of an edge within a
+// face, an edge of its own.
+Status FaceVertexChecker::CheckEdges(Far::TopologyDescriptor const &descriptor) const {
+    if (!_hasManyFaces) {
+        return Status();
+    }
+    using EdgeEnd = std::array<Index, 3>; // vertex, the vertex at the other end, face
+    std::vector<EdgeEnd> ends;
+    Index const *verts = descriptor.vertIndicesPerFace;
+    for (Index face = 0; face < descriptor.numFaces; ++face) {
+        int const size = descriptor.numVertsPerFace[face];
+        for (int i = 0; i < size; ++i) {
+            Index const start = verts[i];
+            Index const end = verts[(i + 1) % size];
+            if (_numFaces[start] >= kManyFaces) {
+                ends.push_back({start, end, face});
+            }
+            if (_numFaces[end] >= kManyFaces) {
+                ends.push_back({end, start, face});
+            }
+        }
+        verts += size;
+    }
+    std::sort(ends.begin(), ends.end());
+    int numEdges = 0;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        auto const [vert, other, face] = ends[i];
+        if (i == 0 || vert != ends[i - 1][0]) {
+            numEdges = 0;
+        }
+        bool const isKnown = numEdges > 0 && other == ends[i - 1][1] && face != ends[i - 1][2];
+        numEdges += isKnown && other != vert ? 0 : 1;
+        bool const isLast = i + 1 == ends.size() || vert != ends[i + 1][0];
+        if (isLast && numEdges > OpenSubdiv::Vtr::VALENCE_LIMIT) {
+            return tooLarge(vert, numEdges, "edges");
+        }
+    }
+    return Status();
+}
 
 Status checkInventory(std::int64_t numVertices, std::int64_t numFaces) {
     if (numVertices <= 0 || numFaces <= 0) {
@@ -243,6 +302,9 @@ Status CheckDescriptor(Far::TopologyDescriptor const &descriptor) {
         int const size = descriptor.numVertsPerFace[face];
         status = checker.Check(face, ConstIndexArray(verts, size));
         verts += size;
+    }
+    if (status.IsOk()) {
+        status = checker.CheckEdges(descriptor);
     }
     return status.IsOk() ? checkTags(descriptor) : status;
 }
