@@ -38,7 +38,9 @@ public:
     ///          (an option that is none of its enumeration's values), TooLarge, or Unsupported
     ///          (creases, interior corners, non-manifold edges or face-varying channels with other
     ///          steps than hexagonal ones; a channel without a seam at a vertex inside of such a
-    ///          curve, where a semi-sharp crease meets it or some faces meet one end alone).
+    ///          curve, where a semi-sharp crease meets it or some faces meet one end alone, or, with
+    ///          CREASE_CHAIKIN, at any non-manifold vertex where semi-sharp creases meet that lie
+    ///          between faces which no edges join there).
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    Options options, Status *status = nullptr);
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,

@@ -307,9 +307,8 @@ void Importer::importVertexTags() {
     }
 }
 
-// What a value without seams at a non-manifold vertex needs to move as the vertex does, where that
-// lies inside of a curve of several sheets: each fan of faces has a value of its own, which sees the
-// sharp edges of its fan alone.
+// What a value without seams at a non-manifold vertex needs to move as the vertex does: each fan of
+// faces has a value of its own, which sees the sharp edges of its fan alone.
 Status Importer::followVertex(Index vert, int channel, std::vector<Index> const &faceValues,
                               std::vector<float> &sharpness) const {
     Level const &level = *_level;
@@ -320,6 +319,22 @@ Status Importer::followVertex(Index vert, int channel, std::vector<Index> const 
     auto const isSeam = [&](Index corner) { return faceValues[corner] != faceValues[corners[0]]; };
     if (std::any_of(corners.begin(), corners.end(), isSeam)) {
         return Status();
+    }
+    auto const refuse = [&](std::string const &what) {
+        return Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
+                      "face-varying channel " + str(channel) + " has no seam at vertex " +
+                          str(vert) + ", where " + what);
+    };
+    int numCreasedFans = 0;
+    ForEachFanItems(level, vert, [&](FanItems const &fan) {
+        auto const isCrease = [](RingItem const &item) {
+            return Sdc::Crease::IsSemiSharp(item.sharpness);
+        };
+        numCreasedFans += std::any_of(fan.items.begin(), fan.items.end(), isCrease) ? 1 : 0;
+    });
+    if (numCreasedFans > 1 &&
+        _baseRefiner.GetSchemeOptions().GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN) {
+        return refuse("CREASE_CHAIKIN averages semi-sharp creases that no faces there join");
     }
     float sharpest = 0;
     for (Index i = level.vertFirstEdge[vert]; i < level.vertFirstEdge[vert + 1]; ++i) {
@@ -343,10 +358,8 @@ Status Importer::followVertex(Index vert, int channel, std::vector<Index> const 
     if (isSeenByAll) {
         return Status();
     }
-    return Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
-                  "face-varying channel " + str(channel) + " has no seam at vertex " + str(vert) +
-                      ", where faces do not all meet both ends of a non-manifold curve, or a "
-                      "semi-sharp crease meets it");
+    return refuse("faces do not all meet both ends of a non-manifold curve, or a semi-sharp crease "
+                  "meets it");
 }
 
 // Far's tags tell which values stay (corners, and all boundary values with linear boundaries) and
@@ -360,8 +373,12 @@ Status Importer::importChannel(int channel) {
         ConstIndexArray const values = _base.GetFaceFVarValues(face, channel);
         faceValues.insert(faceValues.end(), values.begin(), values.end());
     }
-    // By corner, since every vertex that a value is shared by has its own rule.
+    // By corner, since every vertex that a value is shared by has its own rule.  Where a face has a
+    // vertex several times Far may know of one of its corners alone.
     std::vector<float> sharpness(_level->numCorners, 0.0f);
+    for (Index corner = 0; corner < _level->numCorners && !fvar.isLinear(); ++corner) {
+        sharpness[corner] = _level->GetVertexSharpness(_level->faceVerts[corner]);
+    }
     for (Index vert = 0; vert < _level->numVertices && !fvar.isLinear(); ++vert) {
         ConstIndexArray const faces = _base.GetVertexFaces(vert);
         auto const tags = fvar.getVertexValueTags(vert);

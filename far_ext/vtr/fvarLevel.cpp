@@ -6,6 +6,7 @@
 #include "sharpFeatures.h"
 #include "vertexFan.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -112,7 +113,8 @@ void BuildFVarChannel(Level const &mesh, Index numValues, std::vector<Index> con
     level.vertSharpness.Resize(level.numVertices);
     std::fill_n(level.vertSharpness.data(), level.numVertices, Sdc::Crease::SHARPNESS_SMOOTH);
     for (Index corner = 0; corner < level.numCorners; ++corner) {
-        level.vertSharpness[level.faceVerts[corner]] = sharpness[corner];
+        float &vertSharpness = level.vertSharpness[level.faceVerts[corner]];
+        vertSharpness = std::max(vertSharpness, sharpness[corner]);
     }
     for (Index vert = 0; vert < level.numVertices; ++vert) {
         // Where a seam meets a boundary that follows the paper's rule no curve goes on: a corner.

@@ -162,6 +162,10 @@ void addSectorCorners(Level const &level, SharpnessLayer layer, FanItems &fan,
     auto const isSharpInLayer = [&](RingItem const &item) { return layer.IsSharp(item.sharpness); };
     auto start = std::find_if(items.begin(), items.end(), isSharpInLayer);
     if (fan.isClosed && start != items.end()) {
+        // One edge bounds no sector, even if other fans have sharp edges, too.
+        if (std::none_of(start + 1, items.end(), isSharpInLayer)) {
+            return;
+        }
         // All around, from a sharp edge back to it.
         std::rotate(items.begin(), start, items.end());
         items.push_back(items.front());

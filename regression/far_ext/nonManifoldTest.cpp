@@ -436,6 +436,74 @@ TEST(NonManifold, ChannelWithoutSeamsMovesAsVerticesDoOrIsRefused) {
     EXPECT_GT(numTaken, numRefused);
 }
 
+TEST(NonManifold, ChannelWithoutSeamsIsRefusedWhereChaikinsRuleJoinsFans) {
+    // Two fans that meet in vertex 0, each with a crease.
+    Shape shape = makeShape({0, 0, 0, 1, 0, 0, 1, 1, .2, 0, 1, .1, -1, 0, .3, -1, -1, 0, 0, -1, .5},
+                            {{0, 1, 2}, {0, 2, 3}, {0, 4, 5}, {0, 5, 6}});
+    shape.fvarChannels.push_back({3, shape.positions, shape.faceVertices});
+    Sdc::Options options = boundary(kEdgeOnly);
+    options.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_NONE);
+    shape.creaseVertexPairs = {0, 2};
+    shape.creaseSharpness = {2.5f};
+    for (auto method : {Sdc::Options::CREASE_UNIFORM, Sdc::Options::CREASE_CHAIKIN}) {
+        options.SetCreasingMethod(method);
+        EXPECT_TRUE(CreateRefiner(shape, ReferenceMask::Average, 1, options));
+    }
+    shape.creaseVertexPairs = {0, 2, 5, 0};
+    shape.creaseSharpness = {2.5f, 1.25f};
+    ShapeDescriptor const descriptor(shape);
+    Status status;
+    EXPECT_FALSE(TopologyRefinerFactory::Create(descriptor.Get(), options, &status));
+    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
+    EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Vertex);
+    EXPECT_EQ(status.GetComponentIndex(), 0);
+    for (char const *word : {"channel 0", "vertex 0", "CREASE_CHAIKIN"}) {
+        EXPECT_NE(status.GetMessage().find(word), std::string::npos) << status.GetMessage();
+    }
+    // Creases in one fan alone, one of them infinitely sharp in the other, and the other method.
+    shape.creaseSharpness = {2.5f, 10};
+    EXPECT_TRUE(CreateRefiner(shape, ReferenceMask::Average, 1, options));
+    shape.creaseSharpness = {2.5f, 1.25f};
+    options.SetCreasingMethod(Sdc::Options::CREASE_UNIFORM);
+    EXPECT_TRUE(CreateRefiner(shape, ReferenceMask::Average, 1, options));
+}
+
+TEST(NonManifold, ChannelOfAFaceThatRepeatsAVertexStaysThere) {
+    // Far, which takes vertex 4 for manifold, looks at one of its two corners in the last face.
+    Shape shape = makeShape({0, 0, 0, 1, 0, 0, 2, 0, 1, 0, 1, 0, 1, 1, 0, 3, 1, 2},
+                            {{3, 4, 5}, {0, 5, 4}, {4, 3, 2, 4, 1, 0}});
+    Sdc::Options options = boundary(kNone);
+    options.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1);
+    shape.fvarChannels.push_back({3, shape.positions, shape.faceVertices});
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 3, options);
+    TaggedMatch const match(shape, *refiner, 0);
+    ASSERT_EQ(match.GetError(), "");
+    ReferenceValues const positions = GetPositions(shape);
+    auto const values = InterpolateLevels(*refiner, positions, ValueKind::FaceVarying);
+    ASSERT_NO_FATAL_FAILURE(
+        ExpectLevelsEqual(values, match.InterpolateAll(ReferenceMask::Average, positions), 1e-12));
+}
+
+TEST(NonManifold, OneCreaseBoundsNoSector) {
+    // Three faces all around vertex 0 with one crease, as in a mesh of them alone, and another face.
+    Faces faces = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}};
+    Shape shape = makeShape({0, 0, 1, 1, 0, 0, -.5, .8, 0, -.5, -.9, 0, 1, 0, 2, 0, 1, 2}, faces);
+    shape.creaseVertexPairs = {0, 1};
+    shape.creaseSharpness = {1.5f};
+    shape.cornerVertices = {0};
+    shape.cornerSharpness = {10};
+    ReferenceValues const positions = GetPositions(shape);
+    Sdc::Options const options = boundary(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    auto const alone = CreateRefiner(shape, ReferenceMask::Average, 1, options);
+    faces.push_back({0, 4, 5});
+    setFaces(faces, shape);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 1, options);
+    ReferenceValues const expected = InterpolateLevels(*alone, positions)[1];
+    ReferenceValues const actual = InterpolateLevels(*refiner, positions)[1];
+    EXPECT_LT((actual.topRows(expected.rows()) - expected).cwiseAbs().maxCoeff(), 1e-14);
+    ASSERT_NO_FATAL_FAILURE(expectEqualToReference(shape, options, 3));
+}
+
 TEST(NonManifold, HolesOfABaseRefinerAreKeptButAtFreeBorders) {
     // Far makes holes of all faces at a border, so that only those elsewhere tell.
     int numKept = 0;

@@ -40,12 +40,18 @@ bool hasRepeatedVertex(Shape const &shape) {
     return result;
 }
 
-/// By corner: Far's own tags tell which values its FVarLinearInterpolation keeps in place.
+/// By corner: Far's own tags tell which values its FVarLinearInterpolation keeps in place.  Corners
+/// that Far does not know, of faces that repeat a vertex, do as the vertex does.
 std::vector<float> valueSharpness(Far::TopologyRefiner const &base, int channel,
                                   TaggedMesh const &mesh) {
     Far::TopologyLevel const &level = base.GetLevel(0);
     OpenSubdiv::Vtr::internal::FVarLevel const &values = base.getLevel(0).getFVarLevel(channel);
-    std::vector<float> sharpness(level.GetNumFaceVertices(), 0.0f);
+    std::vector<float> sharpness;
+    for (TaggedMesh::Face const &face : mesh.faces) {
+        for (int v : face.vertices) {
+            sharpness.push_back(values.isLinear() ? 0 : mesh.vertices[v].sharpness);
+        }
+    }
     for (int v = 0; v < level.GetNumVertices() && !values.isLinear(); ++v) {
         auto const faces = level.GetVertexFaces(v);
         auto const tags = values.getVertexValueTags(v);

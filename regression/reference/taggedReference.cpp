@@ -718,7 +718,8 @@ void addPulls(TaggedMesh const &mesh, ReferenceMask mask, int vertex, double thr
               double share, Pulls &pulls) {
     for (Side start : mesh.vertices[vertex].corners) {
         Face const &startFace = mesh.faces[start.face];
-        if (mesh.edges[startFace.edges[start.place]].sharpness < threshold) {
+        Edge const &startEdge = mesh.edges[startFace.edges[start.place]];
+        if (startEdge.sharpness < threshold) {
             continue;
         }
         // Counter-clockwise from one sharp edge to the next.
@@ -739,7 +740,9 @@ void addPulls(TaggedMesh const &mesh, ReferenceMask mask, int vertex, double thr
                 edge->sides[0].face == corner.face && edge->sides[0].place == before;
             corner = edge->sides[isFirst ? 1 : 0];
         }
-        if (edge->sharpness < threshold || size < 3) {
+        // All around, with one sharp edge, lies no sector; a boundary may end where it began.
+        bool const isAllAround = edge == &startEdge && edge->sides.size() == 2;
+        if (edge->sharpness < threshold || isAllAround || size < 3) {
             continue;
         }
         for (Side pulled : corners) {
@@ -762,15 +765,9 @@ Pulls findPulls(TaggedMesh const &mesh, ReferenceMask mask) {
     }
     Pulls pulls;
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-        std::vector<SharpEdge> const edges = sharpEdges(mesh, int(v));
         double last = 0;
         for (double threshold : thresholds) {
-            auto const numSharp =
-                std::count_if(edges.begin(), edges.end(),
-                              [&](SharpEdge const &edge) { return edge.sharpness >= threshold; });
-            if (numSharp >= 2) {
-                addPulls(mesh, mask, int(v), threshold, threshold - last, pulls);
-            }
+            addPulls(mesh, mask, int(v), threshold, threshold - last, pulls);
             last = threshold;
         }
     }
