@@ -17,16 +17,16 @@ struct PrimvarRows::Reader {
         Index index;
     };
     struct Point {
-        void Clear() { rows->_rows.push_back({point, 0, 0}); }
-        void AddWithWeight(Source source, double weight) {
+        void Clear() const { rows->_rows.push_back({point, 0, 0}); }
+        void AddWithWeight(Source source, double weight) const {
             ++rows->_rows.back().numSources;
-            add(source.index, weight);
+            Add(source.index, weight);
         }
-        void AddWithWeight(Point other, double weight) {
+        void AddWithWeight(Point other, double weight) const {
             ++rows->_rows.back().numPoints;
-            add(other.point, weight);
+            Add(other.point, weight);
         }
-        void add(Index index, double weight) {
+        void Add(Index index, double weight) const {
             rows->_sources.push_back(index);
             rows->_weights.push_back(weight);
         }
@@ -45,6 +45,14 @@ struct PrimvarRows::Reader {
         PrimvarRows *rows;
     };
 
+    Reader(Hierarchy const &hierarchy, HexSchemeOptions schemeOptions, int level,
+           Interpolation interpolation, int channel)
+        : refinementRows(hierarchy.GetMesh(channel).refinements[std::size_t(level) - 1],
+                         schemeOptions, interpolation),
+          sources{channel >= 0 && level == 1
+                      ? hierarchy.channels[std::size_t(channel)].valuesOfVertices.data()
+                      : nullptr} {}
+
     RefinementRows const refinementRows;
     Sources const sources;
     Index nextFace = 0;
@@ -52,14 +60,9 @@ struct PrimvarRows::Reader {
 };
 
 PrimvarRows::PrimvarRows(TopologyRefiner const &refiner, int level, Interpolation interpolation,
-                         int channel) {
-    Hierarchy const &hierarchy = refiner.GetHierarchy();
-    bool const hasValues = channel >= 0 && level == 1;
-    _reader.reset(new Reader{
-        {hierarchy.GetMesh(channel).refinements[std::size_t(level) - 1],
-         refiner.GetHexSchemeOptions(), interpolation},
-        {hasValues ? hierarchy.channels[std::size_t(channel)].valuesOfVertices.data() : nullptr}});
-}
+                         int channel)
+    : _reader(std::make_unique<Reader>(refiner.GetHierarchy(), refiner.GetHexSchemeOptions(), level,
+                                       interpolation, channel)) {}
 
 PrimvarRows::~PrimvarRows() = default;
 

@@ -12,7 +12,6 @@ namespace OpenSubdivHex::FarExt {
 
 using Far::ConstIndexArray;
 using Far::Index;
-using internal::Hierarchy;
 using internal::StencilPlaces;
 using internal::StencilPlan;
 using internal::StencilSelection;

@@ -12,7 +12,6 @@ namespace OpenSubdivHex::FarExt {
 using Index = Far::Index;
 using internal::FVarChannel;
 using internal::FVarLevel;
-using internal::Level;
 using internal::Refinement;
 
 TopologyLevel::TopologyLevel(internal::Hierarchy const &hierarchy, int depth)

@@ -96,14 +96,15 @@ void undoScale(float scale, internal::Elements<float> dst, int length, std::int6
 
 class RefinementEvaluator::Impl {
 public:
+    using Source = internal::Elements<float const>;
+    using Destination = internal::Elements<float>;
+
     Impl(TopologyRefiner const &refiner, Options options);
 
     Status Check(float const *src, Osd::BufferDescriptor const &srcDesc, float const *dst,
                  Osd::BufferDescriptor const &dstDesc, int level, std::int64_t numWritten) const;
-    void Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
-                  Osd::BufferDescriptor const &dstDesc, int level);
-    void EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
-                           Osd::BufferDescriptor const &dstDesc);
+    void Evaluate(Source values, Destination result, int length, int level);
+    void EvaluateAllLevels(Source values, Destination result, int length);
 
     TopologyRefiner const &refiner;
     std::vector<int> numElements; // by level
@@ -111,9 +112,6 @@ public:
     int GetMaxLevel() const { return int(numElements.size()) - 1; }
 
 private:
-    using Source = internal::Elements<float const>;
-    using Destination = internal::Elements<float>;
-
     Source toVertices(Source src, int length, float scale);
 
     int const _numRefinements; // of the refiner, when the evaluator was made
@@ -200,12 +198,7 @@ auto RefinementEvaluator::Impl::toVertices(Source src, int length, float scale) 
     return {_controlValues.data(), length};
 }
 
-void RefinementEvaluator::Impl::Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                         float *dst, Osd::BufferDescriptor const &dstDesc,
-                                         int level) {
-    int const length = srcDesc.length;
-    Source values = {src + srcDesc.offset, srcDesc.stride};
-    Destination const result = {dst + dstDesc.offset, dstDesc.stride};
+void RefinementEvaluator::Impl::Evaluate(Source values, Destination result, int length, int level) {
     if (level == 0) {
         copyElements(values, length, numElements[0], nullptr, 1, result);
         return;
@@ -228,14 +221,9 @@ void RefinementEvaluator::Impl::Evaluate(float const *src, Osd::BufferDescriptor
     undoScale(scale, result, length, numElements[std::size_t(level)]);
 }
 
-void RefinementEvaluator::Impl::EvaluateAllLevels(float const *src,
-                                                  Osd::BufferDescriptor const &srcDesc, float *dst,
-                                                  Osd::BufferDescriptor const &dstDesc) {
-    int const length = srcDesc.length;
-    Source values = {src + srcDesc.offset, srcDesc.stride};
+void RefinementEvaluator::Impl::EvaluateAllLevels(Source values, Destination result, int length) {
     float const scale = findScale(values, length, numElements[0]);
     values = toVertices(values, length, scale);
-    Destination const result = {dst + dstDesc.offset, dstDesc.stride};
     Destination next = result;
     std::vector<internal::RefinementTask> tasks;
     for (int made = 1; made <= GetMaxLevel(); ++made) {
@@ -293,7 +281,8 @@ bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
-    _impl->Evaluate(src, srcDesc, dst, dstDesc, level);
+    _impl->Evaluate({src + srcDesc.offset, srcDesc.stride}, {dst + dstDesc.offset, dstDesc.stride},
+                    srcDesc.length, level);
     return true;
 }
 
@@ -306,7 +295,8 @@ bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescrip
         return false;
     }
     if (GetMaxLevel() > 0) {
-        _impl->EvaluateAllLevels(src, srcDesc, dst, dstDesc);
+        _impl->EvaluateAllLevels({src + srcDesc.offset, srcDesc.stride},
+                                 {dst + dstDesc.offset, dstDesc.stride}, srcDesc.length);
     }
     return true;
 }

@@ -357,7 +357,7 @@ private:
         };
         orthonormalize();
         return iterate(int(du.size()), [&] {
-            LimitMask::Tangents const previous = tangents;
+            LimitMask::Tangents const previous = {du, dv};
             _cycle.ApplyLeft(du);
             _cycle.ApplyLeft(dv);
             orthonormalize();
