@@ -3,6 +3,7 @@
 
 #include "baseLevel.h"
 #include "hierarchy.h"
+#include "indexSet.h"
 #include "sharpFeatures.h"
 #include "vertexFan.h"
 
@@ -65,6 +66,24 @@ void splitFans(std::vector<EdgeSides> const &edges, Level &level, FVarChannel &c
     }
 }
 
+// A vertex of the value mesh that a face has several times is non-manifold, as in the mesh, where the
+// face then has a vertex several times, too.
+void findNonManifoldVertices(Level const &mesh, Level &level) {
+    for (Index vert : mesh.nonManifoldVerts) {
+        std::vector<IndexPair> pairs; // of a face and a vertex
+        for (Index k = mesh.vertFirstFace[vert]; k < mesh.vertFirstFace[vert + 1]; ++k) {
+            pairs.push_back({mesh.vertFaces[k], level.faceVerts[mesh.GetVertexCorner(k)]});
+        }
+        std::sort(pairs.begin(), pairs.end());
+        for (std::size_t i = 1; i < pairs.size(); ++i) {
+            if (pairs[i] == pairs[i - 1]) {
+                level.nonManifoldVerts.push_back(pairs[i][1]);
+            }
+        }
+    }
+    SortUnique(level.nonManifoldVerts);
+}
+
 bool meetsFreeBoundary(Level const &level, Index vert, bool &meetsSharp) {
     bool meetsFree = false;
     meetsSharp = false;
@@ -101,6 +120,7 @@ void BuildFVarChannel(Level const &mesh, Index numValues, std::vector<Index> con
     std::vector<EdgeSides> const edges = cutSeams(mesh, faceValues, meshEdges);
     BuildBaseLevel({edges.data(), Index(edges.size())}, level);
     splitFans(edges, level, channel);
+    findNonManifoldVertices(mesh, level);
 
     // The tags of the mesh; a seam is sharp without one.
     if (!mesh.edgeSharpness.empty()) {

@@ -484,6 +484,25 @@ TEST(NonManifold, ChannelOfAFaceThatRepeatsAVertexStaysThere) {
         ExpectLevelsEqual(values, match.InterpolateAll(ReferenceMask::Average, positions), 1e-12));
 }
 
+TEST(NonManifold, ChannelOfADegenerateEdgeIsValid) {
+    // The value of vertex 1 has both of its corners in the first face, joined by the other face.
+    Shape shape = makeShape({0, 0, 0, 1, 0, 0, 0, 1, .5}, {{0, 1, 1, 2}, {2, 1, 0}});
+    shape.fvarChannels.push_back({3, shape.positions, shape.faceVertices});
+    for (auto rule : kBoundaries) {
+        Sdc::Options options = boundary(rule);
+        options.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_NONE);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 3, options);
+        ASSERT_TRUE(refiner);
+        ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
+        TaggedMatch const match(shape, *refiner, 0);
+        ASSERT_EQ(match.GetError(), "");
+        ReferenceValues const positions = GetPositions(shape);
+        ASSERT_NO_FATAL_FAILURE(
+            ExpectLevelsEqual(InterpolateLevels(*refiner, positions, ValueKind::FaceVarying),
+                              match.InterpolateAll(ReferenceMask::Average, positions), 1e-12));
+    }
+}
+
 TEST(NonManifold, OneCreaseBoundsNoSector) {
     // Three faces all around vertex 0 with one crease, as in a mesh of them alone, and another face.
     Faces faces = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}};
