@@ -2,9 +2,8 @@
 #include "topologyRefinerFactory.h"
 
 #include "far_ext/vtr/baseImporter.h"
+#include "far_ext/vtr/farBase.h"
 #include "far_ext/vtr/inputChecks.h"
-
-#include <opensubdiv/far/topologyRefinerFactory.h>
 
 namespace OpenSubdivHex::FarExt {
 
@@ -50,9 +49,8 @@ TopologyRefinerFactory::Create(Far::TopologyDescriptor const &descriptor, Sdc::O
     if (!internal::Report(result, status)) {
         return nullptr;
     }
-    using FarFactory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-    std::unique_ptr<Far::TopologyRefiner> const base(FarFactory::Create(
-        descriptor, FarFactory::Options(OpenSubdiv::Sdc::SCHEME_CATMARK, sdcOptions)));
+    std::unique_ptr<Far::TopologyRefiner> const base =
+        internal::CreateFarBase(descriptor, sdcOptions);
     if (!base) {
         internal::Report(
             internal::Failure(StatusCode::InvalidTopology,

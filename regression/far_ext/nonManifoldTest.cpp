@@ -484,6 +484,27 @@ TEST(NonManifold, ChannelOfAFaceThatRepeatsAVertexStaysThere) {
         ExpectLevelsEqual(values, match.InterpolateAll(ReferenceMask::Average, positions), 1e-12));
 }
 
+TEST(NonManifold, CreaseAtAVertexThatAFaceRepeatsIsKept) {
+    // Far's list of edges of vertex 0 lacks the crease.
+    Shape shape = makeShape({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, .2, 0, -1, .4, 1, 1, 0, -1, 1, 1},
+                            {{0, 1, 5}, {2, 0, 6}, {0, 3, 6}, {4, 3, 0, 2, 1, 0}});
+    for (std::vector<int> const &pair : {std::vector<int>{0, 1}, {1, 0}}) {
+        shape.creaseVertexPairs = pair;
+        shape.creaseSharpness = {2.5f};
+        testing::internal::CaptureStderr();
+        testing::internal::CaptureStdout();
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0, boundary(kEdgeOnly));
+        EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+        EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+        int numCreases = 0;
+        for (int e = 0; e < refiner->GetLevel(0).GetNumEdges(); ++e) {
+            numCreases += refiner->GetLevel(0).GetEdgeSharpness(e) == 2.5f;
+        }
+        EXPECT_EQ(numCreases, 1);
+        ASSERT_NO_FATAL_FAILURE(expectEqualToReference(shape, boundary(kEdgeOnly), 3));
+    }
+}
+
 TEST(NonManifold, ChannelOfADegenerateEdgeIsValid) {
     // The value of vertex 1 has both of its corners in the first face, joined by the other face.
     Shape shape = makeShape({0, 0, 0, 1, 0, 0, 0, 1, .5}, {{0, 1, 1, 2}, {2, 1, 0}});
