@@ -43,7 +43,8 @@ void multiplyPlain(double const *mask, REAL const *const *parents, int width, RE
     double weights[SIZE];
     std::copy_n(mask, SIZE, weights);
     forEachVector(width, [&](int begin) {
-#ifdef _OPENMP
+    // Clang warns where it cannot make vectors of the loop, which is short.
+#if defined(_OPENMP) && !defined(__clang__)
 #pragma omp simd
 #endif
         for (int k = begin; k < begin + kVector; ++k) {
