@@ -160,7 +160,12 @@ void relateVFaces(Refinement const &mesh, Refinement const &values, FVarLevel co
     }
     std::vector<Index> vFaceOfCorner(pValues.numCorners, Far::INDEX_INVALID);
     for (Index face = cValues.numFaces - cValues.numVFaces; face < cValues.numFaces; ++face) {
-        vFaceOfCorner[values.GetFaceParentCorner(face)] = face;
+        // All of its F-vertices, since it may begin with another than the mesh's does.
+        for (Index vert : cValues.GetFaceVertices(face)) {
+            if (vert >= cValues.numVVertices) {
+                vFaceOfCorner[values.GetChildVertexCorner(vert)] = face;
+            }
+        }
     }
     std::vector<Index> vFaceOfMeshCorner(pMesh.numCorners);
     for (Index face = 0; face < pMesh.numFaces; ++face) {

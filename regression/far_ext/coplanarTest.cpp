@@ -3,7 +3,7 @@
 // RefineCoplanar: every shape against the reference, and what DESIGN.md and the header promise.
 #include "expectations.h"
 
-#include "far_ext/vtr/level.h"
+#include "far_ext/vtr/hierarchy.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -411,6 +411,36 @@ TEST(Coplanar, LastLevelNeedsFaceVerticesOnly) {
             ASSERT_NO_FATAL_FAILURE(ExpectNumbering(*refiner));
             EXPECT_EQ(FarExt::StencilTableFactory::Create(*refiner)->GetWeights(),
                       FarExt::StencilTableFactory::Create(*full)->GetWeights());
+        }
+    }
+}
+
+// A V-face of the value mesh may begin with another F-vertex than that of the mesh.
+TEST(Coplanar, EveryFaceHasItsValues) {
+    Shape shape;
+    shape.name = "facesThatShareNoValue";
+    shape.positions = {-1.859375, 1.140625,  0.78125,  1.09375,  1.40625,  1.234375, -1.53125,
+                       -1.0625,   0.71875,   0.375,    -0.78125, -0.53125, -1.09375, -1.140625,
+                       -1.859375, 0.390625,  0.0625,   1.578125, -1.03125, 0.890625, 1.65625,
+                       -1.234375, -0.796875, -1.96875, -0.71875, 0.375,    1.296875};
+    shape.faceSizes = {3, 3, 3, 4, 3, 3, 3, 3};
+    shape.faceVertices = {0, 1, 5, 1, 2, 6, 2, 3, 7, 3, 0, 4, 7,
+                          3, 2, 0, 4, 5, 6, 2, 4, 6, 2, 3, 8};
+    FVarChannel channel;
+    channel.values.assign(2 * shape.faceVertices.size(), 0.0);
+    for (int corner = 0; corner < shape.GetNumCorners(); ++corner) {
+        channel.valueIndices.push_back(corner);
+    }
+    shape.fvarChannels.push_back(channel);
+    Sdc::Options sdcOptions;
+    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    CoplanarOptions options = makeOptions(6, 50, true);
+    auto const refiner = createRefiner(shape, ReferenceMask::Average, options, sdcOptions);
+    ASSERT_TRUE(refiner);
+    for (FarExt::internal::FVarLevel const &level : refiner->GetHierarchy().channels[0].levels) {
+        for (Far::Index valueFace : level.valueFaces) {
+            ASSERT_GE(valueFace, 0);
+            ASSERT_LT(valueFace, level.values->numFaces);
         }
     }
 }
