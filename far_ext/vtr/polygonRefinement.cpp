@@ -26,6 +26,9 @@ PolygonRules GetRulesOfChannel(Level const &mesh, PolygonRules const &rules,
 
 namespace {
 
+// The first of the two ends of an edge, as a position in _endEdges.
+std::size_t getFirstEnd(Index pEdge) { return 2 * std::size_t(pEdge); }
+
 // What _endEdges holds before edges are numbered.
 constexpr Index kNoEndEdge = Far::INDEX_INVALID;
 constexpr Index kEndEdge = 0;
@@ -67,7 +70,7 @@ bool PolygonRefiner::makesVVertex(Index pVert) const {
 // faces begins to run along it.
 std::size_t PolygonRefiner::findEnd(Index startCorner) const {
     Index const pEdge = _parent.faceEdges[startCorner];
-    return 2 * std::size_t(pEdge) + (_parent.GetSideCorner(pEdge, 0) == startCorner ? 0 : 1);
+    return getFirstEnd(pEdge) + (_parent.GetSideCorner(pEdge, 0) == startCorner ? 0 : 1);
 }
 
 BoundaryKind PolygonRefiner::getBoundaryKind() const {
@@ -183,9 +186,9 @@ void PolygonRefiner::findDigons() {
 }
 
 void PolygonRefiner::markEndEdges() {
-    _endEdges.Resize(2 * std::size_t(_parent.numEdges));
+    _endEdges.Resize(getFirstEnd(_parent.numEdges));
     ParallelFor(_parent.numEdges, [this](Index pEdge) {
-        std::size_t const first = 2 * std::size_t(pEdge);
+        std::size_t const first = getFirstEnd(pEdge);
         bool const hasFirst = makesEFace(pEdge) && (_parent.IsBoundary(pEdge) || isQuad(pEdge));
         _endEdges[first] = hasFirst ? kEndEdge : kNoEndEdge;
         _endEdges[first + 1] = isQuad(pEdge) ? kEndEdge : kNoEndEdge;
@@ -212,7 +215,7 @@ void PolygonRefiner::countEdges() {
     _edgeCounts = ParallelSums<Counts>(_parent.numEdges, [this](Index begin, Index end) {
         Counts counts;
         for (Index pEdge = begin; pEdge < end; ++pEdge) {
-            std::size_t const first = 2 * std::size_t(pEdge);
+            std::size_t const first = getFirstEnd(pEdge);
             int const numEnds =
                 int(_endEdges[first] == kEndEdge) + int(_endEdges[first + 1] == kEndEdge);
             counts.edges += isTriHex() ? std::min(numEnds, 1) : numEnds;
@@ -290,7 +293,7 @@ void PolygonRefiner::numberEdges() {
         Index cEdge = _parent.numCorners + Index(_spokeCounts.back().edges) +
                       Index(_edgeCounts[std::size_t(begin / kParallelRange)].edges);
         for (Index pEdge = begin; pEdge < end; ++pEdge) {
-            Index *const ends = _endEdges.data() + 2 * std::size_t(pEdge);
+            Index *const ends = _endEdges.data() + getFirstEnd(pEdge);
             if (isTriHex()) {
                 if (ends[0] == kEndEdge || ends[1] == kEndEdge) {
                     ends[0] = ends[1] = cEdge++;
@@ -416,7 +419,7 @@ void PolygonRefiner::Builder<FULL>::fillEFaces() {
 
 template <bool FULL>
 void PolygonRefiner::Builder<FULL>::fillEFace(Index pEdge, Place &place) {
-    std::size_t const end0 = 2 * std::size_t(pEdge);
+    std::size_t const end0 = getFirstEnd(pEdge);
     Index const vVertex0 = vVertex(_p.edgeVerts[pEdge][0]);
     Index const vVertex1 = vVertex(_p.edgeVerts[pEdge][1]);
     Index const startA = _p.GetSideCorner(pEdge, 0);
@@ -527,7 +530,7 @@ void PolygonRefiner::Builder<FULL>::finishEdges() {
             continue;
         }
         if (!_p.IsSharpBoundaryB(pEdge)) {
-            setKind(_refiner._endEdges[2 * std::size_t(pEdge)], kSharpBoundaryB);
+            setKind(_refiner._endEdges[getFirstEnd(pEdge)], kSharpBoundaryB);
             continue;
         }
         Index const start = _p.GetSideCorner(pEdge, 0);

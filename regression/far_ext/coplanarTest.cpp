@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// RefineCoplanar: every shape against the reference, and what DESIGN.md and the header promise.
+// RefineCoplanar: every shape against the reference, and what the header promises.
 #include "expectations.h"
 
 #include "far_ext/vtr/hierarchy.h"

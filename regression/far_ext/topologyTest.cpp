@@ -191,7 +191,7 @@ Shape without(Shape shape, int face) {
     return shape;
 }
 
-/// The table of DESIGN.md section 2, "closed-form numbering", literally.
+/// The closed-form numbering of far_ext/INDEXING.md, literally.
 void expectNumbering(TopologyLevel const &parent, TopologyLevel const &child) {
     int const numV = parent.GetNumVertices();
     int const numC = parent.GetNumFaceVertices();

@@ -21,7 +21,7 @@ using ReferenceMesh = OpenMesh::PolyMesh_ArrayKernelT<ReferenceTraits>;
 /// Values of any width, one row per vertex.
 using ReferenceValues = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The rule for new points (DESIGN.md section 2).
+/// The rule for new points.
 enum class ReferenceMask { Average, Cosine, Smooth };
 
 /// \brief What a vertex was made from, in terms of the mesh before.

@@ -11,11 +11,11 @@ namespace OpenSubdivHex::Regression {
 /// Sharpness from which on an edge or vertex stays sharp for ever.
 inline constexpr float kInfiniteSharpness = 10;
 
-/// The schemes of DESIGN.md sections 2 and 6.
+/// The schemes, each by its definition.
 enum class ReferenceScheme { Hexagonal, DooSabin, TriHex };
 
-/// \brief A mesh with boundaries, creases, corners, holes and flaws, of which DESIGN.md sections 3
-/// to 6 are taken at their word: a sharp line goes along edges.
+/// \brief A mesh with boundaries, creases, corners, holes and flaws, whose
+/// rules are taken at their word: a sharp line goes along edges.
 ///
 /// So a hexagon that a crease crosses is two half faces, glued along a *long* edge, until the
 /// crease is smooth; a half face at a sharp boundary has a long edge without another side.  Edges
