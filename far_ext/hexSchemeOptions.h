@@ -18,12 +18,16 @@ namespace OpenSubdivHex::FarExt {
 /// that it is compared with: Doo and Sabin (1978), and the corner cutting of Claes, Beets and Van
 /// Reeth (2002).  The others drop the faces of border edges and vertices, whatever the boundary
 /// option says, and know neither creases nor face-varying data.
-enum class SchemeType { Hexagonal, DooSabin, TriHex };
+enum class SchemeType {
+    Hexagonal, ///< hexagonal vertex-to-vertex
+    DooSabin,  ///< Doo-Sabin
+    TriHex     ///< tri-hex corner cutting
+};
 
 /// \brief What distinguishes one refinement from another.
 struct HexSchemeOptions {
-    FaceMask faceMask = FaceMask::Average; ///< of Hexagonal and DooSabin
-    SchemeType schemeType = SchemeType::Hexagonal;
+    FaceMask faceMask = FaceMask::Average;         ///< of Hexagonal and DooSabin
+    SchemeType schemeType = SchemeType::Hexagonal; ///< of all levels, but see triHexFirst
     /// Makes level 1 with a TriHex step, whatever the scheme.  All vertices in the interior have
     /// three faces then.
     bool triHexFirst = false;

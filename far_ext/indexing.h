@@ -25,8 +25,11 @@ struct EFaceSide {
     Far::LocalIndex endSpoke;     ///< edge from endVertex to endFVertex
 };
 
+/// Side a of an interior edge, which runs as the edge does.
 inline constexpr EFaceSide kEFaceSideA = {0, 3, 5, 4, 4, 5, 3};
+/// Side b of an interior edge, which runs against it.
 inline constexpr EFaceSide kEFaceSideB = {3, 0, 2, 1, 1, 2, 0};
+/// The one side of a boundary edge.
 inline constexpr EFaceSide kBoundaryEFaceSide = {0, 1, 3, 2, 2, 3, 1};
 /// What lies behind the start vertex of side a lies so many places further than in side b.
 inline constexpr Far::LocalIndex kEFaceSideShift = 3;
@@ -47,7 +50,9 @@ inline constexpr Far::LocalIndex kBoundaryEFaceEdge = 0;
 /// of a sharp boundary edge is a half-hexagon whose long side, its edge 0, lies on the boundary.
 /// F-faces inherit both in the same place.
 inline constexpr int kDiagonalStart = 0;
+/// The corner where the diagonal ends.
 inline constexpr int kDiagonalEnd = 3;
+/// The long edge of a half face, on the boundary.
 inline constexpr int kHalfFaceLongEdge = 0;
 
 /// The corners of the two halves of a hexagon that a crease or a face-varying seam crosses: half 0
@@ -60,13 +65,16 @@ inline constexpr int kHexagonHalves[2][4] = {{0, 3, 4, 5}, {3, 0, 1, 2}};
 /// counts; every function is arithmetic on them.  This numbering is public and stable.
 class HexIndexing {
 public:
+    /// A vertex, an edge, a face or a corner.
     using Index = Far::Index;
 
+    /// From the counts of the parent.
     HexIndexing(Index numVertices, Index numFaces, Index numCorners)
         : _numVertices(numVertices), _numFaces(numFaces), _numCorners(numCorners) {}
 
-    /// Corners of the E-face of an interior and of a boundary edge.
+    /// Corners of the E-face of an interior edge.
     static constexpr int kNumEFaceCorners = 6;
+    /// Corners of the E-face of a boundary edge.
     static constexpr int kNumBoundaryEFaceCorners = 4;
 
     /// V-vertex: the child of parent vertex \p v.
@@ -97,8 +105,9 @@ public:
     /// E-face.
     Index GetBoundaryChildEdge(Index rank) const { return 2 * _numCorners + rank; }
 
-    /// Whether a child vertex is an F-vertex, and of which corner.
+    /// Whether a child vertex is an F-vertex.
     bool IsVertexFromCorner(Index cVert) const { return cVert >= _numVertices; }
+    /// The parent corner of an F-vertex.
     Index GetChildVertexCorner(Index cVert) const { return cVert - _numVertices; }
     /// Whether a child face is an E-face.
     bool IsFaceFromEdge(Index cFace) const { return cFace >= _numFaces; }

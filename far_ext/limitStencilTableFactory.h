@@ -11,11 +11,14 @@ namespace OpenSubdivHex::FarExt {
 /// \brief The types of limit stencil table by the precision of the weights.
 template <typename REAL>
 struct LimitStencilTableTypes {
+    /// Far's table with weights of type REAL.
     using Table = Far::LimitStencilTableReal<REAL>;
 };
+/// \brief In single precision.
 template <>
 struct LimitStencilTableTypes<float> {
-    using Table = Far::LimitStencilTable; ///< what the Osd evaluators take
+    /// What the Osd evaluators take.
+    using Table = Far::LimitStencilTable;
 };
 
 /// \brief The sides of the vertices of a level: at a vertex where two or more infinitely sharp
@@ -27,18 +30,22 @@ struct LimitStencilTableTypes<float> {
 /// vertices.
 class OPENSUBDIVHEX_API LimitSides {
 public:
+    /// A vertex, a face or a side.
     using Index = Far::Index;
 
     /// \p level has full topology; it is not referred to afterwards.
     explicit LimitSides(TopologyLevel const &level);
 
+    /// Vertices of the level.
     int GetNumVertices() const { return _numVertices; }
+    /// Sides of all vertices, one for each at least.
     int GetNumSides() const { return _numVertices + int(_furtherSides.size()); }
 
-    /// The vertex of a side, and which of the vertex's sides it is.
+    /// The vertex of a side.
     Index GetVertex(Index side) const {
         return side < _numVertices ? side : _furtherSides[side - _numVertices].vert;
     }
+    /// Which of the sides of its vertex a side is, from 0.
     int GetLocalSide(Index side) const {
         return side < _numVertices ? 0 : _furtherSides[side - _numVertices].side;
     }
@@ -110,15 +117,16 @@ private:
 template <typename REAL>
 class OPENSUBDIVHEX_API LimitStencilTableFactoryReal {
 public:
+    /// What is made: Far::LimitStencilTable, or Far::LimitStencilTableReal<double>.
     using Table = typename LimitStencilTableTypes<REAL>::Table;
 
     /// \brief Which points, in this order: the vertices of the level, the further sides of
     /// vertices, the centres of the level's faces.
     struct Options {
-        int level = 0; ///< 0 ... refiner.GetMaxLevel(); must have full topology
-        bool generateVertices = true;
+        int level = 0;                     ///< 0 ... refiner.GetMaxLevel(); must have full topology
+        bool generateVertices = true;      ///< the vertices, one point each
         bool generateFurtherSides = false; ///< only with vertices; as LimitSides numbers them
-        bool generateFaceCenters = false;
+        bool generateFaceCenters = false;  ///< the centres of faces
         bool generate1stDerivatives = true; ///< else the table has no derivative weights
     };
 
@@ -137,6 +145,7 @@ public:
                                                Status *status = nullptr);
 };
 
+/// In single precision, for the Osd evaluators.
 using LimitStencilTableFactory = LimitStencilTableFactoryReal<float>;
 
 extern template class LimitStencilTableFactoryReal<float>;

@@ -19,7 +19,11 @@ namespace OpenSubdivHex::FarExt {
 /// Average is (vertex + its two edge midpoints + centroid)/4, the paper's stage 1 (Ghaleb and
 /// Abd El-Latif 2005, section 3).  Cosine is Doo and Sabin's of 1978.  Smooth has eigenvalues
 /// 1, 1/2, 1/2, 1/4, 1/4, 1/8 ...; for n < 5 it is Cosine.
-enum class FaceMask { Average, Cosine, Smooth };
+enum class FaceMask {
+    Average, ///< the paper's: tangent planes, unbounded curvature
+    Cosine,  ///< Doo and Sabin's: bounded curvature at vertices with three faces
+    Smooth   ///< this project's: as Cosine, and smoother on hexagons; for renderers
+};
 
 /// \brief What is interpolated: as Far's vertex, varying and face-varying primvars.
 enum class Interpolation {
@@ -69,8 +73,8 @@ OPENSUBDIVHEX_API double ComputeSectorShrink(FaceMask mask, double sectorSize);
 
 /// \brief The mask of an old vertex: V' = vertexWeight V + sum over its faces of faceWeight P_i.
 struct VertexVertexMask {
-    double vertexWeight;
-    double faceWeight;
+    double vertexWeight; ///< of the vertex itself
+    double faceWeight;   ///< of the F-vertex in each face
 };
 
 /// \brief Returns the mask of a vertex with \p numFaces incident faces: both weights are

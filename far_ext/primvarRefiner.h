@@ -75,6 +75,7 @@ public:
     /// Keeps a reference to \p refiner.
     explicit PrimvarRefinerReal(TopologyRefiner const &refiner) : _refiner(refiner) {}
 
+    /// The refiner that was given.
     TopologyRefiner const &GetTopologyRefiner() const { return _refiner; }
 
     /// \brief Vertex data: dst[v] for all vertices of \p level from src of level - 1 with the masks
@@ -135,6 +136,7 @@ private:
     TopologyRefiner const &_refiner;
 };
 
+/// With weights in single precision.
 using PrimvarRefiner = PrimvarRefinerReal<float>;
 
 } // namespace OpenSubdivHex::FarExt

@@ -22,7 +22,7 @@ namespace FarExt {
 
 /// \brief What kind of failure a Status reports.
 enum class StatusCode {
-    Ok,
+    Ok,              ///< nothing failed
     InvalidArgument, ///< an option or argument is outside its documented range
     InvalidTopology, ///< the mesh itself is broken; Status names the component
     Unsupported,     ///< valid for OpenSubdiv, but not handled by this scheme
@@ -30,7 +30,13 @@ enum class StatusCode {
 };
 
 /// \brief The kind of mesh component that a Status points at.
-enum class ComponentType { None, Face, Edge, Vertex, Level };
+enum class ComponentType {
+    None,   ///< no single component
+    Face,   ///< a face
+    Edge,   ///< an edge
+    Vertex, ///< a vertex
+    Level   ///< a level of refinement
+};
 
 /// \brief What a Warning is about.
 enum class WarningCode {
@@ -39,7 +45,7 @@ enum class WarningCode {
 
 /// \brief Something that was noticed without a failure: the result is what the message says.
 struct Warning {
-    WarningCode code;
+    WarningCode code;        ///< what it is about
     ComponentType component; ///< kind of the components concerned
     Far::Index index;        ///< of the first of them in the input
     std::int64_t count;      ///< how many there are
@@ -65,11 +71,14 @@ public:
     /// Ok, no component, empty message.
     Status() = default;
 
+    /// A failure, caused by component number \p index of its kind.
     Status(StatusCode code, ComponentType component, Far::Index index, std::string message)
         : _code(code), _component(component), _index(index), _message(std::move(message)) {}
 
+    /// Whether nothing failed.
     bool IsOk() const { return _code == StatusCode::Ok; }
 
+    /// What kind of failure it was.
     StatusCode GetCode() const { return _code; }
 
     /// Kind of the offending component, None when no single component is to blame.
@@ -83,6 +92,7 @@ public:
 
     /// What was noticed, one entry for each WarningCode at most.
     std::vector<Warning> const &GetWarnings() const { return _warnings; }
+    /// Adds to what was noticed.
     void AddWarning(Warning warning) { _warnings.push_back(std::move(warning)); }
 
 private:

@@ -15,20 +15,27 @@ namespace OpenSubdivHex::FarExt {
 /// \brief The types of stencil table by the precision of the weights.
 template <typename REAL>
 struct StencilTableTypes {
+    /// Far's table with weights of type REAL.
     using Table = Far::StencilTableReal<REAL>;
 };
+/// \brief In single precision.
 template <>
 struct StencilTableTypes<float> {
-    using Table = Far::StencilTable; ///< what the Osd evaluators take
+    /// What the Osd evaluators take.
+    using Table = Far::StencilTable;
 };
 
 /// \brief What the stencils interpolate, spelled as in Far::StencilTableFactory.
-enum StencilMode : int { INTERPOLATE_VERTEX, INTERPOLATE_VARYING, INTERPOLATE_FACE_VARYING };
+enum StencilMode : int {
+    INTERPOLATE_VERTEX,      ///< vertex data, with the masks of the scheme
+    INTERPOLATE_VARYING,     ///< varying data, linearly
+    INTERPOLATE_FACE_VARYING ///< the values of a face-varying channel
+};
 
 /// \brief What a stencil table holds and takes: see StencilTableFactoryReal::EstimateSize.
 struct StencilTableSize {
-    std::int64_t numStencils = 0;
-    std::int64_t numWeights = 0;
+    std::int64_t numStencils = 0;  ///< exact
+    std::int64_t numWeights = 0;   ///< exact, or an estimate
     std::int64_t numBytes = 0;     ///< of the table's arrays
     std::int64_t numPeakBytes = 0; ///< of all that its making takes at once, the table included
 };
@@ -39,6 +46,7 @@ struct StencilTableSize {
 template <typename REAL>
 class OPENSUBDIVHEX_API StencilTableFactoryReal {
 public:
+    /// What is made: Far::StencilTable, or Far::StencilTableReal<double>.
     using Table = typename StencilTableTypes<REAL>::Table;
 
     /// \brief The fields of Far::StencilTableFactory::Options, with their meaning.
@@ -46,18 +54,16 @@ public:
     /// Stencils come level by level, in vertex order: the control vertices (when asked for), then
     /// levels 1 ... L or level L alone, where L = min(maxLevel, refiner.GetMaxLevel()).
     ///
-    /// | generateControlVerts | one stencil of weight 1 for each control vertex comes first      |
-    /// | generateIntermediateLevels | levels 1 ... L, else L alone                               |
-    /// | factorizeIntermediateLevels | indices are control vertices; else stencils of level i    |
-    /// |                      | index the vertices of level i - 1, from 0                        |
-    ///
     /// Unlike Far, which has generateOffsets, offsets are always made: evaluators need them.
     /// Without factorization and without intermediate levels the table holds level L in terms of
     /// level L - 1 (Far does not support that combination).
     struct Options {
-        StencilMode interpolationMode = INTERPOLATE_VERTEX;
+        StencilMode interpolationMode = INTERPOLATE_VERTEX; ///< what the stencils are of
+        /// Whether one stencil of weight 1 for each control vertex comes first.
         bool generateControlVerts = false;
-        bool generateIntermediateLevels = true;
+        bool generateIntermediateLevels = true; ///< levels 1 ... L, else L alone
+        /// Whether indices are control vertices; else stencils of level i index the vertices of
+        /// level i - 1, from 0.
         bool factorizeIntermediateLevels = true;
         int maxLevel = std::numeric_limits<int>::max(); ///< 0 or more; not cut to any bit width
         int fvarChannel =
@@ -80,6 +86,7 @@ public:
     ///          names).
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,
                                                Status *status = nullptr);
+    /// The same with the default options.
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner,
                                                Status *status = nullptr) {
         return Create(refiner, Options(), status);
@@ -132,6 +139,7 @@ public:
     /// @}
 };
 
+/// In single precision, for the Osd evaluators.
 using StencilTableFactory = StencilTableFactoryReal<float>;
 
 extern template class StencilTableFactoryReal<float>;

@@ -35,19 +35,28 @@ enum class FaceKind {
 /// face-varying match queries are not answered (HasFullTopology() tells).
 class OPENSUBDIVHEX_API TopologyLevel {
 public:
+    /// A vertex, an edge, a face, a corner or a value.
     using Index = Far::Index;
+    /// Indices in the memory of the level.
     using ConstIndexArray = Far::ConstIndexArray;
+    /// Places within faces or edges, in the memory of the level.
     using ConstLocalIndexArray = Far::ConstLocalIndexArray;
 
     /// An array of one index, or of none.
     class ChildFaceArray {
     public:
+        /// Of \p face, or of none if that is INDEX_INVALID.
         explicit ChildFaceArray(Index face) : _face(face) {}
 
+        /// 1 or 0.
         int size() const { return _face == Far::INDEX_INVALID ? 0 : 1; }
+        /// Whether there is none.
         bool empty() const { return size() == 0; }
+        /// The index.
         Index operator[](int) const { return _face; }
+        /// The range, for loops.
         Index const *begin() const { return &_face; }
+        /// Its end.
         Index const *end() const { return &_face + size(); }
 
     private:
@@ -59,8 +68,12 @@ public:
 
     /// @name Inventory
     /// @{
+
+    /// Vertices.
     int GetNumVertices() const { return _numVertices; }
+    /// Faces, holes included.
     int GetNumFaces() const { return _numFaces; }
+    /// Edges.
     int GetNumEdges() const { return _numEdges; }
     /// Sum of all face sizes: the number of corners.
     int GetNumFaceVertices() const { return _faceFirstCorner[_numFaces]; }
@@ -74,17 +87,26 @@ public:
 
     /// @name Incident components and their local indices, as in Far::TopologyLevel
     /// @{
+
+    /// The vertices of a face, in its orientation.
     ConstIndexArray GetFaceVertices(Index f) const {
         return {_faceVerts + _faceFirstCorner[f], _faceFirstCorner[f + 1] - _faceFirstCorner[f]};
     }
+    /// The edges of a face; edge i joins its vertices i and i + 1.
     ConstIndexArray GetFaceEdges(Index f) const;
     /// The first face of the edge runs from the first vertex to the second.
     ConstIndexArray GetEdgeVertices(Index e) const;
+    /// The one or two faces of an edge.
     ConstIndexArray GetEdgeFaces(Index e) const;
+    /// The faces of a vertex, counter-clockwise, fan by fan.
     ConstIndexArray GetVertexFaces(Index v) const;
+    /// The edges of a vertex, counter-clockwise, fan by fan.
     ConstIndexArray GetVertexEdges(Index v) const;
+    /// Which vertex of each of its faces the vertex is.
     ConstLocalIndexArray GetVertexFaceLocalIndices(Index v) const;
+    /// Which vertex of each of its edges the vertex is: 0 or 1.
     ConstLocalIndexArray GetVertexEdgeLocalIndices(Index v) const;
+    /// Which edge of each of its faces the edge is.
     ConstLocalIndexArray GetEdgeFaceLocalIndices(Index e) const;
     /// The edge between two vertices, or INDEX_INVALID.
     Index FindEdge(Index v0, Index v1) const;
@@ -96,12 +118,15 @@ public:
 
     /// @name Topological properties, as in Far::TopologyLevel
     /// @{
+
     /// Of level 0: whether the base edge had other than one face, or two that run it in opposite
     /// directions.  Such an edge is taken apart into one boundary edge per face: INDEXING.md.
     bool IsEdgeNonManifold(Index e) const;
     /// Whether the faces of the vertex form more than one fan, or it lies on a non-manifold edge.
     bool IsVertexNonManifold(Index v) const;
+    /// Whether the edge has one face.
     bool IsEdgeBoundary(Index e) const;
+    /// Whether the vertex lies on a boundary edge.
     bool IsVertexBoundary(Index v) const;
     /// Whether the vertex has exactly one face.
     bool IsVertexCorner(Index v) const { return GetVertexFaces(v).size() == 1; }
@@ -112,16 +137,23 @@ public:
 
     /// @name Tags, as in Far::TopologyLevel
     /// @{
+
     /// Sharpness of the edge at this level; infinite for sharp boundaries, 0 for those that follow
     /// the paper's rule (VTX_BOUNDARY_NONE).
     float GetEdgeSharpness(Index e) const;
+    /// Sharpness of the vertex at this level, as a corner.
     float GetVertexSharpness(Index v) const;
+    /// Whether the sharpness of the edge is infinite.
     bool IsEdgeInfSharp(Index e) const { return Sdc::Crease::IsInfinite(GetEdgeSharpness(e)); }
+    /// Whether the sharpness of the edge is above 0 and finite.
     bool IsEdgeSemiSharp(Index e) const { return Sdc::Crease::IsSemiSharp(GetEdgeSharpness(e)); }
+    /// Whether the sharpness of the vertex is infinite.
     bool IsVertexInfSharp(Index v) const { return Sdc::Crease::IsInfinite(GetVertexSharpness(v)); }
+    /// Whether the sharpness of the vertex is above 0 and finite.
     bool IsVertexSemiSharp(Index v) const {
         return Sdc::Crease::IsSemiSharp(GetVertexSharpness(v));
     }
+    /// Whether the face is tagged as a hole, or was made within holes alone.
     bool IsFaceHole(Index f) const;
     /// The rule that moves the vertex to the next level.  At a free boundary it is RULE_SMOOTH.
     Sdc::Crease::Rule GetVertexRule(Index v) const;
@@ -135,7 +167,10 @@ public:
 
     /// @name Face-varying data, as in Far::TopologyLevel
     /// @{
+
+    /// Face-varying channels of the mesh.
     int GetNumFVarChannels() const;
+    /// Values of a channel at this level.
     int GetNumFVarValues(int channel = 0) const;
     /// The values of a face, by corner.  Of a face that a seam crosses, the two corners on the seam
     /// have a value to either side; those of the first half are given here.
@@ -145,15 +180,17 @@ public:
     /// The values of half 0 (the vertices 0, 3, 4, 5 of the face) or 1 (3, 0, 1, 2) of a face that
     /// a seam crosses.
     ConstIndexArray GetFaceFVarValues(Index f, int channel, int half) const;
-    /// Whether the values on both sides of the edge, around the vertex, or around all vertices of
-    /// the face are the same.
+    /// Whether the values on both sides of the edge are the same.
     bool DoesEdgeFVarTopologyMatch(Index e, int channel = 0) const;
+    /// The same for the values around a vertex.
     bool DoesVertexFVarTopologyMatch(Index v, int channel = 0) const;
+    /// The same for the values around all vertices of a face.
     bool DoesFaceFVarTopologyMatch(Index f, int channel = 0) const;
     /// @}
 
     /// @name Relations between levels
     /// @{
+
     /// How the face was made.
     FaceKind GetFaceKind(Index f) const;
     /// The face of level 0 that this face lies in; for other faces than F-faces, that of their

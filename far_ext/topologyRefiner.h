@@ -31,11 +31,14 @@ public:
     TopologyRefiner(TopologyRefiner const &) = delete;
     TopologyRefiner &operator=(TopologyRefiner const &) = delete;
 
+    /// The scheme, as the factory was given it.
     HexSchemeOptions GetHexSchemeOptions() const { return _schemeOptions; }
     /// The boundary, crease and face-varying options of the base mesh.
     Sdc::Options GetSchemeOptions() const { return _sdcOptions; }
 
+    /// Levels, the base included.
     int GetNumLevels() const { return int(_levels.size()); }
+    /// The last level; 0 where there is the base alone.
     int GetMaxLevel() const { return GetNumLevels() - 1; }
     /// False after RefineCoplanar.
     bool IsUniform() const { return _isUniform; }
@@ -45,16 +48,22 @@ public:
 
     /// @name Face-varying channels, as in Far::TopologyRefiner
     /// @{
+
+    /// Face-varying channels of the mesh.
     int GetNumFVarChannels() const { return GetLevel(0).GetNumFVarChannels(); }
+    /// How a channel is interpolated.
     Sdc::Options::FVarLinearInterpolation GetFVarLinearInterpolation(int channel = 0) const;
     /// Sum over all levels.
     int GetNumFVarValuesTotal(int channel = 0) const;
     /// @}
 
-    /// Sums over all levels.
+    /// Vertices of all levels.
     int GetNumVerticesTotal() const;
+    /// Edges of all levels.
     int GetNumEdgesTotal() const;
+    /// Faces of all levels.
     int GetNumFacesTotal() const;
+    /// Face-vertices of all levels.
     int GetNumFaceVerticesTotal() const;
 
     /// \p level is 0 ... GetMaxLevel().
@@ -65,6 +74,7 @@ public:
 
     /// \brief Options of RefineUniform, as Far::TopologyRefiner::UniformOptions.
     struct UniformOptions {
+        /// \p level steps, and the defaults.
         UniformOptions(int level) : refinementLevel(level) {}
 
         int refinementLevel;                  ///< number of refinement steps, 0 or more
@@ -87,6 +97,7 @@ public:
 
     /// \brief Options of RefineCoplanar.
     struct CoplanarOptions {
+        /// \p level steps, and the defaults.
         CoplanarOptions(int level) : refinementLevel(level) {}
 
         int refinementLevel;         ///< number of refinement steps, 0 or more
@@ -116,6 +127,7 @@ public:
     ///          std::bad_alloc is thrown, it is, too, unless all levels are as before.
     bool RefineCoplanar(float const *restPositions, CoplanarOptions options,
                         Status *status = nullptr);
+    /// \copydoc RefineCoplanar(float const *, CoplanarOptions, Status *)
     bool RefineCoplanar(double const *restPositions, CoplanarOptions options,
                         Status *status = nullptr);
 

@@ -17,8 +17,9 @@ namespace OpenSubdivHex::FarExt {
 /// Several threads may call it at once, also for the same base.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API TopologyRefinerFactory {
 public:
+    /// \brief How the mesh is refined.
     struct Options {
-        HexSchemeOptions schemeOptions;
+        HexSchemeOptions schemeOptions; ///< scheme and face mask
     };
 
     /// \brief Takes level 0 of \p base, which need not be refined and may have any Sdc scheme type
@@ -43,6 +44,7 @@ public:
     ///          between faces which no edges join there).
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    Options options, Status *status = nullptr);
+    /// The same with the default options.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    Status *status = nullptr) {
         return Create(base, Options(), status);
@@ -57,6 +59,7 @@ public:
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyDescriptor const &descriptor,
                                                    Sdc::Options sdcOptions, Options options,
                                                    Status *status = nullptr);
+    /// The same with the default scheme options.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyDescriptor const &descriptor,
                                                    Sdc::Options sdcOptions = Sdc::Options(),
                                                    Status *status = nullptr) {

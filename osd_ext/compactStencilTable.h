@@ -52,8 +52,11 @@ public:
     /// Makes the table of the stencils of \p table, which is not needed afterwards.
     static std::unique_ptr<CompactStencilTable const> Create(Far::StencilTable const &table);
 
+    /// Stencils, as of the table that it was made from.
     int GetNumStencils() const { return _numStencils; }
+    /// Control vertices, as of the table that it was made from.
     int GetNumControlVertices() const { return _numControlVertices; }
+    /// Lists of indices that stencils share.
     int GetNumBlocks() const;
     /// Of all arrays.
     std::size_t GetNumBytes() const;

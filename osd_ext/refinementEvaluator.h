@@ -57,6 +57,7 @@ class OPENSUBDIVHEX_API RefinementEvaluator {
 public:
     /// \brief What is evaluated, spelled as in FarExt::StencilTableFactory.
     struct Options {
+        /// What the elements are.
         FarExt::StencilMode interpolationMode = FarExt::INTERPOLATE_VERTEX;
         int fvarChannel = 0; ///< for INTERPOLATE_FACE_VARYING, whose elements are the values
     };
@@ -71,6 +72,7 @@ public:
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                        Options options,
                                                        FarExt::Status *status = nullptr);
+    /// The same with the default options.
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                        FarExt::Status *status = nullptr) {
         return Create(refiner, Options(), status);
@@ -78,6 +80,7 @@ public:
 
     ~RefinementEvaluator();
 
+    /// The refiner that was given.
     FarExt::TopologyRefiner const &GetTopologyRefiner() const;
 
     /// The last level that can be evaluated, that of the refiner.
@@ -112,12 +115,15 @@ public:
     /// Whose function BindCpuBuffer() returns a float pointer, such as Osd::CpuVertexBuffer.  A
     /// buffer that is null fails as a null pointer does.
     /// @{
+
+    /// Evaluate() from and to buffers.
     template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
     bool Evaluate(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
                   DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc, int level,
                   FarExt::Status *status = nullptr) {
         return Evaluate(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, level, status);
     }
+    /// EvaluateAllLevels() from and to buffers.
     template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
     bool EvaluateAllLevels(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
                            DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc,

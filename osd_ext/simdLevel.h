@@ -46,6 +46,8 @@ OPENSUBDIVHEX_API bool SetSimdLevel(SimdLevel level);
 /// @name Names of levels
 /// "portable", "avx2" and "avx512": spelled so in OPENSUBDIVHEX_SIMD, and by hexrefine.
 /// @{
+
+/// The name of a level.
 OPENSUBDIVHEX_API char const *GetSimdLevelName(SimdLevel level);
 /// \return  false, with \p level as it was, if no level has this name
 OPENSUBDIVHEX_API bool FindSimdLevel(std::string const &name, SimdLevel *level);

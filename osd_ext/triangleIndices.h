@@ -19,6 +19,7 @@ struct TriangleIndices {
     /// The face of level 0 that each triangle came from (TopologyLevel::GetFaceBaseFace).
     std::vector<int> baseFaces;
 
+    /// Triangles: a third of the vertices.
     int GetNumTriangles() const { return int(faces.size()); }
 };
 
