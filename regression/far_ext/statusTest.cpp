@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "far_ext/stencilTableFactory.h"
-#include "far_ext/topologyRefinerFactory.h"
-#include "regression/shapes/shapeDescriptor.h"
+//
+// Meshes and arguments that the factories refuse, and what they say.
+#include "statusFixture.h"
 
-#include <gtest/gtest.h>
+#include "far_ext/stencilTableFactory.h"
 
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <limits>
-#include <string>
 
 namespace OpenSubdivHex::Regression {
 
@@ -17,128 +14,7 @@ using FarExt::ComponentType;
 using FarExt::HexSchemeOptions;
 using FarExt::Status;
 using FarExt::StatusCode;
-using FarExt::TopologyRefiner;
 using FarExt::TopologyRefinerFactory;
-
-namespace {
-
-HexSchemeOptions const kOtherSchemes[] = {
-    {FarExt::FaceMask::Average, FarExt::SchemeType::DooSabin, false},
-    {FarExt::FaceMask::Average, FarExt::SchemeType::TriHex, false},
-    {FarExt::FaceMask::Average, FarExt::SchemeType::Hexagonal, true}};
-
-std::string lastError;
-int numErrors = 0;
-
-void recordError(Far::ErrorType, char const *message) {
-    lastError = message;
-    ++numErrors;
-}
-
-Shape makeShape(int numVertices, std::vector<std::vector<int>> const &faces) {
-    Shape shape;
-    for (int v = 0; v < numVertices; ++v) {
-        for (double coordinate : {1.0 * v, 1.0 * v * v, 1.0 / (v + 1)}) {
-            shape.positions.push_back(coordinate);
-        }
-    }
-    for (std::vector<int> const &face : faces) {
-        shape.faceSizes.push_back(int(face.size()));
-        shape.faceVertices.insert(shape.faceVertices.end(), face.begin(), face.end());
-    }
-    return shape;
-}
-
-/// A base of the faces of \p level.
-Shape makeShape(FarExt::TopologyLevel const &level) {
-    std::vector<std::vector<int>> faces;
-    for (int f = 0; f < level.GetNumFaces(); ++f) {
-        auto const vertices = level.GetFaceVertices(f);
-        faces.emplace_back(vertices.begin(), vertices.end());
-    }
-    return makeShape(level.GetNumVertices(), faces);
-}
-
-} // namespace
-
-/// No test of this group may print.
-class StatusTest : public testing::Test {
-protected:
-    void SetUp() override {
-        lastError.clear();
-        numErrors = 0;
-        testing::internal::CaptureStdout();
-        testing::internal::CaptureStderr();
-    }
-
-    void TearDown() override {
-        FarExt::SetErrorCallback(nullptr);
-        EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-        EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-    }
-
-    struct Refusal {
-        StatusCode code;
-        ComponentType component;
-        int index;
-        std::vector<std::string> words; ///< that the message must hold
-    };
-
-    void expectRefusal(Status const &status, Refusal const &expected) {
-        EXPECT_FALSE(status.IsOk());
-        EXPECT_EQ(status.GetCode(), expected.code) << status.GetMessage();
-        EXPECT_EQ(status.GetComponentType(), expected.component) << status.GetMessage();
-        EXPECT_EQ(status.GetComponentIndex(), expected.index) << status.GetMessage();
-        for (std::string const &word : expected.words) {
-            EXPECT_NE(status.GetMessage().find(word), std::string::npos)
-                << '"' << status.GetMessage() << "\" does not tell \"" << word << '"';
-        }
-    }
-
-    void expectDescriptorRefused(Shape const &shape, Refusal const &expected,
-                                 Sdc::Options options = Sdc::Options()) {
-        ShapeDescriptor const descriptor(shape);
-        Status status;
-        EXPECT_FALSE(TopologyRefinerFactory::Create(descriptor.Get(), options, &status));
-        expectRefusal(status, expected);
-        // Without a Status, and through the callback.
-        FarExt::SetErrorCallback(recordError);
-        numErrors = 0;
-        EXPECT_FALSE(TopologyRefinerFactory::Create(descriptor.Get(), options));
-        EXPECT_EQ(numErrors, 1);
-        EXPECT_EQ(lastError, status.GetMessage());
-        FarExt::SetErrorCallback(nullptr);
-    }
-
-    /// Every scheme but the hexagonal one refuses the shape.
-    void expectRefusedByOtherSchemes(Shape const &shape, Refusal const &expected) {
-        auto const base = CreateFarRefiner(shape);
-        ASSERT_TRUE(base);
-        ShapeDescriptor const descriptor(shape);
-        for (HexSchemeOptions const &scheme : kOtherSchemes) {
-            TopologyRefinerFactory::Options options;
-            options.schemeOptions = scheme;
-            Status status;
-            EXPECT_FALSE(
-                TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options, &status));
-            expectRefusal(status, expected);
-            status = Status();
-            EXPECT_FALSE(TopologyRefinerFactory::Create(*base, options, &status));
-            expectRefusal(status, expected);
-        }
-        EXPECT_TRUE(TopologyRefinerFactory::Create(*base));
-    }
-
-    void expectRefused(Shape const &shape, Refusal const &expected,
-                       Sdc::Options options = Sdc::Options()) {
-        expectDescriptorRefused(shape, expected, options);
-        auto const base = CreateFarRefiner(shape, options);
-        ASSERT_TRUE(base);
-        Status status;
-        EXPECT_FALSE(TopologyRefinerFactory::Create(*base, &status));
-        expectRefusal(status, expected);
-    }
-};
 
 TEST_F(StatusTest, DefaultIsOk) {
     Status const status;
@@ -165,7 +41,7 @@ TEST_F(StatusTest, EmptyMesh) {
     expectDescriptorRefused(
         Shape(), {StatusCode::InvalidTopology, ComponentType::None, -1, {"empty", "0 faces"}});
     expectDescriptorRefused(
-        makeShape(3, {}),
+        MakeShape(3, {}),
         {StatusCode::InvalidTopology, ComponentType::None, -1, {"empty", "0 faces"}});
 }
 
@@ -181,12 +57,12 @@ TEST_F(StatusTest, NoArrays) {
 
 TEST_F(StatusTest, FaceTooSmall) {
     expectDescriptorRefused(
-        makeShape(5, {{0, 1, 2}, {2, 1}, {2, 1, 3}}),
+        MakeShape(5, {{0, 1, 2}, {2, 1}, {2, 1, 3}}),
         {StatusCode::InvalidTopology, ComponentType::Face, 1, {"face 1", "2 vertices"}});
     expectDescriptorRefused(
-        makeShape(5, {{0, 1, 2}, {2, 1, 3}, {}}),
+        MakeShape(5, {{0, 1, 2}, {2, 1, 3}, {}}),
         {StatusCode::InvalidTopology, ComponentType::Face, 2, {"face 2", "0 vertices"}});
-    Shape negative = makeShape(3, {{0, 1, 2}});
+    Shape negative = MakeShape(3, {{0, 1, 2}});
     negative.faceSizes[0] = -3;
     expectDescriptorRefused(
         negative, {StatusCode::InvalidTopology, ComponentType::Face, 0, {"face 0", "-3 vertices"}});
@@ -204,7 +80,7 @@ TEST_F(StatusTest, FaceTooLarge) {
 }
 
 TEST_F(StatusTest, VertexOfTooManyFaces) {
-    Shape shape = makeShape(1, {});
+    Shape shape = MakeShape(1, {});
     int const numFaces = 66000;
     shape.positions.resize(3 * (2 * numFaces + 1));
     for (int f = 0; f < numFaces; ++f) {
@@ -223,7 +99,7 @@ constexpr int kMaxValence = 65535; ///< that Far takes
 /// \p numFree, and three more vertices.
 Shape makePinwheel(int numFree) {
     int const numTriangles = (kMaxValence - numFree) / 2;
-    Shape shape = makeShape(1, {});
+    Shape shape = MakeShape(1, {});
     for (int f = 0; f < numTriangles; ++f) {
         shape.faceSizes.push_back(3);
         shape.faceVertices.insert(shape.faceVertices.end(), {1 + 2 * f, 2 + 2 * f, 0});
@@ -270,19 +146,19 @@ TEST_F(StatusTest, VertexOfTooManyEdges) {
 
 TEST_F(StatusTest, VertexOutOfRange) {
     expectDescriptorRefused(
-        makeShape(4, {{0, 1, 2}, {2, 1, 4}}),
+        MakeShape(4, {{0, 1, 2}, {2, 1, 4}}),
         {StatusCode::InvalidTopology, ComponentType::Face, 1, {"face 1", "vertex 4", "0 to 3"}});
     expectDescriptorRefused(
-        makeShape(4, {{0, 1, 2}, {2, 1, 3}, {0, -7, 1}}),
+        MakeShape(4, {{0, 1, 2}, {2, 1, 3}, {0, -7, 1}}),
         {StatusCode::InvalidTopology, ComponentType::Face, 2, {"face 2", "vertex -7"}});
 }
 
 TEST_F(StatusTest, InconsistentOrientationIsAWarning) {
-    Shape const shape = makeShape(5, {{0, 1, 2}, {1, 2, 3}, {2, 3, 4}});
+    Shape const shape = MakeShape(5, {{0, 1, 2}, {1, 2, 3}, {2, 3, 4}});
     auto const base = CreateFarRefiner(shape);
     int const edge = base->GetLevel(0).FindEdge(1, 2);
     ShapeDescriptor const descriptor(shape);
-    FarExt::SetErrorCallback(recordError);
+    FarExt::SetErrorCallback(RecordError);
     for (bool const isFromBase : {false, true}) {
         Status status;
         EXPECT_TRUE(
@@ -469,7 +345,7 @@ TEST_F(StatusTest, EveryShapeAndBoundaryRuleIsTaken) {
 }
 
 TEST_F(StatusTest, CreaseThatIsNoEdge) {
-    Shape shape = makeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
+    Shape shape = MakeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
     shape.creaseVertexPairs = {2, 3, 0, 2};
     shape.creaseSharpness = {2.5f, 10};
     expectDescriptorRefused(
@@ -482,7 +358,7 @@ TEST_F(StatusTest, CreaseThatIsNoEdge) {
 }
 
 TEST_F(StatusTest, CreaseOutOfRange) {
-    Shape shape = makeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
+    Shape shape = MakeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
     for (int vertex : {-1, 5}) {
         for (std::vector<int> const &pair : {std::vector<int>{2, vertex}, {vertex, 2}}) {
             shape.creaseVertexPairs = {2, 3, pair[0], pair[1]};
@@ -497,7 +373,7 @@ TEST_F(StatusTest, CreaseOutOfRange) {
 }
 
 TEST_F(StatusTest, CornerOutOfRange) {
-    Shape shape = makeShape(4, {{0, 1, 2, 3}});
+    Shape shape = MakeShape(4, {{0, 1, 2, 3}});
     for (int vertex : {-2, 4}) {
         shape.cornerVertices = {0, vertex};
         shape.cornerSharpness = {1, 2};
@@ -510,7 +386,7 @@ TEST_F(StatusTest, CornerOutOfRange) {
 }
 
 TEST_F(StatusTest, HoleOutOfRange) {
-    Shape shape = makeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
+    Shape shape = MakeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
     for (int face : {-1, 2}) {
         shape.holeFaces = {0, face};
         expectDescriptorRefused(shape, {StatusCode::InvalidTopology,
@@ -521,7 +397,7 @@ TEST_F(StatusTest, HoleOutOfRange) {
 }
 
 TEST_F(StatusTest, FaceVaryingValueOutOfRange) {
-    Shape shape = makeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
+    Shape shape = MakeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
     shape.fvarChannels.resize(2);
     for (FVarChannel &channel : shape.fvarChannels) {
         channel.values.resize(2 * 7);
@@ -537,322 +413,10 @@ TEST_F(StatusTest, FaceVaryingValueOutOfRange) {
     }
 }
 
-TEST_F(StatusTest, NegativeRefinementLevel) {
-    ShapeDescriptor const descriptor(GetShape("cube"));
-    auto const refiner = TopologyRefinerFactory::Create(descriptor.Get());
-    ASSERT_TRUE(refiner->RefineUniform(2));
-    Status status;
-    EXPECT_FALSE(refiner->RefineUniform(-1, &status));
-    expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::Level, -1, {"-1"}});
-    EXPECT_EQ(refiner->GetMaxLevel(), 2);
-}
-
-TEST_F(StatusTest, TooManyLevels) {
-    // V' = V + 2E, E' = 4E: the cube has 8 + 8 (4^L - 1) = 2^(2L + 3) vertices, 2^31 at level 14.
-    ShapeDescriptor const descriptor(GetShape("cube"));
-    auto const refiner = TopologyRefinerFactory::Create(descriptor.Get());
-    ASSERT_TRUE(refiner->RefineUniform(2));
-    for (int level : {14, 15, 40, 1000000}) {
-        Status status;
-        EXPECT_FALSE(refiner->RefineUniform(level, &status));
-        expectRefusal(status, {StatusCode::TooLarge,
-                               ComponentType::Level,
-                               14,
-                               {"level 14", "2147483648", "vertices"}});
-        EXPECT_EQ(refiner->GetMaxLevel(), 2);
-        EXPECT_EQ(refiner->GetUniformOptions().refinementLevel, 2);
-        EXPECT_EQ(refiner->GetLevel(2).GetNumVertices(), 128);
-        EXPECT_TRUE(refiner->GetLevel(1).Validate());
-    }
-}
-
-TEST_F(StatusTest, OtherSchemesRefuseFeatures) {
-    Shape const plain = makeShape(7, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}});
-    auto const findEdge = [](Shape const &shape, int v, int w) {
-        return CreateFarRefiner(shape)->GetLevel(0).FindEdge(v, w);
-    };
-    Shape creased = plain;
-    creased.creaseVertexPairs = {0, 3};
-    creased.creaseSharpness = {0.5f};
-    int const crease = findEdge(creased, 0, 3);
-    expectRefusedByOtherSchemes(creased,
-                                {StatusCode::Unsupported,
-                                 ComponentType::Edge,
-                                 crease,
-                                 {"edge " + std::to_string(crease), "crease", "hexagonal"}});
-    Shape corner = plain;
-    corner.cornerVertices = {0};
-    corner.cornerSharpness = {1.5f};
-    expectRefusedByOtherSchemes(
-        corner, {StatusCode::Unsupported, ComponentType::Vertex, 0, {"vertex 0", "corner"}});
-    Shape textured = plain;
-    textured.fvarChannels.resize(1);
-    textured.fvarChannels[0].values.resize(2 * 12);
-    textured.fvarChannels[0].valueIndices.resize(12);
-    expectRefusedByOtherSchemes(
-        textured, {StatusCode::Unsupported, ComponentType::None, -1, {"face-varying"}});
-    Shape const fin = makeShape(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
-    int const edge = findEdge(fin, 0, 1);
-    expectRefusedByOtherSchemes(fin, {StatusCode::Unsupported,
-                                      ComponentType::Edge,
-                                      edge,
-                                      {"edge " + std::to_string(edge), "non-manifold"}});
-}
-
-TEST_F(StatusTest, OtherSchemesTakeSharpBorders) {
-    // Corners at the border are dropped with it.
-    Shape shape = makeShape(4, {{0, 1, 2, 3}});
-    shape.cornerVertices = {1};
-    shape.cornerSharpness = {10};
-    Sdc::Options sdcOptions;
-    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
-    ShapeDescriptor const descriptor(shape);
-    for (HexSchemeOptions const &scheme : kOtherSchemes) {
-        TopologyRefinerFactory::Options options;
-        options.schemeOptions = scheme;
-        Status status;
-        auto const refiner =
-            TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status);
-        ASSERT_TRUE(refiner) << status.GetMessage();
-        EXPECT_EQ(refiner->GetHexSchemeOptions().schemeType, scheme.schemeType);
-        EXPECT_EQ(refiner->GetHexSchemeOptions().triHexFirst, scheme.triHexFirst);
-        EXPECT_TRUE(refiner->RefineUniform(2));
-    }
-}
-
-TEST_F(StatusTest, CoplanarArguments) {
-    Shape const &cube = GetShape("cube");
-    ShapeDescriptor const descriptor(cube);
-    auto const refiner = TopologyRefinerFactory::Create(descriptor.Get());
-    ASSERT_TRUE(refiner->RefineUniform(2));
-    auto const expectCoplanarRefused = [&](double const *positions,
-                                           TopologyRefiner::CoplanarOptions options,
-                                           Refusal const &expected) {
-        Status status;
-        EXPECT_FALSE(refiner->RefineCoplanar(positions, options, &status));
-        expectRefusal(status, expected);
-        // The levels are as before.
-        EXPECT_EQ(refiner->GetMaxLevel(), 2);
-        EXPECT_TRUE(refiner->IsUniform());
-        EXPECT_EQ(refiner->GetLevel(2).GetNumVertices(), 128);
-        EXPECT_TRUE(refiner->GetLevel(1).Validate());
-    };
-    TopologyRefiner::CoplanarOptions const good(1);
-    expectCoplanarRefused(cube.positions.data(), TopologyRefiner::CoplanarOptions(-2),
-                          {StatusCode::InvalidArgument, ComponentType::Level, -2, {"-2"}});
-    expectCoplanarRefused(nullptr, good,
-                          {StatusCode::InvalidArgument, ComponentType::None, -1, {"null"}});
-    for (double tolerance : {-0.5, 180.5, std::nan(""), double(INFINITY)}) {
-        TopologyRefiner::CoplanarOptions options(1);
-        options.angleTolerance = tolerance;
-        expectCoplanarRefused(
-            cube.positions.data(), options,
-            {StatusCode::InvalidArgument, ComponentType::None, -1, {"angle", "180"}});
-    }
-    for (double coordinate : {std::nan(""), double(INFINITY), -double(INFINITY), 1e300}) {
-        for (int axis = 0; axis < 3; ++axis) {
-            std::vector<double> positions = cube.positions;
-            positions[3 * 5 + axis] = coordinate;
-            expectCoplanarRefused(
-                positions.data(), good,
-                {StatusCode::InvalidArgument, ComponentType::Vertex, 5, {"vertex 5", "finite"}});
-        }
-    }
-    std::vector<float> positions(cube.positions.begin(), cube.positions.end());
-    positions[23] = NAN;
-    Status status;
-    EXPECT_FALSE(refiner->RefineCoplanar(positions.data(), good, &status));
-    expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::Vertex, 7, {"vertex 7"}});
-    EXPECT_TRUE(refiner->RefineCoplanar(cube.positions.data(), good, &status));
-    EXPECT_TRUE(status.IsOk());
-    EXPECT_FALSE(refiner->IsUniform());
-    EXPECT_TRUE(refiner->RefineCoplanar(cube.positions.data(), 0));
-    EXPECT_EQ(refiner->GetMaxLevel(), 0);
-}
-
-TEST_F(StatusTest, OtherSchemesRefuseCoplanarRefinement) {
-    Shape const &cube = GetShape("cube");
-    ShapeDescriptor const descriptor(cube);
-    for (HexSchemeOptions const &scheme : kOtherSchemes) {
-        TopologyRefinerFactory::Options options;
-        options.schemeOptions = scheme;
-        auto const refiner =
-            TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
-        ASSERT_TRUE(refiner && refiner->RefineUniform(1));
-        Status status;
-        EXPECT_FALSE(refiner->RefineCoplanar(cube.positions.data(), 1, &status));
-        expectRefusal(
-            status, {StatusCode::Unsupported, ComponentType::None, -1, {"coplanar", "hexagonal"}});
-        EXPECT_EQ(refiner->GetMaxLevel(), 1);
-        EXPECT_FALSE(refiner->RefineUniform(-1, &status));
-        expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::Level, -1, {"-1"}});
-        EXPECT_EQ(refiner->GetMaxLevel(), 1);
-    }
-}
-
-TEST_F(StatusTest, TooManyLevelsOfOtherSchemes) {
-    // Edges of the cube: 12 4^L with Doo-Sabin; a tri-hex step first makes 36 of 12.  With tri-hex
-    // it has 24 3^L face-vertices.
-    struct Case {
-        HexSchemeOptions scheme;
-        int level;
-        std::string count;
-    };
-    Case const cases[] = {{kOtherSchemes[0], 14, "3221225472 edges"},
-                          {kOtherSchemes[1], 17, "3099363912 face-vertices"},
-                          {kOtherSchemes[2], 14, "2415919104 edges"}};
-    Shape const &cube = GetShape("cube");
-    ShapeDescriptor const descriptor(cube);
-    for (Case const &expected : cases) {
-        TopologyRefinerFactory::Options options;
-        options.schemeOptions = expected.scheme;
-        auto const refiner =
-            TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
-        ASSERT_TRUE(refiner->RefineUniform(2));
-        int const numVertices = refiner->GetLevel(2).GetNumVertices();
-        for (int level : {expected.level, 1000000}) {
-            Status status;
-            EXPECT_FALSE(refiner->RefineUniform(level, &status));
-            expectRefusal(status, {StatusCode::TooLarge,
-                                   ComponentType::Level,
-                                   expected.level,
-                                   {"level " + std::to_string(expected.level), expected.count}});
-            EXPECT_EQ(refiner->GetMaxLevel(), 2);
-            EXPECT_EQ(refiner->GetLevel(2).GetNumVertices(), numVertices);
-        }
-    }
-}
-
-TEST_F(StatusTest, LevelsThatDoNotGrowHaveALast) {
-    // A face that shares no edge makes one such face in each level.
-    ShapeDescriptor const descriptor(GetShape("polygon3"));
-    for (FarExt::SchemeType scheme : {FarExt::SchemeType::DooSabin, FarExt::SchemeType::TriHex}) {
-        TopologyRefinerFactory::Options options;
-        options.schemeOptions.schemeType = scheme;
-        auto const refiner =
-            TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
-        for (int level : {TopologyRefiner::kLastLevel + 1, std::numeric_limits<int>::max()}) {
-            Status status;
-            EXPECT_FALSE(refiner->RefineUniform(level, &status));
-            expectRefusal(status, {StatusCode::TooLarge,
-                                   ComponentType::Level,
-                                   level,
-                                   {"level " + std::to_string(level), "level 100"}});
-        }
-        ASSERT_TRUE(refiner->RefineUniform(TopologyRefiner::kLastLevel));
-        EXPECT_EQ(refiner->GetLevel(TopologyRefiner::kLastLevel).GetNumFaces(), 1);
-    }
-}
-
-TEST_F(StatusTest, TooManyCoplanarLevels) {
-    // Refused before anything is made, by sizes that the shape has in any pose: what is made of it
-    // cannot be refined further.
-    auto const create = [](Shape const &shape, Sdc::Options sdcOptions) {
-        ShapeDescriptor const descriptor(shape);
-        return TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions);
-    };
-    auto const findRefusedLevel = [&](Shape const &shape, Sdc::Options sdcOptions, bool closeGaps) {
-        auto const refiner = create(shape, sdcOptions);
-        EXPECT_TRUE(refiner->RefineUniform(1));
-        TopologyRefiner::CoplanarOptions options(1000000);
-        options.closeGaps = closeGaps;
-        Status status;
-        EXPECT_FALSE(refiner->RefineCoplanar(shape.positions.data(), options, &status));
-        int const level = status.GetComponentIndex();
-        expectRefusal(status, {StatusCode::TooLarge, ComponentType::Level, level, {"or more"}});
-        EXPECT_EQ(refiner->GetMaxLevel(), 1);
-        return level;
-    };
-    for (char const *name :
-         {"cube", "quadGrid", "mixedPatch", "closedAndOpen", "dihedron5", "prism5"}) {
-        Shape const &shape = GetShape(name);
-        for (bool closeGaps : {true, false}) {
-            SCOPED_TRACE(std::string(name) + (closeGaps ? ", closed" : ", open"));
-            Sdc::Options sdcOptions;
-            sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
-            int const refusedLevel = findRefusedLevel(shape, sdcOptions, closeGaps);
-            for (double tolerance : {0.0, 60.0, 180.0}) {
-                for (int level : {1, 2}) {
-                    TopologyRefiner::CoplanarOptions options(level);
-                    options.angleTolerance = tolerance;
-                    options.closeGaps = closeGaps;
-                    auto const refiner = create(shape, sdcOptions);
-                    ASSERT_TRUE(refiner->RefineCoplanar(shape.positions.data(), options));
-                    Shape const other = makeShape(refiner->GetLevel(level));
-                    EXPECT_LE(findRefusedLevel(other, sdcOptions, closeGaps), refusedLevel - level)
-                        << tolerance << " degrees, level " << level;
-                }
-            }
-        }
-        // Without flat edges the sizes are those of the hexagonal step, but for vertices.
-        for (auto boundary :
-             {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}) {
-            Sdc::Options sdcOptions;
-            sdcOptions.SetVtxBoundaryInterpolation(boundary);
-            Status status;
-            EXPECT_FALSE(create(shape, sdcOptions)->RefineUniform(1000000, &status));
-            bool const hasDigons = std::string(name) == "dihedron5";
-            EXPECT_TRUE(hasDigons ||
-                        findRefusedLevel(shape, sdcOptions, true) == status.GetComponentIndex());
-        }
-    }
-}
-
-TEST_F(StatusTest, TooManyLevelsSeenFromAnyLevel) {
-    // The refusals of a mesh and of its own refinement as a base name the same sizes, so that these
-    // are right however many levels lie between.
-    auto const create = [](Shape const &shape, HexSchemeOptions const &scheme) {
-        TopologyRefinerFactory::Options options;
-        options.schemeOptions = scheme;
-        ShapeDescriptor const descriptor(shape);
-        return TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
-    };
-    auto const refuse = [](TopologyRefiner &refiner) {
-        Status status;
-        EXPECT_FALSE(refiner.RefineUniform(100, &status));
-        EXPECT_EQ(status.GetCode(), StatusCode::TooLarge);
-        return status;
-    };
-    // All that are chosen have too many face-vertices, those of the levels before included.
-    std::string const kCount = "face-vertices together with the levels before";
-    auto const readCount = [](Status const &status) {
-        std::string const before = "would have ";
-        std::size_t const place = status.GetMessage().find(before) + before.size();
-        return std::stoll(status.GetMessage().substr(place));
-    };
-    HexSchemeOptions const dooSabin = kOtherSchemes[0];
-    HexSchemeOptions const triHex = kOtherSchemes[1];
-    struct Case {
-        char const *name;
-        HexSchemeOptions scheme;
-    };
-    for (Case const &test :
-         {Case{"mixedPatch", dooSabin}, Case{"quadGrid", dooSabin}, Case{"closedAndOpen", dooSabin},
-          Case{"dihedron5", dooSabin}, Case{"prism5", dooSabin}, Case{"tetrahedron", triHex}}) {
-        SCOPED_TRACE(test.name);
-        auto const refiner = create(GetShape(test.name), test.scheme);
-        Status const expected = refuse(*refiner);
-        int const lastLevel = expected.GetComponentIndex();
-        ASSERT_NE(expected.GetMessage().find(kCount), std::string::npos) << expected.GetMessage();
-        std::int64_t count = readCount(expected);
-        for (int level : {1, 2, 3}) {
-            ASSERT_TRUE(refiner->RefineUniform(level));
-            auto const other = create(makeShape(refiner->GetLevel(level)), test.scheme);
-            ASSERT_TRUE(other);
-            Status const actual = refuse(*other);
-            EXPECT_EQ(actual.GetComponentIndex(), lastLevel - level);
-            count -= refiner->GetLevel(level - 1).GetNumFaceVertices();
-            EXPECT_EQ(readCount(actual), count);
-        }
-    }
-    // With borders the sizes are known after the tri-hex step.
-    EXPECT_NE(refuse(*create(GetShape("mixedPatch"), kOtherSchemes[2])).GetMessage(), "");
-}
-
 TEST_F(StatusTest, CallbackCanBeTakenBack) {
-    Shape const shape = makeShape(3, {{0, 1, 3}});
+    Shape const shape = MakeShape(3, {{0, 1, 3}});
     ShapeDescriptor const descriptor(shape);
-    FarExt::SetErrorCallback(recordError);
+    FarExt::SetErrorCallback(RecordError);
     EXPECT_FALSE(TopologyRefinerFactory::Create(descriptor.Get()));
     EXPECT_EQ(numErrors, 1);
     FarExt::SetErrorCallback(nullptr);
