@@ -24,10 +24,28 @@ constexpr char kObjWithTags[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 
                                 "t crease 2/1/0 1 2 2.5\nt corner 1/1/0 0 3\nt hole 1/0/0 1\n"
                                 "t interpolateboundary 1/0/0 1\nt creasemethod 0/0/1 chaikin\n"
                                 "t facevaryinginterpolateboundary 1/0/0 2\n";
+constexpr char kObjWithLabels[] =
+    "mtllib two words.mtl b.mtl\no a cube # no comment\ng a b\ns off\nusemtl m#1\n"
+    "v 0 0 0 1 0 .5\nv 1 0 0 0 .5 1\nv 1 1 0 1 1 1\nv 0 1 0 .25 0 0\nv .5 .5 1 2 0 0\n"
+    "f 1 2 5\nusemtl n\\ \nf 2 3 5\ns 1\nf 3 4 5\nusemtl m#1\nl 1 2\nf 4 1 5\n"
+    "t smoothtriangles 0/0/1 smooth\ng\nf 4 3 2 1\n";
+constexpr char kObjWithWeights[] = "v 0 0 0 2\nv 1 0 0 .5\nv 1 1 0 1\nv 0 1 0\nvp 1\n"
+                                   "f 1 2 3\ng x\nf 1 3 4\n";
 constexpr char kOff[] = "OFF\n5 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n.5 .5 1\n"
                         "4 0 1 2 3\n3 0 1 4 255 0 0\n3 1 2 4\n";
 constexpr char kColoredOff[] = "CNOFF 3 1 3 # counts\n0 0 0 0 0 1 1 0 0 1\n1 0 0 0 0 1 1 0 0 1\n"
                                "1 1 0 0 0 1 1 0 0 1\n\n3 0 1 2";
+constexpr char kFloatOff[] = "STCOFF\n3 2 0\n0 0 0 .5 1 1 1 0 1.0\n1 0 0 1 1 1 1 1 0\n"
+                             "1 1 0 0 0 0 1.0 .5 .5\n3 0 1 2 .5 1 0\n3 2 1 0 1 1 1\n";
+constexpr char kTextPlyWithLists[] =
+    "ply\nformat ascii 1.0\nelement face 2\nproperty uchar red\n"
+    "property list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+    "property double id\nelement vertex 4\nproperty int x\nproperty short y\n"
+    "property list uchar ushort more\nproperty uchar z\nproperty uchar red\n"
+    "property uchar green\nproperty uchar blue\nproperty float nx\nproperty uint label\n"
+    "end_header\n7 3 0 1 2 2 .5 1 1e100\n255 3 0 2 3 0 -2\n"
+    "0 0 0 0 255 0 128 1 4294967295\n1 0 2 7 8 0 1 2 3 .5 16777217\n1 1 0 0 9 9 9 -1 3\n"
+    "0 1 0 0 0 0 0 0 1\n";
 constexpr char kTextPly[] = "ply\nformat ascii 1.0\ncomment a pyramid\nelement vertex 5\n"
                             "property float x\nproperty float y\nproperty float z\n"
                             "property uchar red\nelement face 3\n"
@@ -47,45 +65,53 @@ std::string makeBinaryPly(bool isLittleEndian, bool isDouble) {
     std::string const type = isDouble ? "double" : "float";
     std::string out = std::string("ply\nformat binary_") + (isLittleEndian ? "little" : "big") +
                       "_endian 1.0\nelement vertex 3\nproperty " + type + " x\nproperty " + type +
-                      " y\nproperty " + type + " z\nelement face 1\nproperty list " +
-                      (isDouble ? "uint" : "uchar") + " int vertex_indices\nend_header\n";
+                      " y\nproperty " + type +
+                      " z\nproperty uchar red\nproperty list uchar short more\n"
+                      "element face 1\nproperty list " +
+                      (isDouble ? "uint" : "uchar") +
+                      " int vertex_indices\nproperty ushort flags\nend_header\n";
     std::string const zero(isDouble ? 8 : 4, '\0');
     std::string one = zero;
     one.replace(one.size() - 2, 2, isDouble ? "\xf0\x3f" : "\x80\x3f");
-    for (bool isOne : {false, false, false, true, false, false, false, true, false}) {
-        put(&out, isOne ? one : zero);
-    }
     auto const putInt = [&](int value, std::size_t size) {
         std::string bytes(size, '\0');
         bytes[0] = char(value);
         put(&out, bytes);
     };
+    for (int vertex = 0; vertex < 3; ++vertex) {
+        for (int axis = 0; axis < 3; ++axis) {
+            put(&out, axis == vertex ? one : zero);
+        }
+        putInt(100 * vertex, 1);
+        putInt(vertex, 1);
+        for (int i = 0; i < vertex; ++i) {
+            putInt(i, 2);
+        }
+    }
     putInt(3, isDouble ? 4 : 1);
     for (int vertex : {0, 1, 2}) {
         putInt(vertex, 4);
     }
+    putInt(9, 2);
     return out;
 }
 
 DamagedFile makeFile(int choice) {
-    switch (choice) {
-    case 0:
-        return {"a.obj", kObj};
-    case 1:
-        return {"a.obj", kObjWithChannels};
-    case 2:
-        return {"a.obj", kObjWithTags};
-    case 3:
-        return {"a.off", kOff};
-    case 4:
-        return {"a.off", kColoredOff};
-    case 5:
-        return {"a.ply", kTextPly};
-    default:
-        return {"a.ply", makeBinaryPly(choice % 2 == 0, choice >= 8)};
+    struct Text {
+        char const *name;
+        char const *content;
+    };
+    constexpr Text kTexts[] = {{"a.obj", kObj},           {"a.obj", kObjWithChannels},
+                               {"a.obj", kObjWithTags},   {"a.off", kOff},
+                               {"a.off", kColoredOff},    {"a.ply", kTextPly},
+                               {"a.obj", kObjWithLabels}, {"a.obj", kObjWithWeights},
+                               {"a.off", kFloatOff},      {"a.ply", kTextPlyWithLists}};
+    if (choice < int(std::size(kTexts))) {
+        return {kTexts[choice].name, kTexts[choice].content};
     }
+    return {"a.ply", makeBinaryPly(choice % 2 == 0, choice / 2 % 2 == 0)};
 }
-constexpr int kNumFiles = 10;
+constexpr int kNumFiles = 14;
 
 using namespace std::string_view_literals;
 constexpr std::string_view kWords[] = {"0"sv,
@@ -141,6 +167,14 @@ constexpr std::string_view kWords[] = {"0"sv,
                                        "\nt corner 1/1/0 2 10\n"sv,
                                        "\nt crease 3/2/0 0 1 2 1 2\n"sv,
                                        "\nt smooth 0/0/0\n"sv,
+                                       "\nt smoothtriangles 0/0/0\n"sv,
+                                       "\nusemtl #\\\\"sv,
+                                       "\no\n"sv,
+                                       "\ng a\n"sv,
+                                       "\ns 1\n"sv,
+                                       "\nmtllib \\\\ \n"sv,
+                                       "\nv 0 0 1 .5 1 0\n"sv,
+                                       "1 1 1\n"sv,
                                        "OFF"sv,
                                        "STCNOFF"sv,
                                        "ply"sv,
@@ -152,6 +186,9 @@ constexpr std::string_view kWords[] = {"0"sv,
                                        "property list uchar int vertex_indices\n"sv,
                                        "property list int uint vertex_index\n"sv,
                                        "property short s\n"sv,
+                                       "property uchar green\nproperty uchar blue\n"sv,
+                                       "property list char double l\n"sv,
+                                       "property float ny\nproperty float nz\n"sv,
                                        "format ascii 1.0\n"sv,
                                        "format binary_big_endian 1.0\n"sv,
                                        "comment\n"sv,

@@ -9,6 +9,7 @@
 #include "tools/hexrefine/evaluation.h"
 #include "tools/hexrefine/levelMesh.h"
 #include "tools/mesh/fileError.h"
+#include "tools/mesh/meshContent.h"
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/meshWriter.h"
 #include "tools/mesh/topologyDescriptor.h"
@@ -89,6 +90,25 @@ void requireValid(Mesh const &mesh) {
                     areIndices(channel.faceValues, channel.GetNumValues()),
                 "a channel is not valid");
     }
+    for (Tools::VertexProperty const &property : mesh.vertexProperties) {
+        require(int(property.values.size()) == mesh.GetNumVertices() && areFinite(property.values),
+                "a property of vertices is not valid");
+    }
+    bool const areBase = mesh.baseFaces.empty();
+    require(areBase || mesh.baseFaces.size() == mesh.faceSizes.size(), "base faces are missing");
+    std::size_t const numBaseFaces =
+        areBase ? mesh.faceSizes.size()
+                : std::size_t(*std::max_element(mesh.baseFaces.begin(), mesh.baseFaces.end())) + 1;
+    auto const isOfBaseFaces = [&](std::size_t size) {
+        return areBase ? size == numBaseFaces : size >= numBaseFaces;
+    };
+    for (Tools::FaceProperty const &property : mesh.faceProperties) {
+        require(isOfBaseFaces(property.values.size()), "a property of faces is not valid");
+    }
+    require(mesh.faceLabels.empty() == mesh.labels.empty() &&
+                (mesh.faceLabels.empty() || isOfBaseFaces(mesh.faceLabels.size())) &&
+                areIndices(mesh.faceLabels, int(mesh.labels.size())),
+            "labels are not valid");
     require(areIndices(mesh.tags.creaseVertices, mesh.GetNumVertices()) &&
                 areIndices(mesh.tags.cornerVertices, mesh.GetNumVertices()) &&
                 areIndices(mesh.tags.holes, mesh.GetNumFaces()),
@@ -121,6 +141,58 @@ void requireRefused(Mesh const &mesh) {
     }
 }
 
+/// What an OBJ file, which knows no types, has of a property.
+float convertToObj(Tools::VertexProperty const &property, float value) {
+    return Tools::IsInteger(property.type) ? value / float(Tools::GetMax(property.type)) : value;
+}
+
+void requireSameProperties(Mesh const &mesh, Mesh const &copy, bool isObj) {
+    for (Tools::VertexProperty const &property : mesh.vertexProperties) {
+        Tools::VertexProperty const *const other =
+            Tools::FindProperty(copy.vertexProperties, property.name);
+        auto const isOne = [](float value) { return value == 1; };
+        if (!other && isObj && property.name == "w" &&
+            std::all_of(property.values.begin(), property.values.end(), isOne)) {
+            continue;
+        }
+        require(other && (isObj || other->type == property.type),
+                "a property of vertices is not read as written");
+        auto const isKept = [&](float value, float otherValue) {
+            return otherValue == (isObj ? convertToObj(property, value)
+                                        : float(Tools::RoundTo(property.type, double(value))));
+        };
+        require(std::equal(property.values.begin(), property.values.end(), other->values.begin(),
+                           other->values.end(), isKept),
+                "numbers of vertices are not read as written");
+    }
+    for (Tools::FaceProperty const &property : mesh.faceProperties) {
+        Tools::FaceProperty const *const other =
+            Tools::FindProperty(copy.faceProperties, property.name);
+        require(other && other->type == property.type &&
+                    other->values.size() == mesh.faceSizes.size(),
+                "a property of faces is not read as written");
+        for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+            require(other->values[std::size_t(face)] ==
+                        property.values[std::size_t(mesh.GetBaseFace(face))],
+                    "numbers of faces are not read as written");
+        }
+    }
+}
+
+Tools::FaceLabel getLabel(Mesh const &mesh, int face) {
+    return mesh.faceLabels.empty()
+               ? Tools::FaceLabel()
+               : mesh.labels[std::size_t(mesh.faceLabels[std::size_t(mesh.GetBaseFace(face))])];
+}
+
+void requireSameLabels(Mesh const &mesh, Mesh const &copy) {
+    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+        require(getLabel(mesh, face) == getLabel(copy, face), "labels are not read as written");
+    }
+    require(mesh.materialLibraries == copy.materialLibraries,
+            "material libraries are not read as written");
+}
+
 /// Writes the mesh in all formats, and reads it again.
 void requireRoundTrip(Mesh const &mesh) {
     for (char const *name : kNames) {
@@ -130,14 +202,20 @@ void requireRoundTrip(Mesh const &mesh) {
         require(haveSameBits(copy.positions, mesh.positions), "positions are not read as written");
         require(copy.faceSizes == mesh.faceSizes && copy.faceVertices == mesh.faceVertices,
                 "faces are not read as written");
-        std::size_t const numChannels = Tools::HasChannels(path) ? mesh.channels.size() : 0;
-        require(copy.channels.size() == numChannels, "channels are not read as written");
-        for (std::size_t i = 0; i < numChannels; ++i) {
-            require(copy.channels[i].width == mesh.channels[i].width &&
-                        haveSameBits(copy.channels[i].values, mesh.channels[i].values) &&
-                        copy.channels[i].faceValues == mesh.channels[i].faceValues,
+        Mesh held = mesh;
+        Tools::RemoveWhatIsNotHeld(path, &held);
+        require(copy.channels.size() == held.channels.size(), "channels are not read as written");
+        for (std::size_t i = 0; i < held.channels.size(); ++i) {
+            require(copy.channels[i].width == held.channels[i].width &&
+                        haveSameBits(copy.channels[i].values, held.channels[i].values) &&
+                        copy.channels[i].faceValues == held.channels[i].faceValues,
                     "values are not read as written");
         }
+        require(copy.vertexProperties.size() <= held.vertexProperties.size() &&
+                    copy.faceProperties.size() == held.faceProperties.size(),
+                "there are more properties than were written");
+        requireSameProperties(held, copy, path == getPath("mesh.obj"));
+        requireSameLabels(held, copy);
     }
 }
 
@@ -164,9 +242,15 @@ bool refine(Mesh *mesh) {
         require(Tools::EvaluateLevels(*refiner, Tools::kRefinement, primvar, &status),
                 "a small mesh is not evaluated");
     };
-    evaluate({3, -1, &mesh->positions});
+    evaluate({FarExt::INTERPOLATE_VERTEX, 0, 3, {&mesh->positions}});
+    for (Tools::VertexProperty &property : mesh->vertexProperties) {
+        evaluate({FarExt::INTERPOLATE_VARYING, 0, 1, {&property.values}});
+    }
     for (std::size_t i = 0; i < mesh->channels.size(); ++i) {
-        evaluate({mesh->channels[i].width, int(i), &mesh->channels[i].values});
+        evaluate({FarExt::INTERPOLATE_FACE_VARYING,
+                  int(i),
+                  mesh->channels[i].width,
+                  {&mesh->channels[i].values}});
     }
     Tools::CopyFaces(refiner->GetLevel(1), mesh);
     mesh->tags = {};
@@ -194,9 +278,10 @@ void TestFile(std::string const &name, std::string const &content) {
         return;
     }
     require((numHoles == numFaces) == mesh.faceSizes.empty(), "holes are not left out");
+    auto const hasFiniteValues = [](auto const &part) { return areFinite(part.values); };
     bool const isFinite =
-        std::all_of(mesh.channels.begin(), mesh.channels.end(),
-                    [](FVarChannel const &channel) { return areFinite(channel.values); });
+        std::all_of(mesh.channels.begin(), mesh.channels.end(), hasFiniteValues) &&
+        std::all_of(mesh.vertexProperties.begin(), mesh.vertexProperties.end(), hasFiniteValues);
     // The largest floats may be rounded up to infinity.
     if (mesh.faceSizes.empty() || !isFinite || !areFinite(mesh.positions)) {
         requireRefused(mesh);

@@ -206,12 +206,14 @@ TEST_F(HexrefineChannel, OtherFormatsSayWhatTheyLeaveOut) {
         std::string const arguments = makeCross() + " -l 1 -o " + getPath(name);
         Result const result = run(arguments);
         EXPECT_EQ(result.status, 0) << result.error;
-        EXPECT_NE(result.out.find("channel uv: left out"), std::string::npos) << result.out;
+        EXPECT_NE(result.out.find("files have no place for it: channel uv\n"), std::string::npos)
+            << result.out;
         Mesh const mesh = ReadMesh(getPath(name));
         EXPECT_EQ(std::count(mesh.faceSizes.begin(), mesh.faceSizes.end(), 6), 12);
         Json const json = Json::parse(run(arguments + " --stats -").out);
         EXPECT_EQ(json["fvarChannels"].dump(), "[]");
         EXPECT_EQ(json["fvarChannelsLeftOut"].dump(), R"(["uv"])");
+        EXPECT_EQ(json["notWritten"].dump(), R"(["channel uv"])");
     }
     Result const result = run(makeCross() + " -l 1 --tags --stats " + getPath("stats"));
     EXPECT_NE(result.out.find("# channel uv: 14 values of 2 numbers"), std::string::npos);

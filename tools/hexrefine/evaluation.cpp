@@ -2,7 +2,6 @@
 #include "evaluation.h"
 
 #include "far_ext/primvarRefiner.h"
-#include "far_ext/stencilTableFactory.h"
 #include "osd_ext/ompEvaluator.h"
 #include "osd_ext/refinementEvaluator.h"
 
@@ -38,45 +37,50 @@ struct Value {
 };
 
 template <int WIDTH>
-void evaluateLevels(FarExt::TopologyRefiner const &refiner, Primvar const &primvar) {
+void evaluateLevels(FarExt::TopologyRefiner const &refiner, Primvar const &primvar,
+                    std::vector<float> *array) {
     static_assert(sizeof(Value<WIDTH>) == WIDTH * sizeof(float), "read as an array of floats");
     FarExt::PrimvarRefiner const primvarRefiner(refiner);
     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
         FarExt::TopologyLevel const &topology = refiner.GetLevel(level);
-        bool const isFaceVarying = primvar.fvarChannel >= 0;
+        bool const isFaceVarying = primvar.mode == FarExt::INTERPOLATE_FACE_VARYING;
         int const numValues = isFaceVarying ? topology.GetNumFVarValues(primvar.fvarChannel)
                                             : topology.GetNumVertices();
         std::vector<float> values(WIDTH * std::size_t(numValues));
-        auto const *const source = reinterpret_cast<Value<WIDTH> const *>(primvar.values->data());
+        auto const *const source = reinterpret_cast<Value<WIDTH> const *>(array->data());
         auto *const destination = reinterpret_cast<Value<WIDTH> *>(values.data());
         if (isFaceVarying) {
             primvarRefiner.InterpolateFaceVarying(level, source, destination, primvar.fvarChannel);
+        } else if (primvar.mode == FarExt::INTERPOLATE_VARYING) {
+            primvarRefiner.InterpolateVarying(level, source, destination);
         } else {
             primvarRefiner.Interpolate(level, source, destination);
         }
-        *primvar.values = std::move(values);
+        *array = std::move(values);
     }
 }
 
 bool evaluateRefinement(FarExt::TopologyRefiner const &refiner, Primvar const &primvar,
                         FarExt::Status *status) {
     OsdExt::RefinementEvaluator::Options options;
-    if (primvar.fvarChannel >= 0) {
-        options.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
-        options.fvarChannel = primvar.fvarChannel;
-    }
+    options.interpolationMode = primvar.mode;
+    options.fvarChannel = primvar.fvarChannel;
     auto const evaluator = OsdExt::RefinementEvaluator::Create(refiner, options, status);
     if (!evaluator) {
         return false;
     }
     int const level = evaluator->GetMaxLevel();
     int const width = primvar.width;
-    std::vector<float> values(std::size_t(width) * std::size_t(evaluator->GetNumElements(level)));
     Osd::BufferDescriptor const desc(0, width, width);
-    bool const isEvaluated =
-        evaluator->Evaluate(primvar.values->data(), desc, values.data(), desc, level, status);
-    *primvar.values = std::move(values);
-    return isEvaluated;
+    for (std::vector<float> *array : primvar.arrays) {
+        std::vector<float> values(std::size_t(width) *
+                                  std::size_t(evaluator->GetNumElements(level)));
+        if (!evaluator->Evaluate(array->data(), desc, values.data(), desc, level, status)) {
+            return false;
+        }
+        *array = std::move(values);
+    }
+    return true;
 }
 
 void setNormalized(double const (&vector)[3], float *result) {
@@ -97,10 +101,14 @@ bool EvaluateLevels(FarExt::TopologyRefiner const &refiner, std::string const &e
     if (evaluator == kRefinement) {
         return evaluateRefinement(refiner, primvar, status);
     }
-    if (primvar.width == 2) {
-        evaluateLevels<2>(refiner, primvar);
-    } else {
-        evaluateLevels<3>(refiner, primvar);
+    for (std::vector<float> *array : primvar.arrays) {
+        if (primvar.width == 1) {
+            evaluateLevels<1>(refiner, primvar, array);
+        } else if (primvar.width == 2) {
+            evaluateLevels<2>(refiner, primvar, array);
+        } else {
+            evaluateLevels<3>(refiner, primvar, array);
+        }
     }
     return true;
 }
@@ -110,23 +118,23 @@ std::unique_ptr<Far::StencilTable const> CreateStencils(FarExt::TopologyRefiner 
                                                         FarExt::Status *status) {
     FarExt::StencilTableFactory::Options options;
     options.generateIntermediateLevels = false;
-    if (primvar.fvarChannel >= 0) {
-        options.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
-        options.fvarChannel = primvar.fvarChannel;
-    }
+    options.interpolationMode = primvar.mode;
+    options.fvarChannel = primvar.fvarChannel;
     return FarExt::StencilTableFactory::Create(refiner, options, status);
 }
 
 void EvaluateStencils(Far::StencilTable const &table, std::string const &evaluator,
                       Primvar const &primvar) {
     int const width = primvar.width;
-    std::vector<float> values(std::size_t(width) * std::size_t(table.GetNumStencils()));
     Osd::BufferDescriptor const desc(0, width, width);
     auto evaluate = [&](auto const &evaluateRange) {
-        evaluateRange(primvar.values->data(), desc, values.data(), desc, table.GetSizes().data(),
-                      table.GetOffsets().data(), table.GetControlIndices().data(),
-                      table.GetWeights().data(), 0, table.GetNumStencils());
-        *primvar.values = std::move(values);
+        for (std::vector<float> *array : primvar.arrays) {
+            std::vector<float> values(std::size_t(width) * std::size_t(table.GetNumStencils()));
+            evaluateRange(array->data(), desc, values.data(), desc, table.GetSizes().data(),
+                          table.GetOffsets().data(), table.GetControlIndices().data(),
+                          table.GetWeights().data(), 0, table.GetNumStencils());
+            *array = std::move(values);
+        }
     };
     if (evaluator == kStencil) {
         evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });

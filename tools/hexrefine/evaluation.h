@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_TOOLS_EVALUATION_H
 
 #include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 
 #include <opensubdiv/far/stencilTable.h>
 
@@ -11,12 +12,13 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// Values of level 0, \p width floats each, that go with the vertices or with a face-varying
-/// channel.
+/// \brief Values of level 0: arrays of \p width floats for each vertex, or each value of a
+/// face-varying channel, that are interpolated alike.
 struct Primvar {
+    FarExt::StencilMode mode = FarExt::INTERPOLATE_VERTEX;
+    int fvarChannel = 0; ///< of INTERPOLATE_FACE_VARYING
     int width = 3;
-    int fvarChannel = -1; ///< -1: of the vertices
-    std::vector<float> *values = nullptr;
+    std::vector<std::vector<float> *> arrays{};
 };
 
 /// \brief The values of --evaluator.
@@ -32,7 +34,7 @@ inline constexpr char kPrimvar[] = "primvar";        ///< FarExt::PrimvarRefiner
 bool NeedsStencils(std::string const &evaluator);
 
 /// \brief Replaces \p primvar's values by those of the refiner's last level, without a table.
-/// \param evaluator  refinement, or primvar for a width of 2 or 3
+/// \param evaluator  refinement, or primvar for a width of 1 to 3
 /// \return           false with a status, as from RefinementEvaluator
 bool EvaluateLevels(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
                     Primvar const &primvar, FarExt::Status *status);

@@ -9,6 +9,7 @@
 #include "far_ext/topologyRefinerFactory.h"
 #include "far_ext/version.h"
 #include "levelMesh.h"
+#include "libraryPaths.h"
 #include "osd_ext/simdLevel.h"
 #include "picture.h"
 #include "progress.h"
@@ -17,7 +18,7 @@
 #include "tagText.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshCheck.h"
-#include "tools/mesh/meshFormat.h"
+#include "tools/mesh/meshContent.h"
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/meshText.h"
 #include "tools/mesh/meshWriter.h"
@@ -32,7 +33,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <new>
 
 namespace OpenSubdivHex::Tools {
@@ -146,10 +149,13 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                                    : "'" + word + "' is not a number of steps, 0 or more");
         })
         ->capture_default_str();
-    app.add_option("-o,--output", arguments->output,
-                   "File for the last level: .obj, .off or .ply (binary); none: nothing is "
-                   "written. Only .obj files get texture coordinates and normals: a hexagon that a "
-                   "seam crosses is written as two quads. Holes are left out")
+    app.add_option(
+           "-o,--output", arguments->output,
+           "File for the last level: .obj, .off or .ply (binary); none: nothing is "
+           "written. It keeps what its format holds, and the summary names the rest: .obj "
+           "texture coordinates, normals, colours, objects, groups and materials (a hexagon "
+           "that a seam crosses is written as two quads), .ply all numbers of vertices and "
+           "faces, .off colours. Holes are left out")
         ->check([](std::string const &path) {
             return FindMeshFormat(path) ? std::string()
                                         : "'" + path + "' is not a " + kMeshExtensions + " file";
@@ -194,8 +200,8 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->capture_default_str();
     app.add_flag("--limit", arguments->isLimit,
                  "Push the vertices to the limit surface and write its normals: to both sides of "
-                 "sharp creases in .obj files, their mean at each vertex in .ply files, none in "
-                 ".off files");
+                 "sharp creases in .obj files, their mean at each vertex in .ply and .off files; "
+                 "colours and other numbers of vertices stay as they are");
     app.add_option("--threads", arguments->numThreads,
                    "Number of threads, 1 to 1024; the result does not depend on it")
         ->check([](std::string const &word) {
@@ -326,9 +332,18 @@ void refine(Arguments const &arguments, Mesh const &mesh, FarExt::TopologyRefine
 
 /// The data of \p mesh.
 std::vector<Primvar> findPrimvars(Mesh *mesh) {
-    std::vector<Primvar> primvars = {{3, -1, &mesh->positions}};
+    std::vector<Primvar> primvars = {{FarExt::INTERPOLATE_VERTEX, 0, 3, {&mesh->positions}}};
+    if (!mesh->vertexProperties.empty()) {
+        primvars.push_back({FarExt::INTERPOLATE_VARYING, 0, 1, {}});
+        for (VertexProperty &property : mesh->vertexProperties) {
+            primvars.back().arrays.push_back(&property.values);
+        }
+    }
     for (FVarChannel &channel : mesh->channels) {
-        primvars.push_back({channel.width, int(&channel - mesh->channels.data()), &channel.values});
+        primvars.push_back({FarExt::INTERPOLATE_FACE_VARYING,
+                            int(&channel - mesh->channels.data()),
+                            channel.width,
+                            {&channel.values}});
     }
     return primvars;
 }
@@ -355,23 +370,58 @@ std::vector<float> evaluateLimit(Arguments const &arguments, FarExt::TopologyRef
     return normals;
 }
 
-/// The faces of the last level and, where the file takes them, the normals on each side.
+constexpr std::string_view kNormalNames[] = {"nx", "ny", "nz"};
+
+bool isNormal(VertexProperty const &property) {
+    return std::find(std::begin(kNormalNames), std::end(kNormalNames), property.name) !=
+           std::end(kNormalNames);
+}
+
+/// The faces of the last level and, where the file takes them, the normals on each side; else their
+/// mean at each vertex.
 void copyFacesWithNormals(Arguments const &arguments, FarExt::TopologyLevel const &level,
                           FarExt::LimitSides const &sides, std::vector<float> normals, Mesh *mesh) {
-    if (HasChannels(arguments.output)) {
+    if (FindMeshFormat(arguments.output) == MeshFormat::Obj) {
         mesh->channels.push_back({FVarKind::Normal, 3, std::move(normals), {}});
         CopyFaces(level, sides, mesh);
         return;
     }
     CopyFaces(level, mesh);
-    mesh->vertexNormals.assign(mesh->positions.size(), 0.0f);
+    std::vector<float> means(mesh->positions.size());
     for (int side = 0; side < sides.GetNumSides(); ++side) {
         for (std::size_t k = 0; k < 3; ++k) {
-            mesh->vertexNormals[3 * std::size_t(sides.GetVertex(side)) + k] +=
-                normals[3 * std::size_t(side) + k];
+            means[3 * std::size_t(sides.GetVertex(side)) + k] += normals[3 * std::size_t(side) + k];
         }
     }
-    Normalize(&mesh->vertexNormals);
+    Normalize(&means);
+    for (std::size_t k = 0; k < 3; ++k) {
+        VertexProperty property{std::string(kNormalNames[k]), NumberType::Float, {}};
+        for (std::size_t i = k; i < means.size(); i += 3) {
+            property.values.push_back(means[i]);
+        }
+        mesh->vertexProperties.push_back(std::move(property));
+    }
+}
+
+/// Makes the normals that vertices have as properties 1 long.
+void normalizeProperties(Mesh *mesh) {
+    std::vector<VertexProperty *> normal;
+    for (VertexProperty &property : mesh->vertexProperties) {
+        if (isNormal(property) && !IsInteger(property.type)) {
+            normal.push_back(&property);
+        }
+    }
+    if (normal.size() < 3) {
+        return;
+    }
+    std::vector<float> vectors(mesh->positions.size());
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+        vectors[i] = normal[i % 3]->values[i / 3];
+    }
+    Normalize(&vectors);
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+        normal[i % 3]->values[i / 3] = vectors[i];
+    }
 }
 
 /// Replaces the values of \p mesh by those of the last level, but for positions on the limit.
@@ -379,7 +429,8 @@ void evaluate(Arguments const &arguments, FarExt::TopologyRefiner const &refiner
               Progress &progress, Statistics *statistics) {
     auto &milliseconds = statistics->milliseconds;
     for (Primvar const &primvar : findPrimvars(mesh)) {
-        if (arguments.isLimit && primvar.fvarChannel < 0) {
+        bool const isPosition = primvar.mode == FarExt::INTERPOLATE_VERTEX;
+        if (arguments.isLimit && isPosition) {
             continue;
         }
         FarExt::Status status;
@@ -399,7 +450,7 @@ void evaluate(Arguments const &arguments, FarExt::TopologyRefiner const &refiner
             table = CreateStencils(refiner, primvar, &status);
             require(table != nullptr);
         });
-        if (primvar.fvarChannel < 0) {
+        if (isPosition) {
             statistics->stencils = table->GetNumStencils();
             statistics->weights = std::int64_t(table->GetWeights().size());
         }
@@ -411,6 +462,41 @@ void evaluate(Arguments const &arguments, FarExt::TopologyRefiner const &refiner
         if (channel.kind == FVarKind::Normal) {
             Normalize(&channel.values);
         }
+    }
+    normalizeProperties(mesh);
+}
+
+/// Removes from \p mesh what will not be written.
+void removeWhatIsNotWritten(Arguments const &arguments, Mesh *mesh, Statistics *statistics) {
+    if (arguments.output.empty()) {
+        return;
+    }
+    for (FVarChannel const &channel : mesh->channels) {
+        statistics->channelsLeftOut.push_back(GetName(channel.kind));
+    }
+    statistics->notWritten = RemoveWhatIsNotHeld(arguments.output, mesh);
+    if (!mesh->channels.empty()) {
+        statistics->channelsLeftOut.clear(); // a format holds all or none
+    }
+    statistics->outputFormat = std::filesystem::path(arguments.output).extension().string();
+    mesh->materialLibraries =
+        MoveLibraries(std::move(mesh->materialLibraries), arguments.input, arguments.output);
+}
+
+/// \brief Makes room for the normals of --limit: those of vertices are removed, and named.  Throws
+/// FileError if there are face-varying ones, which may have seams that the limit has not.
+void removeNormals(Arguments const &arguments, Mesh *mesh, Statistics *statistics) {
+    for (FVarChannel const &channel : mesh->channels) {
+        if (channel.kind == FVarKind::Normal) {
+            throw FileError(arguments.input,
+                            "has normals of its own, which those of --limit would replace");
+        }
+    }
+    std::vector<VertexProperty> &properties = mesh->vertexProperties;
+    auto const end = std::remove_if(properties.begin(), properties.end(), isNormal);
+    if (end != properties.end()) {
+        properties.erase(end, properties.end());
+        statistics->notRead.emplace_back("normals, those of --limit replace them");
     }
 }
 
@@ -462,19 +548,12 @@ void run(Arguments const &arguments) {
             }
             Sdc::Options const sdcOptions = chooseOptions(arguments, mesh.tags);
             tagText = arguments.printsTags ? FormatTags(mesh, sdcOptions) : "";
-            if (!arguments.output.empty() && !HasChannels(arguments.output)) {
-                for (FVarChannel const &channel : mesh.channels) {
-                    statistics.channelsLeftOut.push_back(GetChannelName(channel.kind));
-                }
-                mesh.channels.clear();
+            statistics.notRead = mesh.notRead;
+            removeWhatIsNotWritten(arguments, &mesh, &statistics);
+            if (arguments.isLimit) {
+                removeNormals(arguments, &mesh, &statistics);
             }
-            bool const hasNormals = std::any_of(
-                mesh.channels.begin(), mesh.channels.end(),
-                [](FVarChannel const &channel) { return channel.kind == FVarKind::Normal; });
-            if (arguments.isLimit && hasNormals) {
-                throw FileError(arguments.input,
-                                "has normals of its own, which those of --limit would replace");
-            }
+            statistics.attributes = CountAttributes(mesh);
             refiner = createRefiner(arguments, mesh, sdcOptions);
             statistics.boundary = kBoundaryNames[sdcOptions.GetVtxBoundaryInterpolation()];
             statistics.creasingMethod = kCreasingMethodNames[sdcOptions.GetCreasingMethod()];

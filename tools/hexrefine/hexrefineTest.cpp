@@ -48,11 +48,34 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
     for (auto const &item : json.items()) {
         keys.push_back(item.key());
     }
-    EXPECT_EQ(keys, (std::vector<std::string>{
-                        "scheme", "mask", "boundary", "evaluator", "input", "levels",
-                        "milliseconds", "stencils", "weights", "peakMemoryBytes", "creasingMethod",
-                        "creases", "corners", "holes", "fvarInterpolation", "fvarChannels",
-                        "fvarChannelsLeftOut", "triHexFirst", "coplanar"}));
+    EXPECT_EQ(keys, (std::vector<std::string>{"scheme",
+                                              "mask",
+                                              "boundary",
+                                              "evaluator",
+                                              "input",
+                                              "levels",
+                                              "milliseconds",
+                                              "stencils",
+                                              "weights",
+                                              "peakMemoryBytes",
+                                              "creasingMethod",
+                                              "creases",
+                                              "corners",
+                                              "holes",
+                                              "fvarInterpolation",
+                                              "fvarChannels",
+                                              "fvarChannelsLeftOut",
+                                              "triHexFirst",
+                                              "coplanar",
+                                              "vertexProperties",
+                                              "faceProperties",
+                                              "objects",
+                                              "groups",
+                                              "materials",
+                                              "smoothingGroups",
+                                              "materialLibraries",
+                                              "notRead",
+                                              "notWritten"}));
     EXPECT_EQ(json["scheme"], "hex");
     EXPECT_EQ(json["triHexFirst"], false);
     EXPECT_TRUE(json["coplanar"].is_null());
@@ -81,6 +104,10 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
     EXPECT_EQ(json["fvarInterpolation"], "all");
     EXPECT_EQ(json["fvarChannels"].dump(), "[]");
     EXPECT_EQ(json["fvarChannelsLeftOut"].dump(), "[]");
+    for (char const *key : {"vertexProperties", "faceProperties", "objects", "groups", "materials",
+                            "smoothingGroups", "materialLibraries", "notRead", "notWritten"}) {
+        EXPECT_EQ(json[key].dump(), "[]") << key;
+    }
     EXPECT_EQ(listFiles(), std::vector<std::string>{"cube.obj"});
 
     Json const byDefault = Json::parse(run(input + " --stats -").out);

@@ -22,7 +22,8 @@ class FaceCopier {
 public:
     // sides is null where no channel has their values.
     FaceCopier(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sides, Mesh *mesh)
-        : _level(level), _sides(sides), _mesh(*mesh) {}
+        : _level(level), _sides(sides), _mesh(*mesh),
+          _hasFaceData(!mesh->faceLabels.empty() || !mesh->faceProperties.empty()) {}
 
     void Run() {
         int const numRanges = (_level.GetNumFaces() + kRangeSize - 1) / kRangeSize;
@@ -36,6 +37,7 @@ public:
         std::partial_sum(places.begin(), places.end(), places.begin());
         _mesh.faceSizes.resize(places.back().face);
         _mesh.faceVertices.resize(places.back().corner);
+        _mesh.baseFaces.resize(_hasFaceData ? places.back().face : 0);
         for (FVarChannel &channel : _mesh.channels) {
             channel.faceValues.resize(places.back().corner);
         }
@@ -108,6 +110,7 @@ private:
         for (int corner = 0; corner < vertices.size() && _sides; ++corner) {
             copySide(face, corner, 0, place->corner + std::size_t(corner));
         }
+        copyBaseFace(face, *place);
         _mesh.faceSizes[place->face++] = vertices.size();
         place->corner += std::size_t(vertices.size());
     }
@@ -126,8 +129,15 @@ private:
         for (std::size_t i = 0; i < kNumHalfCorners && _sides; ++i) {
             copySide(face, corners[i], half, place->corner + i);
         }
+        copyBaseFace(face, *place);
         _mesh.faceSizes[place->face++] = int(kNumHalfCorners);
         place->corner += kNumHalfCorners;
+    }
+
+    void copyBaseFace(int face, Place const &place) {
+        if (_hasFaceData) {
+            _mesh.baseFaces[place.face] = _level.GetFaceBaseFace(face);
+        }
     }
 
     void copySide(int face, int corner, int half, std::size_t to) {
@@ -151,6 +161,7 @@ private:
     FarExt::TopologyLevel const &_level;
     FarExt::LimitSides const *_sides;
     Mesh &_mesh;
+    bool const _hasFaceData;
 };
 
 } // namespace

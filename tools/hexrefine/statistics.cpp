@@ -3,9 +3,11 @@
 
 #include "tagText.h"
 #include "tools/mesh/fileError.h"
+#include "tools/mesh/meshText.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
 
 #if defined(__unix__) || defined(__APPLE__)
@@ -49,9 +51,45 @@ std::vector<ChannelStatistics> CountChannels(FarExt::TopologyRefiner const &refi
         for (int i = 0; i < refiner.GetNumLevels(); ++i) {
             values.push_back(refiner.GetLevel(i).GetNumFVarValues(int(channels.size())));
         }
-        channels.push_back({GetChannelName(channel.kind), channel.width, values});
+        channels.push_back({GetName(channel.kind), channel.width, values});
     }
     return channels;
+}
+
+namespace {
+
+template <typename PROPERTY>
+std::vector<PropertyStatistics> countProperties(std::vector<PROPERTY> const &properties) {
+    std::vector<PropertyStatistics> result;
+    for (PROPERTY const &property : properties) {
+        result.push_back({property.name, GetName(property.type)});
+    }
+    return result;
+}
+
+/// Adds \p name unless it is empty or there already.
+void addName(std::string const &name, std::vector<std::string> *names) {
+    if (!name.empty() && std::find(names->begin(), names->end(), name) == names->end()) {
+        names->push_back(name);
+    }
+}
+
+} // namespace
+
+AttributeStatistics CountAttributes(Mesh const &mesh) {
+    AttributeStatistics attributes;
+    attributes.vertexProperties = countProperties(mesh.vertexProperties);
+    attributes.faceProperties = countProperties(mesh.faceProperties);
+    for (FaceLabel const &label : mesh.labels) {
+        addName(label.object, &attributes.objects);
+        for (std::string_view group : SplitWords(label.groups)) {
+            addName(std::string(group), &attributes.groups);
+        }
+        addName(label.material, &attributes.materials);
+        addName(label.smoothing, &attributes.smoothingGroups);
+    }
+    attributes.materialLibraries = mesh.materialLibraries;
+    return attributes;
 }
 
 std::int64_t GetPeakMemoryBytes() {
@@ -68,9 +106,21 @@ std::int64_t GetPeakMemoryBytes() {
 #endif
 }
 
-std::string FormatJson(Statistics const &statistics) {
-    using Json = nlohmann::ordered_json;
+namespace {
 
+using Json = nlohmann::ordered_json;
+
+Json makeJson(std::vector<PropertyStatistics> const &properties) {
+    Json json = Json::array();
+    for (PropertyStatistics const &property : properties) {
+        json.push_back({{"name", property.name}, {"type", property.type}});
+    }
+    return json;
+}
+
+} // namespace
+
+std::string FormatJson(Statistics const &statistics) {
     Json levels = Json::array();
     for (LevelStatistics const &level : statistics.levels) {
         Json facesBySize = Json::object();
@@ -96,6 +146,7 @@ std::string FormatJson(Statistics const &statistics) {
                     {"openGaps", statistics.coplanar->hasOpenGaps}};
     }
     auto const &milliseconds = statistics.milliseconds;
+    AttributeStatistics const &attributes = statistics.attributes;
     Json const json = {{"scheme", statistics.scheme},
                        {"mask", statistics.mask},
                        {"boundary", statistics.boundary},
@@ -121,7 +172,16 @@ std::string FormatJson(Statistics const &statistics) {
                        {"fvarChannels", channels},
                        {"fvarChannelsLeftOut", statistics.channelsLeftOut},
                        {"triHexFirst", statistics.isTriHexFirst},
-                       {"coplanar", coplanar}};
+                       {"coplanar", coplanar},
+                       {"vertexProperties", makeJson(attributes.vertexProperties)},
+                       {"faceProperties", makeJson(attributes.faceProperties)},
+                       {"objects", attributes.objects},
+                       {"groups", attributes.groups},
+                       {"materials", attributes.materials},
+                       {"smoothingGroups", attributes.smoothingGroups},
+                       {"materialLibraries", attributes.materialLibraries},
+                       {"notRead", statistics.notRead},
+                       {"notWritten", statistics.notWritten}};
     // A path need not be UTF-8, JSON must be.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -163,9 +223,52 @@ std::string formatTags(Statistics const &statistics) {
                         channel.name.c_str(), channel.values.front(), channel.values.back(),
                         statistics.fvarInterpolation.c_str());
     }
-    for (std::string const &channel : statistics.channelsLeftOut) {
-        lines += "channel " + channel + ": left out, only .obj files hold it\n";
+    return lines;
+}
+
+std::string join(std::vector<std::string> const &names) {
+    std::string text;
+    for (std::string const &name : names) {
+        text += (text.empty() ? "" : ", ") + EscapeControls(name);
     }
+    return text;
+}
+
+std::string join(std::vector<PropertyStatistics> const &properties) {
+    std::vector<std::string> names;
+    for (PropertyStatistics const &property : properties) {
+        names.push_back(property.type + " " + property.name);
+    }
+    return join(names);
+}
+
+/// "2 objects", or "1 object", unless there is none.
+void addCount(char const *name, std::vector<std::string> const &items,
+              std::vector<std::string> *counts) {
+    if (!items.empty()) {
+        counts->push_back(std::to_string(items.size()) + " " + name +
+                          (items.size() > 1 ? "s" : ""));
+    }
+}
+
+/// What is kept and what is not, a line for each kind.
+std::string formatAttributes(Statistics const &statistics) {
+    AttributeStatistics const &attributes = statistics.attributes;
+    std::string lines;
+    auto const addLine = [&](std::string const &begin, std::string const &text) {
+        lines += text.empty() ? "" : begin + text + "\n";
+    };
+    addLine("of vertices, interpolated linearly: ", join(attributes.vertexProperties));
+    addLine("of faces: ", join(attributes.faceProperties));
+    std::vector<std::string> counts;
+    addCount("object", attributes.objects, &counts);
+    addCount("group", attributes.groups, &counts);
+    addCount("material", attributes.materials, &counts);
+    addCount("smoothing group", attributes.smoothingGroups, &counts);
+    addLine("", join(counts));
+    addLine("not read: ", join(statistics.notRead));
+    addLine("not written, " + statistics.outputFormat + " files have no place for it: ",
+            join(statistics.notWritten));
     return lines;
 }
 
@@ -185,7 +288,7 @@ std::string FormatSummary(Statistics const &statistics) {
         }
         summary += "\n";
     }
-    summary += "\n" + formatTags(statistics);
+    summary += "\n" + formatTags(statistics) + formatAttributes(statistics);
     if (statistics.stencils > 0) {
         summary += format("%d stencils, %lld weights\n", statistics.stencils,
                           static_cast<long long>(statistics.weights));

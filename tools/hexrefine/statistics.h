@@ -30,6 +30,24 @@ struct ChannelStatistics {
     std::vector<int> values; ///< number of values by level
 };
 
+/// A number that vertices or faces have.
+struct PropertyStatistics {
+    std::string name;
+    std::string type; ///< as PLY has it
+};
+
+/// \brief What a mesh has beside positions, faces and channels.  Names differ, in the order of the
+/// file.
+struct AttributeStatistics {
+    std::vector<PropertyStatistics> vertexProperties;
+    std::vector<PropertyStatistics> faceProperties;
+    std::vector<std::string> objects;
+    std::vector<std::string> groups;
+    std::vector<std::string> materials;
+    std::vector<std::string> smoothingGroups;
+    std::vector<std::string> materialLibraries; ///< as the output names them
+};
+
 /// How coplanar faces were refined.
 struct CoplanarStatistics {
     double tolerance; ///< in degrees
@@ -66,6 +84,10 @@ struct Statistics {
     std::vector<int> holes;                   ///< number of faces that are holes by level
     std::vector<ChannelStatistics> channels;  ///< that were refined
     std::vector<std::string> channelsLeftOut; ///< that the output's format has no place for
+    AttributeStatistics attributes;           ///< that were kept
+    std::vector<std::string> notRead;         ///< what else the input has
+    std::vector<std::string> notWritten;      ///< what the output's format has no place for
+    std::string outputFormat;                 ///< its extension
 };
 
 std::vector<LevelStatistics> CountLevels(FarExt::TopologyRefiner const &refiner);
@@ -75,6 +97,8 @@ std::vector<int> CountHoles(FarExt::TopologyRefiner const &refiner);
 /// The channels of \p refiner, which are those of \p mesh.
 std::vector<ChannelStatistics> CountChannels(FarExt::TopologyRefiner const &refiner,
                                              Mesh const &mesh);
+
+AttributeStatistics CountAttributes(Mesh const &mesh);
 
 /// The most memory that this process has had so far; 0 where the system does not tell.
 std::int64_t GetPeakMemoryBytes();

@@ -34,7 +34,7 @@ std::string FormatTags(Mesh const &mesh, OpenSubdiv::Sdc::Options options) {
                        kCreasingMethodNames[creasingMethod] + ", face-varying " +
                        kFVarInterpolationNames[fvarInterpolation] + "\n";
     for (FVarChannel const &channel : mesh.channels) {
-        text += "# channel " + GetChannelName(channel.kind) + ": " +
+        text += "# channel " + GetName(channel.kind) + ": " +
                 std::to_string(channel.GetNumValues()) + " values of " +
                 std::to_string(channel.width) + " numbers\n";
     }
@@ -59,7 +59,5 @@ std::string FormatTags(Mesh const &mesh, OpenSubdiv::Sdc::Options options) {
     }
     return text;
 }
-
-std::string GetChannelName(FVarKind kind) { return kind == FVarKind::Uv ? "uv" : "normal"; }
 
 } // namespace OpenSubdivHex::Tools

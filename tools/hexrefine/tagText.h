@@ -12,9 +12,6 @@ namespace OpenSubdivHex::Tools {
 /// before them, comments that count the tags and name the channels.
 std::string FormatTags(Mesh const &mesh, OpenSubdiv::Sdc::Options options);
 
-/// "uv" or "normal".
-std::string GetChannelName(FVarKind kind);
-
 } // namespace OpenSubdivHex::Tools
 
 #endif

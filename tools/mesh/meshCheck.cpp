@@ -21,7 +21,9 @@ void CheckFinite(Mesh const &mesh, std::string const &path, std::string const &p
         }
     };
     check("vertex", "coordinate", mesh.positions, 3);
-    check("vertex", "normal", mesh.vertexNormals, 3);
+    for (VertexProperty const &property : mesh.vertexProperties) {
+        check("vertex", property.name.c_str(), property.values, 1);
+    }
     for (FVarChannel const &channel : mesh.channels) {
         bool const isUv = channel.kind == FVarKind::Uv;
         check(isUv ? "texture coordinate" : "normal", "part", channel.values, channel.width);

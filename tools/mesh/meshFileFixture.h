@@ -39,6 +39,14 @@ protected:
     }
 };
 
+inline bool operator==(VertexProperty const &a, VertexProperty const &b) {
+    return a.name == b.name && a.type == b.type && a.values == b.values;
+}
+inline bool operator==(FaceProperty const &a, FaceProperty const &b) {
+    return a.name == b.name && a.type == b.type && a.values == b.values;
+}
+
+/// Of meshes whose faces are their own base faces.
 inline void expectEqual(Mesh const &a, Mesh const &b) {
     EXPECT_EQ(a.faceSizes, b.faceSizes);
     EXPECT_EQ(a.faceVertices, b.faceVertices);
@@ -53,6 +61,11 @@ inline void expectEqual(Mesh const &a, Mesh const &b) {
         EXPECT_EQ(a.channels[i].values, b.channels[i].values);
         EXPECT_EQ(a.channels[i].faceValues, b.channels[i].faceValues);
     }
+    EXPECT_TRUE(a.vertexProperties == b.vertexProperties);
+    EXPECT_TRUE(a.faceProperties == b.faceProperties);
+    EXPECT_TRUE(a.labels == b.labels);
+    EXPECT_EQ(a.faceLabels, b.faceLabels);
+    EXPECT_EQ(a.materialLibraries, b.materialLibraries);
 }
 
 } // namespace OpenSubdivHex::Tools

@@ -240,7 +240,6 @@ TEST_F(MeshFile, ReadsTextPly) {
 TEST_F(MeshFile, ReadsBinaryPly) {
     BinaryPly ply = makeBinaryPly();
     expectFaces("a.ply", ply.Print(), 3, {3}, {0, 1, 2});
-    // OpenMesh on its own begins one byte too late after a comment at the end of the header.
     ply.headerEnd = "comment the end\n";
     expectFaces("a.ply", ply.Print(), 3, {3}, {0, 1, 2});
     EXPECT_EQ(ReadMesh(getPath("a.ply")).positions, kTriangle);
@@ -273,23 +272,42 @@ TEST_F(MeshFile, RefusesBadTextPly) {
     expectRefused("a.ply", begin + "2 0 1\n3 0 1 2\n", "line 14: face 0 has 2 corners");
     expectRefused("a.ply", begin + "4 0 1 2\n3 0 1 2\n", "line 14: the line of face 0 ends");
     expectRefused("a.ply", begin + "3 0 1 2 3\n3 0 1 2\n", "line 14: the line of face 0 has too");
-    expectRefused("a.ply", begin + "3 0 1 2\n", "4 of 4 vertices and 1 of 2 faces");
-    expectRefused("a.ply", begin + "3 0 1 2\n3 0 1 2\n3 0 1 2\n", "more content");
-    expectRefused("a.ply", begin + "3 0 1 ?\n3 0 1 2\n", "line 14: a number is expected");
-    expectRefused("a.ply", kTextPlyHeader + "0 0 nan\n", "line 10: a number is expected");
+    expectRefused("a.ply", begin + "3 0 1 2\n", "it has 1 of 2 items 'face'");
+    expectRefused("a.ply", begin + "3 0 1 2\n3 0 1 2\n3 0 1 2\n",
+                  "more content behind its 2 items 'face'");
+    expectRefused("a.ply", begin + "3 0 1 ?\n3 0 1 2\n",
+                  "line 14: '?' is not a number of type int");
+    expectRefused("a.ply", begin + "3 0 1 2.\n3 0 1 2\n", "line 14: '2.' is not a number of type");
+    expectRefused("a.ply", begin + "256 0 1 2\n3 0 1 2\n",
+                  "line 14: '256' is not a number of type uchar");
+    expectRefused("a.ply", kTextPlyHeader + "0 0 nan\n",
+                  "line 10: 'nan' is not a finite number of type float");
     expectRefused("a.ply", kTextPlyHeader + "0 0\n" + kFourVertices, "line 10: the line of vertex");
-    expectRefused("a.ply", kTextPlyHeader + "0 1.5.5\n" + kFourVertices, "line 10: the line of");
-    expectRefused("a.ply", kTextPlyHeader, "0 of 4 vertices and 0 of 2 faces");
+    expectRefused("a.ply", kTextPlyHeader + "0 1.5.5 0\n" + kFourVertices, "line 10: '1.5.5'");
+    expectRefused("a.ply", kTextPlyHeader, "it has 0 of 4 items 'vertex'");
     expectRefused("a.ply", "ply\nformat ascii 1.0\nelement vertex 4\n", "the header has no end");
     expectRefused("a.ply", "ply\nformat text 1.0\nend_header\n", "format 'text 1.0'");
     expectRefused("a.ply", "ply\nformat ascii 1.0\nend_header\n", "has no faces");
     expectRefused("a.ply", "ply\nformat ascii 1.0\nelement vertex -1\n", "line 3: '-1'");
-    expectRefused("a.ply", "ply\nformat ascii 1.0\nelement face 1\n", "line 3: element 'face'");
+    expectRefused("a.ply", "ply\nformat ascii 1.0\nelement face 1\nelement face 1\n",
+                  "line 4: there is an element 'face' already");
+    expectRefused("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n",
+                  "line 4: 'half' is not a type of numbers");
+    expectRefused("a.ply",
+                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty int x\n",
+                  "line 5: element 'vertex' has a property 'x' already");
+    expectRefused("a.ply", "ply\nformat ascii 1.0\nproperty float x\n",
+                  "line 3: a property needs an element");
+    expectRefused("a.ply", "ply\nelement vertex 1\nend_header\n", "lacks the format");
     expectRefused(
         "a.ply",
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0\n3 0 0 0",
-        "lacks");
+        "lacks vertices with x, y and z");
+    expectRefused("a.ply",
+                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                  "property float z\nelement face 1\nproperty int flags\nend_header\n0 0 0\n3\n",
+                  "lacks faces with vertex_indices");
     expectRefused("a.ply", "garbage\n", "does not begin with 'ply'");
 }
 
@@ -298,7 +316,7 @@ TEST_F(MeshFile, RefusesBadBinaryPly) {
     for (std::size_t size = 1; size < good.size(); ++size) {
         EXPECT_THROW(ReadMesh(makeFile("a.ply", good.substr(0, size))), FileError) << size;
     }
-    expectRefused("a.ply", good + "x", "more content behind its 1 faces");
+    expectRefused("a.ply", good + "x", "more content behind its 1 items 'face'");
 
     BinaryPly ply = makeBinaryPly();
     ply.vertices = bytes<float>({0, 0, 0, 1, 0, std::nanf(""), 0, 1, 0});
@@ -315,21 +333,20 @@ TEST_F(MeshFile, RefusesBadBinaryPly) {
     ply.faces = bytes<unsigned char>({2}) + bytes<int>({0, 1});
     expectRefused("a.ply", ply.Print(), "face 0 has 2 corners");
     ply.faces = bytes<unsigned char>({4}) + bytes<int>({0, 1, 2});
-    expectRefused("a.ply", ply.Print(), "3 of 3 vertices and 0 of 1 faces");
+    expectRefused("a.ply", ply.Print(), "ends too early, in face 0");
     ply.countType = "int";
-    ply.faces = bytes<int>({-1, 0, 1, 2});
-    expectRefused("a.ply", ply.Print(), "ends too early");
-
-    // Headers that OpenMesh would lose its place with.
-    ply = makeBinaryPly();
-    ply.headerEnd = "property list uchar float texcoord\n";
-    expectRefused("a.ply", ply.Print(), "line 9: list property 'texcoord'");
-    ply = makeBinaryPly();
-    ply.coordinateTypes = "int";
-    expectRefused("a.ply", ply.Print(), "line 4: coordinates of type int");
+    for (int count : {-1, 1 << 20}) {
+        ply.faces = bytes<int>({count, 0, 1, 2});
+        expectRefused("a.ply", ply.Print(),
+                      "face 0 has a list 'vertex_indices' of " + std::to_string(count) +
+                          " numbers");
+    }
     ply = makeBinaryPly();
     ply.indexType = "float";
-    expectRefused("a.ply", ply.Print(), "line 8: the vertices of faces need integer types");
+    expectRefused("a.ply", ply.Print(), "the vertices of faces need an integer type, not float");
+    ply = makeBinaryPly();
+    ply.countType = "float";
+    expectRefused("a.ply", ply.Print(), "line 8: the lengths of lists need an integer type");
 }
 
 TEST_F(MeshFile, RefusesWhatIsNoMeshFile) {
@@ -362,9 +379,9 @@ TEST_F(MeshFile, WritesNothingThatItWouldNotRead) {
         mesh.positions[7] = number;
         expectRefusedMesh(mesh, "vertex 2 has a coordinate that is not a finite number");
         mesh = MakeCube();
-        mesh.vertexNormals.assign(mesh.positions.size(), 1);
-        mesh.vertexNormals.back() = number;
-        expectRefusedMesh(mesh, "vertex 7 has a normal that is not a finite number");
+        mesh.vertexProperties = {{"quality", NumberType::Double, std::vector<float>(8, 1)}};
+        mesh.vertexProperties[0].values.back() = number;
+        expectRefusedMesh(mesh, "vertex 7 has a quality that is not a finite number");
         mesh = MakeCube();
         mesh.channels.push_back({FVarKind::Uv, 2, {0, 0, 1, number}, {}});
         mesh.channels[0].faceValues.assign(mesh.faceVertices.size(), 1);

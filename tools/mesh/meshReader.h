@@ -8,19 +8,21 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// \brief Reads the positions and faces of an OBJ, OFF or PLY file (PLY in text or binary), and of
-/// OBJ the texture coordinates, the normals and the tag lines of OpenSubdiv's shape files.
+/// \brief Reads an OBJ, OFF or PLY file (PLY in text or binary): positions and faces; of OBJ the
+/// texture coordinates, the normals, colours and w of vertices, the labels of faces, and the tag
+/// lines of OpenSubdiv's shape files; of OFF normals, texture coordinates and colours; of PLY all
+/// numbers that vertices and faces have.
 ///
 /// Faces may have any number of corners.  Nothing is dropped, split, merged or repaired: vertices
 /// and faces are those of the file, in its order, or the file is refused.  Texture coordinates
 /// become a channel when faces name them, and so do normals; either all corners of all faces have
-/// one or none, else the file is refused.  Other attributes (colours; in OFF and PLY all) are
-/// skipped.  Whether the faces make a surface is not looked at; that is TopologyRefinerFactory's
-/// task.
+/// one or none, else the file is refused.  What else the file has is named in Mesh::notRead.
+/// Whether the faces make a surface is not looked at; that is TopologyRefinerFactory's task.
 ///
 /// Throws FileError, which names line, vertex or face, for anything it cannot read as it stands:
-/// coordinates that are no finite number, indices out of range, faces of fewer than three corners,
-/// less or more content than announced, statements and tags it does not know, no face at all.
+/// numbers that are not finite or not of their type, indices out of range, faces of fewer than
+/// three corners, less or more content than announced, statements and tags it does not know, no
+/// face at all.
 Mesh ReadMesh(std::string const &path);
 
 namespace internal {

@@ -3,7 +3,7 @@
 
 #include "fileError.h"
 #include "meshCheck.h"
-#include "meshFormat.h"
+#include "meshContent.h"
 #include "outputFile.h"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
+#include <utility>
 
 namespace OpenSubdivHex::Tools {
 
@@ -108,11 +109,12 @@ void writeValues(std::string_view keyword, std::vector<float> const &values, int
 
 /// \brief Prints all faces in parallel.
 ///
-/// \param maxFace,maxCorner  most characters for a face, beside those for each of its corners
-/// \param printFace          prints a face: its size, its first corner, and where to
-template <typename PRINT_FACE>
-void writeFaces(Mesh const &mesh, std::size_t maxFace, std::size_t maxCorner, PRINT_FACE printFace,
-                OutputFile &file) {
+/// \param getMaxFace  most characters for a face, beside those for each of its corners
+/// \param maxCorner   most characters for a corner
+/// \param printFace   prints a face: its index, its first corner, and where to
+template <typename GET_MAX_FACE, typename PRINT_FACE>
+void writeFaces(Mesh const &mesh, GET_MAX_FACE getMaxFace, std::size_t maxCorner,
+                PRINT_FACE printFace, OutputFile &file) {
     std::size_t const numFaces = mesh.faceSizes.size();
     std::vector<std::size_t> firstCorners; // of ranges, and the number of corners
     std::size_t corner = 0;
@@ -125,23 +127,148 @@ void writeFaces(Mesh const &mesh, std::size_t maxFace, std::size_t maxCorner, PR
     firstCorners.push_back(corner);
     auto const getMaxSize = [&](std::size_t begin, std::size_t end) {
         std::size_t const range = begin / kRangeSize;
-        return (end - begin) * maxFace +
-               (firstCorners[range + 1] - firstCorners[range]) * maxCorner;
+        std::size_t size = (firstCorners[range + 1] - firstCorners[range]) * maxCorner;
+        for (std::size_t face = begin; face < end; ++face) {
+            size += getMaxFace(int(face));
+        }
+        return size;
     };
     auto const print = [&](std::size_t begin, std::size_t end, char *out) {
         std::size_t firstCorner = firstCorners[begin / kRangeSize];
         for (std::size_t face = begin; face < end; ++face) {
-            int const size = mesh.faceSizes[face];
-            out = printFace(size, firstCorner, out);
-            firstCorner += std::size_t(size);
+            out = printFace(int(face), firstCorner, out);
+            firstCorner += std::size_t(mesh.faceSizes[face]);
         }
         return out;
     };
     writeItems(numFaces, getMaxSize, print, file);
 }
 
+/// Numbers that are written beside the position of a vertex.
+struct Column {
+    enum class Style { Plain, Integer, WithPoint };
+
+    float const *values;
+    float divisor = 1;
+    Style style = Style::Plain;
+};
+
+/// With a point where OFF would take the number for an integer.
+char *printWithPoint(char *out, float value) {
+    char *const end = printNumber(out, value);
+    bool const isInteger =
+        std::all_of(out, end, [](char c) { return c == '-' || (c >= '0' && c <= '9'); });
+    return isInteger ? printWord(end, ".0") : end;
+}
+
+char *printColumn(char *out, Column const &column, std::size_t i) {
+    switch (column.style) {
+    case Column::Style::Integer:
+        return printNumber(out, int(RoundTo(NumberType::UChar, double(column.values[i]))));
+    case Column::Style::WithPoint:
+        return printWithPoint(out, column.values[i]);
+    case Column::Style::Plain:
+        break;
+    }
+    return printNumber(out, column.values[i] / column.divisor);
+}
+
+/// Writes a line for each vertex, "v x y z\n", and the numbers of \p columns behind z.
+void writeVertices(std::string_view keyword, Mesh const &mesh, std::vector<Column> const &columns,
+                   OutputFile &file) {
+    if (columns.empty()) {
+        writeValues(keyword, mesh.positions, 3, file);
+        return;
+    }
+    auto const print = [&](std::size_t begin, std::size_t end, char *out) {
+        for (std::size_t i = begin; i < end; ++i) {
+            out = printWord(out, keyword);
+            for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
+                out = printNumber(out, mesh.positions[k]);
+                *out++ = ' ';
+            }
+            for (Column const &column : columns) {
+                out = printColumn(out, column, i);
+                *out++ = ' ';
+            }
+            out[-1] = '\n';
+        }
+        return out;
+    };
+    // Two more than a number: ".0" may come behind it.
+    std::size_t const maxSize = keyword.size() + (3 + columns.size()) * (kMaxNumber + 2);
+    writeItems(
+        mesh.positions.size() / 3,
+        [=](std::size_t begin, std::size_t end) { return (end - begin) * maxSize; }, print, file);
+}
+
+/// The statements of OBJ that change the label of a face.
+class LabelPrinter {
+public:
+    explicit LabelPrinter(Mesh const &mesh) : _mesh(mesh) {}
+
+    std::size_t GetMaxSize(int face) const {
+        std::size_t size = 0;
+        forEachChange(face, [&](std::string_view keyword, std::string const &words) {
+            size += keyword.size() + words.size() + 3;
+        });
+        return size;
+    }
+
+    char *Print(int face, char *out) const {
+        forEachChange(face, [&](std::string_view keyword, std::string const &words) {
+            out = printWord(out, keyword);
+            if (!words.empty()) {
+                *out++ = ' ';
+                out = printWord(out, words);
+                // At the end of a line it would join the next one.
+                out = words.back() == '\\' ? printWord(out, " ") : out;
+            }
+            *out++ = '\n';
+        });
+        return out;
+    }
+
+private:
+    template <typename FUNCTION>
+    void forEachChange(int face, FUNCTION function) const {
+        if (_mesh.faceLabels.empty()) {
+            return;
+        }
+        int const index = getIndex(face);
+        if (face > 0 && getIndex(face - 1) == index) {
+            return;
+        }
+        FaceLabel const none{};
+        FaceLabel const &before = face > 0 ? _mesh.labels[std::size_t(getIndex(face - 1))] : none;
+        FaceLabel const &label = _mesh.labels[std::size_t(index)];
+        auto const compare = [&](char const *keyword, std::string FaceLabel::*words) {
+            if (label.*words != before.*words) {
+                function(keyword, label.*words);
+            }
+        };
+        compare("o", &FaceLabel::object);
+        compare("g", &FaceLabel::groups);
+        compare("usemtl", &FaceLabel::material);
+        compare("s", &FaceLabel::smoothing);
+    }
+
+    int getIndex(int face) const { return _mesh.faceLabels[std::size_t(_mesh.GetBaseFace(face))]; }
+
+    Mesh const &_mesh;
+};
+
 void writeObj(Mesh const &mesh, OutputFile &file) {
-    writeValues("v ", mesh.positions, 3, file);
+    for (std::string const &library : mesh.materialLibraries) {
+        file.Write("mtllib " + library + (library.back() == '\\' ? " \n" : "\n"));
+    }
+    std::vector<Column> columns;
+    for (std::size_t i : FindContent(MeshFormat::Obj, mesh).vertexProperties) {
+        VertexProperty const &property = mesh.vertexProperties[i];
+        columns.push_back({property.values.data(),
+                           IsInteger(property.type) ? float(GetMax(property.type)) : 1.0f});
+    }
+    writeVertices("v ", mesh, columns, file);
     int const *uvs = nullptr;
     int const *normals = nullptr;
     for (FVarChannel const &channel : mesh.channels) {
@@ -149,13 +276,16 @@ void writeObj(Mesh const &mesh, OutputFile &file) {
         writeValues(isUv ? "vt " : "vn ", channel.values, channel.width, file);
         (isUv ? uvs : normals) = channel.faceValues.data();
     }
+    LabelPrinter const labels(mesh);
     // Indices count from 1: "f v ...", "f v/t ...", "f v//n ..." or "f v/t/n ...".
     auto const printIndex = [](char *out, int index) {
         return printNumber(out, std::int64_t(index) + 1);
     };
-    auto const printFace = [&](int size, std::size_t firstCorner, char *out) {
+    auto const printFace = [&](int face, std::size_t firstCorner, char *out) {
+        out = labels.Print(face, out);
         *out++ = 'f';
-        for (std::size_t i = firstCorner; i < firstCorner + std::size_t(size); ++i) {
+        std::size_t const size = std::size_t(mesh.faceSizes[std::size_t(face)]);
+        for (std::size_t i = firstCorner; i < firstCorner + size; ++i) {
             *out++ = ' ';
             out = printIndex(out, mesh.faceVertices[i]);
             if (uvs || normals) {
@@ -172,35 +302,93 @@ void writeObj(Mesh const &mesh, OutputFile &file) {
         *out++ = '\n';
         return out;
     };
-    writeFaces(mesh, 2, 3 * kMaxNumber, printFace, file);
+    writeFaces(
+        mesh, [&](int face) { return 2 + labels.GetMaxSize(face); }, 3 * kMaxNumber, printFace,
+        file);
+}
+
+/// The words of OFF's header for what vertices have, in its order.
+std::string makeOffWord(Mesh const &mesh, MeshContent const &content) {
+    auto const has = [&](char const *name) {
+        return std::any_of(content.vertexProperties.begin(), content.vertexProperties.end(),
+                           [&](std::size_t i) { return mesh.vertexProperties[i].name == name; });
+    };
+    return std::string(has("s") ? "ST" : "") + (has("red") ? "C" : "") + (has("nx") ? "N" : "") +
+           "OFF\n";
 }
 
 void writeOff(Mesh const &mesh, OutputFile &file) {
-    file.Write("OFF\n" + std::to_string(mesh.GetNumVertices()) + " " +
+    MeshContent const content = FindContent(MeshFormat::Off, mesh);
+    file.Write(makeOffWord(mesh, content) + std::to_string(mesh.GetNumVertices()) + " " +
                std::to_string(mesh.GetNumFaces()) + " 0\n");
-    writeValues("", mesh.positions, 3, file);
-    auto const printFace = [&](int size, std::size_t firstCorner, char *out) {
+    std::vector<Column> columns;
+    for (std::size_t i : content.vertexProperties) {
+        VertexProperty const &property = mesh.vertexProperties[i];
+        columns.push_back(
+            {property.values.data(), 1,
+             IsInteger(property.type) ? Column::Style::Integer : Column::Style::WithPoint});
+    }
+    writeVertices("", mesh, columns, file);
+    auto const printFace = [&](int face, std::size_t firstCorner, char *out) {
+        int const size = mesh.faceSizes[std::size_t(face)];
         out = printNumber(out, size);
         for (std::size_t i = firstCorner; i < firstCorner + std::size_t(size); ++i) {
             *out++ = ' ';
             out = printNumber(out, mesh.faceVertices[i]);
         }
+        for (std::size_t i : content.faceProperties) {
+            FaceProperty const &property = mesh.faceProperties[i];
+            double const value = property.values[std::size_t(mesh.GetBaseFace(face))];
+            *out++ = ' ';
+            out = IsInteger(property.type) ? printNumber(out, int(RoundTo(property.type, value)))
+                                           : printWithPoint(out, float(value));
+        }
         *out++ = '\n';
         return out;
     };
-    writeFaces(mesh, kMaxNumber + 1, kMaxNumber, printFace, file);
+    std::size_t const maxFace = 1 + (1 + content.faceProperties.size()) * (kMaxNumber + 2);
+    writeFaces(
+        mesh, [=](int) { return maxFace; }, kMaxNumber, printFace, file);
 }
 
-/// Appends the 4 bytes of \p value, lowest first, whatever the machine's order.
+/// Appends the bytes of \p value, lowest first, whatever the machine's order.
 template <typename T>
 char *putBytes(char *out, T value) {
-    static_assert(sizeof(T) == 4);
-    std::uint32_t bits = 0;
+    using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+    static_assert(sizeof(T) == sizeof(Bits));
+    Bits bits = 0;
     std::memcpy(&bits, &value, sizeof bits);
-    for (int i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < sizeof bits; ++i) {
         *out++ = char(bits >> (8 * i) & 0xff);
     }
     return out;
+}
+
+/// Appends a number of a property, rounded to its type.
+char *putNumber(char *out, NumberType type, double value) {
+    if (type == NumberType::Float) {
+        return putBytes(out, float(value));
+    }
+    if (type == NumberType::Double) {
+        return putBytes(out, value);
+    }
+    auto const integer = std::int64_t(RoundTo(type, value));
+    for (std::size_t i = 0; i < GetSize(type); ++i) {
+        *out++ = char(integer >> (8 * i) & 0xff);
+    }
+    return out;
+}
+
+/// The lines of the header for \p properties, and the bytes that an item has of them.
+template <typename PROPERTY>
+std::pair<std::string, std::size_t> describeProperties(std::vector<PROPERTY> const &properties) {
+    std::pair<std::string, std::size_t> result;
+    for (PROPERTY const &property : properties) {
+        result.first +=
+            std::string("property ") + GetName(property.type) + " " + property.name + "\n";
+        result.second += GetSize(property.type);
+    }
+    return result;
 }
 
 void writePly(Mesh const &mesh, OutputFile &file) {
@@ -209,30 +397,32 @@ void writePly(Mesh const &mesh, OutputFile &file) {
                             ? 0
                             : *std::max_element(mesh.faceSizes.begin(), mesh.faceSizes.end());
     bool const hasShortFaces = maxSize < 256;
-    bool const hasNormals = !mesh.vertexNormals.empty();
+    auto const [vertexLines, vertexBytes] = describeProperties(mesh.vertexProperties);
+    auto const [faceLines, faceBytes] = describeProperties(mesh.faceProperties);
     file.Write("ply\nformat binary_little_endian 1.0\nelement vertex " +
                std::to_string(mesh.GetNumVertices()) +
-               "\nproperty float x\nproperty float y\nproperty float z\n" +
-               (hasNormals ? "property float nx\nproperty float ny\nproperty float nz\n" : "") +
+               "\nproperty float x\nproperty float y\nproperty float z\n" + vertexLines +
                "element face " + std::to_string(mesh.GetNumFaces()) + "\nproperty list " +
-               (hasShortFaces ? "uchar" : "int") + " int vertex_indices\nend_header\n");
-    std::size_t const numFloats = hasNormals ? 6 : 3; // of a vertex
+               (hasShortFaces ? "uchar" : "int") + " int vertex_indices\n" + faceLines +
+               "end_header\n");
     auto const printVertices = [&](std::size_t begin, std::size_t end, char *out) {
         for (std::size_t i = begin; i < end; ++i) {
             for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
                 out = putBytes(out, mesh.positions[k]);
             }
-            for (std::size_t k = 3 * i; hasNormals && k < 3 * i + 3; ++k) {
-                out = putBytes(out, mesh.vertexNormals[k]);
+            for (VertexProperty const &property : mesh.vertexProperties) {
+                out = putNumber(out, property.type, double(property.values[i]));
             }
         }
         return out;
     };
+    std::size_t const numBytes = 12 + vertexBytes; // of a vertex
     writeItems(
         std::size_t(mesh.GetNumVertices()),
-        [numFloats](std::size_t begin, std::size_t end) { return 4 * numFloats * (end - begin); },
+        [numBytes](std::size_t begin, std::size_t end) { return numBytes * (end - begin); },
         printVertices, file);
-    auto const printFace = [&](int size, std::size_t firstCorner, char *out) {
+    auto const printFace = [&](int face, std::size_t firstCorner, char *out) {
+        int const size = mesh.faceSizes[std::size_t(face)];
         if (hasShortFaces) {
             *out++ = char(size);
         } else {
@@ -241,14 +431,18 @@ void writePly(Mesh const &mesh, OutputFile &file) {
         for (std::size_t i = firstCorner; i < firstCorner + std::size_t(size); ++i) {
             out = putBytes(out, mesh.faceVertices[i]);
         }
+        for (FaceProperty const &property : mesh.faceProperties) {
+            out =
+                putNumber(out, property.type, property.values[std::size_t(mesh.GetBaseFace(face))]);
+        }
         return out;
     };
-    writeFaces(mesh, 4, 4, printFace, file);
+    std::size_t const maxFace = 4 + faceBytes;
+    writeFaces(
+        mesh, [=](int) { return maxFace; }, 4, printFace, file);
 }
 
 } // namespace
-
-bool HasChannels(std::string const &path) { return FindMeshFormat(path) == MeshFormat::Obj; }
 
 void WriteMesh(Mesh const &mesh, std::string const &path) {
     std::optional<MeshFormat> const format = FindMeshFormat(path);

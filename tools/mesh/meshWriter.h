@@ -8,14 +8,13 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// Whether files of the format that the extension of \p path names hold face-varying channels.
-bool HasChannels(std::string const &path);
-
 /// \brief Writes \p mesh in the format that the extension of \p path names: OBJ and OFF as text,
 /// PLY in little-endian binary.
 ///
-/// OBJ gets the channels (one of each kind at most), OFF and PLY positions and faces alone; tags
-/// are written to none.
+/// What FindContent() says is written (channels: one of each kind at most), in OBJ files with the
+/// statements of a label where it differs from that of the face before; tags are written to none.
+/// Numbers of integer types are rounded to the nearest that the type has.  OBJ has colours of
+/// integers divided by the largest that the type has.
 ///
 /// Text has as many digits as it takes to read the same floats again.  The file appears whole or
 /// not at all.  Throws FileError, also for what CheckMesh refuses: ReadMesh would do so.

@@ -2,6 +2,7 @@
 #include "fileError.h"
 #include "meshReader.h"
 #include "meshText.h"
+#include "objLabels.h"
 #include "objTags.h"
 
 #include <tiny_obj_loader.h>
@@ -15,10 +16,26 @@ namespace OpenSubdivHex::Tools::internal {
 
 namespace {
 
-/// Statements that say nothing about what Mesh holds.
-constexpr std::array<std::string_view, 17> kSkippedStatements = {
-    "vp",    "g",        "o",        "s",          "mg",        "usemtl", "mtllib", "usemap", "lod",
-    "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj", "l",      "p",      "maplib"};
+/// Statements that Mesh has no place for.
+constexpr std::array<std::string_view, 12> kStatementsNotRead = {
+    "vp",       "mg",         "usemap",    "lod", "bevel", "c_interp",
+    "d_interp", "shadow_obj", "trace_obj", "l",   "p",     "maplib"};
+
+/// \brief Overwrites comments with spaces.  A comment goes from # to the end of the line, but in
+/// lines that hold a name: these may have a #.
+void blankObjComments(std::string *text) {
+    std::string_view rest = *text;
+    while (!rest.empty()) {
+        std::size_t const begin = std::size_t(rest.data() - text->data());
+        std::string_view line = TakeLine(&rest);
+        std::size_t const comment = line.find('#');
+        if (comment != std::string_view::npos && !ObjLabelReader::IsName(TakeWord(&line))) {
+            std::size_t const end = std::size_t(rest.data() - text->data()) - 1;
+            std::fill(text->begin() + std::ptrdiff_t(begin + comment),
+                      text->begin() + std::ptrdiff_t(end), ' ');
+        }
+    }
+}
 
 /// Joins lines that end in a backslash with the next, keeping the number of lines.
 void joinContinuedLines(std::string *text) {
@@ -66,6 +83,11 @@ struct ObjContent {
     Attribute uvs{FVarKind::Uv, "texture coordinate", 1};
     Attribute normals{FVarKind::Normal, "normal", 3};
     ObjTagReader tags{path};
+    ObjLabelReader labels{};
+    std::vector<float> weights{}; ///< w of each vertex
+    std::vector<float> colors{};  ///< red, green and blue of each vertex
+    bool hasWeights = false;      ///< other than 1
+    std::size_t numColors = 0;    ///< that the file has
 
     [[noreturn]] void Refuse(int line, std::string const &cause) const {
         throw FileError(path, "line " + std::to_string(line) + ": " + cause);
@@ -107,19 +129,36 @@ void checkCorner(ObjContent const &content, int line, std::string_view word) {
     }
 }
 
-/// Refuses \p words unless they are finite numbers, and appends the first three to \p values, with
-/// 0 for those that are missing.
-void readNumbers(ObjContent const &content, int line, std::vector<std::string_view> const &words,
-                 std::vector<float> *values) {
-    for (std::size_t i = 0; i < std::max(words.size(), std::size_t(3)); ++i) {
-        float value = 0;
-        if (i < words.size() && !ParseFiniteFloat(words[i], &value)) {
-            content.Refuse(line, "'" + std::string(words[i]) + "' is not a finite number");
-        }
-        if (i < 3) {
-            values->push_back(value);
-        }
+float readNumber(ObjContent const &content, int line, std::string_view word) {
+    float value = 0;
+    if (!ParseFiniteFloat(word, &value)) {
+        content.Refuse(line, "'" + std::string(word) + "' is not a finite number");
     }
+    return value;
+}
+
+/// `v x y z`, and w or a colour behind.  The w of vertices without is 1, the colour of those
+/// without white, as elsewhere.
+void readVertex(int line, std::vector<std::string_view> const &words, ObjContent *content) {
+    if (words.size() < 3) {
+        content->Refuse(line, "a vertex needs three coordinates");
+    }
+    bool const hasWeight = words.size() == 4;
+    bool const hasColor = words.size() == 6;
+    if (words.size() > 3 && !hasWeight && !hasColor) {
+        content->Refuse(line, "a vertex has three numbers, four with its w or six with its colour, "
+                              "this one has " +
+                                  std::to_string(words.size()));
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        content->mesh.positions.push_back(readNumber(*content, line, words[i]));
+    }
+    content->weights.push_back(hasWeight ? readNumber(*content, line, words[3]) : 1.0f);
+    content->hasWeights = content->hasWeights || content->weights.back() != 1.0f;
+    for (std::size_t i = 3; i < 6; ++i) {
+        content->colors.push_back(hasColor ? readNumber(*content, line, words[i]) : 1.0f);
+    }
+    content->numColors += hasColor ? 1 : 0;
 }
 
 void readAttribute(ObjContent const &content, int line, std::vector<std::string_view> const &words,
@@ -129,24 +168,24 @@ void readAttribute(ObjContent const &content, int line, std::vector<std::string_
                                  (attribute->minNumbers == 3 ? "three" : "one to three") +
                                  " numbers, this one has " + std::to_string(words.size()));
     }
-    readNumbers(content, line, words, &attribute->values);
+    for (std::size_t i = 0; i < 3; ++i) {
+        attribute->values.push_back(i < words.size() ? readNumber(content, line, words[i]) : 0);
+    }
 }
 
 /// \brief Refuses what tinyobj would read as something else without a word, and fills in the
-/// numbers, the tags and the lines of the faces.
+/// numbers, the tags, the labels and the lines of the faces.
 ///
 /// Tinyobj takes a number that it cannot parse, or that is missing, as 0, rounds some numbers to
-/// a neighbour of the nearest float, and skips statements that it does not know.
+/// a neighbour of the nearest float, cuts names at spaces, and skips statements that it does not
+/// know.
 void readStatements(std::string_view text, ObjContent *content) {
     for (int line = 1; !text.empty(); ++line) {
         std::string_view rest = TakeLine(&text);
         std::string_view const statement = TakeWord(&rest);
         std::vector<std::string_view> const words = SplitWords(rest);
         if (statement == "v") {
-            if (words.size() < 3) {
-                content->Refuse(line, "a vertex needs three coordinates");
-            }
-            readNumbers(*content, line, words, &content->mesh.positions);
+            readVertex(line, words, content);
         } else if (statement == "vt") {
             readAttribute(*content, line, words, &content->uvs);
         } else if (statement == "vn") {
@@ -160,11 +199,13 @@ void readStatements(std::string_view text, ObjContent *content) {
                                           std::to_string(words.size()));
             }
             content->faceLines.push_back(line);
+            content->labels.AddFace();
         } else if (statement == "t") {
             content->tags.Read(line, rest);
-        } else if (!statement.empty() &&
-                   std::find(kSkippedStatements.begin(), kSkippedStatements.end(), statement) ==
-                       kSkippedStatements.end()) {
+        } else if (std::find(kStatementsNotRead.begin(), kStatementsNotRead.end(), statement) !=
+                   kStatementsNotRead.end()) {
+            AddNotRead("statement " + std::string(statement), &content->mesh);
+        } else if (!statement.empty() && !content->labels.Read(statement, rest)) {
             content->Refuse(line, "statement '" + std::string(statement.substr(0, 40)) +
                                       "' is not supported");
         }
@@ -221,6 +262,9 @@ void addFace(void *data, tinyobj::index_t *corners, int numCorners) {
 /// Texture coordinates become two numbers wide, unless the third is used.
 void addChannel(Attribute *attribute, Mesh *mesh) {
     if (attribute->faceValues.empty()) {
+        if (!attribute->values.empty()) {
+            AddNotRead(std::string(attribute->name) + "s that no face has", mesh);
+        }
         return;
     }
     FVarChannel channel;
@@ -244,11 +288,30 @@ void addChannel(Attribute *attribute, Mesh *mesh) {
     mesh->channels.push_back(std::move(channel));
 }
 
+void addVertexProperties(ObjContent *content) {
+    Mesh &mesh = content->mesh;
+    if (content->hasWeights) {
+        mesh.vertexProperties.push_back({"w", NumberType::Float, std::move(content->weights)});
+    }
+    char const *const names[] = {"red", "green", "blue"};
+    for (std::size_t i = 0; i < 3 && content->numColors > 0; ++i) {
+        VertexProperty property{names[i], NumberType::Float, {}};
+        for (std::size_t place = i; place < content->colors.size(); place += 3) {
+            property.values.push_back(content->colors[place]);
+        }
+        mesh.vertexProperties.push_back(std::move(property));
+    }
+    std::size_t const numWhite = std::size_t(mesh.GetNumVertices()) - content->numColors;
+    if (content->numColors > 0 && numWhite > 0) {
+        AddNotRead("lack of colour at " + std::to_string(numWhite) + " vertices (white)", &mesh);
+    }
+}
+
 } // namespace
 
 Mesh ReadObj(std::string const &path, std::string *content) {
     NormalizeText(path, content);
-    BlankComments(content);
+    blankObjComments(content);
     joinContinuedLines(content);
     ObjContent obj{path};
     readStatements(*content, &obj);
@@ -274,6 +337,8 @@ Mesh ReadObj(std::string const &path, std::string *content) {
     }
     addChannel(&obj.uvs, &obj.mesh);
     addChannel(&obj.normals, &obj.mesh);
+    addVertexProperties(&obj);
+    obj.labels.Finish(&obj.mesh);
     obj.tags.Finish(&obj.mesh);
     return std::move(obj.mesh);
 }

@@ -87,8 +87,17 @@ TEST_F(ObjTag, MayComeBeforeFaces) {
 
 TEST_F(ObjTag, RefusesWhatNeedsToBeKnown) {
     expectRefused("vertexedit 1/0/0 1", "tag 'vertexedit' is not supported");
-    expectRefused("smoothtriangles 0/0/1 smooth", "tag 'smoothtriangles' is not supported");
     expectRefused("Crease 2/1/0 1 4 2", "tag 'Crease' is not supported");
+}
+
+TEST_F(ObjTag, NotesWhatIsAboutOtherSchemes) {
+    for (char const *tag : {"0/0/1 smooth", "0/0/1 normal", "1/0/0 1"}) {
+        Mesh const mesh = ReadMesh(makeFile("a.obj", kFaces + "t smoothtriangles " + tag +
+                                                         "\nt smoothtriangles 0/0/1 x\n"));
+        EXPECT_EQ(mesh.notRead, std::vector<std::string>{"tag smoothtriangles"});
+    }
+    EXPECT_TRUE(ReadMesh(makeFile("a.obj", kFaces)).notRead.empty());
+    expectRefused("smoothtriangles 0/0/2 x", "tag 'smoothtriangles' has 1 arguments");
 }
 
 TEST_F(ObjTag, RefusesMalformedTags) {

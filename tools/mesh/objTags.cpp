@@ -44,6 +44,8 @@ void ObjTagReader::Read(int line, std::string_view text) {
         _propagatesCorners = onlyInt(tag, 1) == 1;
     } else if (tag.name == "creasemethod") {
         readCreasingMethod(tag);
+    } else if (tag.name == "smoothtriangles") {
+        _hasSmoothTriangles = true;
     } else {
         refuse(line, "tag " + quote(tag.name) + " is not supported");
     }
@@ -51,6 +53,9 @@ void ObjTagReader::Read(int line, std::string_view text) {
 
 void ObjTagReader::Finish(Mesh *mesh) const {
     checkEdges(*mesh);
+    if (_hasSmoothTriangles) {
+        AddNotRead("tag smoothtriangles", mesh);
+    }
     MeshTags &tags = mesh->tags;
     tags = _rules;
     if (_propagatesCorners &&

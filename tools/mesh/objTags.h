@@ -24,6 +24,7 @@ namespace OpenSubdivHex::Tools::internal {
 /// | facevaryinginterpolateboundary | Sdc::Options::FVarLinearInterpolation, 0 to 5               |
 /// | facevaryingpropagatecorners    | 1: FVAR_LINEAR_CORNERS_PLUS1 becomes .._PLUS2; else 0       |
 /// | creasemethod                   | normal or chaikin                                           |
+/// | smoothtriangles                | whatever: it is about Catmull-Clark alone, and left out     |
 ///
 /// Vertices and faces are counted from 0.  As in OpenSubdiv, a negative sharpness is 0, and of
 /// several lines about the same thing the last holds.  All functions throw FileError, with the
@@ -68,6 +69,7 @@ private:
     std::map<int, Sharpness> _corners;
     std::map<int, int> _holes; ///< lines by face
     bool _propagatesCorners = false;
+    bool _hasSmoothTriangles = false;
     MeshTags _rules; ///< of which the optional members
 };
 

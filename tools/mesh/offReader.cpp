@@ -6,6 +6,9 @@
 
 #include <OpenMesh/Core/IO/reader/OFFReader.hh>
 
+#include <array>
+#include <utility>
+
 namespace OpenSubdivHex::Tools::internal {
 
 namespace {
@@ -26,11 +29,126 @@ OffHeader parseHeaderWord(std::string_view word) {
     };
     OffHeader header{};
     header.hasTexcoords = take("ST");
-    take("C");
+    take("C"); // colours are known by their numbers: they may stand in any file
     header.hasNormals = take("N");
     header.isKnown = word == "OFF";
     return header;
 }
+
+using Words = std::vector<std::string_view>;
+
+/// The colours of vertices or of faces: three or four numbers, integers to 255 or others to 1.
+struct Colors {
+    static constexpr std::array<char const *, 4> kNames = {"red", "green", "blue", "alpha"};
+
+    /// Reads the next colour, if any; gives what is wrong with it, or nothing.
+    std::string Read(Words const &words) {
+        hasAny = hasAny || !words.empty();
+        if (words.size() > 4) {
+            return "too many values";
+        }
+        areAlike = areAlike && (words.size() == 3 || words.size() == 4) &&
+                   (width == 0 || width == words.size());
+        width = words.size();
+        for (std::string_view word : words) {
+            float value = 0;
+            if (!ParseFiniteFloat(word, &value)) {
+                return "'" + std::string(word.substr(0, 40)) + "', which is not a finite number";
+            }
+            int integer = 0;
+            areBytes = areBytes && ParseInt(word, &integer) && integer >= 0 && integer <= 255;
+            values.push_back(value);
+        }
+        return "";
+    }
+
+    NumberType GetType() const { return areBytes ? NumberType::UChar : NumberType::Float; }
+
+    /// Adds a property for each number of the colours to \p properties; false if these are not
+    /// alike, or more of some items than of others.
+    template <typename PROPERTY>
+    bool AddTo(std::vector<PROPERTY> *properties) const {
+        for (std::size_t i = 0; hasAny && areAlike && i < width; ++i) {
+            PROPERTY property{kNames[i], GetType(), {}};
+            for (std::size_t place = i; place < values.size(); place += width) {
+                property.values.push_back(values[place]);
+            }
+            properties->push_back(std::move(property));
+        }
+        return !hasAny || areAlike;
+    }
+
+    std::vector<float> values{};
+    std::size_t width = 0;
+    bool hasAny = false;
+    bool areAlike = true; ///< as many numbers each
+    bool areBytes = true;
+};
+
+/// Takes normals, colours and texture coordinates, in this order, behind the coordinates of a
+/// vertex, and the colour behind the corners of a face.  OpenMesh has colours in 8 bits alone.
+class OffExtras : public ExtrasReader {
+public:
+    explicit OffExtras(OffHeader const &header) {
+        if (header.hasNormals) {
+            _normals = {makeProperty("nx"), makeProperty("ny"), makeProperty("nz")};
+        }
+        if (header.hasTexcoords) {
+            _texcoords = {makeProperty("s"), makeProperty("t")};
+        }
+    }
+
+    std::string ReadVertex(Words const &words) override {
+        std::size_t const numOthers = _normals.size() + _texcoords.size();
+        if (words.size() < numOthers) {
+            return "too few values";
+        }
+        auto const colors = words.begin() + std::ptrdiff_t(_normals.size());
+        auto const texcoords = words.end() - std::ptrdiff_t(_texcoords.size());
+        std::string cause = take({words.begin(), colors}, &_normals);
+        cause = cause.empty() ? _vertexColors.Read({colors, texcoords}) : cause;
+        cause = cause.empty() ? take({texcoords, words.end()}, &_texcoords) : cause;
+        return cause;
+    }
+
+    std::string ReadFace(Words const &words) override { return _faceColors.Read(words); }
+
+    void AddTo(Mesh *mesh) {
+        auto const append = [mesh](std::vector<VertexProperty> &&properties) {
+            for (VertexProperty &property : properties) {
+                mesh->vertexProperties.push_back(std::move(property));
+            }
+        };
+        append(std::move(_normals));
+        if (!_vertexColors.AddTo(&mesh->vertexProperties)) {
+            AddNotRead("colours of vertices, not all of which have one alike", mesh);
+        }
+        append(std::move(_texcoords));
+        if (!_faceColors.AddTo(&mesh->faceProperties)) {
+            AddNotRead("colours of faces, not all of which have one alike", mesh);
+        }
+    }
+
+private:
+    static VertexProperty makeProperty(char const *name) { return {name, NumberType::Float, {}}; }
+
+    static std::string take(Words const &words, std::vector<VertexProperty> *properties) {
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            float value = 0;
+            if (!ParseFiniteFloat(words[i], &value)) {
+                return "'" + std::string(words[i].substr(0, 40)) +
+                       "', which is not a finite number";
+            }
+            (*properties)[i].values.push_back(value);
+        }
+        return "";
+    }
+
+    std::vector<VertexProperty> _normals{};
+    std::vector<VertexProperty> _texcoords{};
+    Colors _vertexColors{};
+    Colors _faceColors{};
+};
 
 } // namespace
 
@@ -68,21 +186,16 @@ Mesh ReadOff(std::string const &path, std::string *content) {
                                   ": the numbers of vertices, faces and edges are expected");
     }
 
-    // OpenMesh skips what follows the coordinates of a vertex.  It takes the colour that may follow
-    // a face, in any OFF file, for the next face.
     std::string const openMeshHeader =
         "OFF\n" + std::to_string(numVertices) + " " + std::to_string(numFaces) + " 0\n";
-    constexpr int kMaxColorWords = 4;
     OpenMeshInput input{path, openMeshHeader, body};
     input.numHeaderLines = numLines;
     input.numVertices = numVertices;
     input.numFaces = numFaces;
-    input.isText = true;
-    input.maxVertexExtras =
-        kMaxColorWords + (header.hasNormals ? 3 : 0) + (header.hasTexcoords ? 2 : 0);
-    input.maxFaceExtras = kMaxColorWords;
-    input.skipFaceExtras = true;
-    return ReadThroughOpenMesh(OpenMesh::IO::OFFReader(), input);
+    OffExtras extras(header);
+    Mesh mesh = ReadThroughOpenMesh(OpenMesh::IO::OFFReader(), input, extras);
+    extras.AddTo(&mesh);
+    return mesh;
 }
 
 } // namespace OpenSubdivHex::Tools::internal

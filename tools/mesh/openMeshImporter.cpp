@@ -91,8 +91,9 @@ public:
 /// Collects positions and faces as the reader meets them.
 class PolygonImporter : public PositionImporter {
 public:
-    explicit PolygonImporter(OpenMeshInput const &input)
-        : _input(input), _text(std::string(input.header) + std::string(input.body)), _stream(_text),
+    PolygonImporter(OpenMeshInput const &input, ExtrasReader &extras)
+        : _input(input), _extras(extras),
+          _text(std::string(input.header) + std::string(input.body)), _stream(_text),
           _next(input.header.size()) {
         // The readers do not look at the state of the stream: without this they would take what
         // cannot be read as 0 and not stop at the end.
@@ -126,19 +127,20 @@ public:
 
     void set_point(VertexHandle vertex, Vec3f const &point) override {
         std::string const name = "vertex " + std::to_string(vertex.idx());
-        checkLine(name, _input.numVertexWords, _input.maxVertexExtras);
+        std::vector<std::string_view> const extras = checkLine(name, 3);
         for (int i = 0; i < 3; ++i) {
             if (!std::isfinite(point[i])) {
                 refuse(name + " has a coordinate that is not a finite number");
             }
             _mesh.positions[3 * vertex.idx() + i] = point[i];
         }
+        requireNone(name, _extras.ReadVertex(extras));
         ++_numVertices;
     }
 
     FaceHandle add_face(VHandles const &corners) override {
         std::string const name = "face " + std::to_string(_mesh.GetNumFaces());
-        checkLine(name, 1 + corners.size(), _input.maxFaceExtras);
+        std::vector<std::string_view> const extras = checkLine(name, 1 + corners.size());
         if (corners.size() < 3) {
             refuse(name + " has " + std::to_string(corners.size()) + " corners, three are needed");
         }
@@ -149,10 +151,9 @@ public:
             }
             _mesh.faceVertices.push_back(corner.idx());
         }
+        requireNone(name, _extras.ReadFace(extras));
         _mesh.faceSizes.push_back(int(corners.size()));
-        if (_input.skipFaceExtras) {
-            _stream.seekg(std::streamoff(_next));
-        }
+        _stream.seekg(std::streamoff(_next)); // OpenMesh takes extras for the next face
         return FaceHandle(_mesh.GetNumFaces() - 1);
     }
 
@@ -170,17 +171,18 @@ private:
     }
 
     [[noreturn]] void refuse(std::string const &cause) const {
-        throw FileError(_input.path, _input.isText
-                                         ? "line " + std::to_string(lineOf(_start)) + ": " + cause
-                                         : cause);
+        throw FileError(_input.path, "line " + std::to_string(lineOf(_start)) + ": " + cause);
     }
 
-    /// In text: checks that what was read since the last call is a line's first \p numWords words,
-    /// with no more behind them than may be, and goes on to the next line.
-    void checkLine(std::string const &name, std::size_t numWords, int maxExtras) {
-        if (!_input.isText) {
-            return;
+    void requireNone(std::string const &name, std::string const &fault) const {
+        if (!fault.empty()) {
+            refuse("the line of " + name + " has " + fault);
         }
+    }
+
+    /// Checks that what was read since the last call is a line's first \p numWords words, gives the
+    /// words behind them, and goes on to the next line.
+    std::vector<std::string_view> checkLine(std::string const &name, std::size_t numWords) {
         auto const position = std::size_t(_stream.tellg());
         _start = std::min(_text.find_first_not_of(" \t\n", _next), position);
         std::size_t const end = _text.find('\n', _start);
@@ -189,24 +191,23 @@ private:
         }
         // The readers take 1.5.5 for two numbers, and 1x for one.
         std::string_view const line = std::string_view(_text).substr(_start, end - _start);
-        std::vector<std::string_view> const words = SplitWords(line);
+        std::vector<std::string_view> words = SplitWords(line);
         std::size_t const numRead = SplitWords(line.substr(0, position - _start)).size();
         bool const isAtWordEnd =
             words[numRead - 1].data() + words[numRead - 1].size() == &_text[position];
         if (numRead != numWords || !isAtWordEnd) {
             refuse("the line of " + name + " has something else than numbers");
         }
-        if (words.size() - numRead > std::size_t(maxExtras)) {
-            refuse("the line of " + name + " has too many values");
-        }
         _next = end + 1;
+        words.erase(words.begin(), words.begin() + std::ptrdiff_t(numRead));
+        return words;
     }
 
     [[noreturn]] void refuseUnreadable() {
         _stream.clear();
         std::size_t const position = std::size_t(_stream.tellg());
         std::string_view rest = std::string_view(_text).substr(position);
-        if (_input.isText && !TakeWord(&rest).empty()) {
+        if (!TakeWord(&rest).empty()) {
             throw FileError(_input.path,
                             "line " + std::to_string(lineOf(position)) + ": a number is expected");
         }
@@ -224,18 +225,15 @@ private:
             _mesh.GetNumFaces() != _input.numFaces) {
             throw FileError(_input.path, "ends too early: " + received());
         }
-        if (_input.mayHaveMore) {
-            return;
-        }
-        std::size_t const position = _input.isText ? _next : std::size_t(_stream.tellg());
-        std::string_view rest = std::string_view(_text).substr(std::min(position, _text.size()));
-        if (_input.isText ? !TakeWord(&rest).empty() : !rest.empty()) {
+        std::string_view rest = std::string_view(_text).substr(std::min(_next, _text.size()));
+        if (!TakeWord(&rest).empty()) {
             throw FileError(_input.path, "has more content behind its " +
                                              std::to_string(_input.numFaces) + " faces");
         }
     }
 
     OpenMeshInput const &_input;
+    ExtrasReader &_extras;
     std::string _text;
     std::istringstream _stream;
     std::size_t _start = 0; ///< where the current vertex or face begins
@@ -246,8 +244,9 @@ private:
 
 } // namespace
 
-Mesh ReadThroughOpenMesh(OpenMesh::IO::BaseReader &reader, OpenMeshInput const &input) {
-    return PolygonImporter(input).Read(reader);
+Mesh ReadThroughOpenMesh(OpenMesh::IO::BaseReader &reader, OpenMeshInput const &input,
+                         ExtrasReader &extras) {
+    return PolygonImporter(input, extras).Read(reader);
 }
 
 } // namespace OpenSubdivHex::Tools::internal

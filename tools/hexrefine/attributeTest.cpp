@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Colours and other numbers, objects, groups and materials through hexrefine.
+#include "far_ext/primvarRefiner.h"
+#include "programFixture.h"
+
+namespace OpenSubdivHex::Tools {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// A number that varying data are made of.
+struct Number {
+    void Clear() { value = 0; }
+    void AddWithWeight(Number const &other, float weight) { value += weight * other.value; }
+
+    float value;
+};
+
+/// \p values of the vertices of \p base as the library refines them: varying data.
+std::vector<float> refineVarying(Mesh const &base, int maxLevel, std::vector<float> const &values) {
+    auto const refiner =
+        FarExt::TopologyRefinerFactory::Create(DescribeTopology(base), Sdc::Options());
+    refiner->RefineUniform(maxLevel);
+    std::vector<Number> numbers;
+    for (float value : values) {
+        numbers.push_back({value});
+    }
+    for (int level = 1; level <= maxLevel; ++level) {
+        std::vector<Number> refined(std::size_t(refiner->GetLevel(level).GetNumVertices()));
+        FarExt::PrimvarRefiner(*refiner).InterpolateVarying(level, numbers, refined);
+        numbers = refined;
+    }
+    std::vector<float> result;
+    for (Number const &number : numbers) {
+        result.push_back(number.value);
+    }
+    return result;
+}
+
+class HexrefineAttribute : public Hexrefine {
+protected:
+    Mesh refine(std::string const &arguments, std::string const &output) const {
+        Result const result = run(arguments + " --quiet -o " + getPath(output));
+        EXPECT_EQ(result.status, 0) << result.error;
+        return ReadMesh(getPath(output));
+    }
+
+    /// A cube with colours and other numbers of vertices and faces.
+    Mesh makeColoredCube() const {
+        Mesh cube = MakeCube();
+        cube.vertexProperties = {
+            {"red", NumberType::UChar, {0, 255, 0, 255, 10, 20, 30, 40}},
+            {"green", NumberType::UChar, {0, 0, 255, 255, 1, 2, 3, 4}},
+            {"blue", NumberType::UChar, {255, 254, 253, 252, 251, 250, 249, 248}},
+            {"quality", NumberType::Float, {0, .1f, .2f, .3f, .4f, .5f, .6f, -1e6f}},
+            {"charge", NumberType::Short, {-32768, 32767, 0, 1, 2, 3, 4, 5}}};
+        cube.faceProperties = {{"red", NumberType::UChar, {0, 50, 100, 150, 200, 250}},
+                               {"id", NumberType::UInt, {4294967295.0, 1, 2, 3, 4, 5}},
+                               {"weight", NumberType::Double, {.1, .2, .3, .4, .5, .6}}};
+        return cube;
+    }
+    std::string makeColoredFile() const {
+        WriteMesh(makeColoredCube(), getPath("colored.ply"));
+        return getPath("colored.ply");
+    }
+
+    /// Expects that the values of \p property are \p values but for \p tolerance.
+    static void expectValues(VertexProperty const *property, std::vector<float> const &values,
+                             float tolerance) {
+        ASSERT_TRUE(property);
+        ASSERT_EQ(property->values.size(), values.size());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            ASSERT_NEAR(property->values[i], values[i], tolerance) << property->name << i;
+        }
+    }
+};
+
+} // namespace
+
+TEST_F(HexrefineAttribute, NumbersOfVerticesAreVarying) {
+    Mesh const cube = makeColoredCube();
+    for (char const *evaluator : {"refinement", "stencil", "stencil-cpu", "primvar"}) {
+        SCOPED_TRACE(evaluator);
+        Mesh const mesh = refine(makeColoredFile() + " -l 3 --evaluator " + evaluator, "out.ply");
+        ASSERT_EQ(mesh.vertexProperties.size(), cube.vertexProperties.size());
+        for (std::size_t i = 0; i < cube.vertexProperties.size(); ++i) {
+            VertexProperty const &from = cube.vertexProperties[i];
+            VertexProperty const &to = mesh.vertexProperties[i];
+            EXPECT_EQ(to.name, from.name);
+            EXPECT_EQ(to.type, from.type);
+            // Integers are rounded to the nearest.
+            float const tolerance = from.name == "quality" ? 1 : .51f;
+            expectValues(&to, refineVarying(cube, 3, from.values), tolerance);
+            // At the vertices of the cube they stay.
+            for (std::size_t v = 0; v < 8; ++v) {
+                EXPECT_EQ(to.values[v], from.values[v]);
+            }
+        }
+    }
+}
+
+TEST_F(HexrefineAttribute, LevelZeroKeepsAll) {
+    Mesh const cube = makeColoredCube();
+    Mesh const mesh = refine(makeColoredFile() + " -l 0", "out.ply");
+    ASSERT_EQ(mesh.vertexProperties.size(), cube.vertexProperties.size());
+    for (std::size_t i = 0; i < cube.vertexProperties.size(); ++i) {
+        EXPECT_EQ(mesh.vertexProperties[i].values, cube.vertexProperties[i].values);
+    }
+    ASSERT_EQ(mesh.faceProperties.size(), cube.faceProperties.size());
+    for (std::size_t i = 0; i < cube.faceProperties.size(); ++i) {
+        EXPECT_EQ(mesh.faceProperties[i].name, cube.faceProperties[i].name);
+        EXPECT_EQ(mesh.faceProperties[i].type, cube.faceProperties[i].type);
+        EXPECT_EQ(mesh.faceProperties[i].values, cube.faceProperties[i].values);
+    }
+}
+
+TEST_F(HexrefineAttribute, ColorsGoWhereFormatsHaveThem) {
+    Mesh const cube = makeColoredCube();
+    std::vector<float> const red = refineVarying(cube, 2, cube.vertexProperties[0].values);
+    Mesh const off = refine(makeColoredFile() + " -l 2", "out.off");
+    ASSERT_EQ(off.vertexProperties.size(), 3u);
+    EXPECT_EQ(off.vertexProperties[0].type, NumberType::UChar);
+    expectValues(FindProperty(off.vertexProperties, "red"), red, .501f);
+    Mesh const obj = refine(makeColoredFile() + " -l 2", "out.obj");
+    ASSERT_EQ(obj.vertexProperties.size(), 3u);
+    std::vector<float> scaled = red;
+    for (float &value : scaled) {
+        value /= 255;
+    }
+    expectValues(FindProperty(obj.vertexProperties, "red"), scaled, 1e-6f);
+    // From OBJ they are floats, and w goes with them.
+    Mesh const ply = refine(getPath("out.obj") + " -l 0", "out.ply");
+    ASSERT_EQ(ply.vertexProperties.size(), 3u);
+    EXPECT_EQ(ply.vertexProperties[0].type, NumberType::Float);
+    EXPECT_EQ(ply.vertexProperties[0].values, obj.vertexProperties[0].values);
+    makeFile("w.obj", "v 0 0 0 4\nv 1 0 0 0\nv 0 1 0 1\nf 1 2 3\n");
+    Mesh const weighted = refine(getPath("w.obj") + " -l 1", "out.obj");
+    Mesh const triangle = ReadMesh(getPath("w.obj"));
+    expectValues(FindProperty(weighted.vertexProperties, "w"),
+                 refineVarying(triangle, 1, {4, 0, 1}), 1e-6f);
+}
+
+TEST_F(HexrefineAttribute, SaysWhatIsKeptAndWhatIsNot) {
+    std::string const input = makeColoredFile() + " -l 1";
+    Result result = run(input + " -o " + getPath("out.ply"));
+    EXPECT_NE(result.out.find("of vertices, interpolated linearly: uchar red, uchar green, uchar "
+                              "blue, float quality, short charge\n"
+                              "of faces: uchar red, uint id, double weight\n"),
+              std::string::npos)
+        << result.out;
+    EXPECT_EQ(result.out.find("not "), std::string::npos) << result.out;
+    result = run(input + " -o " + getPath("out.obj"));
+    EXPECT_NE(result.out.find("not written, .obj files have no place for it: vertex property "
+                              "quality, vertex property charge, face property red, face property "
+                              "id, face property weight\n"),
+              std::string::npos)
+        << result.out;
+    Json json = Json::parse(run(input + " --stats - -o " + getPath("out.off")).out);
+    EXPECT_EQ(json["vertexProperties"].dump(),
+              R"([{"name":"red","type":"uchar"},{"name":"green","type":"uchar"},)"
+              R"({"name":"blue","type":"uchar"}])");
+    EXPECT_EQ(json["faceProperties"].dump(), "[]");
+    EXPECT_EQ(json["notWritten"].size(), 5u);
+
+    std::string const obj =
+        makeFile("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\no cube\ng a b\n"
+                          "usemtl m\ns 1\nf 1 2 3\ng b\ns off\nf 3 2 1\n"
+                          "t smoothtriangles 0/0/1 smooth\n");
+    result = run(obj + " -l 0 -o " + getPath("out.ply"));
+    EXPECT_NE(result.out.find("not read: statement l, tag smoothtriangles\n"
+                              "not written, .ply files have no place for it: objects, groups, "
+                              "materials, smoothing groups, material libraries\n"),
+              std::string::npos)
+        << result.out;
+    result = run(obj + " -l 0");
+    EXPECT_NE(result.out.find("1 object, 2 groups, 1 material, 2 smoothing groups\n"),
+              std::string::npos)
+        << result.out;
+    json = Json::parse(run(obj + " -l 0 --stats - -o " + getPath("out.obj")).out);
+    EXPECT_EQ(json["objects"].dump(), R"(["cube"])");
+    EXPECT_EQ(json["groups"].dump(), R"(["a","b"])");
+    EXPECT_EQ(json["materials"].dump(), R"(["m"])");
+    EXPECT_EQ(json["smoothingGroups"].dump(), R"(["1","off"])");
+    EXPECT_EQ(json["materialLibraries"].dump(), R"(["a.mtl"])");
+    EXPECT_EQ(json["notRead"].dump(), R"(["statement l","tag smoothtriangles"])");
+    EXPECT_EQ(json["notWritten"].dump(), "[]");
+}
+
+TEST_F(HexrefineAttribute, LimitLeavesNumbersAsTheyAre) {
+    for (char const *output : {"out.ply", "out.off"}) {
+        Mesh const plain = refine(makeColoredFile() + " -l 2", output);
+        Mesh const limit = refine(makeColoredFile() + " -l 2 --limit", output);
+        EXPECT_NE(limit.positions, plain.positions);
+        EXPECT_EQ(limit.vertexProperties.size(), plain.vertexProperties.size() + 3);
+        for (VertexProperty const &property : plain.vertexProperties) {
+            expectValues(FindProperty(limit.vertexProperties, property.name), property.values, 0);
+        }
+        for (std::size_t v = 0; v < limit.positions.size() / 3; ++v) {
+            double sum = 0;
+            for (char const *name : {"nx", "ny", "nz"}) {
+                VertexProperty const *const normal = FindProperty(limit.vertexProperties, name);
+                ASSERT_TRUE(normal && normal->type == NumberType::Float);
+                sum += double(normal->values[v]) * double(normal->values[v]);
+            }
+            EXPECT_NEAR(sum, 1, 1e-5);
+        }
+    }
+    // Those that are there make room, and are 1 long without --limit.
+    Mesh cube = MakeCube();
+    for (char const *name : {"nz", "nx", "ny"}) {
+        cube.vertexProperties.push_back({name, NumberType::Float, {3, 1, 2, -1, 1, -2, 3, 5}});
+    }
+    WriteMesh(cube, getPath("normals.ply"));
+    Mesh const mesh = refine(getPath("normals.ply") + " -l 2", "out.ply");
+    ASSERT_EQ(mesh.vertexProperties.size(), 3u);
+    EXPECT_EQ(mesh.vertexProperties[0].name, "nz");
+    for (float value : mesh.vertexProperties[0].values) {
+        EXPECT_NEAR(std::abs(value), std::sqrt(1.0 / 3), 1e-6);
+    }
+    Result const result = run(getPath("normals.ply") + " -l 2 --limit -o " + getPath("limit.ply"));
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.out.find("not read: normals, those of --limit replace them\n"),
+              std::string::npos)
+        << result.out;
+    EXPECT_EQ(ReadMesh(getPath("limit.ply")).vertexProperties.size(), 3u);
+}
+
+TEST_F(HexrefineAttribute, MaterialLibrariesAreFoundFromOtherFolders) {
+    std::filesystem::create_directories(getPath("in/colors"));
+    std::filesystem::create_directories(getPath("out"));
+    makeFile("in/my colors.mtl", "newmtl a\n");
+    std::string const faces = "usemtl a\nf 1 2 3\n";
+    std::string const input =
+        makeFile("in/a.obj", "mtllib my colors.mtl\nmtllib colors/b.mtl /c.mtl missing.mtl\n"
+                             "v 0 0 0\nv 1 0 0\nv 0 1 0\n" +
+                                 faces);
+    EXPECT_EQ(refine(input + " -l 1", "out/a.obj").materialLibraries,
+              (Names{"../in/my colors.mtl", "../in/colors/b.mtl /c.mtl ../in/missing.mtl"}));
+    EXPECT_EQ(refine(input + " -l 1", "in/b.obj").materialLibraries,
+              (Names{"my colors.mtl", "colors/b.mtl /c.mtl missing.mtl"}));
+    EXPECT_EQ(refine(input + " -l 1", "in/colors/b.obj").materialLibraries,
+              (Names{"../my colors.mtl", "b.mtl /c.mtl ../missing.mtl"}));
+}
+
+} // namespace OpenSubdivHex::Tools

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TOOLS_LIBRARY_PATHS_H
+#define OPENSUBDIVHEX_TOOLS_LIBRARY_PATHS_H
+
+#include <string>
+#include <vector>
+
+namespace OpenSubdivHex::Tools {
+
+/// \brief What the statements mtllib of the OBJ file \p output have to say to mean the files that
+/// \p libraries, those of the OBJ file \p input, mean: paths that are not absolute count from the
+/// folder of the file.
+///
+/// A statement names one file, with spaces or without, where there is such a file, else one with
+/// each word.  In the same folder it stays as it is.
+std::vector<std::string> MoveLibraries(std::vector<std::string> libraries, std::string const &input,
+                                       std::string const &output);
+
+} // namespace OpenSubdivHex::Tools
+
+#endif
