@@ -1,5 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 
+# What a new version may change: before 1.0 a new minor one may, then a new major one.  Shared
+# libraries are named after it, and the package's version files tell by it.
+if(PROJECT_VERSION_MAJOR EQUAL 0)
+  set(OPENSUBDIVHEX_SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  set(OPENSUBDIVHEX_COMPATIBILITY SameMinorVersion)
+else()
+  set(OPENSUBDIVHEX_SOVERSION ${PROJECT_VERSION_MAJOR})
+  set(OPENSUBDIVHEX_COMPATIBILITY SameMajorVersion)
+endif()
+
 # opensubdivhex_add_library(NAME SOURCES...): a library of this project, OpenSubdivHex::NAME to all
 # who link it, installed with the headers at the top of its folder; those in subfolders are its own.
 # Users include <NAME/header.h>.
@@ -9,7 +19,7 @@ function(opensubdivhex_add_library name)
   set_target_properties(${name} PROPERTIES
     OUTPUT_NAME opensubdivhex_${name}
     VERSION ${PROJECT_VERSION}
-    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    SOVERSION ${OPENSUBDIVHEX_SOVERSION}
     POSITION_INDEPENDENT_CODE ON
     CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON
@@ -26,7 +36,10 @@ function(opensubdivhex_add_library name)
   # The file set puts the project's root on the include path; installed, it is DESTINATION.
   if(OPENSUBDIVHEX_INSTALL)
     install(TARGETS ${name} EXPORT OpenSubdivHexTargets
-      FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex)
+      RUNTIME COMPONENT library
+      LIBRARY COMPONENT library NAMELINK_COMPONENT development
+      ARCHIVE COMPONENT development
+      FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex COMPONENT development)
   endif()
 endfunction()
 

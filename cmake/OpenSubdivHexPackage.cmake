@@ -12,17 +12,51 @@ configure_package_config_file(
   ${PROJECT_SOURCE_DIR}/cmake/OpenSubdivHexConfig.cmake.in
   ${PROJECT_BINARY_DIR}/OpenSubdivHexConfig.cmake
   INSTALL_DESTINATION ${packageDir})
-# Before version 1.0 a new minor version may change what is there.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/OpenSubdivHexConfigVersion.cmake
-  COMPATIBILITY SameMinorVersion)
+  COMPATIBILITY ${OPENSUBDIVHEX_COMPATIBILITY})
 
-install(EXPORT OpenSubdivHexTargets NAMESPACE OpenSubdivHex:: DESTINATION ${packageDir})
+# The same for pkg-config, with C++17 or later.  Paths are relative to the file, so that the tree may be
+# moved, but for those of an OpenSubdiv outside the system's folders.
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}"
+  OUTPUT_VARIABLE pcLibDir)
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_INCLUDEDIR BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}"
+  OUTPUT_VARIABLE pcIncludeDir)
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX
+  BASE_DIRECTORY "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" OUTPUT_VARIABLE pcPrefix)
+set(pcCflags "-I\${includedir}/opensubdivhex")
+if(NOT OpenSubdiv_INCLUDE_DIR IN_LIST CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES)
+  string(APPEND pcCflags " -I${OpenSubdiv_INCLUDE_DIR}")
+endif()
+set(pcLibs "-L\${libdir} -lopensubdivhex_osd_ext -lopensubdivhex_far_ext")
+set(osdDir "$<TARGET_FILE_DIR:OpenSubdiv::osdCPU>")
+string(APPEND pcLibs
+  "$<$<NOT:$<IN_LIST:${osdDir},${CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES}>>: -L${osdDir}> -losdCPU")
+get_target_property(libraryType far_ext TYPE)
+if(libraryType STREQUAL "STATIC_LIBRARY")
+  string(APPEND pcLibs " -pthread")
+  if(OPENSUBDIVHEX_NEEDS_OPENMP)
+    string(APPEND pcLibs " ${OpenMP_CXX_FLAGS}")
+  endif()
+endif()
+file(READ ${PROJECT_SOURCE_DIR}/cmake/opensubdivhex.pc.in pcText)
+string(CONFIGURE "${pcText}" pcText @ONLY)
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/opensubdivhex.pc CONTENT "${pcText}")
+install(FILES ${PROJECT_BINARY_DIR}/opensubdivhex.pc
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+
+install(EXPORT OpenSubdivHexTargets NAMESPACE OpenSubdivHex:: DESTINATION ${packageDir}
+  COMPONENT development)
 install(FILES
   ${PROJECT_BINARY_DIR}/OpenSubdivHexConfig.cmake
   ${PROJECT_BINARY_DIR}/OpenSubdivHexConfigVersion.cmake
   ${PROJECT_SOURCE_DIR}/cmake/FindOpenSubdiv.cmake
-  DESTINATION ${packageDir})
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  DESTINATION ${packageDir} COMPONENT development)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  COMPONENT licence)
 # Beside the headers that name it.
 install(FILES ${PROJECT_SOURCE_DIR}/far_ext/INDEXING.md
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex/far_ext)
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex/far_ext COMPONENT development)
+
+if(UNIX AND NOT APPLE)
+  include(OpenSubdivHexDebian)
+endif()

@@ -10,7 +10,7 @@ execute_process(
   COMMAND_ERROR_IS_FATAL ANY)
 file(RENAME ${prefix}.first ${prefix})
 
-file(GLOB_RECURSE packageFiles ${prefix}/*.cmake)
+file(GLOB_RECURSE packageFiles ${prefix}/*.cmake ${prefix}/*.pc)
 if(NOT packageFiles)
   message(SEND_ERROR "no package files in ${prefix}")
 endif()

@@ -16,6 +16,7 @@ add_test(NAME consumer.build
     --build-generator ${CMAKE_GENERATOR}
     --build-config $<CONFIG>
     --build-options
+      -DwantedVersion=${PROJECT_VERSION}
       "-DCMAKE_PREFIX_PATH=${consumerDir}/prefix;${CMAKE_PREFIX_PATH}"
       -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
       -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
@@ -25,6 +26,23 @@ add_test(NAME consumer.build
       -DOpenSubdiv_ROOT=${OpenSubdiv_ROOT}
       -DOpenSubdiv_DIR=${OpenSubdiv_DIR}
     --test-command ${consumerDir}/build/consumer)
+find_program(OPENSUBDIVHEX_PKG_CONFIG NAMES pkgconf pkg-config)
+mark_as_advanced(OPENSUBDIVHEX_PKG_CONFIG)
+if(OPENSUBDIVHEX_PKG_CONFIG AND UNIX)
+  separate_arguments(flags UNIX_COMMAND "${CMAKE_CXX_FLAGS}")
+  add_test(NAME consumer.pkgconfig
+    COMMAND ${CMAKE_COMMAND}
+      -D pkgConfig=${OPENSUBDIVHEX_PKG_CONFIG}
+      -D prefix=${consumerDir}/prefix
+      -D libDir=${CMAKE_INSTALL_LIBDIR}
+      -D version=${PROJECT_VERSION}
+      -D compiler=${CMAKE_CXX_COMPILER}
+      -D "flags=${flags}"
+      -D source=${PROJECT_SOURCE_DIR}/regression/consumer/consumer.cpp
+      -D program=${consumerDir}/consumerOfPkgConfig
+      -P ${PROJECT_SOURCE_DIR}/regression/consumer/pkgConfig.cmake)
+  set_tests_properties(consumer.pkgconfig PROPERTIES FIXTURES_REQUIRED installed)
+endif()
 set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed)
 set_tests_properties(consumer.build PROPERTIES FIXTURES_REQUIRED installed)
 get_target_property(opensubdivDirs OpenSubdiv::osdCPU INTERFACE_INCLUDE_DIRECTORIES)
@@ -41,6 +59,21 @@ if(OPENSUBDIVHEX_TOOLS)
   add_test(NAME consumer.hexrefine
     COMMAND ${consumerDir}/prefix/${CMAKE_INSTALL_BINDIR}/hexrefine --help)
   set_tests_properties(consumer.hexrefine PROPERTIES FIXTURES_REQUIRED installed)
+endif()
+
+# The recipe of the vcpkg port.
+if(OPENSUBDIVHEX_TOOLS AND CMAKE_INSTALL_LIBDIR STREQUAL "lib")
+  add_test(NAME consumer.port
+    COMMAND ${CMAKE_COMMAND}
+      -D sourceDir=${PROJECT_SOURCE_DIR}
+      -D buildDir=${PROJECT_BINARY_DIR}
+      -D workDir=${consumerDir}/port
+      -D version=${PROJECT_VERSION}
+      -D config=$<CONFIG>
+      -D generator=${CMAKE_GENERATOR}
+      -D compiler=${CMAKE_CXX_COMPILER}
+      "-D options=-DCMAKE_PREFIX_PATH=${CMAKE_PREFIX_PATH}"
+      -P ${PROJECT_SOURCE_DIR}/regression/consumer/port.cmake)
 endif()
 
 # What the shared libraries export, and that an OpenSubdiv outside the system's folders is found.
