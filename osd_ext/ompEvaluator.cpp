@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ompEvaluator.h"
 
+#include "far_ext/executor.h"
 #include "far_ext/threads.h"
 #include "osd_ext/stencil/stencilKernel.h"
 
 #include <algorithm>
-#include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace OpenSubdivHex::OsdExt {
@@ -13,19 +14,17 @@ namespace {
 
 /// Stencils, or blocks of them, that a thread takes at a time: enough that starting on them costs
 /// nothing beside them, few enough that the threads end together.
-constexpr std::int64_t kMinBatch = 256;
-constexpr std::int64_t kMaxBatch = 4096;
-constexpr int kBatchesPerThread = 16;
+constexpr int kMinBatch = 256;
+constexpr int kMaxBatch = 4096;
+constexpr int kNumBatches = 64; // of tables that are not very large
 
 // Evaluates stencils, or blocks of them, [begin, end), at least one.
 void evaluate(internal::StencilTask const &task, int begin, int end) {
     internal::StencilKernel const kernel = internal::GetStencilKernel();
-    std::int64_t const numStencils = std::int64_t(end) - begin;
-    std::int64_t const numThreads = FarExt::GetNumThreads();
-    int const batchSize =
-        int(std::clamp(numStencils / (numThreads * kBatchesPerThread), kMinBatch, kMaxBatch));
-    int const numBatches = int((numStencils + batchSize - 1) / batchSize);
-    if (numThreads == 1 || numBatches == 1) {
+    int const numStencils = end - begin;
+    int const batchSize = std::clamp(numStencils / kNumBatches, kMinBatch, kMaxBatch);
+    int const numBatches = numStencils / batchSize + (numStencils % batchSize != 0);
+    if (numBatches == 1 || FarExt::GetNumThreads() == 1) {
         kernel(task, begin, end, internal::FindFirstWeight(task.rows, begin));
         return;
     }
@@ -41,26 +40,16 @@ void evaluate(internal::StencilTask const &task, int begin, int end) {
             first += std::size_t(task.rows.sizes[i]);
         }
     }
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic) num_threads(FarExt::GetNumThreads())
-#endif
-    for (int batch = 0; batch < numBatches; ++batch) {
+    auto const evaluateBatch = [&](int batch) {
         int const batchBegin = begin + batch * batchSize;
-        int const batchEnd = int(std::min<std::int64_t>(end, std::int64_t(batchBegin) + batchSize));
+        int const batchEnd = batchBegin + std::min(end - batchBegin, batchSize);
         std::size_t const first = firstWeights.empty() ? 0 : firstWeights[std::size_t(batch)];
         kernel(task, batchBegin, batchEnd, first);
-    }
+    };
+    FarExt::ParallelFor(numBatches, std::cref(evaluateBatch));
 }
 
 } // namespace
-
-bool OmpEvaluator::IsParallel() {
-#ifdef _OPENMP
-    return true;
-#else
-    return false;
-#endif
-}
 
 bool OmpEvaluator::run(float const *src, Osd::BufferDescriptor const &srcDesc,
                        internal::StencilOutput const *outputs, int numOutputs,

@@ -39,11 +39,11 @@ namespace OsdExt {
 /// **Aliasing.** Source and destination may be one buffer, as long as no float is both read and
 /// written: the destination may lie behind the source, or beside it in each stride.
 ///
-/// **Threads.** The work runs on the threads of OpenMP, where the library was built with it, as
-/// many as FarExt::SetNumThreads() and OpenMP say.  Results are the same, bit for bit, for any
-/// number of threads, stride and offset, one level or all.  An evaluator keeps the levels below the
-/// one that was asked for, in memory that only the first frame takes: it must not be used by two
-/// threads at once.  Several evaluators may share a refiner.
+/// **Threads.** The work runs on the threads of FarExt::GetExecutor(), as many as
+/// FarExt::GetNumThreads() says.  Results are the same, bit for bit, for any number of threads, stride
+/// and offset, one level or all.  An evaluator keeps the levels below the one that was asked for, in
+/// memory that only the first frame takes: it must not be used by two threads at once.  Several
+/// evaluators may share a refiner.
 ///
 /// **Memory.** std::bad_alloc passes through, with nothing written.
 ///

@@ -13,7 +13,8 @@ using Far::Index;
 Index *SupportArena::addBlock(std::size_t size) {
     std::unique_ptr<Index[]> block(new Index[size]);
     Index *const result = block.get();
-    RunExclusively([&] { _blocks.push_back(std::move(block)); });
+    std::lock_guard<std::mutex> const lock(*_mutex);
+    _blocks.push_back(std::move(block));
     return result;
 }
 

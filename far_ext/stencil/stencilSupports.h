@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -54,6 +55,7 @@ public:
 private:
     Index *addBlock(std::size_t size);
 
+    std::unique_ptr<std::mutex> _mutex = std::make_unique<std::mutex>(); ///< of the blocks
     std::vector<std::unique_ptr<Index[]>> _blocks;
 };
 

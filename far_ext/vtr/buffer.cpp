@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "buffer.h"
 
-#include "far_ext/threads.h"
-
-#include "threads.h"
+#include "parallel.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -81,14 +79,15 @@ void PrepareArray(void *memory, std::size_t bytes) {
 #ifdef MADV_POPULATE_WRITE
     // A system too old to make pages ready makes them at first touch.
     constexpr std::size_t kPagesPerCall = 8;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic) if (pages.count > kPagesPerCall)                        \
-    num_threads(GetNumThreads())
-#endif
-    for (std::size_t page = 0; page < pages.count; page += kPagesPerCall) {
-        madvise(pages.begin + page * kHugePage,
-                std::min(kPagesPerCall, pages.count - page) * kHugePage, MADV_POPULATE_WRITE);
-    }
+    auto const numCalls = Far::Index((pages.count + kPagesPerCall - 1) / kPagesPerCall);
+    auto const prepare = [&](RangeQueue &queue, int worker) {
+        for (Far::Index call = 0; queue.Take(worker, &call);) {
+            std::size_t const page = std::size_t(call) * kPagesPerCall;
+            madvise(pages.begin + page * kHugePage,
+                    std::min(kPagesPerCall, pages.count - page) * kHugePage, MADV_POPULATE_WRITE);
+        }
+    };
+    ForEachRange(numCalls, 1, std::cref(prepare));
 #endif
 }
 

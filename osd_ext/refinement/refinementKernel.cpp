@@ -2,12 +2,13 @@
 #include "refinementKernel.h"
 
 #include "far_ext/indexing.h"
-#include "far_ext/threads.h"
+#include "far_ext/vtr/parallel.h"
 #include "osd_ext/simd/quad.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
@@ -538,34 +539,30 @@ void refineVertices(RefinementTask const &task, int length, int group) {
     runKernel<VertexKernel>(task, length, refinement.weightedVertices, group);
 }
 
+// Calls function(group) for groups [begin, end), in parallel.  It throws nothing.
+template <typename FUNCTION>
+void forEachGroup(int begin, int end, FUNCTION const &function) {
+    auto const work = [&](FarExt::internal::RangeQueue &queue, int worker) {
+        for (int group = 0; queue.Take(worker, &group);) {
+            function(begin + group);
+        }
+    };
+    FarExt::internal::ForEachRange(end - begin, 1, std::cref(work));
+}
+
 } // namespace
 
 void RefineElements(std::vector<RefinementTask> const &tasks, int length) {
-    [[maybe_unused]] bool const isLarge =
-        std::any_of(tasks.begin(), tasks.end(),
-                    [](RefinementTask const &task) { return task.refinement->numTiles > 1; });
-#ifdef _OPENMP
-#pragma omp parallel if (isLarge) num_threads(FarExt::GetNumThreads())
-#endif
     for (RefinementTask const &task : tasks) {
         PreparedRefinement const &refinement = *task.refinement;
-        // Shared out in the same way at each level, so that a thread reads what it has made: 1.07
-        // times as fast with two threads, benchmark table-free.
-#ifdef _OPENMP
-#pragma omp for schedule(static)
-#endif
-        for (int tile = 0; tile < refinement.numTiles; ++tile) {
+        forEachGroup(0, refinement.numTiles, [&](int tile) {
             runKernel<FaceKernel>(task, length, refinement.plainFaces, tile);
             runKernel<FaceKernel>(task, length, refinement.weightedFaces, tile);
             refineVertices(task, length, tile);
-        }
+        });
         // Their F-vertices are in several tiles, which are done by now.
-#ifdef _OPENMP
-#pragma omp for schedule(dynamic)
-#endif
-        for (int group = refinement.numTiles; group < refinement.GetNumVertexGroups(); ++group) {
-            refineVertices(task, length, group);
-        }
+        forEachGroup(refinement.numTiles, refinement.GetNumVertexGroups(),
+                     [&](int group) { refineVertices(task, length, group); });
     }
 }
 

@@ -6,17 +6,13 @@
 
 #include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/stencilTableFactory.h"
-#include "far_ext/vtr/parallel.h"
+#include "far_ext/threads.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <new>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 namespace {
 
@@ -48,12 +44,6 @@ namespace OpenSubdivHex::Regression {
 
 namespace {
 
-void setNumThreads([[maybe_unused]] int numThreads) {
-#ifdef _OPENMP
-    omp_set_num_threads(numThreads);
-#endif
-}
-
 /// Whether work() throws std::bad_alloc when the allocation after \p numBefore others fails.
 template <typename WORK>
 bool failsAt(std::int64_t numBefore, WORK work) {
@@ -72,7 +62,7 @@ bool failsAt(std::int64_t numBefore, WORK work) {
 template <typename WORK>
 void expectBadAllocs(WORK work) {
     for (int numThreads : {1, 2}) {
-        setNumThreads(numThreads);
+        FarExt::SetNumThreads(numThreads);
         work(); // has the threads started
         std::int64_t numBefore = 0;
         while (failsAt(numBefore, work)) {
@@ -95,25 +85,6 @@ TEST(Allocation, OfLimitStencilTablesMayFail) {
     options.level = 1;
     options.generateFaceCenters = true;
     expectBadAllocs([&] { FarExt::LimitStencilTableFactory::Create(*refiner, options); });
-}
-
-TEST(Allocation, OfWhatRunsExclusivelyMayFail) {
-    std::vector<int> values;
-    EXPECT_THROW(FarExt::internal::ParallelFor(100000,
-                                               [&](Far::Index i) {
-                                                   FarExt::internal::RunExclusively([&] {
-                                                       if (i == 50000) {
-                                                           throw std::bad_alloc();
-                                                       }
-                                                       values.push_back(i);
-                                                   });
-                                               }),
-                 std::bad_alloc);
-    // The other threads may have gone on.
-    EXPECT_GE(values.size(), 4096);
-    EXPECT_LT(values.size(), 100000);
-    FarExt::internal::RunExclusively([&] { values.clear(); }); // not locked any more
-    EXPECT_TRUE(values.empty());
 }
 
 } // namespace OpenSubdivHex::Regression

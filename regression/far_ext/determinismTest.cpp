@@ -4,14 +4,11 @@
 #include "referenceMatch.h"
 
 #include "far_ext/stencilTableFactory.h"
+#include "far_ext/threads.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "regression/shapes/flatShapes.h"
 
 #include <gtest/gtest.h>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 namespace OpenSubdivHex::Regression {
 
@@ -32,14 +29,6 @@ struct Result {
         return relations == other.relations && indices == other.indices && weights == other.weights;
     }
 };
-
-void setNumThreads(int numThreads) {
-#ifdef _OPENMP
-    omp_set_num_threads(numThreads);
-#else
-    static_cast<void>(numThreads);
-#endif
-}
 
 /// The arrays of a level and of the refinement to the next, if there is one.
 struct Arrays {
@@ -108,11 +97,11 @@ Shape makeGridWithHoles(int size) {
 /// create() gives a refined refiner.
 template <typename CREATE>
 void expectSameBits(CREATE const &create) {
-    setNumThreads(1);
+    FarExt::SetNumThreads(1);
     Result const expected = gather(*create());
     for (int numThreads : {2, 3, 8}) {
         SCOPED_TRACE(std::to_string(numThreads) + " threads");
-        setNumThreads(numThreads);
+        FarExt::SetNumThreads(numThreads);
         ASSERT_TRUE(gather(*create()) == expected);
     }
 }
@@ -162,7 +151,7 @@ template <typename REFINE>
 void expectSameLevels(Shape const &shape, FarExt::HexSchemeOptions schemeOptions,
                       REFINE const &refine) {
     auto const create = [&](int numThreads, bool fullTopology) {
-        setNumThreads(numThreads);
+        FarExt::SetNumThreads(numThreads);
         auto refiner =
             CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options(), schemeOptions);
         EXPECT_TRUE(refine(*refiner, fullTopology));
@@ -256,7 +245,7 @@ TEST(Determinism, LargeLevelsAreValidAndTheSame) {
             auto const refiner = CreateRefiner(GetShape(name), ReferenceMask::Smooth, 0, options);
             FarExt::TopologyRefiner::UniformOptions uniform(7);
             uniform.fullTopologyInLastLevel = true;
-            setNumThreads(1);
+            FarExt::SetNumThreads(1);
             ASSERT_TRUE(refiner->RefineUniform(uniform));
             FarExt::TopologyLevel const &level = refiner->GetLevel(7);
             EXPECT_GT(level.GetLevel().memory.size(), std::size_t(16) << 20);
@@ -265,7 +254,7 @@ TEST(Determinism, LargeLevelsAreValidAndTheSame) {
             Arrays const expected(*refiner, 7);
             for (int numThreads : {2, 3, 8}) {
                 SCOPED_TRACE(std::to_string(numThreads) + " threads");
-                setNumThreads(numThreads);
+                FarExt::SetNumThreads(numThreads);
                 ASSERT_TRUE(refiner->RefineUniform(uniform));
                 ASSERT_TRUE(Arrays(*refiner, 7) == expected);
                 // Without the relations: the same faces, in the same memory.
@@ -281,11 +270,11 @@ TEST(Determinism, LargeLevelsAreValidAndTheSame) {
 
 TEST(Determinism, SameImportForAnyNumberOfThreads) {
     Shape const grid = makeGridWithHoles(160); // many ranges of work
-    setNumThreads(1);
+    FarExt::SetNumThreads(1);
     auto const expected = CreateRefiner(grid, ReferenceMask::Smooth, 0);
     EXPECT_TRUE(expected->GetLevel(0).Validate());
     for (int numThreads : {2, 3, 8}) {
-        setNumThreads(numThreads);
+        FarExt::SetNumThreads(numThreads);
         auto const refiner = CreateRefiner(grid, ReferenceMask::Smooth, 0);
         EXPECT_TRUE(Arrays(*refiner, 0) == Arrays(*expected, 0)) << numThreads;
     }
@@ -309,7 +298,7 @@ TEST(Determinism, SameStencilsForAnyNumberOfThreads) {
         for (bool hasAllLevels : {true, false}) {
             options.generateIntermediateLevels = hasAllLevels;
             auto const create = [&](int numThreads) {
-                setNumThreads(numThreads);
+                FarExt::SetNumThreads(numThreads);
                 return isWhole ? FarExt::StencilTableFactory::Create(*refiner, options)
                                : FarExt::StencilTableFactory::CreateOfFaces(
                                      *refiner, {faces.data(), int(faces.size())}, options);

@@ -5,6 +5,7 @@
 #include "valueLevels.h"
 
 #include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/threads.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 
@@ -14,10 +15,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 namespace OpenSubdivHex::Regression {
 
@@ -527,11 +524,7 @@ TEST(Limit, SameBitsForAnyNumberOfThreads) {
         auto const refiner = CreateRefiner(GetShape(name), ReferenceMask::Smooth, 5,
                                            makeOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
         auto const create = [&](int numThreads) {
-#ifdef _OPENMP
-            omp_set_num_threads(numThreads);
-#else
-            static_cast<void>(numThreads);
-#endif
+            FarExt::SetNumThreads(numThreads);
             FarExt::LimitStencilTableFactory::Options options;
             options.level = 5;
             options.generateFaceCenters = true;

@@ -4,27 +4,15 @@
 #include "apart.h"
 #include "oracle.h"
 
+#include "far_ext/threads.h"
+
 #include <cstdlib>
 #include <iostream>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 using namespace OpenSubdivHex::Regression;
 
-namespace {
-
-void setOneThread() {
-#ifdef _OPENMP
-    omp_set_num_threads(1);
-#endif
-}
-
-} // namespace
-
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const *data, std::size_t size) {
-    setOneThread();
+    OpenSubdivHex::FarExt::SetNumThreads(1);
     OracleCase const oracleCase = MakeOracleCase(data, size);
     try {
         CheckOracleCase(oracleCase);
@@ -41,14 +29,14 @@ extern "C" void FuzzReport(unsigned char const *data, unsigned long size) {
         Shrink(MakeOracleCase(data, size), [](OracleCase const &oracleCase) {
             return FailsApart(
                 [&] {
-                    setOneThread();
+                    OpenSubdivHex::FarExt::SetNumThreads(1);
                     CheckOracleCase(oracleCase);
                 },
                 kNumSeconds);
         });
     std::cerr << "oracle: the smallest input\n\n" << Print(smallest);
     try {
-        setOneThread();
+        OpenSubdivHex::FarExt::SetNumThreads(1);
         CheckOracleCase(smallest);
     } catch (std::exception const &failure) {
         std::cerr << "\noracle: which fails thus: " << failure.what() << '\n';

@@ -5,6 +5,7 @@
 #include "apart.h"
 #include "damagedFile.h"
 
+#include "far_ext/threads.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "tools/hexrefine/evaluation.h"
 #include "tools/hexrefine/levelMesh.h"
@@ -13,10 +14,6 @@
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/meshWriter.h"
 #include "tools/mesh/topologyDescriptor.h"
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #include <algorithm>
 #include <cmath>
@@ -295,9 +292,7 @@ void TestFile(std::string const &name, std::string const &content) {
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const *data, std::size_t size) {
     using namespace OpenSubdivHex::Regression;
-#ifdef _OPENMP
-    omp_set_num_threads(1); // more only cost time: the meshes are small
-#endif
+    OpenSubdivHex::FarExt::SetNumThreads(1); // more only cost time: the meshes are small
     DamagedFile const file = MakeDamagedFile(data, size);
     TestFile(file.name, file.content);
     return 0;

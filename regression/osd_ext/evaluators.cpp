@@ -18,7 +18,8 @@ using OsdExt::SimdLevel;
 
 namespace {
 
-int getNumThreads() {
+// Of Osd's evaluators.
+int getNumOsdThreads() {
 #ifdef _OPENMP
     return omp_get_max_threads();
 #else
@@ -26,7 +27,7 @@ int getNumThreads() {
 #endif
 }
 
-void setNumThreads([[maybe_unused]] int numThreads) {
+void setNumOsdThreads([[maybe_unused]] int numThreads) {
 #ifdef _OPENMP
     omp_set_num_threads(numThreads);
 #endif
@@ -64,14 +65,15 @@ std::vector<Evaluator> const &GetOsdEvaluators() {
 }
 
 EvaluatorScope::EvaluatorScope(SimdLevel simdLevel, int numThreads)
-    : _simdLevel(OsdExt::GetSimdLevel()), _numThreads(getNumThreads()) {
+    : _simdLevel(OsdExt::GetSimdLevel()), _threads(nullptr, numThreads),
+      _numOsdThreads(getNumOsdThreads()) {
     OsdExt::SetSimdLevel(simdLevel);
-    setNumThreads(numThreads);
+    setNumOsdThreads(numThreads);
 }
 
 EvaluatorScope::~EvaluatorScope() {
     OsdExt::SetSimdLevel(_simdLevel);
-    setNumThreads(_numThreads);
+    setNumOsdThreads(_numOsdThreads);
 }
 
 std::vector<SimdLevel> GetSimdLevels() {

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_OSD_EXT_EVALUATORS_H
 #define OPENSUBDIVHEX_REGRESSION_OSD_EXT_EVALUATORS_H
 
+#include "far_ext/executor.h"
 #include "osd_ext/simdLevel.h"
 
 #include <opensubdiv/osd/bufferDescriptor.h>
@@ -65,7 +66,8 @@ public:
 
 private:
     OsdExt::SimdLevel _simdLevel;
-    int _numThreads;
+    FarExt::ExecutorScope _threads;
+    int _numOsdThreads;
 };
 
 /// All levels that this build and this machine have.

@@ -6,15 +6,12 @@
 #include "schemes.h"
 #include "sections.h"
 
+#include "far_ext/executor.h"
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
 #include "tools/mesh/point.h"
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #include <algorithm>
 #include <chrono>
@@ -86,24 +83,6 @@ private:
     std::vector<std::vector<Tools::Point>> _positions;
 };
 
-/// One thread while it lives, since not all steps can use several.
-class OneThread {
-public:
-#ifdef _OPENMP
-    OneThread() : _numThreads(omp_get_max_threads()) { omp_set_num_threads(1); }
-    ~OneThread() { omp_set_num_threads(_numThreads); }
-#else
-    OneThread() = default;
-#endif
-    OneThread(OneThread const &) = delete;
-    OneThread &operator=(OneThread const &) = delete;
-
-private:
-#ifdef _OPENMP
-    int _numThreads;
-#endif
-};
-
 struct Times {
     double topology, positions; ///< medians, seconds
     double total;
@@ -114,7 +93,7 @@ struct Times {
 
 void AddTimingSection(Page *page, Settings const &settings) {
     page->BeginSection("timing", "Running time");
-    [[maybe_unused]] OneThread const oneThread;
+    FarExt::ExecutorScope const oneThread(nullptr, 1); // since not all steps can use several
     Shape solid = MakeDodecahedron();
     Deform(solid); // so that no two normals agree exactly
     HexSchemeOptions const hexagonal = MakeHexagonal(FaceMask::Average);

@@ -3,7 +3,8 @@
 
 #include "memory.h"
 
-#include "osd_ext/ompEvaluator.h"
+#include "far_ext/executor.h"
+#include "far_ext/threads.h"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -91,15 +92,14 @@ std::vector<Cost> RunContest(benchmark::State &state, std::vector<Contestant> co
     return costs;
 }
 
-bool HasThreads() { return OsdExt::OmpEvaluator::IsParallel(); }
-
-void SetNumThreads([[maybe_unused]] int numThreads) {
+void SetNumThreads(int numThreads) {
 #ifdef _OPENMP
+    // Of Osd's evaluators.
     omp_set_num_threads(numThreads);
-    // Starts or wakes them, which the first contestant alone would pay for.
-#pragma omp parallel
-    {}
 #endif
+    FarExt::SetNumThreads(numThreads);
+    // Starts or wakes them, which the first contestant alone would pay for.
+    FarExt::ParallelFor(numThreads, [](int) {});
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -52,9 +52,6 @@ double GetRatio(Cost const &own, Cost const &peer);
 std::vector<Cost> RunContest(benchmark::State &state, std::vector<Contestant> const &contestants,
                              bool returnsMemory);
 
-/// Whether the library works with several threads.
-bool HasThreads();
-
 /// For all parallel work of this thread from now on.
 void SetNumThreads(int numThreads);
 

@@ -4,6 +4,8 @@
 #include "makers.h"
 #include "suite.h"
 
+#include "far_ext/executor.h"
+
 #include <cstring>
 
 namespace OpenSubdivHex::Regression {
@@ -22,14 +24,11 @@ Contestant makeCopy(std::size_t numBytes, int numThreads) {
     contestant.numThreads = numThreads;
     contestant.movedBytes = 2 * double(numBytes);
     contestant.work = [=] {
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static)
-#endif
-        for (int part = 0; part < numThreads; ++part) {
+        FarExt::ParallelFor(numThreads, [&](int part) {
             std::size_t const begin = numBytes / std::size_t(numThreads) * std::size_t(part);
             std::memcpy(arrays->dst.data() + begin, arrays->src.data() + begin,
                         numBytes / std::size_t(numThreads));
-        }
+        });
     };
     contestant.validate = [=] {
         Require(arrays->dst.back() == 1 && arrays->dst.front() == 1, "not copied");
@@ -46,11 +45,7 @@ void AddCopyBenchmarks(Suite &suite) {
     mesh.size = "256 MiB";
     suite.AddContest({"copy", "byte", mesh, Memory::Resident}, [] {
         std::size_t const numBytes = std::size_t(256) << 20;
-        Contest contest{{makeCopy(numBytes, 1)}, {}};
-        if (HasThreads()) {
-            contest.contestants.push_back(makeCopy(numBytes, 2));
-        }
-        return contest;
+        return Contest{{makeCopy(numBytes, 1), makeCopy(numBytes, 2)}, {}};
     });
 }
 

@@ -3,7 +3,9 @@
 
 #include "osd_ext/refinementEvaluator.h"
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 namespace OpenSubdivHex::Regression {
 
@@ -40,6 +42,26 @@ double GetMovedBytes(Far::StencilTable const &table, int length) {
 double GetMovedBytes(OsdExt::CompactStencilTable const &table, int length) {
     double const numElements = double(table.GetNumControlVertices()) + table.GetNumStencils();
     return double(table.GetNumBytes()) + numElements * length * sizeof(float);
+}
+
+Contestant OnOpenMp(Contestant contestant) {
+    contestant.prepare = [prepare = contestant.prepare] {
+        if (prepare) {
+            prepare();
+        }
+#ifdef _OPENMP
+#pragma omp parallel
+        {}
+#endif
+    };
+    contestant.release = [release = contestant.release] {
+        constexpr std::chrono::milliseconds kUntilAsleep(30);
+        std::this_thread::sleep_for(kUntilAsleep);
+        if (release) {
+            release();
+        }
+    };
+    return contestant;
 }
 
 Contestant MakeTableFreeContestant(std::shared_ptr<FarExt::TopologyRefiner const> const &refiner,

@@ -20,20 +20,17 @@ Contest makeEvaluation(BenchMesh const &mesh, int length) {
     contest.contestants = {
         MakeEvaluation<OsdExt::CpuEvaluator>("OsdExt::CpuEvaluator", 1, table, values),
         MakeEvaluation<Osd::CpuEvaluator>("Osd::CpuEvaluator", 1, table, values),
-        MakeEvaluation<OsdExt::CpuEvaluator>("OsdExt, compact table", 1, compact, values)};
+        MakeEvaluation<OsdExt::CpuEvaluator>("OsdExt, compact table", 1, compact, values),
+        MakeEvaluation<OsdExt::OmpEvaluator>("OsdExt::OmpEvaluator", 2, table, values)};
     contest.pairings = {{"evaluation-1-" + suffix, 0, {1}},
-                        {"evaluation-compact-" + suffix, 2, {0}}};
-    if (HasThreads()) {
-        contest.contestants.push_back(
-            MakeEvaluation<OsdExt::OmpEvaluator>("OsdExt::OmpEvaluator", 2, table, values));
-        contest.pairings.push_back({"evaluation-2-cpu-" + suffix, 3, {1}});
-        contest.pairings.push_back({"evaluation-2-own-" + suffix, 3, {0}});
-#ifdef OPENSUBDIV_HAS_OPENMP
-        contest.contestants.push_back(
-            MakeEvaluation<Osd::OmpEvaluator>("Osd::OmpEvaluator", 2, table, values));
-        contest.pairings.push_back({"evaluation-2-" + suffix, 3, {4}});
+                        {"evaluation-compact-" + suffix, 2, {0}},
+                        {"evaluation-2-cpu-" + suffix, 3, {1}},
+                        {"evaluation-2-own-" + suffix, 3, {0}}};
+#if defined(OPENSUBDIV_HAS_OPENMP) && defined(_OPENMP)
+    contest.contestants.push_back(
+        OnOpenMp(MakeEvaluation<Osd::OmpEvaluator>("Osd::OmpEvaluator", 2, table, values)));
+    contest.pairings.push_back({"evaluation-2-" + suffix, 3, {4}});
 #endif
-    }
     return contest;
 }
 

@@ -6,13 +6,11 @@
 namespace OpenSubdivHex::Regression {
 namespace {
 
-std::vector<int> getNumThreads() { return HasThreads() ? std::vector<int>{1, 2} : std::vector{1}; }
-
 /// The same work on each number of threads.
 template <typename MAKE>
 Contest makeContest(MAKE make) {
     Contest contest;
-    for (int numThreads : getNumThreads()) {
+    for (int numThreads : {1, 2}) {
         contest.contestants.push_back(make(numThreads));
     }
     return contest;

@@ -3,8 +3,6 @@
 // Runs all benchmarks at tiny sizes and looks for every figure in the results; speed is not tested.
 #include "rows.h"
 
-#include "osd_ext/ompEvaluator.h"
-
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -28,20 +26,18 @@ std::string readFile(std::string const &path) {
 }
 
 bool isMeasurable(std::string const &row) {
-    bool const needsThreads = row.find("-2") != std::string::npos;
     bool const needsCgal = row == "positions-cgal";
 #ifdef PERF_HAS_CGAL
     bool const hasCgal = true;
 #else
     bool const hasCgal = false;
 #endif
-#ifdef OPENSUBDIV_HAS_OPENMP
+#if defined(OPENSUBDIV_HAS_OPENMP) && defined(_OPENMP)
     bool const hasOmpEvaluator = true;
 #else
     bool const hasOmpEvaluator = row.rfind("evaluation-2-length", 0) != 0;
 #endif
-    return (!needsThreads || OsdExt::OmpEvaluator::IsParallel()) && (!needsCgal || hasCgal) &&
-           hasOmpEvaluator;
+    return (!needsCgal || hasCgal) && hasOmpEvaluator;
 }
 
 TEST(Perf, VerdictsFollowTheBounds) {

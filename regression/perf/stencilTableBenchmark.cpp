@@ -44,14 +44,9 @@ void AddStencilTableBenchmarks(Suite &suite) {
             suite.AddContest({"table", "weight", mesh, memory}, [=] {
                 std::shared_ptr<FarExt::TopologyRefiner> const refiner = MakeRefined(mesh);
                 std::shared_ptr<Far::TopologyRefiner> const farRefiner = MakeFarRefined(mesh);
-                Contest contest{
-                    {MakeTableContestant(refiner, 1), MakeFarTableContestant(farRefiner)},
-                    {{"table-1", 0, {1}}}};
-                if (HasThreads()) {
-                    contest.contestants.push_back(MakeTableContestant(refiner, 2));
-                    contest.pairings.push_back({"table-2", 2, {1}});
-                }
-                return contest;
+                return Contest{{MakeTableContestant(refiner, 1), MakeFarTableContestant(farRefiner),
+                                MakeTableContestant(refiner, 2)},
+                               {{"table-1", 0, {1}}, {"table-2", 2, {1}}}};
             });
         }
     }

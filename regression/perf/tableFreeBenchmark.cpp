@@ -64,17 +64,12 @@ Contest makeContest(BenchMesh const &mesh) {
         MakeTableFreeContestant(refiner, 1, values),
         MakeEvaluation<OsdExt::CpuEvaluator>("table, factorized", 1, table, values),
         makeLevelByLevel<OsdExt::CpuEvaluator>(*refiner, 1, values),
-        MakeEvaluation<OsdExt::CpuEvaluator>("table, compact", 1, compact, values)};
-    contest.pairings = {{"table-free-1", 0, {1, 2, 3}}};
-    if (HasThreads()) {
-        contest.contestants.push_back(MakeTableFreeContestant(refiner, 2, values));
-        contest.contestants.push_back(
-            MakeEvaluation<OsdExt::OmpEvaluator>("table, factorized", 2, table, values));
-        contest.contestants.push_back(makeLevelByLevel<OsdExt::OmpEvaluator>(*refiner, 2, values));
-        contest.contestants.push_back(
-            MakeEvaluation<OsdExt::OmpEvaluator>("table, compact", 2, compact, values));
-        contest.pairings.push_back({"table-free-2", 4, {5, 6, 7}});
-    }
+        MakeEvaluation<OsdExt::CpuEvaluator>("table, compact", 1, compact, values),
+        MakeTableFreeContestant(refiner, 2, values),
+        MakeEvaluation<OsdExt::OmpEvaluator>("table, factorized", 2, table, values),
+        makeLevelByLevel<OsdExt::OmpEvaluator>(*refiner, 2, values),
+        MakeEvaluation<OsdExt::OmpEvaluator>("table, compact", 2, compact, values)};
+    contest.pairings = {{"table-free-1", 0, {1, 2, 3}}, {"table-free-2", 4, {5, 6, 7}}};
     return contest;
 }
 

@@ -59,7 +59,7 @@ std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, int level) {
     return refiner;
 }
 
-/// A level from which on the loops run on several threads of OpenMP themselves.
+/// A level from which on the loops run on several threads themselves.
 constexpr int kLargeLevel = 6;
 
 /// The weights of all kinds of tables.

@@ -6,6 +6,7 @@
 // or Far::StencilTable and an evaluator -> mesh file.
 #include "creaseAngle.h"
 #include "evaluation.h"
+#include "far_ext/threads.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "far_ext/version.h"
 #include "levelMesh.h"
@@ -209,14 +210,15 @@ void addOptions(CLI::App &app, Arguments *arguments) {
             if (!ParseInt(word, &numThreads) || numThreads < 1 || numThreads > 1024) {
                 return "'" + word + "' is not a number of threads, 1 to 1024";
             }
-#ifndef _OPENMP
-            if (numThreads > 1) {
-                return std::string("this program has one thread, it was built without OpenMP");
-            }
-#endif
             return std::string();
         })
-        ->default_str("those of OpenMP: OMP_NUM_THREADS, or all processors");
+        ->default_str(
+#ifdef _OPENMP
+            "OMP_NUM_THREADS, or that of the processors"
+#else
+            "that of the processors"
+#endif
+        );
     app.add_option("--simd", arguments->simd,
                    "Instructions of --evaluator stencil and --limit: portable, avx2 or avx512")
         ->check(checkSimdLevel)
@@ -628,11 +630,12 @@ int main(int argc, char **argv) {
                  "hexrefine");
     addOptions(app, &arguments);
     return RunProgram(app, argc, argv, [&] {
-#ifdef _OPENMP
         if (arguments.numThreads) {
-            omp_set_num_threads(*arguments.numThreads);
-        }
+            OpenSubdivHex::FarExt::SetNumThreads(*arguments.numThreads);
+#ifdef _OPENMP
+            omp_set_num_threads(*arguments.numThreads); // of Osd's evaluator
 #endif
+        }
         if (arguments.simd) {
             setSimdLevel(*arguments.simd);
         }

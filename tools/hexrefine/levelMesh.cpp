@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "levelMesh.h"
 
+#include "far_ext/executor.h"
 #include "far_ext/indexing.h"
 
 #include <algorithm>
@@ -28,12 +29,8 @@ public:
     void Run() {
         int const numRanges = (_level.GetNumFaces() + kRangeSize - 1) / kRangeSize;
         std::vector<Place> places(std::size_t(numRanges) + 1); // where ranges begin
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic)
-#endif
-        for (int range = 0; range < numRanges; ++range) {
-            places[std::size_t(range) + 1] = countFaces(range);
-        }
+        FarExt::ParallelFor(numRanges,
+                            [&](int range) { places[std::size_t(range) + 1] = countFaces(range); });
         std::partial_sum(places.begin(), places.end(), places.begin());
         _mesh.faceSizes.resize(places.back().face);
         _mesh.faceVertices.resize(places.back().corner);
@@ -41,12 +38,8 @@ public:
         for (FVarChannel &channel : _mesh.channels) {
             channel.faceValues.resize(places.back().corner);
         }
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic)
-#endif
-        for (int range = 0; range < numRanges; ++range) {
-            copyFaces(range, places[std::size_t(range)]);
-        }
+        FarExt::ParallelFor(numRanges,
+                            [&](int range) { copyFaces(range, places[std::size_t(range)]); });
     }
 
 private:

@@ -6,12 +6,15 @@
 #include "meshContent.h"
 #include "outputFile.h"
 
+#include "far_ext/executor.h"
+#include "far_ext/threads.h"
+
 #include <algorithm>
-#include <atomic>
 #include <charconv>
+#include <condition_variable>
 #include <cstdint>
 #include <cstring>
-#include <exception>
+#include <mutex>
 #include <utility>
 
 namespace OpenSubdivHex::Tools {
@@ -21,61 +24,102 @@ namespace {
 /// Enough for a float or an index and the character before or after it.
 constexpr std::size_t kMaxNumber = 16;
 
-/// Items that a thread prints at a time.
+/// Items of a text that a thread prints.
 constexpr std::size_t kRangeSize = 4096;
 
-/// \brief Prints \p count items in parallel, and writes them in order: one thread at a time writes,
-/// while the others print.
+/// \brief Writes texts that threads print, in order: who prints the next one writes it, and those
+/// behind it that were printed before.
+class OrderedWriter {
+public:
+    OrderedWriter(std::size_t numTexts, std::size_t numThreads, OutputFile &file)
+        : _file(file), _numTexts(numTexts), _texts(kTextsPerThread * numThreads) {}
+
+    /// Prints and writes texts until none is left; each thread calls it.
+    /// \param print  print(index, memory) prints into \p memory, which may be of any size, and
+    ///               gives the number of characters
+    template <typename PRINT>
+    void Work(PRINT print) {
+        Text text;
+        std::unique_lock<std::mutex> lock(_mutex);
+        while (_next < _numTexts && !_hasFailed) {
+            // Who prints the one to be written next is at work, and is not this thread.
+            if (_next == _numWritten + _texts.size()) {
+                _hasRoom.wait(lock);
+                continue;
+            }
+            std::size_t const index = _next++;
+            runUnlocked(lock, [&] { text.size = print(index, text.memory); });
+            text.isPrinted = true;
+            std::swap(text, placeOf(index));
+            if (!_isWriting) {
+                writePrinted(lock);
+            }
+        }
+    }
+
+private:
+    struct Text {
+        std::vector<char> memory;
+        std::size_t size = 0;
+        bool isPrinted = false; ///< and not written yet
+    };
+    static constexpr std::size_t kTextsPerThread = 4;
+
+    Text &placeOf(std::size_t index) { return _texts[index % _texts.size()]; }
+
+    // One thread at a time writes, while the others print.
+    void writePrinted(std::unique_lock<std::mutex> &lock) {
+        _isWriting = true;
+        while (placeOf(_numWritten).isPrinted && !_hasFailed) {
+            Text &text = placeOf(_numWritten);
+            runUnlocked(lock, [&] { _file.Write({text.memory.data(), text.size}); });
+            text.isPrinted = false;
+            ++_numWritten;
+            _hasRoom.notify_all();
+        }
+        _isWriting = false;
+    }
+
+    template <typename WORK>
+    void runUnlocked(std::unique_lock<std::mutex> &lock, WORK work) {
+        lock.unlock();
+        try {
+            work();
+        } catch (...) {
+            lock.lock();
+            _hasFailed = true;
+            _hasRoom.notify_all();
+            throw;
+        }
+        lock.lock();
+    }
+
+    OutputFile &_file;
+    std::size_t const _numTexts;
+    std::mutex _mutex; // guards the rest, but for texts that are written or being printed
+    std::vector<Text> _texts;
+    std::size_t _next = 0;
+    std::size_t _numWritten = 0;
+    bool _isWriting = false;
+    bool _hasFailed = false;
+    std::condition_variable _hasRoom;
+};
+
+/// \brief Prints \p count items in parallel, and writes them in order.
 ///
 /// \param getMaxSize  most characters of items [begin, end)
 /// \param print       prints items [begin, end) to a place for so many, and gives its end
 template <typename GET_MAX_SIZE, typename PRINT>
 void writeItems(std::size_t count, GET_MAX_SIZE getMaxSize, PRINT print, OutputFile &file) {
-    std::size_t const numRanges = (count + kRangeSize - 1) / kRangeSize;
-    // An exception must not leave a parallel region: the first is kept and thrown behind it.
-    std::exception_ptr exception;
-    std::atomic<bool> hasFailed = false;
-#ifdef _OPENMP
-#pragma omp parallel
-#endif
-    {
-        std::vector<char> text;
-#ifdef _OPENMP
-#pragma omp for ordered schedule(dynamic)
-#endif
-        for (std::size_t range = 0; range < numRanges; ++range) {
-            std::exception_ptr exceptionHere;
-            std::size_t size = 0;
-            auto const keepException = [&](auto const &work) {
-                try {
-                    if (!exceptionHere && !hasFailed) {
-                        work();
-                    }
-                } catch (...) {
-                    exceptionHere = std::current_exception();
-                }
-            };
-            keepException([&] {
-                std::size_t const begin = range * kRangeSize;
-                std::size_t const end = std::min(begin + kRangeSize, count);
-                text.resize(std::max(getMaxSize(begin, end), text.size()));
-                size = std::size_t(print(begin, end, text.data()) - text.data());
-            });
-#ifdef _OPENMP
-#pragma omp ordered
-#endif
-            {
-                keepException([&] { file.Write({text.data(), size}); });
-                if (exceptionHere && !hasFailed) {
-                    exception = exceptionHere;
-                    hasFailed = true;
-                }
-            }
-        }
-    }
-    if (exception) {
-        std::rethrow_exception(exception);
-    }
+    int const numThreads = FarExt::GetNumThreads();
+    OrderedWriter writer((count + kRangeSize - 1) / kRangeSize, std::size_t(numThreads), file);
+    auto const printRange = [&](std::size_t range, std::vector<char> &memory) {
+        std::size_t const begin = range * kRangeSize;
+        std::size_t const end = std::min(begin + kRangeSize, count);
+        memory.resize(std::max(getMaxSize(begin, end), memory.size()));
+        return std::size_t(print(begin, end, memory.data()) - memory.data());
+    };
+    FarExt::ParallelFor(numThreads, [&](int) { writer.Work(printRange); });
 }
 
 template <typename T>

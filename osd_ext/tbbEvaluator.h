@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_TBB_EVALUATOR_H
+#define OPENSUBDIVHEX_OSD_EXT_TBB_EVALUATOR_H
+
+#include "far_ext/tbbExecutor.h"
+#include "ompEvaluator.h"
+
+namespace OpenSubdivHex::OsdExt {
+
+/// \brief Evaluates stencils on the threads of TBB, in the arena of the calling thread: a faster
+/// Osd::TbbEvaluator.  It is OmpEvaluator with a FarExt::TbbExecutor, whatever executor is set.
+///
+/// This header is all of it: a program that includes it links TBB.
+class TbbEvaluator : public StencilEvaluator<TbbEvaluator> {
+    friend class StencilEvaluator<TbbEvaluator>;
+    static bool run(float const *src, Osd::BufferDescriptor const &srcDesc,
+                    internal::StencilOutput const *outputs, int numOutputs,
+                    internal::StencilRows const &rows, int start, int end) {
+        FarExt::TbbExecutor executor;
+        FarExt::ExecutorScope const scope(&executor);
+        return OmpEvaluator::run(src, srcDesc, outputs, numOutputs, rows, start, end);
+    }
+};
+
+} // namespace OpenSubdivHex::OsdExt
+
+#endif
