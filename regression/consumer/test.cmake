@@ -47,12 +47,14 @@ set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed)
 set_tests_properties(consumer.build PROPERTIES FIXTURES_REQUIRED installed)
 get_target_property(opensubdivDirs OpenSubdiv::osdCPU INTERFACE_INCLUDE_DIRECTORIES)
 list(TRANSFORM opensubdivDirs PREPEND -I)
+find_package(TBB CONFIG QUIET)
 add_test(NAME consumer.headers
   COMMAND ${CMAKE_COMMAND}
     -D sourceDir=${PROJECT_SOURCE_DIR}
     -D includeDir=${consumerDir}/prefix/${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex
     -D compiler=${CMAKE_CXX_COMPILER}
     -D "flags=${opensubdivDirs}"
+    -D hasTbb=${TBB_FOUND}
     -P ${PROJECT_SOURCE_DIR}/regression/consumer/headers.cmake)
 set_tests_properties(consumer.headers PROPERTIES FIXTURES_REQUIRED installed)
 if(OPENSUBDIVHEX_TOOLS)
