@@ -10,9 +10,23 @@
 namespace OpenSubdivHex::FarExt {
 
 using Index = Far::Index;
+using internal::Buffer;
 using internal::FVarChannel;
 using internal::FVarLevel;
+using internal::IndexPair;
 using internal::Refinement;
+
+namespace {
+
+/// The indices that lie in a relation, which is empty in a level that does not have it.
+Far::ConstIndexArray listAll(Buffer<Index> const &relation) {
+    return {relation.data(), int(relation.size())};
+}
+Far::ConstIndexArray listAll(Buffer<IndexPair> const &relation) {
+    return {relation.empty() ? nullptr : relation.data()->data(), 2 * int(relation.size())};
+}
+
+} // namespace
 
 TopologyLevel::TopologyLevel(internal::Hierarchy const &hierarchy, int depth)
     : _hierarchy(&hierarchy), _level(&hierarchy.mesh.levels[std::size_t(depth)]), _depth(depth),
@@ -65,6 +79,26 @@ Far::ConstLocalIndexArray TopologyLevel::GetVertexEdgeLocalIndices(Index v) cons
                                                     _level->GetVertexEdges(v).size())
                              : ConstLocalIndexArray();
 }
+
+Far::ConstIndexArray TopologyLevel::GetAllFaceEdges() const { return listAll(_level->faceEdges); }
+
+Far::ConstIndexArray TopologyLevel::GetAllEdgeVertices() const {
+    return listAll(_level->edgeVerts);
+}
+
+Far::ConstIndexArray TopologyLevel::GetAllEdgeFaces() const { return listAll(_level->edgeFaces); }
+
+Far::ConstIndexArray TopologyLevel::GetVertexFaceOffsets() const {
+    return listAll(_level->vertFirstFace);
+}
+
+Far::ConstIndexArray TopologyLevel::GetAllVertexFaces() const { return listAll(_level->vertFaces); }
+
+Far::ConstIndexArray TopologyLevel::GetVertexEdgeOffsets() const {
+    return listAll(_level->vertFirstEdge);
+}
+
+Far::ConstIndexArray TopologyLevel::GetAllVertexEdges() const { return listAll(_level->vertEdges); }
 
 Index TopologyLevel::FindEdge(Index v0, Index v1) const {
     for (Index edge : GetVertexEdges(v0)) {

@@ -116,6 +116,30 @@ public:
     Index GetVertexCorner(Index v, int i) const;
     /// @}
 
+    /// @name Whole relations, for those who hand them on without a copy
+    /// Valid as long as the level.  Without full topology those of edges and vertices are empty.
+    /// @{
+    /// GetNumFaces() + 1 positions: the vertices of face f are the elements
+    /// [offsets[f], offsets[f + 1]) of GetAllFaceVertices(), and likewise its edges.
+    ConstIndexArray GetFaceOffsets() const { return {_faceFirstCorner, _numFaces + 1}; }
+    /// The vertices of all faces: GetNumFaceVertices() elements.
+    ConstIndexArray GetAllFaceVertices() const { return {_faceVerts, GetNumFaceVertices()}; }
+    /// The edges of all faces: GetNumFaceVertices() elements.
+    ConstIndexArray GetAllFaceEdges() const;
+    /// The vertices of all edges: two elements for each.
+    ConstIndexArray GetAllEdgeVertices() const;
+    /// The faces of all edges: two elements for each; the second of a boundary edge is negative.
+    ConstIndexArray GetAllEdgeFaces() const;
+    /// GetNumVertices() + 1 positions in GetAllVertexFaces().
+    ConstIndexArray GetVertexFaceOffsets() const;
+    /// The faces of all vertices: GetNumFaceVertices() elements.
+    ConstIndexArray GetAllVertexFaces() const;
+    /// GetNumVertices() + 1 positions in GetAllVertexEdges().
+    ConstIndexArray GetVertexEdgeOffsets() const;
+    /// The edges of all vertices: 2 GetNumEdges() elements.
+    ConstIndexArray GetAllVertexEdges() const;
+    /// @}
+
     /// @name Topological properties, as in Far::TopologyLevel
     /// @{
 

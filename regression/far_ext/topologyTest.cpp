@@ -268,6 +268,38 @@ void expectParents(TopologyLevel const &parent, TopologyLevel const &child,
     baseFaces = childBaseFaces;
 }
 
+/// That an array lists, between the offsets, what a query gives for each component.
+template <typename QUERY>
+void expectList(IndexArray all, IndexArray offsets, int count, QUERY const &query) {
+    ASSERT_EQ(offsets.size(), count + 1);
+    ASSERT_EQ(all.size(), offsets[count]);
+    for (int i = 0; i < count; ++i) {
+        IndexArray const expected = query(i);
+        ASSERT_EQ(offsets[i + 1] - offsets[i], expected.size());
+        ASSERT_TRUE(std::equal(expected.begin(), expected.end(), all.begin() + offsets[i]));
+    }
+}
+
+void expectWholeRelations(TopologyLevel const &level) {
+    expectList(level.GetAllFaceVertices(), level.GetFaceOffsets(), level.GetNumFaces(),
+               [&](int f) { return level.GetFaceVertices(f); });
+    expectList(level.GetAllFaceEdges(), level.GetFaceOffsets(), level.GetNumFaces(),
+               [&](int f) { return level.GetFaceEdges(f); });
+    expectList(level.GetAllVertexFaces(), level.GetVertexFaceOffsets(), level.GetNumVertices(),
+               [&](int v) { return level.GetVertexFaces(v); });
+    expectList(level.GetAllVertexEdges(), level.GetVertexEdgeOffsets(), level.GetNumVertices(),
+               [&](int v) { return level.GetVertexEdges(v); });
+    IndexArray const edgeVertices = level.GetAllEdgeVertices(), edgeFaces = level.GetAllEdgeFaces();
+    ASSERT_EQ(edgeVertices.size(), 2 * level.GetNumEdges());
+    ASSERT_EQ(edgeFaces.size(), 2 * level.GetNumEdges());
+    for (int e = 0; e < level.GetNumEdges(); ++e) {
+        IndexArray const verts = level.GetEdgeVertices(e), faces = level.GetEdgeFaces(e);
+        ASSERT_TRUE(std::equal(verts.begin(), verts.end(), edgeVertices.begin() + 2 * e));
+        ASSERT_TRUE(std::equal(faces.begin(), faces.end(), edgeFaces.begin() + 2 * e));
+        ASSERT_EQ(edgeFaces[2 * e + 1] < 0, faces.size() == 1);
+    }
+}
+
 void expectSameFaces(TopologyLevel const &level, ReferenceMatch const &match, int depth) {
     ReferenceMesh const &mesh = match.GetMesh(depth);
     ASSERT_EQ(level.GetNumVertices(), int(mesh.n_vertices()));
@@ -324,6 +356,17 @@ TEST_F(Topology, EqualsReference) {
 
 TEST_F(Topology, Relations) {
     forEachShape([](Shape const &shape) { expectRelations(shape, GetTestLevel(shape, 3)); });
+}
+
+TEST_F(Topology, WholeRelations) {
+    forEachShape([](Shape const &shape) {
+        int const numLevels = std::min(2, GetTestLevel(shape, 2));
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, numLevels);
+        for (int level = 0; level <= numLevels; ++level) {
+            SCOPED_TRACE("level " + std::to_string(level));
+            ASSERT_NO_FATAL_FAILURE(expectWholeRelations(refiner->GetLevel(level)));
+        }
+    });
 }
 
 // Of many faces of one size in a row, with few and many of another before and behind.
@@ -453,6 +496,11 @@ TEST_F(Topology, LastLevelWithFaceVerticesAlone) {
             EXPECT_EQ(level.GetEdgeFaces(0).size(), 0);
             EXPECT_EQ(level.GetVertexFaces(0).size(), 0);
             EXPECT_EQ(level.GetVertexEdges(0).size(), 0);
+            EXPECT_EQ(level.GetAllFaceVertices().size(), level.GetNumFaceVertices());
+            EXPECT_EQ(level.GetAllFaceEdges().size(), 0);
+            EXPECT_EQ(level.GetAllEdgeVertices().size(), 0);
+            EXPECT_EQ(level.GetVertexFaceOffsets().size(), 0);
+            EXPECT_EQ(level.GetAllVertexEdges().size(), 0);
         }
     });
 }

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_PYTHON_ARRAYS_H
+#define OPENSUBDIVHEX_PYTHON_ARRAYS_H
+
+#include <opensubdiv/far/types.h>
+#include <opensubdiv/osd/bufferDescriptor.h>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <string>
+#include <vector>
+
+/// What goes between numpy and the library: arguments are checked here, before the library reads or
+/// writes what they refer to.  Each check names the argument in its error.
+namespace OpenSubdivHex::Python {
+
+namespace py = pybind11;
+namespace Far = OpenSubdiv::Far;
+namespace Osd = OpenSubdiv::Osd;
+
+/// \brief Takes integers of any type and in any array or sequence, as 32-bit ones.
+///
+/// Raises TypeError for what are no integers and ValueError for a number of dimensions other than
+/// \p numDimensions or an integer beyond 32 bits, whose place is named.
+py::array_t<int> TakeIndices(py::handle object, char const *name, int numDimensions = 1);
+
+/// Takes numbers as floats, of one dimension, or one number for all \p count.
+std::vector<float> TakeFloats(py::handle object, char const *name, std::size_t count);
+
+/// The type of the numbers in an array of elements, float64 or, for all else, float32.
+bool IsDouble(py::handle object);
+
+/// \brief The elements that an evaluator reads or writes: rows of an array.
+///
+/// An array has one dimension, an element being one number, or two.  The numbers of an element lie
+/// side by side; elements may be apart, as in a slice of the columns of another array.
+template <typename REAL>
+struct Elements {
+    py::array array; ///< whose memory it is
+    REAL *data = nullptr;
+    int count = 0;
+    Osd::BufferDescriptor desc; ///< offset 0
+};
+
+/// \brief Takes elements to read.  Lists become arrays, but an array of another type is refused, not
+/// copied.
+///
+/// \param count  how many there must be; -1 for any number
+template <typename REAL>
+Elements<REAL const> TakeSource(py::handle object, char const *name, int count);
+
+/// \brief Takes an array of \p count elements to write, as long as those of \p source; makes one
+/// for None.
+template <typename REAL>
+Elements<REAL> TakeDestination(py::handle object, char const *name, int count,
+                               Elements<REAL const> const &source);
+
+/// Raises ValueError where the elements \p begin ... \p end - 1 of \p destination, which are about to
+/// be written, show numbers of \p source.
+template <typename REAL>
+void CheckApart(Elements<REAL const> const &source, Elements<REAL> const &destination,
+                char const *name, int begin, int end);
+
+/// \brief An array that shows memory of \p owner, which lives as long as the array.  Nobody can
+/// write to it.
+template <typename T>
+py::array View(T const *data, std::vector<py::ssize_t> shape, py::object const &owner);
+
+/// An array that takes over the memory of a vector.
+template <typename T>
+py::array_t<T> TakeOver(std::vector<T> &&values) {
+    auto *const vector = new std::vector<T>(std::move(values));
+    py::capsule const owner(vector,
+                            [](void *memory) { delete static_cast<std::vector<T> *>(memory); });
+    return py::array_t<T>(py::ssize_t(vector->size()), vector->data(), owner);
+}
+
+/// Raises IndexError unless \p index is 0 ... \p size - 1.
+void CheckIndex(long long index, int size, char const *name);
+
+/// The shape of an array, as Python writes it.
+std::string DescribeShape(py::array const &array);
+
+} // namespace OpenSubdivHex::Python
+
+#endif

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// TopologyLevel: relations as arrays that show the level's memory, and tags as new ones; and
+// LimitSides and triangles, which are made of a level.
+#include "arrays.h"
+#include "refiner.h"
+
+#include "far_ext/limitStencilTableFactory.h"
+#include "osd_ext/triangleIndices.h"
+
+#include <cstdint>
+
+namespace OpenSubdivHex::Python {
+
+namespace {
+
+using namespace FarExt;
+using Index = Far::Index;
+
+/// A property that shows a relation: all face-vertices, or one of the others.
+auto relation(Far::ConstIndexArray (TopologyLevel::*query)() const, bool isOfFaceVertices = false,
+              int width = 1) {
+    return [=](Level const &self) {
+        // Before the array's memory is looked for, so that it stays where it is from here on.
+        py::capsule const pin = self.GetRefiner().Pin();
+        auto const find = [query](TopologyLevel const &level) { return (level.*query)(); };
+        Far::ConstIndexArray const array = isOfFaceVertices ? self.Read(find) : self.ReadFull(find);
+        std::vector<py::ssize_t> shape = {array.size() / width};
+        if (width > 1) {
+            shape.push_back(width);
+        }
+        return View(array.begin(), shape, pin);
+    };
+}
+
+template <typename T>
+auto count(T (TopologyLevel::*query)() const) {
+    return [query](Level const &self) {
+        return self.Read([query](TopologyLevel const &level) { return (level.*query)(); });
+    };
+}
+
+/// A function that makes an array with query(level, i) for each of the level's components.
+template <typename T, typename QUERY>
+auto makeArray(int (TopologyLevel::*size)() const, bool isFull, QUERY query) {
+    return [=](Level const &self) {
+        auto const fill = [=](TopologyLevel const &level) {
+            std::vector<T> values(std::size_t((level.*size)()));
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                values[i] = T((level.*query)(Index(i)));
+            }
+            return values;
+        };
+        return TakeOver<T>(isFull ? self.ReadFull(fill) : self.Read(fill));
+    };
+}
+
+void checkChannel(TopologyLevel const &level, int channel) {
+    CheckIndex(channel, level.GetNumFVarChannels(), "channel");
+}
+
+py::array_t<int> getFaceFVarValues(Level const &self, int channel) {
+    return TakeOver(self.Read([channel](TopologyLevel const &level) {
+        checkChannel(level, channel);
+        std::vector<int> values;
+        values.reserve(std::size_t(level.GetNumFaceVertices()));
+        for (Index f = 0; f < level.GetNumFaces(); ++f) {
+            Far::ConstIndexArray const face = level.GetFaceFVarValues(f, channel);
+            values.insert(values.end(), face.begin(), face.end());
+        }
+        return values;
+    }));
+}
+
+py::tuple getSplitFaces(Level const &self, int channel) {
+    std::vector<int> faces, values;
+    self.Read([&](TopologyLevel const &level) {
+        checkChannel(level, channel);
+        for (Index f = 0; f < level.GetNumFaces(); ++f) {
+            if (!level.IsFaceFVarSplit(f, channel)) {
+                continue;
+            }
+            faces.push_back(f);
+            for (int half = 0; half < 2; ++half) {
+                Far::ConstIndexArray const side = level.GetFaceFVarValues(f, channel, half);
+                values.insert(values.end(), side.begin(), side.end());
+            }
+        }
+    });
+    auto const numFaces = py::ssize_t(faces.size());
+    return py::make_tuple(
+        TakeOver(std::move(faces)),
+        TakeOver(std::move(values)).reshape({numFaces, py::ssize_t(2), py::ssize_t(4)}));
+}
+
+template <typename COUNT, typename MATCH>
+auto matchFVar(COUNT getCount, MATCH match) {
+    return [=](Level const &self, int channel) {
+        std::vector<std::uint8_t> const matches = self.ReadFull([&](TopologyLevel const &level) {
+            checkChannel(level, channel);
+            std::vector<std::uint8_t> values(std::size_t((level.*getCount)()));
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                values[i] = (level.*match)(Index(i), channel);
+            }
+            return values;
+        });
+        py::array_t<bool> result(py::ssize_t(matches.size()));
+        std::copy(matches.begin(), matches.end(), result.mutable_data());
+        return result;
+    };
+}
+
+/// The same as makeArray for answers of yes or no.
+template <typename QUERY>
+auto makeMask(int (TopologyLevel::*size)() const, bool isFull, QUERY query) {
+    return [=](Level const &self) {
+        py::array_t<std::uint8_t> const bytes = makeArray<std::uint8_t>(size, isFull, query)(self);
+        return bytes.attr("view")("bool");
+    };
+}
+
+void bindRelations(py::class_<Level> &level) {
+    level
+        .def_property_readonly("face_offsets", relation(&TopologyLevel::GetFaceOffsets, true),
+                               "int32, shape (faces + 1,), a view: face f has the corners from\n"
+                               "face_offsets[f] to face_offsets[f + 1].")
+        .def_property_readonly("face_vertices", relation(&TopologyLevel::GetAllFaceVertices, true),
+                               "int32, shape (corners,), a view: the vertex at each corner.")
+        .def_property_readonly("face_edges", relation(&TopologyLevel::GetAllFaceEdges),
+                               "int32, shape (corners,), a view: the edge from each corner to the "
+                               "next.")
+        .def_property_readonly("edge_vertices",
+                               relation(&TopologyLevel::GetAllEdgeVertices, false, 2),
+                               "int32, shape (edges, 2), a view.")
+        .def_property_readonly("edge_faces", relation(&TopologyLevel::GetAllEdgeFaces, false, 2),
+                               "int32, shape (edges, 2), a view: the first face runs from the "
+                               "edge's first\nvertex to its second.  The second of a boundary edge "
+                               "is negative.")
+        .def_property_readonly("vertex_face_offsets",
+                               relation(&TopologyLevel::GetVertexFaceOffsets),
+                               "int32, shape (vertices + 1,), a view into vertex_faces.")
+        .def_property_readonly("vertex_faces", relation(&TopologyLevel::GetAllVertexFaces),
+                               "int32, shape (corners,), a view: the faces of each vertex in turn, "
+                               "counter-clockwise.")
+        .def_property_readonly("vertex_edge_offsets",
+                               relation(&TopologyLevel::GetVertexEdgeOffsets),
+                               "int32, shape (vertices + 1,), a view into vertex_edges.")
+        .def_property_readonly(
+            "vertex_edges", relation(&TopologyLevel::GetAllVertexEdges),
+            "int32, shape (2 edges,), a view: the edges of each vertex in turn,\n"
+            "counter-clockwise.")
+        .def(
+            "find_edge",
+            [](Level const &self, int v0, int v1) {
+                Index const edge = self.ReadFull([&](TopologyLevel const &topology) {
+                    CheckIndex(v0, topology.GetNumVertices(), "v0");
+                    CheckIndex(v1, topology.GetNumVertices(), "v1");
+                    return topology.FindEdge(v0, v1);
+                });
+                return edge == Far::INDEX_INVALID ? py::object(py::none())
+                                                  : py::object(py::int_(edge));
+            },
+            "find_edge(v0, v1)\n\nThe edge between two vertices, or None.", py::arg("v0"),
+            py::arg("v1"));
+}
+
+void bindTags(py::class_<Level> &level) {
+    auto const faces = &TopologyLevel::GetNumFaces;
+    auto const edges = &TopologyLevel::GetNumEdges;
+    auto const vertices = &TopologyLevel::GetNumVertices;
+    level
+        .def("get_face_kinds", makeArray<std::uint8_t>(faces, false, &TopologyLevel::GetFaceKind),
+             "get_face_kinds()\n\nA FaceKind for each face: uint8, shape (faces,).")
+        .def("is_face_hole", makeMask(faces, false, &TopologyLevel::IsFaceHole),
+             "is_face_hole()\n\nWhether each face is a hole: bool, shape (faces,).")
+        .def("is_face_half", makeMask(faces, true, &TopologyLevel::IsFaceHalf),
+             "is_face_half()\n\nWhether each face is half a hexagon, cut by a sharp boundary: "
+             "bool,\nshape (faces,).")
+        .def("get_face_diagonal_sharpness",
+             makeArray<float>(faces, false, &TopologyLevel::GetFaceDiagonalSharpness),
+             "get_face_diagonal_sharpness()\n\nSharpness of the crease that crosses each hexagon "
+             "from its vertex 0 to its\nvertex 3, or 0: float32, shape (faces,).")
+        .def("get_edge_sharpness", makeArray<float>(edges, true, &TopologyLevel::GetEdgeSharpness),
+             "get_edge_sharpness()\n\nfloat32, shape (edges,).")
+        .def("is_edge_boundary", makeMask(edges, true, &TopologyLevel::IsEdgeBoundary),
+             "is_edge_boundary()\n\nWhether each edge is one: bool, shape (edges,).")
+        .def("is_edge_non_manifold", makeMask(edges, true, &TopologyLevel::IsEdgeNonManifold),
+             "is_edge_non_manifold()\n\nOf level 0: whether each edge came from a non-manifold "
+             "one: bool, shape (edges,).")
+        .def("get_vertex_sharpness",
+             makeArray<float>(vertices, false, &TopologyLevel::GetVertexSharpness),
+             "get_vertex_sharpness()\n\nfloat32, shape (vertices,).")
+        .def("get_vertex_rules",
+             makeArray<std::uint8_t>(vertices, true, &TopologyLevel::GetVertexRule),
+             "get_vertex_rules()\n\nA Rule for each vertex: uint8, shape (vertices,).")
+        .def("is_vertex_boundary", makeMask(vertices, true, &TopologyLevel::IsVertexBoundary),
+             "is_vertex_boundary()\n\nWhether each vertex is on one: bool, shape (vertices,).")
+        .def("is_vertex_corner", makeMask(vertices, true, &TopologyLevel::IsVertexCorner),
+             "is_vertex_corner()\n\nWhether each vertex has exactly one face: bool, shape "
+             "(vertices,).")
+        .def("is_vertex_non_manifold",
+             makeMask(vertices, true, &TopologyLevel::IsVertexNonManifold),
+             "is_vertex_non_manifold()\n\nbool, shape (vertices,).")
+        .def("is_vertex_valence_regular",
+             makeMask(vertices, true, &TopologyLevel::IsVertexValenceRegular),
+             "is_vertex_valence_regular()\n\nWhether each vertex has three faces, or one or two "
+             "at a boundary: bool,\nshape (vertices,).");
+}
+
+void bindParents(py::class_<Level> &level) {
+    auto const faces = &TopologyLevel::GetNumFaces;
+    level
+        .def("get_face_base_faces", makeArray<int>(faces, false, &TopologyLevel::GetFaceBaseFace),
+             "get_face_base_faces()\n\nThe face of level 0 that each face lies in: int32, shape "
+             "(faces,).")
+        .def("get_face_parent_faces",
+             makeArray<int>(faces, false, &TopologyLevel::GetFaceParentFace),
+             "get_face_parent_faces()\n\nOf the level before: int32, shape (faces,).  For the face "
+             "of an edge, the edge's\nfirst face.")
+        .def("get_face_parent_edges",
+             makeArray<int>(faces, false, &TopologyLevel::GetFaceParentEdge),
+             "get_face_parent_edges()\n\nint32, shape (faces,); -1 for faces that no edge made.")
+        .def("get_face_parent_vertices",
+             makeArray<int>(faces, false, &TopologyLevel::GetFaceParentVertex),
+             "get_face_parent_vertices()\n\nint32, shape (faces,); -1 for faces that no vertex "
+             "made.")
+        .def("get_edge_child_faces",
+             makeArray<int>(&TopologyLevel::GetNumEdges, true, &TopologyLevel::GetEdgeChildFace),
+             "get_edge_child_faces()\n\nThe face that each edge makes: int32, shape (edges,); -1 "
+             "for none.")
+        .def("get_vertex_child_vertices",
+             makeArray<int>(&TopologyLevel::GetNumVertices, true,
+                            &TopologyLevel::GetVertexChildVertex),
+             "get_vertex_child_vertices()\n\nThe vertex that each vertex becomes: int32, shape "
+             "(vertices,); -1 for none.");
+}
+
+void bindFVar(py::class_<Level> &level) {
+    level
+        .def(
+            "get_num_fvar_values",
+            [](Level const &self, int channel) {
+                return self.Read([channel](TopologyLevel const &topology) {
+                    checkChannel(topology, channel);
+                    return topology.GetNumFVarValues(channel);
+                });
+            },
+            "get_num_fvar_values(channel=0)", py::arg("channel") = 0)
+        .def("get_face_fvar_values", &getFaceFVarValues,
+             "get_face_fvar_values(channel=0)\n\nThe value at each corner: int32, shape (corners,)."
+             "  Of a face that a seam\ncrosses, the two corners on it have the values of half 0.",
+             py::arg("channel") = 0)
+        .def(
+            "get_fvar_split_faces", &getSplitFaces,
+            "get_fvar_split_faces(channel=0)\n\nThe faces that a seam crosses, and the values of "
+            "their halves: a pair of int32,\nshapes (n,) and (n, 2, 4).  Half 0 has the corners 0, "
+            "3, 4, 5 of the hexagon, half 1\nthe corners 3, 0, 1, 2.",
+            py::arg("channel") = 0)
+        .def("does_edge_fvar_topology_match",
+             matchFVar(&TopologyLevel::GetNumEdges, &TopologyLevel::DoesEdgeFVarTopologyMatch),
+             "does_edge_fvar_topology_match(channel=0)\n\nWhether both sides of each edge have the "
+             "same values: bool, shape (edges,).",
+             py::arg("channel") = 0)
+        .def("does_vertex_fvar_topology_match",
+             matchFVar(&TopologyLevel::GetNumVertices, &TopologyLevel::DoesVertexFVarTopologyMatch),
+             "does_vertex_fvar_topology_match(channel=0)\n\nbool, shape (vertices,).",
+             py::arg("channel") = 0)
+        .def("does_face_fvar_topology_match",
+             matchFVar(&TopologyLevel::GetNumFaces, &TopologyLevel::DoesFaceFVarTopologyMatch),
+             "does_face_fvar_topology_match(channel=0)\n\nbool, shape (faces,).",
+             py::arg("channel") = 0);
+}
+
+LimitSides createSides(Level const &level) {
+    return level.ReadFull([](TopologyLevel const &topology) { return LimitSides(topology); });
+}
+
+/// For each side what a query of LimitSides says.
+auto listSides(Index (LimitSides::*query)(Index) const) {
+    return [query](LimitSides const &self) {
+        std::vector<int> values(std::size_t(self.GetNumSides()));
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            values[i] = (self.*query)(Index(i));
+        }
+        return TakeOver(std::move(values));
+    };
+}
+
+py::array_t<int> findSides(LimitSides const &self, Level const &level, int half) {
+    CheckIndex(half, 2, "half");
+    return TakeOver(level.ReadFull([&](TopologyLevel const &topology) {
+        if (topology.GetNumVertices() != self.GetNumVertices()) {
+            throw py::value_error("level: the sides are those of another level");
+        }
+        std::vector<int> sides;
+        sides.reserve(std::size_t(topology.GetNumFaceVertices()));
+        for (Index f = 0; f < topology.GetNumFaces(); ++f) {
+            for (int i = 0; i < topology.GetFaceVertices(f).size(); ++i) {
+                sides.push_back(self.FindSide(topology, f, i, half));
+            }
+        }
+        return sides;
+    }));
+}
+
+py::dict createTriangleIndices(Level const &level, int vertexOffset, int fvarChannel,
+                               bool drawHoles) {
+    OsdExt::TriangleOptions options;
+    options.vertexOffset = vertexOffset;
+    options.fvarChannel = fvarChannel;
+    options.drawHoles = drawHoles;
+    OsdExt::TriangleIndices triangles = level.Read([&](TopologyLevel const &topology) {
+        if (fvarChannel != -1) {
+            CheckIndex(fvarChannel, topology.GetNumFVarChannels(), "fvar_channel");
+        }
+        return OsdExt::CreateTriangleIndices(topology, options);
+    });
+    py::ssize_t const numTriangles = triangles.GetNumTriangles();
+    std::vector<py::ssize_t> const shape = {numTriangles, 3};
+    py::dict result;
+    result["vertices"] = TakeOver(std::move(triangles.vertices)).reshape(shape);
+    if (fvarChannel != -1) {
+        result["fvar_values"] = TakeOver(std::move(triangles.fvarValues)).reshape(shape);
+    }
+    result["faces"] = TakeOver(std::move(triangles.faces));
+    result["base_faces"] = TakeOver(std::move(triangles.baseFaces));
+    return result;
+}
+
+} // namespace
+
+void BindLevel(py::module_ &module) {
+    py::class_<Level> level(
+        module, "TopologyLevel",
+        "One level of a refined mesh, from TopologyRefiner.get_level().\n\n"
+        "Properties that are arrays show the level's own memory: they are read-only, keep the\n"
+        "refiner, and hold it from refining again.  Functions make new arrays.\n\n"
+        "The last level has face_offsets and face_vertices alone, and what needs no more, unless "
+        "it\n"
+        "was made with full_topology_in_last_level=True; ValueError says so.  RuntimeError is "
+        "raised\n"
+        "once the refiner refined again.");
+    level.def_property_readonly("depth", &Level::GetDepth)
+        .def_property_readonly("num_vertices", count(&TopologyLevel::GetNumVertices))
+        .def_property_readonly("num_faces", count(&TopologyLevel::GetNumFaces))
+        .def_property_readonly("num_edges", count(&TopologyLevel::GetNumEdges))
+        .def_property_readonly("num_face_vertices", count(&TopologyLevel::GetNumFaceVertices),
+                               "The number of corners.")
+        .def_property_readonly("num_boundary_edges", count(&TopologyLevel::GetNumBoundaryEdges))
+        .def_property_readonly("num_fvar_channels", count(&TopologyLevel::GetNumFVarChannels))
+        .def_property_readonly("has_full_topology", count(&TopologyLevel::HasFullTopology))
+        .def(
+            "validate",
+            [](Level const &self) {
+                Status status;
+                self.Read([&](TopologyLevel const &topology) { topology.Validate(&status); });
+                RaiseUnlessOk(status);
+            },
+            "validate()\n\nChecks every invariant of the topology by direct search.  Raises "
+            "StatusError, which\nnames the first component that breaks one.");
+    bindRelations(level);
+    bindTags(level);
+    bindParents(level);
+    bindFVar(level);
+
+    py::class_<LimitSides>(
+        module, "LimitSides",
+        "LimitSides(level)\n\n"
+        "The sides of the vertices of a level with full topology: where two or more infinitely\n"
+        "sharp edges meet, the surface has a tangent plane for each part of the faces between.\n"
+        "Side 0 of each vertex has the vertex's index; further ones follow the vertices.")
+        .def(py::init(&createSides), py::arg("level"))
+        .def_property_readonly("num_vertices", &LimitSides::GetNumVertices)
+        .def_property_readonly("num_sides", &LimitSides::GetNumSides)
+        .def("get_vertices", listSides(&LimitSides::GetVertex),
+             "get_vertices()\n\nThe vertex of each side: int32, shape (sides,).")
+        .def(
+            "get_local_sides", listSides(&LimitSides::GetLocalSide),
+            "get_local_sides()\n\nWhich of its vertex's sides each side is: int32, shape (sides,).")
+        .def("find_sides", &findSides,
+             "find_sides(level, half=0)\n\nThe side on which each face has the vertex at each of "
+             "its corners: int32, shape\n(corners,).  Of a hexagon with a sharp diagonal, in that "
+             "half.",
+             py::arg("level"), py::arg("half") = 0);
+
+    module.def(
+        "create_triangle_indices", &createTriangleIndices,
+        "create_triangle_indices(level, vertex_offset=0, fvar_channel=-1, draw_holes=False)\n"
+        "\n"
+        "Triangles to draw a level with, cut along creases and along the seams of the\n"
+        "channel: a dict of int32 arrays, 'vertices' and, with a channel, 'fvar_values' of\n"
+        "the shape (triangles, 3), 'faces' and 'base_faces' of the shape (triangles,).",
+        py::arg("level"), py::arg("vertex_offset") = 0, py::arg("fvar_channel") = -1,
+        py::arg("draw_holes") = false);
+}
+
+} // namespace OpenSubdivHex::Python

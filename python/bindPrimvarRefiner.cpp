@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// PrimvarRefiner: data of one level from those of the level before, without a table.
+#include "arrays.h"
+#include "refiner.h"
+
+#include "far_ext/primvarRefiner.h"
+
+#include <algorithm>
+#include <functional>
+#include <type_traits>
+
+namespace OpenSubdivHex::Python {
+
+namespace {
+
+using namespace FarExt;
+
+/// \brief An element of an array, as FarExt::PrimvarRefiner asks for.
+template <typename REAL>
+struct Element {
+    void Clear() { std::fill_n(data, length, REAL(0)); }
+
+    template <typename SOURCE>
+    void AddWithWeight(Element<SOURCE> const &element, std::remove_const_t<REAL> weight) {
+        for (int i = 0; i < length; ++i) {
+            data[i] += weight * element.data[i];
+        }
+    }
+
+    REAL *data;
+    int length;
+};
+
+template <typename REAL>
+struct ElementArray {
+    explicit ElementArray(Elements<REAL> const &elements)
+        : data(elements.data), stride(std::size_t(elements.desc.stride)),
+          length(elements.desc.length) {}
+
+    Element<REAL> operator[](Far::Index i) const {
+        return {data + std::size_t(i) * stride, length};
+    }
+
+    REAL *data;
+    std::size_t stride;
+    int length;
+};
+
+class PrimvarRefinement {
+public:
+    explicit PrimvarRefinement(std::shared_ptr<Refiner> refiner) : _refiner(std::move(refiner)) {}
+
+    py::object Interpolate(int level, py::object const &src, py::object const &dst) const {
+        return interpolate(level, src, dst, &TopologyLevel::GetNumVertices,
+                           [level](auto const &refiner, auto const &from, auto &to) {
+                               refiner.Interpolate(level, from, to);
+                           });
+    }
+
+    py::object InterpolateVarying(int level, py::object const &src, py::object const &dst) const {
+        return interpolate(level, src, dst, &TopologyLevel::GetNumVertices,
+                           [level](auto const &refiner, auto const &from, auto &to) {
+                               refiner.InterpolateVarying(level, from, to);
+                           });
+    }
+
+    py::object InterpolateFaceVarying(int level, py::object const &src, py::object const &dst,
+                                      int channel) const {
+        CheckIndex(channel, _refiner->Read([](auto &r) { return r.GetNumFVarChannels(); }),
+                   "channel");
+        return interpolate(
+            level, src, dst,
+            [channel](TopologyLevel const &topology) { return topology.GetNumFVarValues(channel); },
+            [level, channel](auto const &refiner, auto const &from, auto &to) {
+                refiner.InterpolateFaceVarying(level, from, to, channel);
+            });
+    }
+
+    /// Elements of any type are copied, so that numpy can do it.
+    py::object InterpolateFaceUniform(int level, py::object const &src,
+                                      py::object const &dst) const {
+        std::pair<int, int> const counts = countElements(level, &TopologyLevel::GetNumFaces);
+        int const numSources = counts.first, numFaces = counts.second;
+        py::module_ const numpy = py::module_::import("numpy");
+        py::array const source = numpy.attr("asarray")(src);
+        if (source.ndim() == 0 || source.shape(0) != numSources) {
+            throw py::value_error("src: " + std::to_string(numSources) +
+                                  " elements are needed, the shape is " + DescribeShape(source));
+        }
+        std::vector<int> parents(std::size_t(numFaces), 0);
+        _refiner->Read([&](TopologyRefiner const &refiner) {
+            checkUnchanged(refiner, level, &TopologyLevel::GetNumFaces, numSources, numFaces);
+            std::vector<int> faces(std::size_t(numSources), 0);
+            for (Far::Index f = 0; f < numSources; ++f) {
+                faces[std::size_t(f)] = f;
+            }
+            PrimvarRefiner(refiner).InterpolateFaceUniform(level, faces, parents);
+        });
+        return numpy.attr("take")(source, TakeOver(std::move(parents)), py::arg("axis") = 0,
+                                  py::arg("out") = dst);
+    }
+
+private:
+    template <typename COUNT>
+    std::pair<int, int> countElements(int level, COUNT const &count) const {
+        return _refiner->Read([&](TopologyRefiner const &refiner) {
+            if (level < 1 || level > refiner.GetMaxLevel()) {
+                throw py::index_error("level: " + std::to_string(level) + " is not one of 1 ... " +
+                                      std::to_string(refiner.GetMaxLevel()));
+            }
+            return std::make_pair(std::invoke(count, refiner.GetLevel(level - 1)),
+                                  std::invoke(count, refiner.GetLevel(level)));
+        });
+    }
+
+    /// Another thread may have refined after the elements were counted.
+    template <typename COUNT>
+    static void checkUnchanged(TopologyRefiner const &refiner, int level, COUNT const &count,
+                               int numSources, int numElements) {
+        if (level > refiner.GetMaxLevel() ||
+            std::invoke(count, refiner.GetLevel(level - 1)) != numSources ||
+            std::invoke(count, refiner.GetLevel(level)) != numElements) {
+            throw std::runtime_error("the refiner refined in another thread");
+        }
+    }
+
+    template <typename COUNT, typename INTERPOLATE>
+    py::object interpolate(int level, py::object const &src, py::object const &dst,
+                           COUNT const &count, INTERPOLATE const &function) const {
+        auto const [numSources, numElements] = countElements(level, count);
+        auto const run = [&, numSources = numSources, numElements = numElements](auto real) {
+            using REAL = decltype(real);
+            Elements<REAL const> const source = TakeSource<REAL>(src, "src", numSources);
+            Elements<REAL> const destination =
+                TakeDestination<REAL>(dst, "dst", numElements, source);
+            CheckApart(source, destination, "dst", 0, destination.count);
+            ElementArray<REAL const> const from(source);
+            ElementArray<REAL> to(destination);
+            _refiner->Read([&](TopologyRefiner const &refiner) {
+                checkUnchanged(refiner, level, count, numSources, numElements);
+                function(PrimvarRefinerReal<REAL>(refiner), from, to);
+            });
+            return py::object(destination.array);
+        };
+        return IsDouble(src) ? run(double()) : run(float());
+    }
+
+    std::shared_ptr<Refiner> _refiner;
+};
+
+} // namespace
+
+void BindPrimvarRefiner(py::module_ &module) {
+    py::class_<PrimvarRefinement>(
+        module, "PrimvarRefiner",
+        "PrimvarRefiner(refiner)\n\n"
+        "Computes data of one level from those of the level before, without a table.\n\n"
+        "Sources are float32 or float64 of the shape (elements,) or (elements, length); the\n"
+        "destination has the same type and length, and is made for None.  It is returned.\n"
+        "RefinementEvaluator does the same in parallel, for float32.")
+        .def(py::init<std::shared_ptr<Refiner>>(), py::arg("refiner").none(false))
+        .def("interpolate", &PrimvarRefinement::Interpolate,
+             "interpolate(level, src, dst=None)\n\nVertex data of a level, 1 ... max_level, from "
+             "src of the level before: an element\nfor each vertex.",
+             py::arg("level"), py::arg("src"), py::arg("dst") = py::none())
+        .def("interpolate_varying", &PrimvarRefinement::InterpolateVarying,
+             "interpolate_varying(level, src, dst=None)\n\nVarying data, linearly: an element for "
+             "each vertex.",
+             py::arg("level"), py::arg("src"), py::arg("dst") = py::none())
+        .def("interpolate_face_uniform", &PrimvarRefinement::InterpolateFaceUniform,
+             "interpolate_face_uniform(level, src, dst=None)\n\nData of any type, of which each "
+             "face takes that of its parent face: shape (faces, ...).",
+             py::arg("level"), py::arg("src"), py::arg("dst") = py::none())
+        .def("interpolate_face_varying", &PrimvarRefinement::InterpolateFaceVarying,
+             "interpolate_face_varying(level, src, dst=None, channel=0)\n\nFace-varying data: an "
+             "element for each value of the channel.",
+             py::arg("level"), py::arg("src"), py::arg("dst") = py::none(), py::arg("channel") = 0);
+}
+
+} // namespace OpenSubdivHex::Python

@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// TopologyRefiner: a base mesh from arrays, and its refinement.
+#include "arrays.h"
+#include "options.h"
+#include "refiner.h"
+
+#include "far_ext/topologyRefinerFactory.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace OpenSubdivHex::Python {
+
+namespace {
+
+using namespace FarExt;
+
+/// A base mesh: arrays for a Far::TopologyDescriptor to refer to.
+struct BaseMesh {
+    std::vector<int> faceSizes;
+    py::array_t<int> faceVertices;
+    py::array_t<int> creaseVertices;
+    std::vector<float> creaseSharpness;
+    py::array_t<int> cornerVertices;
+    std::vector<float> cornerSharpness;
+    py::array_t<int> holes;
+    std::vector<py::array_t<int>> channelValues;
+    std::vector<Far::TopologyDescriptor::FVarChannel> channels;
+    Far::TopologyDescriptor descriptor;
+};
+
+int findCount(py::array_t<int> const &indices, std::optional<int> const &given, char const *name) {
+    if (given) {
+        if (*given < 0) {
+            throw py::value_error(std::string(name) + ": " + std::to_string(*given) +
+                                  " is negative");
+        }
+        return *given;
+    }
+    auto const most = std::max_element(indices.data(), indices.data() + indices.size());
+    if (indices.size() == 0 || *most < 0) {
+        return 0;
+    }
+    if (*most == std::numeric_limits<int>::max()) {
+        throw py::value_error(std::string(name) + ": an index is " + std::to_string(*most) +
+                              ", and there cannot be more");
+    }
+    return *most + 1;
+}
+
+void takeFlatFaces(py::object const &faces, py::object const &offsets, BaseMesh *mesh) {
+    mesh->faceVertices = TakeIndices(faces, "faces");
+    py::array_t<int> const taken = TakeIndices(offsets, "face_offsets");
+    py::ssize_t const numOffsets = taken.size();
+    int const *const first = taken.data();
+    if (numOffsets == 0 || first[0] != 0 || first[numOffsets - 1] != mesh->faceVertices.size()) {
+        throw py::value_error("face_offsets: they begin with 0 and end with the " +
+                              std::to_string(mesh->faceVertices.size()) + " vertices of all faces");
+    }
+    mesh->faceSizes.resize(std::size_t(numOffsets) - 1);
+    for (py::ssize_t f = 0; f + 1 < numOffsets; ++f) {
+        if (first[f + 1] < first[f]) {
+            throw py::value_error("face_offsets: those of face " + std::to_string(f) +
+                                  " descend, from " + std::to_string(first[f]) + " to " +
+                                  std::to_string(first[f + 1]));
+        }
+        mesh->faceSizes[std::size_t(f)] = first[f + 1] - first[f];
+    }
+}
+
+void takeListOfFaces(py::object const &faces, BaseMesh *mesh) {
+    if (py::isinstance<py::array>(faces)) {
+        py::array_t<int> taken = TakeIndices(faces, "faces", 2);
+        mesh->faceSizes.assign(std::size_t(taken.shape(0)), int(taken.shape(1)));
+        mesh->faceVertices = taken.reshape({taken.size()});
+        return;
+    }
+    py::list all;
+    for (py::handle const face : faces) {
+        std::string const name = "faces[" + std::to_string(mesh->faceSizes.size()) + "]";
+        py::array_t<int> const taken = TakeIndices(face, name.c_str());
+        mesh->faceSizes.push_back(int(taken.size()));
+        all.append(taken);
+    }
+    py::object const joined =
+        all.empty() ? py::object(all) : py::module_::import("numpy").attr("concatenate")(all);
+    mesh->faceVertices = TakeIndices(joined, "faces");
+}
+
+/// Takes creases or corners: a pair (components, sharpness).
+std::pair<py::object, py::object> takePair(py::object const &object, char const *name) {
+    if (!py::isinstance<py::tuple>(object) && !py::isinstance<py::list>(object)) {
+        throw py::type_error(std::string(name) + ": a pair (indices, sharpness) is needed");
+    }
+    auto const pair = py::reinterpret_borrow<py::sequence>(object);
+    if (pair.size() != 2) {
+        throw py::value_error(std::string(name) + ": a pair (indices, sharpness) is needed, not " +
+                              std::to_string(pair.size()) + " things");
+    }
+    return {pair[0], pair[1]};
+}
+
+void takeTags(py::object const &creases, py::object const &corners, py::object const &holes,
+              BaseMesh *mesh) {
+    Far::TopologyDescriptor &descriptor = mesh->descriptor;
+    if (!creases.is_none()) {
+        auto const [edges, sharpness] = takePair(creases, "creases");
+        mesh->creaseVertices = TakeIndices(edges, "creases", 2);
+        if (mesh->creaseVertices.size() != 0 && mesh->creaseVertices.shape(1) != 2) {
+            throw py::value_error("creases: two vertices for each are needed, the shape is " +
+                                  DescribeShape(mesh->creaseVertices));
+        }
+        descriptor.numCreases = int(mesh->creaseVertices.shape(0));
+        mesh->creaseSharpness =
+            TakeFloats(sharpness, "creases", std::size_t(descriptor.numCreases));
+        descriptor.creaseVertexIndexPairs = mesh->creaseVertices.data();
+        descriptor.creaseWeights = mesh->creaseSharpness.data();
+    }
+    if (!corners.is_none()) {
+        auto const [vertices, sharpness] = takePair(corners, "corners");
+        mesh->cornerVertices = TakeIndices(vertices, "corners");
+        descriptor.numCorners = int(mesh->cornerVertices.size());
+        mesh->cornerSharpness =
+            TakeFloats(sharpness, "corners", std::size_t(descriptor.numCorners));
+        descriptor.cornerVertexIndices = mesh->cornerVertices.data();
+        descriptor.cornerWeights = mesh->cornerSharpness.data();
+    }
+    if (!holes.is_none()) {
+        mesh->holes = TakeIndices(holes, "holes");
+        descriptor.numHoles = int(mesh->holes.size());
+        descriptor.holeIndices = mesh->holes.data();
+    }
+}
+
+void takeChannels(py::object const &fvarChannels, py::object const &numFVarValues, BaseMesh *mesh) {
+    if (fvarChannels.is_none()) {
+        if (!numFVarValues.is_none()) {
+            throw py::value_error("num_fvar_values: there are no fvar_channels");
+        }
+        return;
+    }
+    for (py::handle const channel : fvarChannels) {
+        std::string const name =
+            "fvar_channels[" + std::to_string(mesh->channelValues.size()) + "]";
+        mesh->channelValues.push_back(TakeIndices(channel, name.c_str()));
+        if (mesh->channelValues.back().size() != mesh->faceVertices.size()) {
+            throw py::value_error(
+                name + ": one value for each of the " + std::to_string(mesh->faceVertices.size()) +
+                " corners is needed, not " + std::to_string(mesh->channelValues.back().size()));
+        }
+    }
+    std::vector<std::optional<int>> counts(mesh->channelValues.size());
+    if (!numFVarValues.is_none()) {
+        py::array_t<int> const taken = TakeIndices(numFVarValues, "num_fvar_values");
+        if (std::size_t(taken.size()) != counts.size()) {
+            throw py::value_error("num_fvar_values: one number for each of the " +
+                                  std::to_string(counts.size()) + " fvar_channels is needed, not " +
+                                  std::to_string(taken.size()));
+        }
+        std::copy(taken.data(), taken.data() + taken.size(), counts.begin());
+    }
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        Far::TopologyDescriptor::FVarChannel channel;
+        channel.numValues = findCount(mesh->channelValues[i], counts[i], "num_fvar_values");
+        channel.valueIndices = mesh->channelValues[i].data();
+        mesh->channels.push_back(channel);
+    }
+    mesh->descriptor.numFVarChannels = int(mesh->channels.size());
+    mesh->descriptor.fvarChannels = mesh->channels.data();
+}
+
+std::shared_ptr<Refiner> createRefiner(py::object const &faces, std::optional<int> numVertices,
+                                       py::object const &faceOffsets, py::object const &creases,
+                                       py::object const &corners, py::object const &holes,
+                                       py::object const &fvarChannels,
+                                       py::object const &numFVarValues, bool isLeftHanded,
+                                       py::object const &vtxBoundaryInterpolation,
+                                       py::object const &fvarLinearInterpolation,
+                                       py::object const &creasingMethod, py::object const &faceMask,
+                                       py::object const &schemeType, bool triHexFirst) {
+    OpenSubdiv::Sdc::Options sdcOptions;
+    sdcOptions.SetVtxBoundaryInterpolation(
+        TakeEnum<OpenSubdiv::Sdc::Options::VtxBoundaryInterpolation>(vtxBoundaryInterpolation,
+                                                                     "vtx_boundary_interpolation"));
+    sdcOptions.SetFVarLinearInterpolation(
+        TakeEnum<OpenSubdiv::Sdc::Options::FVarLinearInterpolation>(fvarLinearInterpolation,
+                                                                    "fvar_linear_interpolation"));
+    sdcOptions.SetCreasingMethod(
+        TakeEnum<OpenSubdiv::Sdc::Options::CreasingMethod>(creasingMethod, "creasing_method"));
+    TopologyRefinerFactory::Options options;
+    options.schemeOptions.faceMask = TakeEnum<FaceMask>(faceMask, "face_mask");
+    options.schemeOptions.schemeType = TakeEnum<SchemeType>(schemeType, "scheme_type");
+    options.schemeOptions.triHexFirst = triHexFirst;
+
+    BaseMesh mesh;
+    if (faceOffsets.is_none()) {
+        takeListOfFaces(faces, &mesh);
+    } else {
+        takeFlatFaces(faces, faceOffsets, &mesh);
+    }
+    mesh.descriptor.numFaces = int(mesh.faceSizes.size());
+    mesh.descriptor.numVertsPerFace = mesh.faceSizes.data();
+    mesh.descriptor.vertIndicesPerFace = mesh.faceVertices.data();
+    mesh.descriptor.numVertices = findCount(mesh.faceVertices, numVertices, "num_vertices");
+    mesh.descriptor.isLeftHanded = isLeftHanded;
+    takeTags(creases, corners, holes, &mesh);
+    takeChannels(fvarChannels, numFVarValues, &mesh);
+
+    Status status;
+    std::unique_ptr<TopologyRefiner> refiner;
+    {
+        py::gil_scoped_release const release;
+        refiner = TopologyRefinerFactory::Create(mesh.descriptor, sdcOptions, options, &status);
+    }
+    RaiseUnlessOk(status);
+    Warn(status);
+    return std::make_shared<Refiner>(std::move(refiner));
+}
+
+void refineCoplanar(Refiner &self, py::object const &restPositions, int level,
+                    double angleTolerance, bool closeGaps, bool fullTopologyInLastLevel) {
+    int const numVertices =
+        self.Read([](TopologyRefiner const &r) { return r.GetLevel(0).GetNumVertices(); });
+    TopologyRefiner::CoplanarOptions options(level);
+    options.angleTolerance = angleTolerance;
+    options.closeGaps = closeGaps;
+    options.fullTopologyInLastLevel = fullTopologyInLastLevel;
+    auto const refine = [&](auto const &positions) {
+        if (positions.desc.length != 3) {
+            throw py::value_error("rest_positions: x, y and z of each vertex are needed, the shape "
+                                  "is " +
+                                  DescribeShape(positions.array));
+        }
+        if (positions.desc.stride != 3) {
+            throw py::value_error("rest_positions: they must lie one behind the other; "
+                                  "numpy.ascontiguousarray makes such an array");
+        }
+        self.Change([&](TopologyRefiner &refiner, Status *status) {
+            refiner.RefineCoplanar(positions.data, options, status);
+        });
+    };
+    if (IsDouble(restPositions)) {
+        refine(TakeSource<double>(restPositions, "rest_positions", numVertices));
+    } else {
+        refine(TakeSource<float>(restPositions, "rest_positions", numVertices));
+    }
+}
+
+template <typename T>
+auto property(T (TopologyRefiner::*query)() const) {
+    return [query](Refiner const &self) {
+        return self.Read([query](TopologyRefiner const &refiner) { return (refiner.*query)(); });
+    };
+}
+
+void checkChannel(TopologyRefiner const &refiner, int channel) {
+    CheckIndex(channel, refiner.GetNumFVarChannels(), "channel");
+}
+
+} // namespace
+
+void BindRefiner(py::module_ &module) {
+    using Sdc = OpenSubdiv::Sdc::Options;
+    py::class_<Refiner, std::shared_ptr<Refiner>>(
+        module, "TopologyRefiner",
+        "TopologyRefiner(faces, num_vertices=None, *, face_offsets=None, creases=None,\n"
+        "                corners=None, holes=None, fvar_channels=None, num_fvar_values=None,\n"
+        "                is_left_handed=False, vtx_boundary_interpolation='none',\n"
+        "                fvar_linear_interpolation='all', creasing_method='uniform',\n"
+        "                face_mask='average', scheme_type='hexagonal', tri_hex_first=False)\n\n"
+        "The topology of a mesh and of its refinements, level by level.\n\n"
+        "Args:\n"
+        "    faces: the vertices of each face: a sequence of sequences, an integer array of the\n"
+        "        shape (faces, sides) or, with face_offsets, one of all faces, shape (corners,)\n"
+        "    num_vertices: of the mesh; None: as many as the faces need\n"
+        "    face_offsets: integers, shape (faces + 1,): face f has the corners from\n"
+        "        face_offsets[f] to face_offsets[f + 1]\n"
+        "    creases: a pair (edges, sharpness) of integers, shape (creases, 2), and numbers, "
+        "shape\n"
+        "        (creases,), or one number for all; from 10 on a crease is sharp for ever\n"
+        "    corners: a pair (vertices, sharpness), likewise\n"
+        "    holes: faces that are not drawn\n"
+        "    fvar_channels: for each face-varying channel the values at the corners: integers,\n"
+        "        shape (corners,)\n"
+        "    num_fvar_values: of each channel; None: as many as it needs\n"
+        "    is_left_handed: whether the faces run clockwise\n"
+        "    vtx_boundary_interpolation: a VtxBoundaryInterpolation, or its name; so the others\n\n"
+        "Integers may have any type and are copied.  Raises StatusError for a mesh that cannot be\n"
+        "refined; its code, component and index say why.  Warns with StatusWarning.\n\n"
+        "Threads may share a refiner.  While arrays show its levels, refining again raises\n"
+        "BufferError.")
+        .def(py::init(&createRefiner), py::arg("faces"), py::arg("num_vertices") = py::none(),
+             py::kw_only(), py::arg("face_offsets") = py::none(), py::arg("creases") = py::none(),
+             py::arg("corners") = py::none(), py::arg("holes") = py::none(),
+             py::arg("fvar_channels") = py::none(), py::arg("num_fvar_values") = py::none(),
+             py::arg("is_left_handed") = false, py::arg("vtx_boundary_interpolation") = "none",
+             py::arg("fvar_linear_interpolation") = "all", py::arg("creasing_method") = "uniform",
+             py::arg("face_mask") = "average", py::arg("scheme_type") = "hexagonal",
+             py::arg("tri_hex_first") = false)
+        .def(
+            "refine_uniform",
+            [](Refiner &self, int level, bool fullTopologyInLastLevel) {
+                TopologyRefiner::UniformOptions options(level);
+                options.fullTopologyInLastLevel = fullTopologyInLastLevel;
+                self.Change([&](TopologyRefiner &refiner, Status *status) {
+                    refiner.RefineUniform(options, status);
+                });
+            },
+            "refine_uniform(level, full_topology_in_last_level=False)\n\n"
+            "Refines all faces so many times, in place of earlier refinements.  The last level "
+            "has\n"
+            "face-vertices alone unless asked for more.  Raises StatusError.",
+            py::arg("level"), py::arg("full_topology_in_last_level") = false)
+        .def("refine_coplanar", &refineCoplanar,
+             "refine_coplanar(rest_positions, level, angle_tolerance=0.1, close_gaps=True,\n"
+             "                full_topology_in_last_level=False)\n\n"
+             "Refines as the paper's stage 3 says: edges between faces of the same normal make "
+             "quads.\n\n"
+             "Args:\n"
+             "    rest_positions: float32 or float64, shape (vertices, 3), contiguous\n"
+             "    angle_tolerance: largest angle in degrees between normals taken as equal\n"
+             "    close_gaps: False leaves the gaps open, as printed in the paper",
+             py::arg("rest_positions"), py::arg("level"), py::arg("angle_tolerance") = 0.1,
+             py::arg("close_gaps") = true, py::arg("full_topology_in_last_level") = false)
+        .def(
+            "unrefine",
+            [](Refiner &self) {
+                self.Change([](TopologyRefiner &refiner, Status *) { refiner.Unrefine(); });
+            },
+            "unrefine()\n\nRemoves all levels but the base.")
+        .def(
+            "get_level",
+            [](std::shared_ptr<Refiner> const &self, int level) {
+                CheckIndex(level, self->Read([](auto &r) { return r.GetNumLevels(); }), "level");
+                return Level(self, level);
+            },
+            "get_level(level)\n\nThe TopologyLevel of that depth, 0 ... max_level.",
+            py::arg("level"))
+        .def_property_readonly("num_levels", property(&TopologyRefiner::GetNumLevels))
+        .def_property_readonly("max_level", property(&TopologyRefiner::GetMaxLevel))
+        .def_property_readonly("is_uniform", property(&TopologyRefiner::IsUniform),
+                               "False after refine_coplanar.")
+        .def_property_readonly("has_holes", property(&TopologyRefiner::HasHoles))
+        .def_property_readonly("num_fvar_channels", property(&TopologyRefiner::GetNumFVarChannels))
+        .def_property_readonly("num_vertices_total",
+                               property(&TopologyRefiner::GetNumVerticesTotal),
+                               "Sum over all levels.")
+        .def_property_readonly("num_edges_total", property(&TopologyRefiner::GetNumEdgesTotal),
+                               "Sum over all levels.")
+        .def_property_readonly("num_faces_total", property(&TopologyRefiner::GetNumFacesTotal),
+                               "Sum over all levels.")
+        .def_property_readonly("num_face_vertices_total",
+                               property(&TopologyRefiner::GetNumFaceVerticesTotal),
+                               "Sum over all levels.")
+        .def(
+            "get_num_fvar_values_total",
+            [](Refiner const &self, int channel) {
+                return self.Read([channel](TopologyRefiner const &refiner) {
+                    checkChannel(refiner, channel);
+                    return refiner.GetNumFVarValuesTotal(channel);
+                });
+            },
+            "get_num_fvar_values_total(channel=0)\n\nSum over all levels.", py::arg("channel") = 0)
+        .def(
+            "get_fvar_linear_interpolation",
+            [](Refiner const &self, int channel) {
+                return self.Read([channel](TopologyRefiner const &refiner) {
+                    checkChannel(refiner, channel);
+                    return refiner.GetFVarLinearInterpolation(channel);
+                });
+            },
+            "get_fvar_linear_interpolation(channel=0)\n\nThe FVarLinearInterpolation of a channel.",
+            py::arg("channel") = 0)
+        .def_property_readonly(
+            "vtx_boundary_interpolation",
+            [](Refiner const &self) -> Sdc::VtxBoundaryInterpolation {
+                return self.Read([](TopologyRefiner const &refiner) {
+                    return refiner.GetSchemeOptions().GetVtxBoundaryInterpolation();
+                });
+            })
+        .def_property_readonly("creasing_method",
+                               [](Refiner const &self) -> Sdc::CreasingMethod {
+                                   return self.Read([](TopologyRefiner const &refiner) {
+                                       return refiner.GetSchemeOptions().GetCreasingMethod();
+                                   });
+                               })
+        .def_property_readonly("face_mask",
+                               [](Refiner const &self) {
+                                   return self.Read([](TopologyRefiner const &refiner) {
+                                       return refiner.GetHexSchemeOptions().faceMask;
+                                   });
+                               })
+        .def_property_readonly("scheme_type",
+                               [](Refiner const &self) {
+                                   return self.Read([](TopologyRefiner const &refiner) {
+                                       return refiner.GetHexSchemeOptions().schemeType;
+                                   });
+                               })
+        .def_property_readonly("tri_hex_first", [](Refiner const &self) {
+            return self.Read([](TopologyRefiner const &refiner) {
+                return refiner.GetHexSchemeOptions().triHexFirst;
+            });
+        });
+}
+
+} // namespace OpenSubdivHex::Python

@@ -1,0 +1,440 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// StencilTable and LimitStencilTable: made of a refiner, read as arrays or as sparse matrices.
+#include "arrays.h"
+#include "options.h"
+#include "refiner.h"
+#include "stencilTable.h"
+
+#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
+#include "osd_ext/compactStencilTable.h"
+
+#include <optional>
+
+namespace OpenSubdivHex::Python {
+
+namespace {
+
+using namespace FarExt;
+
+/// Whether tables have weights of 64 bits, as numpy names the type.
+bool takeIsDouble(py::object const &dtype) {
+    py::dtype const type = py::dtype::from_args(dtype);
+    if (type.kind() == 'f' && type.itemsize() == sizeof(float)) {
+        return false;
+    }
+    if (type.kind() == 'f' && type.itemsize() == sizeof(double)) {
+        return true;
+    }
+    throw py::type_error("dtype: float32 or float64 is needed, not " + std::string(py::repr(type)));
+}
+
+/// The options of all tables, of either precision.
+struct TableOptions {
+    TableOptions(py::object const &interpolationMode, int channel)
+        : mode(TakeEnum<StencilMode>(interpolationMode, "interpolation_mode")),
+          fvarChannel(channel) {}
+
+    template <typename REAL>
+    typename StencilTableFactoryReal<REAL>::Options Get() const {
+        typename StencilTableFactoryReal<REAL>::Options options;
+        options.interpolationMode = mode;
+        options.generateControlVerts = generateControlVerts;
+        options.generateIntermediateLevels = generateIntermediateLevels;
+        options.factorizeIntermediateLevels = factorizeIntermediateLevels;
+        options.maxLevel = maxLevel.value_or(options.maxLevel);
+        options.fvarChannel = fvarChannel;
+        return options;
+    }
+
+    StencilMode mode;
+    int fvarChannel;
+    bool generateControlVerts = false;
+    bool generateIntermediateLevels = true;
+    bool factorizeIntermediateLevels = true;
+    std::optional<int> maxLevel;
+};
+
+TableOptions takeOptions(py::object const &interpolationMode, bool generateControlVerts,
+                         bool generateIntermediateLevels, bool factorizeIntermediateLevels,
+                         std::optional<int> maxLevel, int fvarChannel) {
+    TableOptions options(interpolationMode, fvarChannel);
+    options.generateControlVerts = generateControlVerts;
+    options.generateIntermediateLevels = generateIntermediateLevels;
+    options.factorizeIntermediateLevels = factorizeIntermediateLevels;
+    options.maxLevel = maxLevel;
+    return options;
+}
+
+int countElements(TopologyLevel const &level, TableOptions const &options) {
+    return options.mode == INTERPOLATE_FACE_VARYING ? level.GetNumFVarValues(options.fvarChannel)
+                                                    : level.GetNumVertices();
+}
+
+/// Makes a table by create(refiner, options, &status).
+template <typename REAL, typename CREATE>
+StencilTable makeTable(Refiner const &refiner, TableOptions const &options, CREATE const &create) {
+    Status status;
+    StencilTable made;
+    refiner.Read([&](TopologyRefiner const &topology) {
+        std::shared_ptr<typename StencilTableFactoryReal<REAL>::Table const> table =
+            create(topology, options.Get<REAL>(), &status);
+        if (!table) {
+            return;
+        }
+        made.table = StencilTable::Pointer<REAL>(table);
+        int const lastLevel =
+            std::min(options.maxLevel.value_or(topology.GetMaxLevel()), topology.GetMaxLevel());
+        int const sourceLevel =
+            options.factorizeIntermediateLevels ? 0 : std::max(lastLevel - 1, 0);
+        made.numSources = countElements(topology.GetLevel(sourceLevel), options);
+        made.isMatrix = sourceLevel == 0 ||
+                        (!options.generateIntermediateLevels && !options.generateControlVerts);
+    });
+    RaiseUnlessOk(status);
+    return made;
+}
+
+StencilTable createTable(Refiner const &refiner, TableOptions const &options, bool isDouble) {
+    auto const make = [&](auto real) {
+        using REAL = decltype(real);
+        return makeTable<REAL>(
+            refiner, options,
+            [](TopologyRefiner const &topology, auto const &tableOptions, Status *status) {
+                return StencilTableFactoryReal<REAL>::Create(topology, tableOptions, status);
+            });
+    };
+    return isDouble ? make(double()) : make(float());
+}
+
+StencilTable createTableOfFaces(Refiner const &refiner, py::object const &baseFaces,
+                                TableOptions const &options, bool isDouble) {
+    py::array_t<int> const faces = TakeIndices(baseFaces, "base_faces");
+    Far::ConstIndexArray const selection(faces.data(), int(faces.size()));
+    auto const make = [&](auto real) {
+        using REAL = decltype(real);
+        return makeTable<REAL>(
+            refiner, options,
+            [&](TopologyRefiner const &topology, auto const &tableOptions, Status *status) {
+                return StencilTableFactoryReal<REAL>::CreateOfFaces(topology, selection,
+                                                                    tableOptions, status);
+            });
+    };
+    return isDouble ? make(double()) : make(float());
+}
+
+py::array_t<int> getVerticesOfFaces(Refiner const &refiner, py::object const &baseFaces, int level,
+                                    TableOptions const &options) {
+    py::array_t<int> const faces = TakeIndices(baseFaces, "base_faces");
+    Far::ConstIndexArray const selection(faces.data(), int(faces.size()));
+    Status status;
+    std::vector<int> vertices = refiner.Read([&](TopologyRefiner const &topology) {
+        return StencilTableFactory::GetVerticesOfFaces(topology, selection, options.Get<float>(),
+                                                       level, &status);
+    });
+    RaiseUnlessOk(status);
+    return TakeOver(std::move(vertices));
+}
+
+py::dict estimateSize(Refiner const &refiner, TableOptions const &options, bool isDouble) {
+    Status status;
+    StencilTableSize const size = refiner.Read([&](TopologyRefiner const &topology) {
+        return isDouble
+                   ? StencilTableFactoryReal<double>::EstimateSize(topology, options.Get<double>(),
+                                                                   &status)
+                   : StencilTableFactory::EstimateSize(topology, options.Get<float>(), &status);
+    });
+    RaiseUnlessOk(status);
+    py::dict result;
+    result["num_stencils"] = size.numStencils;
+    result["num_weights"] = size.numWeights;
+    result["num_bytes"] = size.numBytes;
+    result["num_peak_bytes"] = size.numPeakBytes;
+    return result;
+}
+
+LimitStencilTable createLimitTable(Refiner const &refiner, int level, bool generateVertices,
+                                   bool generateFurtherSides, bool generateFaceCenters,
+                                   bool generate1stDerivatives, py::object const &dtype) {
+    auto const make = [&](auto real) {
+        using REAL = decltype(real);
+        using Factory = LimitStencilTableFactoryReal<REAL>;
+        typename Factory::Options options;
+        options.level = level;
+        options.generateVertices = generateVertices;
+        options.generateFurtherSides = generateFurtherSides;
+        options.generateFaceCenters = generateFaceCenters;
+        options.generate1stDerivatives = generate1stDerivatives;
+        Status status;
+        LimitStencilTable made;
+        refiner.Read([&](TopologyRefiner const &topology) {
+            std::shared_ptr<typename Factory::Table const> const table =
+                Factory::Create(topology, options, &status);
+            made.table = StencilTable::Pointer<REAL>(table);
+            made.numSources = topology.GetLevel(0).GetNumVertices();
+            made.hasDerivatives = generate1stDerivatives;
+        });
+        RaiseUnlessOk(status);
+        return made;
+    };
+    return takeIsDouble(dtype) ? make(double()) : make(float());
+}
+
+/// Calls function(table) with the table of one precision.
+template <typename FUNCTION>
+auto visit(StencilTable const &self, FUNCTION const &function) {
+    return std::visit([&](auto const &table) { return function(*table); }, self.table);
+}
+
+template <typename T>
+py::array showVector(std::vector<T> const &values, py::object const &owner) {
+    return View(values.data(), {py::ssize_t(values.size())}, owner);
+}
+
+/// A property that shows an array of the table, query(table).
+template <typename QUERY>
+auto show(QUERY query) {
+    return [query](py::object const &self) {
+        return visit(self.cast<StencilTable const &>(), [&](auto const &table) -> py::array {
+            return showVector(query(table), self);
+        });
+    };
+}
+
+/// The weights of the points or of a derivative.
+py::array showWeights(py::object const &self, int derivative) {
+    auto const *const limit =
+        dynamic_cast<LimitStencilTable const *>(&self.cast<StencilTable const &>());
+    if (derivative != 0 && !(limit && limit->hasDerivatives)) {
+        throw py::value_error("the table was made without derivatives");
+    }
+    return visit(self.cast<StencilTable const &>(), [&](auto const &table) -> py::array {
+        if (derivative == 0) {
+            return showVector(table.GetWeights(), self);
+        }
+        using Table = std::decay_t<decltype(table)>;
+        using REAL = std::decay_t<decltype(table.GetWeights()[0])>;
+        static_assert(std::is_base_of_v<Table, Far::LimitStencilTableReal<REAL>>);
+        auto const &limits = static_cast<Far::LimitStencilTableReal<REAL> const &>(table);
+        return showVector(derivative == 1 ? limits.GetDuWeights() : limits.GetDvWeights(), self);
+    });
+}
+
+/// A scipy.sparse.csr_matrix that shares the table's indices and weights.
+py::object toScipy(py::object const &self, int derivative) {
+    auto const &stencils = self.cast<StencilTable const &>();
+    if (!stencils.isMatrix) {
+        throw py::value_error("the table's levels refer to different vertices: make it with "
+                              "factorize_intermediate_levels=True");
+    }
+    py::array const weights = showWeights(self, derivative);
+    return visit(stencils, [&](auto const &table) -> py::object {
+        std::vector<int> rows = table.GetOffsets();
+        rows.push_back(int(table.GetControlIndices().size()));
+        py::tuple const arrays = py::make_tuple(
+            weights, showVector(table.GetControlIndices(), self), TakeOver(std::move(rows)));
+        return py::module_::import("scipy.sparse")
+            .attr("csr_matrix")(arrays, py::arg("copy") = false,
+                                py::arg("shape") =
+                                    py::make_tuple(table.GetNumStencils(), stencils.numSources));
+    });
+}
+
+void bindTable(py::module_ &module) {
+    constexpr char const *kOptions =
+        "    interpolation_mode: a StencilMode or its name\n"
+        "    generate_control_verts: whether the control vertices come first\n"
+        "    generate_intermediate_levels: levels 1 ... L, else L alone\n"
+        "    factorize_intermediate_levels: indices are control vertices, else vertices of the\n"
+        "        level before\n"
+        "    max_level: L; None, or more than there are: the refiner's max_level\n"
+        "    fvar_channel: for 'face_varying', whose elements are the channel's values\n"
+        "    dtype: of the weights, float32 or float64; evaluators take float32\n";
+    auto const doc = [&](std::string const &before, std::string const &after) {
+        return before + kOptions + after;
+    };
+    py::class_<StencilTable>(
+        module, "StencilTable",
+        doc("StencilTable(refiner, *, interpolation_mode='vertex', generate_control_verts=False,\n"
+            "             generate_intermediate_levels=True, factorize_intermediate_levels=True,\n"
+            "             max_level=None, fvar_channel=0, dtype='float32')\n\n"
+            "What refined vertices, or values, are in terms of control vertices.\n\n"
+            "Args:\n",
+            "\nIts arrays are views, and it does not change.  Nothing refers to the refiner "
+            "afterwards.\nRaises StatusError.")
+            .c_str())
+        .def(py::init([](Refiner const &refiner, py::object const &mode, bool controlVerts,
+                         bool intermediate, bool factorize, std::optional<int> maxLevel,
+                         int channel, py::object const &dtype) {
+                 return createTable(
+                     refiner,
+                     takeOptions(mode, controlVerts, intermediate, factorize, maxLevel, channel),
+                     takeIsDouble(dtype));
+             }),
+             py::arg("refiner"), py::kw_only(), py::arg("interpolation_mode") = "vertex",
+             py::arg("generate_control_verts") = false,
+             py::arg("generate_intermediate_levels") = true,
+             py::arg("factorize_intermediate_levels") = true, py::arg("max_level") = py::none(),
+             py::arg("fvar_channel") = 0, py::arg("dtype") = "float32")
+        .def_static(
+            "create_of_faces",
+            [](Refiner const &refiner, py::object const &baseFaces, py::object const &mode,
+               bool controlVerts, bool intermediate, bool factorize, std::optional<int> maxLevel,
+               int channel, py::object const &dtype) {
+                return createTableOfFaces(
+                    refiner, baseFaces,
+                    takeOptions(mode, controlVerts, intermediate, factorize, maxLevel, channel),
+                    takeIsDouble(dtype));
+            },
+            doc("create_of_faces(refiner, base_faces, *, interpolation_mode='vertex',\n"
+                "                generate_control_verts=False, generate_intermediate_levels=True,\n"
+                "                factorize_intermediate_levels=True, max_level=None,\n"
+                "                fvar_channel=0, dtype='float32')\n\n"
+                "The table of the refined faces that lie in some base faces.\n\n"
+                "Args:\n"
+                "    base_faces: integers, shape (n,), in any order\n",
+                "")
+                .c_str(),
+            py::arg("refiner"), py::arg("base_faces"), py::kw_only(),
+            py::arg("interpolation_mode") = "vertex", py::arg("generate_control_verts") = false,
+            py::arg("generate_intermediate_levels") = true,
+            py::arg("factorize_intermediate_levels") = true, py::arg("max_level") = py::none(),
+            py::arg("fvar_channel") = 0, py::arg("dtype") = "float32")
+        .def_static(
+            "get_vertices_of_faces",
+            [](Refiner const &refiner, py::object const &baseFaces, int level,
+               py::object const &mode, int channel) {
+                return getVerticesOfFaces(refiner, baseFaces, level, TableOptions(mode, channel));
+            },
+            "get_vertices_of_faces(refiner, base_faces, level, *, interpolation_mode='vertex',\n"
+            "                      fvar_channel=0)\n\n"
+            "The vertices, or values, that create_of_faces makes stencils for at a level, in "
+            "their\n"
+            "order: int32, shape (n,).",
+            py::arg("refiner"), py::arg("base_faces"), py::arg("level"), py::kw_only(),
+            py::arg("interpolation_mode") = "vertex", py::arg("fvar_channel") = 0)
+        .def_static(
+            "estimate_size",
+            [](Refiner const &refiner, py::object const &mode, bool controlVerts, bool intermediate,
+               bool factorize, std::optional<int> maxLevel, int channel, py::object const &dtype) {
+                return estimateSize(
+                    refiner,
+                    takeOptions(mode, controlVerts, intermediate, factorize, maxLevel, channel),
+                    takeIsDouble(dtype));
+            },
+            "estimate_size(refiner, *, interpolation_mode='vertex', generate_control_verts=False,\n"
+            "              generate_intermediate_levels=True, factorize_intermediate_levels=True,\n"
+            "              max_level=None, fvar_channel=0, dtype='float32')\n\n"
+            "How large a table will be: a dict with the integers 'num_stencils', 'num_weights',\n"
+            "'num_bytes' of its arrays and 'num_peak_bytes' of its making.",
+            py::arg("refiner"), py::kw_only(), py::arg("interpolation_mode") = "vertex",
+            py::arg("generate_control_verts") = false,
+            py::arg("generate_intermediate_levels") = true,
+            py::arg("factorize_intermediate_levels") = true, py::arg("max_level") = py::none(),
+            py::arg("fvar_channel") = 0, py::arg("dtype") = "float32")
+        .def_property_readonly(
+            "num_stencils",
+            [](StencilTable const &self) {
+                return visit(self, [](auto const &table) { return table.GetNumStencils(); });
+            })
+        .def_property_readonly(
+            "num_control_vertices",
+            [](StencilTable const &self) {
+                return visit(self, [](auto const &table) { return table.GetNumControlVertices(); });
+            })
+        .def_property_readonly(
+            "sizes", show([](auto const &table) -> decltype(auto) { return (table.GetSizes()); }),
+            "int32, shape (stencils,), a view: of how many elements each stencil is the sum.")
+        .def_property_readonly(
+            "offsets",
+            show([](auto const &table) -> decltype(auto) { return (table.GetOffsets()); }),
+            "int32, shape (stencils,), a view: where the weights of each stencil begin.")
+        .def_property_readonly("control_indices", show([](auto const &table) -> decltype(auto) {
+                                   return (table.GetControlIndices());
+                               }),
+                               "int32, shape (weights,), a view.")
+        .def_property_readonly(
+            "weights", [](py::object const &self) { return showWeights(self, 0); },
+            "float32 or float64, shape (weights,), a view.")
+        .def(
+            "to_scipy", [](py::object const &self) { return toScipy(self, 0); },
+            "to_scipy()\n\nA scipy.sparse.csr_matrix of the shape (stencils, control vertices) "
+            "that "
+            "shares the\ntable's memory; do not write to it.  Its product with control values are "
+            "the values.");
+}
+
+void bindLimitTable(py::module_ &module) {
+    py::class_<LimitStencilTable, StencilTable>(
+        module, "LimitStencilTable",
+        "LimitStencilTable(refiner, level=0, *, generate_vertices=True,\n"
+        "                  generate_further_sides=False, generate_face_centers=False,\n"
+        "                  generate_1st_derivatives=True, dtype='float32')\n\n"
+        "Points of the limit surface and its first derivatives there, in terms of control\n"
+        "vertices.\n\n"
+        "Args:\n"
+        "    level: whose vertices and faces are meant, with full topology\n"
+        "    generate_vertices: whether each vertex has a point\n"
+        "    generate_further_sides: whether the further sides of vertices have, as LimitSides\n"
+        "        numbers them; after the vertices\n"
+        "    generate_face_centers: whether each face has; after those\n"
+        "    generate_1st_derivatives: whether the table has du_weights and dv_weights\n"
+        "    dtype: of the weights, float32 or float64; evaluators take float32\n\n"
+        "Raises StatusError.")
+        .def(py::init(&createLimitTable), py::arg("refiner"), py::arg("level") = 0, py::kw_only(),
+             py::arg("generate_vertices") = true, py::arg("generate_further_sides") = false,
+             py::arg("generate_face_centers") = false, py::arg("generate_1st_derivatives") = true,
+             py::arg("dtype") = "float32")
+        .def_readonly("has_derivatives", &LimitStencilTable::hasDerivatives)
+        .def_property_readonly(
+            "du_weights", [](py::object const &self) { return showWeights(self, 1); },
+            "float32 or float64, shape (weights,), a view: of the derivative du.")
+        .def_property_readonly(
+            "dv_weights", [](py::object const &self) { return showWeights(self, 2); },
+            "float32 or float64, shape (weights,), a view: of the derivative dv.")
+        .def(
+            "du_to_scipy", [](py::object const &self) { return toScipy(self, 1); },
+            "du_to_scipy()\n\nA scipy.sparse.csr_matrix of du, as to_scipy().")
+        .def(
+            "dv_to_scipy", [](py::object const &self) { return toScipy(self, 2); },
+            "dv_to_scipy()\n\nA scipy.sparse.csr_matrix of dv, as to_scipy().");
+}
+
+void bindCompactTable(py::module_ &module) {
+    using OsdExt::CompactStencilTable;
+    py::class_<CompactStencilTable>(
+        module, "CompactStencilTable",
+        "CompactStencilTable(table)\n\n"
+        "A StencilTable of float32 in two thirds of the memory, faster to evaluate, with the same\n"
+        "results.")
+        .def(py::init([](StencilTable const &stencils) {
+                 auto const *const table =
+                     std::get_if<StencilTable::Pointer<float>>(&stencils.table);
+                 if (!table || !stencils.isMatrix ||
+                     dynamic_cast<LimitStencilTable const *>(&stencils)) {
+                     throw py::type_error("table: a factorized StencilTable of float32 is needed");
+                 }
+                 py::gil_scoped_release const release;
+                 // StencilTableFactory made it, whose tables are of this type.
+                 auto compact =
+                     CompactStencilTable::Create(static_cast<Far::StencilTable const &>(**table));
+                 return std::unique_ptr<CompactStencilTable>(
+                     const_cast<CompactStencilTable *>(compact.release()));
+             }),
+             py::arg("table"))
+        .def_property_readonly("num_stencils", &CompactStencilTable::GetNumStencils)
+        .def_property_readonly("num_control_vertices", &CompactStencilTable::GetNumControlVertices)
+        .def_property_readonly("num_blocks", &CompactStencilTable::GetNumBlocks)
+        .def_property_readonly("num_bytes", &CompactStencilTable::GetNumBytes, "Of all arrays.");
+}
+
+} // namespace
+
+void BindStencilTables(py::module_ &module) {
+    bindTable(module);
+    bindLimitTable(module);
+    bindCompactTable(module);
+}
+
+} // namespace OpenSubdivHex::Python

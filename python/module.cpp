@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "errors.h"
+#include "options.h"
+#include "refiner.h"
+
+#include "far_ext/version.h"
+
+PYBIND11_MODULE(_opensubdivhex, module) {
+    using namespace OpenSubdivHex::Python;
+    py::options options;
+    options.disable_function_signatures(); // the docstrings begin with them, spelled as in Python
+    options.disable_enum_members_docstring();
+    module.attr("__version__") = OPENSUBDIVHEX_VERSION;
+    BindErrors(module);
+    BindOptions(module);
+    BindRefiner(module);
+    BindLevel(module);
+    BindPrimvarRefiner(module);
+    BindStencilTables(module);
+    BindEvaluators(module);
+}

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Hexagonal vertex-to-vertex subdivision: the libraries of OpenSubdivHex for Python.
+
+A TopologyRefiner takes a base mesh as arrays and refines it; its levels are arrays.  Values, such
+as positions, are refined with a RefinementEvaluator, with a StencilTable and one of the evaluators
+CpuEvaluator and OmpEvaluator, or level by level with a PrimvarRefiner.  A LimitStencilTable has
+points and tangents of the limit surface.
+
+Names are those of the C++ API, in Python's spelling.  Values are float32 arrays; wrong types,
+shapes and lengths raise TypeError, ValueError or IndexError, which name the argument.  What the
+library refuses raises StatusError.  The interpreter's lock is released while the library works.
+"""
+
+try:
+    from ._opensubdivhex import *
+    from ._opensubdivhex import __version__
+except ImportError as error:
+    import pathlib
+    import sys
+
+    built = [path.name for path in pathlib.Path(__file__).parent.glob("_opensubdivhex.*")]
+    if built and getattr(error, "name", None) == "opensubdivhex._opensubdivhex":
+        raise ImportError(
+            f"{built[0]} is not for this Python, {sys.executable} {sys.version.split()[0]}: "
+            "configure with -D Python_EXECUTABLE=... to build it for this one"
+        ) from error
+    raise

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options.h"
+
+#include "arrays.h"
+
+#include "far_ext/hexSchemeOptions.h"
+#include "far_ext/stencilTableFactory.h"
+#include "far_ext/threads.h"
+#include "osd_ext/simdLevel.h"
+
+#include <opensubdiv/sdc/crease.h>
+#include <opensubdiv/sdc/options.h>
+
+#include <stdexcept>
+
+namespace OpenSubdivHex::Python {
+
+namespace {
+
+using namespace FarExt;
+
+void bindEnums(py::module_ &module) {
+    py::enum_<FaceMask>(module, "FaceMask", "The mask that makes a face's new points.")
+        .value("AVERAGE", FaceMask::Average, "The paper's, and the default.")
+        .value("COSINE", FaceMask::Cosine, "Doo and Sabin's of 1978: bounded curvature.")
+        .value("SMOOTH", FaceMask::Smooth, "This project's, the smoothest: for renderers.");
+    py::enum_<SchemeType>(module, "SchemeType", "The subdivision scheme.")
+        .value("HEXAGONAL", SchemeType::Hexagonal)
+        .value("DOO_SABIN", SchemeType::DooSabin)
+        .value("TRI_HEX", SchemeType::TriHex);
+    py::enum_<Interpolation>(module, "Interpolation", "What a mask is for.")
+        .value("VERTEX", Interpolation::Vertex)
+        .value("VARYING", Interpolation::Varying);
+    py::enum_<StencilMode>(module, "StencilMode", "What stencils interpolate.")
+        .value("VERTEX", INTERPOLATE_VERTEX)
+        .value("VARYING", INTERPOLATE_VARYING)
+        .value("FACE_VARYING", INTERPOLATE_FACE_VARYING);
+    py::enum_<FaceKind>(module, "FaceKind", "What a face of a refined level was made from.")
+        .value("BASE", FaceKind::Base, "A face of level 0.")
+        .value("FACE", FaceKind::Face, "The smaller copy of a parent face.")
+        .value("EDGE", FaceKind::Edge, "The hexagon of a parent edge.")
+        .value("VERTEX", FaceKind::Vertex, "Made for a parent vertex.");
+
+    using Sdc = OpenSubdiv::Sdc::Options;
+    py::enum_<Sdc::VtxBoundaryInterpolation>(module, "VtxBoundaryInterpolation",
+                                             "The rule for boundaries.")
+        .value("NONE", Sdc::VTX_BOUNDARY_NONE, "The paper's: the border moves inward.")
+        .value("EDGE_ONLY", Sdc::VTX_BOUNDARY_EDGE_ONLY, "A smooth border curve.")
+        .value("EDGE_AND_CORNER", Sdc::VTX_BOUNDARY_EDGE_AND_CORNER,
+               "The same, and vertices with one face stay.");
+    py::enum_<Sdc::FVarLinearInterpolation>(module, "FVarLinearInterpolation",
+                                            "Where face-varying data are interpolated linearly.")
+        .value("NONE", Sdc::FVAR_LINEAR_NONE)
+        .value("CORNERS_ONLY", Sdc::FVAR_LINEAR_CORNERS_ONLY)
+        .value("CORNERS_PLUS1", Sdc::FVAR_LINEAR_CORNERS_PLUS1)
+        .value("CORNERS_PLUS2", Sdc::FVAR_LINEAR_CORNERS_PLUS2)
+        .value("BOUNDARIES", Sdc::FVAR_LINEAR_BOUNDARIES)
+        .value("ALL", Sdc::FVAR_LINEAR_ALL);
+    py::enum_<Sdc::CreasingMethod>(module, "CreasingMethod", "How semi-sharp creases fade.")
+        .value("UNIFORM", Sdc::CREASE_UNIFORM)
+        .value("CHAIKIN", Sdc::CREASE_CHAIKIN);
+    using Crease = OpenSubdiv::Sdc::Crease;
+    py::enum_<Crease::Rule>(module, "Rule", "The rule that moves a vertex to the next level.")
+        .value("SMOOTH", Crease::RULE_SMOOTH)
+        .value("DART", Crease::RULE_DART)
+        .value("CREASE", Crease::RULE_CREASE)
+        .value("CORNER", Crease::RULE_CORNER);
+    module.attr("SHARPNESS_INFINITE") = Crease::SHARPNESS_INFINITE;
+
+    py::enum_<OsdExt::SimdLevel>(module, "SimdLevel", "The instructions that evaluators use.")
+        .value("PORTABLE", OsdExt::SimdLevel::Portable)
+        .value("AVX2", OsdExt::SimdLevel::Avx2)
+        .value("AVX512", OsdExt::SimdLevel::Avx512);
+}
+
+void checkSides(int n) {
+    if (n < 3) {
+        throw py::value_error("n: a face has 3 sides at least, not " + std::to_string(n));
+    }
+}
+
+void bindMasks(py::module_ &module) {
+    module.def(
+        "compute_face_vertex_mask",
+        [](py::object const &mask, py::object const &interpolation, int n) {
+            checkSides(n);
+            py::array_t<double> weights(n);
+            ComputeFaceVertexMask(TakeEnum<FaceMask>(mask, "mask"),
+                                  TakeEnum<Interpolation>(interpolation, "interpolation"), n,
+                                  weights.mutable_data());
+            return weights;
+        },
+        "compute_face_vertex_mask(mask, interpolation, n)\n\n"
+        "The weights of a face's vertices for its new point at vertex 0: float64, shape (n,).\n"
+        "Weight j is that of the vertex j places around the face.",
+        py::arg("mask"), py::arg("interpolation"), py::arg("n"));
+    module.def(
+        "compute_half_face_vertex_mask",
+        [](py::object const &mask, py::object const &interpolation) {
+            py::array_t<double> weights({4, 4});
+            ComputeHalfFaceVertexMask(TakeEnum<FaceMask>(mask, "mask"),
+                                      TakeEnum<Interpolation>(interpolation, "interpolation"),
+                                      weights.mutable_data());
+            return weights;
+        },
+        "compute_half_face_vertex_mask(mask, interpolation)\n\n"
+        "The weights of half a hexagon that a sharp boundary cuts along its edge from vertex 0 to\n"
+        "1: float64, shape (4, 4); row i is for the new point of corner i.",
+        py::arg("mask"), py::arg("interpolation"));
+    module.def(
+        "compute_tri_hex_mask",
+        [](int n) {
+            checkSides(n);
+            py::array_t<double> weights(n);
+            ComputeTriHexMask(n, weights.mutable_data());
+            return weights;
+        },
+        "compute_tri_hex_mask(n)\n\n"
+        "The weights for the new point of the edge from vertex 0 to 1 of a face, in the tri-hex\n"
+        "scheme: float64, shape (n,).",
+        py::arg("n"));
+    module.def(
+        "compute_sector_shrink",
+        [](py::object const &mask, double sectorSize) {
+            if (!(sectorSize >= kMinShrunkSector)) {
+                throw py::value_error("sector_size: 3 at least is needed, not " +
+                                      std::to_string(sectorSize));
+            }
+            return ComputeSectorShrink(TakeEnum<FaceMask>(mask, "mask"), sectorSize);
+        },
+        "compute_sector_shrink(mask, sector_size)\n\n"
+        "The factor by which new points are drawn towards their vertex, where it has sector_size\n"
+        "faces, 3 or more, between two sharp edges.",
+        py::arg("mask"), py::arg("sector_size"));
+    module.def(
+        "compute_vertex_vertex_mask",
+        [](py::object const &interpolation, int numFaces) {
+            if (numFaces < 0) {
+                throw py::value_error("num_faces: " + std::to_string(numFaces) + " is negative");
+            }
+            VertexVertexMask const mask = ComputeVertexVertexMask(
+                TakeEnum<Interpolation>(interpolation, "interpolation"), numFaces);
+            return py::make_tuple(mask.vertexWeight, mask.faceWeight);
+        },
+        "compute_vertex_vertex_mask(interpolation, num_faces)\n\n"
+        "The weight of an old vertex with so many faces for its new place, and that of the new\n"
+        "point in each of these faces: a pair of floats.",
+        py::arg("interpolation"), py::arg("num_faces"));
+}
+
+} // namespace
+
+void BindOptions(py::module_ &module) {
+    bindEnums(module);
+    bindMasks(module);
+    module.def(
+        "set_num_threads", &SetNumThreads,
+        "set_num_threads(num_threads)\n\n"
+        "Sets how many threads the calls of the calling thread use from now on; 0: as many as\n"
+        "OpenMP says.  Results do not depend on it.",
+        py::arg("num_threads"));
+    module.def("get_num_threads", &GetNumThreads,
+               "get_num_threads()\n\nHow many threads a call from this thread uses at most.");
+    module.def("get_max_simd_level", &OsdExt::GetMaxSimdLevel,
+               "get_max_simd_level()\n\nThe highest level that this build and this machine have.");
+    module.def("get_simd_level", &OsdExt::GetSimdLevel,
+               "get_simd_level()\n\nThe level that CpuEvaluator and OmpEvaluator use.");
+    module.def(
+        "set_simd_level",
+        [](py::object const &level) {
+            if (!OsdExt::SetSimdLevel(TakeEnum<OsdExt::SimdLevel>(level, "level"))) {
+                throw py::value_error(
+                    "level: this machine, or this build, has none above '" +
+                    std::string(OsdExt::GetSimdLevelName(OsdExt::GetMaxSimdLevel())) + "'");
+            }
+        },
+        "set_simd_level(level)\n\n"
+        "Sets the level for the whole process.  Raises ValueError for one above\n"
+        "get_max_simd_level().",
+        py::arg("level"));
+}
+
+} // namespace OpenSubdivHex::Python

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Errors of the caller are named, and nothing is read or written past an array."""
+
+import numpy as np
+import opensubdivhex as osh
+import pytest
+from meshes import CUBE_FACES, CUBE_POSITIONS
+
+
+@pytest.fixture(scope="module")
+def refiner():
+    refiner = osh.TopologyRefiner(CUBE_FACES, fvar_channels=[np.arange(24)])
+    refiner.refine_uniform(2)
+    return refiner
+
+
+@pytest.mark.parametrize("arguments, error, message", [
+    ({"faces": None}, TypeError, "not iterable|NoneType"),
+    ({"faces": 3}, TypeError, "not iterable"),
+    ({"faces": [[0, 1, 2.5]]}, TypeError, r"faces\[0\]: integers are needed, not float64"),
+    ({"faces": [[0, 1, 2], "abc"]}, (TypeError, ValueError), r"faces\[1\]"),
+    ({"faces": [[0, 1, 2], 3]}, ValueError, r"faces\[1\]: 1 dimension is needed"),
+    ({"faces": np.zeros((2, 3))}, TypeError, "faces: integers are needed, not float64"),
+    ({"faces": np.zeros((2, 3), bool)}, TypeError, "faces: integers"),
+    ({"faces": np.zeros(6, int)}, ValueError, "faces: 2 dimensions are needed"),
+    ({"faces": [[0, 1, 2**31]]}, ValueError, r"number 2 is 2147483648, which 32 bits"),
+    ({"faces": np.array([[0, 1, 2**32 + 2]], np.uint64)}, ValueError, "32 bits"),
+    ({"faces": [[0, 1, -2**40]]}, ValueError, "32 bits"),
+    ({"faces": [[0, 1, 2**31 - 1]]}, ValueError, "2147483647"),
+    ({"faces": CUBE_FACES, "num_vertices": -1}, ValueError, "num_vertices: -1"),
+    ({"faces": CUBE_FACES, "num_vertices": 8.0}, TypeError, "num_vertices"),
+    ({"faces": np.arange(6), "face_offsets": [0, 3]}, ValueError, "face_offsets: they begin"),
+    ({"faces": np.arange(6), "face_offsets": [1, 3, 6]}, ValueError, "face_offsets: they begin"),
+    ({"faces": np.arange(6), "face_offsets": []}, ValueError, "face_offsets: they begin"),
+    ({"faces": np.arange(6), "face_offsets": [0, 9, 6]}, ValueError, "face 1 descend"),
+    ({"faces": np.arange(6), "face_offsets": [0, -3, 6]}, ValueError, "face 0 descend"),
+    ({"faces": np.arange(6).reshape(2, 3), "face_offsets": [0, 3, 6]}, ValueError,
+     "faces: 1 dimension is needed"),
+    ({"faces": CUBE_FACES, "creases": [0, 1]}, ValueError, "creases: 2 dimensions"),
+    ({"faces": CUBE_FACES, "creases": 3}, TypeError, "creases: a pair"),
+    ({"faces": CUBE_FACES, "creases": ([[0, 1, 3]], 1)}, ValueError, "creases: two vertices"),
+    ({"faces": CUBE_FACES, "creases": ([[0, 1]], [1, 2])}, ValueError, "creases: one number"),
+    ({"faces": CUBE_FACES, "creases": ([[0, 1]], "sharp")}, TypeError, "creases: numbers"),
+    ({"faces": CUBE_FACES, "corners": ([0], 1, 2)}, ValueError, "corners: a pair"),
+    ({"faces": CUBE_FACES, "corners": ([0.5], 1)}, TypeError, "corners: integers"),
+    ({"faces": CUBE_FACES, "holes": [[1]]}, ValueError, "holes: 1 dimension"),
+    ({"faces": CUBE_FACES, "fvar_channels": [np.arange(23)]}, ValueError,
+     r"fvar_channels\[0\]: one value for each of the 24"),
+    ({"faces": CUBE_FACES, "fvar_channels": [np.arange(24)], "num_fvar_values": [24, 3]},
+     ValueError, "num_fvar_values"),
+    ({"faces": CUBE_FACES, "num_fvar_values": [24]}, ValueError, "num_fvar_values"),
+    ({"faces": CUBE_FACES, "fvar_channels": [np.arange(24)], "num_fvar_values": [23]},
+     osh.StatusError, "23"),
+    ({"faces": CUBE_FACES, "face_mask": "sharp"}, ValueError,
+     "face_mask: 'sharp' is none of 'average', 'cosine', 'smooth'"),
+    ({"faces": CUBE_FACES, "face_mask": 1}, TypeError, "face_mask: 1 is none of"),
+    ({"faces": CUBE_FACES, "face_mask": osh.SchemeType.HEXAGONAL}, TypeError, "face_mask"),
+    ({"faces": CUBE_FACES, "mask": "smooth"}, TypeError, "mask"),
+])
+def test_base_meshes(arguments, error, message):
+    with pytest.raises(error, match=message):
+        osh.TopologyRefiner(**arguments)
+
+
+def evaluators(refiner):
+    table = osh.StencilTable(refiner, generate_intermediate_levels=False)
+    evaluator = osh.RefinementEvaluator(refiner)
+    return [
+        lambda src, dst=None: evaluator.evaluate(src, dst=dst),
+        lambda src, dst=None: osh.CpuEvaluator.eval_stencils(table, src, dst),
+        lambda src, dst=None: osh.OmpEvaluator.eval_stencils(table, src, dst),
+        lambda src, dst=None: osh.CpuEvaluator.eval_stencils(
+            osh.CompactStencilTable(table), src, dst),
+    ]
+
+
+@pytest.mark.parametrize("which", range(4))
+def test_sources(refiner, which):
+    run = evaluators(refiner)[which]
+    bad = [
+        (np.zeros((7, 3), np.float32), ValueError, r"src: 8 elements are needed, the shape is \(7,"),
+        (np.zeros((9, 3), np.float32), ValueError, "src: 8 elements"),
+        (np.zeros((8, 0), np.float32), ValueError, "src: elements of the shape"),
+        (np.zeros((8, 3, 1), np.float32), ValueError, "src: one or two dimensions"),
+        (np.float32(3), (TypeError, ValueError), "src"),
+        (np.zeros((8, 3)), TypeError, r"src: float32 is needed, not float64; .astype"),
+        (np.zeros((8, 3), np.float16), TypeError, "src: float32 is needed, not float16"),
+        (np.zeros((8, 3), np.int32), TypeError, "src: float32 is needed, not int32"),
+        (np.zeros((8, 3), ">f4"), TypeError, "src: float32 is needed"),
+        (np.zeros((3, 8), np.float32).T, ValueError, "src: the numbers of an element"),
+        (np.zeros((8, 6), np.float32)[:, ::2], ValueError, "src: the numbers of an element"),
+        (np.zeros((8, 3), np.float32)[::-1], ValueError, "src: the numbers of an element"),
+        (np.zeros((8, 3), np.float32)[:, ::-1], ValueError, "src: the numbers of an element"),
+        (np.broadcast_to(np.float32([1, 2, 3]), (8, 3)), ValueError, "src: the numbers"),
+        (np.frombuffer(bytes(97), np.uint8)[1:].view(np.float32).reshape(8, 3), ValueError,
+         "src: the numbers"),
+        (np.zeros(8, [("x", "f4"), ("y", "u1")])["x"], ValueError, "src: the numbers"),
+        (None, (TypeError, ValueError), "src|float"),
+        ("abc", (TypeError, ValueError), "float"),
+    ]
+    for src, error, message in bad:
+        with pytest.raises(error, match=message):
+            run(src)
+
+
+@pytest.mark.parametrize("which", range(4))
+def test_destinations(refiner, which):
+    run = evaluators(refiner)[which]
+    n = refiner.get_level(2).num_vertices
+    read_only = np.zeros((n, 3), np.float32)
+    read_only.flags.writeable = False
+    bad = [
+        (np.zeros((n - 1, 3), np.float32), ValueError, f"dst: {n} elements are needed"),
+        (np.zeros((n + 1, 3), np.float32), ValueError, f"dst: {n} elements are needed"),
+        (np.zeros((n, 2), np.float32), ValueError, "dst: elements of 3 numbers are needed"),
+        (np.zeros((n, 4), np.float32), ValueError, "dst: elements of 3 numbers are needed"),
+        (np.zeros(n, np.float32), ValueError, "dst: elements of 3 numbers"),
+        (np.zeros((n, 3)), TypeError, "dst: float32 is needed, not float64"),
+        (np.zeros((3, n), np.float32).T, ValueError, "dst: the numbers of an element"),
+        (np.zeros((n, 3), np.float32)[::-1], ValueError, "dst: the numbers of an element"),
+        (np.broadcast_to(np.zeros((1, 3), np.float32), (n, 3)), ValueError, "dst"),
+        (read_only, ValueError, "dst: the array is read-only"),
+        ([[0.0] * 3] * n, TypeError, "dst: an array to write to is needed, not list"),
+        (bytearray(12 * n), TypeError, "dst: an array to write to"),
+    ]
+    for dst, error, message in bad:
+        with pytest.raises(error, match=message):
+            run(CUBE_POSITIONS, dst)
+    assert (read_only == 0).all()
+    buffer = np.zeros((n + 8, 3), np.float32)
+    with pytest.raises(ValueError, match="dst: it shows the memory of numbers that are read"):
+        run(buffer[:8], buffer[7:n + 7])
+    run(buffer[:8], buffer[8:])
+
+
+def test_levels_channels_and_ranges(refiner):
+    evaluator, primvars = osh.RefinementEvaluator(refiner), osh.PrimvarRefiner(refiner)
+    table = osh.StencilTable(refiner)
+    dst = np.zeros((table.num_stencils, 3), np.float32)
+    limit = osh.LimitStencilTable(refiner)
+    calls = [
+        lambda: refiner.get_level(3), lambda: refiner.get_level(-1),
+        lambda: evaluator.evaluate(CUBE_POSITIONS, 3),
+        lambda: evaluator.evaluate(CUBE_POSITIONS, -1),
+        lambda: evaluator.get_num_elements(3),
+        lambda: primvars.interpolate(0, CUBE_POSITIONS),
+        lambda: primvars.interpolate(3, CUBE_POSITIONS),
+        lambda: primvars.interpolate_face_uniform(3, np.zeros(6)),
+        lambda: primvars.interpolate_face_varying(1, CUBE_POSITIONS, channel=1),
+        lambda: refiner.get_level(0).get_num_fvar_values(1),
+        lambda: refiner.get_level(0).get_face_fvar_values(-1),
+        lambda: refiner.get_level(0).does_edge_fvar_topology_match(1),
+        lambda: refiner.get_level(0).get_fvar_split_faces(1),
+        lambda: refiner.get_num_fvar_values_total(1),
+        lambda: refiner.get_fvar_linear_interpolation(1),
+        lambda: refiner.get_level(0).find_edge(0, 8),
+        lambda: osh.create_triangle_indices(refiner.get_level(1), fvar_channel=1),
+        lambda: osh.LimitSides(refiner.get_level(0)).find_sides(refiner.get_level(0), 2),
+        lambda: osh.CpuEvaluator.eval_stencils(table, CUBE_POSITIONS, dst, -1),
+        lambda: osh.CpuEvaluator.eval_stencils(table, CUBE_POSITIONS, dst, 0, len(dst) + 1),
+        lambda: osh.CpuEvaluator.eval_stencils(table, CUBE_POSITIONS, dst, 3, 2),
+        lambda: osh.OmpEvaluator.eval_stencils_with_derivatives(limit, CUBE_POSITIONS, start=9),
+    ]
+    for call in calls:
+        with pytest.raises(IndexError):
+            call()
+    with pytest.raises(ValueError, match="dst: a range needs an array"):
+        osh.CpuEvaluator.eval_stencils(table, CUBE_POSITIONS, start=1)
+
+
+def test_further_arguments(refiner):
+    primvars = osh.PrimvarRefiner(refiner)
+    table = osh.StencilTable(refiner, dtype="float64")
+    three = np.zeros((5, 3), np.float32)
+    calls = [
+        (lambda: osh.StencilTable(refiner, dtype="int32"), TypeError, "dtype: float32 or float64"),
+        (lambda: osh.StencilTable(refiner, dtype="float16"), TypeError, "dtype"),
+        (lambda: osh.StencilTable(refiner, interpolation_mode="limit"), ValueError,
+         "interpolation_mode: 'limit' is none of 'vertex', 'varying', 'face_varying'"),
+        (lambda: osh.StencilTable(refiner, max_level=-1), osh.StatusError, ""),
+        (lambda: osh.StencilTable(None), TypeError, "refiner"),
+        (lambda: osh.PrimvarRefiner(None), TypeError, "refiner"),
+        (lambda: osh.RefinementEvaluator(None), TypeError, "refiner"),
+        (lambda: osh.LimitStencilTable(refiner, generate_vertices=False), osh.StatusError, ""),
+        (lambda: osh.CpuEvaluator.eval_stencils(table, CUBE_POSITIONS), TypeError,
+         "table: evaluators take float32"),
+        (lambda: osh.CpuEvaluator.eval_stencils(None, CUBE_POSITIONS), TypeError, ""),
+        (lambda: osh.RefinementEvaluator(refiner, interpolation_mode="face_varying",
+                                         fvar_channel=1), osh.StatusError, ""),
+        (lambda: primvars.interpolate(1, CUBE_POSITIONS.astype(np.float16)), TypeError, "float32"),
+        (lambda: primvars.interpolate(1, CUBE_POSITIONS, np.zeros((32, 3))), TypeError,
+         "dst: float32"),
+        (lambda: primvars.interpolate_face_uniform(1, np.zeros(5)), ValueError, "src: 6 elements"),
+        (lambda: primvars.interpolate_face_uniform(1, np.zeros(6), np.zeros(3)), ValueError, ""),
+        (lambda: osh.compute_normals(three, three[:4]), ValueError, "dv: 5 elements"),
+        (lambda: osh.compute_normals(three[:, :2], three[:, :2]), ValueError, "vectors"),
+        (lambda: osh.compute_normals(three, three, np.zeros((5, 3))), TypeError, "normals"),
+        (lambda: osh.compute_face_vertex_mask("average", "vertex", 2), ValueError, "n: "),
+        (lambda: osh.compute_tri_hex_mask(-1), ValueError, "n: "),
+        (lambda: osh.compute_sector_shrink("smooth", 2), ValueError, "sector_size"),
+        (lambda: osh.compute_sector_shrink("smooth", float("nan")), ValueError, "sector_size"),
+        (lambda: osh.compute_vertex_vertex_mask("vertex", -1), ValueError, "num_faces"),
+        (lambda: osh.set_simd_level("sse"), ValueError, "level: 'sse' is none of"),
+        (lambda: osh.set_num_threads("two"), TypeError, ""),
+    ]
+    for call, error, message in calls:
+        with pytest.raises(error, match=message):
+            call()
+
+
+@pytest.mark.parametrize("rest, error, message", [
+    (np.zeros((7, 3), np.float32), ValueError, "rest_positions: 8 elements"),
+    (np.zeros((8, 2), np.float32), ValueError, "rest_positions: x, y and z"),
+    (np.zeros(8, np.float32), ValueError, "rest_positions: x, y and z"),
+    (np.zeros((8, 4), np.float32)[:, :3], ValueError, "rest_positions: they must lie"),
+    (np.zeros((8, 3), int), TypeError, "rest_positions: float32"),
+    (np.full((8, 3), np.nan), osh.StatusError, ""),
+])
+def test_rest_positions(rest, error, message):
+    refiner = osh.TopologyRefiner(CUBE_FACES)
+    with pytest.raises(error, match=message):
+        refiner.refine_coplanar(rest, 1)

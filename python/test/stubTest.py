@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The type stubs and the docstrings say what there is, with the arguments that it takes."""
+
+import ast
+import pathlib
+import re
+
+import opensubdivhex as osh
+import pytest
+
+STUBS = ast.parse((pathlib.Path(osh.__file__).parent / "__init__.pyi").read_text())
+
+
+def list_arguments(function):
+    """Names and defaults, as Python source: ["level", "full=False", "*", ...]."""
+    arguments = function.args
+    plain = arguments.posonlyargs + arguments.args
+    defaults = [None] * (len(plain) - len(arguments.defaults)) + arguments.defaults
+    listed = list(zip(plain, defaults))
+    if arguments.kwonlyargs:
+        listed += [(ast.arg("*"), None)] + list(zip(arguments.kwonlyargs, arguments.kw_defaults))
+    return [a.arg if d is None else f"{a.arg}={ast.literal_eval(d)!r}"
+            for a, d in listed if a.arg != "self"]
+
+
+def split_arguments(text):
+    return [argument for argument in re.sub(r"\s", "", text).split(",") if argument]
+
+
+def list_functions():
+    for node in STUBS.body:
+        if isinstance(node, ast.FunctionDef):
+            yield node.name, getattr(osh, node.name), node
+        elif isinstance(node, ast.ClassDef) and not hasattr(getattr(osh, node.name), "__members__"):
+            for item in node.body:
+                if isinstance(item, ast.FunctionDef) and not any(
+                        getattr(d, "id", "") == "property" for d in item.decorator_list):
+                    owner = getattr(osh, node.name)
+                    value = owner if item.name == "__init__" else getattr(owner, item.name)
+                    yield f"{node.name}.{item.name}", value, item
+
+
+FUNCTIONS = list(list_functions())
+
+
+def test_stubs_list_everything():
+    names = {node.name for node in STUBS.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    names |= {node.target.id for node in STUBS.body if isinstance(node, ast.AnnAssign)}
+    public = {name for name in dir(osh) if not name.startswith("_")} | {"__version__"}
+    assert names == public
+    for node in STUBS.body:
+        if not isinstance(node, ast.ClassDef):
+            continue
+        there = getattr(osh, node.name)
+        listed = {item.name if isinstance(item, ast.FunctionDef) else item.target.id
+                  for item in node.body if isinstance(item, (ast.FunctionDef, ast.AnnAssign))}
+        if node.name in ("StatusError", "StatusWarning"):
+            continue
+        found = {name for name in vars(there) if not name.startswith("_")}
+        special = {name for name in listed if name.startswith("__")}
+        assert listed - special == found - special - {"name", "value"} | (
+            {"name", "value"} if hasattr(there, "__members__") else set()), node.name
+
+
+@pytest.mark.parametrize("name, value, stub", FUNCTIONS, ids=[name for name, *_ in FUNCTIONS])
+def test_signatures(name, value, stub):
+    expected = list_arguments(stub)
+    documented = re.search(r"^(?:\d+\. )?\w+\((.*?)\)$", value.__doc__, re.S | re.M)
+    if documented is None:  # a class whose docstring begins with its constructor
+        pytest.fail(f"{name} has no signature in its docstring")
+    assert split_arguments(documented.group(1)) == expected
+    # What the function itself says it takes.
+    with pytest.raises(TypeError) as caught:
+        value(no_such_argument=1)
+    taken = re.search(r"1\. [\w.]*\((.*)\)", str(caught.value)).group(1)
+    taken = re.sub(r"\b(\w+): [\w.]+(\[\w+\])?", r"\1", taken)
+    assert [a for a in split_arguments(taken) if a != "self"] == expected
+
+
+def test_everything_is_documented():
+    for name in dir(osh):
+        value = getattr(osh, name)
+        if name.startswith("_") or not callable(value):
+            continue
+        assert value.__doc__ and len(value.__doc__) > 10, name
