@@ -55,9 +55,13 @@ inline constexpr int kDiagonalEnd = 3;
 /// The long edge of a half face, on the boundary.
 inline constexpr int kHalfFaceLongEdge = 0;
 
-/// The corners of the two halves of a hexagon that a crease or a face-varying seam crosses: half 0
-/// is on the side of the first face of the parent edge.
+/// The corners of the two halves of a hexagon that an edge of the base mesh crosses, be it a crease,
+/// a face-varying seam or neither: half 0 is on the side of the first face of the parent edge.
 inline constexpr int kHexagonHalves[2][4] = {{0, 3, 4, 5}, {3, 0, 1, 2}};
+/// The half that edge \p local of a hexagon belongs to, whose edge local % 3 + 1 it is.
+constexpr int GetHalfOfEdge(int local) { return local < kDiagonalEnd ? 1 : 0; }
+/// A face of \p numCorners corners that an edge made has two halves if it is a hexagon.
+constexpr bool HasHalves(int numCorners) { return numCorners == 6; }
 
 /// \brief The closed-form numbering of a child level in terms of its parent: see INDEXING.md.
 ///

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "primvarRefiner.h"
 
+#include "baseFaceMap.h"
 #include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/refinementRows.h"
 
 #include <algorithm>
@@ -9,6 +11,9 @@
 namespace OpenSubdivHex::FarExt::internal {
 
 using Far::Index;
+
+/// The edge of half 1 of a hexagon that is parallel to the diagonal.
+constexpr int kHalf1Edge = 1;
 
 /// Where PrimvarRows are read from: the F-vertices face by face, then the V-vertices.
 struct PrimvarRows::Reader {
@@ -82,6 +87,24 @@ bool PrimvarRows::Next() {
         InterpolateVVertices<double>(rows, vVertex, _reader->nextVVertex, _reader->sources, points);
     }
     return !_rows.empty();
+}
+
+std::vector<Index> FindUniformSources(TopologyRefiner const &refiner, int level) {
+    Refinement const &refinement = refiner.GetHierarchy().mesh.refinements[std::size_t(level) - 1];
+    Level const &parent = *refinement.parent;
+    BaseFaceMap const map(refiner, level - 1);
+    std::vector<Index> sources(std::size_t(refinement.child->numFaces));
+    ParallelFor(refinement.child->numFaces, [&](Index cFace) {
+        Cell const cell = refinement.GetParentCell({cFace, 0});
+        Index source = cell.face;
+        if (cFace >= refinement.child->numFFaces && cell.half == 1 && map.IsSplit(cell.face)) {
+            // This edge lies inside of the base face, and so no other base face shares its faces.
+            Index const edge = parent.faceEdges[parent.faceFirstCorner[cell.face] + kHalf1Edge];
+            source = parent.edgeFaces[edge][parent.edgeFaces[edge][0] == cell.face ? 1 : 0];
+        }
+        sources[std::size_t(cFace)] = source;
+    });
+    return sources;
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

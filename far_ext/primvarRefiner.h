@@ -47,6 +47,10 @@ private:
     std::vector<double> _weights;
 };
 
+/// By face of \p level, the face of level - 1 that it has face-uniform data of.
+OPENSUBDIVHEX_API std::vector<Far::Index> FindUniformSources(TopologyRefiner const &refiner,
+                                                             int level);
+
 } // namespace internal
 
 /// \brief Computes primvar data of one level from that of the level before, without tables.
@@ -92,13 +96,19 @@ public:
         interpolate(level, Interpolation::Varying, -1, src, dst);
     }
 
-    /// \brief Face-uniform data: dst[f] is a copy of src[GetFaceParentFace(f)], for an E-face the
-    /// value of the first face of its edge.  Elements need operator= only.
+    /// \brief Face-uniform data: dst[f] is a copy of what the face of level - 1 has that half 0 of
+    /// f lies in.  Elements need operator= only.
+    ///
+    /// That is its GetFaceParentFace(); but where half 0 lies in half 1 of a face that two base faces
+    /// share (IsFaceBaseSplit), and whose element is that of half 0, the face across edge 1 of that,
+    /// which lies in the right base face.  So from data of level 0 on, dst[f] is at every level that
+    /// of GetFaceBaseFace(f, 0), and that of GetFaceBaseFace(f, 1) is the element of the face across
+    /// edge 1 of f, or of level 0.
     template <class T, class U>
     void InterpolateFaceUniform(int level, T const &src, U &dst) const {
-        TopologyLevel const &cLevel = _refiner.GetLevel(level);
-        for (Far::Index cFace = 0; cFace < cLevel.GetNumFaces(); ++cFace) {
-            dst[cFace] = src[cLevel.GetFaceParentFace(cFace)];
+        std::vector<Far::Index> const sources = internal::FindUniformSources(_refiner, level);
+        for (std::size_t cFace = 0; cFace < sources.size(); ++cFace) {
+            dst[Far::Index(cFace)] = src[sources[cFace]];
         }
     }
 

@@ -110,15 +110,15 @@ public:
     /// @name Tables of a part of the mesh
     /// @{
 
-    /// \brief Makes the table of the refined faces that lie in some base faces, those whose
-    /// TopologyLevel::GetFaceBaseFace() is one of \p baseFaces.
+    /// \brief Makes the table of the refined faces, and halves of hexagons, that lie in some base
+    /// faces: those whose TopologyLevel::GetFaceBaseFace() is one of \p baseFaces.
     ///
-    /// Of each level in the table it has the vertices of these faces, or their values, in ascending
-    /// order: GetVerticesOfFaces() says which; the stencils are, bit for bit, those that Create()
-    /// makes for them, and index the control vertices of the whole mesh.  The refined faces of
-    /// selections that share no base face are disjoint, those of all base faces are all faces: the
-    /// E-face of an edge goes with the edge's first face.  Time and memory are proportional to the
-    /// selection and the faces around it.
+    /// Of each level in the table it has the vertices of these, or their values, in ascending order:
+    /// GetVerticesOfFaces() says which; the stencils are, bit for bit, those that Create() makes for
+    /// them, and index the control vertices of the whole mesh.  A hexagon that lies half in the
+    /// selection has the four vertices of that half (kHexagonHalves).  What selections that share no
+    /// base face have is disjoint but for the vertices along their borders; all base faces have all
+    /// faces.  Time and memory are proportional to the selection and the faces around it.
     ///
     /// \param baseFaces  in any order, repeated or not; none gives a table without stencils
     /// \return  null on failure: as Create(); InvalidArgument, which names the face, for one out of

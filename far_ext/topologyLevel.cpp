@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "topologyLevel.h"
 
+#include "far_ext/vtr/baseCoords.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/validator.h"
 
@@ -137,8 +138,10 @@ float TopologyLevel::GetEdgeSharpness(Index e) const {
 
 float TopologyLevel::GetVertexSharpness(Index v) const { return _level->GetVertexSharpness(v); }
 
-bool TopologyLevel::IsFaceHole(Index f) const {
-    return !_level->faceHoles.empty() && _level->faceHoles[f];
+bool TopologyLevel::IsFaceHole(Index f) const { return _level->GetHoles(f) == internal::kHole; }
+
+bool TopologyLevel::IsFaceHole(Index f, int half) const {
+    return (_level->GetHoles(f) >> half & 1u) != 0;
 }
 
 Sdc::Crease::Rule TopologyLevel::GetVertexRule(Index v) const {
@@ -259,11 +262,24 @@ Index TopologyLevel::GetFaceParentFace(Index f) const {
     return _depth > 0 ? refinementTo()->GetFaceParentFace(f) : Far::INDEX_INVALID;
 }
 
-Index TopologyLevel::GetFaceBaseFace(Index f) const {
+Index TopologyLevel::GetFaceBaseFace(Index f, int half) const {
+    internal::Cell cell = {f, half};
     for (int depth = _depth; depth > 0; --depth) {
-        f = _hierarchy->mesh.refinements[std::size_t(depth) - 1].GetFaceParentFace(f);
+        cell = _hierarchy->mesh.refinements[std::size_t(depth) - 1].GetParentCell(cell);
     }
-    return f;
+    return cell.face;
+}
+
+bool TopologyLevel::IsFaceBaseSplit(Index f) const {
+    return HasHalves(_level->GetFaceSize(f)) && GetFaceBaseFace(f, 0) != GetFaceBaseFace(f, 1);
+}
+
+bool TopologyLevel::GetFaceBaseCoords(Index f, int half, float *uv) const {
+    return internal::FindBaseCoords(_hierarchy->mesh, _depth, {f, half}, uv);
+}
+
+bool TopologyLevel::GetFaceBaseCoords(Index f, int half, double *uv) const {
+    return internal::FindBaseCoords(_hierarchy->mesh, _depth, {f, half}, uv);
 }
 
 auto TopologyLevel::GetFaceChildFaces(Index f) const -> ChildFaceArray {

@@ -177,8 +177,11 @@ public:
     bool IsVertexSemiSharp(Index v) const {
         return Sdc::Crease::IsSemiSharp(GetVertexSharpness(v));
     }
-    /// Whether the face is tagged as a hole, or was made within holes alone.
+    /// Whether all of the face lies in faces of level 0 that are holes.
     bool IsFaceHole(Index f) const;
+    /// Whether half 0 or 1 of the face does, as in GetFaceBaseFace.  A hexagon with one half in a hole
+    /// is drawn as the other half.
+    bool IsFaceHole(Index f, int half) const;
     /// The rule that moves the vertex to the next level.  At a free boundary it is RULE_SMOOTH.
     Sdc::Crease::Rule GetVertexRule(Index v) const;
 
@@ -217,9 +220,43 @@ public:
 
     /// How the face was made.
     FaceKind GetFaceKind(Index f) const;
-    /// The face of level 0 that this face lies in; for other faces than F-faces, that of their
-    /// parent face.
-    Index GetFaceBaseFace(Index f) const;
+    /// \brief The face of level 0 in which a half of the face lies, exactly.
+    ///
+    /// Vertices persist, so that an edge of level 0 becomes a polyline of the edges and the diagonals
+    /// of hexagons, from vertex 0 to vertex 3, of every level, and the faces and halves of hexagons
+    /// between these are the region of a base face.  A hexagon that is not cut in its drawing counts
+    /// to the base face of half 0.
+    ///
+    /// Quads of flat edges (RefineCoplanar, Doo-Sabin) and V-faces lie across such polylines, and
+    /// count to the first base face: that of the first face of the quad's edge, that around the last
+    /// F-vertex of the V-face.
+    ///
+    /// Closed form, without memory; the time is proportional to the depth.  BaseFaceMap has those of
+    /// all faces.
+    ///
+    /// \param half  0 or 1, as in kHexagonHalves; both are the same for a face in one base face
+    Index GetFaceBaseFace(Index f, int half = 0) const;
+    /// Whether the halves of the face, a hexagon then, lie in two faces of level 0.
+    bool IsFaceBaseSplit(Index f) const;
+
+    /// \brief The places of vertices of the face in the parameter plane of its base face.
+    ///
+    /// There the base face is a regular polygon with sides 1 long, counter-clockwise, whose edge 0
+    /// runs from (0, 0) to (1, 0): of a quad the unit square.  V-vertices stay, and an F-vertex is
+    /// the middle between its vertex and the centre: of the base face that of the polygon, of half a
+    /// hexagon the middle of its long edge; so the children of each are affine images of it or of
+    /// its halves, and tile it.  (Of a quad at a boundary that follows the paper's rule the centre is
+    /// the mean of its vertices.)  The coordinates of a vertex are the same, to the bit, from all
+    /// faces of the base face and at all levels; those of a closed mesh's quads are multiples of
+    /// 2^-(depth + 2), and exact.
+    ///
+    /// \param half  of a face with two base faces, the half that is meant
+    /// \param uv    gets u and v of each vertex: of the face or, when it has two base faces, of the
+    ///              four vertices kHexagonHalves[half]
+    /// \return      false, and \p uv is not written, at levels behind other than hexagonal steps
+    bool GetFaceBaseCoords(Index f, int half, float *uv) const;
+    bool GetFaceBaseCoords(Index f, int half, double *uv) const;
+
     /// The parent face of an F-face; for an E-face, the first face of its parent edge; for a
     /// V-face, that of its last F-vertex.
     Index GetFaceParentFace(Index f) const;
@@ -260,8 +297,9 @@ public:
     /// \return  whether all hold; \p status names the first component that breaks one.
     bool Validate(Status *status = nullptr) const;
 
-    /// The arrays of the level, for the library's own use.
+    /// The arrays of the level, and all levels, for the library's own use.
     internal::Level const &GetLevel() const { return *_level; }
+    internal::Hierarchy const &GetHierarchy() const { return *_hierarchy; }
 
 private:
     internal::Refinement const *refinementTo() const;

@@ -35,27 +35,61 @@ void forEachVFace(Refinement const &refinement, Index pVert, FUNCTION function) 
     }
 }
 
-// The faces of the child whose Refinement::GetFaceParentFace() is one of pFaces.
-std::vector<Index> findChildFaces(Refinement const &refinement, std::vector<Index> const &pFaces) {
+// Sorts the parts by their faces, and joins those of one face.
+void sortUnique(std::vector<FacePart> &parts) {
+    std::sort(parts.begin(), parts.end(),
+              [](FacePart const &a, FacePart const &b) { return a.face < b.face; });
+    std::size_t size = 0;
+    for (FacePart const &part : parts) {
+        if (size > 0 && parts[size - 1].face == part.face) {
+            parts[size - 1].halves |= part.halves;
+        } else {
+            parts[size++] = part;
+        }
+    }
+    parts.resize(size);
+}
+
+// The cells of the child whose Refinement::GetParentCell() is in one of the parts.
+std::vector<FacePart> findChildFaces(Refinement const &refinement,
+                                     std::vector<FacePart> const &pParts) {
     Level const &parent = *refinement.parent;
-    std::vector<Index> result = pFaces; // F-faces have the indices of their parents
-    for (Index pFace : pFaces) {
-        Index const end = parent.faceFirstCorner[pFace + 1];
-        for (Index corner = parent.faceFirstCorner[pFace]; corner < end; ++corner) {
-            Index const pEdge = parent.faceEdges[corner];
+    std::vector<FacePart> result = pParts; // F-faces have the indices of their parents
+    for (FacePart const &pPart : pParts) {
+        Index const first = parent.faceFirstCorner[pPart.face];
+        for (int local = 0; local < parent.GetFaceSize(pPart.face); ++local) {
+            Index const pEdge = parent.faceEdges[first + local];
             Index const eFace = refinement.GetEdgeChildFace(pEdge);
-            if (eFace != Far::INDEX_INVALID && parent.edgeFaces[pEdge][0] == pFace) {
-                result.push_back(eFace);
+            if (eFace != Far::INDEX_INVALID && (pPart.halves >> GetHalfOfEdge(local) & 1u) != 0) {
+                bool const isFirst = parent.edgeFaces[pEdge][0] == pPart.face &&
+                                     parent.edgeFaceLocals[pEdge][0] == local;
+                if (HasHalves(refinement.child->GetFaceSize(eFace))) {
+                    result.push_back({eFace, isFirst ? 1u : 2u});
+                } else if (isFirst) {
+                    result.push_back({eFace, kAllHalves});
+                }
             }
-            forEachVFace(refinement, parent.faceVerts[corner], [&](Index vFace) {
-                if (refinement.GetFaceParentFace(vFace) == pFace) {
-                    result.push_back(vFace);
+            forEachVFace(refinement, parent.faceVerts[first + local], [&](Index vFace) {
+                Cell const pCell = refinement.GetParentCell({vFace, 0});
+                if (pCell.face == pPart.face && (pPart.halves >> pCell.half & 1u) != 0) {
+                    result.push_back({vFace, kAllHalves});
                 }
             });
         }
     }
-    SortUnique(result, refinement.child->numFaces);
+    sortUnique(result);
     return result;
+}
+
+// Appends the vertices of a face, all or those of one half.
+void appendPart(std::vector<Index> &indices, ConstIndexArray vertices, unsigned halves) {
+    if (halves == kAllHalves) {
+        append(indices, vertices);
+        return;
+    }
+    for (int local : kHexagonHalves[halves >> 1]) {
+        indices.push_back(vertices[local]);
+    }
 }
 
 // The part of the refinement that makes each level but the first.
@@ -81,11 +115,13 @@ std::vector<RefinementRows::Part> findParts(StencilPlan const &plan,
 
 } // namespace
 
-std::vector<std::vector<Index>> FindFacesOfBaseFaces(MeshLevels const &mesh,
-                                                     ConstIndexArray baseFaces, int lastLevel) {
-    std::vector<std::vector<Index>> result(1);
-    append(result[0], baseFaces);
-    SortUnique(result[0], mesh.levels[0].numFaces);
+std::vector<std::vector<FacePart>> FindFacesOfBaseFaces(MeshLevels const &mesh,
+                                                        ConstIndexArray baseFaces, int lastLevel) {
+    std::vector<std::vector<FacePart>> result(1);
+    for (Index face : baseFaces) {
+        result[0].push_back({face, kAllHalves});
+    }
+    sortUnique(result[0]);
     for (int level = 1; level <= lastLevel; ++level) {
         result.push_back(findChildFaces(mesh.refinements[level - 1], result.back()));
     }
@@ -93,27 +129,31 @@ std::vector<std::vector<Index>> FindFacesOfBaseFaces(MeshLevels const &mesh,
 }
 
 std::vector<Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int level, int channel,
-                                       std::vector<Index> const &faces) {
+                                       std::vector<FacePart> const &parts) {
     Level const &mesh = hierarchy.mesh.levels[level];
     std::vector<Index> verts;
     if (channel < 0) {
-        for (Index face : faces) {
-            append(verts, mesh.GetFaceVertices(face));
+        for (FacePart const &part : parts) {
+            appendPart(verts, mesh.GetFaceVertices(part.face), part.halves);
         }
         SortUnique(verts, mesh.numVertices);
         return verts;
     }
     FVarChannel const &values = hierarchy.channels[channel];
     FVarLevel const &fvarLevel = values.levels[level];
-    for (Index face : faces) {
+    for (FacePart const &part : parts) {
         if (level == 0) {
-            append(verts,
-                   {values.faceValues.data() + mesh.faceFirstCorner[face], mesh.GetFaceSize(face)});
-        } else if (FVarLevel::SplitFace const *split = fvarLevel.FindSplitFace(face)) {
-            append(verts, fvarLevel.values->GetFaceVertices(split->valueFaces[0]));
-            append(verts, fvarLevel.values->GetFaceVertices(split->valueFaces[1]));
+            append(verts, {values.faceValues.data() + mesh.faceFirstCorner[part.face],
+                           mesh.GetFaceSize(part.face)});
+        } else if (FVarLevel::SplitFace const *split = fvarLevel.FindSplitFace(part.face)) {
+            for (int half = 0; half < 2; ++half) {
+                if ((part.halves >> half & 1u) != 0) {
+                    append(verts, fvarLevel.values->GetFaceVertices(split->valueFaces[half]));
+                }
+            }
         } else {
-            append(verts, fvarLevel.values->GetFaceVertices(fvarLevel.valueFaces[face]));
+            appendPart(verts, fvarLevel.values->GetFaceVertices(fvarLevel.valueFaces[part.face]),
+                       part.halves);
         }
     }
     SortUnique(verts, level == 0 ? values.numValues : fvarLevel.values->numVertices);

@@ -10,14 +10,22 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// Of levels 0 ... \p lastLevel, the faces that lie in one of \p baseFaces, in ascending order.  The
-/// work is proportional to their number, but for a logarithm where there are V-faces.
-std::vector<std::vector<Far::Index>>
+/// A face, or one half of a hexagon: bit h of halves is set for half h, both for all of a face.
+struct FacePart {
+    Far::Index face;
+    unsigned halves;
+};
+inline constexpr unsigned kAllHalves = 3;
+
+/// \brief Of levels 0 ... \p lastLevel, what lies in one of \p baseFaces, in ascending order.
+///
+/// The work is proportional to its amount, but for logarithms.
+std::vector<std::vector<FacePart>>
 FindFacesOfBaseFaces(MeshLevels const &mesh, Far::ConstIndexArray baseFaces, int lastLevel);
 
-/// The vertices of faces of a level or, with a \p channel of 0 or more, their values; ascending.
+/// The vertices of parts of a level or, with a \p channel of 0 or more, their values; ascending.
 std::vector<Far::Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int level, int channel,
-                                            std::vector<Far::Index> const &faces);
+                                            std::vector<FacePart> const &parts);
 
 /// \brief The least parts of all refinements that make wanted vertices, in terms of the control
 /// vertices.

@@ -61,7 +61,7 @@ private:
     static constexpr Index kMaxSampledFaces = 512;
 
     std::vector<Index> takeSample() const;
-    std::vector<Index> getFaces(int level, std::vector<Index> const &meshFaces) const;
+    std::vector<Index> getFaces(int level, std::vector<FacePart> const &parts) const;
     std::vector<Index> findMade(int level, std::vector<Index> const &pFaces) const;
     RowWeights average(int level, std::vector<Index> const &pFaces, std::vector<Index> const &made,
                        int const *sizes) const;
@@ -87,16 +87,20 @@ std::vector<Index> WeightSampler::takeSample() const {
     return result;
 }
 
-// The faces of the value mesh that faces of the mesh have.
-std::vector<Index> WeightSampler::getFaces(int level, std::vector<Index> const &meshFaces) const {
-    if (_plan.channel < 0) {
-        return meshFaces;
-    }
-    FVarLevel const &fvarLevel = _plan.hierarchy.channels[_plan.channel].levels[level];
+// The faces of the mesh or of the value mesh, each with the base face of its half 0 alone.
+std::vector<Index> WeightSampler::getFaces(int level, std::vector<FacePart> const &parts) const {
     std::vector<Index> faces;
-    for (Index face : meshFaces) {
-        faces.push_back(fvarLevel.valueFaces[face]);
-        if (FVarLevel::SplitFace const *split = fvarLevel.FindSplitFace(face)) {
+    for (FacePart const &part : parts) {
+        if ((part.halves & 1u) == 0) {
+            continue;
+        }
+        if (_plan.channel < 0) {
+            faces.push_back(part.face);
+            continue;
+        }
+        FVarLevel const &fvarLevel = _plan.hierarchy.channels[_plan.channel].levels[level];
+        faces.push_back(fvarLevel.valueFaces[part.face]);
+        if (FVarLevel::SplitFace const *split = fvarLevel.FindSplitFace(part.face)) {
             faces.push_back(split->valueFaces[1]);
         }
     }
@@ -160,12 +164,13 @@ Status WeightSampler::Form() {
         return Status();
     }
     std::vector<Index> const baseFaces = takeSample();
-    auto faces = FindFacesOfBaseFaces(plan.hierarchy.mesh,
-                                      ConstIndexArray(baseFaces.data(), int(baseFaces.size())),
-                                      plan.lastLevel - 1);
+    auto const parts = FindFacesOfBaseFaces(
+        plan.hierarchy.mesh, ConstIndexArray(baseFaces.data(), int(baseFaces.size())),
+        plan.lastLevel - 1);
+    std::vector<std::vector<Index>> faces;
     std::vector<std::vector<Index>> wanted(1);
     for (int level = 1; level <= plan.lastLevel; ++level) {
-        faces[level - 1] = getFaces(level - 1, faces[level - 1]);
+        faces.push_back(getFaces(level - 1, parts[level - 1]));
         wanted.push_back(findMade(level, faces[level - 1]));
     }
     StencilSelection const selection(plan, std::move(wanted));

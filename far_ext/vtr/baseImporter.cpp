@@ -225,9 +225,9 @@ void Importer::importTags() {
         ParallelSelect(level.numFaces, [this](Index face) { return isHole(face); });
     if (!holes.empty()) {
         level.faceHoles.Resize(level.numFaces);
-        std::fill_n(level.faceHoles.data(), level.numFaces, static_cast<unsigned char>(false));
+        std::fill_n(level.faceHoles.data(), level.numFaces, static_cast<unsigned char>(0));
         for (Index face : holes) {
-            level.faceHoles[face] = true;
+            level.faceHoles[face] = kHole;
         }
     }
 }

@@ -60,6 +60,9 @@ inline constexpr std::array<Far::LocalIndex, OpenSubdiv::Vtr::VALENCE_LIMIT> kVV
 inline constexpr std::array<Far::LocalIndex, 3> kFVertexEdgeLocals = {0, 1, 1};
 /// @}
 
+/// In Level::faceHoles, a face all of which lies in holes.
+inline constexpr unsigned char kHole = 3;
+
 /// Two of something, for the two ends or sides of an edge.
 using IndexPair = std::array<Far::Index, 2>;
 using LocalIndexPair = std::array<Far::LocalIndex, 2>;
@@ -148,6 +151,8 @@ struct Level {
     float GetVertexSharpness(Index v) const {
         return std::size_t(v) < vertSharpness.size() ? vertSharpness[v] : 0;
     }
+    /// Bits of faceHoles, both of a face that is not cut.
+    unsigned GetHoles(Index f) const { return faceHoles.empty() ? 0 : faceHoles[f]; }
     /// The line of edge \p e, INDEX_INVALID when it has none.
     Index GetEdgeLine(Index e) const {
         auto const found =
@@ -271,7 +276,7 @@ struct Level {
     Buffer<float> edgeSharpness;     ///< by edge, of interior ones
     Buffer<float> diagonalSharpness; ///< by face
     Buffer<float> vertSharpness;     ///< of the vertices of level 0, the only ones that have any
-    Buffer<unsigned char> faceHoles; ///< by face
+    Buffer<unsigned char> faceHoles; ///< by face: bit h is set when half h lies in holes
     std::vector<Index> nonManifoldVerts; ///< ascending
     std::vector<Index> partedVerts;      ///< those that gaps of the refinement part into fans
     std::vector<Index> nonManifoldEdges; ///< ascending; of level 0 alone

@@ -8,6 +8,15 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
+/// \brief A whole face, or one half of a hexagon that is cut from its vertex 0 to its vertex 3.
+///
+/// Every cell lies in one cell of the level before, and so in one face of level 0: an edge of level 0
+/// runs along edges or diagonals of hexagons at every level, as its vertices persist.
+struct Cell {
+    Far::Index face;
+    int half; ///< 0 or 1, as in kHexagonHalves; of no matter for faces that are not cut
+};
+
 /// \brief A mapping between two levels, made by any scheme: which components of the child each
 /// component of the parent makes, and of which each was made.
 ///
@@ -52,6 +61,25 @@ struct Refinement {
         bool const isEFace = cFace < child->numFaces - child->numVFaces;
         return isEFace ? parent->edgeFaces[GetEFaceParent(cFace)][0]
                        : parent->FindFaceOfCorner(GetFaceParentCorner(cFace));
+    }
+
+    /// \brief The cell of the parent that a cell of the child lies in.
+    ///
+    /// Quads of flat edges and V-faces lie in several: a quad counts to that of the first face of its
+    /// edge, a V-face to that of its last F-vertex, and there to half 0 at the ends of a diagonal.
+    Cell GetParentCell(Cell cCell) const {
+        if (cCell.face < child->numFFaces) {
+            return cCell;
+        }
+        if (cCell.face >= child->numFaces - child->numVFaces) {
+            Index const corner = GetFaceParentCorner(cCell.face);
+            Index const face = parent->FindFaceOfCorner(corner);
+            Index const local = corner - parent->faceFirstCorner[face];
+            return {face, kDiagonalStart < local && local < kDiagonalEnd ? 1 : 0};
+        }
+        Index const edge = GetEFaceParent(cCell.face);
+        int const side = HasHalves(child->GetFaceSize(cCell.face)) ? cCell.half : 0;
+        return {parent->edgeFaces[edge][side], GetHalfOfEdge(parent->edgeFaceLocals[edge][side])};
     }
 
     /// Calls function(array) for all arrays of \p refinement, constant or not.

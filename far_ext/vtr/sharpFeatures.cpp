@@ -391,29 +391,44 @@ void refineLines(Refinement const &refinement, Level &child) {
               [](LineEdge const &a, LineEdge const &b) { return a.edge < b.edge; });
 }
 
+// The halves of a hexagon lie in the cells of its edge's faces.  Other faces that lie in several cells
+// are holes when all of these are.
 void refineHoles(Refinement const &refinement, Level &child) {
     Level const &parent = *refinement.parent;
+    // Whether half number half of a face is a hole; bits as in Level::faceHoles.
+    auto const getHole = [&](Index face, int half) -> unsigned {
+        return (parent.faceHoles[face] >> half & 1u) != 0 ? kHole : 0;
+    };
     child.faceHoles.Resize(child.numFaces);
-    for (Index face = 0; face < parent.numFaces; ++face) {
-        child.faceHoles[face] = parent.faceHoles[face];
-    }
+    std::copy(parent.faceHoles.begin(), parent.faceHoles.end(), child.faceHoles.data());
     for (Index edge = 0; edge < parent.numEdges; ++edge) {
-        if (Index const cFace = refinement.GetEdgeChildFace(edge); cFace != Far::INDEX_INVALID) {
-            Index const face0 = parent.edgeFaces[edge][0];
-            Index const face1 = parent.edgeFaces[edge][1];
-            child.faceHoles[cFace] =
-                parent.faceHoles[face0] && (face1 < 0 || parent.faceHoles[face1]);
+        Index const cFace = refinement.GetEdgeChildFace(edge);
+        if (cFace == Far::INDEX_INVALID) {
+            continue;
         }
+        unsigned holes[2];
+        for (int side = 0; side < 2; ++side) {
+            int const from = parent.IsBoundary(edge) ? 0 : side;
+            holes[side] = getHole(parent.edgeFaces[edge][from],
+                                  GetHalfOfEdge(parent.edgeFaceLocals[edge][from]));
+        }
+        child.faceHoles[cFace] = static_cast<unsigned char>(HasHalves(child.GetFaceSize(cFace))
+                                                                ? (holes[0] & 1u) | (holes[1] & 2u)
+                                                                : holes[0] & holes[1]);
     }
-    // A V-face has F-vertices of faces around one vertex: a hole when all of these are.
     for (Index cFace = child.numFaces - child.numVFaces; cFace < child.numFaces; ++cFace) {
-        child.faceHoles[cFace] = true;
+        unsigned hole = kHole;
         for (Index k = child.faceFirstCorner[cFace]; k < child.faceFirstCorner[cFace + 1]; ++k) {
             if (Index const cVert = child.faceVerts[k]; cVert >= child.numVVertices) {
-                Index const pFace = parent.FindFaceOfCorner(refinement.GetChildVertexCorner(cVert));
-                child.faceHoles[cFace] &= parent.faceHoles[pFace];
+                Index const corner = refinement.GetChildVertexCorner(cVert);
+                Index const pFace = parent.FindFaceOfCorner(corner);
+                int const local = corner - parent.faceFirstCorner[pFace];
+                // A corner lies in the halves of its two edges.
+                hole &= getHole(pFace, GetHalfOfEdge(local)) &
+                        getHole(pFace, GetHalfOfEdge(local == 0 ? kDiagonalEnd : local - 1));
             }
         }
+        child.faceHoles[cFace] = static_cast<unsigned char>(hole);
     }
 }
 

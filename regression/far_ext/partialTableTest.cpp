@@ -102,16 +102,28 @@ std::vector<int> findVertices(TopologyLevel const &level, std::vector<int> const
     std::set<int> verts;
     auto const add = [&](IndexArray more) { verts.insert(more.begin(), more.end()); };
     for (int face = 0; face < level.GetNumFaces(); ++face) {
-        if (std::count(baseFaces.begin(), baseFaces.end(), level.GetFaceBaseFace(face)) == 0) {
-            continue;
-        }
-        if (channel < 0) {
-            add(level.GetFaceVertices(face));
-        } else if (level.IsFaceFVarSplit(face, channel)) {
-            add(level.GetFaceFVarValues(face, channel, 0));
-            add(level.GetFaceFVarValues(face, channel, 1));
-        } else {
-            add(level.GetFaceFVarValues(face, channel));
+        auto const isWanted = [&](int half) {
+            return std::count(baseFaces.begin(), baseFaces.end(),
+                              level.GetFaceBaseFace(face, half)) > 0;
+        };
+        bool const isFVarSplit = channel >= 0 && level.IsFaceFVarSplit(face, channel);
+        for (int half = 0; half < 2; ++half) {
+            if (!isWanted(half)) {
+                continue;
+            }
+            if (isFVarSplit) {
+                add(level.GetFaceFVarValues(face, channel, half));
+                continue;
+            }
+            IndexArray const all =
+                channel < 0 ? level.GetFaceVertices(face) : level.GetFaceFVarValues(face, channel);
+            if (isWanted(1 - half)) {
+                add(all);
+                continue;
+            }
+            for (int corner : FarExt::kHexagonHalves[half]) {
+                verts.insert(all[corner]);
+            }
         }
     }
     return {verts.begin(), verts.end()};

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 namespace OpenSubdivHex::Regression {
 
 using FarExt::PrimvarRefinerReal;
@@ -131,18 +133,33 @@ TEST(Primvar, FaceUniform) {
         }
         for (int level = 1; level <= refiner->GetMaxLevel(); ++level) {
             FarExt::TopologyLevel const &parent = refiner->GetLevel(level - 1);
-            std::vector<int> dst(refiner->GetLevel(level).GetNumFaces(), -1);
+            FarExt::TopologyLevel const &child = refiner->GetLevel(level);
+            std::vector<int> dst(child.GetNumFaces(), -1);
             primvarRefiner.InterpolateFaceUniform(level, src, dst);
             for (int f = 0; f < parent.GetNumFaces(); ++f) {
                 ASSERT_EQ(dst[f], src[f]);
             }
-            for (int e = 0; e < parent.GetNumEdges(); ++e) {
-                ASSERT_EQ(dst[parent.GetNumFaces() + e], src[parent.GetEdgeFaces(e)[0]]);
+            for (int f = 0; f < child.GetNumFaces(); ++f) {
+                ASSERT_EQ(dst[f], child.GetFaceBaseFace(f));
+                if (child.IsFaceBaseSplit(f) && child.HasFullTopology()) {
+                    auto const faces = child.GetEdgeFaces(child.GetFaceEdges(f)[1]);
+                    int const across = faces[faces[0] == f ? 1 : 0];
+                    ASSERT_EQ(dst[across], child.GetFaceBaseFace(f, 1));
+                }
             }
-            for (int f = 0; f < int(dst.size()); ++f) {
-                ASSERT_EQ(dst[f], refiner->GetLevel(level).GetFaceBaseFace(f));
+            // Data that differs from face to face goes to the children of each.
+            std::vector<int> faces(parent.GetNumFaces());
+            std::iota(faces.begin(), faces.end(), 0);
+            primvarRefiner.InterpolateFaceUniform(level, faces, dst);
+            for (int f = 0; f < child.GetNumFaces(); ++f) {
+                int const pFace = child.GetFaceParentFace(f);
+                ASSERT_TRUE(dst[f] == pFace || parent.IsFaceBaseSplit(pFace));
+                ASSERT_EQ(parent.GetFaceBaseFace(dst[f]), child.GetFaceBaseFace(f));
             }
-            src = std::move(dst);
+            src.resize(dst.size());
+            for (int f = 0; f < child.GetNumFaces(); ++f) {
+                src[f] = child.GetFaceBaseFace(f);
+            }
         }
     }
 }

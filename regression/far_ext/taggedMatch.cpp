@@ -309,9 +309,17 @@ bool TaggedMatch::matchFaces(int level) {
         if (!isWhole && !face.isHalf) {
             return fail(level, name + " is not whole");
         }
-        if (_channel < 0 && (library.IsFaceHalf(place.face) != (isWhole && face.isHalf) ||
-                             library.IsFaceHole(place.face) != face.isHole)) {
+        if (_channel < 0 && library.IsFaceHalf(place.face) != (isWhole && face.isHalf)) {
             return fail(level, name + " has other tags");
+        }
+        for (int i = 0; i < int(face.holes.size()) && _channel < 0; ++i) {
+            int const half = place.corners[i] < 3 ? 1 : 0;
+            bool const isHole = isWhole && size == 6 ? library.IsFaceHole(place.face, half)
+                                : isWhole            ? library.IsFaceHole(place.face)
+                                          : library.IsFaceHole(place.face, GetHalf(place));
+            if (isHole != face.holes[i]) {
+                return fail(level, name + " is a hole elsewhere");
+            }
         }
         if (_channel >= 0 && library.IsFaceFVarSplit(place.face, _channel) !=
                                  (!isWhole && mesh.edges[face.edges[0]].sides.size() == 1)) {
@@ -346,8 +354,7 @@ bool TaggedMatch::matchVertices(int level) {
             if (_channel < 0) {
                 actual = library.GetFaceVertices(place.face)[place.corners[i]];
             } else if (library.IsFaceFVarSplit(place.face, _channel)) {
-                int const half = place.corners[0] == 0 ? 0 : 1;
-                actual = library.GetFaceFVarValues(place.face, _channel, half)[int(i)];
+                actual = library.GetFaceFVarValues(place.face, _channel, GetHalf(place))[int(i)];
             } else {
                 actual = library.GetFaceFVarValues(place.face, _channel)[place.corners[i]];
             }

@@ -32,6 +32,14 @@ public:
 
     int GetMaxLevel() const { return int(_levels.size()) - 1; }
     TaggedMesh const &GetMesh(int level) const { return _levels[level]; }
+    /// The library's face that a face is, or is half of, and which half; -1 for all of it.
+    int GetLibraryFace(int level, int face) const { return _places[level][face].face; }
+    int GetLibraryHalf(int level, int face) const {
+        Place const &place = _places[level][face];
+        bool const isWhole = int(place.corners.size()) ==
+                             _refiner.GetLevel(level).GetFaceVertices(place.face).size();
+        return isWhole ? -1 : GetHalf(place);
+    }
     /// The library's number of an edge of a level's mesh; negative for a diagonal, which has none.
     int GetLibraryEdge(int level, TaggedMesh::Edge const &edge) const;
 
@@ -46,6 +54,9 @@ private:
         int face = -1;
         std::vector<int> corners;
     };
+
+    /// Of a place that is half a face.
+    static int GetHalf(Place const &place) { return place.corners[0] == 0 ? 0 : 1; }
 
     /// The library's V-faces, by their F-vertices in ascending order.
     using VFaces = std::map<std::vector<int>, int>;

@@ -2,6 +2,7 @@
 #include "oracle.h"
 
 #include "osd_ext/triangleIndices.h"
+#include "regression/far_ext/regionMatch.h"
 #include "regression/far_ext/taggedMatch.h"
 #include "regression/shapes/shapeDescriptor.h"
 
@@ -174,6 +175,11 @@ void CheckOracleCase(OracleCase const &oracleCase) {
     CheckTables(levels, dice);
     CheckEvaluators(levels, dice);
     bool const isHexagonal = refiner->GetHexSchemeOptions().IsHexagonal();
+    if (isHexagonal && !oracleCase.isCoplanar && dice.IsOneOf(4)) {
+        if (std::string const error = FindRegionError(oracleCase.shape, *refiner); !error.empty()) {
+            Fail("base faces differ from the reference: ", error);
+        }
+    }
     if (isHexagonal && dice.IsOneOf(4)) {
         CheckOrders(levels, dice);
     }

@@ -15,7 +15,7 @@
 namespace OpenSubdivHex::Regression {
 
 /// \brief Refines the case and compares all ways to the same values with each other, and with the
-/// reference: topology, values of vertices, varying and face-varying values, tables, tables of some
+/// reference: topology, base faces, values of vertices, varying and face-varying values, tables, tables of some
 /// faces, evaluators, limits, other orders of faces and vertices, numbers of threads.
 ///
 /// The dearer comparisons are made for a share of the cases, which OracleCase::checks chooses.

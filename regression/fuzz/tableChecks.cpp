@@ -116,19 +116,23 @@ void checkSelection(OracleLevels const &levels, OracleLevels::Values const &valu
         TopologyLevel const &level = refiner.GetLevel(depth);
         std::vector<int> expected;
         for (int f = 0; f < level.GetNumFaces(); ++f) {
-            if (std::count(faces.begin(), faces.end(), level.GetFaceBaseFace(f)) == 0) {
-                continue;
-            }
-            auto const add = [&](Far::ConstIndexArray indices) {
-                expected.insert(expected.end(), indices.begin(), indices.end());
-            };
-            if (values.mode != FarExt::INTERPOLATE_FACE_VARYING) {
-                add(level.GetFaceVertices(f));
-            } else if (level.IsFaceFVarSplit(f, values.channel)) {
-                add(level.GetFaceFVarValues(f, values.channel, 0));
-                add(level.GetFaceFVarValues(f, values.channel, 1));
-            } else {
-                add(level.GetFaceFVarValues(f, values.channel));
+            bool const isFVar = values.mode == FarExt::INTERPOLATE_FACE_VARYING;
+            for (int half = 0; half < 2; ++half) {
+                if (std::count(faces.begin(), faces.end(), level.GetFaceBaseFace(f, half)) == 0) {
+                    continue;
+                }
+                bool const isSplit = isFVar && level.IsFaceFVarSplit(f, values.channel);
+                Far::ConstIndexArray const indices =
+                    isSplit  ? level.GetFaceFVarValues(f, values.channel, half)
+                    : isFVar ? level.GetFaceFVarValues(f, values.channel)
+                             : level.GetFaceVertices(f);
+                for (int i = 0; i < indices.size(); ++i) {
+                    auto const &corners = FarExt::kHexagonHalves[half];
+                    if (isSplit || !level.IsFaceBaseSplit(f) ||
+                        std::count(std::begin(corners), std::end(corners), i) > 0) {
+                        expected.push_back(indices[i]);
+                    }
+                }
             }
         }
         std::sort(expected.begin(), expected.end());

@@ -201,8 +201,11 @@ TaggedMesh MakeTaggedMesh(TaggedBase const &base) {
         }
         mesh.faces.push_back(face);
     }
+    for (Face &face : mesh.faces) {
+        face.holes.assign(face.vertices.size(), false);
+    }
     for (int face : base.holes) {
-        mesh.faces[face].isHole = true;
+        mesh.faces[face].holes.flip();
     }
     std::map<std::pair<int, int>, float> creases;
     for (std::size_t i = 0; i < base.creaseSharpness.size(); ++i) {
@@ -402,12 +405,14 @@ private:
     void mergeSmoothHalves();
     void tagPartedVertices();
 
-    int addFace(std::vector<int> vertices, bool isHalf, bool isHole,
+    bool isHole(Side side) const { return _parent.faces[side.face].holes[side.place]; }
+
+    int addFace(std::vector<int> vertices, bool isHalf, std::vector<bool> holes,
                 TaggedMesh::FaceOrigin origin) {
         Face face;
         face.vertices = std::move(vertices);
         face.isHalf = isHalf;
-        face.isHole = isHole;
+        face.holes = std::move(holes);
         _child.faces.push_back(face);
         _child.faceOrigins.push_back(origin);
         return int(_child.faces.size()) - 1;
@@ -480,7 +485,7 @@ void Refinement::makeFFaces() {
     for (std::size_t f = 0; f < _parent.faces.size(); ++f) {
         TaggedMesh::FaceOrigin origin;
         origin.face = int(f);
-        addFace(_child.fVertices[f], _parent.faces[f].isHalf, _parent.faces[f].isHole, origin);
+        addFace(_child.fVertices[f], _parent.faces[f].isHalf, _parent.faces[f].holes, origin);
     }
     for (Edge const &edge : _parent.edges) {
         if (edge.isLong) {
@@ -503,8 +508,6 @@ void Refinement::makeEFaces() {
         if (edge.isLong || (!isHexagonal() && edge.sides.size() == 1)) {
             continue;
         }
-        bool const isHole = std::all_of(edge.sides.begin(), edge.sides.end(),
-                                        [&](Side side) { return _parent.faces[side.face].isHole; });
         TaggedMesh::FaceOrigin origin;
         origin.edge = int(e);
         int const v0 = _parent.GetStart(edge.sides[0]);
@@ -514,10 +517,13 @@ void Refinement::makeEFaces() {
         if (edge.sides.size() == 2 && edge.sharpness <= 0) {
             int const b1 = fVertex(edge.sides[1]);
             int const b0 = fVertex(nextSide(_parent, edge.sides[1]));
+            bool const a = isHole(edge.sides[0]);
+            bool const b = isHole(edge.sides[1]);
             if (isFlat(int(e))) {
-                addFace({b0, b1, a1, a0}, false, isHole, origin);
+                addFace({b0, b1, a1, a0}, false, std::vector<bool>(4, a && b), origin);
             } else {
-                addFace({vVertex(v0), b0, b1, vVertex(v1), a1, a0}, false, isHole, origin);
+                addFace({vVertex(v0), b0, b1, vVertex(v1), a1, a0}, false, {b, b, b, a, a, a},
+                        origin);
             }
             continue;
         }
@@ -529,7 +535,7 @@ void Refinement::makeEFaces() {
             int const face =
                 addFace({vVertex(_parent.GetStart(side)), vVertex(_parent.GetEnd(side)),
                          fVertex(nextSide(_parent, side)), fVertex(side)},
-                        !edge.isFree, isHole, origin);
+                        !edge.isFree, std::vector<bool>(4, isHole(side)), origin);
             child.sides.push_back({face, 0});
             _placed.insert({face, 0});
         }
@@ -605,11 +611,14 @@ void Refinement::makeFanFaces(int vertex, Fan const &fan) {
 }
 
 void Refinement::addVFace(int vertex, std::vector<int> vertices, std::vector<Side> const &corners) {
-    bool const isHole = std::all_of(corners.begin(), corners.end(),
-                                    [&](Side corner) { return _parent.faces[corner.face].isHole; });
+    bool const isAllHole = std::all_of(corners.begin(), corners.end(), [&](Side corner) {
+        Face const &face = _parent.faces[corner.face];
+        return isHole(corner) && isHole({corner.face, previousPlace(face, corner.place)});
+    });
     TaggedMesh::FaceOrigin origin;
     origin.vertex = vertex;
-    addFace(std::move(vertices), false, isHole, origin);
+    std::vector<bool> holes(vertices.size(), isAllHole);
+    addFace(std::move(vertices), false, std::move(holes), origin);
 }
 
 /// All other edges end in a new vertex, so that their ends tell them apart.
@@ -658,6 +667,9 @@ void Refinement::mergeSmoothHalves() {
         std::vector<int> const b = _child.faces[second].vertices;
         _child.faces[first].vertices = {a[0], b[2], b[3], a[1], a[2], a[3]};
         _child.faces[first].isHalf = false;
+        bool const isHoleA = _child.faces[first].holes[0];
+        bool const isHoleB = _child.faces[second].holes[0];
+        _child.faces[first].holes = {isHoleB, isHoleB, isHoleB, isHoleA, isHoleA, isHoleA};
         _child.faceOrigins[first].mergedWith = int(_child.mergedOrigins.size());
         _child.mergedOrigins.push_back(_child.faceOrigins[second]);
         replacedBy[second] = first;

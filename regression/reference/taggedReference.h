@@ -23,9 +23,9 @@ enum class ReferenceScheme { Hexagonal, DooSabin, TriHex };
 struct TaggedMesh {
     struct Face {
         std::vector<int> vertices;
-        std::vector<int> edges; ///< edge i from vertex i to vertex i + 1
-        bool isHalf = false;    ///< half a hexagon, edge 0 the long one
-        bool isHole = false;
+        std::vector<int> edges;  ///< edge i from vertex i to vertex i + 1
+        bool isHalf = false;     ///< half a hexagon, edge 0 the long one
+        std::vector<bool> holes; ///< by edge: whether the face is a hole there
     };
     /// Where a face runs along an edge: from its corner \p place to the next.
     struct Side {

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "baseCoords.h"
+
+#include <array>
+#include <cmath>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Far::Index;
+
+constexpr int kNumHalfCorners = HexIndexing::kNumBoundaryEFaceCorners;
+
+// A point of the triangle of a base face's centre with the start, a, and the end, b, of one of its
+// edges: centre + a (start - centre) + b (end - centre).  All such coordinates of vertices are
+// multiples of powers of 1/2, and so exact.
+struct SectorPoint {
+    double a = 0;
+    double b = 0;
+};
+
+SectorPoint getMiddle(SectorPoint p, SectorPoint q) {
+    return {0.5 * (p.a + q.a), 0.5 * (p.b + q.b)};
+}
+
+// A cell that an edge made: half a hexagon, its long edge first; or the quad of a free boundary.
+struct Quad {
+    SectorPoint GetCenter() const {
+        SectorPoint const longMiddle = getMiddle(corners[0], corners[1]);
+        return isHalf ? longMiddle : getMiddle(longMiddle, getMiddle(corners[2], corners[3]));
+    }
+
+    std::array<SectorPoint, kNumHalfCorners> corners;
+    bool isHalf;
+};
+
+// Edges make quads whose edge 0 is theirs.
+Quad makeQuad(SectorPoint start, SectorPoint end, SectorPoint center, bool isHalf) {
+    return {{start, end, getMiddle(end, center), getMiddle(start, center)}, isHalf};
+}
+
+// A cell in its base face: the F-face of that, or a quad in the sector of one of its edges.
+struct PlacedCell {
+    Index baseFace;
+    int sector = -1; // negative for the F-face
+    double scale = 1;
+    Quad quad{};
+};
+
+PlacedCell place(MeshLevels const &mesh, int depth, Cell cell) {
+    if (depth == 0) {
+        return {cell.face};
+    }
+    Refinement const &refinement = mesh.refinements[std::size_t(depth) - 1];
+    Level const &parent = *refinement.parent;
+    Cell const pCell = refinement.GetParentCell(cell);
+    PlacedCell placed = place(mesh, depth - 1, pCell);
+    bool const isWhole = placed.sector < 0;
+    SectorPoint const center = isWhole ? SectorPoint() : placed.quad.GetCenter();
+    if (cell.face < refinement.child->numFFaces) {
+        placed.scale *= 0.5;
+        for (SectorPoint &corner : placed.quad.corners) {
+            corner = getMiddle(corner, center);
+        }
+        return placed;
+    }
+    Index const edge = refinement.GetEFaceParent(cell.face);
+    int const side = HasHalves(refinement.child->GetFaceSize(cell.face)) ? cell.half : 0;
+    int const local = parent.edgeFaceLocals[edge][side];
+    bool const isHalf = parent.edgeFaces[edge][1] != kFreeBoundary;
+    if (isWhole) {
+        placed.sector = local;
+        placed.quad = makeQuad({placed.scale, 0}, {0, placed.scale}, center, isHalf);
+    } else {
+        auto const &corners = placed.quad.corners;
+        bool const isHexagon = HasHalves(parent.GetFaceSize(pCell.face));
+        int const start = isHexagon ? local % kDiagonalEnd + 1 : local;
+        placed.quad =
+            makeQuad(corners[start], corners[(start + 1) % kNumHalfCorners], center, isHalf);
+    }
+    return placed;
+}
+
+// A regular polygon with sides 1 long, edge 0 from (0, 0) to (1, 0).
+class BasePolygon {
+public:
+    explicit BasePolygon(int size)
+        : _size(size), _radius(0.5 / std::sin(kPi / size)),
+          _centerY(size == 4 ? 0.5 : 0.5 / std::tan(kPi / size)) {}
+
+    int GetSize() const { return _size; }
+
+    template <typename REAL>
+    void Write(int sector, SectorPoint point, REAL *uv) const {
+        std::array<double, 2> const start = getCorner(sector);
+        std::array<double, 2> const end = getCorner((sector + 1) % _size);
+        uv[0] = REAL(0.5 + (point.a * start[0] + point.b * end[0]));
+        uv[1] = REAL(_centerY + (point.a * start[1] + point.b * end[1]));
+    }
+
+private:
+    static constexpr double kPi = 3.14159265358979323846;
+
+    // Corner number i, from the centre.
+    std::array<double, 2> getCorner(int i) const {
+        if (i <= 1) {
+            return {i - 0.5, -_centerY};
+        }
+        if (_size == 4) {
+            return {i == 2 ? 0.5 : -0.5, 0.5};
+        }
+        double const angle = kPi * ((2.0 * i - 1) / _size - 0.5);
+        return {_radius * std::cos(angle), _radius * std::sin(angle)};
+    }
+
+    int const _size;
+    double const _radius;
+    double const _centerY;
+};
+
+} // namespace
+
+template <typename REAL>
+bool FindBaseCoords(MeshLevels const &mesh, int depth, Cell cell, REAL *uv) {
+    for (int level = 1; level <= depth; ++level) {
+        if (!mesh.levels[std::size_t(level)].isHexagonal) {
+            return false;
+        }
+    }
+    PlacedCell const placed = place(mesh, depth, cell);
+    BasePolygon const polygon(mesh.levels[0].GetFaceSize(placed.baseFace));
+    if (placed.sector < 0) {
+        for (int i = 0; i < polygon.GetSize(); ++i) {
+            polygon.Write(i, {placed.scale, 0}, uv + 2 * i);
+        }
+        return true;
+    }
+    auto const write = [&](PlacedCell const &half, int const(&places)[kNumHalfCorners]) {
+        for (int i = 0; i < kNumHalfCorners; ++i) {
+            polygon.Write(half.sector, half.quad.corners[i], uv + 2 * places[i]);
+        }
+    };
+    if (HasHalves(mesh.levels[std::size_t(depth)].GetFaceSize(cell.face))) {
+        PlacedCell const other = place(mesh, depth, {cell.face, 1 - cell.half});
+        if (other.baseFace == placed.baseFace) {
+            write(placed, kHexagonHalves[cell.half]);
+            write(other, kHexagonHalves[1 - cell.half]);
+            return true;
+        }
+    }
+    write(placed, {0, 1, 2, 3});
+    return true;
+}
+
+template bool FindBaseCoords(MeshLevels const &, int, Cell, float *);
+template bool FindBaseCoords(MeshLevels const &, int, Cell, double *);
+
+} // namespace OpenSubdivHex::FarExt::internal

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_REFERENCE_BASE_REGIONS_H
+#define OPENSUBDIVHEX_REGRESSION_REFERENCE_BASE_REGIONS_H
+
+#include "taggedReference.h"
+
+#include <array>
+
+namespace OpenSubdivHex::Regression {
+
+/// \brief By face of the last of \p levels, the face of the first in which it lies: found by
+/// following the lines that edges become, and filling what lies between them.
+///
+/// \param levels  each refined of the one before, by hexagonal steps; all edges of the first that
+///                join two faces are infinitely sharp
+/// \return        -1 for a face that is reached from none or from several faces of the first
+std::vector<int> FindBaseRegions(std::vector<TaggedMesh> const &levels);
+
+/// A polygon of the plane.
+using ReferencePolygon = std::vector<std::array<double, 2>>;
+
+/// \brief The pieces into which a regular polygon of \p size sides, 1 long and the first from (0, 0)
+/// to (1, 0), falls in \p numLevels levels, as drawn on paper.
+///
+/// A polygon of n sides falls into one of half its size, around its centre, and n trapezoids, between
+/// its sides and those of the small one.  A trapezoid, whose first side is twice as long as that
+/// opposite to it, falls into four of half its size: one amid its first side, and three along its
+/// other sides.
+std::vector<ReferencePolygon> DivideRegularPolygon(int size, int numLevels);
+
+} // namespace OpenSubdivHex::Regression
+
+#endif
