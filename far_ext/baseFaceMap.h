@@ -35,6 +35,7 @@ public:
     /// Those up to \p level.
     explicit BaseFaceMap(TopologyLevel const &level);
 
+    /// Faces of the last level that is mapped.
     int GetNumFaces() const { return int(_baseFaces.size()); }
 
     /// As TopologyLevel::IsFaceBaseSplit and GetFaceBaseFace.

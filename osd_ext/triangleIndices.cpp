@@ -1,110 +1,122 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "triangleIndices.h"
 
+#include "far_ext/vtr/parallel.h"
+
 namespace OpenSubdivHex::OsdExt {
 
 namespace {
 
-using Far::ConstIndexArray;
 using Far::Index;
+
+// Polygons, and the corners and triangles of these.
+struct Place {
+    Place &operator+=(Place const &other) {
+        corner += other.corner;
+        triangle += other.triangle;
+        return *this;
+    }
+
+    std::size_t corner = 0;
+    std::size_t triangle = 0;
+};
+
+// Calls addTriangle(i, j, k) for the triangles of a polygon, from both ends to the middle in turn.
+template <typename FUNCTION>
+void forEachTriangle(int size, FUNCTION addTriangle) {
+    int low = 0;
+    int high = size - 1;
+    while (high - low >= 2) {
+        addTriangle(low, low + 1, high);
+        ++low;
+        if (high - low >= 2) {
+            addTriangle(low, high - 1, high);
+            --high;
+        }
+    }
+}
 
 class Triangulator {
 public:
-    Triangulator(FarExt::TopologyLevel const &level, TriangleOptions options)
-        : _level(level), _options(options) {}
+    explicit Triangulator(PolygonIndices const &polygons) : _polygons(polygons) {}
 
     TriangleIndices Run() {
-        reserve();
-        for (Index face = 0; face < _level.GetNumFaces(); ++face) {
-            if (_options.drawHoles || !_level.IsFaceHole(face)) {
-                addFace(face);
-            }
-        }
+        Index const numPolygons = _polygons.GetNumPolygons();
+        auto const places =
+            FarExt::internal::ParallelSums<Place>(numPolygons, [&](Index begin, Index end) {
+                Place sum;
+                for (Index i = begin; i < end; ++i) {
+                    std::size_t const size = std::size_t(_polygons.sizes[std::size_t(i)]);
+                    sum += {size, size - 2};
+                }
+                return sum;
+            });
+        forEachArray([&](auto const &polygons, auto &triangles, int width) {
+            triangles.resize(polygons.empty() ? 0 : std::size_t(width) * places.back().triangle);
+        });
+        FarExt::internal::ParallelForRange(numPolygons, [&](Index begin, Index end) {
+            Place const place = places[std::size_t(begin / FarExt::internal::kParallelRange)];
+            forEachArray([&](auto const &polygons, auto &triangles, int width) {
+                if (!polygons.empty()) {
+                    write(polygons, triangles, width, begin, end, place);
+                }
+            });
+        });
         return std::move(_result);
     }
 
 private:
-    bool hasChannel() const { return _options.fvarChannel >= 0; }
-
-    void reserve() {
-        std::size_t const numTriangles =
-            std::size_t(_level.GetNumFaceVertices()) - 2 * std::size_t(_level.GetNumFaces());
-        _result.vertices.reserve(3 * numTriangles);
-        _result.fvarValues.reserve(hasChannel() ? 3 * numTriangles : 0);
-        _result.faces.reserve(numTriangles);
-        _result.baseFaces.reserve(numTriangles);
+    // Calls function(array of the polygons, array of the triangles, width) for all arrays.  The width
+    // is 1 of those by face, and three times that of a corner else.
+    template <typename FUNCTION>
+    void forEachArray(FUNCTION function) {
+        _result.fvarValues.resize(_polygons.fvarValues.size());
+        function(_polygons.vertices, _result.vertices, 3);
+        for (std::size_t i = 0; i < _polygons.fvarValues.size(); ++i) {
+            function(_polygons.fvarValues[i], _result.fvarValues[i], 3);
+        }
+        function(_polygons.sides, _result.sides, 3);
+        function(_polygons.baseCoords, _result.baseCoords, 6);
+        function(_polygons.faces, _result.faces, 1);
+        function(_polygons.baseFaces, _result.baseFaces, 1);
+        function(_polygons.labels, _result.labels, 1);
     }
 
-    void addFace(Index face) {
-        int const channel = _options.fvarChannel;
-        _face = face;
-        _baseFace = _level.GetFaceBaseFace(face);
-        bool const isSeam = hasChannel() && _level.IsFaceFVarSplit(face, channel);
-        if (!isSeam && _level.GetFaceDiagonalSharpness(face) <= 0) {
-            _corners.clear();
-            for (int i = 0; i < _level.GetFaceVertices(face).size(); ++i) {
-                _corners.push_back(i);
+    // Of polygons [begin, end), which begin at place.
+    template <typename T>
+    void write(std::vector<T> const &polygons, std::vector<T> &triangles, int width, Index begin,
+               Index end, Place const &place) const {
+        T const *from = polygons.data() + std::size_t(width / 3) * place.corner;
+        T *to = triangles.data() + std::size_t(width) * place.triangle;
+        for (Index i = begin; i < end; ++i) {
+            int const size = _polygons.sizes[std::size_t(i)];
+            if (width == 1) {
+                to = std::fill_n(to, size - 2, polygons[std::size_t(i)]);
+                continue;
             }
-            addPolygon(hasChannel() ? _level.GetFaceFVarValues(face, channel) : ConstIndexArray());
-            return;
-        }
-        for (int half = 0; half < 2; ++half) {
-            _corners.assign(std::begin(FarExt::kHexagonHalves[half]),
-                            std::end(FarExt::kHexagonHalves[half]));
-            if (!hasChannel()) {
-                addPolygon(ConstIndexArray());
-            } else if (isSeam) {
-                addPolygon(_level.GetFaceFVarValues(face, channel, half));
-            } else {
-                ConstIndexArray const values = _level.GetFaceFVarValues(face, channel);
-                Index halfValues[4];
-                for (int i = 0; i < 4; ++i) {
-                    halfValues[i] = values[_corners[i]];
+            int const cornerWidth = width / 3;
+            forEachTriangle(size, [&](int a, int b, int c) {
+                for (int corner : {a, b, c}) {
+                    to = std::copy_n(from + corner * cornerWidth, cornerWidth, to);
                 }
-                addPolygon(ConstIndexArray(halfValues, 4));
-            }
+            });
+            from += size * cornerWidth;
         }
     }
 
-    // Triangulates the polygon of the face's _corners, from both ends towards the middle in turn;
-    // values[i] belongs to _corners[i].
-    void addPolygon(ConstIndexArray values) {
-        int low = 0;
-        int high = int(_corners.size()) - 1;
-        while (high - low >= 2) {
-            addTriangle(values, low, low + 1, high);
-            ++low;
-            if (high - low >= 2) {
-                addTriangle(values, low, high - 1, high);
-                --high;
-            }
-        }
-    }
-
-    void addTriangle(ConstIndexArray values, int i, int j, int k) {
-        ConstIndexArray const verts = _level.GetFaceVertices(_face);
-        for (int corner : {i, j, k}) {
-            _result.vertices.push_back(_options.vertexOffset + verts[_corners[corner]]);
-            if (hasChannel()) {
-                _result.fvarValues.push_back(values[corner]);
-            }
-        }
-        _result.faces.push_back(_face);
-        _result.baseFaces.push_back(_baseFace);
-    }
-
-    FarExt::TopologyLevel const &_level;
-    TriangleOptions const _options;
+    PolygonIndices const &_polygons;
     TriangleIndices _result;
-    Index _face = 0;
-    Index _baseFace = 0;
-    std::vector<int> _corners;
 };
 
 } // namespace
 
-TriangleIndices CreateTriangleIndices(FarExt::TopologyLevel const &level, TriangleOptions options) {
-    return Triangulator(level, options).Run();
+TriangleIndices CreateTriangleIndices(PolygonIndices const &polygons) {
+    return Triangulator(polygons).Run();
+}
+
+TriangleIndices CreateTriangleIndices(FarExt::TopologyLevel const &level,
+                                      DrawOptions const &options, FarExt::Status *status) {
+    return CreateTriangleIndices(CreatePolygonIndices(level, options, status));
 }
 
 } // namespace OpenSubdivHex::OsdExt

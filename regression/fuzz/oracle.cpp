@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oracle.h"
 
-#include "osd_ext/triangleIndices.h"
 #include "regression/far_ext/regionMatch.h"
 #include "regression/far_ext/taggedMatch.h"
+#include "regression/osd_ext/drawnFaces.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/far/error.h>
@@ -64,29 +64,28 @@ void checkLevels(TopologyRefiner const &refiner) {
     }
 }
 
-/// The base of the faces that draw each level, and how many there are.
-void checkTriangles(TopologyRefiner const &refiner) {
+/// The polygons and triangles of the last level, by direct search.
+void checkDrawnFaces(TopologyRefiner const &refiner, Dice &dice) {
     TopologyLevel const &level = refiner.GetLevel(refiner.GetMaxLevel());
-    OsdExt::TriangleOptions options;
-    options.fvarChannel = refiner.GetNumFVarChannels() - 1;
-    OsdExt::TriangleIndices const triangles = OsdExt::CreateTriangleIndices(level, options);
-    std::size_t next = 0;
-    for (int face = 0; face < level.GetNumFaces(); ++face) {
-        auto const verts = level.GetFaceVertices(face);
-        for (int i = 2; i < verts.size() && !level.IsFaceHole(face); ++i, ++next) {
-            if (next >= triangles.faces.size() || triangles.faces[next] != face ||
-                triangles.baseFaces[next] != level.GetFaceBaseFace(face)) {
-                Fail("triangle ", next, " is not one of face ", face);
-            }
-            for (int k = 0; k < 3; ++k) {
-                if (verts.FindIndex(triangles.vertices[3 * next + std::size_t(k)]) < 0) {
-                    Fail("triangle ", next, " has a vertex that is not one of face ", face);
-                }
-            }
+    std::vector<int> labels(std::size_t(refiner.GetLevel(0).GetNumFaces()));
+    for (int &label : labels) {
+        label = dice.Roll(3);
+    }
+    OsdExt::DrawOptions options;
+    options.cutBaseFaces = dice.IsOneOf(2);
+    options.cutCreases = OsdExt::CreaseCuts(dice.Roll(3));
+    options.drawHoles = dice.IsOneOf(2);
+    if (dice.IsOneOf(2)) {
+        options.labels = Far::ConstIndexArray(labels.data(), int(labels.size()));
+    }
+    for (int channel = 0; channel < refiner.GetNumFVarChannels(); ++channel) {
+        if (dice.IsOneOf(2)) {
+            options.fvarChannels.push_back(channel);
         }
     }
-    if (next != triangles.faces.size()) {
-        Fail(triangles.faces.size(), " triangles instead of ", next);
+    std::string const error = FindDrawingError(level, options);
+    if (!error.empty()) {
+        Fail("drawn faces: ", error);
     }
 }
 
@@ -168,9 +167,9 @@ void CheckOracleCase(OracleCase const &oracleCase) {
         return;
     }
     checkLevels(*refiner);
-    checkTriangles(*refiner);
     OracleLevels const levels{oracleCase, *refiner, interpolate(oracleCase, *refiner)};
     Dice dice(oracleCase.checks);
+    checkDrawnFaces(*refiner, dice);
     checkReferences(levels);
     CheckTables(levels, dice);
     CheckEvaluators(levels, dice);

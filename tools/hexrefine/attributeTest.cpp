@@ -116,6 +116,56 @@ TEST_F(HexrefineAttribute, LevelZeroKeepsAll) {
     }
 }
 
+// On a cube with sharp edges, whose sides stay planes, a face of another material would leave its
+// side.
+TEST_F(HexrefineAttribute, MaterialsEndWhereTheirFacesEnd) {
+    std::string const input = makeFile("cube.obj", "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n"
+                                                   "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+                                                   "usemtl -z\nf 1 4 3 2\nusemtl +z\nf 5 6 7 8\n"
+                                                   "usemtl -y\nf 1 2 6 5\nusemtl +y\nf 4 8 7 3\n"
+                                                   "usemtl -x\nf 1 5 8 4\nusemtl +x\nf 2 3 7 6\n");
+    int const numFaces[] = {6, 18, 66, 258, 1026};
+    int const numDiagonals[] = {0, 1, 1, 3, 5}; // of each edge
+    for (int level = 1; level <= 4; ++level) {
+        SCOPED_TRACE(level);
+        Mesh const mesh =
+            refine(input + " --crease-angle 30 -l " + std::to_string(level), "out.obj");
+        ASSERT_EQ(mesh.GetNumFaces(), numFaces[level] + 12 * numDiagonals[level]);
+        std::size_t corner = 0;
+        for (std::size_t face = 0; face < mesh.faceSizes.size(); ++face) {
+            std::string const &side = mesh.labels[std::size_t(mesh.faceLabels[face])].material;
+            for (int i = 0; i < mesh.faceSizes[face]; ++i, ++corner) {
+                std::size_t const vertex = std::size_t(mesh.faceVertices[corner]);
+                ASSERT_FLOAT_EQ(mesh.positions[3 * vertex + std::size_t(side[1] - 'x')],
+                                side[0] == '-' ? -1.0f : 1.0f);
+            }
+        }
+    }
+}
+
+TEST_F(HexrefineAttribute, FacePropertiesCutWhereTheyDiffer) {
+    Mesh cube = MakeCube();
+    for (std::vector<double> const &values :
+         {std::vector<double>(6, 7), {1, 1, 1, 1, 1, 2}, {0, 1, 2, 3, 4, 5}}) {
+        cube.faceProperties = {{"first", NumberType::Int, {0, 0, 0, 0, 0, 0}},
+                               {"id", NumberType::Int, values}};
+        WriteMesh(cube, getPath("cube.ply"));
+        Mesh const mesh = refine(getPath("cube.ply") + " -l 3", "out.ply");
+        std::vector<double> const &ids = mesh.faceProperties[1].values;
+        // 258 faces, and each edge between two numbers cuts 3 hexagons.
+        int const numCut = values[5] == 7 ? 0 : values[5] == 2 ? 12 : 36;
+        ASSERT_EQ(mesh.GetNumFaces(), 258 + numCut);
+        if (values[5] == 5) {
+            for (int id = 0; id < 6; ++id) {
+                EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 49);
+            }
+        }
+        if (values[5] == 2) {
+            EXPECT_EQ(std::count(ids.begin(), ids.end(), 2), 49);
+        }
+    }
+}
+
 TEST_F(HexrefineAttribute, ColorsGoWhereFormatsHaveThem) {
     Mesh const cube = makeColoredCube();
     std::vector<float> const red = refineVarying(cube, 2, cube.vertexProperties[0].values);

@@ -84,14 +84,20 @@ protected:
         FarExt::TopologyLevel const &level = refiner->GetLevel(kLevel);
         std::vector<int> faceValues;
         for (int f = 0; f < level.GetNumFaces(); ++f) {
-            if (level.IsFaceHole(f)) {
+            auto const whole = level.GetFaceFVarValues(f);
+            bool const isSplit = level.IsFaceFVarSplit(f);
+            if (!isSplit && level.IsFaceHole(f, 0) == level.IsFaceHole(f, 1)) {
+                if (!level.IsFaceHole(f)) {
+                    faceValues.insert(faceValues.end(), whole.begin(), whole.end());
+                }
                 continue;
             }
-            bool const isSplit = level.IsFaceFVarSplit(f);
-            for (int half = 0; half < (isSplit ? 2 : 1); ++half) {
-                auto const part =
-                    isSplit ? level.GetFaceFVarValues(f, 0, half) : level.GetFaceFVarValues(f);
-                faceValues.insert(faceValues.end(), part.begin(), part.end());
+            for (int half = 0; half < 2; ++half) {
+                for (int i = 0; i < 4 && !level.IsFaceHole(f, half); ++i) {
+                    int const corner = FarExt::kHexagonHalves[half][i];
+                    faceValues.push_back(isSplit ? level.GetFaceFVarValues(f, 0, half)[i]
+                                                 : whole[corner]);
+                }
             }
         }
         EXPECT_EQ(mesh.channels[0].faceValues, faceValues);

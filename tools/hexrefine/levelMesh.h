@@ -10,8 +10,9 @@ namespace OpenSubdivHex::Tools {
 /// \brief Replaces the faces of \p mesh, whose channels are those of \p level, by the faces of
 /// \p level.
 ///
-/// Holes are left out.  A hexagon that a seam of a channel crosses becomes two quads, its halves,
-/// since a mesh has one value per corner; other faces stay whole.
+/// Holes are left out: of a hexagon with one half in a hole the other half is a quad.  A hexagon
+/// becomes two quads, its halves, where a seam of a channel crosses it, since a mesh has one value per
+/// corner, and where base faces of different labels or properties share it; other faces stay whole.
 void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh);
 
 /// \brief The same, with a further channel, the last of \p mesh, whose values are those of \p

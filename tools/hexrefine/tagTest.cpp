@@ -68,9 +68,16 @@ protected:
         FarExt::TopologyLevel const &level = refiner->GetLevel(3);
         std::vector<int> vertices;
         for (int f = 0; f < level.GetNumFaces(); ++f) {
-            if (!level.IsFaceHole(f)) {
-                auto const faceVertices = level.GetFaceVertices(f);
+            auto const faceVertices = level.GetFaceVertices(f);
+            bool const isHole[] = {level.IsFaceHole(f, 0), level.IsFaceHole(f, 1)};
+            if (!isHole[0] && !isHole[1]) {
                 vertices.insert(vertices.end(), faceVertices.begin(), faceVertices.end());
+                continue;
+            }
+            for (int half = 0; half < 2; ++half) {
+                for (int i = 0; i < 4 && !isHole[half]; ++i) {
+                    vertices.push_back(faceVertices[FarExt::kHexagonHalves[half][i]]);
+                }
             }
         }
         EXPECT_EQ(mesh.faceVertices, vertices);

@@ -73,6 +73,17 @@ std::uint8_t encodeSrgb(float value) {
     return std::uint8_t(255 * value + 0.5f);
 }
 
+/// One for each face of the control mesh: hues that turn by the golden section.
+Vec3 getRegionColor(int baseFace) {
+    float const turn = 0.618034f * float(baseFace);
+    float const hue = 6 * (turn - std::floor(turn));
+    auto const ramp = [&](float place) {
+        float const distance = std::fabs(std::fmod(hue - place + 9, 6.0f) - 3);
+        return 0.06f + 0.6f * std::fmin(std::fmax(distance - 1, 0.0f), 1.0f);
+    };
+    return {ramp(0), ramp(2), ramp(4)};
+}
+
 /// Two axes at right angles to \p normal and to each other.
 std::pair<Vec3, Vec3> findTangents(Vec3 normal) {
     Vec3 const axis = std::fabs(normal.y) < 0.9f ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
@@ -220,6 +231,9 @@ private:
             float const cosine = std::fmin(std::fmax(Dot(reflected, _camera.GetUp()), -1.0f), 1.0f);
             float const stripe = std::sin(kZebraStripes * std::acos(cosine));
             return Mix(kZebraDark, kZebraLight, SmoothStep(-0.12f, 0.12f, stripe));
+        }
+        if (_options.hasRegions) {
+            return getRegionColor(_scene.GetSurface()->GetBaseFace(hit.triangle));
         }
         bool const isTinted =
             _options.isTinted && _scene.GetSurface()->GetFaceSize(hit.triangle) != 6;

@@ -18,6 +18,7 @@ struct RenderOptions {
     SurfaceLook look = SurfaceLook::Smooth;
     bool hasWireframe = false; ///< draws the edges of the polygons
     bool isTinted = false;     ///< colours faces that are no hexagons
+    bool hasRegions = false;   ///< colours the region of each face of the control mesh
     float lineWidth = 1.5f;    ///< of the wireframe, in pixels
     bool hasGround = true;     ///< shadows fall on a plane below the scene
     int numSamples = 16;       ///< per pixel; each with four rays to the key light and to the sky

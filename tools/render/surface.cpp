@@ -17,25 +17,18 @@ float computeSegmentDistance(Vec3 point, Vec3 a, Vec3 b) {
     return Length(point - (a + std::clamp(t, 0.0f, 1.0f) * edge));
 }
 
+OsdExt::DrawOptions getOptions(FarExt::LimitSides const &sides, bool cutsBaseFaces) {
+    OsdExt::DrawOptions options;
+    options.sides = &sides;
+    options.cutBaseFaces = cutsBaseFaces;
+    return options;
+}
+
 } // namespace
 
-Surface::Surface(FarExt::TopologyLevel const &level)
-    : _level(level), _sides(level), _triangles(OsdExt::CreateTriangleIndices(level)) {
-    _triangleNormals.reserve(_triangles.vertices.size());
-    for (int triangle = 0; triangle < _triangles.GetNumTriangles(); ++triangle) {
-        int const face = _triangles.faces[triangle];
-        Far::ConstIndexArray const vertices = _level.GetFaceVertices(face);
-        int corners[3];
-        bool isHalf1 = true; // all corners are among those of half 1
-        for (int i = 0; i < 3; ++i) {
-            corners[i] = vertices.FindIndex(_triangles.vertices[3 * std::size_t(triangle) + i]);
-            isHalf1 = isHalf1 && corners[i] <= FarExt::kDiagonalEnd;
-        }
-        for (int corner : corners) {
-            _triangleNormals.push_back(_sides.FindSide(_level, face, corner, isHalf1 ? 1 : 0));
-        }
-    }
-}
+Surface::Surface(FarExt::TopologyLevel const &level, bool cutsBaseFaces)
+    : _level(level), _sides(level),
+      _triangles(OsdExt::CreateTriangleIndices(level, getOptions(_sides, cutsBaseFaces))) {}
 
 void Surface::SetPositions(float const *positions, float const *du, float const *dv) {
     _positions.assign(positions, positions + 3 * std::ptrdiff_t(_level.GetNumVertices()));
@@ -78,7 +71,7 @@ void Surface::findPolygonNormals() {
 }
 
 Vec3 Surface::GetSmoothNormal(int triangle, float u, float v) const {
-    int const *normals = _triangleNormals.data() + 3 * std::ptrdiff_t(triangle);
+    int const *normals = _triangles.sides.data() + 3 * std::ptrdiff_t(triangle);
     return Normalize((1 - u - v) * _normals[normals[0]] + u * _normals[normals[1]] +
                      v * _normals[normals[2]]);
 }

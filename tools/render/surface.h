@@ -15,8 +15,9 @@ namespace OpenSubdivHex::Tools {
 /// The topology is set up once; positions may change from frame to frame.
 class Surface {
 public:
-    /// \p level must outlive the surface, and has full topology.
-    explicit Surface(FarExt::TopologyLevel const &level);
+    /// \p level must outlive the surface, and has full topology.  Triangles lie in one base face each
+    /// when \p cutsBaseFaces, else those of a hexagon may lie across two.
+    explicit Surface(FarExt::TopologyLevel const &level, bool cutsBaseFaces = false);
 
     /// The sides of the level's vertices: where normals are asked for.
     FarExt::LimitSides const &GetSides() const { return _sides; }
@@ -34,6 +35,8 @@ public:
     Vec3 GetSmoothNormal(int triangle, float u, float v) const;
     /// The normal of the polygon that the triangle is a part of, by Newell's formula.
     Vec3 GetFlatNormal(int triangle) const;
+    /// The face of the control mesh that the triangle lies in.
+    int GetBaseFace(int triangle) const { return _triangles.baseFaces[triangle]; }
     /// Number of sides of the polygon that the triangle is a part of.
     int GetFaceSize(int triangle) const;
     /// Distance of \p point from the edges of the polygon that the triangle is a part of; the
@@ -48,8 +51,7 @@ private:
     OsdExt::TriangleIndices const _triangles;
     std::vector<float> _positions;
     std::vector<Vec3> _faceNormals;
-    std::vector<Vec3> _normals;        ///< by side
-    std::vector<int> _triangleNormals; ///< three per triangle
+    std::vector<Vec3> _normals; ///< by side
 };
 
 } // namespace OpenSubdivHex::Tools

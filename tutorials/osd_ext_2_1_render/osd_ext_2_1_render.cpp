@@ -48,6 +48,7 @@ struct PanelSettings {
     Sdc::Options::VtxBoundaryInterpolation boundary = Sdc::Options::VTX_BOUNDARY_NONE;
     bool hasWireframe = false;
     bool isTinted = false;
+    bool hasRegions = false;
     bool isFlat = false;
     bool isZebra = false;
     bool hasCage = false;
@@ -101,6 +102,8 @@ void addPanelOptions(CLI::App &app, PanelSettings *settings) {
     app.add_flag("--wireframe", settings->hasWireframe, "Draw the edges of the refined polygons");
     app.add_flag("--tint", settings->isTinted,
                  "Draw polygons that are no hexagons in a colour of their own");
+    app.add_flag("--regions", settings->hasRegions,
+                 "Draw what is refined of each face of the control mesh in a colour of its own");
     CLI::Option *const flat =
         app.add_flag("--flat", settings->isFlat, "Light each polygon by one normal");
     app.add_flag("--zebra", settings->isZebra, "Draw reflection lines, which show smoothness")
@@ -250,7 +253,7 @@ public:
             throw FileError(input, status.GetMessage());
         }
         FarExt::TopologyLevel const &level = _refiner->GetLevel(settings.level);
-        _surface = std::make_unique<Surface>(level);
+        _surface = std::make_unique<Surface>(level, settings.hasRegions);
         if (settings.level > 0) {
             // Points of the limit surface, with a normal for each side of a crease.
             FarExt::LimitStencilTableFactory::Options tableOptions;
@@ -292,6 +295,7 @@ public:
     Image Draw(Camera const &camera, RenderOptions options, int width, int height) const {
         options.hasWireframe = _settings.hasWireframe;
         options.isTinted = _settings.isTinted;
+        options.hasRegions = _settings.hasRegions;
         options.look = _settings.isZebra  ? SurfaceLook::Zebra
                        : _settings.isFlat ? SurfaceLook::Flat
                                           : SurfaceLook::Smooth;

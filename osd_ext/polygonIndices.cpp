@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "polygonIndices.h"
+
+#include "far_ext/baseFaceMap.h"
+#include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/parallel.h"
+
+#include <numeric>
+#include <string>
+
+namespace OpenSubdivHex::OsdExt {
+
+namespace {
+
+using Far::ConstIndexArray;
+using Far::Index;
+using FarExt::BaseFaceMap;
+using FarExt::Status;
+using FarExt::StatusCode;
+using FarExt::TopologyLevel;
+using FarExt::internal::FVarLevel;
+using FarExt::internal::ParallelForRange;
+using FarExt::internal::ParallelSums;
+
+constexpr int kNumHalfCorners = FarExt::HexIndexing::kNumBoundaryEFaceCorners;
+
+// The parts in which a face is drawn: bits for its halves, or all of it.
+enum Parts : unsigned char { kNone = 0, kHalf0 = 1, kHalf1 = 2, kBothHalves = 3, kWhole = 4 };
+
+// A polygon, its first corner.
+struct Place {
+    Place &operator+=(Place const &other) {
+        polygon += other.polygon;
+        corner += other.corner;
+        return *this;
+    }
+
+    std::size_t polygon = 0;
+    std::size_t corner = 0;
+};
+
+class Cutter {
+public:
+    Cutter(TopologyLevel const &level, DrawOptions const &options)
+        : _level(level), _options(options), _map(level), _mesh(level.GetLevel()) {}
+
+    PolygonIndices Run() {
+        decideCuts();
+        auto const places = ParallelSums<Place>(_level.GetNumFaces(), [&](Index begin, Index end) {
+            Place sum;
+            forEachPart(begin, end, [&](Index face, int half) {
+                sum += {1, half < 0 ? std::size_t(_mesh.GetFaceSize(face)) : kNumHalfCorners};
+            });
+            return sum;
+        });
+        resize(places.back());
+        ParallelForRange(_level.GetNumFaces(), [&](Index begin, Index end) {
+            Place place = places[std::size_t(begin / FarExt::internal::kParallelRange)];
+            forEachPart(begin, end, [&](Index face, int half) {
+                _result.sizes[place.polygon] = half < 0 ? _mesh.GetFaceSize(face) : kNumHalfCorners;
+                write(face, half, place);
+                place += {1, std::size_t(_result.sizes[place.polygon])};
+            });
+        });
+        return std::move(_result);
+    }
+
+private:
+    // Which parts of the split faces are drawn.
+    void decideCuts() {
+        _parts.resize(_map.GetSplitFaces().size());
+        ParallelForRange(Index(_parts.size()), [&](Index begin, Index end) {
+            for (Index i = begin; i < end; ++i) {
+                BaseFaceMap::SplitFace const &split = _map.GetSplitFaces()[std::size_t(i)];
+                unsigned const holes = _options.drawHoles ? 0 : _mesh.GetHoles(split.face);
+                unsigned const drawn = kBothHalves & ~holes;
+                bool const isWhole = drawn == kBothHalves && !isCut(split);
+                _parts[std::size_t(i)] = Parts(isWhole ? unsigned(kWhole) : drawn);
+            }
+        });
+    }
+
+    bool isCut(BaseFaceMap::SplitFace const &split) const {
+        if (_options.cutBaseFaces || _options.generateBaseCoords ||
+            getLabel(split.baseFaces[0]) != getLabel(split.baseFaces[1])) {
+            return true;
+        }
+        float const sharpness = _mesh.GetDiagonalSharpness(split.face);
+        if (Sdc::Crease::IsInfinite(sharpness)
+                ? _options.cutCreases != CreaseCuts::None || _options.sides
+                : _options.cutCreases == CreaseCuts::All && Sdc::Crease::IsSharp(sharpness)) {
+            return true;
+        }
+        for (int channel : _options.fvarChannels) {
+            if (_level.IsFaceFVarSplit(split.face, channel)) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    int getLabel(Index baseFace) const {
+        return _options.labels.empty() ? 0 : _options.labels[baseFace];
+    }
+
+    // Calls function(face, half) for the drawn parts of faces [begin, end), with -1 for a whole face.
+    template <typename FUNCTION>
+    void forEachPart(Index begin, Index end, FUNCTION function) const {
+        auto const &splitFaces = _map.GetSplitFaces();
+        auto split = std::lower_bound(
+            splitFaces.begin(), splitFaces.end(), begin,
+            [](BaseFaceMap::SplitFace const &other, Index face) { return other.face < face; });
+        for (Index face = begin; face < end; ++face) {
+            unsigned parts = kWhole;
+            if (split != splitFaces.end() && split->face == face) {
+                parts = _parts[std::size_t(split - splitFaces.begin())];
+                ++split;
+            } else if (!_options.drawHoles && _mesh.GetHoles(face) == FarExt::internal::kHole) {
+                parts = kNone;
+            }
+            if (parts == kWhole) {
+                function(face, -1);
+                continue;
+            }
+            for (int half = 0; half < 2; ++half) {
+                if ((parts >> half & 1u) != 0) {
+                    function(face, half);
+                }
+            }
+        }
+    }
+
+    void resize(Place const &size) {
+        _result.sizes.resize(size.polygon);
+        _result.vertices.resize(size.corner);
+        _result.fvarValues.resize(_options.fvarChannels.size());
+        for (std::vector<int> &values : _result.fvarValues) {
+            values.resize(size.corner);
+        }
+        _result.sides.resize(_options.sides ? size.corner : 0);
+        _result.baseCoords.resize(_options.generateBaseCoords ? 2 * size.corner : 0);
+        _result.faces.resize(size.polygon);
+        _result.baseFaces.resize(size.polygon);
+        _result.labels.resize(_options.labels.empty() ? 0 : size.polygon);
+    }
+
+    void write(Index face, int half, Place const &place) {
+        Index const baseFace = _map.GetBaseFace(face, std::max(half, 0));
+        _result.faces[place.polygon] = face;
+        _result.baseFaces[place.polygon] = baseFace;
+        if (!_options.labels.empty()) {
+            _result.labels[place.polygon] = _options.labels[baseFace];
+        }
+        int const size = _result.sizes[place.polygon];
+        if (_options.sides) {
+            for (int i = 0; i < size; ++i) {
+                int const local = half < 0 ? i : FarExt::kHexagonHalves[half][i];
+                _result.sides[place.corner + std::size_t(i)] =
+                    _options.sides->FindSide(_level, face, local, std::max(half, 0));
+            }
+        }
+        int *const vertices = _result.vertices.data() + place.corner;
+        if (_options.splitVertices) {
+            std::copy_n(_result.sides.data() + place.corner, size, vertices);
+        } else {
+            copyPart(_mesh.GetFaceVertices(face), half, vertices);
+        }
+        for (int i = 0; i < size; ++i) {
+            vertices[i] += _options.vertexOffset;
+        }
+        for (std::size_t i = 0; i < _options.fvarChannels.size(); ++i) {
+            copyValues(face, half, _options.fvarChannels[i],
+                       _result.fvarValues[i].data() + place.corner);
+        }
+        if (_options.generateBaseCoords) {
+            _level.GetFaceBaseCoords(face, std::max(half, 0),
+                                     _result.baseCoords.data() + 2 * place.corner);
+        }
+    }
+
+    // Copies all, or those of a half, of what the corners of a face have.
+    static void copyPart(ConstIndexArray from, int half, int *to) {
+        if (half < 0) {
+            std::copy(from.begin(), from.end(), to);
+            return;
+        }
+        for (int local : FarExt::kHexagonHalves[half]) {
+            *to++ = from[local];
+        }
+    }
+
+    // Seams cross split faces alone.
+    void copyValues(Index face, int half, int channel, int *to) const {
+        if (half < 0 && _level.GetDepth() > 0) {
+            FVarLevel const &values = _level.GetHierarchy()
+                                          .channels[std::size_t(channel)]
+                                          .levels[std::size_t(_level.GetDepth())];
+            copyPart(values.values->GetFaceVertices(values.valueFaces[face]), -1, to);
+        } else if (half >= 0 && _level.IsFaceFVarSplit(face, channel)) {
+            copyPart(_level.GetFaceFVarValues(face, channel, half), -1, to);
+        } else {
+            copyPart(_level.GetFaceFVarValues(face, channel), half, to);
+        }
+    }
+
+    TopologyLevel const &_level;
+    DrawOptions const &_options;
+    BaseFaceMap const _map;
+    FarExt::internal::Level const &_mesh;
+    std::vector<Parts> _parts; // by split face
+    PolygonIndices _result;
+};
+
+Status checkOptions(TopologyLevel const &level, DrawOptions const &options) {
+    auto const fail = [](std::string message) {
+        return FarExt::internal::Failure(StatusCode::InvalidArgument, std::move(message));
+    };
+    for (int channel : options.fvarChannels) {
+        if (channel < 0 || channel >= level.GetNumFVarChannels()) {
+            return fail("there is no face-varying channel " + std::to_string(channel) +
+                        "; the mesh has " + std::to_string(level.GetNumFVarChannels()));
+        }
+    }
+    Index const numBaseFaces = level.GetHierarchy().mesh.levels[0].numFaces;
+    if (!options.labels.empty() && options.labels.size() != numBaseFaces) {
+        return fail("there are " + std::to_string(options.labels.size()) +
+                    " labels for a base mesh of " + std::to_string(numBaseFaces) + " faces");
+    }
+    if (options.sides && options.sides->GetNumVertices() != level.GetNumVertices()) {
+        return fail("the sides are those of " + std::to_string(options.sides->GetNumVertices()) +
+                    " vertices; the level has " + std::to_string(level.GetNumVertices()));
+    }
+    if (options.splitVertices && !options.sides) {
+        return fail("vertices are split by sides, and none are given");
+    }
+    for (int depth = 1; depth <= level.GetDepth() && options.generateBaseCoords; ++depth) {
+        if (!level.GetHierarchy().mesh.levels[std::size_t(depth)].isHexagonal) {
+            return Status(StatusCode::Unsupported, FarExt::ComponentType::Level, depth,
+                          "level " + std::to_string(depth) +
+                              " was not made by a hexagonal step: its faces have no places in base "
+                              "faces");
+        }
+    }
+    return Status();
+}
+
+} // namespace
+
+PolygonIndices CreatePolygonIndices(TopologyLevel const &level, DrawOptions const &options,
+                                    Status *status) {
+    if (!FarExt::internal::Report(checkOptions(level, options), status)) {
+        return {};
+    }
+    return Cutter(level, options).Run();
+}
+
+} // namespace OpenSubdivHex::OsdExt

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Polygons and triangles that draw a level: where hexagons are cut, and what their corners have.
+#include "drawnFaces.h"
+#include "far_ext/topologyRefinerFactory.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+using FarExt::TopologyLevel;
+using FarExt::TopologyRefiner;
+using OsdExt::CreaseCuts;
+using OsdExt::DrawOptions;
+using OsdExt::PolygonIndices;
+
+std::unique_ptr<TopologyRefiner> refine(Shape const &shape, int level, Sdc::Options options = {}) {
+    auto refiner = FarExt::TopologyRefinerFactory::Create(*CreateFarRefiner(shape, options));
+    TopologyRefiner::UniformOptions uniform(level);
+    uniform.fullTopologyInLastLevel = true;
+    EXPECT_TRUE(refiner && refiner->RefineUniform(uniform));
+    return refiner;
+}
+
+Far::ConstIndexArray toArray(std::vector<int> const &labels) {
+    return {labels.data(), int(labels.size())};
+}
+
+} // namespace
+
+TEST(PolygonIndices, AllOptionsOfAllShapes) {
+    std::vector<Shape> shapes = GetShapes();
+    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
+    for (Shape const &shape : shapes) {
+        Sdc::Options sdcOptions;
+        sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        auto const refiner = refine(shape, GetTestLevel(shape, 3, 4000), sdcOptions);
+        std::vector<int> labels;
+        for (int face = 0; face < shape.GetNumFaces(); ++face) {
+            labels.push_back(face * face % 3);
+        }
+        for (int depth = 0; depth <= refiner->GetMaxLevel(); ++depth) {
+            TopologyLevel const &level = refiner->GetLevel(depth);
+            FarExt::LimitSides const sides(level);
+            for (int bits = 0; bits < 128; bits += 1 + depth) {
+                SCOPED_TRACE(testing::Message()
+                             << shape.name << ", level " << depth << ", options " << bits);
+                DrawOptions options;
+                options.cutBaseFaces = (bits & 1) != 0;
+                options.labels =
+                    (bits & 2) != 0 ? toArray(labels) : Far::ConstIndexArray(nullptr, 0);
+                options.cutCreases = CreaseCuts(bits >> 2 & 1 ? bits % 3 : 0);
+                options.sides = (bits & 8) != 0 ? &sides : nullptr;
+                options.splitVertices = options.sides && (bits & 16) != 0;
+                options.generateBaseCoords = (bits & 32) != 0;
+                options.drawHoles = (bits & 64) != 0;
+                options.vertexOffset = bits;
+                for (int channel = refiner->GetNumFVarChannels() - 1; channel >= 0; --channel) {
+                    if ((bits >> channel & 1) != 0) {
+                        options.fvarChannels.push_back(channel);
+                    }
+                }
+                ASSERT_EQ(FindDrawingError(level, options), "");
+            }
+        }
+    }
+}
+
+TEST(PolygonIndices, OtherSteps) {
+    for (Shape const &shape : GetManifoldShapes()) {
+        for (int kind = 0; kind < 4; ++kind) {
+            FarExt::TopologyRefinerFactory::Options factoryOptions;
+            factoryOptions.schemeOptions.triHexFirst = kind == 1;
+            factoryOptions.schemeOptions.schemeType = kind == 2   ? FarExt::SchemeType::DooSabin
+                                                      : kind == 3 ? FarExt::SchemeType::TriHex
+                                                                  : FarExt::SchemeType::Hexagonal;
+            Shape holed = shape;
+            holed.holeFaces = {0, shape.GetNumFaces() / 2};
+            auto const refiner =
+                FarExt::TopologyRefinerFactory::Create(*CreateFarRefiner(holed), factoryOptions);
+            if (!refiner) {
+                continue;
+            }
+            int const maxLevel = GetTestLevel(shape, 2, 4000);
+            ASSERT_TRUE(kind == 0 ? refiner->RefineCoplanar(shape.positions.data(), maxLevel)
+                                  : refiner->RefineUniform(maxLevel));
+            DrawOptions options;
+            ASSERT_EQ(FindDrawingError(refiner->GetLevel(maxLevel), options), "") << shape.name;
+            options.generateBaseCoords = true;
+            FarExt::Status status;
+            if (kind > 0 && maxLevel > 0) {
+                EXPECT_EQ(
+                    OsdExt::CreatePolygonIndices(refiner->GetLevel(maxLevel), options, &status)
+                        .GetNumPolygons(),
+                    0);
+                EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
+            }
+        }
+    }
+}
+
+TEST(PolygonIndices, CutsOnlyWhereLabelsDiffer) {
+    Shape const &torus = GetShape("torus");
+    auto const refiner = refine(torus, 3);
+    TopologyLevel const &level = refiner->GetLevel(3);
+    std::vector<int> labels(std::size_t(torus.GetNumFaces()), 5);
+    DrawOptions options;
+    options.cutBaseFaces = false;
+    options.labels = toArray(labels);
+    PolygonIndices const whole = OsdExt::CreatePolygonIndices(level, options);
+    EXPECT_EQ(whole.GetNumPolygons(), level.GetNumFaces());
+    // One face of another label: at level 3, an edge is 5 segments, 3 of which are diagonals.
+    labels[7] = 6;
+    PolygonIndices const cut = OsdExt::CreatePolygonIndices(level, options);
+    int const numSides = refiner->GetLevel(0).GetFaceVertices(7).size();
+    EXPECT_EQ(cut.GetNumPolygons(), level.GetNumFaces() + 3 * numSides);
+    for (int i = 0; i < cut.GetNumPolygons(); ++i) {
+        EXPECT_EQ(cut.labels[std::size_t(i)], cut.baseFaces[std::size_t(i)] == 7 ? 6 : 5);
+    }
+}
+
+// Each drawn part of a mesh is a surface that ends where the part does: its border is the polyline of
+// the base edges around it.
+TEST(PolygonIndices, PartsEndAtPolylines) {
+    Shape strip = MakeTiling(Tiling::Quads, 4, 2);
+    strip.holeFaces = {3};
+    Sdc::Options sdcOptions;
+    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    for (int depth = 0; depth <= 4; ++depth) {
+        auto const refiner = refine(strip, depth, sdcOptions);
+        int const numSegments[] = {1, 1, 3, 5, 11};
+        for (bool drawHoles : {false, true}) {
+            DrawOptions options;
+            options.drawHoles = drawHoles;
+            PolygonIndices const polygons =
+                OsdExt::CreatePolygonIndices(refiner->GetLevel(depth), options);
+            std::map<int, std::set<std::pair<int, int>>> borders; // of each base face
+            std::size_t corner = 0;
+            for (int i = 0; i < polygons.GetNumPolygons(); ++i) {
+                int const size = polygons.sizes[std::size_t(i)];
+                auto &border = borders[polygons.baseFaces[std::size_t(i)]];
+                for (int k = 0; k < size; ++k) {
+                    int const v = polygons.vertices[corner + std::size_t(k)];
+                    int const w = polygons.vertices[corner + std::size_t((k + 1) % size)];
+                    if (border.erase({w, v}) == 0) {
+                        ASSERT_TRUE(border.insert({v, w}).second);
+                    }
+                }
+                corner += std::size_t(size);
+            }
+            EXPECT_EQ(borders.count(3), drawHoles ? 1u : 0u);
+            EXPECT_EQ(borders.size(), std::size_t(strip.GetNumFaces()) - (drawHoles ? 0 : 1));
+            for (auto const &[face, border] : borders) {
+                EXPECT_EQ(border.size(), 4u * std::size_t(numSegments[depth])) << "face " << face;
+            }
+        }
+    }
+}
+
+TEST(PolygonIndices, SplitVerticesAreThoseOfSides) {
+    Shape const &shape = GetFeatureShape("allCreases");
+    auto const refiner = refine(shape, 2);
+    TopologyLevel const &level = refiner->GetLevel(2);
+    FarExt::LimitSides const sides(level);
+    DrawOptions options;
+    options.sides = &sides;
+    options.splitVertices = true;
+    PolygonIndices const polygons = OsdExt::CreatePolygonIndices(level, options);
+    std::set<int> const used(polygons.vertices.begin(), polygons.vertices.end());
+    EXPECT_EQ(int(used.size()), sides.GetNumSides());
+    EXPECT_EQ(polygons.vertices, polygons.sides);
+    options.splitVertices = false;
+    PolygonIndices const whole = OsdExt::CreatePolygonIndices(level, options);
+    for (std::size_t i = 0; i < polygons.vertices.size(); ++i) {
+        ASSERT_EQ(sides.GetVertex(polygons.vertices[i]), whole.vertices[i]);
+    }
+}
+
+TEST(PolygonIndices, RefusesWhatDoesNotFit) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = refine(shape, 1);
+    TopologyLevel const &level = refiner->GetLevel(1);
+    auto const expectRefused = [&](DrawOptions const &options, std::string const &cause) {
+        FarExt::Status status;
+        PolygonIndices const polygons = OsdExt::CreatePolygonIndices(level, options, &status);
+        EXPECT_EQ(polygons.GetNumPolygons(), 0);
+        EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
+        EXPECT_EQ(status.GetMessage(), cause);
+        EXPECT_EQ(OsdExt::CreateTriangleIndices(level, options, &status).GetNumTriangles(), 0);
+        EXPECT_EQ(status.GetMessage(), cause);
+    };
+    DrawOptions options;
+    options.fvarChannels = {0};
+    expectRefused(options, "there is no face-varying channel 0; the mesh has 0");
+    options = DrawOptions();
+    std::vector<int> const labels(5);
+    options.labels = toArray(labels);
+    expectRefused(options, "there are 5 labels for a base mesh of 6 faces");
+    options = DrawOptions();
+    options.splitVertices = true;
+    expectRefused(options, "vertices are split by sides, and none are given");
+    FarExt::LimitSides const sides(refiner->GetLevel(0));
+    options.sides = &sides;
+    expectRefused(options, "the sides are those of 8 vertices; the level has 32");
+}
+
+} // namespace OpenSubdivHex::Regression
