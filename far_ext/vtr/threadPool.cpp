@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <new>
@@ -25,6 +26,8 @@ namespace OpenSubdivHex::FarExt::internal {
 namespace {
 
 using Lock = std::unique_lock<std::mutex>;
+using Clock = std::chrono::steady_clock;
+using Nanoseconds = std::chrono::nanoseconds;
 
 // How long a thread looks again and again for what it waits for before it sleeps: about as long as
 // it takes to wake it.
@@ -42,7 +45,6 @@ void pause() {
 // Returns when isThere() holds, or after kSpinTime.
 template <typename CONDITION>
 void spinUntil(CONDITION isThere) {
-    using Clock = std::chrono::steady_clock;
     constexpr int kLooksPerTime = 16;
     for (auto const end = Clock::now() + kSpinTime; Clock::now() < end;) {
         for (int i = 0; i < kLooksPerTime; ++i) {
@@ -53,6 +55,48 @@ void spinUntil(CONDITION isThere) {
         }
     }
 }
+
+// How long the calling thread has had a processor; always 0 where the system does not tell.
+Nanoseconds getThreadTime() {
+#ifdef CLOCK_THREAD_CPUTIME_ID
+    timespec time = {};
+    if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time) == 0) {
+        return std::chrono::seconds(time.tv_sec) + Nanoseconds(time.tv_nsec);
+    }
+#endif
+    return Nanoseconds(0);
+}
+
+// \brief What the help of workers has gained and cost.  On a busy machine a worker may lose its
+// processor in the middle of a call, and the caller of the loop has to wait for it, as long as many
+// a loop takes.
+//
+// There is credit in the beginning.  It grows by the work that is done by workers, is spent by
+// waiting for those who have no processor, and grows with time.  Without credit loops are done
+// alone: so waiting costs an eighth of the time at most beside what help gains, and where nobody is
+// held up there always is help.
+class HelpAccount {
+public:
+    bool HasCredit() {
+        auto const now = Clock::now();
+        add((now - _time) / kTimePerCredit);
+        _time = now;
+        return _credit > Nanoseconds(0);
+    }
+    void Settle(Nanoseconds gain, Nanoseconds cost) { add(gain - cost); }
+
+private:
+    static constexpr int kTimePerCredit = 8;
+    static constexpr std::chrono::milliseconds kMaxCredit{2};
+    static constexpr std::chrono::milliseconds kMaxDebt{20};
+
+    void add(Nanoseconds credit) {
+        _credit = std::clamp<Nanoseconds>(_credit + credit, -kMaxDebt, kMaxCredit);
+    }
+
+    Clock::time_point _time = Clock::now();
+    Nanoseconds _credit = kMaxCredit;
+};
 
 // \brief A loop that a thread has called, and that workers may come to help with.  Whoever calls
 // anything but Work() has locked the pool.
@@ -75,19 +119,26 @@ public:
         --_numPlaces;
         ++_numWorkers;
     }
-    void Leave() {
+    // With the time that the worker had a processor, and what it spent without.
+    void Leave(Nanoseconds worked, Nanoseconds heldUp) {
+        _worked += worked;
+        _heldUp = std::max(_heldUp, heldUp);
         if (--_numWorkers == 0) {
             _isEmpty.notify_one();
         }
     }
     // Waits until all workers that entered have left; none enters any more.
-    void WaitForWorkers(Lock &lock) {
+    void WaitForWorkers(Lock &lock, HelpAccount &account) {
+        Nanoseconds waited(0);
         if (_numWorkers > 0) {
+            auto const start = Clock::now();
             lock.unlock();
             spinUntil([this] { return _numWorkers == 0; });
             lock.lock();
+            _isEmpty.wait(lock, [this] { return _numWorkers == 0; });
+            waited = Clock::now() - start;
         }
-        _isEmpty.wait(lock, [this] { return _numWorkers == 0; });
+        account.Settle(_worked, std::min(waited, _heldUp));
     }
 
     Loop *next = nullptr; // in the pool's list
@@ -98,6 +149,8 @@ private:
     std::atomic<int> _next{0};
     int _numPlaces; // of workers that may still enter
     std::atomic<int> _numWorkers{0};
+    Nanoseconds _worked{0}; // all workers together
+    Nanoseconds _heldUp{0}; // the longest of them
     std::condition_variable _isEmpty;
 };
 
@@ -124,21 +177,24 @@ public:
             loop.Work();
             return;
         }
-        {
-            Lock lock(_mutex);
-            startWorkers(numThreads - 1);
-            add(loop);
-            int const numWanted = std::min(numThreads - _numLoops - _numBusy - _numSpinning,
-                                           std::min(numThreads - 1, _numSleeping));
+        Lock lock(_mutex);
+        if (!_account.HasCredit()) {
             lock.unlock();
-            for (int i = 0; i < numWanted; ++i) {
-                _hasLoop.notify_one();
-            }
+            loop.Work();
+            return;
+        }
+        startWorkers(numThreads - 1);
+        add(loop);
+        int const numWanted = std::min(numThreads - _numLoops - _numBusy - _numSpinning,
+                                       std::min(numThreads - 1, _numSleeping));
+        lock.unlock();
+        for (int i = 0; i < numWanted; ++i) {
+            _hasLoop.notify_one();
         }
         loop.Work();
-        Lock lock(_mutex);
+        lock.lock();
         remove(loop);
-        loop.WaitForWorkers(lock);
+        loop.WaitForWorkers(lock, _account);
     }
 
 private:
@@ -201,9 +257,13 @@ private:
             loop->Enter();
             ++_numBusy;
             lock.unlock();
+            auto const start = Clock::now();
+            Nanoseconds const threadStart = getThreadTime();
             loop->Work();
+            Nanoseconds const worked = getThreadTime() - threadStart;
+            Nanoseconds const heldUp = Clock::now() - start - worked;
             lock.lock();
-            loop->Leave();
+            loop->Leave(worked, heldUp);
             --_numBusy;
             // Mostly the caller makes another loop at once.
             ++_numSpinning;
@@ -250,6 +310,7 @@ private:
     Loop *_firstLoop = nullptr; // the oldest
     int _numLoops = 0;
     std::atomic<unsigned> _numAdded{0}; // loops so far
+    HelpAccount _account;
 };
 
 } // namespace

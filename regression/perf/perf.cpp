@@ -37,6 +37,7 @@ void run(Suite::Options const &options, std::string const &command, std::string 
     AddEvaluationBenchmarks(suite);
     AddTableFreeBenchmarks(suite);
     AddGrowthBenchmarks(suite);
+    AddBusyBenchmarks(suite);
     bool const isComplete = suite.Run();
 
     std::string const markdown = FormatMarkdown(suite, environment);

@@ -2,6 +2,7 @@
 #include "rows.h"
 
 #include <stdexcept>
+#include <utility>
 
 namespace OpenSubdivHex::Regression {
 
@@ -44,6 +45,15 @@ std::vector<Row> const &GetRows() {
                           "own best table, 2 threads", 3, 5});
         result.push_back({"evaluation-catmark", "Far's Catmull-Clark table, length 3",
                           "Osd::CpuEvaluator", 5, 8});
+        // 1.3 times as slow at most.
+        for (auto const &[name, work] : {std::pair("topology", "topology, full last level"),
+                                         {"table", "table, per weight"},
+                                         {"evaluation", "evaluation, length 3"},
+                                         {"table-free", "table-free, all levels"}}) {
+            result.push_back({std::string("busy-") + name,
+                              std::string(work) + ", threads of all processors, all busy",
+                              "own, 1 thread", 0.77, 1});
+        }
         return result;
     }();
     return kRows;

@@ -126,6 +126,7 @@ void AddStencilTableBenchmarks(Suite &suite);
 void AddEvaluationBenchmarks(Suite &suite);
 void AddTableFreeBenchmarks(Suite &suite);
 void AddGrowthBenchmarks(Suite &suite);
+void AddBusyBenchmarks(Suite &suite);
 /// @}
 
 } // namespace OpenSubdivHex::Regression

@@ -248,12 +248,68 @@ TEST(Executor, RunsAllLoopsOfCalls) {
     EXPECT_GT(executor.numLoops, 10);
 }
 
+namespace {
+
+/// Until help has credit again, whatever the loops before were like.
+void waitForCredit() { std::this_thread::sleep_for(std::chrono::milliseconds(250)); }
+
+/// \brief Calls function(), in a loop of two calls at once, on the thread that comes to help, while
+/// the calling one waits for it to begin.
+template <typename FUNCTION>
+void callOnWorker(FUNCTION function) {
+    ExecutorScope const scope(nullptr, 2);
+    std::atomic<bool> hasBegun{false};
+    auto const caller = std::this_thread::get_id();
+    FarExt::ParallelFor(2, [&](int) {
+        if (std::this_thread::get_id() != caller) {
+            hasBegun = true;
+            function();
+            return;
+        }
+        auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (!hasBegun && std::chrono::steady_clock::now() < end) {
+            std::this_thread::yield();
+        }
+        EXPECT_TRUE(hasBegun);
+    });
+}
+
+} // namespace
+
+// A worker that has no processor, as it is here asleep, costs the credit that help has.
+TEST(Executor, DefaultOneWorksAloneForATimeWhereHelpIsHeldUp) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds kTime(40);
+    constexpr int kMaxTries = 100;
+    bool isTested = false;
+    for (int i = 0; i < kMaxTries && !isTested; ++i) {
+        waitForCredit();
+        callOnWorker([&] { std::this_thread::sleep_for(kTime); });
+        auto const end = Clock::now() + kTime;
+        ExecutorScope const scope(nullptr, 2);
+        std::atomic<int> numOthers{0};
+        auto const caller = std::this_thread::get_id();
+        FarExt::ParallelFor(20, [&](int) {
+            std::this_thread::sleep_for(std::chrono::microseconds(100));
+            numOthers += std::this_thread::get_id() != caller;
+        });
+        if (Clock::now() < end) { // else there may be credit again
+            EXPECT_EQ(numOthers, 0);
+            isTested = true;
+        }
+    }
+    EXPECT_TRUE(isTested);
+    waitForCredit();
+    callOnWorker([] {});
+}
+
 // The calling thread and those that come to help it.
 TEST(Executor, DefaultOneUsesAsManyThreadsAsAreWanted) {
     constexpr int kNumThreads = 4;
     std::mutex mutex;
     std::condition_variable isThere;
     std::set<std::thread::id> threads;
+    waitForCredit();
     ExecutorScope const scope(&FarExt::GetDefaultExecutor(), kNumThreads);
     // Every thread waits for the others: without them the loop would not end.
     FarExt::ParallelFor(kNumThreads, [&](int) {
@@ -288,6 +344,7 @@ TEST(Executor, DefaultOneWaitsForNobodyWhoHasNotBegun) {
     constexpr int kNumThreads = 3;
     std::atomic<int> numHeld{0};
     std::atomic<bool> isReleased{false};
+    waitForCredit();
     std::thread holder([&] {
         FarExt::SetNumThreads(kNumThreads);
         FarExt::ParallelFor(kNumThreads, [&](int) {
