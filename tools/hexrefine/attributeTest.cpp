@@ -75,7 +75,51 @@ protected:
             ASSERT_NEAR(property->values[i], values[i], tolerance) << property->name << i;
         }
     }
+
+    /// A cube of side 2, each face of another material, in two objects.
+    std::string makeMaterialCube() const {
+        Mesh cube = MakeCube();
+        for (int face = 0; face < 6; ++face) {
+            cube.labels.push_back({face < 4 ? "ring" : "caps", "", "m" + std::to_string(face), ""});
+            cube.faceLabels.push_back(face);
+        }
+        cube.materialLibraries = {"six.mtl"};
+        WriteMesh(cube, getPath("materials.obj"));
+        return getPath("materials.obj");
+    }
+
+    /// Expects that each face of \p mesh lies in the plane of the face of the cube that
+    /// getNumber(face) says, and that there are faces in all six.
+    template <typename GET_NUMBER>
+    static void expectInPlanes(Mesh const &mesh, GET_NUMBER getNumber) {
+        constexpr int kNormals[6][3] = {{0, 0, 1},  {0, 1, 0}, {0, 0, -1},
+                                        {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}};
+        std::vector<int> numFaces(6);
+        int const *vertices = mesh.faceVertices.data();
+        for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+            int const number = getNumber(face);
+            ++numFaces.at(std::size_t(number));
+            for (int i = 0; i < mesh.faceSizes[std::size_t(face)]; ++i) {
+                float const *point = &mesh.positions[3 * std::size_t(*vertices++)];
+                float height = 0;
+                for (int k = 0; k < 3; ++k) {
+                    height += float(kNormals[number][k]) * point[k];
+                }
+                ASSERT_NEAR(height, 1, 1e-6) << "face " << face << " of " << number;
+            }
+        }
+        EXPECT_GT(*std::min_element(numFaces.begin(), numFaces.end()), 0);
+    }
 };
+
+/// How often \p word begins a line of \p text.
+int countLines(std::string const &text, std::string const &word) {
+    int count = 0;
+    for (std::size_t i = 0; i != std::string::npos; i = text.find('\n', i + 1)) {
+        count += text.compare(i + (i > 0 ? 1 : 0), word.size(), word) == 0 ? 1 : 0;
+    }
+    return count;
+}
 
 } // namespace
 
@@ -113,33 +157,6 @@ TEST_F(HexrefineAttribute, LevelZeroKeepsAll) {
         EXPECT_EQ(mesh.faceProperties[i].name, cube.faceProperties[i].name);
         EXPECT_EQ(mesh.faceProperties[i].type, cube.faceProperties[i].type);
         EXPECT_EQ(mesh.faceProperties[i].values, cube.faceProperties[i].values);
-    }
-}
-
-// On a cube with sharp edges, whose sides stay planes, a face of another material would leave its
-// side.
-TEST_F(HexrefineAttribute, MaterialsEndWhereTheirFacesEnd) {
-    std::string const input = makeFile("cube.obj", "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n"
-                                                   "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
-                                                   "usemtl -z\nf 1 4 3 2\nusemtl +z\nf 5 6 7 8\n"
-                                                   "usemtl -y\nf 1 2 6 5\nusemtl +y\nf 4 8 7 3\n"
-                                                   "usemtl -x\nf 1 5 8 4\nusemtl +x\nf 2 3 7 6\n");
-    int const numFaces[] = {6, 18, 66, 258, 1026};
-    int const numDiagonals[] = {0, 1, 1, 3, 5}; // of each edge
-    for (int level = 1; level <= 4; ++level) {
-        SCOPED_TRACE(level);
-        Mesh const mesh =
-            refine(input + " --crease-angle 30 -l " + std::to_string(level), "out.obj");
-        ASSERT_EQ(mesh.GetNumFaces(), numFaces[level] + 12 * numDiagonals[level]);
-        std::size_t corner = 0;
-        for (std::size_t face = 0; face < mesh.faceSizes.size(); ++face) {
-            std::string const &side = mesh.labels[std::size_t(mesh.faceLabels[face])].material;
-            for (int i = 0; i < mesh.faceSizes[face]; ++i, ++corner) {
-                std::size_t const vertex = std::size_t(mesh.faceVertices[corner]);
-                ASSERT_FLOAT_EQ(mesh.positions[3 * vertex + std::size_t(side[1] - 'x')],
-                                side[0] == '-' ? -1.0f : 1.0f);
-            }
-        }
     }
 }
 
@@ -275,6 +292,141 @@ TEST_F(HexrefineAttribute, LimitLeavesNumbersAsTheyAre) {
               std::string::npos)
         << result.out;
     EXPECT_EQ(ReadMesh(getPath("limit.ply")).vertexProperties.size(), 3u);
+}
+
+// The materials of refined faces are those of the plane in which they lie, at every level.
+TEST_F(HexrefineAttribute, MaterialsStayInTheirFaces) {
+    std::string const input = makeMaterialCube() + " --crease-angle 1 -l ";
+    int const numFaces[] = {6, 18, 66, 258, 1026, 4098, 16386};
+    int const numDiagonals[] = {0, 1, 1, 3, 5, 11, 21}; // of each edge
+    for (int level = 0; level <= 6; ++level) {
+        SCOPED_TRACE(level);
+        Mesh const mesh = refine(input + std::to_string(level), "out.obj");
+        ASSERT_EQ(mesh.GetNumFaces(), numFaces[level] + 12 * numDiagonals[level]);
+        ASSERT_EQ(mesh.labels.size(), 6u);
+        expectInPlanes(mesh, [&](int face) {
+            return mesh.labels[std::size_t(mesh.faceLabels[std::size_t(face)])].material[1] - '0';
+        });
+        // One after the other, whatever the order of the refined faces is.
+        std::string const content = getContent(getPath("out.obj"));
+        EXPECT_EQ(countLines(content, "usemtl "), 6);
+        EXPECT_EQ(countLines(content, "o "), 2);
+        EXPECT_EQ(countLines(content, "mtllib six.mtl"), 1);
+    }
+}
+
+TEST_F(HexrefineAttribute, MaterialsComeBack) {
+    // With all that goes along the corners of faces.
+    Mesh cube = ReadMesh(makeMaterialCube());
+    cube.channels = {{FVarKind::Uv, 2, {0, 0, 1, 0, 1, 1, 0, 1}, {}}};
+    for (int i = 0; i < 24; ++i) {
+        cube.channels[0].faceValues.push_back(i % 4);
+    }
+    for (FaceLabel &label : cube.labels) {
+        label.groups = "group " + label.material;
+        label.smoothing = label.object == "ring" ? "1" : "off";
+    }
+    WriteMesh(cube, getPath("uv.obj"));
+    for (char const *options : {"", " --limit", " --crease-angle 1", " --limit --crease-angle 1"}) {
+        SCOPED_TRACE(options);
+        Mesh const mesh = refine(getPath("uv.obj") + " -l 2" + options, "out.obj");
+        EXPECT_TRUE(mesh.labels == cube.labels);
+        EXPECT_EQ(mesh.materialLibraries, cube.materialLibraries);
+        ASSERT_GE(mesh.channels.size(), 1u);
+        EXPECT_EQ(mesh.channels[0].faceValues.size(), mesh.faceVertices.size());
+        // Opened again it is the same.
+        std::string const content = getContent(getPath("out.obj"));
+        refine(getPath("out.obj") + " -l 0", "again.obj");
+        EXPECT_TRUE(getContent(getPath("again.obj")) == content);
+        // All faces are there, in other order.
+        std::size_t numUncut = 0;
+        Mesh const plain = refine(makeCubeFile() + " -l 2", "plain.obj");
+        for (int size : mesh.faceSizes) {
+            numUncut += size == 6 ? 2 : 1;
+        }
+        EXPECT_GE(numUncut, plain.faceSizes.size());
+        EXPECT_EQ(mesh.GetNumVertices(), plain.GetNumVertices());
+    }
+}
+
+TEST_F(HexrefineAttribute, OnlyBordersOfMaterialsAreCut) {
+    // Two quads beside each other, and two of the other material above.
+    std::string const vertices = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
+                                 "v 0 2 0\nv 1 2 0\nv 2 2 0\n";
+    std::string const input =
+        makeFile("grid.obj", vertices + "usemtl a\nf 1 2 5 4\nusemtl b\nf 4 5 8 7\nusemtl a\n"
+                                        "f 2 3 6 5\nusemtl b\nf 5 6 9 8\n");
+    Mesh mesh = refine(input + " -l 1 --boundary edge-and-corner", "out.obj");
+    EXPECT_EQ(std::count(mesh.faceSizes.begin(), mesh.faceSizes.end(), 6), 2);
+    EXPECT_EQ(std::count(mesh.faceSizes.begin(), mesh.faceSizes.end(), 4), 4 + 8 + 2 * 2);
+    EXPECT_EQ(countLines(getContent(getPath("out.obj")), "usemtl "), 2);
+    for (int level : {1, 2, 3}) {
+        mesh = refine(input + " --boundary edge-and-corner -l " + std::to_string(level), "out.obj");
+        int const *vertex = mesh.faceVertices.data();
+        double areas[2] = {0, 0};
+        for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+            int const label = mesh.faceLabels[std::size_t(face)];
+            int const size = mesh.faceSizes[std::size_t(face)];
+            for (int i = 0; i < size; ++i) {
+                float const *point = &mesh.positions[3 * std::size_t(vertex[i])];
+                float const *next = &mesh.positions[3 * std::size_t(vertex[(i + 1) % size])];
+                // By symmetry the border stays where it is.
+                EXPECT_TRUE(label == 0 ? point[1] <= 1 + 1e-6 : point[1] >= 1 - 1e-6);
+                areas[label] +=
+                    0.5 * (double(point[0]) * double(next[1]) - double(next[0]) * double(point[1]));
+            }
+            vertex += size;
+        }
+        EXPECT_NEAR(areas[0], areas[1], 1e-6);
+    }
+    // What says the same everywhere cuts nothing.
+    std::string const one = makeFile(
+        "one.obj", vertices + "o x\nusemtl a\nf 1 2 5 4\nf 4 5 8 7\nf 2 3 6 5\nf 5 6 9 8\n");
+    mesh = refine(one + " -l 1 --boundary edge-and-corner", "out.obj");
+    EXPECT_EQ(std::count(mesh.faceSizes.begin(), mesh.faceSizes.end(), 6), 4);
+    ASSERT_EQ(mesh.labels.size(), 1u);
+    // A hole is left out with its half of the hexagons.
+    std::string const hole = makeFile("hole.obj", getContent(input) + "t hole 1/0/0 1\n");
+    mesh = refine(hole + " -l 1 --boundary edge-and-corner", "out.obj");
+    ASSERT_EQ(mesh.labels.size(), 2u);
+    for (int vertex : mesh.faceVertices) {
+        float const *point = &mesh.positions[3 * std::size_t(vertex)];
+        EXPECT_FALSE(point[0] < 1 - 1e-6 && point[1] > 1 + 1e-6);
+    }
+}
+
+TEST_F(HexrefineAttribute, NumbersOfFacesStayInThem) {
+    for (char const *name : {"out.ply", "out.off"}) {
+        Mesh cube = MakeCube();
+        cube.faceProperties = {{"red", NumberType::UChar, {0, 50, 100, 150, 200, 250}},
+                               {"green", NumberType::UChar, {7, 7, 7, 7, 7, 7}},
+                               {"blue", NumberType::UChar, {1, 2, 1, 2, 1, 2}}};
+        WriteMesh(cube, getPath("faces.ply"));
+        for (int level : {1, 3}) {
+            Mesh const mesh = refine(
+                getPath("faces.ply") + " --crease-angle 1 -l " + std::to_string(level), name);
+            ASSERT_EQ(mesh.faceProperties.size(), 3u);
+            expectInPlanes(mesh, [&](int face) {
+                return int(mesh.faceProperties[0].values[std::size_t(face)]) / 50;
+            });
+            for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+                auto const i = std::size_t(face);
+                EXPECT_EQ(mesh.faceProperties[1].values[i], 7);
+                EXPECT_EQ(mesh.faceProperties[2].values[i],
+                          int(mesh.faceProperties[0].values[i]) / 50 % 2 + 1);
+            }
+        }
+    }
+}
+
+TEST_F(HexrefineAttribute, OtherSchemesKeepMaterials) {
+    for (char const *scheme : {"--scheme doo-sabin", "--scheme tri-hex", "--tri-hex-first",
+                               "--coplanar", "--coplanar --open-gaps --tolerance 100"}) {
+        SCOPED_TRACE(scheme);
+        Mesh const mesh = refine(makeMaterialCube() + " -l 2 " + scheme, "out.obj");
+        EXPECT_EQ(mesh.labels.size(), 6u);
+        EXPECT_EQ(mesh.faceLabels.size(), mesh.faceSizes.size());
+    }
 }
 
 TEST_F(HexrefineAttribute, MaterialLibrariesAreFoundFromOtherFolders) {

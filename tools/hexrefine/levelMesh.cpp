@@ -3,6 +3,7 @@
 
 #include "osd_ext/polygonIndices.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -30,6 +31,53 @@ std::vector<int> findClasses(Mesh const &mesh) {
     return classes;
 }
 
+/// The elements of \p from, of face i from firsts[i] on, face by face in the order \p faces.
+std::vector<int> permute(std::vector<int> const &from, std::vector<std::size_t> const &firsts,
+                         std::vector<std::size_t> const &faces) {
+    std::vector<int> result;
+    result.reserve(from.size());
+    for (std::size_t face : faces) {
+        result.insert(result.end(), from.begin() + std::ptrdiff_t(firsts[face]),
+                      from.begin() + std::ptrdiff_t(firsts[face + 1]));
+    }
+    return result;
+}
+
+/// \brief Puts the faces in the order of their labels, those with the same in the order in which
+/// they are, so that a file has its objects, groups and materials one after the other.
+void sortFacesByLabel(Mesh *mesh) {
+    std::size_t const numFaces = mesh->faceSizes.size();
+    std::vector<std::size_t> firstCorners(numFaces + 1); // of faces
+    std::vector<std::size_t> places(mesh->labels.size() + 1);
+    auto const getLabel = [&](std::size_t face) {
+        return std::size_t(mesh->faceLabels[std::size_t(mesh->GetBaseFace(int(face)))]);
+    };
+    for (std::size_t face = 0; face < numFaces; ++face) {
+        firstCorners[face + 1] = firstCorners[face] + std::size_t(mesh->faceSizes[face]);
+        ++places[getLabel(face) + 1];
+    }
+    std::partial_sum(places.begin(), places.end(), places.begin());
+    std::vector<std::size_t> order(numFaces);
+    for (std::size_t face = 0; face < numFaces; ++face) {
+        order[places[getLabel(face)]++] = face;
+    }
+    if (std::is_sorted(order.begin(), order.end())) {
+        return;
+    }
+    mesh->faceVertices = permute(mesh->faceVertices, firstCorners, order);
+    for (FVarChannel &channel : mesh->channels) {
+        channel.faceValues = permute(channel.faceValues, firstCorners, order);
+    }
+    std::vector<int> sizes(numFaces);
+    std::vector<int> baseFaces(numFaces);
+    for (std::size_t i = 0; i < numFaces; ++i) {
+        sizes[i] = mesh->faceSizes[order[i]];
+        baseFaces[i] = mesh->GetBaseFace(int(order[i]));
+    }
+    mesh->faceSizes = std::move(sizes);
+    mesh->baseFaces = std::move(baseFaces);
+}
+
 /// \p sides is null where no channel has their values.
 void copyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sides, Mesh *mesh) {
     std::vector<int> const classes = findClasses(*mesh);
@@ -49,6 +97,10 @@ void copyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sid
     }
     if (sides) {
         mesh->channels.back().faceValues = std::move(polygons.sides);
+    }
+    // Faces that are not refined stay in the order of the file.
+    if (!mesh->faceLabels.empty() && level.GetDepth() > 0) {
+        sortFacesByLabel(mesh);
     }
 }
 

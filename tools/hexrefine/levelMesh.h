@@ -13,6 +13,9 @@ namespace OpenSubdivHex::Tools {
 /// Holes are left out: of a hexagon with one half in a hole the other half is a quad.  A hexagon
 /// becomes two quads, its halves, where a seam of a channel crosses it, since a mesh has one value per
 /// corner, and where base faces of different labels or properties share it; other faces stay whole.
+///
+/// They are in the order of the level or, where the faces of a refined level have labels, in that of
+/// Mesh::labels: a file has its objects, groups and materials one after the other.
 void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh);
 
 /// \brief The same, with a further channel, the last of \p mesh, whose values are those of \p
