@@ -204,7 +204,7 @@ private:
     // its parent's threads are not there, and what they held and waited for is as they left it.
     static ThreadPool &make() {
         alignas(ThreadPool) static unsigned char memory[sizeof(ThreadPool)];
-        static ThreadPool *const pool = new (memory) ThreadPool;
+        static ThreadPool *pool = new (memory) ThreadPool;
 #if defined(__unix__) || defined(__APPLE__)
         // Without memory for the handlers the child is as it would be without.
         static_cast<void>(pthread_atfork([] { pool->_mutex.lock(); }, [] { pool->_mutex.unlock(); },

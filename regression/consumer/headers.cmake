@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The installed headers are those at the top of the layers' folders, no internal ones, and each
-# compiles alone, those of TBB where that is:
-# cmake -D sourceDir=DIR -D includeDir=DIR -D compiler=PATH -D flags=LIST -D hasTbb=BOOL
+# compiles alone, but for those whose names begin with one of missing, which need what is not there:
+# cmake -D sourceDir=DIR -D includeDir=DIR -D compiler=PATH -D flags=LIST -D missing=LIST
 #   -P headers.cmake
 file(GLOB expected RELATIVE ${sourceDir} ${sourceDir}/far_ext/*.h ${sourceDir}/osd_ext/*.h)
 list(APPEND expected far_ext/version.h)
@@ -16,9 +16,9 @@ if(NOT installed STREQUAL expected)
   message(FATAL_ERROR "expected were:\n  ${shown}")
 endif()
 
-if(NOT hasTbb)
-  list(FILTER installed EXCLUDE REGEX "/tbb[A-Z]")
-endif()
+foreach(begin IN LISTS missing)
+  list(FILTER installed EXCLUDE REGEX "/${begin}[A-Z]")
+endforeach()
 foreach(header IN LISTS installed)
   file(WRITE ${includeDir}/../alone.cpp "#include <${header}>\nint main() {}\n")
   execute_process(

@@ -48,13 +48,16 @@ set_tests_properties(consumer.build PROPERTIES FIXTURES_REQUIRED installed)
 get_target_property(opensubdivDirs OpenSubdiv::osdCPU INTERFACE_INCLUDE_DIRECTORIES)
 list(TRANSFORM opensubdivDirs PREPEND -I)
 find_package(TBB CONFIG QUIET)
+find_path(OPENSUBDIVHEX_GL_INCLUDE_DIR GL/gl.h)
+mark_as_advanced(OPENSUBDIVHEX_GL_INCLUDE_DIR)
+set(missing $<$<NOT:$<BOOL:${TBB_FOUND}>>:tbb> $<$<NOT:$<BOOL:${OPENSUBDIVHEX_GL_INCLUDE_DIR}>>:gl>)
 add_test(NAME consumer.headers
   COMMAND ${CMAKE_COMMAND}
     -D sourceDir=${PROJECT_SOURCE_DIR}
     -D includeDir=${consumerDir}/prefix/${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex
     -D compiler=${CMAKE_CXX_COMPILER}
     -D "flags=${opensubdivDirs}"
-    -D hasTbb=${TBB_FOUND}
+    -D "missing=${missing}"
     -P ${PROJECT_SOURCE_DIR}/regression/consumer/headers.cmake)
 set_tests_properties(consumer.headers PROPERTIES FIXTURES_REQUIRED installed)
 if(OPENSUBDIVHEX_TOOLS)

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "glContext.h"
+
+#include <EGL/eglext.h>
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+/// A function of OpenGL or EGL, by its name.
+template <typename FUNCTION>
+FUNCTION getFunction(char const *name) {
+    return reinterpret_cast<FUNCTION>(eglGetProcAddress(name));
+}
+
+} // namespace
+
+GlContext::GlContext() {
+    auto const getPlatformDisplay =
+        getFunction<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+    if (getPlatformDisplay) {
+        _display = getPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA,
+                                      reinterpret_cast<void *>(EGL_DEFAULT_DISPLAY), nullptr);
+    }
+    if (_display == EGL_NO_DISPLAY || !eglInitialize(_display, nullptr, nullptr)) {
+        _error = "EGL has no display without a window";
+        return;
+    }
+    EGLint const configAttributes[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
+                                       EGL_OPENGL_BIT, EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint numConfigs = 0;
+    EGLint const contextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                        4,
+                                        EGL_CONTEXT_MINOR_VERSION,
+                                        3,
+                                        EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                        EGL_NONE};
+    if (eglBindAPI(EGL_OPENGL_API) &&
+        eglChooseConfig(_display, configAttributes, &config, 1, &numConfigs) && numConfigs > 0) {
+        _context = eglCreateContext(_display, config, EGL_NO_CONTEXT, contextAttributes);
+    }
+    if (_context == EGL_NO_CONTEXT ||
+        !eglMakeCurrent(_display, EGL_NO_SURFACE, EGL_NO_SURFACE, _context)) {
+        _error = "EGL makes no context of OpenGL 4.3 without a surface";
+    }
+}
+
+GlContext::~GlContext() {
+    if (_display == EGL_NO_DISPLAY) {
+        return;
+    }
+    eglMakeCurrent(_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (_context != EGL_NO_CONTEXT) {
+        eglDestroyContext(_display, _context);
+    }
+    eglTerminate(_display);
+}
+
+std::vector<float> GlContext::Read(GLuint buffer, std::size_t numFloats) const {
+    std::vector<float> values(numFloats);
+    getFunction<PFNGLMEMORYBARRIERPROC>("glMemoryBarrier")(GL_BUFFER_UPDATE_BARRIER_BIT);
+    getFunction<PFNGLBINDBUFFERPROC>("glBindBuffer")(GL_COPY_READ_BUFFER, buffer);
+    getFunction<PFNGLGETBUFFERSUBDATAPROC>("glGetBufferSubData")(
+        GL_COPY_READ_BUFFER, 0, GLsizeiptr(numFloats * sizeof(float)), values.data());
+    return values;
+}
+
+GLenum GlContext::GetGlError() const { return getFunction<GLenum (*)()>("glGetError")(); }
+
+void GlContext::BindFramebuffer() {
+    GLuint renderbuffer = 0;
+    GLuint framebuffer = 0;
+    getFunction<PFNGLGENRENDERBUFFERSPROC>("glGenRenderbuffers")(1, &renderbuffer);
+    getFunction<PFNGLBINDRENDERBUFFERPROC>("glBindRenderbuffer")(GL_RENDERBUFFER, renderbuffer);
+    getFunction<PFNGLRENDERBUFFERSTORAGEPROC>("glRenderbufferStorage")(GL_RENDERBUFFER, GL_RGBA8, 1,
+                                                                       1);
+    getFunction<PFNGLGENFRAMEBUFFERSPROC>("glGenFramebuffers")(1, &framebuffer);
+    getFunction<PFNGLBINDFRAMEBUFFERPROC>("glBindFramebuffer")(GL_FRAMEBUFFER, framebuffer);
+    getFunction<PFNGLFRAMEBUFFERRENDERBUFFERPROC>("glFramebufferRenderbuffer")(
+        GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffer);
+}
+
+} // namespace OpenSubdivHex::Regression
