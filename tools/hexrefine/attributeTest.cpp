@@ -349,6 +349,17 @@ TEST_F(HexrefineAttribute, MaterialsComeBack) {
     }
 }
 
+// Values go with their corners where faces change places.
+TEST_F(HexrefineAttribute, ChannelsFollowTheOrderOfMaterials) {
+    Mesh cube = ReadMesh(makeMaterialCube());
+    cube.channels = {{FVarKind::Uv, 2, std::vector<float>(16, 0.5f), cube.faceVertices}};
+    WriteMesh(cube, getPath("uv.obj"));
+    Mesh const mesh = refine(getPath("uv.obj") + " -l 3", "out.obj");
+    ASSERT_EQ(mesh.channels.size(), 1u);
+    EXPECT_EQ(mesh.channels[0].faceValues, mesh.faceVertices);
+    EXPECT_GT(mesh.GetNumFaces(), 258);
+}
+
 TEST_F(HexrefineAttribute, OnlyBordersOfMaterialsAreCut) {
     // Two quads beside each other, and two of the other material above.
     std::string const vertices = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"

@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cstdio>
+#include <set>
 
 #if defined(__unix__) || defined(__APPLE__)
 #include <sys/resource.h>
@@ -67,12 +67,21 @@ std::vector<PropertyStatistics> countProperties(std::vector<PROPERTY> const &pro
     return result;
 }
 
-/// Adds \p name unless it is empty or there already.
-void addName(std::string const &name, std::vector<std::string> *names) {
-    if (!name.empty() && std::find(names->begin(), names->end(), name) == names->end()) {
-        names->push_back(name);
+/// Names that differ, in the order in which they come first.
+class NameList {
+public:
+    explicit NameList(std::vector<std::string> *names) : _names(*names) {}
+
+    void Add(std::string_view name) {
+        if (!name.empty() && _known.emplace(name).second) {
+            _names.emplace_back(name);
+        }
     }
-}
+
+private:
+    std::vector<std::string> &_names;
+    std::set<std::string> _known;
+};
 
 } // namespace
 
@@ -80,13 +89,17 @@ AttributeStatistics CountAttributes(Mesh const &mesh) {
     AttributeStatistics attributes;
     attributes.vertexProperties = countProperties(mesh.vertexProperties);
     attributes.faceProperties = countProperties(mesh.faceProperties);
+    NameList objects(&attributes.objects);
+    NameList groups(&attributes.groups);
+    NameList materials(&attributes.materials);
+    NameList smoothingGroups(&attributes.smoothingGroups);
     for (FaceLabel const &label : mesh.labels) {
-        addName(label.object, &attributes.objects);
+        objects.Add(label.object);
         for (std::string_view group : SplitWords(label.groups)) {
-            addName(std::string(group), &attributes.groups);
+            groups.Add(group);
         }
-        addName(label.material, &attributes.materials);
-        addName(label.smoothing, &attributes.smoothingGroups);
+        materials.Add(label.material);
+        smoothingGroups.Add(label.smoothing);
     }
     attributes.materialLibraries = mesh.materialLibraries;
     return attributes;
