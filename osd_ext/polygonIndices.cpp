@@ -25,7 +25,7 @@ using FarExt::internal::ParallelSums;
 constexpr int kNumHalfCorners = FarExt::HexIndexing::kNumBoundaryEFaceCorners;
 
 // The parts in which a face is drawn: bits for its halves, or all of it.
-enum Parts : unsigned char { kNone = 0, kHalf0 = 1, kHalf1 = 2, kBothHalves = 3, kWhole = 4 };
+enum Parts : unsigned char { kBothHalves = 3, kWhole = 4 };
 
 // A polygon, its first corner.
 struct Place {
@@ -115,8 +115,10 @@ private:
             if (split != splitFaces.end() && split->face == face) {
                 parts = _parts[std::size_t(split - splitFaces.begin())];
                 ++split;
-            } else if (!_options.drawHoles && _mesh.GetHoles(face) == FarExt::internal::kHole) {
-                parts = kNone;
+            } else if (unsigned const holes = _options.drawHoles ? 0 : _mesh.GetHoles(face)) {
+                // V-faces count to their first base face, and are holes when all of theirs are: so a
+                // hexagon beside one may be half a hole in one base face, too.
+                parts = kBothHalves & ~holes;
             }
             if (parts == kWhole) {
                 function(face, -1);

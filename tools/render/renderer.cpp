@@ -79,7 +79,7 @@ Vec3 getRegionColor(int baseFace) {
     float const hue = 6 * (turn - std::floor(turn));
     auto const ramp = [&](float place) {
         float const distance = std::fabs(std::fmod(hue - place + 9, 6.0f) - 3);
-        return 0.06f + 0.6f * std::fmin(std::fmax(distance - 1, 0.0f), 1.0f);
+        return 0.11f + 0.44f * std::fmin(std::fmax(distance - 1, 0.0f), 1.0f);
     };
     return {ramp(0), ramp(2), ramp(4)};
 }
