@@ -67,11 +67,25 @@ inline void storeExactly(float *dst, QuadPair const &pair) {
     StoreFloats<WIDTH - kQuad>(dst + kQuad, pair.second);
 }
 
+// Whether one float more may be read than is used, while another thread may be writing it.  It is what
+// ThreadSanitizer looks for.
+#if defined(__SANITIZE_THREAD__)
+constexpr bool kReadsMore = false;
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+constexpr bool kReadsMore = false;
+#else
+constexpr bool kReadsMore = true;
+#endif
+#else
+constexpr bool kReadsMore = true;
+#endif
+
 // How elements of WIDTH floats are read and written.  A quad of three packed floats takes in the
 // first of the next element.
 template <int WIDTH, bool IS_PACKED>
 struct Access {
-    static constexpr int kReach = IS_PACKED && WIDTH == 3 ? kQuad : WIDTH;
+    static constexpr int kReach = kReadsMore && IS_PACKED && WIDTH == 3 ? kQuad : WIDTH;
 
     template <class FLOAT>
     static FLOAT *At(Elements<FLOAT> const &elements, std::ptrdiff_t i) {
