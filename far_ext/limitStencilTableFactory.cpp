@@ -3,17 +3,23 @@
 
 #include "stencilTableFactory.h"
 
-#include "far_ext/limit/limitMask.h"
+#include "far_ext/limit/limitMultiplier.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
 
 #include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
 
 namespace OpenSubdivHex::FarExt {
 
 using Far::Index;
+using internal::FaceLimitMaskFinder;
+using internal::Level;
 using internal::LimitMask;
-using internal::LimitPatch;
+using internal::LimitRow;
+using internal::LimitRows;
 
 LimitSides::LimitSides(TopologyLevel const &level) : _numVertices(level.GetNumVertices()) {
     internal::Level const &topology = level.GetLevel();
@@ -68,230 +74,240 @@ HexSchemeOptions hexagonalSteps(TopologyRefiner const &refiner) {
     return options;
 }
 
-// The rows of a table, or of a range of them.
-template <typename REAL>
-struct Rows {
-    std::vector<int> sizes;
-    std::vector<Index> indices;
-    std::vector<REAL> weights;
-    std::vector<REAL> duWeights;
-    std::vector<REAL> dvWeights;
-};
-
-// The arrays of Far's tables are protected, those of derivatives can be set by this constructor
-// alone.
+// The arrays of Far's tables are protected, those of derivatives private.
 template <typename REAL>
 class WritableLimitTable : public LimitStencilTableTypes<REAL>::Table {
 public:
-    WritableLimitTable(int numControlVertices, std::vector<Index> const &offsets,
-                       Rows<REAL> const &rows)
-        : LimitStencilTableTypes<REAL>::Table(numControlVertices, offsets, rows.sizes, rows.indices,
-                                              rows.weights, rows.duWeights, rows.dvWeights, {}, {},
-                                              {}, false, 0) {
-        // Far leaves room for stencils that it was not asked to copy.
-        this->_sizes.shrink_to_fit();
-        this->_offsets.shrink_to_fit();
-        this->_indices.shrink_to_fit();
-        this->_weights.shrink_to_fit();
+    explicit WritableLimitTable(int numControlVertices)
+        : LimitStencilTableTypes<REAL>::Table(numControlVertices, {}, {}, {}, {}, {}, {}, {}, {},
+                                              {}, false, 0) {}
+
+    void Resize(std::size_t numStencils, std::size_t numWeights, bool hasDerivatives) {
+        internal::ResizeLarge(this->_offsets, numStencils);
+        internal::ResizeLarge(this->_indices, numWeights);
+        internal::ResizeLarge(this->_weights, numWeights);
+        if (hasDerivatives) {
+            internal::ResizeLarge(duWeights(), numWeights);
+            internal::ResizeLarge(dvWeights(), numWeights);
+        }
     }
-};
 
-// Multiplies limit masks by the stencils of a level.
-template <typename REAL>
-class RowBuilder {
-public:
-    explicit RowBuilder(Far::StencilTableReal<double> const &stencils)
-        : _stencils(stencils), _sums(stencils.GetNumControlVertices()) {}
+    std::vector<int> &GetRowSizes() { return this->_sizes; }
+    std::vector<int> &GetRowOffsets() { return this->_offsets; }
 
-    // The weights of verts[i] are weights[i], and du[i] and dv[i] where tangents are given.
-    template <typename VERTS>
-    void Add(VERTS const &verts, std::vector<double> const &weights,
-             LimitMask::Tangents const *tangents, Rows<REAL> &rows) {
-        for (int i = 0; i < int(weights.size()); ++i) {
-            Sums const factors = {weights[i], tangents ? tangents->du[i] : 0,
-                                  tangents ? tangents->dv[i] : 0, true};
-            if (factors.weight != 0 || factors.du != 0 || factors.dv != 0) {
-                addStencil(verts[i], factors);
-            }
-        }
-        std::sort(_columns.begin(), _columns.end());
-        rows.sizes.push_back(int(_columns.size()));
-        for (Index column : _columns) {
-            Sums &sums = _sums[column];
-            rows.indices.push_back(column);
-            rows.weights.push_back(REAL(sums.weight));
-            if (tangents) {
-                rows.duWeights.push_back(REAL(sums.du));
-                rows.dvWeights.push_back(REAL(sums.dv));
-            }
-            sums = {};
-        }
-        _columns.clear();
+    typename internal::LimitMultiplier<REAL>::Place GetPlace(Index row) {
+        auto const offset = std::size_t(this->_offsets[std::size_t(row)]);
+        bool const hasDerivatives = !duWeights().empty();
+        return {this->_indices.data() + offset, this->_weights.data() + offset,
+                hasDerivatives ? duWeights().data() + offset : nullptr,
+                hasDerivatives ? dvWeights().data() + offset : nullptr};
     }
 
 private:
-    struct Sums {
-        double weight = 0;
-        double du = 0;
-        double dv = 0;
-        bool isUsed = false;
+    // What the accessors refer to is constant by its type alone, the table being none.
+    std::vector<REAL> &duWeights() { return const_cast<std::vector<REAL> &>(this->GetDuWeights()); }
+    std::vector<REAL> &dvWeights() { return const_cast<std::vector<REAL> &>(this->GetDvWeights()); }
+};
+
+// The rows of a table, in its order: those of vertices, further sides and face centres.
+class PointRows {
+public:
+    PointRows(LimitRows const *vertexRows, LimitSides const *sides,
+              FaceLimitMaskFinder const *faceMasks, Level const &level)
+        : _vertexRows(vertexRows), _sides(sides), _faceMasks(faceMasks), _level(level),
+          _numSides(!vertexRows ? 0
+                    : sides     ? sides->GetNumSides()
+                                : level.numVertices) {}
+
+    std::int64_t GetNumRows() const {
+        return std::int64_t(_numSides) + (_faceMasks ? _level.numFaces : 0);
+    }
+
+    // What a row refers to.
+    struct Scratch {
+        Index sources[internal::PlainNeighborhoodGatherer::kNumRegular];
+        LimitMask mask;
+        std::map<int, LimitMask> plainMasks; // of faces, by size
     };
 
-    void addStencil(Index vert, Sums const &factors) {
-        int const offset = _stencils.GetOffsets()[vert];
-        for (int k = offset; k < offset + _stencils.GetSizes()[vert]; ++k) {
-            Index const column = _stencils.GetControlIndices()[k];
-            double const weight = _stencils.GetWeights()[k];
-            Sums &sums = _sums[column];
-            if (!sums.isUsed) {
-                sums.isUsed = true;
-                _columns.push_back(column);
-            }
-            sums.weight += factors.weight * weight;
-            sums.du += factors.du * weight;
-            sums.dv += factors.dv * weight;
+    LimitRow GetRow(Index row, Scratch &scratch) const {
+        if (row < _numSides) {
+            return _vertexRows->GetRow(_sides ? _sides->GetVertex(row) : row,
+                                       _sides ? _sides->GetLocalSide(row) : 0, scratch.sources);
         }
-    }
-
-    Far::StencilTableReal<double> const &_stencils;
-    std::vector<Sums> _sums; // by control vertex; zero between rows
-    std::vector<Index> _columns;
-};
-
-// Appends rows, made in parallel, to a table.
-template <typename REAL>
-class TableBuilder {
-public:
-    TableBuilder(TopologyRefiner const &refiner, int level,
-                 Far::StencilTableReal<double> const &stencils, bool hasDerivatives)
-        : _refiner(refiner), _level(refiner.GetHierarchy().mesh.levels[std::size_t(level)]),
-          _stencils(stencils), _hasDerivatives(hasDerivatives) {}
-
-    Status AddSides(LimitSides const *sides) {
-        struct State {
-            internal::LimitPatchGatherer gatherer;
-            internal::LimitMaskFinder finder;
-            RowBuilder<REAL> builder;
-            LimitPatch patch;
-        };
-        Index const numVertices = _level.numVertices;
-        auto const addSide = [&](State &state, Index vert, int side, Rows<REAL> &rows) -> Status {
-            if (_level.GetNumVertexFaces(vert) == 0) {
-                LimitMask::Tangents const none = {{0}, {0}};
-                state.builder.Add(&vert, {1.0}, derivativesOf(none), rows);
-                return Status();
-            }
-            state.gatherer.Gather(vert, state.patch);
-            LimitMask const *const mask = state.finder.Find(state.patch);
-            if (!mask) {
-                return Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
-                              "the limit of vertex " + std::to_string(vert) + " of level " +
-                                  std::to_string(_level.depth) +
-                                  " cannot be computed: the steps around it do not converge");
-            }
-            state.builder.Add(state.patch.sources, mask->weights,
-                              derivativesOf(mask->sides[state.patch.sides[side]]), rows);
-            return Status();
-        };
-        return addRows(
-            sides ? sides->GetNumSides() : numVertices,
-            [&] {
-                return State{internal::LimitPatchGatherer(_level),
-                             internal::LimitMaskFinder(_refiner.GetSchemeOptions(),
-                                                       hexagonalSteps(_refiner)),
-                             RowBuilder<REAL>(_stencils),
-                             {}};
-            },
-            [&](State &state, Index i, Rows<REAL> &rows) {
-                return addSide(state, sides ? sides->GetVertex(i) : i,
-                               sides ? sides->GetLocalSide(i) : 0, rows);
-            });
-    }
-
-    Status AddFaceCenters() {
-        internal::FaceLimitMaskFinder const finder(_level, _refiner.GetSchemeOptions(),
-                                                   hexagonalSteps(_refiner));
-        return addRows(
-            _level.numFaces, [&] { return RowBuilder<REAL>(_stencils); },
-            [&](RowBuilder<REAL> &builder, Index face, Rows<REAL> &rows) {
-                LimitMask const mask = finder.Find(face);
-                builder.Add(_level.GetFaceVertices(face), mask.weights,
-                            derivativesOf(mask.sides.front()), rows);
-                return Status();
-            });
-    }
-
-    std::unique_ptr<WritableLimitTable<REAL>> Make() {
-        std::vector<Index> offsets;
-        offsets.reserve(_rows.sizes.size());
-        Index offset = 0;
-        for (int size : _rows.sizes) {
-            offsets.push_back(offset);
-            offset += size;
-        }
-        return std::make_unique<WritableLimitTable<REAL>>(_stencils.GetNumControlVertices(),
-                                                          offsets, _rows);
+        Index const face = row - _numSides;
+        LimitMask const &mask = findFaceMask(face, scratch);
+        LimitMask::Tangents const &tangents = mask.sides.front();
+        return {_level.GetFaceSize(face), _level.GetFaceVertices(face).begin(), mask.weights.data(),
+                tangents.du.data(), tangents.dv.data()};
     }
 
 private:
-    LimitMask::Tangents const *derivativesOf(LimitMask::Tangents const &tangents) const {
-        return _hasDerivatives ? &tangents : nullptr;
+    LimitMask const &findFaceMask(Index face, Scratch &scratch) const {
+        if (!_faceMasks->IsPlain(face)) {
+            scratch.mask = _faceMasks->Find(face);
+            return scratch.mask;
+        }
+        LimitMask &mask = scratch.plainMasks[_level.GetFaceSize(face)];
+        if (mask.weights.empty()) {
+            mask = _faceMasks->Find(face);
+        }
+        return mask;
     }
 
-    // The status is that of the first row that fails.
-    template <typename MAKE_STATE, typename ADD_ROW>
-    Status addRows(Index count, MAKE_STATE makeState, ADD_ROW addRow) {
-        std::vector<Rows<REAL>> ranges(internal::GetNumParallelRanges(count));
-        std::vector<Status> statuses(ranges.size());
-        internal::ParallelForRange(count, makeState, [&](auto &state, Index begin, Index end) {
-            std::size_t const range = std::size_t(begin / internal::kParallelRange);
-            for (Index i = begin; i < end && statuses[range].IsOk(); ++i) {
-                statuses[range] = addRow(state, i, ranges[range]);
+    LimitRows const *const _vertexRows;
+    LimitSides const *const _sides;
+    FaceLimitMaskFinder const *const _faceMasks;
+    Level const &_level;
+    Index const _numSides;
+};
+
+// Cuts the rows of a table into groups whose rows are near one another: the F-vertices that the
+// steps before made of the same face.
+std::vector<Index> makeGroups(internal::MeshLevels const &mesh, int level, Index numVertexRows,
+                              Index numRows) {
+    std::vector<Index> firsts;
+    auto const add = [&](Index begin, Index end) {
+        for (Index row = begin; row < end; row += internal::kMaxLimitRows) {
+            firsts.push_back(row);
+        }
+    };
+    // Vertices are numbered as those of the levels before, as far as all of these make V-vertices.
+    int firstLevel = level;
+    while (firstLevel > 0 && mesh.levels[std::size_t(firstLevel)].numVVertices ==
+                                 mesh.levels[std::size_t(firstLevel) - 1].numVertices) {
+        --firstLevel;
+    }
+    Index const numFirst =
+        std::min(numVertexRows, mesh.levels[std::size_t(firstLevel)].numVertices);
+    for (Index row = 0; row < numFirst; ++row) {
+        firsts.push_back(row);
+    }
+    for (int child = firstLevel + 1; child <= level && numVertexRows > 0; ++child) {
+        Level const &parent = mesh.levels[std::size_t(child) - 1];
+        for (Index face = 0; face < parent.numFaces; ++face) {
+            add(parent.numVertices + parent.faceFirstCorner[face],
+                parent.numVertices + parent.faceFirstCorner[face + 1]);
+        }
+    }
+    Index const numVertices = mesh.levels[std::size_t(level)].numVertices;
+    for (Index row = std::min(numVertexRows, numVertices); row < numRows; ++row) {
+        firsts.push_back(row);
+    }
+    firsts.push_back(numRows);
+    return firsts;
+}
+
+// Makes a table of rows: first the sizes of all stencils, then the stencils.
+template <typename REAL>
+class TableBuilder {
+    using Multiplier = internal::LimitMultiplier<REAL>;
+    using Columns = typename Multiplier::Columns;
+    using RowBits = typename Multiplier::RowBits;
+
+public:
+    TableBuilder(PointRows const &rows, std::vector<Index> const &groups,
+                 Far::StencilTableReal<double> const *stencils, Index numVertices, Index numIndices,
+                 bool hasDerivatives)
+        : _rows(rows), _groups(groups), _stencils(stencils), _numVertices(numVertices),
+          _numIndices(numIndices), _hasDerivatives(hasDerivatives),
+          _table(new WritableLimitTable<REAL>(numIndices)) {}
+
+    Status Build(int level) {
+        std::vector<int> &sizes = _table->GetRowSizes();
+        auto const numRows = std::size_t(_rows.GetNumRows());
+        internal::ResizeLarge(sizes, numRows);
+        std::vector<KeptColumns> kept(
+            std::size_t(internal::GetNumParallelRanges(getNumGroups(), kRange)));
+        forEachGroup([&](Multiplier &multiplier, Index group) {
+            Columns const columns = multiplier.FindColumns();
+            kept[std::size_t(group / kRange)].Add(columns);
+            int *const ofRows = sizes.data() + _groups[std::size_t(group)];
+            for (int row = 0; row < multiplier.GetNumRows(); ++row) {
+                ofRows[row] =
+                    int(std::count_if(columns.rows, columns.rows + columns.size,
+                                      [row](RowBits rows) { return (rows >> row & 1) != 0; }));
             }
         });
-        for (Status const &status : statuses) {
-            if (!status.IsOk()) {
-                return status;
-            }
-        }
-        for (Rows<REAL> const &rows : ranges) {
-            _numWeights += std::int64_t(rows.weights.size());
-        }
-        if (_numWeights > std::numeric_limits<Index>::max()) {
-            return Status(StatusCode::TooLarge, ComponentType::Level, _level.depth,
-                          "the limit stencils of level " + std::to_string(_level.depth) +
-                              " would have at least " + std::to_string(_numWeights) +
+        std::int64_t const numWeights =
+            std::accumulate(sizes.begin(), sizes.end(), std::int64_t(0));
+        if (numWeights > std::numeric_limits<Index>::max()) {
+            return Status(StatusCode::TooLarge, ComponentType::Level, level,
+                          "the limit stencils of level " + std::to_string(level) + " would have " +
+                              std::to_string(numWeights) +
                               " weights, more than Far's 32-bit offsets reach");
         }
-        reserve(&_rows.indices);
-        reserve(&_rows.weights);
-        reserve(&_rows.duWeights);
-        reserve(&_rows.dvWeights);
-        for (Rows<REAL> &rows : ranges) {
-            append(rows.sizes, _rows.sizes);
-            append(rows.indices, _rows.indices);
-            append(rows.weights, _rows.weights);
-            append(rows.duWeights, _rows.duWeights);
-            append(rows.dvWeights, _rows.dvWeights);
-            rows = {};
-        }
+        _table->Resize(numRows, std::size_t(numWeights), _hasDerivatives);
+        std::exclusive_scan(sizes.begin(), sizes.end(), _table->GetRowOffsets().begin(), 0);
+        forEachGroup([&](Multiplier &multiplier, Index group) {
+            typename Multiplier::Place places[internal::kMaxLimitRows];
+            for (int row = 0; row < multiplier.GetNumRows(); ++row) {
+                places[row] = _table->GetPlace(_groups[std::size_t(group)] + row);
+            }
+            multiplier.Fill(kept[std::size_t(group / kRange)].Get(group % kRange), places);
+        });
         return Status();
     }
-    template <typename T>
-    void reserve(std::vector<T> *array) const {
-        array->reserve(std::size_t(_numWeights));
-    }
-    template <typename T>
-    static void append(std::vector<T> const &from, std::vector<T> &to) {
-        to.insert(to.end(), from.begin(), from.end());
+
+    std::unique_ptr<WritableLimitTable<REAL>> TakeTable() { return std::move(_table); }
+
+private:
+    // The columns of the groups of a range.
+    struct KeptColumns {
+        void Add(Columns const &columns) {
+            firsts.push_back(indices.size());
+            indices.insert(indices.end(), columns.indices, columns.indices + columns.size);
+            rows.insert(rows.end(), columns.rows, columns.rows + columns.size);
+        }
+        Columns Get(Index group) const {
+            std::size_t const first = firsts[std::size_t(group)];
+            std::size_t const end = std::size_t(group) + 1 < firsts.size()
+                                        ? firsts[std::size_t(group) + 1]
+                                        : indices.size();
+            return {indices.data() + first, rows.data() + first, int(end - first)};
+        }
+
+        std::vector<std::size_t> firsts;
+        std::vector<Index> indices;
+        std::vector<RowBits> rows;
+    };
+
+    Index getNumGroups() const { return Index(_groups.size()) - 1; }
+
+    // Calls function(multiplier, group) for each group, whose rows the multiplier has.
+    template <typename FUNCTION>
+    void forEachGroup(FUNCTION function) {
+        struct State {
+            Multiplier multiplier;
+            PointRows::Scratch scratch;
+        };
+        internal::ParallelForRange(
+            getNumGroups(),
+            [&] {
+                return State{Multiplier(_stencils, _numVertices, _numIndices, _hasDerivatives), {}};
+            },
+            [&](State &state, Index begin, Index end) {
+                for (Index group = begin; group < end; ++group) {
+                    state.multiplier.Clear();
+                    Index const last = _groups[std::size_t(group) + 1];
+                    for (Index row = _groups[std::size_t(group)]; row < last; ++row) {
+                        state.multiplier.AddRow(_rows.GetRow(row, state.scratch));
+                    }
+                    function(state.multiplier, group);
+                }
+            },
+            kRange);
     }
 
-    TopologyRefiner const &_refiner;
-    internal::Level const &_level;
-    Far::StencilTableReal<double> const &_stencils;
+    static constexpr Index kRange = 64; // groups, which take some microseconds each
+
+    PointRows const &_rows;
+    std::vector<Index> const &_groups;
+    Far::StencilTableReal<double> const *const _stencils;
+    Index const _numVertices;
+    Index const _numIndices;
     bool const _hasDerivatives;
-    std::int64_t _numWeights = 0;
-    Rows<REAL> _rows;
+    std::unique_ptr<WritableLimitTable<REAL>> _table;
 };
 
 template <typename OPTIONS>
@@ -322,6 +338,15 @@ Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
     return Status();
 }
 
+Status checkNumRows(int level, std::int64_t numRows) {
+    if (numRows < std::numeric_limits<Index>::max()) {
+        return Status();
+    }
+    return Status(StatusCode::TooLarge, ComponentType::Level, level,
+                  "the limit table of level " + std::to_string(level) + " would have " +
+                      std::to_string(numRows) + " stencils, more than 32-bit indices reach");
+}
+
 } // namespace
 
 template <typename REAL>
@@ -330,30 +355,51 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
     if (!internal::Report(checkOptions(refiner, options), status)) {
         return nullptr;
     }
-    StencilTableFactoryReal<double>::Options levelOptions;
-    levelOptions.generateControlVerts = options.level == 0;
-    levelOptions.generateIntermediateLevels = false;
-    levelOptions.maxLevel = options.level;
-    auto const stencils = StencilTableFactoryReal<double>::Create(refiner, levelOptions, status);
-    if (!stencils) {
-        return nullptr;
-    }
-    std::unique_ptr<LimitSides> sides;
-    if (options.generateFurtherSides) {
-        sides = std::make_unique<LimitSides>(refiner.GetLevel(options.level));
-    }
-    TableBuilder<REAL> builder(refiner, options.level, *stencils, options.generate1stDerivatives);
-    Status result;
+    TopologyLevel const &topologyLevel = refiner.GetLevel(options.level);
+    Level const &level = topologyLevel.GetLevel();
+    HexSchemeOptions const schemeOptions = hexagonalSteps(refiner);
+    std::optional<LimitRows> vertexRows;
     if (options.generateVertices) {
-        result = builder.AddSides(sides.get());
+        vertexRows.emplace(level, refiner.GetSchemeOptions(), schemeOptions);
+        if (!internal::Report(vertexRows->Find(), status)) {
+            return nullptr;
+        }
     }
-    if (result.IsOk() && options.generateFaceCenters) {
-        result = builder.AddFaceCenters();
+    std::optional<LimitSides> sides;
+    if (options.generateFurtherSides) {
+        sides.emplace(topologyLevel);
     }
-    if (!internal::Report(result, status)) {
+    std::optional<FaceLimitMaskFinder> faceMasks;
+    if (options.generateFaceCenters) {
+        faceMasks.emplace(level, refiner.GetSchemeOptions(), schemeOptions);
+    }
+    PointRows const rows(vertexRows ? &*vertexRows : nullptr, sides ? &*sides : nullptr,
+                         faceMasks ? &*faceMasks : nullptr, level);
+    if (!internal::Report(checkNumRows(options.level, rows.GetNumRows()), status)) {
         return nullptr;
     }
-    return builder.Make();
+
+    std::unique_ptr<Far::StencilTableReal<double> const> stencils;
+    if (options.factorizeIntermediateLevels && options.level > 0) {
+        StencilTableFactoryReal<double>::Options levelOptions;
+        levelOptions.generateControlVerts = false;
+        levelOptions.generateIntermediateLevels = false;
+        levelOptions.maxLevel = options.level;
+        stencils = StencilTableFactoryReal<double>::Create(refiner, levelOptions, status);
+        if (!stencils) {
+            return nullptr;
+        }
+    }
+    std::vector<Index> const groups =
+        makeGroups(refiner.GetHierarchy().mesh, options.level,
+                   options.generateVertices ? level.numVertices : 0, Index(rows.GetNumRows()));
+    TableBuilder<REAL> builder(rows, groups, stencils.get(), level.numVertices,
+                               refiner.GetLevel(stencils ? 0 : options.level).GetNumVertices(),
+                               options.generate1stDerivatives);
+    if (!internal::Report(builder.Build(options.level), status)) {
+        return nullptr;
+    }
+    return builder.TakeTable();
 }
 
 template class LimitStencilTableFactoryReal<float>;

@@ -128,6 +128,10 @@ public:
         bool generateFurtherSides = false; ///< only with vertices; as LimitSides numbers them
         bool generateFaceCenters = false;  ///< the centres of faces
         bool generate1stDerivatives = true; ///< else the table has no derivative weights
+
+        /// Else the stencils are of the vertices of the level, as in StencilTableFactory of those of
+        /// the level before: an evaluator applies them to the refined level.
+        bool factorizeIntermediateLevels = true;
     };
 
     /// \brief Makes the table.

@@ -504,9 +504,9 @@ LimitMask makeFreeBoundaryMask(Level const &level) {
 
 } // namespace
 
-LimitMask const *LimitMaskFinder::Find(LimitPatch const &patch) {
+auto LimitMaskFinder::Find(LimitPatch const &patch) -> MaskPointer {
     if (auto const found = _masks.find(patch.signature); found != _masks.end()) {
-        return &found->second;
+        return found->second;
     }
     if (_masks.size() > kMaxMasks) {
         _masks.clear();
@@ -514,7 +514,10 @@ LimitMask const *LimitMaskFinder::Find(LimitPatch const &patch) {
     Level level;
     BuildPatchLevel(patch, level);
     if (isOnFreeBoundary(level, 0)) {
-        return &_masks.emplace(patch.signature, makeFreeBoundaryMask(level)).first->second;
+        return _masks
+            .emplace(patch.signature,
+                     std::make_shared<LimitMask const>(makeFreeBoundaryMask(level)))
+            .first->second;
     }
     std::vector<Node> nodes;
     nodes.push_back({patch, {}});
@@ -531,7 +534,7 @@ LimitMask const *LimitMaskFinder::Find(LimitPatch const &patch) {
             nodes.erase(begin, nodes.end());
         }
         if (auto const known = _masks.find(next.signature); known != _masks.end()) {
-            return &addStepsBefore(nodes, known->second);
+            return addStepsBefore(nodes, known->second);
         }
         nodes.push_back({std::move(next), {}});
     }
@@ -549,22 +552,21 @@ bool LimitMaskFinder::addCycle(std::vector<Node> nodes) {
     if (!solution) {
         return false;
     }
-    LimitMask const &mask =
-        _masks.insert_or_assign(nodes.front().patch.signature, std::move(*solution)).first->second;
+    auto const mask = std::make_shared<LimitMask const>(std::move(*solution));
+    _masks.insert_or_assign(nodes.front().patch.signature, mask);
     nodes.erase(nodes.begin()); // keeps the steps of the others, which lead back to it
     addStepsBefore(nodes, mask);
     return true;
 }
 
 // The mask of the first of the nodes, whose last step leads to a patch of the given mask.
-LimitMask const &LimitMaskFinder::addStepsBefore(std::vector<Node> const &nodes,
-                                                 LimitMask const &lastMask) {
-    LimitMask const *mask = &lastMask;
+auto LimitMaskFinder::addStepsBefore(std::vector<Node> const &nodes, MaskPointer mask)
+    -> MaskPointer {
     for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
-        mask = &_masks.insert_or_assign(node->patch.signature, stepBack(node->step, *mask))
-                    .first->second;
+        mask = std::make_shared<LimitMask const>(stepBack(node->step, *mask));
+        _masks.insert_or_assign(node->patch.signature, mask);
     }
-    return *mask;
+    return mask;
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include "limitPatch.h"
 
 #include <map>
+#include <memory>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -36,9 +37,15 @@ public:
     LimitMaskFinder(Sdc::Options sdcOptions, HexSchemeOptions const &schemeOptions)
         : _sdcOptions(sdcOptions), _schemeOptions(schemeOptions) {}
 
-    /// \brief Valid until the next call; null where the patches do not repeat themselves within
-    /// kMaxSteps steps, or a step that repeats itself has no eigenvectors that iteration finds.
-    LimitMask const *Find(LimitPatch const &patch);
+    /// Patches of large, irregular base meshes may all be different: when there are more masks than
+    /// this, those found so far are forgotten.
+    static constexpr std::size_t kMaxMasks = 4096;
+
+    using MaskPointer = std::shared_ptr<LimitMask const>;
+
+    /// \brief Null where the patches do not repeat themselves within kMaxSteps steps, or a step that
+    /// repeats itself has no eigenvectors that iteration finds.
+    MaskPointer Find(LimitPatch const &patch);
 
     /// A patch, and the step that leads to the next.
     struct Node {
@@ -48,17 +55,14 @@ public:
 
 private:
     bool addCycle(std::vector<Node> nodes);
-    LimitMask const &addStepsBefore(std::vector<Node> const &nodes, LimitMask const &lastMask);
+    MaskPointer addStepsBefore(std::vector<Node> const &nodes, MaskPointer mask);
 
     // Sharpness that is not infinite ends in ten steps, other irregularities in two.
     static constexpr int kMaxSteps = 64;
 
-    // Patches of large, irregular base meshes may all be different: then old ones are forgotten.
-    static constexpr std::size_t kMaxMasks = 4096;
-
     Sdc::Options const _sdcOptions;
     HexSchemeOptions const _schemeOptions;
-    std::map<std::vector<int>, LimitMask> _masks; ///< by signature
+    std::map<std::vector<int>, MaskPointer> _masks; ///< by signature
 };
 
 /// \brief Finds limit masks of the centres of faces: in closed form, but for faces with sector
@@ -73,6 +77,9 @@ public:
     /// Of a face with an infinitely sharp diagonal the sides are half 0 and half 1; others have
     /// one.
     LimitMask Find(Far::Index face) const;
+
+    /// Whether a face has the mask of all with its size.
+    bool IsPlain(Far::Index face) const { return _mask.IsFacePlain(face); }
 
 private:
     LimitMask findAfterStep(Far::Index face) const;

@@ -123,10 +123,9 @@ int LimitPatchGatherer::findFirstFace(VertexFan const &fan, int &firstSide) {
 }
 
 Index LimitPatchGatherer::addVertex(Index vert, LimitPatch &patch) {
-    Index found = _verts.Find(vert);
-    if (found == Far::INDEX_INVALID) {
-        found = Index(patch.sources.size());
-        _verts.Set(vert, found);
+    Index const next = Index(patch.sources.size());
+    Index const found = _verts.FindOrSet(vert, next);
+    if (found == next) {
         patch.sources.push_back(vert);
     }
     return found;
@@ -134,10 +133,10 @@ Index LimitPatchGatherer::addVertex(Index vert, LimitPatch &patch) {
 
 // The corners of a face begin at local, unless corner 0 stands out.
 void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch &patch) {
-    if (_faces.Find(face) != Far::INDEX_INVALID) {
+    Index const next = Index(patch.faceSizes.size());
+    if (_faces.FindOrSet(face, next) != next) {
         return;
     }
-    _faces.Set(face, Index(patch.faceSizes.size()));
     Index const first = _level.faceFirstCorner[face];
     int const size = _level.faceFirstCorner[face + 1] - first;
     float const diagonal = _level.GetDiagonalSharpness(face);
@@ -163,16 +162,15 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
 
 void LimitPatchGatherer::addEdge(Index corner, Index edge, LimitPatch &patch) {
     Index const size = Index(patch.otherCorners.size());
-    Index const other = _edges.Find(edge);
+    Index const other = _edges.FindOrSet(edge, size);
     bool const isComplete = _verts.Find(_level.edgeVerts[edge][0]) < _numComplete ||
                             _verts.Find(_level.edgeVerts[edge][1]) < _numComplete;
     patch.edgeSharpness.push_back(isComplete ? _level.GetEdgeSharpness(edge) : 0);
-    if (other != Far::INDEX_INVALID) {
+    if (other != size) {
         patch.otherCorners.push_back(other);
         patch.otherCorners[other] = corner;
         return;
     }
-    _edges.Set(edge, size);
     bool const isKept = _level.IsBoundary(edge) && (isComplete || _level.IsSharpBoundaryB(edge));
     patch.otherCorners.push_back(isKept ? _level.edgeFaces[edge][1] : Index(kFreeBoundary));
     Index const line = _level.GetEdgeLine(edge);
@@ -245,9 +243,9 @@ void LimitPatchGatherer::addSignature(LimitPatch &patch) {
 }
 
 void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
-    _verts.Clear(_level.numVertices);
-    _faces.Clear(_level.numFaces);
-    _edges.Clear(_level.numEdges);
+    _verts.Clear();
+    _faces.Clear();
+    _edges.Clear();
     _corners.clear();
     _lines.clear();
     patch = LimitPatch();
@@ -270,22 +268,23 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
     }
     for (int i = 1; i < _numComplete; ++i) {
         Index const neighbor = patch.sources[i];
-        // From an edge of the vertex on, where the neighbour has it.
-        Index const begin = _level.vertFirstEdge[neighbor];
-        Index const *const edges = _level.vertEdges.data();
-        int first = 0;
-        for (Index k = begin; k < _level.vertFirstEdge[neighbor + 1]; ++k) {
-            IndexPair const &ends = _level.edgeVerts[edges[k]];
-            if (ends[0] == vert || ends[1] == vert) {
-                first = k - begin;
-                break;
+        // Each fan from the edge of the vertex on, where the fan has it: so neighbours of a pole of
+        // several fans look alike.
+        Index firstEdge = _level.vertFirstEdge[neighbor];
+        ForEachFan(_level, neighbor, [&](VertexFan const &fan) {
+            int const numFaces = fan.end - fan.begin;
+            int const numEdges = numFaces + !fan.isClosed;
+            Index const *const edges = _level.vertEdges.data() + firstEdge;
+            Index const *const found = std::find_if(edges, edges + numEdges, [&](Index edge) {
+                IndexPair const &ends = _level.edgeVerts[edge];
+                return ends[0] == vert || ends[1] == vert;
+            });
+            auto const first = int(found - edges) % numEdges;
+            for (int k = 0; k < numFaces; ++k) {
+                addFaceAt(fan.begin + (first + k) % numFaces, false);
             }
-        }
-        Index const beginFace = _level.vertFirstFace[neighbor];
-        int const numFaces = _level.vertFirstFace[neighbor + 1] - beginFace;
-        for (int k = 0; k < numFaces; ++k) {
-            addFaceAt(beginFace + (first + k) % numFaces, false);
-        }
+            firstEdge += numEdges;
+        });
     }
     for (Index corner = 0; corner < Index(_corners.size()); ++corner) {
         addEdge(corner, _level.faceEdges[_corners[corner]], patch);

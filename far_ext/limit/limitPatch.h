@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_PATCH_H
 
 #include "far_ext/hexSchemeOptions.h"
+#include "far_ext/vtr/indexSet.h"
 #include "far_ext/vtr/vertexFan.h"
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -52,29 +53,6 @@ public:
     void Gather(Index vert, LimitPatch &patch);
 
 private:
-    // Numbers the components of a level that are in the patch; forgets them all at once.
-    class IndexMap {
-    public:
-        void Clear(std::size_t size) {
-            if (_entries.size() < size) {
-                _entries.resize(size);
-            }
-            ++_round;
-        }
-        Index Find(Index i) const {
-            return _entries[i].round == _round ? _entries[i].value : Far::INDEX_INVALID;
-        }
-        void Set(Index i, Index value) { _entries[i] = {_round, value}; }
-
-    private:
-        struct Entry {
-            int round = 0;
-            Index value = 0;
-        };
-        std::vector<Entry> _entries;
-        int _round = 0;
-    };
-
     void orderFans(Index vert, LimitPatch &patch);
     int findFirstFace(VertexFan const &fan, int &firstSide);
     Index addVertex(Index vert, LimitPatch &patch);
@@ -85,6 +63,7 @@ private:
     static void addSignature(LimitPatch &patch);
 
     Level const &_level;
+    // Numbers in the patch.
     IndexMap _verts;
     IndexMap _faces;
     IndexMap _edges;             // the first corner of each

@@ -78,4 +78,14 @@ void SortUnique(std::vector<Index> &indices, Index end) {
     indices = set.GetIndices();
 }
 
+void IndexMap::grow() {
+    std::vector<Entry> entries(2 * _entries.size());
+    entries.swap(_entries);
+    for (Entry const &entry : entries) {
+        if (entry.round == _round) {
+            _entries[findPlace(entry.index)] = entry;
+        }
+    }
+}
+
 } // namespace OpenSubdivHex::FarExt::internal

@@ -57,6 +57,63 @@ private:
     std::vector<Index> _numBefore; // each word of the set
 };
 
+/// \brief A few indices with a value each.  All are forgotten at once, and neither time nor memory
+/// depend on the range that they are from.
+class IndexMap {
+public:
+    using Index = Far::Index;
+
+    IndexMap() : _entries(kLeastSize) {}
+
+    void Clear() {
+        _numEntries = 0;
+        if (++_round == 0) {
+            _entries.assign(_entries.size(), Entry());
+            ++_round;
+        }
+    }
+    /// INDEX_INVALID when \p index has none.
+    Index Find(Index index) const {
+        Entry const &entry = _entries[findPlace(index)];
+        return entry.round == _round ? entry.value : Far::INDEX_INVALID;
+    }
+    /// The value of \p index, which is \p value if it had none.
+    Index FindOrSet(Index index, Index value) {
+        Entry &entry = _entries[findPlace(index)];
+        if (entry.round == _round) {
+            return entry.value;
+        }
+        entry = {_round, index, value};
+        if (2 * ++_numEntries > _entries.size()) {
+            grow();
+        }
+        return value;
+    }
+
+private:
+    struct Entry {
+        std::uint32_t round = 0;
+        Index index = 0;
+        Index value = 0;
+    };
+    static constexpr std::size_t kLeastSize = 256; // a power of two, as all sizes
+
+    // Where an index is, or would be.
+    std::size_t findPlace(Index index) const {
+        std::size_t const mask = _entries.size() - 1;
+        std::size_t place = (std::uint32_t(index) * std::uint64_t(0x9e3779b97f4a7c15)) >> 32 & mask;
+        while (_entries[place].round == _round && _entries[place].index != index) {
+            place = (place + 1) & mask;
+        }
+        return place;
+    }
+    void grow();
+
+    std::vector<Entry> _entries;
+    std::size_t _numEntries = 0;
+    std::uint32_t _round = 1;
+};
+
 /// Sorts indices and removes repeated ones.
 OPENSUBDIVHEX_API void SortUnique(std::vector<Far::Index> &indices);
 /// The same of many indices, all below \p end.

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitRows.h"
+
+#include "far_ext/vtr/parallel.h"
+
+#include <algorithm>
+#include <string>
+#include <unordered_map>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+using Far::Index;
+
+/// What one thread finds masks with.
+class LimitRows::Finder {
+public:
+    Finder(LimitRows const &rows, std::vector<bool> const &featureVerts)
+        : _level(rows._level), _featureVerts(featureVerts), _plainGatherer(rows._level),
+          _gatherer(rows._level), _finder(rows._sdcOptions, rows._schemeOptions) {}
+
+    /// Adds what a vertex has to a range.
+    void Add(Index vert, Range &range) {
+        if (_level.GetNumVertexFaces(vert) == 0) {
+            range.sources.push_back(vert);
+            add(vert, findIsolated(), {0}, range);
+        } else if (_plainGatherer.IsRegular(vert, _featureVerts)) {
+            range.firstRegular = vert;
+        } else if (!_plainGatherer.Gather(vert, _featureVerts, _neighborhood)) {
+            _gatherer.Gather(vert, _patch);
+            range.sources.insert(range.sources.end(), _patch.sources.begin(), _patch.sources.end());
+            add(vert, _finder.Find(_patch), _patch.sides, range);
+        } else {
+            range.sources.insert(range.sources.end(), _neighborhood.sources.begin(),
+                                 _neighborhood.sources.end());
+            add(vert, findPlain(vert), {0}, range);
+        }
+    }
+
+    /// That of a patch.
+    std::shared_ptr<LimitMask const> Find(Index vert) {
+        _gatherer.Gather(vert, _patch);
+        return _finder.Find(_patch);
+    }
+
+private:
+    void add(Index vert, std::shared_ptr<LimitMask const> mask, std::vector<int> const &sides,
+             Range &range) {
+        if (!mask) {
+            range.status = Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
+                                  "the limit of vertex " + std::to_string(vert) + " of level " +
+                                      std::to_string(_level.depth) +
+                                      " cannot be computed: the steps around it do not converge");
+        }
+        range.verts.push_back(vert);
+        range.masks.push_back(std::move(mask));
+        range.firstSources.push_back(int(range.sources.size()));
+        range.sides.insert(range.sides.end(), sides.begin(), sides.end());
+        range.firstSides.push_back(int(range.sides.size()));
+    }
+
+    // A vertex without faces stays where it is.
+    std::shared_ptr<LimitMask const> findIsolated() {
+        if (!_isolated) {
+            _isolated = std::make_shared<LimitMask const>(LimitMask{{1}, {{{0}, {0}}}});
+        }
+        return _isolated;
+    }
+
+    std::shared_ptr<LimitMask const> findPlain(Index vert) {
+        if (_plainMasks.size() > LimitMaskFinder::kMaxMasks) {
+            _plainMasks.clear();
+        }
+        std::shared_ptr<LimitMask const> &mask = _plainMasks[_neighborhood.key];
+        if (!mask) {
+            mask = Find(vert);
+        }
+        return mask;
+    }
+
+    Level const &_level;
+    std::vector<bool> const &_featureVerts;
+    PlainNeighborhoodGatherer _plainGatherer;
+    PlainNeighborhood _neighborhood;
+    LimitPatchGatherer _gatherer;
+    LimitPatch _patch;
+    LimitMaskFinder _finder;
+    std::unordered_map<std::string, std::shared_ptr<LimitMask const>> _plainMasks; // by key
+    std::shared_ptr<LimitMask const> _isolated;
+};
+
+LimitRows::LimitRows(Level const &level, Sdc::Options sdcOptions,
+                     HexSchemeOptions const &schemeOptions)
+    : _level(level), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions) {}
+
+LimitRows::~LimitRows() = default;
+
+Status LimitRows::Find() {
+    std::vector<bool> const featureVerts = MarkFeatures(_level);
+    _ranges.resize(std::size_t(GetNumParallelRanges(_level.numVertices, kRange)));
+    ParallelForRange(
+        _level.numVertices, [&] { return Finder(*this, featureVerts); },
+        [&](Finder &finder, Index begin, Index end) {
+            Range &range = _ranges[std::size_t(begin / kRange)];
+            range.firstSources.push_back(0);
+            range.firstSides.push_back(0);
+            for (Index vert = begin; vert < end && range.status.IsOk(); ++vert) {
+                finder.Add(vert, range);
+            }
+        },
+        kRange);
+    for (Range const &range : _ranges) {
+        if (!range.status.IsOk()) {
+            return range.status;
+        }
+        if (!_regularMask && range.firstRegular != Far::INDEX_INVALID) {
+            _regularMask = Finder(*this, featureVerts).Find(range.firstRegular);
+        }
+    }
+    return Status();
+}
+
+bool LimitRows::IsRegular(Index vert) const {
+    std::vector<Index> const &verts = _ranges[std::size_t(vert / kRange)].verts;
+    return verts.empty() || !std::binary_search(verts.begin(), verts.end(), vert);
+}
+
+LimitRow LimitRows::GetRow(Index vert, int side,
+                           Index regularSources[PlainNeighborhoodGatherer::kNumRegular]) const {
+    Range const &range = _ranges[std::size_t(vert / kRange)];
+    auto const found = std::lower_bound(range.verts.begin(), range.verts.end(), vert);
+    if (found == range.verts.end() || *found != vert) {
+        PlainNeighborhoodGatherer::GatherRegular(_level, vert, regularSources);
+        LimitMask::Tangents const &tangents = _regularMask->sides[0];
+        return {PlainNeighborhoodGatherer::kNumRegular, regularSources,
+                _regularMask->weights.data(), tangents.du.data(), tangents.dv.data()};
+    }
+    auto const i = std::size_t(found - range.verts.begin());
+    LimitMask const &mask = *range.masks[i];
+    int const *const sides = range.sides.data() + range.firstSides[i];
+    LimitMask::Tangents const &tangents = mask.sides[std::size_t(sides[side])];
+    return {int(mask.weights.size()), range.sources.data() + range.firstSources[i],
+            mask.weights.data(), tangents.du.data(), tangents.dv.data()};
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

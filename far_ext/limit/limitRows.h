@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_ROWS_H
+#define OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_ROWS_H
+
+#include "limitMask.h"
+#include "plainNeighborhood.h"
+
+#include "far_ext/status.h"
+
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief A point of the limit surface and its derivatives, as sums of vertices of a level.
+struct LimitRow {
+    /// Whether source \p i has no part in any of the sums.
+    bool IsNothing(int i) const { return weights[i] == 0 && du[i] == 0 && dv[i] == 0; }
+
+    int size;
+    Far::Index const *sources; ///< a vertex may come twice
+    double const *weights;
+    double const *du;
+    double const *dv;
+};
+
+/// \brief The limit at the vertices of a level as a matrix: the one place that joins limit masks to
+/// vertices.  Tables are made, primvars refined and frames evaluated through it.
+///
+/// Vertices of the same type, whose neighbourhoods look alike, share a mask, which is found once for
+/// each thread that meets it.  Most vertices are regular: nothing is kept of them.
+class OPENSUBDIVHEX_API LimitRows {
+public:
+    using Index = Far::Index;
+
+    /// \param level          full topology; it is referred to
+    /// \param schemeOptions  of the steps from the level on
+    LimitRows(Level const &level, Sdc::Options sdcOptions, HexSchemeOptions const &schemeOptions);
+    ~LimitRows();
+
+    /// Finds all masks, in parallel, or says for which vertex there is none.
+    Status Find();
+
+    Level const &GetLevel() const { return _level; }
+    bool IsRegular(Index vert) const;
+    /// That of all regular vertices, which there must be: of the sources of GatherRegular().
+    LimitMask const &GetRegularMask() const { return *_regularMask; }
+
+    /// \brief The row of a vertex, on a side of it, numbered as by LimitSides.  Valid until
+    /// \p regularSources is used again.
+    LimitRow GetRow(Index vert, int side,
+                    Index regularSources[PlainNeighborhoodGatherer::kNumRegular]) const;
+
+private:
+    /// The vertices of a range of the level that are not regular, and what they have.
+    struct Range {
+        std::vector<Index> verts; ///< ascending
+        std::vector<std::shared_ptr<LimitMask const>> masks;
+        std::vector<int> firstSources; ///< in sources; one more than vertices
+        std::vector<Index> sources;
+        std::vector<int> firstSides; ///< in sides
+        std::vector<int> sides;      ///< of the mask, by side of the vertex
+        Index firstRegular = Far::INDEX_INVALID;
+        Status status;
+    };
+    class Finder;
+
+    // The length of ranges: finding the masks of a vertex may take milliseconds.
+    static constexpr Index kRange = 256;
+
+    Level const &_level;
+    Sdc::Options const _sdcOptions;
+    HexSchemeOptions const _schemeOptions;
+    std::vector<Range> _ranges;
+    std::shared_ptr<LimitMask const> _regularMask;
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

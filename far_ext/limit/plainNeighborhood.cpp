@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plainNeighborhood.h"
+
+#include <bitset>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Far::Index;
+using Sdc::Crease;
+
+// Keys are made of bytes.
+constexpr int kEndOfBytes = 256;
+
+constexpr int kRegularValence = 3;
+constexpr int kRegularSize = HexIndexing::kNumEFaceCorners;
+
+// A face that has a vertex, and where.
+struct FaceCorner {
+    Index const *verts;
+    int size;
+    int local;
+
+    Index GetVertex(int i) const {
+        int const place = local + i;
+        return verts[place < size ? place : place - size];
+    }
+};
+
+FaceCorner getFaceCorner(Level const &level, Index k) {
+    Index const face = level.vertFaces[k];
+    return {level.faceVerts.data() + level.faceFirstCorner[face], level.GetFaceSize(face),
+            level.vertFaceLocals[k]};
+}
+
+// Gathers the vertices of three hexagons around a vertex, and those of the hexagons around its
+// neighbours.  isHexagon(corner, neighbor) is asked for each face, the three first, with the next
+// vertex around it or, of the others, the neighbour.
+template <typename IS_HEXAGON>
+bool gatherHexagons(Level const &level, Index vert, Index *sources, IS_HEXAGON isHexagon) {
+    Index const begin = level.vertFirstFace[vert];
+    Index *next = sources + 1 + kRegularValence;
+    sources[0] = vert;
+    auto const addFace = [&](FaceCorner const &corner, Index neighbor) {
+        if (!isHexagon(corner, neighbor)) {
+            return false;
+        }
+        for (int j = 2; j < kRegularSize - 1; ++j) {
+            *next++ = corner.GetVertex(j);
+        }
+        return true;
+    };
+    for (int i = 0; i < kRegularValence; ++i) {
+        FaceCorner const corner = getFaceCorner(level, begin + i);
+        sources[1 + i] = corner.GetVertex(1);
+        if (!addFace(corner, sources[1 + i])) {
+            return false;
+        }
+    }
+    Index const *const faces = level.vertFaces.data() + begin;
+    for (int i = 0; i < kRegularValence; ++i) {
+        Index k = level.vertFirstFace[sources[1 + i]];
+        Index const last = k + kRegularValence - 1;
+        auto const isAround = [&](Index face) {
+            return face == faces[0] || face == faces[1] || face == faces[2];
+        };
+        while (k < last && isAround(level.vertFaces[k])) {
+            ++k;
+        }
+        if (!addFace(getFaceCorner(level, k), sources[1 + i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+} // namespace
+
+// As LimitPatchGatherer does: from the face on with which the sequence of sizes is the least.
+int PlainNeighborhoodGatherer::findFirstFace(Index vert) {
+    Index const *const faces = _level.vertFaces.data() + _level.vertFirstFace[vert];
+    int const numFaces = _level.GetNumVertexFaces(vert);
+    auto const isLess = [&](int first, int second) {
+        for (int i = 0; i < numFaces; ++i) {
+            int const a = _level.GetFaceSize(faces[(first + i) % numFaces]);
+            int const b = _level.GetFaceSize(faces[(second + i) % numFaces]);
+            if (a != b) {
+                return a < b;
+            }
+        }
+        return false;
+    };
+    int best = 0;
+    bool const isUniform = std::all_of(faces, faces + numFaces, [&](Index face) {
+        return _level.GetFaceSize(face) == _level.GetFaceSize(faces[0]);
+    });
+    for (int i = 1; i < numFaces && !isUniform; ++i) {
+        if (isLess(i, best)) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+bool PlainNeighborhoodGatherer::addFace(Index face, int local, PlainNeighborhood &result) {
+    Index const first = _level.faceFirstCorner[face];
+    int const size = _level.GetFaceSize(face);
+    _faces.push_back(face);
+    result.key.push_back(char(size));
+    FaceCorner const corners = {_level.faceVerts.data() + first, size, local};
+    for (int i = 0; i < size; ++i) {
+        Index const vert = corners.GetVertex(i);
+        auto const next = Index(result.sources.size());
+        Index const number = _numbers.FindOrSet(vert, next);
+        if (number == next) {
+            result.sources.push_back(vert);
+        }
+        result.key.push_back(char(number));
+    }
+    return size < kEndOfBytes && result.sources.size() < kEndOfBytes;
+}
+
+// The faces around a neighbour, from its edge to the vertex on, but for the first and the last.
+bool PlainNeighborhoodGatherer::addOuterFaces(int neighbor, PlainNeighborhood &result) {
+    int const numNeighbors = int(_neighbors.size());
+    Index const vert = _neighbors[neighbor];
+    Index const firstFace = _level.vertFirstFace[vert];
+    int const numFaces = _level.GetNumVertexFaces(vert);
+    if (numFaces < kRegularValence || numFaces >= kEndOfBytes) {
+        return false;
+    }
+    result.key.push_back(char(numFaces));
+    Index const *const faces = _level.vertFaces.data() + firstFace;
+    Index const before = _faces[(neighbor + numNeighbors - 1) % numNeighbors];
+    int const first = int(std::find(faces, faces + numFaces, before) - faces);
+    // Two edges that join the same vertices are told apart by nothing in the key.
+    std::bitset<kEndOfBytes> isNeighbor;
+    for (int i = 0; i < numFaces; ++i) {
+        int const k = (first + i) % numFaces;
+        FaceCorner const corner = getFaceCorner(_level, firstFace + k);
+        bool const isAdded = std::find(_faces.begin(), _faces.end(), faces[k]) != _faces.end();
+        if (!isAdded && !addFace(faces[k], corner.local, result)) {
+            return false;
+        }
+        auto const number = std::size_t(_numbers.Find(corner.GetVertex(1)));
+        if (isNeighbor[number]) {
+            return false;
+        }
+        isNeighbor[number] = true;
+    }
+    return true;
+}
+
+bool PlainNeighborhoodGatherer::Gather(Index vert, std::vector<bool> const &featureVerts,
+                                       PlainNeighborhood &result) {
+    auto const hasFeature = [&](Index index) {
+        return !featureVerts.empty() && featureVerts[std::size_t(index)];
+    };
+    int const numFaces = _level.GetNumVertexFaces(vert);
+    if (hasFeature(vert) || numFaces < kRegularValence || numFaces >= kEndOfBytes) {
+        return false;
+    }
+    _numbers.Clear();
+    _faces.clear();
+    _neighbors.clear();
+    result.key.clear();
+    result.key.push_back(char(numFaces));
+    result.sources.assign(1, vert);
+    _numbers.FindOrSet(vert, 0);
+
+    Index const begin = _level.vertFirstFace[vert];
+    int const first = findFirstFace(vert);
+    auto const getRingFace = [&](int i) { return begin + (first + i) % numFaces; };
+    for (int i = 0; i < numFaces; ++i) {
+        Index const neighbor = getFaceCorner(_level, getRingFace(i)).GetVertex(1);
+        auto const next = Index(result.sources.size());
+        if (hasFeature(neighbor) || _numbers.FindOrSet(neighbor, next) != next) {
+            return false;
+        }
+        _neighbors.push_back(neighbor);
+        result.sources.push_back(neighbor);
+    }
+    for (int i = 0; i < numFaces; ++i) {
+        Index const k = getRingFace(i);
+        if (!addFace(_level.vertFaces[k], _level.vertFaceLocals[k], result)) {
+            return false;
+        }
+    }
+    for (int i = 0; i < numFaces; ++i) {
+        if (!addOuterFaces(i, result)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void PlainNeighborhoodGatherer::GatherRegular(Level const &level, Index vert,
+                                              Index sources[kNumRegular]) {
+    gatherHexagons(level, vert, sources, [](FaceCorner const &, Index) { return true; });
+}
+
+bool PlainNeighborhoodGatherer::IsRegular(Index vert, std::vector<bool> const &featureVerts) const {
+    auto const isPlain = [&](Index index) {
+        return (featureVerts.empty() || !featureVerts[std::size_t(index)]) &&
+               _level.GetNumVertexFaces(index) == kRegularValence;
+    };
+    // The neighbours are plain before the faces around them are looked for.
+    Index sources[kNumRegular];
+    if (!isPlain(vert) ||
+        !gatherHexagons(_level, vert, sources, [&](FaceCorner const &corner, Index neighbor) {
+            return corner.size == kRegularSize && isPlain(neighbor);
+        })) {
+        return false;
+    }
+    int numEqual = 0;
+    for (Index a : sources) {
+        for (Index b : sources) {
+            numEqual += a == b;
+        }
+    }
+    return numEqual == kNumRegular;
+}
+
+std::vector<bool> MarkFeatures(Level const &level) {
+    std::vector<bool> result;
+    if (level.GetNumBoundaries() == 0 && level.edgeSharpness.empty() &&
+        level.vertSharpness.empty() && level.nonManifoldVerts.empty() && level.sharpVerts.empty() &&
+        !level.HasFeatures()) {
+        return result;
+    }
+    result.resize(std::size_t(level.numVertices));
+    auto const mark = [&](Index vert) { result[std::size_t(vert)] = true; };
+    auto const markEdge = [&](Index edge) {
+        mark(level.edgeVerts[edge][0]);
+        mark(level.edgeVerts[edge][1]);
+    };
+    auto const markFace = [&](Index face) {
+        for (Index vert : level.GetFaceVertices(face)) {
+            mark(vert);
+        }
+    };
+    std::for_each(level.boundaryEdges.begin(), level.boundaryEdges.end(), markEdge);
+    std::for_each(level.halfFaces.begin(), level.halfFaces.end(), markFace);
+    std::for_each(level.nonManifoldVerts.begin(), level.nonManifoldVerts.end(), mark);
+    for (SharpVertex const &sharp : level.sharpVerts) {
+        mark(sharp.vert);
+    }
+    for (SectorCorner const &sector : level.sectorCorners) {
+        markFace(level.FindFaceOfCorner(sector.corner));
+    }
+    auto const forEachSharp = [](Buffer<float> const &tags, auto function) {
+        for (std::size_t i = 0; i < tags.size(); ++i) {
+            if (Crease::IsSharp(tags[i])) {
+                function(Index(i));
+            }
+        }
+    };
+    forEachSharp(level.edgeSharpness, markEdge);
+    forEachSharp(level.diagonalSharpness, markFace);
+    forEachSharp(level.vertSharpness, mark);
+    return result;
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_LIMIT_PLAIN_NEIGHBORHOOD_H
+#define OPENSUBDIVHEX_FAR_EXT_LIMIT_PLAIN_NEIGHBORHOOD_H
+
+#include "far_ext/vtr/indexSet.h"
+#include "far_ext/vtr/level.h"
+
+#include <string>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief What the limit at a vertex depends on, where no feature is near: LimitPatch in short.
+///
+/// The sources are those of the patch, in the same order, and patches of the same key have the same
+/// limit mask.  So the mask of a key is found from the patch of one vertex that has it.
+struct PlainNeighborhood {
+    std::vector<Far::Index> sources;
+    std::string key;
+};
+
+/// \brief Gathers the neighbourhoods of the vertices of a level, which has full topology.
+///
+/// A vertex is *regular* when it and its neighbours have three faces each, all these are hexagons,
+/// and all their vertices are different: two steps after a level nearly all vertices are.
+class PlainNeighborhoodGatherer {
+public:
+    using Index = Far::Index;
+
+    /// Vertices that a regular vertex depends on.
+    static constexpr int kNumRegular = 22;
+
+    explicit PlainNeighborhoodGatherer(Level const &level) : _level(level) {}
+
+    /// \brief Gathers the neighbourhood of \p vert.
+    ///
+    /// \param featureVerts  as MarkFeatures() marks them
+    /// \return  false where there is a feature, or something that a key cannot tell; then the
+    ///          result is of no use
+    bool Gather(Index vert, std::vector<bool> const &featureVerts, PlainNeighborhood &result);
+
+    bool IsRegular(Index vert, std::vector<bool> const &featureVerts) const;
+    /// The sources alone, of a vertex that is regular.
+    static void GatherRegular(Level const &level, Index vert, Index sources[kNumRegular]);
+
+private:
+    int findFirstFace(Index vert);
+    bool addFace(Index face, int local, PlainNeighborhood &result);
+    bool addOuterFaces(int neighbor, PlainNeighborhood &result);
+
+    Level const &_level;
+    IndexMap _numbers;             // of the sources
+    std::vector<Index> _faces;     // that have been added, those around the vertex first
+    std::vector<Index> _neighbors; // of the vertex
+};
+
+/// The vertices of a level that are on a boundary or not manifold, sharp, on sharp edges, or in faces
+/// that have features.  Empty where the level has none.
+std::vector<bool> MarkFeatures(Level const &level);
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif
