@@ -67,13 +67,6 @@ Index LimitSides::FindSide(TopologyLevel const &level, Index face, int local, in
 
 namespace {
 
-// The options of the steps from a level on to its limit, the first of which is not that of level 0.
-HexSchemeOptions hexagonalSteps(TopologyRefiner const &refiner) {
-    HexSchemeOptions options = refiner.GetHexSchemeOptions();
-    options.triHexFirst = false;
-    return options;
-}
-
 // The arrays of Far's tables are protected, those of derivatives private.
 template <typename REAL>
 class WritableLimitTable : public LimitStencilTableTypes<REAL>::Table {
@@ -312,23 +305,15 @@ private:
 
 template <typename OPTIONS>
 Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
+    Status const result = internal::CheckLimitLevel(refiner.GetHierarchy(),
+                                                    refiner.GetHexSchemeOptions(), options.level);
+    if (!result.IsOk()) {
+        return result;
+    }
     auto const fail = [&](std::string const &message) {
         return Status(StatusCode::InvalidArgument, ComponentType::Level, options.level, message);
     };
     std::string const level = "level " + std::to_string(options.level);
-    if (options.level < 0 || options.level > refiner.GetMaxLevel()) {
-        return fail(level + " is not one of the levels 0 to " +
-                    std::to_string(refiner.GetMaxLevel()) + " of the refiner");
-    }
-    HexSchemeOptions const scheme = refiner.GetHexSchemeOptions();
-    if (scheme.GetSchemeOfLevel(options.level + 1) != SchemeType::Hexagonal) {
-        return Status(StatusCode::Unsupported, ComponentType::Level, options.level,
-                      level +
-                          " is not refined by hexagonal steps, which alone have limit stencils");
-    }
-    if (!refiner.GetLevel(options.level).HasFullTopology()) {
-        return fail(level + " has no full topology: see UniformOptions::fullTopologyInLastLevel");
-    }
     if (!options.generateVertices && !options.generateFaceCenters) {
         return fail("neither vertices nor face centers of " + level + " are asked for");
     }
@@ -357,7 +342,7 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
     }
     TopologyLevel const &topologyLevel = refiner.GetLevel(options.level);
     Level const &level = topologyLevel.GetLevel();
-    HexSchemeOptions const schemeOptions = hexagonalSteps(refiner);
+    HexSchemeOptions const schemeOptions = refiner.GetHexSchemeOptions();
     std::optional<LimitRows> vertexRows;
     if (options.generateVertices) {
         vertexRows.emplace(level, refiner.GetSchemeOptions(), schemeOptions);
@@ -371,7 +356,8 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
     }
     std::optional<FaceLimitMaskFinder> faceMasks;
     if (options.generateFaceCenters) {
-        faceMasks.emplace(level, refiner.GetSchemeOptions(), schemeOptions);
+        faceMasks.emplace(level, refiner.GetSchemeOptions(),
+                          internal::GetStepsToLimit(schemeOptions));
     }
     PointRows const rows(vertexRows ? &*vertexRows : nullptr, sides ? &*sides : nullptr,
                          faceMasks ? &*faceMasks : nullptr, level);

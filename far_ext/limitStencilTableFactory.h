@@ -136,9 +136,10 @@ public:
 
     /// \brief Makes the table.
     ///
-    /// The indices of a stencil are control vertices and ascend; offsets are filled.  The weights
-    /// of a point sum to 1, those of a derivative to 0.  Every point depends on the topology around
-    /// it alone: any number of threads makes the same bits.
+    /// The indices of a stencil are control vertices, or vertices of the level, and ascend; offsets
+    /// are filled, and the arrays have their exact size.  The weights of a point sum to 1, those of a
+    /// derivative to 0.  Every point depends on the topology around it alone: any number of threads
+    /// makes the same bits.
     ///
     /// \return  null on failure: InvalidArgument (level out of range or without full topology, no
     ///          points asked for, further sides without vertices), TooLarge (more than 2^31 - 1

@@ -2,6 +2,7 @@
 #include "primvarRefiner.h"
 
 #include "baseFaceMap.h"
+#include "far_ext/limit/limitRows.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/refinementRows.h"
@@ -105,6 +106,32 @@ std::vector<Index> FindUniformSources(TopologyRefiner const &refiner, int level)
         sources[std::size_t(cFace)] = source;
     });
     return sources;
+}
+
+PrimvarLimitRows::PrimvarLimitRows(TopologyRefiner const &refiner) : _refiner(refiner) {}
+
+PrimvarLimitRows::~PrimvarLimitRows() = default;
+
+bool PrimvarLimitRows::Find(Status *status) {
+    Hierarchy const &hierarchy = _refiner.GetHierarchy();
+    int const level = _refiner.GetMaxLevel();
+    if (!Report(CheckLimitLevel(hierarchy, _refiner.GetHexSchemeOptions(), level), status)) {
+        return false;
+    }
+    _rows =
+        std::make_unique<LimitRows>(hierarchy.mesh.levels[std::size_t(level)],
+                                    _refiner.GetSchemeOptions(), _refiner.GetHexSchemeOptions());
+    _sources.resize(PlainNeighborhoodGatherer::kNumRegular);
+    return Report(_rows->Find(), status);
+}
+
+Index PrimvarLimitRows::GetNumVertices() const {
+    return _refiner.GetLevel(_refiner.GetMaxLevel()).GetNumVertices();
+}
+
+PrimvarLimitRows::Row PrimvarLimitRows::GetRow(Index vert) {
+    LimitRow const row = _rows->GetRow(vert, 0, _sources.data());
+    return {row.size, row.sources, row.weights, row.du, row.dv};
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

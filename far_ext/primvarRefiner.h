@@ -51,6 +51,38 @@ private:
 OPENSUBDIVHEX_API std::vector<Far::Index> FindUniformSources(TopologyRefiner const &refiner,
                                                              int level);
 
+class LimitRows;
+
+/// \brief The weights that make the limit of the vertices of a refiner's last level.
+class OPENSUBDIVHEX_API PrimvarLimitRows {
+public:
+    /// The weights of vertices for the limit of one, and for its derivatives.
+    struct Row {
+        int size;
+        Far::Index const *sources;
+        double const *weights;
+        double const *duWeights;
+        double const *dvWeights;
+    };
+
+    explicit PrimvarLimitRows(TopologyRefiner const &refiner);
+    ~PrimvarLimitRows();
+
+    PrimvarLimitRows(PrimvarLimitRows const &) = delete;
+    PrimvarLimitRows &operator=(PrimvarLimitRows const &) = delete;
+
+    /// Finds the weights; false, with a status, where there are none.
+    bool Find(Status *status);
+    Far::Index GetNumVertices() const;
+    /// Valid until the next call.
+    Row GetRow(Far::Index vert);
+
+private:
+    TopologyRefiner const &_refiner;
+    std::unique_ptr<LimitRows> _rows;
+    std::vector<Far::Index> _sources;
+};
+
 } // namespace internal
 
 /// \brief Computes primvar data of one level from that of the level before, without tables.
@@ -122,7 +154,53 @@ public:
                     dst);
     }
 
+    /// \brief The limit of vertex data: dstPos[v] for all vertices of the last level from src, the
+    /// values that Interpolate() made of it.
+    ///
+    /// \return  false, with nothing written, as LimitStencilTableFactory fails: InvalidArgument where
+    ///          the last level has no full topology, Unsupported where it has no limit stencils
+    template <class T, class U>
+    bool Limit(T const &src, U &dstPos, Status *status = nullptr) const {
+        internal::PrimvarLimitRows rows(_refiner);
+        if (!rows.Find(status)) {
+            return false;
+        }
+        for (Far::Index vert = 0; vert < rows.GetNumVertices(); ++vert) {
+            internal::PrimvarLimitRows::Row const row = rows.GetRow(vert);
+            sum(src, row, row.weights, dstPos[vert]);
+        }
+        return true;
+    }
+
+    /// \brief The same with first derivatives, those that LimitStencilTableFactory says, on side 0
+    /// of each vertex (see LimitSides).
+    template <class T, class U, class U1, class U2>
+    bool Limit(T const &src, U &dstPos, U1 &dstTan1, U2 &dstTan2, Status *status = nullptr) const {
+        internal::PrimvarLimitRows rows(_refiner);
+        if (!rows.Find(status)) {
+            return false;
+        }
+        for (Far::Index vert = 0; vert < rows.GetNumVertices(); ++vert) {
+            internal::PrimvarLimitRows::Row const row = rows.GetRow(vert);
+            sum(src, row, row.weights, dstPos[vert]);
+            sum(src, row, row.duWeights, dstTan1[vert]);
+            sum(src, row, row.dvWeights, dstTan2[vert]);
+        }
+        return true;
+    }
+
 private:
+    template <class T, class ELEMENT>
+    static void sum(T const &src, internal::PrimvarLimitRows::Row const &row, double const *weights,
+                    ELEMENT &&element) {
+        element.Clear();
+        for (int i = 0; i < row.size; ++i) {
+            if (weights[i] != 0) {
+                element.AddWithWeight(src[row.sources[i]], REAL(weights[i]));
+            }
+        }
+    }
+
     template <class T, class U>
     void interpolate(int level, Interpolation interpolation, int channel, T const &src,
                      U &dst) const {

@@ -3,7 +3,7 @@
 
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
-#include "osd_ext/refinement/refinementKernel.h"
+#include "osd_ext/refinement/preparedLimit.h"
 
 #include <algorithm>
 #include <atomic>
@@ -106,6 +106,12 @@ public:
     void Evaluate(Source values, Destination result, int length, int level);
     void EvaluateAllLevels(Source values, Destination result, int length);
 
+    /// Finds the masks of a level, unless it has.
+    Status PrepareLimit(int level);
+    /// Derivatives are not wanted where \p du is null.
+    void EvaluateLimit(Source values, Destination points, Destination du, Destination dv,
+                       int length, int level);
+
     TopologyRefiner const &refiner;
     std::vector<int> numElements; // by level
 
@@ -115,6 +121,7 @@ private:
     Source toVertices(Source src, int length, float scale);
 
     int const _numRefinements; // of the refiner, when the evaluator was made
+    bool const _isOfVertices;  // not of face-varying values, nor varying
     std::vector<internal::PreparedRefinement> _refinements; // by level of the parent
 
     // Of a face-varying channel some of whose values several vertices of its value mesh share: the
@@ -123,10 +130,14 @@ private:
 
     FarExt::internal::Buffer<float> _controlValues; // by vertex of that value mesh
     FarExt::internal::Buffer<float> _scratch[2];    // levels below the one asked for
+
+    std::vector<std::unique_ptr<internal::PreparedLimit>> _limits; // by level; null: not yet asked
+    FarExt::internal::Buffer<float> _limitValues; // of the level whose limit is evaluated
 };
 
 RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options options)
-    : refiner(topologyRefiner), _numRefinements(refiner.GetNumRefinements()) {
+    : refiner(topologyRefiner), _numRefinements(refiner.GetNumRefinements()),
+      _isOfVertices(options.interpolationMode == FarExt::INTERPOLATE_VERTEX) {
     bool const isFaceVarying = options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING;
     int const maxLevel = refiner.GetMaxLevel();
     MeshLevels const &mesh =
@@ -236,6 +247,44 @@ void RefinementEvaluator::Impl::EvaluateAllLevels(Source values, Destination res
               std::accumulate(numElements.begin() + 1, numElements.end(), std::int64_t(0)));
 }
 
+Status RefinementEvaluator::Impl::PrepareLimit(int level) {
+    if (!_isOfVertices) {
+        return invalidArgument("there is a limit for INTERPOLATE_VERTEX alone");
+    }
+    _limits.resize(numElements.size());
+    std::unique_ptr<internal::PreparedLimit> &limit = _limits[std::size_t(level)];
+    if (limit) {
+        return Status();
+    }
+    FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
+    Status result =
+        FarExt::internal::CheckLimitLevel(hierarchy, refiner.GetHexSchemeOptions(), level);
+    if (!result.IsOk()) {
+        return result;
+    }
+    FarExt::internal::LimitRows rows(hierarchy.mesh.levels[std::size_t(level)],
+                                     refiner.GetSchemeOptions(), refiner.GetHexSchemeOptions());
+    result = rows.Find();
+    if (result.IsOk()) {
+        auto prepared = std::make_unique<internal::PreparedLimit>();
+        result = prepared->Prepare(rows);
+        if (result.IsOk()) {
+            limit = std::move(prepared);
+        }
+    }
+    return result;
+}
+
+void RefinementEvaluator::Impl::EvaluateLimit(Source values, Destination points, Destination du,
+                                              Destination dv, int length, int level) {
+    if (level > 0) {
+        _limitValues.Resize(std::size_t(numElements[std::size_t(level)]) * std::size_t(length));
+        Evaluate(values, {_limitValues.data(), length}, length, level);
+        values = {_limitValues.data(), length};
+    }
+    _limits[std::size_t(level)]->Evaluate(values, length, points, du, dv);
+}
+
 std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner const &refiner,
                                                                  Options options, Status *status) {
     Status result;
@@ -297,6 +346,56 @@ bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescrip
     if (GetMaxLevel() > 0) {
         _impl->EvaluateAllLevels({src + srcDesc.offset, srcDesc.stride},
                                  {dst + dstDesc.offset, dstDesc.stride}, srcDesc.length);
+    }
+    return true;
+}
+
+bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
+                                        float *dst, Osd::BufferDescriptor const &dstDesc, int level,
+                                        Status *status) {
+    return evaluateLimit(src, srcDesc, dst, dstDesc, nullptr, dstDesc, nullptr, dstDesc, level,
+                         status);
+}
+
+bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
+                                        float *dst, Osd::BufferDescriptor const &dstDesc, float *du,
+                                        Osd::BufferDescriptor const &duDesc, float *dv,
+                                        Osd::BufferDescriptor const &dvDesc, int level,
+                                        Status *status) {
+    bool const isLevel = level >= 0 && level <= GetMaxLevel();
+    std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
+    Status result = _impl->Check(src, srcDesc, du, duDesc, level, numWritten);
+    if (result.IsOk()) {
+        result = _impl->Check(src, srcDesc, dv, dvDesc, level, numWritten);
+    }
+    if (!FarExt::internal::Report(result, status)) {
+        return false;
+    }
+    return evaluateLimit(src, srcDesc, dst, dstDesc, du, duDesc, dv, dvDesc, level, status);
+}
+
+// Derivatives that are null are not wanted.
+bool RefinementEvaluator::evaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
+                                        float *dst, Osd::BufferDescriptor const &dstDesc, float *du,
+                                        Osd::BufferDescriptor const &duDesc, float *dv,
+                                        Osd::BufferDescriptor const &dvDesc, int level,
+                                        Status *status) {
+    bool const isLevel = level >= 0 && level <= GetMaxLevel();
+    std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
+    Status result = _impl->Check(src, srcDesc, dst, dstDesc, level, numWritten);
+    if (result.IsOk()) {
+        result = _impl->PrepareLimit(level);
+    }
+    if (!FarExt::internal::Report(result, status)) {
+        return false;
+    }
+    auto const bindElements = [](float *data, Osd::BufferDescriptor const &desc) {
+        return internal::Elements<float>{data ? data + desc.offset : nullptr, desc.stride};
+    };
+    if (numWritten > 0) {
+        _impl->EvaluateLimit({src + srcDesc.offset, srcDesc.stride}, bindElements(dst, dstDesc),
+                             bindElements(du, duDesc), bindElements(dv, dvDesc), srcDesc.length,
+                             level);
     }
     return true;
 }

@@ -111,6 +111,30 @@ public:
     bool EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                            Osd::BufferDescriptor const &dstDesc, FarExt::Status *status = nullptr);
 
+    /// @name The limit surface
+    /// Of the vertices of a level, with full topology, whose values it makes on the way: points, and
+    /// first derivatives on side 0, as FarExt::LimitStencilTableFactory says; what comes out is what
+    /// its table gives, up to the rounding of floats, of which derivatives have more at each level,
+    /// as they are differences of near values.
+    ///
+    /// The first frame of a level finds the masks, which takes about as long as ten frames, and keeps
+    /// about 110 bytes for each of its vertices.
+    ///
+    /// \param dst,du,dv  elements [0, GetNumElements(level)) each
+    ///
+    /// \return  false, with nothing written, as Evaluate; besides with InvalidArgument for other
+    ///          modes than INTERPOLATE_VERTEX, and as FarExt::LimitStencilTableFactory fails
+    /// @{
+    bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                       Osd::BufferDescriptor const &dstDesc, int level,
+                       FarExt::Status *status = nullptr);
+    bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                       Osd::BufferDescriptor const &dstDesc, float *du,
+                       Osd::BufferDescriptor const &duDesc, float *dv,
+                       Osd::BufferDescriptor const &dvDesc, int level,
+                       FarExt::Status *status = nullptr);
+    /// @}
+
     /// @name With buffers
     /// Whose function BindCpuBuffer() returns a float pointer, such as Osd::CpuVertexBuffer.  A
     /// buffer that is null fails as a null pointer does.
@@ -130,12 +154,34 @@ public:
                            FarExt::Status *status = nullptr) {
         return EvaluateAllLevels(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, status);
     }
+    /// EvaluateLimit() from and to buffers.
+    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
+    bool EvaluateLimit(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
+                       DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc, int level,
+                       FarExt::Status *status = nullptr) {
+        return EvaluateLimit(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, level, status);
+    }
+    /// The same with derivatives.
+    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
+    bool EvaluateLimit(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
+                       DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc,
+                       DST_BUFFER *duBuffer, Osd::BufferDescriptor const &duDesc,
+                       DST_BUFFER *dvBuffer, Osd::BufferDescriptor const &dvDesc, int level,
+                       FarExt::Status *status = nullptr) {
+        return EvaluateLimit(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, bind(duBuffer),
+                             duDesc, bind(dvBuffer), dvDesc, level, status);
+    }
     /// @}
 
 private:
     class Impl;
 
     explicit RefinementEvaluator(std::unique_ptr<Impl> impl);
+
+    bool evaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                       Osd::BufferDescriptor const &dstDesc, float *du,
+                       Osd::BufferDescriptor const &duDesc, float *dv,
+                       Osd::BufferDescriptor const &dvDesc, int level, FarExt::Status *status);
 
     template <class BUFFER>
     static float *bind(BUFFER *buffer) {

@@ -17,8 +17,8 @@ namespace OpenSubdivHex::OsdExt {
 /// Levels differ in the last bits: above Portable, products are fused with sums (FMA), and the
 /// terms of a stencil are summed in another order.
 ///
-/// RefinementEvaluator knows no levels: its code is compiled once, for the processors that the whole
-/// library is compiled for, and its results are the same at every level.
+/// RefinementEvaluator knows no levels, but for its limits: its code is compiled once, for the
+/// processors that the whole library is compiled for, and its results are the same at every level.
 enum class SimdLevel {
     Portable, ///< what the compiler makes of plain C++, on any machine
     Avx2,     ///< AVX2 and FMA

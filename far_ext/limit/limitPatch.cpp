@@ -167,8 +167,12 @@ void LimitPatchGatherer::addEdge(Index corner, Index edge, LimitPatch &patch) {
                             _verts.Find(_level.edgeVerts[edge][1]) < _numComplete;
     patch.edgeSharpness.push_back(isComplete ? _level.GetEdgeSharpness(edge) : 0);
     if (other != size) {
-        patch.otherCorners.push_back(other);
-        patch.otherCorners[other] = corner;
+        // Further out it does not matter which faces are joined: patches that differ in nothing else
+        // are to be the same.
+        patch.otherCorners.push_back(isComplete ? other : Index(kFreeBoundary));
+        if (isComplete) {
+            patch.otherCorners[other] = corner;
+        }
         return;
     }
     bool const isKept = _level.IsBoundary(edge) && (isComplete || _level.IsSharpBoundaryB(edge));

@@ -11,6 +11,33 @@ namespace OpenSubdivHex::FarExt::internal {
 
 using Far::Index;
 
+HexSchemeOptions GetStepsToLimit(HexSchemeOptions schemeOptions) {
+    schemeOptions.triHexFirst = false;
+    return schemeOptions;
+}
+
+Status CheckLimitLevel(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
+                       int level) {
+    auto const fail = [level](StatusCode code, std::string const &message) {
+        return Status(code, ComponentType::Level, level,
+                      "level " + std::to_string(level) + message);
+    };
+    int const maxLevel = hierarchy.numLevels - 1;
+    if (level < 0 || level > maxLevel) {
+        return fail(StatusCode::InvalidArgument, " is not one of the levels 0 to " +
+                                                     std::to_string(maxLevel) + " of the refiner");
+    }
+    if (schemeOptions.GetSchemeOfLevel(level + 1) != SchemeType::Hexagonal) {
+        return fail(StatusCode::Unsupported,
+                    " is not refined by hexagonal steps, which alone have limit stencils");
+    }
+    if (!hierarchy.mesh.levels[std::size_t(level)].hasFullTopology) {
+        return fail(StatusCode::InvalidArgument,
+                    " has no full topology: see UniformOptions::fullTopologyInLastLevel");
+    }
+    return Status();
+}
+
 /// What one thread finds masks with.
 class LimitRows::Finder {
 public:
@@ -90,7 +117,7 @@ private:
 
 LimitRows::LimitRows(Level const &level, Sdc::Options sdcOptions,
                      HexSchemeOptions const &schemeOptions)
-    : _level(level), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions) {}
+    : _level(level), _sdcOptions(sdcOptions), _schemeOptions(GetStepsToLimit(schemeOptions)) {}
 
 LimitRows::~LimitRows() = default;
 
@@ -117,11 +144,6 @@ Status LimitRows::Find() {
         }
     }
     return Status();
-}
-
-bool LimitRows::IsRegular(Index vert) const {
-    std::vector<Index> const &verts = _ranges[std::size_t(vert / kRange)].verts;
-    return verts.empty() || !std::binary_search(verts.begin(), verts.end(), vert);
 }
 
 LimitRow LimitRows::GetRow(Index vert, int side,

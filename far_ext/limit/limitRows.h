@@ -6,11 +6,20 @@
 #include "plainNeighborhood.h"
 
 #include "far_ext/status.h"
+#include "far_ext/vtr/hierarchy.h"
 
 #include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
+
+/// The options of the steps from any level on to its limit, none of which is a first step.
+HexSchemeOptions GetStepsToLimit(HexSchemeOptions schemeOptions);
+
+/// \brief Whether a level has limit points, or why not: InvalidArgument where it is none of the
+/// hierarchy or has not its full topology, Unsupported where it is not refined by hexagonal steps.
+OPENSUBDIVHEX_API Status CheckLimitLevel(Hierarchy const &hierarchy,
+                                         HexSchemeOptions const &schemeOptions, int level);
 
 /// \brief A point of the limit surface and its derivatives, as sums of vertices of a level.
 struct LimitRow {
@@ -33,8 +42,7 @@ class OPENSUBDIVHEX_API LimitRows {
 public:
     using Index = Far::Index;
 
-    /// \param level          full topology; it is referred to
-    /// \param schemeOptions  of the steps from the level on
+    /// Those of a level for which CheckLimitLevel() is well; it is referred to.
     LimitRows(Level const &level, Sdc::Options sdcOptions, HexSchemeOptions const &schemeOptions);
     ~LimitRows();
 
@@ -42,9 +50,6 @@ public:
     Status Find();
 
     Level const &GetLevel() const { return _level; }
-    bool IsRegular(Index vert) const;
-    /// That of all regular vertices, which there must be: of the sources of GatherRegular().
-    LimitMask const &GetRegularMask() const { return *_regularMask; }
 
     /// \brief The row of a vertex, on a side of it, numbered as by LimitSides.  Valid until
     /// \p regularSources is used again.

@@ -36,6 +36,7 @@ void run(Suite::Options const &options, std::string const &command, std::string 
     AddStencilTableBenchmarks(suite);
     AddEvaluationBenchmarks(suite);
     AddTableFreeBenchmarks(suite);
+    AddLimitBenchmarks(suite);
     AddGrowthBenchmarks(suite);
     AddBusyBenchmarks(suite);
     bool const isComplete = suite.Run();

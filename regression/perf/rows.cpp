@@ -43,6 +43,16 @@ std::vector<Row> const &GetRows() {
             {"table-free-1", "table-free, all levels, 1 thread", "own best table", 3, 5});
         result.push_back({"table-free-2", "table-free, all levels, 2 threads",
                           "own best table, 2 threads", 3, 5});
+        result.push_back({"limit-table-own", "limit table, per weight, 1 thread",
+                          "own, table of the level", 0.5, 1});
+        result.push_back({"limit-table-1", "limit table, per weight, 1 thread",
+                          "Far::LimitStencilTableFactory", 1, 2});
+        result.push_back({"limit-table-2", "limit table, per weight, 2 threads",
+                          "Far::LimitStencilTableFactory", 1.8, 3.6});
+        result.push_back({"limit-evaluation-own", "limit with derivatives, table-free, 1 thread",
+                          "own, level alone", 0.4, 0.5});
+        result.push_back({"limit-evaluation-table", "limit with derivatives, table-free, 1 thread",
+                          "own limit table", 1, 3});
         result.push_back({"evaluation-catmark", "Far's Catmull-Clark table, length 3",
                           "Osd::CpuEvaluator", 5, 8});
         // 1.3 times as slow at most.

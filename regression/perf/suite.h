@@ -125,6 +125,7 @@ void AddPositionBenchmarks(Suite &suite);
 void AddStencilTableBenchmarks(Suite &suite);
 void AddEvaluationBenchmarks(Suite &suite);
 void AddTableFreeBenchmarks(Suite &suite);
+void AddLimitBenchmarks(Suite &suite);
 void AddGrowthBenchmarks(Suite &suite);
 void AddBusyBenchmarks(Suite &suite);
 /// @}

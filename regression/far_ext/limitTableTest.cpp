@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Limit tables that are not factorized and PrimvarRefiner::Limit, against the tables of control
+// vertices.
+#include "referenceMatch.h"
+
+#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/primvarRefiner.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::TopologyRefiner;
+using Factory = FarExt::LimitStencilTableFactoryReal<double>;
+
+namespace {
+
+constexpr double kTolerance = 1e-11;
+
+/// An element that sums up weights and products.
+struct Element {
+    void Clear() { *this = {}; }
+    void AddWithWeight(Element const &other, double weight) {
+        for (int i = 0; i < 3; ++i) {
+            values[i] += weight * other.values[i];
+        }
+    }
+
+    double values[3] = {};
+};
+using Elements = std::vector<Element>;
+
+std::unique_ptr<Factory::Table const> createTable(TopologyRefiner const &refiner, int level,
+                                                  bool isFactorized) {
+    Factory::Options options;
+    options.level = level;
+    options.generateFurtherSides = true;
+    options.generateFaceCenters = true;
+    options.factorizeIntermediateLevels = isFactorized;
+    FarExt::Status status;
+    auto table = Factory::Create(refiner, options, &status);
+    EXPECT_TRUE(table) << status.GetMessage();
+    return table;
+}
+
+Elements apply(Factory::Table const &table, std::vector<double> const &weights,
+               Elements const &values) {
+    Elements result(std::size_t(table.GetNumStencils()));
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        int const offset = table.GetOffsets()[i];
+        for (int k = offset; k < offset + table.GetSizes()[i]; ++k) {
+            result[i].AddWithWeight(
+                values.at(std::size_t(table.GetControlIndices()[std::size_t(k)])),
+                weights[std::size_t(k)]);
+        }
+    }
+    return result;
+}
+
+void expectNear(Elements const &values, Elements const &expected, std::size_t count,
+                std::string const &name) {
+    ASSERT_LE(count, values.size());
+    ASSERT_LE(count, expected.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            ASSERT_NEAR(values[i].values[k], expected[i].values[k], kTolerance)
+                << name << " of row " << i;
+        }
+    }
+}
+
+Elements getPositions(Shape const &shape) {
+    Elements result(std::size_t(shape.GetNumVertices()));
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            result[i].values[k] = shape.positions[3 * i + k];
+        }
+    }
+    return result;
+}
+
+/// What comes of control values by way of the level is what comes of them straight.
+void expectSameLimits(Shape const &shape, ReferenceMask mask, Sdc::Options const &options,
+                      int maxLevel) {
+    auto const refiner = CreateRefiner(shape, mask, maxLevel, options);
+    FarExt::PrimvarRefinerReal<double> const primvarRefiner(*refiner);
+    Elements const base = getPositions(shape);
+    Elements values = base;
+    for (int level = 0; level <= maxLevel; ++level) {
+        SCOPED_TRACE(testing::Message() << "level " << level);
+        if (level > 0) {
+            Elements const before = std::move(values);
+            values.assign(std::size_t(refiner->GetLevel(level).GetNumVertices()), Element());
+            primvarRefiner.Interpolate(level, before, values);
+        }
+        auto const factorized = createTable(*refiner, level, true);
+        auto const ofLevel = createTable(*refiner, level, false);
+        ASSERT_TRUE(factorized && ofLevel);
+        ASSERT_EQ(ofLevel->GetNumControlVertices(), refiner->GetLevel(level).GetNumVertices());
+        std::size_t const count = std::size_t(factorized->GetNumStencils());
+        Elements const points = apply(*factorized, factorized->GetWeights(), base);
+        Elements const du = apply(*factorized, factorized->GetDuWeights(), base);
+        Elements const dv = apply(*factorized, factorized->GetDvWeights(), base);
+        ASSERT_NO_FATAL_FAILURE(
+            expectNear(apply(*ofLevel, ofLevel->GetWeights(), values), points, count, "point"));
+        ASSERT_NO_FATAL_FAILURE(
+            expectNear(apply(*ofLevel, ofLevel->GetDuWeights(), values), du, count, "du"));
+        ASSERT_NO_FATAL_FAILURE(
+            expectNear(apply(*ofLevel, ofLevel->GetDvWeights(), values), dv, count, "dv"));
+        if (level < maxLevel) {
+            continue;
+        }
+        Elements limit(values.size()), limitDu(values.size()), limitDv(values.size());
+        ASSERT_TRUE(primvarRefiner.Limit(values, limit, limitDu, limitDv));
+        ASSERT_NO_FATAL_FAILURE(expectNear(limit, points, values.size(), "Limit"));
+        ASSERT_NO_FATAL_FAILURE(expectNear(limitDu, du, values.size(), "Limit, du"));
+        ASSERT_NO_FATAL_FAILURE(expectNear(limitDv, dv, values.size(), "Limit, dv"));
+        Elements pointsAlone(values.size());
+        ASSERT_TRUE(primvarRefiner.Limit(values, pointsAlone));
+        ASSERT_NO_FATAL_FAILURE(expectNear(pointsAlone, points, values.size(), "Limit alone"));
+    }
+}
+
+} // namespace
+
+TEST(LimitTable, OfTheLevelIsThatOfControlVertices) {
+    for (auto const *shapes : {&GetShapes(), &GetFeatureShapes()}) {
+        for (Shape const &shape : *shapes) {
+            if (shape.GetNumCorners() > 80) {
+                continue;
+            }
+            for (auto boundary : kBoundaries) {
+                SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
+                Sdc::Options options;
+                options.SetVtxBoundaryInterpolation(boundary);
+                ASSERT_NO_FATAL_FAILURE(expectSameLimits(shape, ReferenceMask::Smooth, options, 2));
+            }
+        }
+    }
+}
+
+// Nearly all vertices of a deep level are regular, and share a mask; a few meshes are so small that
+// their neighbourhoods meet themselves.
+TEST(LimitTable, RegularVerticesShareAMaskAtDeepLevels) {
+    for (char const *name : {"cube", "tetrahedron", "dodecahedron", "torus"}) {
+        SCOPED_TRACE(name);
+        Sdc::Options options;
+        ASSERT_NO_FATAL_FAILURE(
+            expectSameLimits(GetShape(name), ReferenceMask::Average, options, 4));
+    }
+}
+
+TEST(LimitTable, PrimvarRefinerRefusesWhatHasNoLimit) {
+    ShapeDescriptor const descriptor(GetShape("cube"));
+    auto const refiner = FarExt::TopologyRefinerFactory::Create(descriptor.Get());
+    ASSERT_TRUE(refiner->RefineUniform(1)); // without full topology in its last level
+    FarExt::PrimvarRefinerReal<double> const primvarRefiner(*refiner);
+    Elements const values(std::size_t(refiner->GetLevel(1).GetNumVertices()));
+    Elements points(values.size());
+    points[0].values[0] = 7;
+    FarExt::Status status;
+    EXPECT_FALSE(primvarRefiner.Limit(values, points, &status));
+    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
+    EXPECT_NE(status.GetMessage().find("full topology"), std::string::npos) << status.GetMessage();
+    EXPECT_EQ(points[0].values[0], 7);
+}
+
+} // namespace OpenSubdivHex::Regression
