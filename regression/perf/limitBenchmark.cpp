@@ -93,11 +93,9 @@ Contest makeTableContest(BenchMesh const &mesh) {
                                return makeFarLimitTable(*farRefiner, numPoints);
                            })};
     contest.contestants[1].name = "FarExt, level";
-    contest.pairings = {{"limit-table-own", 0, {1}}, {"limit-table-1", 0, {2}}};
-    if (HasThreads()) {
-        contest.contestants.push_back(makeLimitContestant("FarExt, limit", 2, make));
-        contest.pairings.push_back({"limit-table-2", 3, {2}});
-    }
+    contest.contestants.push_back(makeLimitContestant("FarExt, limit", 2, make));
+    contest.pairings = {
+        {"limit-table-own", 0, {1}}, {"limit-table-1", 0, {2}}, {"limit-table-2", 3, {2}}};
     return contest;
 }
 
@@ -147,9 +145,16 @@ Contestant makeFrameContestant(std::string const &name, int numThreads,
 Contest makeFrameContest(BenchMesh const &mesh) {
     std::shared_ptr<FarExt::TopologyRefiner const> const refiner = makeFullyRefined(mesh);
     auto const table = std::make_shared<LimitTable const>(makeLimitTable(*refiner));
-    auto const values = std::make_shared<Values>(**table, 3);
+    auto const values = std::make_shared<Values>((*table)->GetNumControlVertices(), 3);
     auto const frame = makeFrame(refiner, table, values->length);
     Osd::BufferDescriptor const desc = values->GetDesc();
+    values->expected.resize(std::size_t(values->length) * std::size_t((*table)->GetNumStencils()));
+    Require(OsdExt::CpuEvaluator::EvalStencils(
+                values->src->BindCpuBuffer(), desc, values->expected.data(), desc,
+                (*table)->GetSizes().data(), (*table)->GetOffsets().data(),
+                (*table)->GetControlIndices().data(), (*table)->GetWeights().data(), 0,
+                (*table)->GetNumStencils()),
+            "no values to compare with");
     int const level = mesh.level;
     auto const evaluateLimit = [=](LimitFrame &of) {
         return of.evaluator->EvaluateLimit(values->src.get(), desc, of.buffers[0].get(), desc,
