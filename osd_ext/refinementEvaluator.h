@@ -117,7 +117,7 @@ public:
     /// its table gives, up to the rounding of floats, of which derivatives have more at each level,
     /// as they are differences of near values.
     ///
-    /// The first frame of a level finds the masks, which takes about as long as ten frames, and keeps
+    /// The first frame of a level finds the masks, which takes as long as ten to twenty, and keeps
     /// about 110 bytes for each of its vertices.
     ///
     /// \param dst,du,dv  elements [0, GetNumElements(level)) each
