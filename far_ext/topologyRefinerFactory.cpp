@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "topologyRefinerFactory.h"
 
-#include "far_ext/vtr/baseImporter.h"
 #include "far_ext/vtr/farBase.h"
 #include "far_ext/vtr/inputChecks.h"
 
@@ -9,16 +8,17 @@ namespace OpenSubdivHex::FarExt {
 
 namespace {
 
-std::unique_ptr<TopologyRefiner> create(Far::TopologyRefiner const &base, bool const *isHole,
-                                        TopologyRefinerFactory::Options options, Status *status) {
-    Status result = internal::CheckOptions(options.schemeOptions, base.GetSchemeOptions());
+// The refiner of a base that read(mesh) reads.
+template <typename READ>
+std::unique_ptr<TopologyRefiner> create(Sdc::Options sdcOptions,
+                                        TopologyRefinerFactory::Options options, Status *status,
+                                        READ read) {
+    Status result = internal::CheckOptions(options.schemeOptions, sdcOptions);
+    internal::BaseMesh mesh(sdcOptions);
     if (result.IsOk()) {
-        result = internal::CheckBase(base.GetLevel(0));
+        result = read(mesh);
     }
-    std::unique_ptr<internal::Hierarchy> hierarchy;
-    if (result.IsOk()) {
-        hierarchy = internal::ImportBase(base, isHole, result);
-    }
+    std::unique_ptr<internal::Hierarchy> hierarchy = mesh.Release();
     if (result.IsOk()) {
         if (Status scheme = internal::CheckScheme(options.schemeOptions, *hierarchy);
             !scheme.IsOk()) {
@@ -28,7 +28,7 @@ std::unique_ptr<TopologyRefiner> create(Far::TopologyRefiner const &base, bool c
     if (!internal::Report(result, status)) {
         return nullptr;
     }
-    return std::make_unique<TopologyRefiner>(std::move(hierarchy), base.GetSchemeOptions(),
+    return std::make_unique<TopologyRefiner>(std::move(hierarchy), sdcOptions,
                                              options.schemeOptions);
 }
 
@@ -36,33 +36,16 @@ std::unique_ptr<TopologyRefiner> create(Far::TopologyRefiner const &base, bool c
 
 std::unique_ptr<TopologyRefiner> TopologyRefinerFactory::Create(Far::TopologyRefiner const &base,
                                                                 Options options, Status *status) {
-    return create(base, nullptr, options, status);
+    return create(base.GetSchemeOptions(), options, status,
+                  [&](internal::BaseMesh &mesh) { return internal::ReadRefiner(base, mesh); });
 }
 
 std::unique_ptr<TopologyRefiner>
 TopologyRefinerFactory::Create(Far::TopologyDescriptor const &descriptor, Sdc::Options sdcOptions,
                                Options options, Status *status) {
-    Status result = internal::CheckOptions(options.schemeOptions, sdcOptions);
-    if (result.IsOk()) {
-        result = internal::CheckDescriptor(descriptor);
-    }
-    if (!internal::Report(result, status)) {
-        return nullptr;
-    }
-    std::unique_ptr<Far::TopologyRefiner> const base =
-        internal::CreateFarBase(descriptor, sdcOptions);
-    if (!base) {
-        internal::Report(
-            internal::Failure(StatusCode::InvalidTopology,
-                              "OpenSubdiv refuses the mesh; its error callback has the cause"),
-            status);
-        return nullptr;
-    }
-    auto const isHole = std::make_unique<bool[]>(descriptor.numFaces);
-    for (int i = 0; i < descriptor.numHoles; ++i) {
-        isHole[descriptor.holeIndices[i]] = true;
-    }
-    return create(*base, isHole.get(), options, status);
+    return create(sdcOptions, options, status, [&](internal::BaseMesh &mesh) {
+        return internal::ReadDescriptor(descriptor, mesh);
+    });
 }
 
 } // namespace OpenSubdivHex::FarExt

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "baseLevel.h"
 
+#include "indexSet.h"
 #include "parallel.h"
 
 #include <algorithm>
-#include <set>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -14,217 +14,244 @@ using Index = Far::Index;
 using LocalIndex = Far::LocalIndex;
 using EdgeSidesArray = OpenSubdiv::Vtr::ConstArray<EdgeSides>;
 
-class BaseLevelBuilder {
-public:
-    BaseLevelBuilder(EdgeSidesArray edges, Level &level) : _edges(edges), _level(level) {}
-
-    void Build() {
-        countBoundaries();
-        Level::ForEachRelation(_level, [](auto &array, std::size_t size) {
-            if (array.size() != size) { // else it is filled, or large enough
-                array.Resize(size);
+// Derives the relations of edges, and mates, from their sides.
+void buildEdges(EdgeSidesArray edges, Corners &corners, Level &level) {
+    ResizeEdges(std::size_t(edges.size()), level);
+    WithPlaces(level, corners, [&](auto const &places) {
+        EdgeWriter const writer(places, level);
+        Index *const mates = corners.mates.data();
+        ParallelFor(edges.size(), [=](Index edge) {
+            Index const corner = edges[edge].corners[0];
+            Index const other = edges[edge].corners[1];
+            writer.Write(edge, corner, other);
+            mates[corner] = other < 0 ? Index(kNoMate) : other;
+            if (other >= 0) {
+                mates[other] = corner;
             }
         });
-        buildFacesOfCorners();
-        buildEdges();
-        buildVertices();
+    });
+    level.boundaryEdges.Assign(
+        ParallelSelect(level.numEdges, [&](Index edge) { return edges[edge].corners[1] < 0; }));
+}
+
+// Derives the relations of vertices from the faces around them.
+template <typename PLACES>
+class VertexBuilder {
+public:
+    VertexBuilder(PLACES places, Corners const &corners, Level &level)
+        : _places(places), _level(level), _ofVerts(corners.ofVerts.data()),
+          _mates(corners.mates.data()), _faceEdges(level.faceEdges.data()),
+          _edgeVerts(level.edgeVerts.data()), _vertFaces(level.vertFaces.data()),
+          _vertFaceLocals(level.vertFaceLocals.data()), _vertEdges(level.vertEdges.data()),
+          _vertEdgeLocals(level.vertEdgeLocals.data()) {}
+
+    // The vertices with several fans.
+    std::vector<Index> Build() {
+        std::vector<Index> const fanned =
+            ParallelSelect(_level.numVertices, [this](Index vert) { return !fillFan(vert); });
+        for (Index vert : fanned) {
+            fillFans(vert);
+        }
+        return fanned;
     }
 
 private:
-    void countBoundaries();
-    void buildFacesOfCorners();
-    void buildEdges();
-    void buildVertices();
-    void fillVertex(Index vert, Index const *corners, Index numCorners);
+    /// Where the next face and the next edge of a vertex go.
+    struct Position {
+        Index face;
+        Index edge;
+    };
 
-    LocalIndex local(Index corner) const {
-        return LocalIndex(corner - _level.faceFirstCorner[_faceOfCorner[corner]]);
-    }
-    // The corner at which the other side of a corner's edge starts; negative at a boundary.
-    Index otherSide(Index corner) const {
-        EdgeSides const &edge = _edges[_level.faceEdges[corner]];
-        return edge.corners[0] == corner ? edge.corners[1] : edge.corners[0];
-    }
-    // The corners of the same vertex in the next face around it, counter-clockwise and clockwise;
-    // negative across a boundary.
-    Index nextAround(Index corner) const {
-        return otherSide(_level.GetPrevCorner(_faceOfCorner[corner], corner));
-    }
-    Index prevAround(Index corner) const {
-        Index const other = otherSide(corner);
-        if (other < 0) {
-            return other;
-        }
-        return _level.GetNextCorner(_faceOfCorner[other], other);
+    bool fillFan(Index vert) const;
+    void fillFans(Index vert) const;
+    Index findStart(Index corner) const;
+    Index addFaces(Index vert, Index start, Position &position) const;
+
+    Position getPosition(Index vert) const {
+        return {_level.vertFirstFace[vert], _level.vertFirstEdge[vert]};
     }
 
-    EdgeSidesArray _edges;
-    Level &_level;
-    std::vector<Index> _boundaryEdges;
-    Buffer<Index> _faceOfCorner;
+    PLACES const _places;
+    Level const &_level;
+    // The arrays at hand, since they are found again and again.
+    Index const *const _ofVerts;
+    Index const *const _mates;
+    Index const *const _faceEdges;
+    IndexPair const *const _edgeVerts;
+    Index *const _vertFaces;
+    LocalIndex *const _vertFaceLocals;
+    Index *const _vertEdges;
+    LocalIndex *const _vertEdgeLocals;
 };
 
-void BaseLevelBuilder::countBoundaries() {
-    _level.numEdges = _edges.size();
-    _boundaryEdges =
-        ParallelSelect(_level.numEdges, [this](Index edge) { return _edges[edge].corners[1] < 0; });
-    auto const count = [&](BoundaryKind kind) {
-        return Index(std::count_if(_boundaryEdges.begin(), _boundaryEdges.end(),
-                                   [&](Index edge) { return _edges[edge].corners[1] == kind; }));
-    };
-    _level.numFreeBoundaries = count(kFreeBoundary);
-    _level.numSharpBoundariesA = count(kSharpBoundaryA);
-    _level.numSharpBoundariesB = count(kSharpBoundaryB);
-}
-
-void BaseLevelBuilder::buildFacesOfCorners() {
-    _faceOfCorner.Resize(_level.numCorners);
-    ParallelFor(_level.numFaces, [this](Index face) {
-        std::fill(_faceOfCorner.data() + _level.faceFirstCorner[face],
-                  _faceOfCorner.data() + _level.faceFirstCorner[face + 1], face);
-    });
-}
-
-void BaseLevelBuilder::buildEdges() {
-    ParallelFor(_level.numEdges, [this](Index edge) {
-        Index const corner = _edges[edge].corners[0];
-        Index const other = _edges[edge].corners[1];
-        Index const face = _faceOfCorner[corner];
-        Index const next = _level.GetNextCorner(face, corner);
-        _level.edgeVerts[edge] = {_level.faceVerts[corner], _level.faceVerts[next]};
-        _level.faceEdges[corner] = edge;
-        if (other < 0) {
-            _level.edgeFaces[edge] = {face, other};
-            _level.edgeFaceLocals[edge] = {local(corner), 0};
-        } else {
-            _level.edgeFaces[edge] = {face, _faceOfCorner[other]};
-            _level.edgeFaceLocals[edge] = {local(corner), local(other)};
-            _level.faceEdges[other] = edge;
+// Adds the faces of a fan, counter-clockwise from a corner on, and their edges.
+// Returns the corner that it comes back to, or a mark at the end of an open fan, whose last edge is
+// added, too.
+template <typename PLACES>
+Index VertexBuilder<PLACES>::addFaces(Index vert, Index start, Position &position) const {
+    Index corner = start;
+    for (;;) {
+        Index const face = _places.GetFace(corner);
+        Index const edge = _faceEdges[corner];
+        _vertFaces[position.face] = face;
+        _vertFaceLocals[position.face++] = LocalIndex(corner - _places.GetFirst(face));
+        _vertEdges[position.edge] = edge;
+        _vertEdgeLocals[position.edge++] = LocalIndex(_edgeVerts[edge][0] != vert);
+        Index const prev = _places.GetPrev(face, corner);
+        corner = _mates[prev];
+        if (corner == start) {
+            return corner;
         }
-    });
-    std::copy(_boundaryEdges.begin(), _boundaryEdges.end(), _level.boundaryEdges.data());
-    Index *halfFace = _level.halfFaces.data();
-    for (Index edge : _boundaryEdges) {
-        if (_level.IsSharpBoundaryB(edge)) {
-            *halfFace++ = _level.edgeFaces[edge][0];
+        if (!IsCorner(corner)) {
+            _vertEdges[position.edge] = _faceEdges[prev];
+            _vertEdgeLocals[position.edge++] = 1;
+            return corner;
         }
     }
-    std::sort(_level.halfFaces.data(), halfFace);
 }
 
-void BaseLevelBuilder::buildVertices() {
-    // A vertex has as many faces as corners, and an edge more than faces for each fan that begins
-    // with a boundary edge.
-    Index *const firstFace = _level.vertFirstFace.data();
-    Index *const firstEdge = _level.vertFirstEdge.data();
-    std::fill_n(firstFace, _level.vertFirstFace.size(), 0);
-    std::fill_n(firstEdge, _level.vertFirstEdge.size(), 0);
-    for (Index vert : _level.faceVerts) {
-        ++firstFace[vert + 1];
+// The first corner of an open fan that has a corner; of a closed one the same corner.
+template <typename PLACES>
+Index VertexBuilder<PLACES>::findStart(Index corner) const {
+    Index start = corner;
+    for (;;) {
+        Index const mate = _mates[start];
+        if (!IsCorner(mate)) {
+            return start;
+        }
+        start = _places.GetNext(_places.GetFace(mate), mate);
+        if (start == corner) {
+            return start;
+        }
     }
-    for (Index edge : _boundaryEdges) {
-        ++firstEdge[_level.edgeVerts[edge][0] + 1];
-    }
-    for (Index vert = 0; vert < _level.numVertices; ++vert) {
-        firstEdge[vert + 1] += firstEdge[vert] + firstFace[vert + 1];
-        firstFace[vert + 1] += firstFace[vert];
-    }
+}
 
-    // The corners of each vertex, ascending.
-    Buffer<Index> cornersOfVerts;
-    cornersOfVerts.Resize(_level.numCorners);
-    std::vector<Index> next(firstFace, firstFace + _level.numVertices);
-    for (Index corner = 0; corner < _level.numCorners; ++corner) {
-        cornersOfVerts[next[_level.faceVerts[corner]]++] = corner;
+// Whether all faces of a vertex are one fan.
+template <typename PLACES>
+bool VertexBuilder<PLACES>::fillFan(Index vert) const {
+    Index const begin = _level.vertFirstFace[vert];
+    Index const end = _level.vertFirstFace[vert + 1];
+    if (begin == end) {
+        return true;
     }
-    ParallelFor(_level.numVertices, [&](Index vert) {
-        fillVertex(vert, cornersOfVerts.data() + firstFace[vert],
-                   firstFace[vert + 1] - firstFace[vert]);
-    });
+    Index start = _ofVerts[begin];
+    bool const isOpen = _level.vertFirstEdge[vert + 1] - _level.vertFirstEdge[vert] > end - begin;
+    if (isOpen) {
+        start = findStart(start);
+    }
+    Position position = getPosition(vert);
+    addFaces(vert, start, position);
+    return position.face == end;
 }
 
 // The fans of a vertex, by their lowest corners.
-void BaseLevelBuilder::fillVertex(Index vert, Index const *corners, Index numCorners) {
-    Index nextFace = _level.vertFirstFace[vert];
-    Index nextEdge = _level.vertFirstEdge[vert];
-    // An interior edge may have the vertex as its first or second; in a fan it is seen from the
-    // side that starts at the vertex.
-    auto addEdge = [&](Index edge, bool isStartOfSide, Index sideCorner) {
-        bool const isSideA = _edges[edge].corners[0] == sideCorner;
-        _level.vertEdges[nextEdge] = edge;
-        _level.vertEdgeLocals[nextEdge++] = LocalIndex(isStartOfSide == isSideA ? 0 : 1);
-    };
-    // Whether the fan is closed; else only the faces from the corner on were added.
-    auto addFan = [&](Index startCorner) {
-        Index corner = startCorner;
-        for (;;) {
-            _level.vertFaces[nextFace] = _faceOfCorner[corner];
-            _level.vertFaceLocals[nextFace++] = local(corner);
-            addEdge(_level.faceEdges[corner], true, corner);
-            Index const next = nextAround(corner);
-            if (next == startCorner) {
-                return true;
-            }
-            if (next < 0) {
-                Index const prev = _level.GetPrevCorner(_faceOfCorner[corner], corner);
-                addEdge(_level.faceEdges[prev], false, prev);
-                return false;
-            }
-            corner = next;
-        }
-    };
-    auto isPlaced = [&](Index corner) {
-        for (Index i = _level.vertFirstFace[vert]; i < nextFace; ++i) {
-            if (_level.GetVertexCorner(i) == corner) {
-                return true;
-            }
-        }
-        return false;
-    };
-    for (Index k = 0; nextFace < _level.vertFirstFace[vert] + numCorners; ++k) {
-        Index start = corners[k];
-        if (isPlaced(start)) {
+template <typename PLACES>
+void VertexBuilder<PLACES>::fillFans(Index vert) const {
+    Index const *const corners = _ofVerts + _level.vertFirstFace[vert];
+    int const numCorners = _level.GetNumVertexFaces(vert);
+    std::vector<bool> isPlaced(std::size_t(numCorners), false);
+    Position position = getPosition(vert);
+    for (int i = 0; i < numCorners; ++i) {
+        if (isPlaced[std::size_t(i)]) {
             continue;
         }
-        // A closed fan starts at the corner, an open one at its first face.
-        Index const firstFace = nextFace;
-        Index const firstEdge = nextEdge;
-        if (addFan(start)) {
-            continue;
-        }
-        if (Index prev = prevAround(start); prev >= 0) {
-            for (; prev >= 0; prev = prevAround(start)) {
-                start = prev;
-            }
-            nextFace = firstFace;
-            nextEdge = firstEdge;
-            addFan(start);
+        Index next = position.face;
+        addFaces(vert, findStart(corners[i]), position);
+        for (; next < position.face; ++next) {
+            Index const corner = _level.GetVertexCorner(next);
+            isPlaced[std::size_t(std::lower_bound(corners, corners + numCorners, corner) -
+                                 corners)] = true;
         }
     }
+}
+
+// A vertex has an edge more than faces for each fan that begins with a boundary edge.
+void findFirstEdges(Level &level) {
+    std::vector<Index> starts; // of boundary edges
+    starts.reserve(level.boundaryEdges.size());
+    for (Index edge : level.boundaryEdges) {
+        starts.push_back(level.edgeVerts[edge][0]);
+    }
+    std::sort(starts.begin(), starts.end());
+    ParallelForRange(level.numVertices, [&](Index begin, Index end) {
+        auto start = std::lower_bound(starts.begin(), starts.end(), begin);
+        // The last range has the entry behind the last vertex, too.
+        Index const last = end + (end == level.numVertices ? 1 : 0);
+        for (Index vert = begin; vert < last; ++vert) {
+            while (start != starts.end() && *start < vert) {
+                ++start;
+            }
+            level.vertFirstEdge[vert] = level.vertFirstFace[vert] + Index(start - starts.begin());
+        }
+    });
+}
+
+void countBoundaries(Level &level) {
+    level.numFreeBoundaries = level.numSharpBoundariesA = level.numSharpBoundariesB = 0;
+    for (Index edge : level.boundaryEdges) {
+        Index const kind = level.edgeFaces[edge][1];
+        ++(kind == kFreeBoundary     ? level.numFreeBoundaries
+           : kind == kSharpBoundaryA ? level.numSharpBoundariesA
+                                     : level.numSharpBoundariesB);
+    }
+}
+
+void findHalfFaces(Level &level) {
+    Index *halfFace = level.halfFaces.data();
+    for (Index edge : level.boundaryEdges) {
+        if (level.IsSharpBoundaryB(edge)) {
+            *halfFace++ = level.edgeFaces[edge][0];
+        }
+    }
+    std::sort(level.halfFaces.data(), halfFace);
 }
 
 } // namespace
 
-void BuildBaseLevel(OpenSubdiv::Vtr::ConstArray<EdgeSides> edges, Level &level) {
+std::vector<Index> BuildBaseLevel(EdgeSidesArray edges, Level &level) {
+    FindFaceSizes(level);
+    Corners corners;
+    FindCorners(level, corners);
+    buildEdges(edges, corners, level);
+    return FinishBaseLevel(corners, level);
+}
+
+std::vector<Index> FinishBaseLevel(Corners const &corners, Level &level) {
     level.hasFullTopology = true;
     level.isHexagonal = false;
     level.numVertsOfAnyValence = level.numVertices;
-    FindFaceSizes(level);
-    BaseLevelBuilder(edges, level).Build();
+    countBoundaries(level);
+    Level::ForEachRelation(level, [](auto &array, std::size_t size) {
+        if (array.size() != size) { // else it is filled, or large enough
+            array.Resize(size);
+        }
+    });
+    findHalfFaces(level);
+    findFirstEdges(level);
+    return WithPlaces(level, corners, [&](auto const &places) {
+        return VertexBuilder(places, corners, level).Build();
+    });
 }
 
 void FindFaceSizes(Level &level) {
-    auto const getSize = [&](Index face) {
-        return level.faceFirstCorner[face + 1] - level.faceFirstCorner[face];
-    };
-    std::vector<Index> const changes = ParallelSelect(level.numFaces, [&](Index face) {
-        return face == 0 || getSize(face) != getSize(face - 1);
+    std::vector<std::vector<Index>> sizesOfRanges(
+        std::size_t(GetNumParallelRanges(level.numFaces)));
+    ParallelForRange(level.numFaces, [&](Index begin, Index end) {
+        std::vector<Index> &sizes = sizesOfRanges[std::size_t(begin / kParallelRange)];
+        Index last = 0;
+        for (Index face = begin; face < end; ++face) {
+            Index const size = level.GetFaceSize(face);
+            if (size != last && std::find(sizes.begin(), sizes.end(), size) == sizes.end()) {
+                sizes.push_back(size);
+            }
+            last = size;
+        }
     });
-    std::set<Index> sizes;
-    for (Index face : changes) {
-        sizes.insert(getSize(face));
+    level.faceSizes.clear();
+    for (std::vector<Index> const &sizes : sizesOfRanges) {
+        level.faceSizes.insert(level.faceSizes.end(), sizes.begin(), sizes.end());
     }
-    level.faceSizes.assign(sizes.begin(), sizes.end());
+    SortUnique(level.faceSizes);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

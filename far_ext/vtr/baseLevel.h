@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_VTR_BASE_LEVEL_H
 #define OPENSUBDIVHEX_FAR_EXT_VTR_BASE_LEVEL_H
 
-#include "level.h"
+#include "corners.h"
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -18,7 +18,13 @@ struct EdgeSides {
 /// Every corner is a side of exactly one edge; a B boundary is edge 0 of its face.  The faces of a
 /// vertex are joined to fans across interior edges; edges that are joined nowhere else may share
 /// both vertices.
-void BuildBaseLevel(OpenSubdiv::Vtr::ConstArray<EdgeSides> edges, Level &level);
+///
+/// \return  the vertices with several fans, ascending
+std::vector<Far::Index> BuildBaseLevel(OpenSubdiv::Vtr::ConstArray<EdgeSides> edges, Level &level);
+
+/// \brief The last step of it: derives the relations of vertices from all those of faces and edges,
+/// with boundaryEdges, and from \p corners.
+std::vector<Far::Index> FinishBaseLevel(Corners const &corners, Level &level);
 
 /// \brief Finds the sizes of the faces of \p level that occur.
 void FindFaceSizes(Level &level);

@@ -1,95 +1,372 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "farBase.h"
 
-#include <opensubdiv/far/topologyRefinerFactory.h>
+#include "inputChecks.h"
+#include "parallel.h"
+
+#include <algorithm>
 
 namespace OpenSubdivHex::FarExt::internal {
 
 namespace {
 
+using Far::ConstIndexArray;
+using Far::ConstLocalIndexArray;
 using Far::Index;
 
-/// A descriptor that has its creases assigned below.
-struct Mesh {
-    Far::TopologyDescriptor const &descriptor;
-};
+std::string str(std::int64_t number) { return std::to_string(number); }
 
-/// What Far does of a descriptor.
-struct DescriptorFactory : Far::TopologyRefinerFactory<Far::TopologyDescriptor> {
-    using Base = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-    using Base::assignComponentTags;
-    using Base::assignComponentTopology;
-    using Base::assignFaceVaryingTopology;
-    using Base::resizeComponentTopology;
-};
+// Reads a refiner step by step.
+class RefinerReader {
+public:
+    RefinerReader(Far::TopologyRefiner const &base, BaseMesh &mesh)
+        : _refiner(base), _base(base.GetLevel(0)), _mesh(mesh), _level(mesh.GetLevel()) {}
 
-Index findEdge(Far::TopologyLevel const &level, Index v0, Index v1) {
-    for (Index const edge : {level.FindEdge(v0, v1), level.FindEdge(v1, v0)}) {
-        if (edge != Far::INDEX_INVALID) {
-            return edge;
-        }
+    Status Read();
+
+private:
+    Status readFaces();
+    Status readEdges();
+    bool readEdge(Index edge, EdgeSides &sides) const;
+    Status readApartEdge(Index edge, std::vector<ApartSide> &sides) const;
+    Status readTags();
+    bool isHole(Index face) const;
+    Status readChannel(int channel);
+
+    bool isFree() const {
+        return _mesh.GetSchemeOptions().GetVtxBoundaryInterpolation() ==
+               Sdc::Options::VTX_BOUNDARY_NONE;
     }
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        Far::ConstIndexArray const verts = level.GetFaceVertices(face);
-        for (int i = 0; i < verts.size(); ++i) {
-            Index const end = verts[(i + 1) % verts.size()];
-            if ((verts[i] == v0 && end == v1) || (verts[i] == v1 && end == v0)) {
-                return level.GetFaceEdges(face)[i];
+
+    Far::TopologyRefiner const &_refiner;
+    Far::TopologyLevel const &_base;
+    BaseMesh &_mesh;
+    Level &_level;
+};
+
+Status RefinerReader::readFaces() {
+    Status status = _mesh.SetCounts(_base.GetNumVertices(), _base.GetNumFaces());
+    if (!status.IsOk()) {
+        return status;
+    }
+    ParallelFor(_level.numFaces, [&](Index face) {
+        _mesh.GetFaceSizes()[face] = _base.GetFaceVertices(face).size();
+    });
+    status = _mesh.CompleteSizes();
+    if (!status.IsOk()) {
+        return status;
+    }
+    ParallelFor(_level.numFaces, [&](Index face) {
+        ConstIndexArray const verts = _base.GetFaceVertices(face);
+        std::copy(verts.begin(), verts.end(),
+                  _level.faceVerts.data() + _level.faceFirstCorner[face]);
+    });
+    return _mesh.CheckFaces();
+}
+
+// Takes an edge that bounds one face, or joins two which run it in opposite directions; false for
+// any other.
+bool RefinerReader::readEdge(Index edge, EdgeSides &sides) const {
+    ConstIndexArray const verts = _base.GetEdgeVertices(edge);
+    ConstIndexArray const faces = _base.GetEdgeFaces(edge);
+    ConstLocalIndexArray const locals = _base.GetEdgeFaceLocalIndices(edge);
+    int const numFaces = faces.size();
+    if (numFaces < 1 || numFaces > 2 || verts[0] == verts[1] || _base.IsEdgeNonManifold(edge)) {
+        return false;
+    }
+    sides = {{Far::INDEX_INVALID, isFree() ? kFreeBoundary : kSharpBoundaryA}};
+    for (int i = 0; i < numFaces; ++i) {
+        Index const corner = _level.faceFirstCorner[faces[i]] + locals[i];
+        Index const start = _level.faceVerts[corner];
+        Index const end = _level.faceVerts[_level.GetNextCorner(faces[i], corner)];
+        bool const isForward = start == verts[0] && end == verts[1];
+        bool const isBackward = start == verts[1] && end == verts[0];
+        if (_base.GetFaceEdges(faces[i])[locals[i]] != edge || isForward == isBackward) {
+            return false;
+        }
+        // Of two sides the first runs from the first vertex to the second.
+        sides.corners[numFaces == 2 && isBackward] = corner;
+    }
+    return sides.corners[0] >= 0 &&
+           (numFaces == 1 || (sides.corners[1] >= 0 && faces[0] != faces[1]));
+}
+
+// Adds the sides of an edge that comes apart, once it is sure that the base is right there.
+Status RefinerReader::readApartEdge(Index edge, std::vector<ApartSide> &sides) const {
+    auto const refuse = [&](std::string const &what) {
+        return Status(StatusCode::InvalidTopology, ComponentType::Edge, edge,
+                      "edge " + str(edge) + what);
+    };
+    ConstIndexArray const verts = _base.GetEdgeVertices(edge);
+    ConstIndexArray const faces = _base.GetEdgeFaces(edge);
+    ConstLocalIndexArray const locals = _base.GetEdgeFaceLocalIndices(edge);
+    if (faces.size() == 0) {
+        return refuse(" has no face");
+    }
+    auto const first = std::ptrdiff_t(sides.size());
+    for (int i = 0; i < faces.size(); ++i) {
+        Index const corner = _level.faceFirstCorner[faces[i]] + locals[i];
+        Index const start = _level.faceVerts[corner];
+        Index const end = _level.faceVerts[_level.GetNextCorner(faces[i], corner)];
+        bool const isRepeated =
+            std::any_of(sides.begin() + first, sides.end(),
+                        [&](ApartSide const &side) { return side.corner == corner; });
+        if (std::minmax(start, end) != std::minmax(verts[0], verts[1]) || isRepeated ||
+            _base.GetFaceEdges(faces[i])[locals[i]] != edge) {
+            return refuse(", of vertices " + str(verts[0]) + " and " + str(verts[1]) +
+                          ", is not edge " + str(locals[i]) + " of face " + str(faces[i]));
+        }
+        sides.push_back({edge, corner});
+    }
+    return Status();
+}
+
+Status RefinerReader::readEdges() {
+    Index const numEdges = _base.GetNumEdges();
+    std::vector<std::int64_t> const numSides =
+        ParallelSums<std::int64_t>(numEdges, [this](Index begin, Index end) {
+            std::int64_t sum = 0;
+            for (Index edge = begin; edge < end; ++edge) {
+                sum += _base.GetEdgeFaces(edge).size();
             }
+            return sum;
+        });
+    if (numSides.back() != _level.numCorners) {
+        return Failure(StatusCode::InvalidTopology, "the edges of the base have " +
+                                                        str(numSides.back()) +
+                                                        " faces together, but its faces have " +
+                                                        str(_level.numCorners) + " edges");
+    }
+    Buffer<EdgeSides> edges;
+    edges.Resize(std::size_t(numEdges));
+    std::vector<Index> const apart = ParallelSelect(
+        numEdges, [&](Index edge) { return !readEdge(edge, edges[std::size_t(edge)]); });
+    std::vector<ApartSide> sides;
+    for (Index edge : apart) {
+        if (Status status = readApartEdge(edge, sides); !status.IsOk()) {
+            return status;
         }
     }
-    return Far::INDEX_INVALID;
+    return _mesh.CompleteTopology(std::move(edges), std::move(sides));
+}
+
+// With VTX_BOUNDARY_NONE Far makes holes of all faces at the boundary, to leave them out of its limit
+// surface; the paper's rule keeps them.
+bool RefinerReader::isHole(Index face) const {
+    ConstIndexArray const verts = _base.GetFaceVertices(face);
+    return _base.IsFaceHole(face) &&
+           !(isFree() && std::any_of(verts.begin(), verts.end(),
+                                     [&](Index vert) { return _base.IsVertexBoundary(vert); }));
+}
+
+Status RefinerReader::readTags() {
+    auto const isNotSmooth = [](float sharpness) { return !(sharpness == 0); };
+    for (Index edge : ParallelSelect(_base.GetNumEdges(), [&](Index edge) {
+             return isNotSmooth(_base.GetEdgeSharpness(edge));
+         })) {
+        float const sharpness = _base.GetEdgeSharpness(edge);
+        ConstIndexArray const verts = _base.GetEdgeVertices(edge);
+        Status status = CheckSharpness(sharpness, ComponentType::Edge, edge, [&] {
+            return "edge " + str(edge) + ", of vertices " + str(verts[0]) + " and " +
+                   str(verts[1]) + ",";
+        });
+        if (!status.IsOk()) {
+            return status;
+        }
+        _mesh.SetEdgeSharpness(edge, sharpness);
+    }
+    for (Index vert : ParallelSelect(_base.GetNumVertices(), [&](Index vert) {
+             return isNotSmooth(_base.GetVertexSharpness(vert));
+         })) {
+        float const sharpness = _base.GetVertexSharpness(vert);
+        Status status = CheckSharpness(sharpness, ComponentType::Vertex, vert,
+                                       [&] { return "vertex " + str(vert); });
+        if (!status.IsOk()) {
+            return status;
+        }
+        _mesh.SetVertexSharpness(vert, sharpness);
+    }
+    for (Index face :
+         ParallelSelect(_level.numFaces, [this](Index face) { return isHole(face); })) {
+        _mesh.SetHole(face, true);
+    }
+    _mesh.CompleteTags();
+    return Status();
+}
+
+Status RefinerReader::readChannel(int channel) {
+    Buffer<Index> values;
+    values.Resize(_level.numCorners);
+    ParallelFor(_level.numFaces, [&](Index face) {
+        ConstIndexArray const ofFace = _base.GetFaceFVarValues(face, channel);
+        std::copy(ofFace.begin(), ofFace.end(), values.data() + _level.faceFirstCorner[face]);
+    });
+    Index const numValues = _base.GetNumFVarValues(channel);
+    Status status = CheckValues(values.data(), _level.numCorners, numValues, channel);
+    return status.IsOk() ? _mesh.AddChannel(numValues, std::move(values),
+                                            _refiner.GetFVarLinearInterpolation(channel))
+                         : status;
+}
+
+Status RefinerReader::Read() {
+    Status status = readFaces();
+    if (status.IsOk()) {
+        status = readEdges();
+    }
+    Status const topology = status; // with its warnings
+    if (status.IsOk()) {
+        status = readTags();
+    }
+    for (int channel = 0; channel < _base.GetNumFVarChannels() && status.IsOk(); ++channel) {
+        status = readChannel(channel);
+    }
+    return status.IsOk() ? topology : status;
+}
+
+// Reads a descriptor step by step.
+class DescriptorReader {
+public:
+    DescriptorReader(Far::TopologyDescriptor const &descriptor, BaseMesh &mesh)
+        : _descriptor(descriptor), _mesh(mesh), _level(mesh.GetLevel()) {}
+
+    Status Read();
+
+private:
+    Status readFaces();
+    Status readCreases();
+    Status readTags();
+    Status readChannel(int channel);
+    void copyCorners(Index const *from, Buffer<Index> &to) const;
+
+    Far::TopologyDescriptor const &_descriptor;
+    BaseMesh &_mesh;
+    Level &_level;
+};
+
+// What the corners of all faces have, those of left-handed faces the other way round, from their
+// first corner on.
+void DescriptorReader::copyCorners(Index const *from, Buffer<Index> &to) const {
+    to.Resize(_level.numCorners);
+    ParallelForRange(_level.numFaces, [&](Index begin, Index end) {
+        Index const first = _level.faceFirstCorner[begin];
+        std::copy(from + first, from + _level.faceFirstCorner[end], to.data() + first);
+        for (Index face = begin; face < end && _descriptor.isLeftHanded; ++face) {
+            std::reverse(to.data() + _level.faceFirstCorner[face] + 1,
+                         to.data() + _level.faceFirstCorner[face + 1]);
+        }
+    });
+}
+
+Status DescriptorReader::readFaces() {
+    Status status = _mesh.SetCounts(_descriptor.numVertices, _descriptor.numFaces);
+    if (status.IsOk()) {
+        status = CheckArrays(_descriptor);
+    }
+    if (!status.IsOk()) {
+        return status;
+    }
+    ParallelForRange(_level.numFaces, [&](Index begin, Index end) {
+        std::copy(_descriptor.numVertsPerFace + begin, _descriptor.numVertsPerFace + end,
+                  _mesh.GetFaceSizes() + begin);
+    });
+    status = _mesh.CompleteSizes();
+    if (!status.IsOk()) {
+        return status;
+    }
+    copyCorners(_descriptor.vertIndicesPerFace, _level.faceVerts);
+    status = _mesh.CheckFaces();
+    return status.IsOk() ? _mesh.CompleteTopology() : status;
+}
+
+// Far skips a crease that is no edge with a warning; here it is an error.
+Status DescriptorReader::readCreases() {
+    for (int i = 0; i < _descriptor.numCreases; ++i) {
+        Index const *verts = _descriptor.creaseVertexIndexPairs + 2 * std::ptrdiff_t(i);
+        float const sharpness = _descriptor.creaseWeights[i];
+        Status status = CheckSharpness(sharpness, ComponentType::Vertex, verts[0], [&] {
+            return "crease " + str(i) + ", of vertices " + str(verts[0]) + " and " + str(verts[1]) +
+                   ",";
+        });
+        for (int end = 0; end < 2 && status.IsOk(); ++end) {
+            status = CheckIndex(verts[end], _level.numVertices, ComponentType::Vertex,
+                                [&] { return "crease " + str(i); });
+        }
+        if (!status.IsOk()) {
+            return status;
+        }
+        Index const edge = _mesh.FindEdge(verts[0], verts[1]);
+        if (edge == Far::INDEX_INVALID) {
+            return Status(StatusCode::InvalidTopology, ComponentType::Vertex, verts[0],
+                          "crease " + str(i) + " joins vertices " + str(verts[0]) + " and " +
+                              str(verts[1]) + ", but no face has that edge");
+        }
+        _mesh.SetEdgeSharpness(edge, sharpness);
+    }
+    return Status();
+}
+
+Status DescriptorReader::readTags() {
+    Status status = readCreases();
+    for (int i = 0; i < _descriptor.numCorners && status.IsOk(); ++i) {
+        Index const vert = _descriptor.cornerVertexIndices[i];
+        float const sharpness = _descriptor.cornerWeights[i];
+        status = CheckIndex(vert, _level.numVertices, ComponentType::Vertex,
+                            [&] { return "corner " + str(i); });
+        if (status.IsOk()) {
+            status = CheckSharpness(sharpness, ComponentType::Vertex, vert, [&] {
+                return "corner " + str(i) + ", vertex " + str(vert) + ",";
+            });
+        }
+        if (status.IsOk()) {
+            _mesh.SetVertexSharpness(vert, sharpness);
+        }
+    }
+    for (int i = 0; i < _descriptor.numHoles && status.IsOk(); ++i) {
+        Index const face = _descriptor.holeIndices[i];
+        status = CheckIndex(face, _level.numFaces, ComponentType::Face,
+                            [&] { return "hole " + str(i); });
+        if (status.IsOk()) {
+            _mesh.SetHole(face, true);
+        }
+    }
+    if (status.IsOk()) {
+        _mesh.CompleteTags();
+    }
+    return status;
+}
+
+Status DescriptorReader::readChannel(int channel) {
+    Far::TopologyDescriptor::FVarChannel const &fvar = _descriptor.fvarChannels[channel];
+    Status status = CheckValues(fvar.valueIndices, _level.numCorners, fvar.numValues, channel);
+    if (!status.IsOk()) {
+        return status;
+    }
+    Buffer<Index> values;
+    copyCorners(fvar.valueIndices, values);
+    return _mesh.AddChannel(fvar.numValues, std::move(values),
+                            _mesh.GetSchemeOptions().GetFVarLinearInterpolation());
+}
+
+Status DescriptorReader::Read() {
+    Status status = readFaces();
+    Status const topology = status; // with its warnings
+    if (status.IsOk()) {
+        status = readTags();
+    }
+    for (int channel = 0; channel < _descriptor.numFVarChannels && status.IsOk(); ++channel) {
+        status = readChannel(channel);
+    }
+    return status.IsOk() ? topology : status;
 }
 
 } // namespace
 
-} // namespace OpenSubdivHex::FarExt::internal
-
-namespace OpenSubdiv::OPENSUBDIV_VERSION::Far {
-
-using OpenSubdivHex::FarExt::internal::DescriptorFactory;
-using OpenSubdivHex::FarExt::internal::findEdge;
-using OpenSubdivHex::FarExt::internal::Mesh;
-
-template <>
-bool TopologyRefinerFactory<Mesh>::resizeComponentTopology(TopologyRefiner &refiner,
-                                                           Mesh const &mesh) {
-    return DescriptorFactory::resizeComponentTopology(refiner, mesh.descriptor);
+Status ReadRefiner(Far::TopologyRefiner const &base, BaseMesh &mesh) {
+    return RefinerReader(base, mesh).Read();
 }
 
-template <>
-bool TopologyRefinerFactory<Mesh>::assignComponentTopology(TopologyRefiner &refiner,
-                                                           Mesh const &mesh) {
-    return DescriptorFactory::assignComponentTopology(refiner, mesh.descriptor);
-}
-
-template <>
-bool TopologyRefinerFactory<Mesh>::assignComponentTags(TopologyRefiner &refiner, Mesh const &mesh) {
-    TopologyDescriptor others = mesh.descriptor;
-    others.numCreases = 0;
-    for (int i = 0; i < mesh.descriptor.numCreases; ++i) {
-        Index const *verts = mesh.descriptor.creaseVertexIndexPairs + 2 * std::ptrdiff_t(i);
-        setBaseEdgeSharpness(refiner, findEdge(refiner.GetLevel(0), verts[0], verts[1]),
-                             mesh.descriptor.creaseWeights[i]);
-    }
-    return DescriptorFactory::assignComponentTags(refiner, others);
-}
-
-template <>
-bool TopologyRefinerFactory<Mesh>::assignFaceVaryingTopology(TopologyRefiner &refiner,
-                                                             Mesh const &mesh) {
-    return DescriptorFactory::assignFaceVaryingTopology(refiner, mesh.descriptor);
-}
-
-} // namespace OpenSubdiv::OPENSUBDIV_VERSION::Far
-
-namespace OpenSubdivHex::FarExt::internal {
-
-std::unique_ptr<Far::TopologyRefiner> CreateFarBase(Far::TopologyDescriptor const &descriptor,
-                                                    Sdc::Options sdcOptions) {
-    using FarFactory = Far::TopologyRefinerFactory<Mesh>;
-    return std::unique_ptr<Far::TopologyRefiner>(
-        FarFactory::Create({descriptor}, FarFactory::Options(Sdc::SCHEME_CATMARK, sdcOptions)));
+Status ReadDescriptor(Far::TopologyDescriptor const &descriptor, BaseMesh &mesh) {
+    return DescriptorReader(descriptor, mesh).Read();
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

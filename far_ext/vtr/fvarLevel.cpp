@@ -18,7 +18,7 @@ using Far::Index;
 
 // The edges of the value mesh: an edge of the mesh whose sides differ in a value falls into two.
 // meshEdges gets the mesh edge that each comes from.
-std::vector<EdgeSides> cutSeams(Level const &mesh, std::vector<Index> const &faceValues,
+std::vector<EdgeSides> cutSeams(Level const &mesh, Buffer<Index> const &faceValues,
                                 std::vector<Index> &meshEdges) {
     std::vector<EdgeSides> result;
     std::vector<EdgeSides> secondSides;
@@ -99,14 +99,13 @@ bool meetsFreeBoundary(Level const &level, Index vert, bool &meetsSharp) {
 
 } // namespace
 
-void BuildFVarChannel(Level const &mesh, Index numValues, std::vector<Index> const &faceValues,
+void BuildFVarChannel(Level const &mesh, Index numValues, Buffer<Index> faceValues,
                       std::vector<float> const &sharpness, Sdc::Options sdcOptions,
                       FVarChannel &channel) {
     Level &level = channel.values.levels.emplace_back();
     FVarLevel &fvarLevel = channel.levels.emplace_back();
     channel.numValues = numValues;
     channel.linearInterpolation = sdcOptions.GetFVarLinearInterpolation();
-    channel.faceValues.Assign(faceValues);
     fvarLevel.values = &level;
     fvarLevel.valueFaces.Resize(mesh.numFaces);
     std::iota(fvarLevel.valueFaces.data(), fvarLevel.valueFaces.data() + mesh.numFaces, 0);
@@ -144,6 +143,7 @@ void BuildFVarChannel(Level const &mesh, Index numValues, std::vector<Index> con
         }
     }
     ComputeSharpMasks(sdcOptions, level);
+    channel.faceValues = std::move(faceValues);
 }
 
 namespace {

@@ -54,8 +54,7 @@ struct FVarChannel;
 /// \param faceValues     value of each corner of the mesh
 /// \param sharpness      of the value of each corner, the same around a vertex for the same value:
 ///                       infinite for one that is to stay, else that of the vertex
-void BuildFVarChannel(Level const &mesh, Far::Index numValues,
-                      std::vector<Far::Index> const &faceValues,
+void BuildFVarChannel(Level const &mesh, Far::Index numValues, Buffer<Far::Index> faceValues,
                       std::vector<float> const &sharpness, Sdc::Options sdcOptions,
                       FVarChannel &channel);
 

@@ -7,7 +7,6 @@
 #include "far_ext/hexSchemeOptions.h"
 
 #include <opensubdiv/far/topologyDescriptor.h>
-#include <opensubdiv/far/topologyLevel.h>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -17,12 +16,30 @@ namespace OpenSubdivHex::FarExt::internal {
 
 /// Options that are none of their enumerations' values.
 Status CheckOptions(HexSchemeOptions schemeOptions, Sdc::Options sdcOptions);
-/// All of a descriptor that Far would crash on, print about or drop.
-Status CheckDescriptor(Far::TopologyDescriptor const &descriptor);
-/// The faces and the sharpness of a base level.
-Status CheckBase(Far::TopologyLevel const &base);
+/// Arrays of a descriptor that are not there.
+Status CheckArrays(Far::TopologyDescriptor const &descriptor);
+/// Values of the corners of a face-varying channel.
+Status CheckValues(Far::Index const *values, Far::Index numCorners, Far::Index numValues,
+                   int channel);
 /// Features that the scheme has no rules for.
 Status CheckScheme(HexSchemeOptions schemeOptions, Hierarchy const &base);
+
+Status SharpnessFailure(float sharpness, ComponentType component, Far::Index index,
+                        std::string const &name);
+Status IndexFailure(Far::Index index, int count, ComponentType component, std::string const &name);
+
+/// A sharpness that is negative or not a number; \p getName() is called for it alone.
+template <typename GET_NAME>
+Status CheckSharpness(float sharpness, ComponentType component, Far::Index index,
+                      GET_NAME getName) {
+    return sharpness >= 0 ? Status() : SharpnessFailure(sharpness, component, index, getName());
+}
+/// An index that is not below \p count.
+template <typename GET_NAME>
+Status CheckIndex(Far::Index index, int count, ComponentType component, GET_NAME getName) {
+    return 0 <= index && index < count ? Status()
+                                       : IndexFailure(index, count, component, getName());
+}
 /// @}
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -160,6 +160,7 @@ double GetDifference(Eigen::RowVectorXd const &a, Eigen::RowVectorXd const &b) {
 
 void CheckOracleCase(OracleCase const &oracleCase) {
     silenceFar();
+    CheckBases(oracleCase);
     Status status;
     auto const refiner = CreateRefiner(oracleCase, &status);
     if (!refiner) {

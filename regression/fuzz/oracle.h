@@ -69,6 +69,10 @@ struct OracleLevels {
     std::vector<Values> values; ///< vertex, varying, then the channels
 };
 
+/// \brief Level 0 from a descriptor against that from a refiner of Far, to the bit, and both against
+/// the base level of Far.
+void CheckBases(OracleCase const &oracleCase);
+
 /// \brief Stencil tables against the values: all options, both precisions; tables of some faces
 /// against those of all, to the bit; sizes before tables are made.
 void CheckTables(OracleLevels const &levels, Dice &dice);

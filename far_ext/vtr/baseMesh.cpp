@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "baseMesh.h"
+
+#include "indexSet.h"
+#include "parallel.h"
+#include "sharpFeatures.h"
+#include "valueSharpness.h"
+#include "vertexFan.h"
+
+#include <algorithm>
+#include <map>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Far::Index;
+using Sdc::Crease;
+
+constexpr int kMaxFaceSize = OpenSubdiv::Vtr::VALENCE_LIMIT;
+constexpr int kMaxVertexFaces = OpenSubdiv::Vtr::VALENCE_LIMIT;
+
+std::string str(std::int64_t number) { return std::to_string(number); }
+
+Status invalid(ComponentType component, Index index, std::string message) {
+    return Status(StatusCode::InvalidTopology, component, index, std::move(message));
+}
+
+Status tooLarge(ComponentType component, Index index, std::string message) {
+    return Status(StatusCode::TooLarge, component, index, std::move(message));
+}
+
+// Whether an array is empty or has no entry that is sharp.
+bool isSmooth(Buffer<float> const &sharpness) {
+    return ParallelSelect(Index(sharpness.size()),
+                          [&](Index i) { return Crease::IsSharp(sharpness[i]); })
+        .empty();
+}
+
+// Makes room for tags, all of them \p value, unless there is.
+template <typename T>
+void makeTags(Buffer<T> &tags, std::size_t size, T value) {
+    if (tags.empty()) {
+        tags.Resize(size);
+        std::fill_n(tags.data(), size, value);
+    }
+}
+
+// Whether the vertices of a face may be out of range, or repeated: no branches, so that compilers
+// compare several at a time.
+template <int SIZE>
+bool isSuspect(Index const *verts, Index numVertices) {
+    bool result = false;
+    for (int i = 0; i < SIZE; ++i) {
+        result |= unsigned(verts[i]) >= unsigned(numVertices);
+        for (int k = 0; k < i; ++k) {
+            result |= verts[k] == verts[i];
+        }
+    }
+    return result;
+}
+
+bool isSuspect(Index const *verts, int size, Index numVertices) {
+    switch (size) {
+    case 3:
+        return isSuspect<3>(verts, numVertices);
+    case 4:
+        return isSuspect<4>(verts, numVertices);
+    case 5:
+        return isSuspect<5>(verts, numVertices);
+    case 6:
+        return isSuspect<6>(verts, numVertices);
+    default:
+        return true;
+    }
+}
+
+} // namespace
+
+Status BaseMesh::SetCounts(Index numVertices, Index numFaces) {
+    if (numVertices <= 0 || numFaces <= 0) {
+        return invalid(ComponentType::None, Far::INDEX_INVALID,
+                       "the mesh is empty: it has " + str(numVertices) + " vertices and " +
+                           str(numFaces) + " faces");
+    }
+    _level->numVertices = numVertices;
+    _level->numFaces = numFaces;
+    _level->faceFirstCorner.Resize(std::size_t(numFaces) + 1);
+    return Status();
+}
+
+Status BaseMesh::CompleteSizes() {
+    Index *const sizes = _level->faceFirstCorner.data() + 1;
+    std::vector<Index> const wrong = ParallelSelect(_level->numFaces, [&](Index face) {
+        return sizes[face] < 3 || sizes[face] > kMaxFaceSize;
+    });
+    if (!wrong.empty()) {
+        Index const face = wrong[0];
+        std::string const has = "face " + str(face) + " has " + str(sizes[face]) + " vertices, ";
+        if (sizes[face] < 3) {
+            return invalid(ComponentType::Face, face, has + "but a face needs at least 3");
+        }
+        return tooLarge(ComponentType::Face, face,
+                        has + "more than the " + str(kMaxFaceSize) +
+                            " that OpenSubdiv's local indices reach");
+    }
+    std::vector<std::int64_t> const firstCorners =
+        ParallelSums<std::int64_t>(_level->numFaces, [&](Index begin, Index end) {
+            std::int64_t sum = 0;
+            for (Index face = begin; face < end; ++face) {
+                sum += sizes[face];
+            }
+            return sum;
+        });
+    if (Status status = CheckCount(firstCorners.back(), "face-vertices"); !status.IsOk()) {
+        return status;
+    }
+    _level->numCorners = Index(firstCorners.back());
+    _level->faceFirstCorner[0] = 0;
+    ParallelForRange(_level->numFaces, [&](Index begin, Index end) {
+        auto corner = Index(firstCorners[begin / kParallelRange]);
+        for (Index face = begin; face < end; ++face) {
+            corner += sizes[face];
+            sizes[face] = corner;
+        }
+    });
+    _level->faceVerts.Resize(std::size_t(_level->numCorners));
+    return Status();
+}
+
+Status BaseMesh::CheckFaces() {
+    Level const &level = *_level;
+    std::vector<Index> const suspects = ParallelSelect(level.numFaces, [&](Index face) {
+        return isSuspect(level.faceVerts.data() + level.faceFirstCorner[face],
+                         level.GetFaceSize(face), level.numVertices);
+    });
+    std::vector<Index> sorted;
+    for (Index face : suspects) {
+        Far::ConstIndexArray const verts = level.GetFaceVertices(face);
+        for (Index vert : verts) {
+            if (vert < 0 || vert >= level.numVertices) {
+                return invalid(ComponentType::Face, face,
+                               "face " + str(face) + " refers to vertex " + str(vert) +
+                                   ", but vertices go from 0 to " + str(level.numVertices - 1));
+            }
+        }
+        sorted.assign(verts.begin(), verts.end());
+        std::sort(sorted.begin(), sorted.end());
+        for (std::size_t i = 1; i < sorted.size(); ++i) {
+            if (sorted[i] == sorted[i - 1]) {
+                _repeatedVerts.push_back(sorted[i]);
+            }
+        }
+    }
+    SortUnique(_repeatedVerts);
+    return Status();
+}
+
+Status BaseMesh::CompleteTopology() {
+    BoundaryKind const boundary = isFree() ? kFreeBoundary : kSharpBoundaryA;
+    Status status = BuildLevelOfFaces(boundary, *_level, _fannedVerts);
+    return checkValences(std::move(status));
+}
+
+Status BaseMesh::CompleteTopology(Buffer<EdgeSides> edges, std::vector<ApartSide> sides) {
+    Status status = BuildLevelOfEdges(std::move(edges), std::move(sides), *_level, _fannedVerts);
+    return checkValences(std::move(status));
+}
+
+// The numbers of the faces of vertices.  V-vertices of the next level have as many edges as their
+// parents have faces, and Far's arrays of local indices no more entries.
+Status BaseMesh::checkValences(Status status) {
+    Level const &level = *_level;
+    if (!status.IsOk()) {
+        return status;
+    }
+    std::vector<Index> const odd = ParallelSelect(level.numVertices, [&](Index vert) {
+        return unsigned(level.GetNumVertexFaces(vert)) - 1 >= unsigned(kMaxVertexFaces);
+    });
+    for (Index vert : odd) {
+        if (int const count = level.GetNumVertexFaces(vert); count > 0) {
+            return tooLarge(ComponentType::Vertex, vert,
+                            "vertex " + str(vert) + " has " + str(count) +
+                                " faces, more than the " + str(kMaxVertexFaces) +
+                                " that OpenSubdiv's valences reach");
+        }
+        _isolatedVerts.push_back(vert);
+    }
+    return status;
+}
+
+Index BaseMesh::FindEdge(Index v0, Index v1) const {
+    Level const &level = *_level;
+    if (level.GetVertexEdges(v1).size() < level.GetVertexEdges(v0).size()) {
+        std::swap(v0, v1);
+    }
+    for (Index edge : level.GetVertexEdges(v0)) {
+        IndexPair const &verts = level.edgeVerts[edge];
+        if ((verts[0] == v0 && verts[1] == v1) || (verts[0] == v1 && verts[1] == v0)) {
+            Index const line = level.GetEdgeLine(edge);
+            return line == Far::INDEX_INVALID ? edge : line;
+        }
+    }
+    return Far::INDEX_INVALID;
+}
+
+// Edges that came apart are boundaries, so that the base's edges are all that can be creases.
+void BaseMesh::SetEdgeSharpness(Index edge, float sharpness) {
+    if (!_level->IsBoundary(edge)) {
+        makeTags(_level->edgeSharpness, std::size_t(_level->numEdges), 0.0f);
+        _level->edgeSharpness[edge] = sharpness;
+    }
+}
+
+void BaseMesh::SetVertexSharpness(Index vert, float sharpness) {
+    makeTags(_level->vertSharpness, std::size_t(_level->numVertices), 0.0f);
+    _level->vertSharpness[vert] = sharpness;
+}
+
+void BaseMesh::SetHole(Index face, bool isHole) {
+    constexpr unsigned char kNoHole = 0;
+    makeTags(_level->faceHoles, std::size_t(_level->numFaces), kNoHole);
+    _level->faceHoles[face] = isHole ? kHole : kNoHole;
+}
+
+void BaseMesh::CompleteTags() {
+    Level &level = *_level;
+    if (isSmooth(level.edgeSharpness)) {
+        level.edgeSharpness.Resize(0);
+    }
+    if (std::find(level.faceHoles.begin(), level.faceHoles.end(), kHole) == level.faceHoles.end()) {
+        level.faceHoles.Resize(0);
+    }
+    findNonManifoldVertices();
+    if (_sdcOptions.GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER) {
+        for (Index edge : level.boundaryEdges) {
+            Index const vert = level.edgeVerts[edge][0];
+            if (level.GetNumVertexFaces(vert) == 1) {
+                SetVertexSharpness(vert, Crease::SHARPNESS_INFINITE);
+            }
+        }
+    }
+    for (Index vert : level.nonManifoldVerts) {
+        if (isPinned(vert)) {
+            SetVertexSharpness(vert, Crease::SHARPNESS_INFINITE);
+        }
+    }
+    if (level.nonManifoldVerts.empty() && isSmooth(level.vertSharpness)) {
+        level.vertSharpness.Resize(0);
+    } else {
+        makeTags(level.vertSharpness, std::size_t(level.numVertices), 0.0f);
+    }
+    ComputeSharpMasks(_sdcOptions, level);
+}
+
+// A vertex is non-manifold that has several fans, or none, or that a face has several times, or an
+// edge that came apart.
+void BaseMesh::findNonManifoldVertices() {
+    std::vector<Index> &verts = _level->nonManifoldVerts;
+    for (std::vector<Index> const *some : {&_fannedVerts, &_isolatedVerts, &_repeatedVerts}) {
+        verts.insert(verts.end(), some->begin(), some->end());
+    }
+    for (LineEdge const &line : _level->lineEdges) {
+        IndexPair const &ends = _level->edgeVerts[line.edge];
+        verts.insert(verts.end(), ends.begin(), ends.end());
+    }
+    SortUnique(verts);
+}
+
+// As Far's rule for non-manifold vertices: they stay, unless two edges that came apart meet there,
+// with no other boundary, and more faces than the base has edges there: the vertex then lies inside
+// of a curve that three or more sheets share.  A vertex that a face has several times stays, too.
+bool BaseMesh::isPinned(Index vert) const {
+    std::map<Index, int> numFacesOfLines;
+    Index numInterior = 0;
+    for (Index edge : _level->GetVertexEdges(vert)) {
+        IndexPair const &verts = _level->edgeVerts[edge];
+        if (!_level->IsBoundary(edge)) {
+            ++numInterior;
+        } else if (Index const line = _level->GetEdgeLine(edge);
+                   line == Far::INDEX_INVALID || verts[0] == verts[1]) {
+            return true;
+        } else {
+            ++numFacesOfLines[line];
+        }
+    }
+    // An edge of the base that has one face, and came apart since that has another like it.
+    bool const hasBoundary =
+        std::any_of(numFacesOfLines.begin(), numFacesOfLines.end(),
+                    [](std::pair<Index const, int> const &line) { return line.second == 1; });
+    return hasBoundary || numFacesOfLines.size() != 2 ||
+           _level->GetNumVertexFaces(vert) <= numInterior + 2 ||
+           std::binary_search(_repeatedVerts.begin(), _repeatedVerts.end(), vert);
+}
+
+// What a value without seams at a non-manifold vertex needs to move as the vertex does: each fan of
+// faces has a value of its own, which sees the sharp edges of its fan alone.
+Status BaseMesh::followVertex(Index vert, int channel, Index const *faceValues,
+                              std::vector<float> &sharpness) const {
+    Level const &level = *_level;
+    std::vector<Index> corners;
+    for (Index k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1]; ++k) {
+        corners.push_back(level.GetVertexCorner(k));
+    }
+    auto const isSeam = [&](Index corner) { return faceValues[corner] != faceValues[corners[0]]; };
+    if (std::any_of(corners.begin(), corners.end(), isSeam)) {
+        return Status();
+    }
+    auto const refuse = [&](std::string const &what) {
+        return Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
+                      "face-varying channel " + str(channel) + " has no seam at vertex " +
+                          str(vert) + ", where " + what);
+    };
+    int numCreasedFans = 0;
+    ForEachFanItems(level, vert, [&](FanItems const &fan) {
+        auto const isCrease = [](RingItem const &item) {
+            return Sdc::Crease::IsSemiSharp(item.sharpness);
+        };
+        numCreasedFans += std::any_of(fan.items.begin(), fan.items.end(), isCrease) ? 1 : 0;
+    });
+    if (numCreasedFans > 1 && _sdcOptions.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN) {
+        return refuse("CREASE_CHAIKIN averages semi-sharp creases that no faces there join");
+    }
+    float sharpest = 0;
+    for (Index i = level.vertFirstEdge[vert]; i < level.vertFirstEdge[vert + 1]; ++i) {
+        sharpest = std::max(sharpest, level.GetEdgeSharpness(level.vertEdges[i]));
+    }
+    if (Sdc::Crease::IsInfinite(std::max(sharpest, level.GetVertexSharpness(vert)))) {
+        for (Index corner : corners) {
+            sharpness[corner] = Sdc::Crease::SHARPNESS_INFINITE;
+        }
+        return Status();
+    }
+    bool isSeenByAll = !Sdc::Crease::IsSharp(sharpest);
+    ForEachFan(level, vert, [&](VertexFan const &fan) {
+        Index const first = level.GetVertexCorner(fan.begin);
+        Index const last =
+            level.GetPrevCorner(level.vertFaces[fan.end - 1], level.GetVertexCorner(fan.end - 1));
+        isSeenByAll =
+            isSeenByAll && !fan.isClosed &&
+            level.GetEdgeLine(level.faceEdges[first]) != level.GetEdgeLine(level.faceEdges[last]);
+    });
+    if (isSeenByAll) {
+        return Status();
+    }
+    return refuse("faces do not all meet both ends of a non-manifold curve, or a semi-sharp crease "
+                  "meets it");
+}
+
+Status BaseMesh::AddChannel(Index numValues, Buffer<Index> faceValues,
+                            Sdc::Options::FVarLinearInterpolation interpolation) {
+    int const channel = int(_hierarchy->channels.size());
+    std::vector<float> sharpness = FindValueSharpness(*_level, faceValues.data(), interpolation);
+    for (Index vert : _level->nonManifoldVerts) {
+        if (interpolation == Sdc::Options::FVAR_LINEAR_ALL) {
+            break;
+        }
+        Status status = followVertex(vert, channel, faceValues.data(), sharpness);
+        if (!status.IsOk()) {
+            return status;
+        }
+    }
+    Sdc::Options options = _sdcOptions;
+    options.SetFVarLinearInterpolation(interpolation);
+    BuildFVarChannel(*_level, numValues, std::move(faceValues), sharpness, options,
+                     _hierarchy->channels.emplace_back());
+    return Status();
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

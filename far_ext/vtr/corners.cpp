@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "corners.h"
+
+#include "parallel.h"
+
+#include <algorithm>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Far::Index;
+
+// A counting sort of corners by vertex, in pieces of consecutive corners.  Each piece counts the
+// corners of the vertices that it has, so that it knows where its own corners go once all have
+// counted.  Where vertices that are near have numbers that are, the counts of all pieces together
+// are hardly more than the vertices; else one piece has all corners.
+class CornerSorter {
+public:
+    CornerSorter(Level &level, Buffer<Index> &ofVerts) : _level(level), _ofVerts(ofVerts) {}
+
+    void Sort() {
+        _level.vertFirstFace.Resize(std::size_t(_level.numVertices) + 1);
+        _ofVerts.Resize(_level.numCorners);
+        makePieces();
+        forEachPiece([this](Piece &piece) { count(piece); });
+        addCounts();
+        forEachPiece([this](Piece &piece) { place(piece); });
+    }
+
+private:
+    struct Piece {
+        Index begin; // of the corners
+        Index end;
+        Index beginVert; // of a range that has all of their vertices
+        Index endVert;
+        Index *counts; // by vertex of the range; then where its next corner goes
+    };
+
+    template <typename FUNCTION>
+    void forEachPiece(FUNCTION function) {
+        struct Nothing {};
+        ParallelForRange(
+            Index(_pieces.size()), [] { return Nothing(); },
+            [&](Nothing, Index begin, Index) { function(_pieces[std::size_t(begin)]); }, 1);
+    }
+    // Calls function(counts, begin, end) for the part of each piece's range of vertices that lies
+    // within another range; counts are those from begin on.
+    template <typename FUNCTION>
+    void forEachCounts(Index begin, Index end, FUNCTION function) {
+        for (Piece const &piece : _pieces) {
+            Index const from = std::max(begin, piece.beginVert);
+            Index const to = std::min(end, piece.endVert);
+            if (from < to) {
+                function(piece.counts + (from - piece.beginVert), from, to);
+            }
+        }
+    }
+
+    void makePieces();
+    void findVertices(Piece &piece) const;
+    void count(Piece &piece) const;
+    void addCounts();
+    void place(Piece &piece);
+
+    Level &_level;
+    Buffer<Index> &_ofVerts;
+    std::vector<Piece> _pieces;
+    Buffer<Index> _counts;
+};
+
+void CornerSorter::makePieces() {
+    constexpr Index kMaxPieces = 64;
+    constexpr Index kPieceCorners = Index(1) << 14;
+    Index const numPieces = std::clamp(_level.numCorners / kPieceCorners, Index(1), kMaxPieces);
+    auto const place = [&](Index piece) {
+        return Index(std::int64_t(_level.numCorners) * piece / numPieces);
+    };
+    for (Index i = 0; i < numPieces; ++i) {
+        _pieces.push_back({place(i), place(i + 1), 0, _level.numVertices, nullptr});
+    }
+    if (numPieces > 1) {
+        forEachPiece([this](Piece &piece) { findVertices(piece); });
+    }
+    auto const getNumCounts = [this] {
+        std::size_t result = 0;
+        for (Piece const &piece : _pieces) {
+            result += std::size_t(piece.endVert - piece.beginVert);
+        }
+        return result;
+    };
+    if (getNumCounts() > 2 * std::size_t(_level.numVertices)) {
+        _pieces.assign(1, {0, _level.numCorners, 0, _level.numVertices, nullptr});
+    }
+    _counts.Resize(getNumCounts());
+    Index *counts = _counts.data();
+    for (Piece &piece : _pieces) {
+        piece.counts = counts;
+        counts += piece.endVert - piece.beginVert;
+    }
+}
+
+void CornerSorter::findVertices(Piece &piece) const {
+    Index const *const verts = _level.faceVerts.data();
+    Index lowest = verts[piece.begin];
+    Index highest = lowest;
+    for (Index corner = piece.begin; corner < piece.end; ++corner) {
+        lowest = std::min(lowest, verts[corner]);
+        highest = std::max(highest, verts[corner]);
+    }
+    piece.beginVert = lowest;
+    piece.endVert = highest + 1;
+}
+
+void CornerSorter::count(Piece &piece) const {
+    Index const *const verts = _level.faceVerts.data();
+    Index const beginVert = piece.beginVert;
+    Index *const counts = piece.counts;
+    std::fill_n(counts, piece.endVert - beginVert, 0);
+    for (Index corner = piece.begin; corner < piece.end; ++corner) {
+        ++counts[verts[corner] - beginVert];
+    }
+}
+
+// Sums the counts of all pieces to vertFirstFace, and makes them the places of the next corners.
+void CornerSorter::addCounts() {
+    Index *const first = _level.vertFirstFace.data();
+    std::vector<Index> const sums =
+        ParallelSums<Index>(_level.numVertices, [&](Index begin, Index end) {
+            Index sum = 0;
+            std::fill(first + begin + 1, first + end + 1, 0);
+            forEachCounts(begin, end, [&](Index *counts, Index from, Index to) {
+                for (Index vert = from; vert < to; ++vert) {
+                    Index const numBefore = first[vert + 1];
+                    first[vert + 1] += counts[vert - from];
+                    sum += counts[vert - from];
+                    counts[vert - from] = numBefore;
+                }
+            });
+            return sum;
+        });
+    first[0] = 0;
+    ParallelForRange(_level.numVertices, [&](Index begin, Index end) {
+        Index const start = sums[std::size_t(begin / kParallelRange)];
+        Index next = start;
+        for (Index vert = begin; vert < end; ++vert) {
+            next += first[vert + 1];
+            first[vert + 1] = next;
+        }
+        forEachCounts(begin, end, [&](Index *counts, Index from, Index to) {
+            for (Index vert = from; vert < to; ++vert) {
+                // The first entry of the range is written by another one.
+                counts[vert - from] += vert == begin ? start : first[vert];
+            }
+        });
+    });
+}
+
+void CornerSorter::place(Piece &piece) {
+    Index const *const verts = _level.faceVerts.data();
+    Index const beginVert = piece.beginVert;
+    Index *const next = piece.counts;
+    Index *const ofVerts = _ofVerts.data();
+    for (Index corner = piece.begin; corner < piece.end; ++corner) {
+        ofVerts[next[verts[corner] - beginVert]++] = corner;
+    }
+}
+
+} // namespace
+
+void ResizeEdges(std::size_t numEdges, Level &level) {
+    level.numEdges = Index(numEdges);
+    level.edgeVerts.Resize(numEdges);
+    level.edgeFaces.Resize(numEdges);
+    level.edgeFaceLocals.Resize(numEdges);
+    level.faceEdges.Resize(std::size_t(level.numCorners));
+}
+
+void FindCorners(Level &level, Corners &corners) {
+    CornerSorter(level, corners.ofVerts).Sort();
+    corners.mates.Resize(level.numCorners);
+    bool const isUniform = level.faceSizes.size() == 1 && level.faceSizes[0] <= 4;
+    if (isUniform) {
+        return;
+    }
+    corners.faces.Resize(level.numCorners);
+    ParallelFor(level.numFaces, [&](Index face) {
+        std::fill(corners.faces.data() + level.faceFirstCorner[face],
+                  corners.faces.data() + level.faceFirstCorner[face + 1], face);
+    });
+}
+
+} // namespace OpenSubdivHex::FarExt::internal
