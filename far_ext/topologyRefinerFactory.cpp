@@ -6,13 +6,10 @@
 
 namespace OpenSubdivHex::FarExt {
 
-namespace {
-
 // The refiner of a base that read(mesh) reads.
-template <typename READ>
-std::unique_ptr<TopologyRefiner> create(Sdc::Options sdcOptions,
-                                        TopologyRefinerFactory::Options options, Status *status,
-                                        READ read) {
+std::unique_ptr<TopologyRefiner>
+TopologyRefinerFactory::create(Sdc::Options sdcOptions, Options options, Status *status,
+                               std::function<Status(internal::BaseMesh &)> const &read) {
     Status result = internal::CheckOptions(options.schemeOptions, sdcOptions);
     internal::BaseMesh mesh(sdcOptions);
     if (result.IsOk()) {
@@ -31,8 +28,6 @@ std::unique_ptr<TopologyRefiner> create(Sdc::Options sdcOptions,
     return std::make_unique<TopologyRefiner>(std::move(hierarchy), sdcOptions,
                                              options.schemeOptions);
 }
-
-} // namespace
 
 std::unique_ptr<TopologyRefiner> TopologyRefinerFactory::Create(Far::TopologyRefiner const &base,
                                                                 Options options, Status *status) {

@@ -7,9 +7,16 @@
 #include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/far/topologyRefiner.h>
 
+#include <functional>
+
 namespace OpenSubdivHex::FarExt {
 
-/// \brief Makes a TopologyRefiner from a base mesh as OpenSubdiv describes it.
+namespace internal {
+class BaseMesh;
+}
+
+/// \brief Makes a TopologyRefiner from a base mesh as OpenSubdiv describes it.  MeshRefinerFactory
+/// makes one from a mesh class of your own.
 ///
 /// Level 0 keeps the base's numbering of vertices, edges, faces, corners and face-varying values;
 /// INDEXING.md says what becomes of non-manifold edges.
@@ -35,8 +42,10 @@ public:
     /// holes.
     ///
     /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices, an
-    ///          edge without a face, a sharpness that is negative or not a number), InvalidArgument
-    ///          (an option that is none of its enumeration's values), TooLarge, or Unsupported
+    ///          edge without a face or that is none of its faces, a value out of range, a sharpness
+    ///          that is negative or not a number), InvalidArgument (an option that is none of its
+    ///          enumeration's values), TooLarge (a face of more than 65,535 vertices, a vertex of
+    ///          more than 65,535 faces, more than 2^31 - 1 of anything), or Unsupported
     ///          (creases, interior corners, non-manifold edges or face-varying channels with other
     ///          steps than hexagonal ones; a channel without a seam at a vertex inside of such a
     ///          curve, where a semi-sharp crease meets it or some faces meet one end alone, or, with
@@ -50,8 +59,8 @@ public:
         return Create(base, Options(), status);
     }
 
-    /// \brief The same from a descriptor, as Far's factory takes it, with the boundary and crease
-    /// options \p sdcOptions.
+    /// \brief The same from a descriptor, as Far's factory takes it, with the boundary, crease and
+    /// face-varying options \p sdcOptions.  Edges are numbered as Far does: see INDEXING.md.
     ///
     /// Additionally refuses, with InvalidTopology, indices out of range: of vertices in faces,
     /// creases and corners, of faces that are holes, and of face-varying values; a crease that is
@@ -65,6 +74,12 @@ public:
                                                    Status *status = nullptr) {
         return Create(descriptor, sdcOptions, Options(), status);
     }
+
+private:
+    friend class MeshRefinerFactoryBase;
+    static std::unique_ptr<TopologyRefiner>
+    create(Sdc::Options sdcOptions, Options options, Status *status,
+           std::function<Status(internal::BaseMesh &)> const &read);
 };
 
 } // namespace OpenSubdivHex::FarExt

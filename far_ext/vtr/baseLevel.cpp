@@ -216,7 +216,7 @@ std::vector<Index> BuildBaseLevel(EdgeSidesArray edges, Level &level) {
     return FinishBaseLevel(corners, level);
 }
 
-std::vector<Index> FinishBaseLevel(Corners const &corners, Level &level) {
+void BeginVertices(Level &level) {
     level.hasFullTopology = true;
     level.isHexagonal = false;
     level.numVertsOfAnyValence = level.numVertices;
@@ -228,6 +228,10 @@ std::vector<Index> FinishBaseLevel(Corners const &corners, Level &level) {
     });
     findHalfFaces(level);
     findFirstEdges(level);
+}
+
+std::vector<Index> FinishBaseLevel(Corners const &corners, Level &level) {
+    BeginVertices(level);
     return WithPlaces(level, corners, [&](auto const &places) {
         return VertexBuilder(places, corners, level).Build();
     });

@@ -26,6 +26,10 @@ std::vector<Far::Index> BuildBaseLevel(OpenSubdiv::Vtr::ConstArray<EdgeSides> ed
 /// with boundaryEdges, and from \p corners.
 std::vector<Far::Index> FinishBaseLevel(Corners const &corners, Level &level);
 
+/// \brief What comes before it: makes room for the relations of vertices, with vertFirstEdge, where
+/// those of faces and edges, with boundaryEdges, and vertFirstFace are there.
+void BeginVertices(Level &level);
+
 /// \brief Finds the sizes of the faces of \p level that occur.
 void FindFaceSizes(Level &level);
 

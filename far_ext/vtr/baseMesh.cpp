@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "baseMesh.h"
 
+#include "farRelations.h"
 #include "indexSet.h"
+#include "inputChecks.h"
 #include "parallel.h"
 #include "sharpFeatures.h"
 #include "valueSharpness.h"
@@ -77,19 +79,15 @@ bool isSuspect(Index const *verts, int size, Index numVertices) {
 
 } // namespace
 
-Status BaseMesh::SetCounts(Index numVertices, Index numFaces) {
-    if (numVertices <= 0 || numFaces <= 0) {
-        return invalid(ComponentType::None, Far::INDEX_INVALID,
-                       "the mesh is empty: it has " + str(numVertices) + " vertices and " +
-                           str(numFaces) + " faces");
-    }
-    _level->numVertices = numVertices;
-    _level->numFaces = numFaces;
-    _level->faceFirstCorner.Resize(std::size_t(numFaces) + 1);
-    return Status();
+void BaseMesh::SetNumFaces(Index count) {
+    _level->numFaces = count;
+    _level->faceFirstCorner.Resize(std::size_t(count) + 1);
 }
 
 Status BaseMesh::CompleteSizes() {
+    if (Status status = CheckCounts(_level->numVertices, _level->numFaces); !status.IsOk()) {
+        return status;
+    }
     Index *const sizes = _level->faceFirstCorner.data() + 1;
     std::vector<Index> const wrong = ParallelSelect(_level->numFaces, [&](Index face) {
         return sizes[face] < 3 || sizes[face] > kMaxFaceSize;
@@ -157,9 +155,14 @@ Status BaseMesh::CheckFaces() {
 }
 
 Status BaseMesh::CompleteTopology() {
-    BoundaryKind const boundary = isFree() ? kFreeBoundary : kSharpBoundaryA;
-    Status status = BuildLevelOfFaces(boundary, *_level, _fannedVerts);
+    Status status = BuildLevelOfFaces(getBoundary(), *_level, _fannedVerts);
     return checkValences(std::move(status));
+}
+
+bool BaseMesh::CopyTopology(Far::TopologyRefiner const &base) {
+    // Valences are those that Far takes.
+    return _repeatedVerts.empty() && CopyRelations(base, getBoundary(), *_level) &&
+           checkValences(Status()).IsOk();
 }
 
 Status BaseMesh::CompleteTopology(Buffer<EdgeSides> edges, std::vector<ApartSide> sides) {
@@ -174,6 +177,10 @@ Status BaseMesh::checkValences(Status status) {
     if (!status.IsOk()) {
         return status;
     }
+    std::int64_t const numOthers =
+        std::count_if(level.lineEdges.begin(), level.lineEdges.end(),
+                      [](LineEdge const &line) { return line.edge != line.line; });
+    _numBaseEdges = level.numEdges - Index(numOthers);
     std::vector<Index> const odd = ParallelSelect(level.numVertices, [&](Index vert) {
         return unsigned(level.GetNumVertexFaces(vert)) - 1 >= unsigned(kMaxVertexFaces);
     });

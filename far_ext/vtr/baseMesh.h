@@ -7,6 +7,8 @@
 
 #include "far_ext/status.h"
 
+#include <opensubdiv/far/topologyRefiner.h>
+
 #include <memory>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -24,11 +26,13 @@ public:
 
     Sdc::Options GetSchemeOptions() const { return _sdcOptions; }
     Level &GetLevel() { return *_level; }
+    Level const &GetLevel() const { return *_level; }
 
     /// @name Faces
     /// @{
-    Status SetCounts(Index numVertices, Index numFaces);
-    /// By face, to be written once the counts are set.
+    void SetNumVertices(Index count) { _level->numVertices = count; }
+    void SetNumFaces(Index count);
+    /// By face, to be written once the number of faces is set.
     Index *GetFaceSizes() { return _level->faceFirstCorner.data() + 1; }
     /// Makes offsets of the sizes, and room for the vertices of the faces.
     Status CompleteSizes();
@@ -40,13 +44,15 @@ public:
     /// @{
     /// Finds the edges, as Far would.
     Status CompleteTopology();
-    /// Takes those of a base that has edges: see BuildLevelOfEdges().
+    /// Takes those of a base that has edges: see CopyRelations() and BuildLevelOfEdges().
+    bool CopyTopology(Far::TopologyRefiner const &base);
     Status CompleteTopology(Buffer<EdgeSides> edges, std::vector<ApartSide> sides);
     /// @}
 
     /// @name Tags
     /// A sharpness is 0 or more; those of boundaries and of edges that come apart do not matter.
     /// @{
+    Index GetNumBaseEdges() const { return _numBaseEdges; }
     /// An edge of the base between two vertices, INDEX_INVALID if there is none.
     Index FindEdge(Index v0, Index v1) const;
     void SetEdgeSharpness(Index edge, float sharpness);
@@ -64,8 +70,10 @@ public:
     std::unique_ptr<Hierarchy> Release() { return std::move(_hierarchy); }
 
 private:
-    bool isFree() const {
-        return _sdcOptions.GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE;
+    BoundaryKind getBoundary() const {
+        bool const isFree =
+            _sdcOptions.GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE;
+        return isFree ? kFreeBoundary : kSharpBoundaryA;
     }
     Status checkValences(Status status);
     void findNonManifoldVertices();
@@ -76,6 +84,7 @@ private:
     Sdc::Options _sdcOptions;
     std::unique_ptr<Hierarchy> _hierarchy = std::make_unique<Hierarchy>();
     Level *_level = &_hierarchy->mesh.levels.emplace_back();
+    Index _numBaseEdges = 0;
     std::vector<Index> _fannedVerts;   // with several fans
     std::vector<Index> _isolatedVerts; // without faces
     std::vector<Index> _repeatedVerts; // that a face has several times; ascending

@@ -45,14 +45,12 @@ private:
 };
 
 Status RefinerReader::readFaces() {
-    Status status = _mesh.SetCounts(_base.GetNumVertices(), _base.GetNumFaces());
-    if (!status.IsOk()) {
-        return status;
-    }
+    _mesh.SetNumVertices(_base.GetNumVertices());
+    _mesh.SetNumFaces(_base.GetNumFaces());
     ParallelFor(_level.numFaces, [&](Index face) {
         _mesh.GetFaceSizes()[face] = _base.GetFaceVertices(face).size();
     });
-    status = _mesh.CompleteSizes();
+    Status const status = _mesh.CompleteSizes();
     if (!status.IsOk()) {
         return status;
     }
@@ -122,6 +120,9 @@ Status RefinerReader::readApartEdge(Index edge, std::vector<ApartSide> &sides) c
 }
 
 Status RefinerReader::readEdges() {
+    if (_mesh.CopyTopology(_refiner)) {
+        return Status();
+    }
     Index const numEdges = _base.GetNumEdges();
     std::vector<std::int64_t> const numSides =
         ParallelSums<std::int64_t>(numEdges, [this](Index begin, Index end) {
@@ -258,13 +259,15 @@ void DescriptorReader::copyCorners(Index const *from, Buffer<Index> &to) const {
 }
 
 Status DescriptorReader::readFaces() {
-    Status status = _mesh.SetCounts(_descriptor.numVertices, _descriptor.numFaces);
+    Status status = CheckCounts(_descriptor.numVertices, _descriptor.numFaces);
     if (status.IsOk()) {
         status = CheckArrays(_descriptor);
     }
     if (!status.IsOk()) {
         return status;
     }
+    _mesh.SetNumVertices(_descriptor.numVertices);
+    _mesh.SetNumFaces(_descriptor.numFaces);
     ParallelForRange(_level.numFaces, [&](Index begin, Index end) {
         std::copy(_descriptor.numVertsPerFace + begin, _descriptor.numVertsPerFace + end,
                   _mesh.GetFaceSizes() + begin);

@@ -50,6 +50,14 @@ Status CheckOptions(HexSchemeOptions schemeOptions, Sdc::Options sdcOptions) {
     return Status();
 }
 
+Status CheckCounts(int numVertices, int numFaces) {
+    if (numVertices > 0 && numFaces > 0) {
+        return Status();
+    }
+    return Failure(StatusCode::InvalidTopology, "the mesh is empty: it has " + str(numVertices) +
+                                                    " vertices and " + str(numFaces) + " faces");
+}
+
 // Not a number is less than 0, too.
 Status SharpnessFailure(float sharpness, ComponentType component, Index index,
                         std::string const &name) {

@@ -16,6 +16,8 @@ namespace OpenSubdivHex::FarExt::internal {
 
 /// Options that are none of their enumerations' values.
 Status CheckOptions(HexSchemeOptions schemeOptions, Sdc::Options sdcOptions);
+/// A mesh without vertices or faces.
+Status CheckCounts(int numVertices, int numFaces);
 /// Arrays of a descriptor that are not there.
 Status CheckArrays(Far::TopologyDescriptor const &descriptor);
 /// Values of the corners of a face-varying channel.

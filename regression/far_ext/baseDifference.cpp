@@ -3,8 +3,6 @@
 
 #include "far_ext/vtr/hierarchy.h"
 
-#include <opensubdiv/far/topologyLevel.h>
-
 #include <algorithm>
 #include <cstring>
 

@@ -4,6 +4,8 @@
 
 #include "far_ext/topologyRefiner.h"
 
+#include <opensubdiv/far/topologyLevel.h>
+
 #include <string>
 
 namespace OpenSubdivHex::Regression {

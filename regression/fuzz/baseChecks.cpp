@@ -3,6 +3,7 @@
 
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/far_ext/baseDifference.h"
+#include "regression/far_ext/shapeFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <set>
@@ -57,6 +58,15 @@ void CheckBases(OracleCase const &oracleCase) {
     }
     if (std::string const what = FindBaseDifference(*ofDescriptor, *ofBase); !what.empty()) {
         Fail("level 0 from a descriptor and from a refiner: ", what);
+    }
+    if (!shape.leftHanded) {
+        auto const ofMesh =
+            FarExt::MeshRefinerFactory<Shape>::Create(shape, oracleCase.sdcOptions, &status);
+        std::string const what =
+            ofMesh ? FindBaseDifference(*ofDescriptor, *ofMesh) : status.GetMessage();
+        if (!what.empty()) {
+            Fail("level 0 from a descriptor and from a mesh class: ", what);
+        }
     }
     if (std::string const what = FindFarDifference(*ofDescriptor, base->GetLevel(0));
         !what.empty()) {

@@ -69,8 +69,8 @@ struct OracleLevels {
     std::vector<Values> values; ///< vertex, varying, then the channels
 };
 
-/// \brief Level 0 from a descriptor against that from a refiner of Far, to the bit, and both against
-/// the base level of Far.
+/// \brief Level 0 from a descriptor against those from a refiner of Far and from a mesh class, to the
+/// bit, and against the base level of Far.
 void CheckBases(OracleCase const &oracleCase);
 
 /// \brief Stencil tables against the values: all options, both precisions; tables of some faces

@@ -56,6 +56,10 @@ Shape MakeHexMesh() { return MakeDual("hex", MakeTriangleMesh()); }
 
 Shape MakeSmallQuadMesh() { return makeTorus("small quad", 24, 16, false); }
 
+Shape MakeLargeMesh(bool triangles) {
+    return makeTorus(triangles ? "large triangle" : "large quad", 1000, 640, triangles);
+}
+
 double CountEdges(Shape const &shape) { return shape.GetNumCorners() / 2.0; }
 
 // After the first step all faces are quads: F' = C, then F' = 4F, and V' = V + F + E.

@@ -12,6 +12,8 @@ Shape MakeQuadMesh();      ///< 1,536 quads
 Shape MakeTriangleMesh();  ///< 5,120 triangles
 Shape MakeHexMesh();       ///< 2,560 hexagons
 Shape MakeSmallQuadMesh(); ///< 384 quads, for many levels
+/// As large as scans: 640,000 quads, or twice as many triangles.
+Shape MakeLargeMesh(bool triangles);
 /// @}
 
 /// The number of edges of a closed shape.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The phases for which nothing is promised: base levels, which are validated on the way, from a
-// Far::TopologyDescriptor, and positions by the primvar refiners.
+// The phases around refinement: base levels, which are validated on the way, from descriptors, mesh
+// classes and refiners; and, for which nothing is promised, positions by the primvar refiners.
 #include "makers.h"
 #include "meshes.h"
 
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/topologyRefinerFactory.h"
+#include "regression/far_ext/shapeFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/far/primvarRefiner.h>
@@ -18,10 +19,11 @@ namespace {
 
 /// A base level for each turn, made by \p make.
 template <typename MAKE>
-Contestant makeBaseLevel(std::string const &name, MAKE make) {
+Contestant makeBaseLevel(std::string const &name, int numThreads, MAKE make) {
     auto const refiner = std::make_shared<decltype(make())>();
     Contestant contestant;
     contestant.name = name;
+    contestant.numThreads = numThreads;
     contestant.work = [=] { *refiner = make(); };
     contestant.validate = [=] {
         Require(*refiner != nullptr, name + ": no base level");
@@ -32,13 +34,25 @@ Contestant makeBaseLevel(std::string const &name, MAKE make) {
 }
 
 Contest makeBaseLevels(BenchMesh const &mesh) {
-    return {{makeBaseLevel("FarExt",
-                           [=] {
-                               ShapeDescriptor const descriptor(*mesh.shape);
-                               return FarExt::TopologyRefinerFactory::Create(descriptor.Get());
-                           }),
-             makeBaseLevel("Far", [=] { return MakeFarBase(mesh); })},
-            {}};
+    auto const fromDescriptor = [=] {
+        ShapeDescriptor const descriptor(*mesh.shape);
+        return FarExt::TopologyRefinerFactory::Create(descriptor.Get());
+    };
+    std::shared_ptr<Far::TopologyRefiner const> const base = MakeFarBase(mesh);
+    Contest contest;
+    contest.contestants = {
+        makeBaseLevel("Far", 1, [=] { return MakeFarBase(mesh); }),
+        makeBaseLevel("FarExt, descriptor", 1, fromDescriptor),
+        makeBaseLevel("FarExt, mesh class", 1,
+                      [=] { return FarExt::MeshRefinerFactory<Shape>::Create(*mesh.shape); }),
+        makeBaseLevel("FarExt, refiner", 1,
+                      [=] { return FarExt::TopologyRefinerFactory::Create(*base); }),
+        makeBaseLevel("FarExt, descriptor", 2, fromDescriptor)};
+    contest.pairings = {{"base-descriptor-1", 1, {0}},
+                        {"base-mesh-1", 2, {0}},
+                        {"base-refiner-1", 3, {0}},
+                        {"base-descriptor-2", 4, {0}}};
+    return contest;
 }
 
 struct Point {
@@ -89,9 +103,13 @@ Contest makePrimvarContest(BenchMesh const &mesh) {
 } // namespace
 
 void AddPhaseBenchmarks(Suite &suite) {
+    for (BenchMesh const &mesh : suite.GetBaseMeshes()) {
+        for (Memory memory : {Memory::Default, Memory::Warm}) {
+            suite.AddContest({"base level", "vertex", mesh, memory},
+                             [=] { return makeBaseLevels(mesh); });
+        }
+    }
     for (BenchMesh const &mesh : suite.GetMeshes()) {
-        suite.AddContest({"base level", "vertex", mesh, Memory::Default},
-                         [=] { return makeBaseLevels(mesh); });
         suite.AddContest({"primvars, length 3", "vertex", mesh, Memory::Resident},
                          [=] { return makePrimvarContest(mesh); });
     }

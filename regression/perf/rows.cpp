@@ -9,6 +9,14 @@ namespace OpenSubdivHex::Regression {
 std::vector<Row> const &GetRows() {
     static std::vector<Row> const kRows = [] {
         std::vector<Row> result = {
+            {"base-descriptor-1", "base level from a descriptor, 1 thread",
+             "Far::TopologyRefinerFactory", 3, 6},
+            {"base-descriptor-2", "base level from a descriptor, 2 threads",
+             "Far::TopologyRefinerFactory", 5, 8},
+            {"base-mesh-1", "base level from a mesh class, 1 thread", "Far::TopologyRefinerFactory",
+             3, 6},
+            {"base-refiner-1", "base level from a refiner, 1 thread",
+             "Far::TopologyRefinerFactory, which made that", 4, 6},
             {"topology-full", "topology, full last level, 1 thread",
              "Far::TopologyRefiner, full last level", 5, 10},
             {"topology-faces", "topology, face-vertices, 1 thread", "Far::TopologyRefiner", 8, 15},

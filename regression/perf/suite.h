@@ -79,6 +79,8 @@ public:
 
     /// A quad, a triangle and a hexagonal mesh, each at two sizes.
     std::vector<BenchMesh> const &GetMeshes() const { return _meshes; }
+    /// Meshes that are large or small themselves, of quads and of triangles.
+    std::vector<BenchMesh> const &GetBaseMeshes() const { return _baseMeshes; }
     /// One mesh at several levels.
     std::vector<BenchMesh> const &GetGrowthMeshes() const { return _growthMeshes; }
 
@@ -108,6 +110,7 @@ private:
 
     Options _options;
     std::vector<BenchMesh> _meshes;
+    std::vector<BenchMesh> _baseMeshes;
     std::vector<BenchMesh> _growthMeshes;
     std::vector<Benchmark> _benchmarks;
     std::vector<ContestResult> _results;

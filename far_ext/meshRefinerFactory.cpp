@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meshRefinerFactory.h"
+
+#include "far_ext/vtr/baseMesh.h"
+#include "far_ext/vtr/inputChecks.h"
+
+#include <algorithm>
+
+namespace OpenSubdivHex::FarExt {
+
+using Far::Index;
+using internal::CheckIndex;
+using internal::CheckSharpness;
+
+struct BaseTopology::Channel {
+    int numValues;
+    Sdc::Options::FVarLinearInterpolation interpolation;
+    internal::Buffer<Index> values; // by corner
+};
+
+BaseTopology::BaseTopology(internal::BaseMesh &mesh) : _mesh(mesh) {}
+
+BaseTopology::~BaseTopology() = default;
+
+void BaseTopology::refuse(Status const &status) {
+    if (_status.IsOk()) {
+        _status = status;
+    }
+}
+
+void BaseTopology::refuseIndex(Index index, int count, ComponentType component, char const *name) {
+    refuse(internal::IndexFailure(index, count, component, name));
+}
+
+namespace {
+
+constexpr Index kUnassigned = Far::INDEX_INVALID;
+
+void fill(internal::Buffer<Index> &array, std::size_t size, Index value) {
+    array.Resize(size);
+    std::fill_n(array.data(), size, value);
+}
+
+Status failedCount(char const *function, int count) {
+    return internal::Failure(StatusCode::InvalidArgument,
+                             std::string(function) + " was given " + std::to_string(count));
+}
+
+} // namespace
+
+void MeshRefinerFactoryBase::setNumBaseVertices(BaseTopology &base, int count) {
+    if (count < 0) {
+        base.refuse(failedCount("setNumBaseVertices", count));
+    } else {
+        base._mesh.SetNumVertices(count);
+    }
+}
+
+void MeshRefinerFactoryBase::setNumBaseFaces(BaseTopology &base, int count) {
+    if (count < 0) {
+        base.refuse(failedCount("setNumBaseFaces", count));
+        return;
+    }
+    base._mesh.SetNumFaces(count);
+    base._numFaces = count;
+    base._faceSizes = base._mesh.GetFaceSizes();
+    std::fill_n(base._faceSizes, count, 0);
+}
+
+int MeshRefinerFactoryBase::getNumBaseVertices(BaseTopology const &base) {
+    return base._mesh.GetLevel().numVertices;
+}
+
+int MeshRefinerFactoryBase::getNumBaseEdges(BaseTopology const &base) {
+    return base._mesh.GetNumBaseEdges();
+}
+
+Index MeshRefinerFactoryBase::findBaseEdge(BaseTopology const &base, Index v0, Index v1) {
+    int const numVertices = getNumBaseVertices(base);
+    bool const isInRange = 0 <= std::min(v0, v1) && std::max(v0, v1) < numVertices;
+    return isInRange && getNumBaseEdges(base) > 0 ? base._mesh.FindEdge(v0, v1)
+                                                  : Far::INDEX_INVALID;
+}
+
+void MeshRefinerFactoryBase::setBaseEdgeSharpness(BaseTopology &base, Index edge, float sharpness) {
+    Status status = CheckIndex(edge, getNumBaseEdges(base), ComponentType::Edge,
+                               [] { return "setBaseEdgeSharpness"; });
+    if (status.IsOk()) {
+        status = CheckSharpness(sharpness, ComponentType::Edge, edge,
+                                [&] { return "edge " + std::to_string(edge); });
+    }
+    if (status.IsOk()) {
+        base._mesh.SetEdgeSharpness(edge, sharpness);
+    } else {
+        base.refuse(status);
+    }
+}
+
+void MeshRefinerFactoryBase::setBaseVertexSharpness(BaseTopology &base, Index vert,
+                                                    float sharpness) {
+    Status status = CheckIndex(vert, getNumBaseVertices(base), ComponentType::Vertex,
+                               [] { return "setBaseVertexSharpness"; });
+    if (status.IsOk()) {
+        status = CheckSharpness(sharpness, ComponentType::Vertex, vert,
+                                [&] { return "vertex " + std::to_string(vert); });
+    }
+    if (status.IsOk()) {
+        base._mesh.SetVertexSharpness(vert, sharpness);
+    } else {
+        base.refuse(status);
+    }
+}
+
+void MeshRefinerFactoryBase::setBaseFaceHole(BaseTopology &base, Index face, bool isHole) {
+    if (0 <= face && face < base._numFaces) {
+        base._mesh.SetHole(face, isHole);
+    } else {
+        base.refuseIndex(face, base._numFaces, ComponentType::Face, "setBaseFaceHole");
+    }
+}
+
+int MeshRefinerFactoryBase::createBaseFVarChannel(BaseTopology &base, int numValues) {
+    return createBaseFVarChannel(base, numValues, base._mesh.GetSchemeOptions());
+}
+
+int MeshRefinerFactoryBase::createBaseFVarChannel(BaseTopology &base, int numValues,
+                                                  Sdc::Options const &options) {
+    if (numValues < 0) {
+        base.refuse(failedCount("createBaseFVarChannel", numValues));
+    }
+    base.refuse(internal::CheckOptions(HexSchemeOptions(), options));
+    base._channels.push_back({numValues, options.GetFVarLinearInterpolation(), {}});
+    fill(base._channels.back().values, std::size_t(base._mesh.GetLevel().numCorners), kUnassigned);
+    return int(base._channels.size()) - 1;
+}
+
+MeshRefinerFactoryBase::IndexArray
+MeshRefinerFactoryBase::getBaseFaceFVarValues(BaseTopology &base, Index face, int channel) {
+    if (channel < 0 || channel >= int(base._channels.size())) {
+        base.refuseIndex(channel, int(base._channels.size()), ComponentType::None,
+                         "the channel of getBaseFaceFVarValues");
+        return IndexArray();
+    }
+    if (face < 0 || face >= base._numFaces) {
+        base.refuseIndex(face, base._numFaces, ComponentType::Face, "getBaseFaceFVarValues");
+        return IndexArray();
+    }
+    Index const first = base._firstCorner[face];
+    return IndexArray(base._channels[std::size_t(channel)].values.data() + first,
+                      base._firstCorner[face + 1] - first);
+}
+
+std::unique_ptr<TopologyRefiner>
+MeshRefinerFactoryBase::create(Sdc::Options sdcOptions, TopologyRefinerFactory::Options options,
+                               Status *status, Function const &resize, Function const &assign,
+                               Function const &assignTags, Function const &assignFaceVarying) {
+    return TopologyRefinerFactory::create(
+        sdcOptions, options, status, [&](internal::BaseMesh &mesh) {
+            BaseTopology base(mesh);
+            internal::Level &level = mesh.GetLevel();
+            auto const call = [&](Function const &function, char const *name) {
+                if (!function(base)) {
+                    base.refuse(internal::Failure(StatusCode::InvalidTopology,
+                                                  std::string(name) + " returned false"));
+                }
+                return base._status;
+            };
+            Status result = call(resize, "resizeComponentTopology");
+            base._faceSizes = nullptr;
+            if (result.IsOk()) {
+                result = mesh.CompleteSizes();
+            }
+            if (result.IsOk()) {
+                fill(level.faceVerts, std::size_t(level.numCorners), kUnassigned);
+                base._firstCorner = level.faceFirstCorner.data();
+                base._faceVerts = level.faceVerts.data();
+                result = call(assign, "assignComponentTopology");
+                base._faceVerts = nullptr;
+            }
+            if (result.IsOk()) {
+                result = mesh.CheckFaces();
+            }
+            if (result.IsOk()) {
+                result = mesh.CompleteTopology();
+            }
+            Status const topology = result; // with its warnings
+            if (result.IsOk()) {
+                result = call(assignTags, "assignComponentTags");
+            }
+            if (result.IsOk()) {
+                mesh.CompleteTags();
+                result = call(assignFaceVarying, "assignFaceVaryingTopology");
+            }
+            for (std::size_t i = 0; i < base._channels.size() && result.IsOk(); ++i) {
+                BaseTopology::Channel &channel = base._channels[i];
+                result = internal::CheckValues(channel.values.data(), level.numCorners,
+                                               channel.numValues, int(i));
+                if (result.IsOk()) {
+                    result = mesh.AddChannel(channel.numValues, std::move(channel.values),
+                                             channel.interpolation);
+                }
+            }
+            return result.IsOk() ? topology : result;
+        });
+}
+
+} // namespace OpenSubdivHex::FarExt

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_MESH_REFINER_FACTORY_H
+#define OPENSUBDIVHEX_FAR_EXT_MESH_REFINER_FACTORY_H
+
+#include "topologyRefinerFactory.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt {
+
+namespace internal {
+class BaseMesh;
+}
+
+/// \brief Level 0 in the making, which the functions of a MeshRefinerFactory fill by those of
+/// MeshRefinerFactoryBase.
+class OPENSUBDIVHEX_API BaseTopology {
+public:
+    BaseTopology(BaseTopology const &) = delete;
+    BaseTopology &operator=(BaseTopology const &) = delete;
+
+private:
+    friend class MeshRefinerFactoryBase;
+    struct Channel;
+
+    explicit BaseTopology(internal::BaseMesh &mesh);
+    ~BaseTopology();
+
+    void refuse(Status const &status);
+    void refuseIndex(Far::Index index, int count, ComponentType component, char const *name);
+
+    internal::BaseMesh &_mesh;
+    Status _status; // the first failure
+    int _numFaces = 0;
+    Far::Index *_faceSizes = nullptr;         // while they are assigned
+    Far::Index const *_firstCorner = nullptr; // by face, once these have their sizes
+    Far::Index *_faceVerts = nullptr;         // by corner, while they are assigned
+    std::vector<Channel> _channels;
+};
+
+/// \brief What the functions of a MeshRefinerFactory call, named as in Far::TopologyRefinerFactory.
+///
+/// An index that is out of range, a count that is negative, and a sharpness that is negative or not a
+/// number are refused by name: the functions return without effect (or an empty array, or
+/// INDEX_INVALID), and Create() fails with the first of these causes.
+class OPENSUBDIVHEX_API MeshRefinerFactoryBase {
+protected:
+    using Index = Far::Index;
+    using IndexArray = Far::IndexArray;
+
+    /// @name For resizeComponentTopology()
+    /// The number of faces comes before the numbers of their vertices.
+    /// @{
+    static void setNumBaseVertices(BaseTopology &base, int count);
+    static void setNumBaseFaces(BaseTopology &base, int count);
+    static void setNumBaseFaceVertices(BaseTopology &base, Index face, int count) {
+        if (base._faceSizes && 0 <= face && face < base._numFaces) {
+            base._faceSizes[face] = count;
+        } else {
+            base.refuseIndex(face, base._numFaces, ComponentType::Face, "setNumBaseFaceVertices");
+        }
+    }
+    /// @}
+
+    /// @name For assignComponentTopology()
+    /// @{
+    static int getNumBaseVertices(BaseTopology const &base);
+    static int getNumBaseFaces(BaseTopology const &base) { return base._numFaces; }
+    /// The vertices of a face, counter-clockwise, to be written: all of them, of all faces.
+    static IndexArray getBaseFaceVertices(BaseTopology &base, Index face) {
+        if (base._faceVerts && 0 <= face && face < base._numFaces) {
+            Index const first = base._firstCorner[face];
+            return IndexArray(base._faceVerts + first, base._firstCorner[face + 1] - first);
+        }
+        base.refuseIndex(face, base._numFaces, ComponentType::Face, "getBaseFaceVertices");
+        return IndexArray();
+    }
+    /// @}
+
+    /// @name For assignComponentTags()
+    /// Edges are found and numbered as Far does: see INDEXING.md.
+    /// @{
+    static int getNumBaseEdges(BaseTopology const &base);
+    /// The edge between two vertices, INDEX_INVALID if there is none.
+    static Index findBaseEdge(BaseTopology const &base, Index v0, Index v1);
+    static void setBaseEdgeSharpness(BaseTopology &base, Index edge, float sharpness);
+    static void setBaseVertexSharpness(BaseTopology &base, Index vert, float sharpness);
+    static void setBaseFaceHole(BaseTopology &base, Index face, bool isHole);
+    /// @}
+
+    /// @name For assignFaceVaryingTopology()
+    /// @{
+    /// \brief Adds a channel of \p numValues values, with the face-varying rule of \p options or
+    /// else of the options of the refiner.
+    /// \return  its number, from 0 on
+    static int createBaseFVarChannel(BaseTopology &base, int numValues);
+    static int createBaseFVarChannel(BaseTopology &base, int numValues,
+                                     Sdc::Options const &options);
+    /// The values of the corners of a face, to be written: all of them, of all faces.
+    static IndexArray getBaseFaceFVarValues(BaseTopology &base, Index face, int channel = 0);
+    /// @}
+
+    using Function = std::function<bool(BaseTopology &)>;
+    static std::unique_ptr<TopologyRefiner>
+    create(Sdc::Options sdcOptions, TopologyRefinerFactory::Options options, Status *status,
+           Function const &resize, Function const &assign, Function const &assignTags,
+           Function const &assignFaceVarying);
+};
+
+/// \brief Makes a TopologyRefiner from a mesh class of your own, without a descriptor between: as
+/// Far::TopologyRefinerFactory<MESH> does, and with the same functions to write.
+///
+/// Specialise resizeComponentTopology() and assignComponentTopology() and, for a mesh with tags or
+/// face-varying values, the other two.  What you have written for Far serves with FarExt::BaseTopology
+/// in place of Far::TopologyRefiner:
+///
+/// \code
+/// namespace OpenSubdivHex::FarExt {
+/// template <>
+/// bool MeshRefinerFactory<Mesh>::resizeComponentTopology(BaseTopology &base, Mesh const &mesh) {
+///     setNumBaseVertices(base, mesh.GetNumVertices());
+///     setNumBaseFaces(base, mesh.GetNumFaces());
+///     for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+///         setNumBaseFaceVertices(base, face, mesh.GetFaceSize(face));
+///     }
+///     return true;
+/// }
+/// template <>
+/// bool MeshRefinerFactory<Mesh>::assignComponentTopology(BaseTopology &base, Mesh const &mesh) {
+///     for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+///         IndexArray verts = getBaseFaceVertices(base, face);
+///         std::copy_n(mesh.GetFace(face), verts.size(), verts.begin());
+///     }
+///     return true;
+/// }
+/// } // namespace OpenSubdivHex::FarExt
+///
+/// auto refiner = FarExt::MeshRefinerFactory<Mesh>::Create(mesh, sdcOptions);
+/// \endcode
+///
+/// Where a function returns false, Create() fails.  Several threads may call it at once, also for the
+/// same mesh if that bears it.  What the functions throw passes through.
+template <class MESH>
+class MeshRefinerFactory : protected MeshRefinerFactoryBase {
+public:
+    using Options = TopologyRefinerFactory::Options;
+
+    /// \return  null on failure, with the causes of TopologyRefinerFactory::Create from a descriptor
+    ///          or, where a function returned false, InvalidTopology
+    static std::unique_ptr<TopologyRefiner> Create(MESH const &mesh, Sdc::Options sdcOptions,
+                                                   Options options, Status *status = nullptr) {
+        return create(
+            sdcOptions, options, status,
+            [&](BaseTopology &base) { return resizeComponentTopology(base, mesh); },
+            [&](BaseTopology &base) { return assignComponentTopology(base, mesh); },
+            [&](BaseTopology &base) { return assignComponentTags(base, mesh); },
+            [&](BaseTopology &base) { return assignFaceVaryingTopology(base, mesh); });
+    }
+    static std::unique_ptr<TopologyRefiner>
+    Create(MESH const &mesh, Sdc::Options sdcOptions = Sdc::Options(), Status *status = nullptr) {
+        return Create(mesh, sdcOptions, Options(), status);
+    }
+
+protected:
+    /// Sets the numbers of vertices and faces, and that of the vertices of each face.
+    static bool resizeComponentTopology(BaseTopology &base, MESH const &mesh);
+    /// Assigns the vertices of each face.
+    static bool assignComponentTopology(BaseTopology &base, MESH const &mesh);
+    /// Sets the sharpness of edges and vertices, and holes.  None, unless it is specialised.
+    static bool assignComponentTags(BaseTopology &, MESH const &) { return true; }
+    /// Creates channels, and assigns their values.  None, unless it is specialised.
+    static bool assignFaceVaryingTopology(BaseTopology &, MESH const &) { return true; }
+};
+
+} // namespace OpenSubdivHex::FarExt
+
+#endif

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Level 0 from mesh classes of a user's own.
+#include "baseDifference.h"
+#include "shapeFactory.h"
+
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::ComponentType;
+using FarExt::MeshRefinerFactory;
+using FarExt::Status;
+using FarExt::StatusCode;
+
+namespace {
+
+/// \brief Two quads, 0 1 2 3 and 3 2 4 5, and what a test has done beside or in place of what is right.
+struct Mesh {
+    using Step = std::function<bool(FarExt::BaseTopology &)>;
+    Step resize = nullptr;
+    Step assign = nullptr;
+    Step tag = nullptr;
+    Step assignValues = nullptr;
+};
+
+bool run(Mesh::Step const &step, FarExt::BaseTopology &base) { return !step || step(base); }
+
+} // namespace
+} // namespace OpenSubdivHex::Regression
+
+namespace OpenSubdivHex::FarExt {
+
+using Regression::Mesh;
+
+/// All that the steps of the tests call.
+struct Calls : MeshRefinerFactoryBase {
+    using MeshRefinerFactoryBase::createBaseFVarChannel;
+    using MeshRefinerFactoryBase::findBaseEdge;
+    using MeshRefinerFactoryBase::getBaseFaceFVarValues;
+    using MeshRefinerFactoryBase::getBaseFaceVertices;
+    using MeshRefinerFactoryBase::getNumBaseEdges;
+    using MeshRefinerFactoryBase::setBaseEdgeSharpness;
+    using MeshRefinerFactoryBase::setBaseFaceHole;
+    using MeshRefinerFactoryBase::setBaseVertexSharpness;
+    using MeshRefinerFactoryBase::setNumBaseFaces;
+    using MeshRefinerFactoryBase::setNumBaseFaceVertices;
+    using MeshRefinerFactoryBase::setNumBaseVertices;
+};
+
+template <>
+bool MeshRefinerFactory<Mesh>::resizeComponentTopology(BaseTopology &base, Mesh const &mesh) {
+    setNumBaseVertices(base, 6);
+    setNumBaseFaces(base, 2);
+    setNumBaseFaceVertices(base, 0, 4);
+    setNumBaseFaceVertices(base, 1, 4);
+    return Regression::run(mesh.resize, base);
+}
+
+template <>
+bool MeshRefinerFactory<Mesh>::assignComponentTopology(BaseTopology &base, Mesh const &mesh) {
+    int const verts[2][4] = {{0, 1, 2, 3}, {3, 2, 4, 5}};
+    for (int face = 0; face < getNumBaseFaces(base); ++face) {
+        for (int i = 0; i < getBaseFaceVertices(base, face).size() && i < 4; ++i) {
+            getBaseFaceVertices(base, face)[i] = verts[face][i];
+        }
+    }
+    return Regression::run(mesh.assign, base);
+}
+
+template <>
+bool MeshRefinerFactory<Mesh>::assignComponentTags(BaseTopology &base, Mesh const &mesh) {
+    return Regression::run(mesh.tag, base);
+}
+
+template <>
+bool MeshRefinerFactory<Mesh>::assignFaceVaryingTopology(BaseTopology &base, Mesh const &mesh) {
+    return Regression::run(mesh.assignValues, base);
+}
+
+} // namespace OpenSubdivHex::FarExt
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::BaseTopology;
+using FarExt::Calls;
+
+namespace {
+
+void expectRefused(Mesh const &mesh, StatusCode code, ComponentType component, int index,
+                   std::string const &word) {
+    Status status;
+    EXPECT_FALSE(MeshRefinerFactory<Mesh>::Create(mesh, Sdc::Options(), &status)) << word;
+    EXPECT_EQ(status.GetCode(), code) << status.GetMessage();
+    EXPECT_EQ(status.GetComponentType(), component) << status.GetMessage();
+    EXPECT_EQ(status.GetComponentIndex(), index) << status.GetMessage();
+    EXPECT_NE(status.GetMessage().find(word), std::string::npos) << status.GetMessage();
+}
+
+/// A step that makes a call and succeeds.
+template <typename CALL>
+Mesh::Step make(CALL call) {
+    return [call](BaseTopology &base) {
+        call(base);
+        return true;
+    };
+}
+
+} // namespace
+
+TEST(MeshFactory, EqualsTheDescriptorOfAllShapes) {
+    for (Shape const &shape : GetShapes()) {
+        if (shape.leftHanded) {
+            continue;
+        }
+        for (auto boundary : kBoundaries) {
+            SCOPED_TRACE(shape.name + ", boundary " + std::to_string(boundary));
+            Sdc::Options options;
+            options.SetVtxBoundaryInterpolation(boundary);
+            Status status;
+            auto const refiner = MeshRefinerFactory<Shape>::Create(shape, options, &status);
+            ASSERT_TRUE(refiner) << status.GetMessage();
+            ShapeDescriptor const descriptor(shape);
+            auto const expected = FarExt::TopologyRefinerFactory::Create(descriptor.Get(), options);
+            EXPECT_EQ(FindBaseDifference(*refiner, *expected), "");
+            EXPECT_EQ(refiner->GetSchemeOptions().GetVtxBoundaryInterpolation(), boundary);
+        }
+    }
+}
+
+TEST(MeshFactory, TagsAndValuesAreThoseOfTheCalls) {
+    Mesh mesh;
+    mesh.tag = make([](BaseTopology &base) {
+        EXPECT_EQ(Calls::getNumBaseEdges(base), 7);
+        EXPECT_EQ(Calls::findBaseEdge(base, 0, 2), Far::INDEX_INVALID);
+        EXPECT_EQ(Calls::findBaseEdge(base, 0, 17), Far::INDEX_INVALID);
+        EXPECT_EQ(Calls::findBaseEdge(base, 2, 3), 2);
+        Calls::setBaseEdgeSharpness(base, Calls::findBaseEdge(base, 3, 2), 2.5f);
+        Calls::setBaseVertexSharpness(base, 4, 1.5f);
+        Calls::setBaseFaceHole(base, 0, true);
+        Calls::setBaseFaceHole(base, 1, true);
+        Calls::setBaseFaceHole(base, 0, false);
+    });
+    mesh.assignValues = make([](BaseTopology &base) {
+        Sdc::Options linear;
+        linear.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_ALL);
+        EXPECT_EQ(Calls::createBaseFVarChannel(base, 6), 0);
+        EXPECT_EQ(Calls::createBaseFVarChannel(base, 1, linear), 1);
+        for (int face : {0, 1}) {
+            for (int i = 0; i < 4; ++i) {
+                Calls::getBaseFaceFVarValues(base, face)[i] = face + i;
+                Calls::getBaseFaceFVarValues(base, face, 1)[i] = 0;
+            }
+        }
+    });
+    Sdc::Options options;
+    options.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_CORNERS_ONLY);
+    auto const refiner = MeshRefinerFactory<Mesh>::Create(mesh, options);
+    ASSERT_TRUE(refiner);
+    FarExt::TopologyLevel const &level = refiner->GetLevel(0);
+    EXPECT_EQ(level.GetEdgeSharpness(2), 2.5f);
+    EXPECT_EQ(level.GetVertexSharpness(4), 1.5f);
+    EXPECT_FALSE(level.IsFaceHole(0));
+    EXPECT_TRUE(level.IsFaceHole(1));
+    ASSERT_EQ(level.GetNumFVarChannels(), 2);
+    EXPECT_EQ(level.GetNumFVarValues(1), 8); // one for each corner but those that an edge joins
+    EXPECT_EQ(level.GetFaceFVarValues(1, 0)[3], 4);
+    EXPECT_EQ(refiner->GetFVarLinearInterpolation(0), Sdc::Options::FVAR_LINEAR_CORNERS_ONLY);
+    EXPECT_EQ(refiner->GetFVarLinearInterpolation(1), Sdc::Options::FVAR_LINEAR_ALL);
+    EXPECT_TRUE(refiner->RefineUniform(2));
+}
+
+TEST(MeshFactory, CountsAndFacesAreChecked) {
+    Mesh mesh;
+    auto const expectResizeRefused = [&](auto call, StatusCode code, ComponentType component,
+                                         int index, std::string const &word) {
+        Mesh broken;
+        broken.resize = make(call);
+        expectRefused(broken, code, component, index, word);
+    };
+    expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseVertices(base, -2); },
+                        StatusCode::InvalidArgument, ComponentType::None, -1, "-2");
+    expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseFaces(base, -3); },
+                        StatusCode::InvalidArgument, ComponentType::None, -1, "-3");
+    expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseFaces(base, 0); },
+                        StatusCode::InvalidTopology, ComponentType::None, -1, "empty");
+    expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseFaces(base, 3); },
+                        StatusCode::InvalidTopology, ComponentType::Face, 0, "0 vertices");
+    expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseFaceVertices(base, 1, 2); },
+                        StatusCode::InvalidTopology, ComponentType::Face, 1, "2 vertices");
+    expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseFaceVertices(base, 2, 4); },
+                        StatusCode::InvalidTopology, ComponentType::Face, 2,
+                        "setNumBaseFaceVertices");
+    // A face that has more vertices than were assigned.
+    expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseFaceVertices(base, 1, 5); },
+                        StatusCode::InvalidTopology, ComponentType::Face, 1, "vertex -1");
+    mesh.assign = make([](BaseTopology &base) { Calls::getBaseFaceVertices(base, 1)[2] = 6; });
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::Face, 1, "vertex 6");
+    mesh.assign =
+        make([](BaseTopology &base) { EXPECT_EQ(Calls::getBaseFaceVertices(base, -1).size(), 0); });
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::Face, -1,
+                  "getBaseFaceVertices");
+}
+
+TEST(MeshFactory, TagsAreChecked) {
+    Mesh mesh;
+    for (float sharpness : {-1.0f, std::nanf("")}) {
+        mesh.tag =
+            make([=](BaseTopology &base) { Calls::setBaseEdgeSharpness(base, 1, sharpness); });
+        expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::Edge, 1, "sharpness");
+        mesh.tag =
+            make([=](BaseTopology &base) { Calls::setBaseVertexSharpness(base, 5, sharpness); });
+        expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::Vertex, 5, "sharpness");
+    }
+    mesh.tag = make([](BaseTopology &base) { Calls::setBaseEdgeSharpness(base, -1, 1); });
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::Edge, -1,
+                  "setBaseEdgeSharpness");
+    mesh.tag = make([](BaseTopology &base) { Calls::setBaseVertexSharpness(base, 6, 1); });
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::Vertex, 6,
+                  "setBaseVertexSharpness");
+    mesh.tag = make([](BaseTopology &base) { Calls::setBaseFaceHole(base, 2, true); });
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::Face, 2, "setBaseFaceHole");
+    // The first cause counts.
+    mesh.tag = make([](BaseTopology &base) {
+        Calls::setBaseVertexSharpness(base, 2, -4);
+        Calls::setBaseFaceHole(base, 2, true);
+    });
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::Vertex, 2, "-4");
+}
+
+TEST(MeshFactory, ValuesAreChecked) {
+    Mesh mesh;
+    mesh.assignValues = make([](BaseTopology &base) { Calls::createBaseFVarChannel(base, 4); });
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::None, -1,
+                  "corner 0 of face-varying channel 0 refers to -1");
+    mesh.assignValues = make([](BaseTopology &base) { Calls::createBaseFVarChannel(base, -4); });
+    expectRefused(mesh, StatusCode::InvalidArgument, ComponentType::None, -1, "-4");
+    mesh.assignValues = make(
+        [](BaseTopology &base) { EXPECT_EQ(Calls::getBaseFaceFVarValues(base, 0).size(), 0); });
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::None, 0, "channel");
+    mesh.assignValues = make([](BaseTopology &base) {
+        Calls::createBaseFVarChannel(base, 4);
+        EXPECT_EQ(Calls::getBaseFaceFVarValues(base, 2).size(), 0);
+    });
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::Face, 2,
+                  "getBaseFaceFVarValues");
+}
+
+TEST(MeshFactory, AFunctionMayRefuse) {
+    auto const no = [](BaseTopology &) { return false; };
+    expectRefused({no}, StatusCode::InvalidTopology, ComponentType::None, -1,
+                  "resizeComponentTopology returned false");
+    expectRefused({nullptr, no}, StatusCode::InvalidTopology, ComponentType::None, -1,
+                  "assignComponentTopology returned false");
+    expectRefused({nullptr, nullptr, no}, StatusCode::InvalidTopology, ComponentType::None, -1,
+                  "assignComponentTags returned false");
+    expectRefused({nullptr, nullptr, nullptr, no}, StatusCode::InvalidTopology, ComponentType::None,
+                  -1, "assignFaceVaryingTopology returned false");
+}
+
+} // namespace OpenSubdivHex::Regression
