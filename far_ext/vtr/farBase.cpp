@@ -27,6 +27,7 @@ public:
 private:
     Status readFaces();
     Status readEdges();
+    bool isSide(Index edge, Index face, int local) const;
     bool readEdge(Index edge, EdgeSides &sides) const;
     Status readApartEdge(Index edge, std::vector<ApartSide> &sides) const;
     Status readTags();
@@ -62,6 +63,19 @@ Status RefinerReader::readFaces() {
     return _mesh.CheckFaces();
 }
 
+// Whether a face has an edge where this says it has.
+bool RefinerReader::isSide(Index edge, Index face, int local) const {
+    if (face < 0 || face >= _level.numFaces || local >= _level.GetFaceSize(face) ||
+        _base.GetFaceEdges(face)[local] != edge) {
+        return false;
+    }
+    ConstIndexArray const verts = _base.GetEdgeVertices(edge);
+    Index const corner = _level.faceFirstCorner[face] + local;
+    Index const start = _level.faceVerts[corner];
+    Index const end = _level.faceVerts[_level.GetNextCorner(face, corner)];
+    return (start == verts[0] && end == verts[1]) || (start == verts[1] && end == verts[0]);
+}
+
 // Takes an edge that bounds one face, or joins two which run it in opposite directions; false for
 // any other.
 bool RefinerReader::readEdge(Index edge, EdgeSides &sides) const {
@@ -74,16 +88,12 @@ bool RefinerReader::readEdge(Index edge, EdgeSides &sides) const {
     }
     sides = {{Far::INDEX_INVALID, isFree() ? kFreeBoundary : kSharpBoundaryA}};
     for (int i = 0; i < numFaces; ++i) {
-        Index const corner = _level.faceFirstCorner[faces[i]] + locals[i];
-        Index const start = _level.faceVerts[corner];
-        Index const end = _level.faceVerts[_level.GetNextCorner(faces[i], corner)];
-        bool const isForward = start == verts[0] && end == verts[1];
-        bool const isBackward = start == verts[1] && end == verts[0];
-        if (_base.GetFaceEdges(faces[i])[locals[i]] != edge || isForward == isBackward) {
+        if (!isSide(edge, faces[i], locals[i])) {
             return false;
         }
         // Of two sides the first runs from the first vertex to the second.
-        sides.corners[numFaces == 2 && isBackward] = corner;
+        Index const corner = _level.faceFirstCorner[faces[i]] + locals[i];
+        sides.corners[numFaces == 2 && _level.faceVerts[corner] == verts[1]] = corner;
     }
     return sides.corners[0] >= 0 &&
            (numFaces == 1 || (sides.corners[1] >= 0 && faces[0] != faces[1]));
@@ -101,20 +111,18 @@ Status RefinerReader::readApartEdge(Index edge, std::vector<ApartSide> &sides) c
     if (faces.size() == 0) {
         return refuse(" has no face");
     }
-    auto const first = std::ptrdiff_t(sides.size());
+    std::vector<Index> corners;
     for (int i = 0; i < faces.size(); ++i) {
-        Index const corner = _level.faceFirstCorner[faces[i]] + locals[i];
-        Index const start = _level.faceVerts[corner];
-        Index const end = _level.faceVerts[_level.GetNextCorner(faces[i], corner)];
-        bool const isRepeated =
-            std::any_of(sides.begin() + first, sides.end(),
-                        [&](ApartSide const &side) { return side.corner == corner; });
-        if (std::minmax(start, end) != std::minmax(verts[0], verts[1]) || isRepeated ||
-            _base.GetFaceEdges(faces[i])[locals[i]] != edge) {
+        if (!isSide(edge, faces[i], locals[i])) {
             return refuse(", of vertices " + str(verts[0]) + " and " + str(verts[1]) +
                           ", is not edge " + str(locals[i]) + " of face " + str(faces[i]));
         }
-        sides.push_back({edge, corner});
+        corners.push_back(_level.faceFirstCorner[faces[i]] + locals[i]);
+        sides.push_back({edge, corners.back()});
+    }
+    std::sort(corners.begin(), corners.end());
+    if (std::adjacent_find(corners.begin(), corners.end()) != corners.end()) {
+        return refuse(" has a side of a face twice");
     }
     return Status();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Level 0 from mesh classes of a user's own.
+// Level 0 from mesh classes of a user's own, and from refiners of Far that were assembled by hand.
 #include "baseDifference.h"
 #include "shapeFactory.h"
 
@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -168,7 +169,7 @@ TEST(MeshFactory, TagsAndValuesAreThoseOfTheCalls) {
     EXPECT_FALSE(level.IsFaceHole(0));
     EXPECT_TRUE(level.IsFaceHole(1));
     ASSERT_EQ(level.GetNumFVarChannels(), 2);
-    EXPECT_EQ(level.GetNumFVarValues(1), 8); // one for each corner but those that an edge joins
+    EXPECT_EQ(level.GetNumFVarValues(1), 1);
     EXPECT_EQ(level.GetFaceFVarValues(1, 0)[3], 4);
     EXPECT_EQ(refiner->GetFVarLinearInterpolation(0), Sdc::Options::FVAR_LINEAR_CORNERS_ONLY);
     EXPECT_EQ(refiner->GetFVarLinearInterpolation(1), Sdc::Options::FVAR_LINEAR_ALL);
@@ -261,6 +262,80 @@ TEST(MeshFactory, AFunctionMayRefuse) {
                   "assignComponentTags returned false");
     expectRefused({nullptr, nullptr, nullptr, no}, StatusCode::InvalidTopology, ComponentType::None,
                   -1, "assignFaceVaryingTopology returned false");
+}
+
+namespace {
+
+/// The base level of Far, to be changed.
+OpenSubdiv::Vtr::internal::Level &getLevel(Far::TopologyRefiner const &base) {
+    return const_cast<OpenSubdiv::Vtr::internal::Level &>(base.getLevel(0));
+}
+
+} // namespace
+
+TEST(HandMadeRefiner, EdgesMayRunTheOtherWay) {
+    for (char const *name : {"cube", "quadGrid", "mixedPatch"}) {
+        SCOPED_TRACE(name);
+        auto const base = CreateFarRefiner(GetShape(name));
+        for (int edge = 0; edge < base->GetLevel(0).GetNumEdges(); edge += 3) {
+            auto verts = getLevel(*base).getEdgeVertices(edge);
+            std::swap(verts[0], verts[1]);
+        }
+        Status status;
+        auto const refiner = FarExt::TopologyRefinerFactory::Create(*base, &status);
+        ASSERT_TRUE(refiner) << status.GetMessage();
+        FarExt::TopologyLevel const &level = refiner->GetLevel(0);
+        EXPECT_TRUE(level.Validate(&status)) << status.GetMessage();
+        EXPECT_EQ(FindFarDifference(*refiner, base->GetLevel(0)), "");
+        for (int edge = 0; edge < level.GetNumEdges(); ++edge) {
+            if (!level.IsEdgeBoundary(edge)) {
+                EXPECT_EQ(level.GetEdgeVertices(edge)[0],
+                          base->GetLevel(0).GetEdgeVertices(edge)[0]);
+            }
+        }
+        EXPECT_TRUE(refiner->RefineUniform(2));
+    }
+}
+
+TEST(HandMadeRefiner, FacesMayBeginElsewhereAroundAVertex) {
+    Shape const &shape = GetShape("cube");
+    auto const base = CreateFarRefiner(shape);
+    auto const expected = FarExt::TopologyRefinerFactory::Create(*base);
+    auto const rotate = [](auto array) {
+        std::rotate(array.begin(), array.begin() + 1, array.end());
+    };
+    auto &level = getLevel(*base);
+    for (int vert : {1, 4}) {
+        rotate(level.getVertexFaces(vert));
+        rotate(level.getVertexFaceLocalIndices(vert));
+        rotate(level.getVertexEdges(vert));
+        rotate(level.getVertexEdgeLocalIndices(vert));
+    }
+    auto const refiner = FarExt::TopologyRefinerFactory::Create(*base);
+    ASSERT_TRUE(refiner);
+    EXPECT_EQ(FindBaseDifference(*refiner, *expected), "");
+}
+
+TEST(HandMadeRefiner, EdgesThatAreNoneOfTheirFacesAreNamed) {
+    auto const expectNamed = [](auto damage, int edge) {
+        auto const base = CreateFarRefiner(GetShape("cube"));
+        damage(getLevel(*base));
+        Status status;
+        EXPECT_FALSE(FarExt::TopologyRefinerFactory::Create(*base, &status));
+        EXPECT_EQ(status.GetCode(), StatusCode::InvalidTopology);
+        EXPECT_EQ(status.GetComponentType(), ComponentType::Edge) << status.GetMessage();
+        EXPECT_EQ(status.GetComponentIndex(), edge) << status.GetMessage();
+        EXPECT_NE(status.GetMessage().find("edge " + std::to_string(edge)), std::string::npos);
+    };
+    expectNamed([](auto &level) { level.getEdgeVertices(5)[0] = 7 - level.getEdgeVertices(5)[0]; },
+                5);
+    expectNamed([](auto &level) { level.getEdgeFaces(3)[1] = 5 - level.getEdgeFaces(3)[1]; }, 3);
+    expectNamed(
+        [](auto &level) {
+            int const first = level.getFaceEdges(2)[0];
+            level.getFaceEdges(2)[0] = first == 0 ? 1 : 0;
+        },
+        CreateFarRefiner(GetShape("cube"))->GetLevel(0).GetFaceEdges(2)[0]);
 }
 
 } // namespace OpenSubdivHex::Regression
