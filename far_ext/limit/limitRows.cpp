@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitRows.h"
 
+#include "far_ext/executor.h"
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
@@ -127,6 +128,8 @@ Status LimitRows::Find() {
     ParallelForRange(
         _level.numVertices, [&] { return Finder(*this, featureVerts); },
         [&](Finder &finder, Index begin, Index end) {
+            // Patches are small: their loops gain nothing by help, and lose much where that is busy.
+            ExecutorScope const alone(nullptr, 1);
             Range &range = _ranges[std::size_t(begin / kRange)];
             range.firstSources.push_back(0);
             range.firstSides.push_back(0);

@@ -71,7 +71,7 @@ private:
     class Finder;
 
     // The length of ranges: finding the masks of a vertex may take milliseconds.
-    static constexpr Index kRange = 256;
+    static constexpr Index kRange = 64;
 
     Level const &_level;
     Sdc::Options const _sdcOptions;
