@@ -99,9 +99,13 @@ std::vector<Index> FindUniformSources(TopologyRefiner const &refiner, int level)
         Cell const cell = refinement.GetParentCell({cFace, 0});
         Index source = cell.face;
         if (cFace >= refinement.child->numFFaces && cell.half == 1 && map.IsSplit(cell.face)) {
-            // This edge lies inside of the base face, and so no other base face shares its faces.
+            // This edge lies inside of the base face, and a hexagon or F-face across it does, too.
             Index const edge = parent.faceEdges[parent.faceFirstCorner[cell.face] + kHalf1Edge];
+            Index const baseFace = map.GetBaseFace(cell.face, 1);
             source = parent.edgeFaces[edge][parent.edgeFaces[edge][0] == cell.face ? 1 : 0];
+            if (map.GetBaseFace(source) != baseFace) {
+                source = baseFace; // a quad or V-face is there; F-faces keep their index
+            }
         }
         sources[std::size_t(cFace)] = source;
     });

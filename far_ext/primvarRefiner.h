@@ -133,9 +133,10 @@ public:
     ///
     /// That is its GetFaceParentFace(); but where half 0 lies in half 1 of a face that two base faces
     /// share (IsFaceBaseSplit), and whose element is that of half 0, the face across edge 1 of that,
-    /// which lies in the right base face.  So from data of level 0 on, dst[f] is at every level that
-    /// of GetFaceBaseFace(f, 0), and that of GetFaceBaseFace(f, 1) is the element of the face across
-    /// edge 1 of f, or of level 0.
+    /// which lies in the right base face; or, when this counts to another since it lies across an
+    /// edge of level 0 itself (behind other steps), the F-face of the base face, whose index it has.
+    /// So from data of level 0 on, dst[f] is at every level that of GetFaceBaseFace(f, 0), and that of
+    /// GetFaceBaseFace(f, half) is the element with the index of the base face.
     template <class T, class U>
     void InterpolateFaceUniform(int level, T const &src, U &dst) const {
         std::vector<Far::Index> const sources = internal::FindUniformSources(_refiner, level);
