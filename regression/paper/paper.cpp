@@ -49,8 +49,9 @@ std::string makePage(Settings const &settings) {
          {Section{"pentagonal solid", AddSolidSection}, Section{"control meshes", AddMeshSection},
           Section{"factors", AddFactorSection}, Section{"counts", AddCountSection},
           Section{"eigenvalues", AddEigenvalueSection}, Section{"smoothness", AddSmoothnessSection},
-          Section{"irregular vertices", AddTipSection}, Section{"masks", AddMaskSection},
-          Section{"running time", AddTimingSection}, Section{"stage 3", AddCoplanarSection}}) {
+          Section{"irregular vertices", AddTipSection}, Section{"evenness", AddEvennessSection},
+          Section{"masks", AddMaskSection}, Section{"running time", AddTimingSection},
+          Section{"stage 3", AddCoplanarSection}}) {
         auto const start = std::chrono::steady_clock::now();
         add(&page, settings);
         std::chrono::duration<double> const seconds = std::chrono::steady_clock::now() - start;

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evenness.h"
+
+#include "smoothness.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+using Eigen::Vector3d;
+
+double const kPi = std::acos(-1.0);
+
+/// Groups of MeasureTorusUnevenness.
+constexpr int kNumParallels = 128;
+
+/// By vertex: its part of the areas of its faces.
+std::vector<double> findAreas(PolygonMesh const &mesh) {
+    std::vector<double> areas(mesh.positions.size(), 0.0);
+    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+        int const size = mesh.GetFaceSize(face);
+        Vector3d const first = mesh.positions[mesh.GetFaceVertex(face, 0)];
+        Vector3d doubled = Vector3d::Zero();
+        for (int i = 2; i < size; ++i) {
+            doubled += (mesh.positions[mesh.GetFaceVertex(face, i - 1)] - first)
+                           .cross(mesh.positions[mesh.GetFaceVertex(face, i)] - first);
+        }
+        for (int i = 0; i < size; ++i) {
+            areas[mesh.GetFaceVertex(face, i)] += doubled.norm() / 2 / size;
+        }
+    }
+    return areas;
+}
+
+void addVertex(Vector3d const &position, Shape &shape) {
+    shape.positions.insert(shape.positions.end(), position.begin(), position.end());
+}
+
+void addFace(std::initializer_list<int> vertices, Shape &shape) {
+    shape.faceSizes.push_back(int(vertices.size()));
+    shape.faceVertices.insert(shape.faceVertices.end(), vertices);
+}
+
+/// The triangles that have all other points behind them; of points in general position on a sphere.
+void addHull(std::vector<Vector3d> const &points, Shape &shape) {
+    int const numPoints = int(points.size());
+    for (int a = 0; a < numPoints; ++a) {
+        for (int b = a + 1; b < numPoints; ++b) {
+            for (int c = b + 1; c < numPoints; ++c) {
+                Vector3d const normal = (points[b] - points[a]).cross(points[c] - points[a]);
+                double const height = normal.dot(points[a]);
+                double const side = height < 0 ? -1 : 1;
+                bool const isOutside =
+                    std::all_of(points.begin(), points.end(), [&](Vector3d const &point) {
+                        return side * (normal.dot(point) - height) < 1e-12;
+                    });
+                if (isOutside && side > 0) {
+                    addFace({a, b, c}, shape);
+                } else if (isOutside) {
+                    addFace({a, c, b}, shape);
+                }
+            }
+        }
+    }
+}
+
+Shape makeHull(char const *name, std::vector<Vector3d> const &points) {
+    Shape shape;
+    shape.name = name;
+    for (Vector3d const &point : points) {
+        addVertex(point, shape);
+    }
+    addHull(points, shape);
+    return shape;
+}
+
+} // namespace
+
+double MeasureUnevenness(PolygonMesh const &mesh, std::vector<int> const &vertices,
+                         std::vector<int> const &groups) {
+    struct Sum {
+        double area = 0;
+        double curvature = 0;
+        double square = 0;
+    };
+    std::vector<double> const areas = findAreas(mesh);
+    std::map<int, Sum> sums;
+    Sum all;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        auto const [smaller, larger] = EstimateCurvatures(mesh, vertices[i]);
+        double const mean = (smaller + larger) / 2;
+        double const area = areas[vertices[i]];
+        for (Sum *sum : {&sums[groups[i]], &all}) {
+            sum->area += area;
+            sum->curvature += area * mean;
+            sum->square += area * mean * mean;
+        }
+    }
+    double deviation = 0;
+    for (auto const &[group, sum] : sums) {
+        deviation += std::max(0.0, sum.square - sum.curvature * sum.curvature / sum.area);
+    }
+    return std::sqrt(deviation / all.area) / std::abs(all.curvature / all.area);
+}
+
+double MeasureSphereUnevenness(PolygonMesh const &mesh) {
+    std::vector<int> vertices(mesh.positions.size());
+    std::iota(vertices.begin(), vertices.end(), 0);
+    return MeasureUnevenness(mesh, vertices, std::vector<int>(vertices.size(), 0));
+}
+
+double MeasureTorusUnevenness(PolygonMesh const &mesh, int numU) {
+    std::vector<int> vertices;
+    std::vector<int> groups;
+    for (int vertex = 0; vertex < mesh.GetNumVertices(); ++vertex) {
+        Vector3d const &position = mesh.positions[vertex];
+        double const around = std::atan2(position.y(), position.x());
+        if (around >= 0 && around < 2 * kPi / numU) {
+            double const out = std::hypot(position.x(), position.y()) - kTorusRadius;
+            double const angle = std::atan2(position.z(), out) / (2 * kPi);
+            vertices.push_back(vertex);
+            groups.push_back(int(std::floor(angle * kNumParallels)));
+        }
+    }
+    return MeasureUnevenness(mesh, vertices, groups);
+}
+
+Shape MakeTorus(int numU, int numV, bool isTriangles) {
+    Shape shape;
+    shape.name = "even torus";
+    for (int i = 0; i < numU; ++i) {
+        for (int j = 0; j < numV; ++j) {
+            double const u = 2 * kPi * i / numU;
+            double const v = 2 * kPi * j / numV;
+            double const out = kTorusRadius + kTubeRadius * std::cos(v);
+            addVertex({out * std::cos(u), out * std::sin(u), kTubeRadius * std::sin(v)}, shape);
+        }
+    }
+    for (int i = 0; i < numU; ++i) {
+        for (int j = 0; j < numV; ++j) {
+            int const nextI = (i + 1) % numU;
+            int const nextJ = (j + 1) % numV;
+            int const corners[4] = {i * numV + j, nextI * numV + j, nextI * numV + nextJ,
+                                    i * numV + nextJ};
+            if (isTriangles) {
+                addFace({corners[0], corners[1], corners[2]}, shape);
+                addFace({corners[0], corners[2], corners[3]}, shape);
+            } else {
+                addFace({corners[0], corners[1], corners[2], corners[3]}, shape);
+            }
+        }
+    }
+    return shape;
+}
+
+std::vector<Shape> MakeTrianglePlatonics() {
+    Shape icosahedron = MakeIcosahedron();
+    icosahedron.name = "icosahedron";
+    return {makeHull("tetrahedron", {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}),
+            makeHull("octahedron",
+                     {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}),
+            icosahedron};
+}
+
+Shape MakeSphereHull(int numPoints, int numSteps) {
+    std::mt19937 random(1);
+    auto const draw = [&random] { return 2.0 * random() / double(std::mt19937::max()) - 1; };
+    std::vector<Vector3d> points;
+    while (int(points.size()) < numPoints) {
+        Vector3d const point(draw(), draw(), draw());
+        if (point.norm() < 1 && point.norm() > 0.1) {
+            points.push_back(point.normalized());
+        }
+    }
+    for (int step = 0; step < numSteps; ++step) {
+        std::vector<Vector3d> moved = points;
+        for (int i = 0; i < numPoints; ++i) {
+            Vector3d force = Vector3d::Zero();
+            for (int j = 0; j < numPoints; ++j) {
+                Vector3d const offset = points[i] - points[j];
+                force += offset / std::max(1e-12, std::pow(offset.norm(), 3));
+            }
+            moved[i] = (points[i] + force / (2 * numPoints * std::sqrt(numPoints))).normalized();
+        }
+        points = moved;
+    }
+    return makeHull("sphere hull", points);
+}
+
+} // namespace OpenSubdivHex::Regression

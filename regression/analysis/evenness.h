@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_ANALYSIS_EVENNESS_H
+#define OPENSUBDIVHEX_REGRESSION_ANALYSIS_EVENNESS_H
+
+#include "surfaceLevels.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+/// \brief How even the mean curvature of a surface is where it should be the same: the root of the
+/// mean square by which it deviates from its mean, over that mean.  By area.
+///
+/// \param vertices  those that are looked at
+/// \param groups    by entry of \p vertices: deviations are from the mean of the same group.  The
+///                  modulus of the mean of all is what they are divided by
+double MeasureUnevenness(PolygonMesh const &mesh, std::vector<int> const &vertices,
+                         std::vector<int> const &groups);
+
+/// Over the whole of \p mesh, as of a sphere.
+double MeasureSphereUnevenness(PolygonMesh const &mesh);
+
+/// \brief Within the parallels of a refined MakeTorus(numU, ...): over one of the \p numU sectors
+/// that look alike, in groups of the same angle around the tube, 128 to a turn.
+double MeasureTorusUnevenness(PolygonMesh const &mesh, int numU);
+
+/// The radii of MakeTorus.
+inline constexpr double kTorusRadius = 3;
+inline constexpr double kTubeRadius = 1;
+
+/// \brief A torus of numU x numV quads, or of twice as many triangles, \p numU around the axis, its
+/// vertices at equal angles.
+Shape MakeTorus(int numU, int numV, bool isTriangles);
+
+/// The regular tetrahedron, octahedron and icosahedron: triangles, 3, 4 and 5 at a vertex.
+std::vector<Shape> MakeTrianglePlatonics();
+
+/// \brief \p numPoints points on a sphere that keep away from each other, and their hull of
+/// triangles: most vertices have six of them, some five or seven.
+///
+/// \param numSteps  of relaxation; with few, the points are less even and valences spread
+Shape MakeSphereHull(int numPoints, int numSteps);
+
+} // namespace OpenSubdivHex::Regression
+
+#endif
