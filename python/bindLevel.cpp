@@ -3,12 +3,16 @@
 // TopologyLevel: relations as arrays that show the level's memory, and tags as new ones; and
 // LimitSides and triangles, which are made of a level.
 #include "arrays.h"
+#include "options.h"
 #include "refiner.h"
 
+#include "far_ext/baseFaceMap.h"
 #include "far_ext/limitStencilTableFactory.h"
 #include "osd_ext/triangleIndices.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 
 namespace OpenSubdivHex::Python {
 
@@ -119,6 +123,32 @@ auto makeMask(int (TopologyLevel::*size)() const, bool isFull, QUERY query) {
     };
 }
 
+py::array_t<int> getBaseFaces(Level const &self, int half) {
+    CheckIndex(half, 2, "half");
+    return TakeOver(self.Read([half](TopologyLevel const &level) {
+        BaseFaceMap const map(level);
+        std::vector<int> baseFaces(std::size_t(level.GetNumFaces()));
+        for (std::size_t i = 0; i < baseFaces.size(); ++i) {
+            baseFaces[i] = map.GetBaseFace(Index(i), half);
+        }
+        return baseFaces;
+    }));
+}
+
+py::object areHoles(Level const &self, std::optional<int> half) {
+    if (half) {
+        CheckIndex(*half, 2, "half");
+    }
+    py::array_t<std::uint8_t> const bytes = TakeOver(self.Read([half](TopologyLevel const &level) {
+        std::vector<std::uint8_t> holes(std::size_t(level.GetNumFaces()));
+        for (std::size_t i = 0; i < holes.size(); ++i) {
+            holes[i] = half ? level.IsFaceHole(Index(i), *half) : level.IsFaceHole(Index(i));
+        }
+        return holes;
+    }));
+    return bytes.attr("view")("bool");
+}
+
 void bindRelations(py::class_<Level> &level) {
     level
         .def_property_readonly("face_offsets", relation(&TopologyLevel::GetFaceOffsets, true),
@@ -171,8 +201,10 @@ void bindTags(py::class_<Level> &level) {
     level
         .def("get_face_kinds", makeArray<std::uint8_t>(faces, false, &TopologyLevel::GetFaceKind),
              "get_face_kinds()\n\nA FaceKind for each face: uint8, shape (faces,).")
-        .def("is_face_hole", makeMask(faces, false, &TopologyLevel::IsFaceHole),
-             "is_face_hole()\n\nWhether each face is a hole: bool, shape (faces,).")
+        .def("is_face_hole", &areHoles,
+             "is_face_hole(half=None)\n\nWhether each face, or a half of it, lies in holes alone: "
+             "bool, shape (faces,).",
+             py::arg("half") = py::none())
         .def("is_face_half", makeMask(faces, true, &TopologyLevel::IsFaceHalf),
              "is_face_half()\n\nWhether each face is half a hexagon, cut by a sharp boundary: "
              "bool,\nshape (faces,).")
@@ -210,9 +242,13 @@ void bindTags(py::class_<Level> &level) {
 void bindParents(py::class_<Level> &level) {
     auto const faces = &TopologyLevel::GetNumFaces;
     level
-        .def("get_face_base_faces", makeArray<int>(faces, false, &TopologyLevel::GetFaceBaseFace),
-             "get_face_base_faces()\n\nThe face of level 0 that each face lies in: int32, shape "
-             "(faces,).")
+        .def("get_face_base_faces", &getBaseFaces,
+             "get_face_base_faces(half=0)\n\nThe face of level 0 that a half of each face lies in, "
+             "exactly: int32, shape\n(faces,).  Both halves of most faces lie in one.",
+             py::arg("half") = 0)
+        .def("is_face_base_split", makeMask(faces, false, &TopologyLevel::IsFaceBaseSplit),
+             "is_face_base_split()\n\nWhether the halves of each face lie in two base faces: bool, "
+             "shape (faces,).")
         .def("get_face_parent_faces",
              makeArray<int>(faces, false, &TopologyLevel::GetFaceParentFace),
              "get_face_parent_faces()\n\nOf the level before: int32, shape (faces,).  For the face "
@@ -303,28 +339,158 @@ py::array_t<int> findSides(LimitSides const &self, Level const &level, int half)
     }));
 }
 
-py::dict createTriangleIndices(Level const &level, int vertexOffset, int fvarChannel,
-                               bool drawHoles) {
-    OsdExt::TriangleOptions options;
-    options.vertexOffset = vertexOffset;
-    options.fvarChannel = fvarChannel;
-    options.drawHoles = drawHoles;
-    OsdExt::TriangleIndices triangles = level.Read([&](TopologyLevel const &topology) {
-        if (fvarChannel != -1) {
-            CheckIndex(fvarChannel, topology.GetNumFVarChannels(), "fvar_channel");
+/// The options of both kinds of index buffers, taken from a call's keywords.
+class DrawArguments {
+public:
+    DrawArguments(int vertexOffset, bool cutBaseFaces, py::object const &labels,
+                  py::object const &cutCreases, std::vector<int> const &fvarChannels,
+                  LimitSides const *sides, bool splitVertices, bool generateBaseCoords,
+                  bool drawHoles) {
+        _options.vertexOffset = vertexOffset;
+        _options.cutBaseFaces = cutBaseFaces;
+        if (!labels.is_none()) {
+            _labels = TakeIndices(labels, "labels");
+            _options.labels = Far::ConstIndexArray(_labels.data(), int(_labels.size()));
         }
-        return OsdExt::CreateTriangleIndices(topology, options);
-    });
-    py::ssize_t const numTriangles = triangles.GetNumTriangles();
-    std::vector<py::ssize_t> const shape = {numTriangles, 3};
-    py::dict result;
-    result["vertices"] = TakeOver(std::move(triangles.vertices)).reshape(shape);
-    if (fvarChannel != -1) {
-        result["fvar_values"] = TakeOver(std::move(triangles.fvarValues)).reshape(shape);
+        _options.cutCreases = TakeEnum<OsdExt::CreaseCuts>(cutCreases, "cut_creases");
+        _options.fvarChannels = fvarChannels;
+        _options.sides = sides;
+        _options.splitVertices = splitVertices;
+        _options.generateBaseCoords = generateBaseCoords;
+        _options.drawHoles = drawHoles;
     }
-    result["faces"] = TakeOver(std::move(triangles.faces));
-    result["base_faces"] = TakeOver(std::move(triangles.baseFaces));
+
+    /// Calls create(level, options, &status).
+    template <typename CREATE>
+    auto Create(Level const &level, CREATE const &create) const {
+        Status status;
+        auto const call = [&](TopologyLevel const &topology) {
+            return create(topology, _options, &status);
+        };
+        auto result = level.Read(call);
+        RaiseUnlessOk(status);
+        return result;
+    }
+
+private:
+    py::array_t<int> _labels;
+    OsdExt::DrawOptions _options;
+};
+
+/// What drawn faces have by corner and by face; corners have the shape (corners,), or
+/// (faces, \p width) of faces that have as many.
+py::dict describeFaces(OsdExt::DrawnFaces &&faces, py::ssize_t width) {
+    auto const byCorner = [width](auto &&values, py::ssize_t numbers) -> py::object {
+        using T = std::decay_t<decltype(values[0])>;
+        std::vector<py::ssize_t> shape = {py::ssize_t(values.size()) / numbers};
+        if (width > 1) {
+            shape = {shape[0] / width, width};
+        }
+        if (numbers > 1) {
+            shape.push_back(numbers);
+        }
+        py::array_t<T> array = TakeOver(std::move(values));
+        return array.reshape(shape);
+    };
+    py::dict result;
+    bool const hasLabels = !faces.labels.empty(), hasSides = !faces.sides.empty();
+    result["vertices"] = byCorner(std::move(faces.vertices), 1);
+    py::list channels;
+    for (std::vector<int> &values : faces.fvarValues) {
+        channels.append(byCorner(std::move(values), 1));
+    }
+    result["fvar_values"] = channels;
+    if (hasSides) {
+        result["sides"] = byCorner(std::move(faces.sides), 1);
+    }
+    if (!faces.baseCoords.empty()) {
+        result["base_coords"] = byCorner(std::move(faces.baseCoords), 2);
+    }
+    result["faces"] = TakeOver(std::move(faces.faces));
+    result["base_faces"] = TakeOver(std::move(faces.baseFaces));
+    if (hasLabels) {
+        result["labels"] = TakeOver(std::move(faces.labels));
+    }
     return result;
+}
+
+py::dict createPolygonIndices(Level const &level, DrawArguments const &arguments) {
+    OsdExt::PolygonIndices polygons =
+        arguments.Create(level, [](TopologyLevel const &topology,
+                                   OsdExt::DrawOptions const &options, Status *status) {
+            return OsdExt::CreatePolygonIndices(topology, options, status);
+        });
+    std::vector<int> sizes = std::move(polygons.sizes);
+    py::dict result = describeFaces(std::move(polygons), 1);
+    result["sizes"] = TakeOver(std::move(sizes));
+    return result;
+}
+
+py::dict createTriangleIndices(Level const &level, DrawArguments const &arguments) {
+    return describeFaces(arguments.Create(level,
+                                          [](TopologyLevel const &topology,
+                                             OsdExt::DrawOptions const &options, Status *status) {
+                                              return OsdExt::CreateTriangleIndices(topology,
+                                                                                   options, status);
+                                          }),
+                         3);
+}
+
+/// Binds a function of a level and all DrawOptions.
+template <typename CREATE>
+void defineDrawing(py::module_ &module, char const *name, std::string const &docstring,
+                   CREATE const &create) {
+    module.def(
+        name,
+        [create](Level const &level, int vertexOffset, bool cutBaseFaces, py::object const &labels,
+                 py::object const &cutCreases, std::vector<int> const &fvarChannels,
+                 LimitSides const *sides, bool splitVertices, bool generateBaseCoords,
+                 bool drawHoles) {
+            return create(level, DrawArguments(vertexOffset, cutBaseFaces, labels, cutCreases,
+                                               fvarChannels, sides, splitVertices,
+                                               generateBaseCoords, drawHoles));
+        },
+        docstring.c_str(), py::arg("level"), py::kw_only(), py::arg("vertex_offset") = 0,
+        py::arg("cut_base_faces") = true, py::arg("labels") = py::none(),
+        py::arg("cut_creases") = "all", py::arg("fvar_channels") = py::tuple(),
+        py::arg("sides") = py::none(), py::arg("split_vertices") = false,
+        py::arg("generate_base_coords") = false, py::arg("draw_holes") = false);
+}
+
+void bindDrawing(py::module_ &module) {
+    defineDrawing(
+        module, "create_polygon_indices",
+        "create_polygon_indices(level, *, vertex_offset=0, cut_base_faces=True, labels=None,\n"
+        "                       cut_creases='all', fvar_channels=(), sides=None,\n"
+        "                       split_vertices=False, generate_base_coords=False,\n"
+        "                       draw_holes=False)\n\n"
+        "The polygons that draw a level: its faces, with hexagons cut in halves where asked.\n\n"
+        "Args:\n"
+        "    vertex_offset: added to every vertex\n"
+        "    cut_base_faces: cuts hexagons that lie in two base faces\n"
+        "    labels: a number for each base face, say its material: integers, shape\n"
+        "        (base faces,); cuts hexagons whose halves have different ones\n"
+        "    cut_creases: a CreaseCuts, or its name\n"
+        "    fvar_channels: whose seams cut\n"
+        "    sides: the LimitSides of the level, for normals; None for none\n"
+        "    split_vertices: whether vertices are those of sides\n"
+        "    generate_base_coords: whether places in base faces are made; cuts these\n"
+        "    draw_holes: whether holes are drawn\n\n"
+        "Returns a dict.  By corner, int32 of the shape (corners,): 'vertices', 'sides' with\n"
+        "sides, and 'fvar_values', a list with an array for each channel; 'base_coords', float32\n"
+        "of the shape (corners, 2).  By polygon, int32 of the shape (polygons,): 'sizes', "
+        "'faces',\n"
+        "'base_faces', and 'labels' with labels.  Raises StatusError.",
+        &createPolygonIndices);
+    defineDrawing(
+        module, "create_triangle_indices",
+        "create_triangle_indices(level, *, vertex_offset=0, cut_base_faces=True, labels=None,\n"
+        "                        cut_creases='all', fvar_channels=(), sides=None,\n"
+        "                        split_vertices=False, generate_base_coords=False,\n"
+        "                        draw_holes=False)\n\n"
+        "The same as triangles: a dict without 'sizes', whose arrays by corner have the shape\n"
+        "(triangles, 3), 'base_coords' (triangles, 3, 2).",
+        &createTriangleIndices);
 }
 
 } // namespace
@@ -383,15 +549,7 @@ void BindLevel(py::module_ &module) {
              "half.",
              py::arg("level"), py::arg("half") = 0);
 
-    module.def(
-        "create_triangle_indices", &createTriangleIndices,
-        "create_triangle_indices(level, vertex_offset=0, fvar_channel=-1, draw_holes=False)\n"
-        "\n"
-        "Triangles to draw a level with, cut along creases and along the seams of the\n"
-        "channel: a dict of int32 arrays, 'vertices' and, with a channel, 'fvar_values' of\n"
-        "the shape (triangles, 3), 'faces' and 'base_faces' of the shape (triangles,).",
-        py::arg("level"), py::arg("vertex_offset") = 0, py::arg("fvar_channel") = -1,
-        py::arg("draw_holes") = false);
+    bindDrawing(module);
 }
 
 } // namespace OpenSubdivHex::Python

@@ -6,6 +6,7 @@
 #include "far_ext/hexSchemeOptions.h"
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/threads.h"
+#include "osd_ext/polygonIndices.h"
 #include "osd_ext/simdLevel.h"
 
 #include <opensubdiv/sdc/crease.h>
@@ -67,6 +68,10 @@ void bindEnums(py::module_ &module) {
         .value("CORNER", Crease::RULE_CORNER);
     module.attr("SHARPNESS_INFINITE") = Crease::SHARPNESS_INFINITE;
 
+    py::enum_<OsdExt::CreaseCuts>(module, "CreaseCuts", "The creases along which hexagons are cut.")
+        .value("NONE", OsdExt::CreaseCuts::None)
+        .value("INFINITELY_SHARP", OsdExt::CreaseCuts::InfinitelySharp)
+        .value("ALL", OsdExt::CreaseCuts::All);
     py::enum_<OsdExt::SimdLevel>(module, "SimdLevel", "The instructions that evaluators use.")
         .value("PORTABLE", OsdExt::SimdLevel::Portable)
         .value("AVX2", OsdExt::SimdLevel::Avx2)

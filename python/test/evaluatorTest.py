@@ -140,7 +140,7 @@ def test_face_uniform_data_of_any_type(refiner):
     colours = np.random.default_rng(0).random((len(FACES), 2, 2))
     dst = np.empty((refiner.get_level(1).num_faces, 2, 2))
     assert primvars.interpolate_face_uniform(1, colours, dst) is dst
-    np.testing.assert_array_equal(dst, colours[refiner.get_level(1).get_face_parent_faces()])
+    np.testing.assert_array_equal(dst, colours[refiner.get_level(1).get_face_base_faces()])
 
 
 def test_an_evaluator_gets_out_of_date():

@@ -6,7 +6,7 @@ import gc
 import numpy as np
 import opensubdivhex as osh
 import pytest
-from meshes import CUBE_FACES, make_grid, make_torus
+from meshes import CUBE_FACES, CUBE_POSITIONS, make_grid, make_torus
 
 RELATIONS = ["face_offsets", "face_vertices", "face_edges", "edge_vertices", "edge_faces",
              "vertex_face_offsets", "vertex_faces", "vertex_edge_offsets", "vertex_edges"]
@@ -128,8 +128,8 @@ def test_kinds_and_parents():
     edges = level.get_face_parent_edges()
     np.testing.assert_array_equal(edges, np.r_[np.full(18, -1), np.arange(48)])
     np.testing.assert_array_equal(parents[18:], parent.edge_faces[:, 0])
-    np.testing.assert_array_equal(level.get_face_base_faces(),
-                                  parent.get_face_base_faces()[parents])
+    base = level.get_face_base_faces()
+    np.testing.assert_array_equal(base[:18], parent.get_face_base_faces())
     assert (level.get_face_parent_vertices() == -1).all()
     np.testing.assert_array_equal(parent.get_edge_child_faces(), 18 + np.arange(48))
     np.testing.assert_array_equal(parent.get_vertex_child_vertices(), np.arange(32))
@@ -208,21 +208,111 @@ def test_limit_sides_of_a_cut_cube():
         sides.find_sides(osh.TopologyRefiner(make_grid(1, 1)[1]).get_level(0))
 
 
-def test_triangles_cover_faces():
+def make_box_refiner(level, **options):
+    """A cube with all edges sharp, so that refined faces stay in the planes of the base's."""
+    edges = osh.TopologyRefiner(CUBE_FACES).get_level(0).edge_vertices.copy()
+    return refine(CUBE_FACES, level, creases=(edges, 10), **options)
+
+
+def test_base_faces_are_exact():
+    refiner = make_box_refiner(3)
+    level = refiner.get_level(3)
+    split = level.is_face_base_split()
+    halves = np.stack([level.get_face_base_faces(0), level.get_face_base_faces(1)], axis=1)
+    np.testing.assert_array_equal(split, halves[:, 0] != halves[:, 1])
+    assert split.any()
+    positions = osh.RefinementEvaluator(refiner).evaluate(CUBE_POSITIONS)
+    normals = [CUBE_POSITIONS[face].mean(axis=0) for face in CUBE_FACES]
+    for corners, bases in zip(np.split(level.face_vertices, level.face_offsets[1:-1]), halves):
+        for half, places in enumerate(([0, 3, 4, 5], [3, 0, 1, 2])):
+            part = corners[places] if bases[0] != bases[1] else corners
+            np.testing.assert_allclose(positions[part] @ normals[bases[half]], 1, atol=1e-5)
+
+
+@pytest.mark.parametrize("cut_base_faces, labels", [
+    (True, None), (False, [7, 7, 7, 7, 7, 7]), (False, [1, 2, 1, 1, 1, 1])])
+def test_polygons_are_cut_where_asked(cut_base_faces, labels):
+    level = refine(CUBE_FACES, 2).get_level(2)
+    polygons = osh.create_polygon_indices(level, cut_base_faces=cut_base_faces, labels=labels,
+                                          vertex_offset=100)
+    halves = np.stack([level.get_face_base_faces(0), level.get_face_base_faces(1)], axis=1)
+    given = np.array(labels or np.arange(6))
+    cut = given[halves[:, 0]] != given[halves[:, 1]]
+    assert cut.any() == (cut_base_faces or len(set(labels)) > 1)
+    expected = []
+    for f, corners in enumerate(np.split(level.face_vertices, level.face_offsets[1:-1])):
+        if cut[f]:
+            expected += [(f, halves[f, 0], list(corners[[0, 3, 4, 5]])),
+                         (f, halves[f, 1], list(corners[[3, 0, 1, 2]]))]
+        else:
+            expected.append((f, halves[f, 0], list(corners)))
+    found = np.split(polygons["vertices"] - 100, np.cumsum(polygons["sizes"])[:-1])
+    assert [(f, b, list(c)) for f, b, c in zip(
+        polygons["faces"], polygons["base_faces"], found)] == expected
+    if labels:
+        np.testing.assert_array_equal(polygons["labels"], given[polygons["base_faces"]])
+    else:
+        assert "labels" not in polygons
+    assert polygons["fvar_values"] == [] and "sides" not in polygons
+
+
+def test_polygons_have_values_sides_and_places():
+    refiner = make_box_refiner(2, fvar_channels=[np.arange(24), np.ravel(CUBE_FACES)])
+    level, sides = refiner.get_level(2), osh.LimitSides(refiner.get_level(2))
+    polygons = osh.create_polygon_indices(level, fvar_channels=[1, 0], sides=sides,
+                                          generate_base_coords=True)
+    corners = len(polygons["vertices"])
+    assert corners == polygons["sizes"].sum()
+    assert [len(values) for values in polygons["fvar_values"]] == [corners] * 2
+    # The second channel is the mesh itself; the first has one chart for each base face.
+    np.testing.assert_array_equal(polygons["fvar_values"][0], polygons["vertices"])
+    base = np.repeat(polygons["base_faces"], polygons["sizes"])
+    charts = {}
+    for value, face in zip(polygons["fvar_values"][1], base):
+        assert charts.setdefault(value, face) == face
+    np.testing.assert_array_equal(sides.get_vertices()[polygons["sides"]], polygons["vertices"])
+    assert polygons["base_coords"].shape == (corners, 2)
+    assert polygons["base_coords"].min() == 0 and polygons["base_coords"].max() == 1
+    split = osh.create_polygon_indices(level, sides=sides, split_vertices=True)
+    np.testing.assert_array_equal(split["vertices"], split["sides"])
+
+
+def test_holes_are_left_out():
+    refiner = refine(CUBE_FACES, 1, holes=[1])
+    level = refiner.get_level(1)
+    polygons = osh.create_polygon_indices(level)
+    assert 1 not in polygons["base_faces"] and len(set(polygons["base_faces"])) == 5
+    everything = osh.create_polygon_indices(level, draw_holes=True)
+    assert np.count_nonzero(everything["base_faces"] == 1) == 5
+    halves = np.stack([level.is_face_hole(0), level.is_face_hole(1)])
+    np.testing.assert_array_equal(level.is_face_hole(), halves.all(axis=0))
+    assert np.count_nonzero(halves[0] != halves[1]) == 4
+
+
+def test_triangles_cover_polygons():
     refiner = refine(CUBE_FACES, 1, holes=[1], fvar_channels=[np.arange(24)])
     level = refiner.get_level(1)
-    triangles = osh.create_triangle_indices(level, vertex_offset=100, fvar_channel=0)
-    sizes = np.diff(level.face_offsets)
-    drawn = ~level.is_face_hole()
-    assert np.count_nonzero(drawn) == 17
-    np.testing.assert_array_equal(np.bincount(triangles["faces"], minlength=18),
-                                  np.where(drawn, sizes - 2, 0))
-    assert triangles["vertices"].shape == triangles["fvar_values"].shape == (
-        (sizes - 2)[drawn].sum(), 3)
+    options = {"fvar_channels": [0], "vertex_offset": 100, "generate_base_coords": True}
+    polygons = osh.create_polygon_indices(level, **options)
+    triangles = osh.create_triangle_indices(level, **options)
+    count = (polygons["sizes"] - 2).sum()
+    assert triangles["vertices"].shape == triangles["fvar_values"][0].shape == (count, 3)
+    assert triangles["base_coords"].shape == (count, 3, 2)
+    np.testing.assert_array_equal(triangles["base_faces"],
+                                  np.repeat(polygons["base_faces"], polygons["sizes"] - 2))
     assert triangles["vertices"].min() >= 100
     for face, triangle in zip(triangles["faces"], triangles["vertices"] - 100):
         begin, end = level.face_offsets[face:face + 2]
         assert set(triangle) <= set(level.face_vertices[begin:end])
-    with_holes = osh.create_triangle_indices(level, draw_holes=True)
-    assert set(with_holes) == {"vertices", "faces", "base_faces"}
-    assert len(with_holes["faces"]) == (sizes - 2).sum()
+
+
+@pytest.mark.parametrize("arguments, error", [
+    ({"labels": [1, 2]}, osh.StatusError), ({"fvar_channels": [0]}, osh.StatusError),
+    ({"split_vertices": True}, osh.StatusError), ({"labels": [0.5] * 6}, TypeError),
+    ({"cut_creases": "some"}, ValueError), ({"fvar_channels": "ab"}, TypeError),
+    ({"sides": osh.LimitSides(osh.TopologyRefiner([[0, 1, 2]]).get_level(0))}, osh.StatusError)])
+def test_polygons_that_cannot_be_drawn(arguments, error):
+    level = refine(CUBE_FACES, 1).get_level(1)
+    for create in (osh.create_polygon_indices, osh.create_triangle_indices):
+        with pytest.raises(error):
+            create(level, **arguments)

@@ -119,10 +119,9 @@ def test_tables_of_faces():
     assert 0 < len(vertices) == part.num_stencils < whole.num_stencils
     rows = whole.to_scipy()[vertices]
     assert abs(rows - part.to_scipy()).max() == 0
-    base = refiner.get_level(2).get_face_base_faces()
-    level = refiner.get_level(2)
-    inside = np.isin(np.repeat(base, np.diff(level.face_offsets)), [2, 5])
-    np.testing.assert_array_equal(np.unique(level.face_vertices[inside]), vertices)
+    polygons = osh.create_polygon_indices(refiner.get_level(2))
+    inside = np.isin(np.repeat(polygons["base_faces"], polygons["sizes"]), [2, 5])
+    np.testing.assert_array_equal(np.unique(polygons["vertices"][inside]), vertices)
     with pytest.raises(osh.StatusError) as caught:
         osh.StencilTable.create_of_faces(refiner, [0, 12])
     assert caught.value.component == osh.ComponentType.FACE and caught.value.index == 12
