@@ -17,7 +17,7 @@ enum class CreaseCuts {
 
 /// \brief What is drawn of a level, and where hexagons are cut in two: from vertex 0 to vertex 3, into
 /// the halves of FarExt::kHexagonHalves.  Only an edge of level 0 ever crosses a face, so that a
-/// hexagon is cut only where it has two base faces; no cut adds vertices.
+/// hexagon is cut only where it has two base faces, or is half a hole; no cut adds vertices.
 struct DrawOptions {
     /// Added to every vertex, for levels behind others in one buffer.
     int vertexOffset = 0;
