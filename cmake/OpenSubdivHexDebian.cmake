@@ -94,4 +94,14 @@ if(TARGET hexrefine)
       COMPONENT tools EXCLUDE_FROM_ALL)
   endif()
 endif()
+
+if(TARGET opensubdivhex_python)
+  # An extension is for one version of Python.
+  math(EXPR nextMinor "${Python_VERSION_MINOR} + 1")
+  opensubdivhex_add_debian_package(python python3-opensubdivhex python
+    "This package has the module opensubdivhex for Python 3."
+    "${libraryPackage} (= ${debianVersion})" python3-numpy
+    "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~)"
+    "python3 (<< ${Python_VERSION_MAJOR}.${nextMinor})")
+endif()
 include(CPack)

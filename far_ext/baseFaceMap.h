@@ -18,11 +18,12 @@ namespace OpenSubdivHex::FarExt {
 /// refers to the refiner afterwards; the map is out of date when that refines again.
 class OPENSUBDIVHEX_API BaseFaceMap {
 public:
+    /// A face.
     using Index = Far::Index;
 
     /// A hexagon with a half in each of two base faces.
     struct SplitFace {
-        Index face;
+        Index face;         ///< the hexagon
         Index baseFaces[2]; ///< of half 0 and half 1, as in kHexagonHalves
     };
 
@@ -30,6 +31,7 @@ public:
     ///
     /// In parallel, with the same bits for any number of threads.  std::bad_alloc passes through.
     BaseFaceMap(TopologyRefiner const &refiner, int maxLevel);
+    /// Those of all levels.
     explicit BaseFaceMap(TopologyRefiner const &refiner)
         : BaseFaceMap(refiner, refiner.GetMaxLevel()) {}
     /// Those up to \p level.
@@ -38,8 +40,9 @@ public:
     /// Faces of the last level that is mapped.
     int GetNumFaces() const { return int(_baseFaces.size()); }
 
-    /// As TopologyLevel::IsFaceBaseSplit and GetFaceBaseFace.
+    /// As TopologyLevel::IsFaceBaseSplit.
     bool IsSplit(Index f) const { return _baseFaces[f] < 0; }
+    /// As TopologyLevel::GetFaceBaseFace.
     Index GetBaseFace(Index f, int half = 0) const {
         Index const entry = _baseFaces[f];
         return entry >= 0 ? entry : _splitFaces[~entry].baseFaces[half];

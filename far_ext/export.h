@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_EXPORT_H
 #define OPENSUBDIVHEX_FAR_EXT_EXPORT_H
 
+/// \ingroup far_ext
 /// \brief Marks what the shared libraries export; all else stays inside them.
 ///
 /// It does nothing in a static library, so that a shared one which takes that in exports nothing of

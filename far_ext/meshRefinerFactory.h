@@ -47,14 +47,20 @@ private:
 /// INDEX_INVALID), and Create() fails with the first of these causes.
 class OPENSUBDIVHEX_API MeshRefinerFactoryBase {
 protected:
+    /// A vertex, an edge, a face or a value.
     using Index = Far::Index;
+    /// Indices to be written.
     using IndexArray = Far::IndexArray;
 
     /// @name For resizeComponentTopology()
     /// The number of faces comes before the numbers of their vertices.
     /// @{
+
+    /// Says how many vertices there are.
     static void setNumBaseVertices(BaseTopology &base, int count);
+    /// Says how many faces there are.
     static void setNumBaseFaces(BaseTopology &base, int count);
+    /// Says how many vertices a face has.
     static void setNumBaseFaceVertices(BaseTopology &base, Index face, int count) {
         if (base._faceSizes && 0 <= face && face < base._numFaces) {
             base._faceSizes[face] = count;
@@ -66,7 +72,10 @@ protected:
 
     /// @name For assignComponentTopology()
     /// @{
+
+    /// Vertices, as was said.
     static int getNumBaseVertices(BaseTopology const &base);
+    /// Faces, as was said.
     static int getNumBaseFaces(BaseTopology const &base) { return base._numFaces; }
     /// The vertices of a face, counter-clockwise, to be written: all of them, of all faces.
     static IndexArray getBaseFaceVertices(BaseTopology &base, Index face) {
@@ -82,27 +91,36 @@ protected:
     /// @name For assignComponentTags()
     /// Edges are found and numbered as Far does: see INDEXING.md.
     /// @{
+
+    /// Edges that were found.
     static int getNumBaseEdges(BaseTopology const &base);
     /// The edge between two vertices, INDEX_INVALID if there is none.
     static Index findBaseEdge(BaseTopology const &base, Index v0, Index v1);
+    /// Makes an edge a crease.
     static void setBaseEdgeSharpness(BaseTopology &base, Index edge, float sharpness);
+    /// Makes a vertex a corner.
     static void setBaseVertexSharpness(BaseTopology &base, Index vert, float sharpness);
+    /// Says whether a face is a hole.
     static void setBaseFaceHole(BaseTopology &base, Index face, bool isHole);
     /// @}
 
     /// @name For assignFaceVaryingTopology()
     /// @{
+
     /// \brief Adds a channel of \p numValues values, with the face-varying rule of \p options or
     /// else of the options of the refiner.
     /// \return  its number, from 0 on
     static int createBaseFVarChannel(BaseTopology &base, int numValues);
+    /// \copydoc createBaseFVarChannel(BaseTopology &, int)
     static int createBaseFVarChannel(BaseTopology &base, int numValues,
                                      Sdc::Options const &options);
     /// The values of the corners of a face, to be written: all of them, of all faces.
     static IndexArray getBaseFaceFVarValues(BaseTopology &base, Index face, int channel = 0);
     /// @}
 
+    /// One of the four functions, for a mesh.
     using Function = std::function<bool(BaseTopology &)>;
+    /// Makes the refiner by the four functions, in their order.
     static std::unique_ptr<TopologyRefiner>
     create(Sdc::Options sdcOptions, TopologyRefinerFactory::Options options, Status *status,
            Function const &resize, Function const &assign, Function const &assignTags,
@@ -145,6 +163,7 @@ protected:
 template <class MESH>
 class MeshRefinerFactory : protected MeshRefinerFactoryBase {
 public:
+    /// How the mesh is refined.
     using Options = TopologyRefinerFactory::Options;
 
     /// \return  null on failure, with the causes of TopologyRefinerFactory::Create from a descriptor
@@ -158,6 +177,7 @@ public:
             [&](BaseTopology &base) { return assignComponentTags(base, mesh); },
             [&](BaseTopology &base) { return assignFaceVaryingTopology(base, mesh); });
     }
+    /// The same with the default options.
     static std::unique_ptr<TopologyRefiner>
     Create(MESH const &mesh, Sdc::Options sdcOptions = Sdc::Options(), Status *status = nullptr) {
         return Create(mesh, sdcOptions, Options(), status);

@@ -119,6 +119,7 @@ public:
     /// @name Whole relations, for those who hand them on without a copy
     /// Valid as long as the level.  Without full topology those of edges and vertices are empty.
     /// @{
+
     /// GetNumFaces() + 1 positions: the vertices of face f are the elements
     /// [offsets[f], offsets[f + 1]) of GetAllFaceVertices(), and likewise its edges.
     ConstIndexArray GetFaceOffsets() const { return {_faceFirstCorner, _numFaces + 1}; }
@@ -255,6 +256,7 @@ public:
     ///              four vertices kHexagonHalves[half]
     /// \return      false, and \p uv is not written, at levels behind other than hexagonal steps
     bool GetFaceBaseCoords(Index f, int half, float *uv) const;
+    /// \copydoc GetFaceBaseCoords(Index, int, float *) const
     bool GetFaceBaseCoords(Index f, int half, double *uv) const;
 
     /// The parent face of an F-face; for an E-face, the first face of its parent edge; for a
@@ -297,8 +299,9 @@ public:
     /// \return  whether all hold; \p status names the first component that breaks one.
     bool Validate(Status *status = nullptr) const;
 
-    /// The arrays of the level, and all levels, for the library's own use.
+    /// The arrays of the level, for the library's own use.
     internal::Level const &GetLevel() const { return *_level; }
+    /// All levels, for the library's own use.
     internal::Hierarchy const &GetHierarchy() const { return *_hierarchy; }
 
 private:

@@ -10,7 +10,7 @@ namespace OpenSubdivHex::OsdExt {
 
 /// \brief The creases along which hexagons are cut.
 enum class CreaseCuts {
-    None,
+    None,            ///< none cuts
     InfinitelySharp, ///< where LimitSides tells the two sides of a crease apart
     All              ///< semi-sharp ones too, at the levels where they are sharp
 };
@@ -28,6 +28,7 @@ struct DrawOptions {
     /// A number for each base face, say that of its material: cuts hexagons whose halves have
     /// different ones.  Empty, or one for each face of level 0; not referred to afterwards.
     Far::ConstIndexArray labels{};
+    /// Which creases cut hexagons.
     CreaseCuts cutCreases = CreaseCuts::All;
     /// Channels whose seams cut, in the order of DrawnFaces::fvarValues.
     std::vector<int> fvarChannels{};

@@ -125,9 +125,12 @@ public:
     /// \return  false, with nothing written, as Evaluate; besides with InvalidArgument for other
     ///          modes than INTERPOLATE_VERTEX, and as FarExt::LimitStencilTableFactory fails
     /// @{
+
+    /// The points alone.
     bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                        Osd::BufferDescriptor const &dstDesc, int level,
                        FarExt::Status *status = nullptr);
+    /// The points and their derivatives.
     bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                        Osd::BufferDescriptor const &dstDesc, float *du,
                        Osd::BufferDescriptor const &duDesc, float *dv,

@@ -30,6 +30,18 @@ cmake -S /consumer -B /tmp/build -D wantedVersion="$version" >/dev/null
 cmake --build /tmp/build >/dev/null
 /tmp/build/consumer
 
+step "the Python module"
+install /packages/python3-opensubdivhex_*.deb
+python3 - "$version" <<'PYTHON'
+import sys
+import opensubdivhex as osh
+assert osh.__version__ == sys.argv[1], osh.__version__
+cube = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]]
+refiner = osh.TopologyRefiner(cube)
+refiner.refine_uniform(2)
+assert refiner.get_level(2).num_vertices == 128
+PYTHON
+
 step "the same program with pkg-config"
 test "$(pkg-config --modversion opensubdivhex)" = "$version"
 # shellcheck disable=SC2046  # words are meant
@@ -38,7 +50,7 @@ c++ -std=c++17 -D PACKAGE_VERSION="\"$version\"" /consumer/consumer.cpp -o /tmp/
 /tmp/consumer >/dev/null
 
 step "removal leaves nothing"
-apt-get -q -y purge 'libopensubdivhex*' 'opensubdivhex-*' >/dev/null
+apt-get -q -y purge '*opensubdivhex*' >/dev/null
 rest=$(find /usr -iname '*opensubdivhex*' -o -name hexrefine)
 if [ -n "$rest" ]; then
     step "left behind: $rest"

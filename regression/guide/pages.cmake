@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# cmake -D readme=FILE -D guideDir=DIR -D testedPages=LIST -P pages.cmake
+#
+# Checks that every page of the guide that shows C++ is a tested program, that the C++ of the README
+# stands in one of them, and that the guide's first page leads to all pages.
+cmake_minimum_required(VERSION 3.24)
+
+file(READ ${guideDir}/index.md index)
+file(GLOB pages ${guideDir}/*.md)
+foreach(page IN LISTS pages)
+  file(READ ${page} text)
+  string(FIND "${text}" "\n```cpp\n" position)
+  if(NOT position EQUAL -1 AND NOT page IN_LIST testedPages)
+    message(SEND_ERROR "${page} shows C++ that no test compiles: see regression/guide")
+  endif()
+  cmake_path(GET page FILENAME name)
+  string(FIND "${index}" "](${name})" position)
+  if(position EQUAL -1 AND NOT name STREQUAL "index.md")
+    message(SEND_ERROR "index.md does not lead to ${name}")
+  endif()
+endforeach()
+
+file(READ ${readme} rest)
+set(begin "\n```cpp\n")
+while(TRUE)
+  string(FIND "${rest}" "${begin}" position)
+  if(position EQUAL -1)
+    break()
+  endif()
+  string(LENGTH "${begin}" length)
+  math(EXPR position "${position} + ${length}")
+  string(SUBSTRING "${rest}" ${position} -1 rest)
+  string(FIND "${rest}" "```" length)
+  string(SUBSTRING "${rest}" 0 ${length} code)
+  set(isTested FALSE)
+  foreach(page IN LISTS testedPages)
+    file(READ ${page} text)
+    string(FIND "${text}" "${begin}${code}```" position)
+    if(NOT position EQUAL -1)
+      set(isTested TRUE)
+    endif()
+  endforeach()
+  if(NOT isTested)
+    message(SEND_ERROR "the guide has no block of C++ like this one of ${readme}:\n${code}")
+  endif()
+endwhile()
