@@ -305,8 +305,8 @@ private:
 
 template <typename OPTIONS>
 Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
-    Status const result = internal::CheckLimitLevel(refiner.GetHierarchy(),
-                                                    refiner.GetHexSchemeOptions(), options.level);
+    Status result = internal::CheckLimitLevel(refiner.GetHierarchy(), refiner.GetHexSchemeOptions(),
+                                              options.level);
     if (!result.IsOk()) {
         return result;
     }

@@ -199,7 +199,7 @@ void LimitMultiplier<REAL>::scatterTerms(int row, int numColumns) {
         Index const vert = _sources[std::size_t(term->source)].vert;
         REAL *const sums = _sums.data() + _columnOfIndex[std::size_t(vert)].value;
         for (int sum = 0; sum < kNumSums; ++sum) {
-            sums[sum * roundUp(numColumns)] += term->factors[sum];
+            sums[sum * std::ptrdiff_t(roundUp(numColumns))] += term->factors[sum];
         }
     }
 }
@@ -258,7 +258,7 @@ void LimitMultiplier<REAL>::Fill(Columns const &columns, Place const *places) {
     for (int i = 0; i < columns.size; ++i) {
         _columnOfIndex[std::size_t(columns.indices[i])].value = i;
     }
-    _sums.resize(std::size_t(kNumSums * roundUp(columns.size)));
+    _sums.resize(kNumSums * std::size_t(roundUp(columns.size)));
     if (_stencils) {
         makeDense(columns);
     }

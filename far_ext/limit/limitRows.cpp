@@ -72,7 +72,7 @@ public:
 
 private:
     void add(Index vert, std::shared_ptr<LimitMask const> mask, std::vector<int> const &sides,
-             Range &range) {
+             Range &range) const {
         if (!mask) {
             range.status = Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
                                   "the limit of vertex " + std::to_string(vert) + " of level " +
