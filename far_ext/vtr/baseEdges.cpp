@@ -340,6 +340,7 @@ Status numberEdges(PLACES const &places, BoundaryKind boundary,
     ResizeEdges(std::size_t(numBaseEdges + numOthers), level);
     numbering.Fill();
     std::vector<ApartSide> sides;
+    sides.reserve(apartSides.size());
     for (NewSide const &side : apartSides) {
         sides.push_back({level.faceEdges[side.first], side.corner});
     }
@@ -361,7 +362,7 @@ Status BuildLevelOfFaces(BoundaryKind boundary, Level &level, std::vector<Index>
     FindFaceSizes(level);
     Corners corners;
     FindCorners(level, corners);
-    Status const status = WithPlaces(level, corners, [&](auto const &places) {
+    Status status = WithPlaces(level, corners, [&](auto const &places) {
         std::vector<NewSide> const apartSides = MateFinder(places, level, corners).Find();
         return numberEdges(places, boundary, apartSides, corners, level);
     });

@@ -47,7 +47,7 @@ public:
 
     // The vertices with several fans.
     std::vector<Index> Build() {
-        std::vector<Index> const fanned =
+        std::vector<Index> fanned =
             ParallelSelect(_level.numVertices, [this](Index vert) { return !fillFan(vert); });
         for (Index vert : fanned) {
             fillFans(vert);

@@ -51,7 +51,7 @@ Status RefinerReader::readFaces() {
     ParallelFor(_level.numFaces, [&](Index face) {
         _mesh.GetFaceSizes()[face] = _base.GetFaceVertices(face).size();
     });
-    Status const status = _mesh.CompleteSizes();
+    Status status = _mesh.CompleteSizes();
     if (!status.IsOk()) {
         return status;
     }
@@ -108,7 +108,7 @@ Status RefinerReader::readApartEdge(Index edge, std::vector<ApartSide> &sides) c
     ConstIndexArray const verts = _base.GetEdgeVertices(edge);
     ConstIndexArray const faces = _base.GetEdgeFaces(edge);
     ConstLocalIndexArray const locals = _base.GetEdgeFaceLocalIndices(edge);
-    if (faces.size() == 0) {
+    if (faces.empty()) {
         return refuse(" has no face");
     }
     std::vector<Index> corners;
