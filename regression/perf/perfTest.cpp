@@ -105,7 +105,11 @@ TEST(Perf, QuickRunHasEveryFigure) {
             }
         }
         bool const isResident = settings.count("quad small resident") > 0;
+        bool const isOfBase = row.name.rfind("base-", 0) == 0;
         for (std::string const mesh : {"quad", "triangle", "hexagon"}) {
+            if (isOfBase && mesh == "hexagon") {
+                continue; // people have meshes of quads and of triangles
+            }
             for (std::string const size : {"small", "large"}) {
                 std::string const meshSize = std::string(mesh).append(" ").append(size);
                 if (isResident) {

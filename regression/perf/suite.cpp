@@ -47,11 +47,12 @@ Suite::Suite(Options options) : _options(std::move(options)) {
     for (BenchMesh &mesh : _meshes) {
         mesh.level = std::max(mesh.level, 1);
     }
-    _baseMeshes = {{quad, "quad", kSmall, 0}, {triangle, "triangle", kSmall, 0}};
-    if (!_options.isQuick) {
-        _baseMeshes.push_back({share(MakeLargeMesh(false)), "quad", kLarge, 0});
-        _baseMeshes.push_back({share(MakeLargeMesh(true)), "triangle", kLarge, 0});
-    }
+    auto const largeQuad = _options.isQuick ? quad : share(MakeLargeMesh(false));
+    auto const largeTriangle = _options.isQuick ? triangle : share(MakeLargeMesh(true));
+    _baseMeshes = {{quad, "quad", kSmall, 0},
+                   {largeQuad, "quad", kLarge, 0},
+                   {triangle, "triangle", kSmall, 0},
+                   {largeTriangle, "triangle", kLarge, 0}};
     auto const smallQuad = share(MakeSmallQuadMesh());
     for (int level = 1; level <= (_options.isQuick ? 2 : 6); ++level) {
         _growthMeshes.push_back({smallQuad, "quad", "level " + std::to_string(level), level});
