@@ -4,7 +4,8 @@
 #
 # Checks that a shared library exports its public API, of which public is a part of a mangled name,
 # and of what is internal no more than the inline code of public headers and osd_ext call.
-set(called AllocateArray FreeArray Report PrimvarRows FindUniformSources RefinementMask SortUnique)
+set(called AllocateArray FreeArray RangeQueue ForEachRange Report SortUnique RefinementMask LimitRows
+  CheckLimitLevel PrimvarRows PrimvarLimitRows FindUniformSources)
 
 execute_process(COMMAND ${nm} --dynamic --defined-only --format=posix ${library}
   OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
