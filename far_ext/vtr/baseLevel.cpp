@@ -47,8 +47,8 @@ public:
 
     // The vertices with several fans.
     std::vector<Index> Build() {
-        std::vector<Index> fanned =
-            ParallelSelect(_level.numVertices, [this](Index vert) { return !fillFan(vert); });
+        std::vector<Index> fanned = ParallelSelect(
+            _level.numVertices, [this](Index vert) { return !fillFan(vert); }, kShortParallelRange);
         for (Index vert : fanned) {
             fillFans(vert);
         }

@@ -128,10 +128,13 @@ Status BaseMesh::CompleteSizes() {
 
 Status BaseMesh::CheckFaces() {
     Level const &level = *_level;
-    std::vector<Index> const suspects = ParallelSelect(level.numFaces, [&](Index face) {
-        return isSuspect(level.faceVerts.data() + level.faceFirstCorner[face],
-                         level.GetFaceSize(face), level.numVertices);
-    });
+    std::vector<Index> const suspects = ParallelSelect(
+        level.numFaces,
+        [&](Index face) {
+            return isSuspect(level.faceVerts.data() + level.faceFirstCorner[face],
+                             level.GetFaceSize(face), level.numVertices);
+        },
+        kShortParallelRange);
     std::vector<Index> sorted;
     for (Index face : suspects) {
         Far::ConstIndexArray const verts = level.GetFaceVertices(face);

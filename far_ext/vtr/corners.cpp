@@ -14,7 +14,7 @@ using Far::Index;
 // A counting sort of corners by vertex, in pieces of consecutive corners.  Each piece counts the
 // corners of the vertices that it has, so that it knows where its own corners go once all have
 // counted.  Where vertices that are near have numbers that are, the counts of all pieces together
-// are hardly more than the vertices; else one piece has all corners.
+// are at most some times the vertices; else one piece has all corners.
 class CornerSorter {
 public:
     CornerSorter(Level &level, Buffer<Index> &ofVerts) : _level(level), _ofVerts(ofVerts) {}
@@ -39,7 +39,6 @@ private:
 
     template <typename FUNCTION>
     void forEachPiece(FUNCTION function) {
-        struct Nothing {};
         ParallelForRange(
             Index(_pieces.size()), [] { return Nothing(); },
             [&](Nothing, Index begin, Index) { function(_pieces[std::size_t(begin)]); }, 1);
@@ -71,7 +70,7 @@ private:
 
 void CornerSorter::makePieces() {
     constexpr Index kMaxPieces = 64;
-    constexpr Index kPieceCorners = Index(1) << 14;
+    constexpr Index kPieceCorners = Index(1) << 12;
     Index const numPieces = std::clamp(_level.numCorners / kPieceCorners, Index(1), kMaxPieces);
     auto const place = [&](Index piece) {
         return Index(std::int64_t(_level.numCorners) * piece / numPieces);
@@ -89,7 +88,7 @@ void CornerSorter::makePieces() {
         }
         return result;
     };
-    if (getNumCounts() > 2 * std::size_t(_level.numVertices)) {
+    if (getNumCounts() > 3 * std::size_t(_level.numVertices)) {
         _pieces.assign(1, {0, _level.numCorners, 0, _level.numVertices, nullptr});
     }
     _counts.Resize(getNumCounts());

@@ -55,10 +55,11 @@ Status RefinerReader::readFaces() {
     if (!status.IsOk()) {
         return status;
     }
-    ParallelFor(_level.numFaces, [&](Index face) {
-        ConstIndexArray const verts = _base.GetFaceVertices(face);
-        std::copy(verts.begin(), verts.end(),
-                  _level.faceVerts.data() + _level.faceFirstCorner[face]);
+    // The vertices of faces follow one another in Far's levels, too.
+    ParallelForRange(_level.numFaces, [&](Index begin, Index end) {
+        Index const first = _level.faceFirstCorner[begin];
+        std::copy_n(_base.GetFaceVertices(begin).begin(), _level.faceFirstCorner[end] - first,
+                    _level.faceVerts.data() + first);
     });
     return _mesh.CheckFaces();
 }
@@ -206,9 +207,10 @@ Status RefinerReader::readTags() {
 Status RefinerReader::readChannel(int channel) {
     Buffer<Index> values;
     values.Resize(_level.numCorners);
-    ParallelFor(_level.numFaces, [&](Index face) {
-        ConstIndexArray const ofFace = _base.GetFaceFVarValues(face, channel);
-        std::copy(ofFace.begin(), ofFace.end(), values.data() + _level.faceFirstCorner[face]);
+    ParallelForRange(_level.numFaces, [&](Index begin, Index end) {
+        Index const first = _level.faceFirstCorner[begin];
+        std::copy_n(_base.GetFaceFVarValues(begin, channel).begin(),
+                    _level.faceFirstCorner[end] - first, values.data() + first);
     });
     Index const numValues = _base.GetNumFVarValues(channel);
     Status status = CheckValues(values.data(), _level.numCorners, numValues, channel);

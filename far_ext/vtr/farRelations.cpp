@@ -133,9 +133,9 @@ bool RelationCopier::Copy() {
     }
     ResizeEdges(std::size_t(numEdges), _level);
     _level.vertFirstFace.Resize(std::size_t(_level.numVertices) + 1);
-    ParallelFor(_level.numFaces, [this](Index face) {
-        ConstIndexArray const edges = _base.getFaceEdges(face);
-        std::copy(edges.begin(), edges.end(), _level.faceEdges.data() + _firstCorner[face]);
+    ParallelForRange(_level.numFaces, [this](Index begin, Index end) {
+        std::copy_n(_base.getFaceEdges(begin).begin(), _firstCorner[end] - _firstCorner[begin],
+                    _level.faceEdges.data() + _firstCorner[begin]);
     });
     _faceEdges = _level.faceEdges.data();
     _edgeVerts = _level.edgeVerts.data();

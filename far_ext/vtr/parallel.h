@@ -17,6 +17,9 @@ namespace OpenSubdivHex::FarExt::internal {
 /// The length of ranges for work of some nanoseconds per index.
 constexpr Far::Index kParallelRange = 4096;
 
+/// The length of ranges for work of tens of nanoseconds per index.
+constexpr Far::Index kShortParallelRange = 1024;
+
 /// Number of ranges that ParallelForRange makes of \p count indices.
 inline Far::Index GetNumParallelRanges(Far::Index count, Far::Index length = kParallelRange) {
     return count / length + (count % length != 0);
@@ -116,10 +119,12 @@ void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function,
     exceptions.Rethrow();
 }
 
+/// The state of ranges that have none.
+struct Nothing {};
+
 /// Calls function(begin, end) in the same way, for ranges without a state.
 template <typename FUNCTION>
 void ParallelForRange(Far::Index count, FUNCTION function) {
-    struct Nothing {};
     ParallelForRange(
         count, [] { return Nothing(); },
         [&](Nothing, Far::Index begin, Far::Index end) { function(begin, end); });
@@ -152,16 +157,19 @@ std::vector<SUM> ParallelSums(Far::Index count, FUNCTION sum) {
 
 /// Gathers the i of 0 <= i < count that satisfy predicate(i), ascending, in the same way.
 template <typename PREDICATE>
-std::vector<Far::Index> ParallelSelect(Far::Index count, PREDICATE predicate) {
-    std::vector<std::vector<Far::Index>> selected(GetNumParallelRanges(count));
-    ParallelForRange(count, [&](Far::Index begin, Far::Index end) {
-        std::vector<Far::Index> &ofRange = selected[begin / kParallelRange];
+std::vector<Far::Index> ParallelSelect(Far::Index count, PREDICATE predicate,
+                                       Far::Index length = kParallelRange) {
+    std::vector<std::vector<Far::Index>> selected(GetNumParallelRanges(count, length));
+    auto const select = [&](Nothing, Far::Index begin, Far::Index end) {
+        std::vector<Far::Index> &ofRange = selected[begin / length];
         for (Far::Index i = begin; i < end; ++i) {
             if (predicate(i)) {
                 ofRange.push_back(i);
             }
         }
-    });
+    };
+    ParallelForRange(
+        count, [] { return Nothing(); }, select, length);
     std::vector<Far::Index> result;
     for (std::vector<Far::Index> const &ofRange : selected) {
         result.insert(result.end(), ofRange.begin(), ofRange.end());
