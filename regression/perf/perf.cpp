@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // perf: this library against its peers, in the same run.
+#include "measured.h"
 #include "report.h"
 #include "suite.h"
 
@@ -23,10 +24,37 @@ void writeFile(std::string const &path, std::string const &text) {
     }
 }
 
-void run(Suite::Options const &options, std::string const &command, std::string const &jsonPath,
-         std::string const &markdownPath) {
+/// Where results go, besides to standard output; nowhere else if empty.
+struct Paths {
+    std::string json;
+    std::string markdown;
+};
+
+void write(Results const &results, Environment const &environment, Paths const &paths) {
+    std::string const markdown = FormatMarkdown(results, environment);
+    std::cout << markdown << std::flush;
+    if (!paths.markdown.empty()) {
+        writeFile(paths.markdown, markdown);
+    }
+    if (!paths.json.empty()) {
+        writeFile(paths.json, FormatJson(results, environment));
+    }
+}
+
+Environment describeRun(std::string const &command) {
     Environment environment = DescribeEnvironment();
     environment.emplace_back("command", "`" + command + "`");
+    return environment;
+}
+
+void report(std::string const &measuredPath, std::string const &command, Paths const &paths) {
+    Environment environment = describeRun(command);
+    Results const results = ReadMeasured(measuredPath, environment);
+    write(results, environment, paths);
+}
+
+void run(Suite::Options const &options, std::string const &command, Paths const &paths) {
+    Environment const environment = describeRun(command);
     Suite suite(options);
     AddTablePeakBenchmarks(suite);
     AddCopyBenchmarks(suite);
@@ -41,14 +69,7 @@ void run(Suite::Options const &options, std::string const &command, std::string 
     AddBusyBenchmarks(suite);
     bool const isComplete = suite.Run();
 
-    std::string const markdown = FormatMarkdown(suite, environment);
-    std::cout << markdown << std::flush;
-    if (!markdownPath.empty()) {
-        writeFile(markdownPath, markdown);
-    }
-    if (!jsonPath.empty()) {
-        writeFile(jsonPath, FormatJson(suite, environment));
-    }
+    write(suite.GetResults(), environment, paths);
     if (!isComplete) {
         throw std::runtime_error("not complete, see above");
     }
@@ -61,8 +82,8 @@ int main(int argc, char **argv) {
     using namespace OpenSubdivHex::Regression;
 
     Suite::Options options;
-    std::string jsonPath;
-    std::string markdownPath;
+    Paths paths;
+    std::string measuredPath;
     std::string command = "perf";
     CLI::App app("Compares OpenSubdivHex with Far, Osd, OpenMesh and CGAL.", "perf");
     app.add_flag("--quick", options.isQuick, "Tiny sizes and one turn: to see that all runs");
@@ -80,9 +101,17 @@ int main(int argc, char **argv) {
     app.add_option("--turns", options.numTurns, "Turns of large sizes; small ones have three times")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    app.add_option("--json", jsonPath, "File for the results as JSON")->type_name("FILE");
-    app.add_option("--markdown", markdownPath, "File for the printed text")->type_name("FILE");
+    app.add_option("--json", paths.json, "File for the results as JSON")->type_name("FILE");
+    app.add_option("--markdown", paths.markdown, "File for the printed text")->type_name("FILE");
+    app.add_option("--measured", measuredPath,
+                   "Instead of measuring, report what pythonBenchmark.py wrote to this file")
+        ->type_name("FILE");
     app.add_option("--command", command, "Command to name in the results")->group("");
-    return OpenSubdivHex::Tools::RunProgram(app, argc, argv,
-                                            [&] { run(options, command, jsonPath, markdownPath); });
+    return OpenSubdivHex::Tools::RunProgram(app, argc, argv, [&] {
+        if (measuredPath.empty()) {
+            run(options, command, paths);
+        } else {
+            report(measuredPath, command, paths);
+        }
+    });
 }

@@ -140,6 +140,66 @@ TEST(Perf, QuickRunHasEveryFigure) {
     EXPECT_EQ(growths.size(), 8u);
 }
 
+#ifdef PERF_PYTHON
+/// What is Blender's is measured inside Blender alone.
+TEST(Perf, QuickRunOfPythonHasEveryFigure) {
+    std::string const folder = testing::TempDir() + "perfTest";
+    std::filesystem::create_directories(folder);
+    std::string const measured = folder + "/measured.json";
+    std::string const json = folder + "/python.json";
+    ASSERT_EQ(std::system(("\"" PERF_PYTHON "\" \"" PERF_PYTHON_BENCHMARK
+                           "\" --quick --modules \"" PERF_MODULES_DIR
+                           "\" --native \"" PERF_NATIVE_PEER "\" --json \"" +
+                           measured + "\" 2>\"" + folder + "/log\"")
+                              .c_str()),
+              0)
+        << readFile(folder + "/log");
+    std::string const report = "\"" PERF_PROGRAM "\" --json \"" + json + "\" --measured ";
+    ASSERT_EQ(std::system((report + "\"" + measured + "\" >\"" + folder + "/out\"").c_str()), 0);
+    std::string const markdown = readFile(folder + "/out");
+    Json const results = Json::parse(readFile(json));
+    ASSERT_EQ(results["rows"].size(), GetPythonRows().size());
+    for (std::size_t i = 0; i < GetPythonRows().size(); ++i) {
+        Row const &row = GetPythonRows()[i];
+        Json const &entry = results["rows"][i];
+        EXPECT_EQ(entry["name"], row.name);
+        EXPECT_NE(markdown.find("| " + row.work + " "), std::string::npos) << row.name;
+        bool const isOfBlender = row.peer == "Blender's subdivision";
+        EXPECT_EQ(entry["figures"].size(), isOfBlender ? 0u : 2u) << row.name;
+        for (Json const &figure : entry["figures"]) {
+            EXPECT_GT(figure["figure"], 0) << row.name;
+        }
+    }
+
+    // Files that are not of this form.
+    std::ofstream(measured) << R"({"environment": {}, "conditions": "", "contests": [{}]})";
+    EXPECT_NE(std::system((report + "\"" + measured + "\" >/dev/null 2>&1").c_str()), 0);
+    EXPECT_NE(std::system((report + "\"" + folder + "/none\" >/dev/null 2>&1").c_str()), 0);
+}
+
+TEST(Perf, FiguresAreMediansOfTheRatiosOfTurns) {
+    std::string const folder = testing::TempDir() + "perfTest";
+    std::filesystem::create_directories(folder);
+    std::string const measured = folder + "/turns.json";
+    std::string const json = folder + "/turns.results.json";
+    std::ofstream(measured)
+        << R"({"environment": {"Python": "3"}, "conditions": "none", "contests": [
+        {"work": "table", "item": "weight", "mesh": "quad", "size": "small", "level": 3,
+         "memory": "default", "pairings": [{"row": "python-table", "own": 0, "peer": 1}],
+         "contestants": [{"who": "Python", "threads": 1, "items": 4, "seconds": [1, 2, 8]},
+                         {"who": "C++", "threads": 1, "items": 4, "seconds": [3, 3, 4]}]}]})";
+    ASSERT_EQ(std::system(("\"" PERF_PROGRAM "\" --json \"" + json + "\" --measured \"" + measured +
+                           "\" >/dev/null")
+                              .c_str()),
+              0);
+    Json const results = Json::parse(readFile(json));
+    EXPECT_EQ(results["environment"]["Python"], "3");
+    EXPECT_EQ(results["rows"][1]["figures"][0]["figure"], 1.5);
+    EXPECT_EQ(results["costs"][0]["nanoseconds"], 0.5e9);
+    EXPECT_EQ(results["costs"][1]["nanoseconds"], 0.75e9);
+}
+#endif
+
 TEST(Perf, RefusesBadUsage) {
     for (std::string const arguments : {"--turns 0", "--turns x", "--unknown", "--filter '('"}) {
         EXPECT_NE(

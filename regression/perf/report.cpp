@@ -139,13 +139,17 @@ private:
     std::vector<std::vector<std::string>> _lines;
 };
 
-/// What \p member says of the meshes, each name once, in order.
-std::vector<std::string> getNames(Suite const &suite, std::string BenchMesh::*member) {
+void addName(std::vector<std::string> &names, std::string const &name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+        names.push_back(name);
+    }
+}
+
+/// What \p member says of the meshes of figures, each name once, in order.
+std::vector<std::string> getNames(Results const &results, std::string BenchMesh::*member) {
     std::vector<std::string> names;
-    for (BenchMesh const &mesh : suite.GetMeshes()) {
-        if (std::find(names.begin(), names.end(), mesh.*member) == names.end()) {
-            names.push_back(mesh.*member);
-        }
+    for (Figure const &figure : results.figures) {
+        addName(names, figure.setting.mesh.*member);
     }
     return names;
 }
@@ -157,8 +161,8 @@ std::string formatFigure(Figure const &figure) {
 }
 
 /// Bytes per second of memcpy on that many threads; 0 where it was not measured.
-double getCopyBandwidth(Suite const &suite, int numThreads) {
-    for (ContestResult const &result : suite.GetResults()) {
+double getCopyBandwidth(Results const &results, int numThreads) {
+    for (ContestResult const &result : results.contests) {
         for (Cost const &cost : result.costs) {
             if (result.setting.work == "copy" && cost.numThreads == numThreads) {
                 return cost.bytesPerSecond;
@@ -180,24 +184,24 @@ double getWorst(Row const &row, std::vector<double> const &values) {
     return worst;
 }
 
-std::string formatRows(Suite const &suite) {
-    std::vector<std::string> const meshNames = getNames(suite, &BenchMesh::name);
+std::string formatRows(Results const &results) {
+    std::vector<std::string> const meshNames = getNames(results, &BenchMesh::name);
     std::vector<std::string> columns = {"work", "peer", ">at least", ">aim", "size", "memory"};
     for (std::string const &name : meshNames) {
         columns.push_back(">" + name);
     }
     columns.emplace_back("verdict");
     TableText table(columns);
-    for (Row const &row : GetRows()) {
+    for (Row const &row : *results.rows) {
         std::string const limit = row.isLimit ? "<= " : "";
         std::vector<std::string> const head = {
             row.work, row.peer, limit + formatNumber(row.atLeast), limit + formatNumber(row.aim)};
         bool isMeasured = false;
         for (Memory memory : {Memory::Default, Memory::Warm, Memory::Resident}) {
-            for (std::string const &size : getNames(suite, &BenchMesh::size)) {
+            for (std::string const &size : getNames(results, &BenchMesh::size)) {
                 std::map<std::string, Figure> figures; // by mesh
                 std::vector<double> values;
-                for (Figure const &figure : suite.GetFigures()) {
+                for (Figure const &figure : results.figures) {
                     if (figure.row == &row && figure.setting.memory == memory &&
                         figure.setting.mesh.size == size) {
                         figures.emplace(figure.setting.mesh.name, figure);
@@ -228,16 +232,16 @@ std::string formatRows(Suite const &suite) {
     return table.Format();
 }
 
-std::string formatCosts(Suite const &suite) {
+std::string formatCosts(Results const &results) {
     TableText table({"work", "mesh", "size", "memory", "who", ">threads", ">ns", "per", ">bytes",
                      ">of copy bandwidth"});
-    for (ContestResult const &result : suite.GetResults()) {
+    for (ContestResult const &result : results.contests) {
         Setting const &setting = result.setting;
         if (isGrowth(setting)) {
             continue;
         }
         for (Cost const &cost : result.costs) {
-            double const bandwidth = getCopyBandwidth(suite, cost.numThreads);
+            double const bandwidth = getCopyBandwidth(results, cost.numThreads);
             table.AddLine({setting.work, setting.mesh.name, setting.mesh.size,
                            GetName(setting.memory), cost.name, std::to_string(cost.numThreads),
                            formatNumber(cost.GetMedian()), setting.item,
@@ -248,16 +252,31 @@ std::string formatCosts(Suite const &suite) {
     return table.Format();
 }
 
-std::string formatGrowth(Suite const &suite) {
+constexpr char kGrowthIntroduction[] = R"(
+## Growth
+
+Nanoseconds per item of the levels of a mesh of 384 quads.
+
+)";
+
+/// Nothing where no growth was measured.
+std::string formatGrowth(Results const &results) {
     std::vector<std::string> columns = {"work", "ns per", ">threads"};
     std::vector<std::string> sizes;
-    for (BenchMesh const &mesh : suite.GetGrowthMeshes()) {
-        sizes.push_back(mesh.size);
-        columns.push_back(">" + mesh.size);
+    for (ContestResult const &result : results.contests) {
+        if (isGrowth(result.setting)) {
+            addName(sizes, result.setting.mesh.size);
+        }
+    }
+    if (sizes.empty()) {
+        return "";
+    }
+    for (std::string const &size : sizes) {
+        columns.push_back(">" + size);
     }
     TableText table(columns);
     std::vector<std::vector<std::string>> lines;
-    for (ContestResult const &result : suite.GetResults()) {
+    for (ContestResult const &result : results.contests) {
         Setting const &setting = result.setting;
         if (!isGrowth(setting)) {
             continue;
@@ -280,7 +299,7 @@ std::string formatGrowth(Suite const &suite) {
     for (auto const &line : lines) {
         table.AddLine(line);
     }
-    return table.Format();
+    return kGrowthIntroduction + table.Format();
 }
 
 Json toJson(Setting const &setting) {
@@ -298,14 +317,6 @@ Own speed over that of the peer: the median of the ratios of turns, in which all
 benchmark run one after the other. The verdict is that of the worst of the meshes: *aim*, *at
 least* or *below*. Bounds with `<=` are limits, and figures in brackets are the peer's own.
 
-Sizes: small is about 100,000 vertices at the last level, large 1 to 2 million. Memory:
-*default* is malloc as it is: arrays beyond 32 MiB get fresh pages in each turn. Each contestant
-then runs twice and the second time counts, so that its pages are those it has just given back: a
-virtual machine hands free pages to its host, and who comes behind a peer that used more of them
-would wait for them. *warm* is a heap that keeps what was freed (no mmap, no trimming), so that
-pages have been touched before. *resident* means that the work takes no memory: sources, tables and
-results have been touched before. Each turn has a new object, for own and peer alike.
-
 )";
 
 constexpr char kCostsIntroduction[] = R"(
@@ -314,13 +325,6 @@ constexpr char kCostsIntroduction[] = R"(
 Medians. Bytes are those that stay allocated after the work, per item. The share of copy bandwidth
 is that of the bytes that the work must move at least: what it leaves behind, or the table, sources
 and results of an evaluation. memcpy counts what it reads and what it writes.
-
-)";
-
-constexpr char kGrowthIntroduction[] = R"(
-## Growth
-
-Nanoseconds per item of the levels of a mesh of 384 quads.
 
 )";
 
@@ -345,33 +349,34 @@ Environment DescribeEnvironment() {
             {"CGAL", GetCgalVersion()}};
 }
 
-std::string FormatMarkdown(Suite const &suite, Environment const &environment) {
+std::string FormatMarkdown(Results const &results, Environment const &environment) {
     std::ostringstream text;
     text << "# Results of the benchmarks\n\n";
     for (auto const &[name, value] : environment) {
         text << "- " << name << ": " << value << "\n";
     }
     for (int numThreads : {1, 2}) {
-        if (double const bandwidth = getCopyBandwidth(suite, numThreads); bandwidth > 0) {
+        if (double const bandwidth = getCopyBandwidth(results, numThreads); bandwidth > 0) {
             text << "- copy bandwidth, " << numThreads
                  << (numThreads > 1 ? " threads: " : " thread: ") << formatNumber(bandwidth / 1e9)
                  << " GB/s\n";
         }
     }
-    text << kRatiosIntroduction << formatRows(suite) << kCostsIntroduction << formatCosts(suite)
-         << kGrowthIntroduction << formatGrowth(suite);
+    text << kRatiosIntroduction << results.conditions << "\n\n"
+         << formatRows(results) << kCostsIntroduction << formatCosts(results)
+         << formatGrowth(results);
     return text.str();
 }
 
-std::string FormatJson(Suite const &suite, Environment const &environment) {
+std::string FormatJson(Results const &results, Environment const &environment) {
     Json json;
     for (auto const &[name, value] : environment) {
         json["environment"][name] = value;
     }
     json["rows"] = Json::array();
-    for (Row const &row : GetRows()) {
+    for (Row const &row : *results.rows) {
         Json figures = Json::array();
-        for (Figure const &figure : suite.GetFigures()) {
+        for (Figure const &figure : results.figures) {
             if (figure.row == &row) {
                 Json entry = toJson(figure.setting);
                 entry["figure"] = toJson(figure.value);
@@ -391,7 +396,7 @@ std::string FormatJson(Suite const &suite, Environment const &environment) {
                                 {"figures", figures}});
     }
     json["costs"] = Json::array();
-    for (ContestResult const &result : suite.GetResults()) {
+    for (ContestResult const &result : results.contests) {
         for (Cost const &cost : result.costs) {
             Json entry = toJson(result.setting);
             entry["who"] = cost.name;
@@ -400,7 +405,7 @@ std::string FormatJson(Suite const &suite, Environment const &environment) {
             entry["nanoseconds"] = cost.GetMedian();
             entry["bytes"] = cost.bytes;
             entry["bytesPerSecond"] = cost.bytesPerSecond;
-            double const bandwidth = getCopyBandwidth(suite, cost.numThreads);
+            double const bandwidth = getCopyBandwidth(results, cost.numThreads);
             entry["shareOfCopyBandwidth"] =
                 bandwidth > 0 ? Json(cost.bytesPerSecond / bandwidth) : Json();
             json["costs"].push_back(entry);

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_PERF_REPORT_H
 #define OPENSUBDIVHEX_REGRESSION_PERF_REPORT_H
 
-#include "suite.h"
+#include "results.h"
 
 #include <string>
 #include <utility>
@@ -16,11 +16,12 @@ using Environment = std::vector<std::pair<std::string, std::string>>;
 /// The machine, how busy it is, the build and the peers.
 Environment DescribeEnvironment();
 
-/// All results as Markdown: the rows with their verdicts, the costs, and how costs grow.
-std::string FormatMarkdown(Suite const &suite, Environment const &environment);
+/// All results as Markdown: the rows with their verdicts, the costs, and how costs grow where that
+/// was measured.
+std::string FormatMarkdown(Results const &results, Environment const &environment);
 
 /// The same as JSON.
-std::string FormatJson(Suite const &suite, Environment const &environment);
+std::string FormatJson(Results const &results, Environment const &environment);
 
 } // namespace OpenSubdivHex::Regression
 

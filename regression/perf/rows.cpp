@@ -77,10 +77,23 @@ std::vector<Row> const &GetRows() {
     return kRows;
 }
 
+std::vector<Row> const &GetPythonRows() {
+    static std::vector<Row> const kRows = {
+        {"python-refinement", "topology, face-vertices", "C++", 0.9, 1},
+        {"python-table", "table, per weight", "C++", 0.9, 1},
+        {"python-table-evaluation", "evaluation of a table, length 3", "C++", 0.9, 1},
+        {"python-evaluation", "table-free, last level, length 3", "C++", 0.9, 1},
+        {"python-blender", "table-free, level 4, a frame", "Blender's subdivision", 3, 10},
+        {"addon-blender", "the add-on's object, level 4, a frame", "Blender's subdivision", 1, 3}};
+    return kRows;
+}
+
 Row const &GetRow(std::string const &name) {
-    for (Row const &row : GetRows()) {
-        if (row.name == name) {
-            return row;
+    for (std::vector<Row> const *rows : {&GetRows(), &GetPythonRows()}) {
+        for (Row const &row : *rows) {
+            if (row.name == name) {
+                return row;
+            }
         }
     }
     throw std::out_of_range("no row " + name);

@@ -17,10 +17,13 @@ struct Row {
     bool isLimit = false; ///< figures must not exceed the bounds, instead of reaching them
 };
 
-/// All rows, in the order in which they are printed.
+/// The rows of the program perf itself, in the order in which they are printed.
 std::vector<Row> const &GetRows();
 
-/// The row of that name; throws std::out_of_range if there is none.
+/// Those of pythonBenchmark.py.
+std::vector<Row> const &GetPythonRows();
+
+/// The row of that name, of all of these; throws std::out_of_range if there is none.
 Row const &GetRow(std::string const &name);
 
 /// \brief Which of the bounds \p figure meets: "aim", "at least" or "below".  A figure that is NaN

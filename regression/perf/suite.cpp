@@ -16,25 +16,22 @@ namespace {
 constexpr char kSmall[] = "small";
 constexpr char kLarge[] = "large";
 
+constexpr char kConditions[] =
+    R"(Sizes: small is about 100,000 vertices at the last level, large 1 to 2 million. Memory:
+*default* is malloc as it is: arrays beyond 32 MiB get fresh pages in each turn. Each contestant
+then runs twice and the second time counts, so that its pages are those it has just given back: a
+virtual machine hands free pages to its host, and who comes behind a peer that used more of them
+would wait for them. *warm* is a heap that keeps what was freed (no mmap, no trimming), so that
+pages have been touched before. *resident* means that the work takes no memory: sources, tables and
+results have been touched before. Each turn has a new object, for own and peer alike.)";
+
 std::shared_ptr<Shape const> share(Shape shape) {
     return std::make_shared<Shape const>(std::move(shape));
 }
 
 } // namespace
 
-std::string GetName(Memory memory) {
-    switch (memory) {
-    case Memory::Default:
-        return "default";
-    case Memory::Warm:
-        return "warm";
-    case Memory::Resident:
-        break;
-    }
-    return "resident";
-}
-
-Suite::Suite(Options options) : _options(std::move(options)) {
+Suite::Suite(Options options) : _options(std::move(options)), _results{&GetRows(), kConditions} {
     auto const quad = share(MakeQuadMesh());
     auto const triangle = share(MakeTriangleMesh());
     auto const hexagon = share(MakeHexMesh());
@@ -74,15 +71,7 @@ void Suite::AddContest(Setting const &setting, std::function<Contest()> const &m
         Contest const contest = makeContest();
         std::vector<Cost> costs =
             RunContest(state, contest.contestants, setting.memory == Memory::Default);
-        for (Pairing const &pairing : contest.pairings) {
-            std::size_t const peer = *std::min_element(
-                pairing.peers.begin(), pairing.peers.end(), [&](std::size_t a, std::size_t b) {
-                    return costs[a].GetMedian() < costs[b].GetMedian();
-                });
-            _figures.push_back(
-                {&GetRow(pairing.row), setting, GetRatio(costs[pairing.own], costs[peer]), 0});
-        }
-        _results.push_back({setting, std::move(costs)});
+        _results.Add(setting, std::move(costs), contest.pairings);
     });
 }
 
@@ -91,7 +80,7 @@ void Suite::AddMeasurement(Setting const &setting, std::string const &row,
     add(setting, 1, [this, setting, row, measure](benchmark::State &state) {
         for ([[maybe_unused]] auto const &iteration : state) {
             auto const [own, peer] = measure();
-            _figures.push_back({&GetRow(row), setting, own, peer});
+            _results.figures.push_back({&GetRow(row), setting, own, peer});
             state.SetIterationTime(0);
         }
     });

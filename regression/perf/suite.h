@@ -2,63 +2,14 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_PERF_SUITE_H
 #define OPENSUBDIVHEX_REGRESSION_PERF_SUITE_H
 
-#include "contest.h"
-#include "rows.h"
-
-#include "regression/shapes/shapes.h"
+#include "results.h"
 
 #include <functional>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::Regression {
-
-/// \brief A base mesh and the level that it is refined to.
-struct BenchMesh {
-    std::shared_ptr<Shape const> shape;
-    std::string name; ///< quad, triangle or hexagon
-    std::string size; ///< small or large; levels 1 ... 6: growth
-    int level;
-};
-
-/// \brief Where the memory that the work takes comes from, the same for own and peer.
-enum class Memory {
-    Default,  ///< malloc as it is: large arrays get fresh pages each time
-    Warm,     ///< a heap that keeps what was freed, see KeepFreedMemory()
-    Resident, ///< the work takes none: its sources and results were touched before
-};
-std::string GetName(Memory memory);
-
-/// \brief What is measured together.
-struct Setting {
-    std::string work; ///< of the contestants, as printed
-    std::string item; ///< that their costs are per
-    BenchMesh mesh;
-    Memory memory;
-};
-
-/// \brief Costs measured in turns.
-struct ContestResult {
-    Setting setting;
-    std::vector<Cost> costs;
-};
-
-/// \brief A figure of a row.
-struct Figure {
-    Row const *row;
-    Setting setting;
-    double value;
-    double peerValue; ///< the same of the peer, where the figure is no ratio of both; else 0
-};
-
-/// Compares contestants, by their place among those of the contest.
-struct Pairing {
-    std::string row;
-    std::size_t own;
-    std::vector<std::size_t> peers; ///< the fastest of them counts
-};
 
 /// \brief Contestants, and the rows that their costs make figures of.
 struct Contest {
@@ -95,8 +46,7 @@ public:
     /// \return  false if one of them failed, which the log names
     bool Run();
 
-    std::vector<ContestResult> const &GetResults() const { return _results; }
-    std::vector<Figure> const &GetFigures() const { return _figures; }
+    Results const &GetResults() const { return _results; }
 
 private:
     struct Benchmark {
@@ -113,8 +63,7 @@ private:
     std::vector<BenchMesh> _baseMeshes;
     std::vector<BenchMesh> _growthMeshes;
     std::vector<Benchmark> _benchmarks;
-    std::vector<ContestResult> _results;
-    std::vector<Figure> _figures;
+    Results _results;
     bool _isComplete = true;
 };
 
