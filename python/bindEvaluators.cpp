@@ -225,6 +225,43 @@ public:
         return destination.array;
     }
 
+    py::array EvaluateLimit(py::object const &src, std::optional<int> givenLevel,
+                            py::object const &dst) const {
+        int const level = givenLevel ? *givenLevel : GetMaxLevel();
+        auto const source = TakeSource<float>(src, "src", GetNumElements(0));
+        auto const points = TakeDestination<float>(dst, "dst", GetNumElements(level), source);
+        CheckApart(source, points, "dst", 0, points.count);
+        Status status;
+        read([&](RefinementEvaluator &evaluator) {
+            evaluator.EvaluateLimit(source.data, source.desc, points.data, points.desc, level,
+                                    &status);
+        });
+        RaiseUnlessOk(status);
+        return points.array;
+    }
+
+    py::tuple EvaluateLimitWithDerivatives(py::object const &src, std::optional<int> givenLevel,
+                                           py::object const &dst, py::object const &du,
+                                           py::object const &dv) const {
+        int const level = givenLevel ? *givenLevel : GetMaxLevel();
+        auto const source = TakeSource<float>(src, "src", GetNumElements(0));
+        int const count = GetNumElements(level);
+        auto const points = TakeDestination<float>(dst, "dst", count, source);
+        auto const duValues = TakeDestination<float>(du, "du", count, source);
+        auto const dvValues = TakeDestination<float>(dv, "dv", count, source);
+        CheckApart(source, points, "dst", 0, count);
+        CheckApart(source, duValues, "du", 0, count);
+        CheckApart(source, dvValues, "dv", 0, count);
+        Status status;
+        read([&](RefinementEvaluator &evaluator) {
+            evaluator.EvaluateLimit(source.data, source.desc, points.data, points.desc,
+                                    duValues.data, duValues.desc, dvValues.data, dvValues.desc,
+                                    level, &status);
+        });
+        RaiseUnlessOk(status);
+        return py::make_tuple(points.array, duValues.array, dvValues.array);
+    }
+
 private:
     std::shared_ptr<Refiner> _refiner;
     std::unique_ptr<RefinementEvaluator> _evaluator;
@@ -332,7 +369,21 @@ void BindEvaluators(py::module_ &module) {
         .def("evaluate_all_levels", &Evaluator::EvaluateAllLevels,
              "evaluate_all_levels(src, dst=None)\n\n"
              "The values of levels 1 ... max_level, level behind level.  Returns dst.",
-             py::arg("src"), py::arg("dst") = py::none());
+             py::arg("src"), py::arg("dst") = py::none())
+        .def(
+            "evaluate_limit", &Evaluator::EvaluateLimit,
+            "evaluate_limit(src, level=None, dst=None)\n\n"
+            "Points of the limit surface at the vertices of a level, of the last for None, which\n"
+            "has full topology; of vertex data alone.  Arrays are those of evaluate().  The first\n"
+            "call for a level takes longer, and keeps memory.  Returns dst.  Raises StatusError.",
+            py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none())
+        .def(
+            "evaluate_limit_with_derivatives", &Evaluator::EvaluateLimitWithDerivatives,
+            "evaluate_limit_with_derivatives(src, level=None, dst=None, du=None, dv=None)\n\n"
+            "The same with both first derivatives, which span the tangent plane on side 0 of each\n"
+            "vertex: du and dv are arrays as dst.  Returns (dst, du, dv).",
+            py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none(),
+            py::arg("du") = py::none(), py::arg("dv") = py::none());
 
     module.def("compute_normals", &computeNormals,
                "compute_normals(du, dv, normals=None)\n\n"

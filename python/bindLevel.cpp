@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 namespace OpenSubdivHex::Python {
@@ -135,6 +136,31 @@ py::array_t<int> getBaseFaces(Level const &self, int half) {
     }));
 }
 
+py::array_t<float> getBaseCoords(Level const &self, int half) {
+    CheckIndex(half, 2, "half");
+    std::vector<float> coords = self.Read([half](TopologyLevel const &level) {
+        auto const none = std::numeric_limits<float>::quiet_NaN();
+        std::vector<float> values(2 * std::size_t(level.GetNumFaceVertices()), none);
+        float *place = values.data();
+        for (Index f = 0; f < level.GetNumFaces(); ++f) {
+            bool const isSplit = level.IsFaceBaseSplit(f);
+            float ofHalf[8];
+            if (!level.GetFaceBaseCoords(f, half, isSplit ? ofHalf : place)) {
+                throw py::value_error("level " + std::to_string(level.GetDepth()) +
+                                      " is not made by hexagonal steps alone, which have places "
+                                      "in base faces");
+            }
+            for (int i = 0; isSplit && i < 4; ++i) {
+                std::copy_n(ofHalf + 2 * i, 2, place + 2 * kHexagonHalves[half][i]);
+            }
+            place += 2 * level.GetFaceVertices(f).size();
+        }
+        return values;
+    });
+    auto const numCorners = py::ssize_t(coords.size() / 2);
+    return TakeOver(std::move(coords)).reshape({numCorners, py::ssize_t(2)});
+}
+
 py::object areHoles(Level const &self, std::optional<int> half) {
     if (half) {
         CheckIndex(*half, 2, "half");
@@ -245,6 +271,14 @@ void bindParents(py::class_<Level> &level) {
         .def("get_face_base_faces", &getBaseFaces,
              "get_face_base_faces(half=0)\n\nThe face of level 0 that a half of each face lies in, "
              "exactly: int32, shape\n(faces,).  Both halves of most faces lie in one.",
+             py::arg("half") = 0)
+        .def("get_face_base_coords", &getBaseCoords,
+             "get_face_base_coords(half=0)\n\nWhere the corners of each face lie in its base face, "
+             "or in that of a half: u and v in\na regular polygon, whose first edge runs from (0, "
+             "0) "
+             "to (1, 0), of a quad the unit\nsquare.  float32, shape (corners, 2); nan at the two "
+             "corners of a face with two base\nfaces that the half does not have: half 0 has 0, 3, "
+             "4, 5, half 1 has 3, 0, 1, 2.\nRaises ValueError behind other than hexagonal steps.",
              py::arg("half") = 0)
         .def("is_face_base_split", makeMask(faces, false, &TopologyLevel::IsFaceBaseSplit),
              "is_face_base_split()\n\nWhether the halves of each face lie in two base faces: bool, "

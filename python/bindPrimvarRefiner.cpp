@@ -101,7 +101,55 @@ public:
                                   py::arg("out") = dst);
     }
 
+    py::object Limit(py::object const &src, py::object const &dst) const {
+        return limit(src, {&dst}, {"dst"},
+                     [](auto const &refiner, auto const &from, auto &to, Status *status) {
+                         refiner.Limit(from, to[0], status);
+                     })[0];
+    }
+
+    py::tuple LimitWithDerivatives(py::object const &src, py::object const &dst,
+                                   py::object const &du, py::object const &dv) const {
+        return limit(src, {&dst, &du, &dv}, {"dst", "du", "dv"},
+                     [](auto const &refiner, auto const &from, auto &to, Status *status) {
+                         refiner.Limit(from, to[0], to[1], to[2], status);
+                     });
+    }
+
 private:
+    /// Calls function(refiner, source, destinations, &status), and returns the destinations.
+    template <typename LIMIT>
+    py::tuple limit(py::object const &src, std::vector<py::object const *> const &given,
+                    std::vector<char const *> const &names, LIMIT const &function) const {
+        int const numVertices = _refiner->Read([](TopologyRefiner const &refiner) {
+            return refiner.GetLevel(refiner.GetMaxLevel()).GetNumVertices();
+        });
+        auto const run = [&](auto real) {
+            using REAL = decltype(real);
+            Elements<REAL const> const source = TakeSource<REAL>(src, "src", numVertices);
+            ElementArray<REAL const> const from(source);
+            std::vector<ElementArray<REAL>> to;
+            py::tuple arrays(given.size());
+            for (std::size_t i = 0; i < given.size(); ++i) {
+                Elements<REAL> const destination =
+                    TakeDestination<REAL>(*given[i], names[i], numVertices, source);
+                CheckApart(source, destination, names[i], 0, destination.count);
+                to.emplace_back(destination);
+                arrays[i] = destination.array;
+            }
+            Status status;
+            _refiner->Read([&](TopologyRefiner const &refiner) {
+                if (refiner.GetLevel(refiner.GetMaxLevel()).GetNumVertices() != numVertices) {
+                    throw std::runtime_error("the refiner refined in another thread");
+                }
+                function(PrimvarRefinerReal<REAL>(refiner), from, to, &status);
+            });
+            RaiseUnlessOk(status);
+            return arrays;
+        };
+        return IsDouble(src) ? run(double()) : run(float());
+    }
+
     template <typename COUNT>
     std::pair<int, int> countElements(int level, COUNT const &count) const {
         return _refiner->Read([&](TopologyRefiner const &refiner) {
@@ -175,7 +223,16 @@ void BindPrimvarRefiner(py::module_ &module) {
         .def("interpolate_face_varying", &PrimvarRefinement::InterpolateFaceVarying,
              "interpolate_face_varying(level, src, dst=None, channel=0)\n\nFace-varying data: an "
              "element for each value of the channel.",
-             py::arg("level"), py::arg("src"), py::arg("dst") = py::none(), py::arg("channel") = 0);
+             py::arg("level"), py::arg("src"), py::arg("dst") = py::none(), py::arg("channel") = 0)
+        .def("limit", &PrimvarRefinement::Limit,
+             "limit(src, dst=None)\n\nPoints of the limit surface at the vertices of the last "
+             "level, which has full\ntopology, from src of that level.  Raises StatusError.",
+             py::arg("src"), py::arg("dst") = py::none())
+        .def("limit_with_derivatives", &PrimvarRefinement::LimitWithDerivatives,
+             "limit_with_derivatives(src, dst=None, du=None, dv=None)\n\nThe same with both first "
+             "derivatives, on side 0 of each vertex.\n\nReturns (dst, du, dv).",
+             py::arg("src"), py::arg("dst") = py::none(), py::arg("du") = py::none(),
+             py::arg("dv") = py::none());
 }
 
 } // namespace OpenSubdivHex::Python

@@ -156,7 +156,8 @@ py::dict estimateSize(Refiner const &refiner, TableOptions const &options, bool 
 
 LimitStencilTable createLimitTable(Refiner const &refiner, int level, bool generateVertices,
                                    bool generateFurtherSides, bool generateFaceCenters,
-                                   bool generate1stDerivatives, py::object const &dtype) {
+                                   bool generate1stDerivatives, bool factorizeIntermediateLevels,
+                                   py::object const &dtype) {
     auto const make = [&](auto real) {
         using REAL = decltype(real);
         using Factory = LimitStencilTableFactoryReal<REAL>;
@@ -166,13 +167,18 @@ LimitStencilTable createLimitTable(Refiner const &refiner, int level, bool gener
         options.generateFurtherSides = generateFurtherSides;
         options.generateFaceCenters = generateFaceCenters;
         options.generate1stDerivatives = generate1stDerivatives;
+        options.factorizeIntermediateLevels = factorizeIntermediateLevels;
         Status status;
         LimitStencilTable made;
         refiner.Read([&](TopologyRefiner const &topology) {
             std::shared_ptr<typename Factory::Table const> const table =
                 Factory::Create(topology, options, &status);
+            if (!table) {
+                return;
+            }
             made.table = StencilTable::Pointer<REAL>(table);
-            made.numSources = topology.GetLevel(0).GetNumVertices();
+            int const sourceLevel = factorizeIntermediateLevels ? 0 : level;
+            made.numSources = topology.GetLevel(sourceLevel).GetNumVertices();
             made.hasDerivatives = generate1stDerivatives;
         });
         RaiseUnlessOk(status);
@@ -370,9 +376,10 @@ void bindLimitTable(py::module_ &module) {
         module, "LimitStencilTable",
         "LimitStencilTable(refiner, level=0, *, generate_vertices=True,\n"
         "                  generate_further_sides=False, generate_face_centers=False,\n"
-        "                  generate_1st_derivatives=True, dtype='float32')\n\n"
+        "                  generate_1st_derivatives=True, factorize_intermediate_levels=True,\n"
+        "                  dtype='float32')\n\n"
         "Points of the limit surface and its first derivatives there, in terms of control\n"
-        "vertices.\n\n"
+        "vertices, or of the vertices of the level.\n\n"
         "Args:\n"
         "    level: whose vertices and faces are meant, with full topology\n"
         "    generate_vertices: whether each vertex has a point\n"
@@ -380,12 +387,14 @@ void bindLimitTable(py::module_ &module) {
         "        numbers them; after the vertices\n"
         "    generate_face_centers: whether each face has; after those\n"
         "    generate_1st_derivatives: whether the table has du_weights and dv_weights\n"
+        "    factorize_intermediate_levels: indices are control vertices, else vertices of the\n"
+        "        level: evaluators apply the table to refined values\n"
         "    dtype: of the weights, float32 or float64; evaluators take float32\n\n"
         "Raises StatusError.")
         .def(py::init(&createLimitTable), py::arg("refiner"), py::arg("level") = 0, py::kw_only(),
              py::arg("generate_vertices") = true, py::arg("generate_further_sides") = false,
              py::arg("generate_face_centers") = false, py::arg("generate_1st_derivatives") = true,
-             py::arg("dtype") = "float32")
+             py::arg("factorize_intermediate_levels") = true, py::arg("dtype") = "float32")
         .def_readonly("has_derivatives", &LimitStencilTable::hasDerivatives)
         .def_property_readonly(
             "du_weights", [](py::object const &self) { return showWeights(self, 1); },

@@ -13,6 +13,7 @@ PYBIND11_MODULE(_opensubdivhex, module) {
     module.attr("__version__") = OPENSUBDIVHEX_VERSION;
     BindErrors(module);
     BindOptions(module);
+    BindThreads(module);
     BindRefiner(module);
     BindLevel(module);
     BindPrimvarRefiner(module);

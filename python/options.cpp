@@ -5,7 +5,6 @@
 
 #include "far_ext/hexSchemeOptions.h"
 #include "far_ext/stencilTableFactory.h"
-#include "far_ext/threads.h"
 #include "osd_ext/polygonIndices.h"
 #include "osd_ext/simdLevel.h"
 
@@ -158,14 +157,6 @@ void bindMasks(py::module_ &module) {
 void BindOptions(py::module_ &module) {
     bindEnums(module);
     bindMasks(module);
-    module.def(
-        "set_num_threads", &SetNumThreads,
-        "set_num_threads(num_threads)\n\n"
-        "Sets how many threads the calls of the calling thread use from now on; 0: as many as\n"
-        "OpenMP says.  Results do not depend on it.",
-        py::arg("num_threads"));
-    module.def("get_num_threads", &GetNumThreads,
-               "get_num_threads()\n\nHow many threads a call from this thread uses at most.");
     module.def("get_max_simd_level", &OsdExt::GetMaxSimdLevel,
                "get_max_simd_level()\n\nThe highest level that this build and this machine have.");
     module.def("get_simd_level", &OsdExt::GetSimdLevel,

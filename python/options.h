@@ -12,8 +12,11 @@ namespace OpenSubdivHex::Python {
 
 namespace py = pybind11;
 
-/// Adds the enumerations of options, masks, threads and SIMD levels.
+/// Adds the enumerations of options, masks and SIMD levels.
 void BindOptions(py::module_ &module);
+
+/// Adds executors and numbers of threads.
+void BindThreads(py::module_ &module);
 
 /// \brief Takes a member of an enumeration, or its name in small letters.
 ///

@@ -183,3 +183,79 @@ def test_simd_levels():
                 osh.set_simd_level("avx512")
     finally:
         osh.set_simd_level(before)
+
+
+@pytest.fixture
+def full_refiner():
+    refiner = osh.TopologyRefiner(
+        FACES, vtx_boundary_interpolation="edge_and_corner", face_mask="smooth",
+        creases=([[7, 8], [8, 9]], 10))
+    refiner.refine_uniform(2, full_topology_in_last_level=True)
+    return refiner
+
+
+@pytest.mark.parametrize("level", [0, 1, 2])
+def test_all_ways_to_the_limit_agree(full_refiner, level):
+    table = osh.LimitStencilTable(full_refiner, level)
+    expected = osh.CpuEvaluator.eval_stencils_with_derivatives(table, POSITIONS)
+    assert np.abs(expected[1]).max() > 0.1 and np.abs(expected[2]).max() > 0.1
+    evaluator = osh.RefinementEvaluator(full_refiner)
+    found = evaluator.evaluate_limit_with_derivatives(POSITIONS, level)
+    for values, wanted in zip(found, expected):
+        np.testing.assert_allclose(values, wanted, atol=1e-4)
+    np.testing.assert_array_equal(evaluator.evaluate_limit(POSITIONS, level), found[0])
+
+    # Of the vertices of the level, in both precisions.
+    for dtype in (np.float32, np.float64):
+        own = osh.LimitStencilTable(full_refiner, level, factorize_intermediate_levels=False,
+                                    dtype=dtype)
+        assert own.to_scipy().shape == (table.num_stencils, evaluator.get_num_elements(level))
+        refined = evaluator.evaluate(POSITIONS, level).astype(dtype)
+        for matrix, wanted in zip((own.to_scipy(), own.du_to_scipy(), own.dv_to_scipy()), expected):
+            np.testing.assert_allclose(matrix @ refined, wanted, atol=1e-4)
+        if level < 2:
+            continue
+        primvars = osh.PrimvarRefiner(full_refiner)
+        limits = primvars.limit_with_derivatives(refined)
+        for values, wanted in zip(limits, expected):
+            assert values.dtype == dtype
+            np.testing.assert_allclose(values, wanted, atol=1e-4)
+        np.testing.assert_array_equal(primvars.limit(refined), limits[0])
+
+
+def test_limits_are_written_to_given_arrays(full_refiner):
+    evaluator, primvars = osh.RefinementEvaluator(full_refiner), osh.PrimvarRefiner(full_refiner)
+    expected = evaluator.evaluate_limit_with_derivatives(POSITIONS)
+    refined = evaluator.evaluate(POSITIONS)
+    for evaluate, src in ((evaluator.evaluate_limit_with_derivatives, POSITIONS),
+                          (primvars.limit_with_derivatives, refined)):
+        wide = np.full((len(refined), 10), 7, np.float32)
+        found = evaluate(src, dst=wide[:, 0:3], du=wide[:, 3:6], dv=wide[:, 6:9])
+        assert all(np.shares_memory(part, wide) for part in found)
+        np.testing.assert_allclose(wide[:, :9], np.hstack(expected), atol=1e-4)
+        assert (wide[:, 9] == 7).all()
+    for evaluate, src in ((evaluator.evaluate_limit, POSITIONS), (primvars.limit, refined)):
+        points = np.empty((len(refined), 3), np.float32)
+        assert evaluate(src, dst=points) is points
+        np.testing.assert_allclose(points, expected[0], atol=1e-5)
+        with pytest.raises(ValueError, match="dst"):
+            evaluate(src, dst=points[1:])
+        with pytest.raises(ValueError, match="src"):
+            evaluate(src[1:])
+    with pytest.raises(ValueError, match="dv"):
+        evaluator.evaluate_limit_with_derivatives(POSITIONS, dv=np.empty((3, 3), np.float32))
+    with pytest.raises(ValueError, match="du"):
+        primvars.limit_with_derivatives(refined, du=refined)
+
+
+def test_limits_that_are_not_there(refiner):
+    with pytest.raises(osh.StatusError):  # the last level has face-vertices alone
+        osh.RefinementEvaluator(refiner).evaluate_limit(POSITIONS)
+    with pytest.raises(osh.StatusError):
+        osh.PrimvarRefiner(refiner).limit(osh.RefinementEvaluator(refiner).evaluate(POSITIONS))
+    osh.RefinementEvaluator(refiner).evaluate_limit(POSITIONS, 2)
+    varying = osh.RefinementEvaluator(refiner, interpolation_mode="varying")
+    with pytest.raises(osh.StatusError):
+        varying.evaluate_limit(POSITIONS, 1)
+    with pytest.raises(IndexError, match="level"):
+        varying.evaluate_limit(POSITIONS, 4)

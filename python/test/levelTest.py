@@ -229,6 +229,55 @@ def test_base_faces_are_exact():
             np.testing.assert_allclose(positions[part] @ normals[bases[half]], 1, atol=1e-5)
 
 
+def measure_areas(uv):
+    """Signed areas of polygons of the shape (n, corners, 2)."""
+    after = np.roll(uv, -1, axis=1)
+    return (uv[..., 0] * after[..., 1] - after[..., 0] * uv[..., 1]).sum(axis=1) / 2
+
+
+@pytest.mark.parametrize("depth", [0, 1, 2, 3])
+def test_corners_have_places_in_base_faces(depth):
+    # A channel with a chart for each base face, linear all over, holds the same places, until half
+    # faces, whose centre is another to it, have children.
+    refiner = refine(CUBE_FACES, depth, fvar_channels=[np.arange(24)],
+                     fvar_linear_interpolation="all")
+    level = refiner.get_level(depth)
+    square = np.float32([[0, 0], [1, 0], [1, 1], [0, 1]])
+    charts = osh.RefinementEvaluator(refiner, interpolation_mode="face_varying").evaluate(
+        np.tile(square, (6, 1)))
+    split, halves = level.get_fvar_split_faces()
+    np.testing.assert_array_equal(split, np.nonzero(level.is_face_base_split())[0])
+    assert bool(len(split)) == (depth > 0)
+    starts = level.face_offsets[split]
+    is_split = np.zeros(level.num_face_vertices, bool)
+    is_split[np.repeat(starts, 6) + np.tile(np.arange(6), len(starts))] = True
+    areas = np.zeros(6)
+    for half, places in enumerate(([0, 3, 4, 5], [3, 0, 1, 2])):
+        coords = level.get_face_base_coords(half)
+        corners = starts[:, None] + places
+        if depth <= 2:
+            np.testing.assert_allclose(coords[corners], charts[halves[:, half]], atol=1e-6)
+            np.testing.assert_allclose(coords[~is_split],
+                                       charts[level.get_face_fvar_values()[~is_split]], atol=1e-6)
+        areas += np.bincount(level.get_face_base_faces(half)[split],
+                             measure_areas(coords[corners]), 6)
+        assert np.isnan(coords).sum() == 4 * len(split)
+    # They tile the squares.
+    bases = level.get_face_base_faces()
+    for f in np.nonzero(~level.is_face_base_split())[0]:
+        span = slice(level.face_offsets[f], level.face_offsets[f + 1])
+        areas[bases[f]] += measure_areas(coords[span][None])[0]
+    np.testing.assert_allclose(areas, 1, atol=1e-6)
+
+
+def test_places_in_base_faces_need_hexagonal_steps():
+    level = refine(CUBE_FACES, 1, scheme_type="doo_sabin").get_level(1)
+    with pytest.raises(ValueError, match="hexagonal"):
+        level.get_face_base_coords()
+    with pytest.raises(IndexError, match="half"):
+        level.get_face_base_coords(2)
+
+
 @pytest.mark.parametrize("cut_base_faces, labels", [
     (True, None), (False, [7, 7, 7, 7, 7, 7]), (False, [1, 2, 1, 1, 1, 1])])
 def test_polygons_are_cut_where_asked(cut_base_faces, labels):

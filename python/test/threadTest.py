@@ -6,6 +6,7 @@ import time
 
 import numpy as np
 import opensubdivhex as osh
+import pytest
 from meshes import CUBE_FACES, CUBE_POSITIONS, make_torus
 
 
@@ -132,3 +133,87 @@ def test_refining_while_others_look():
     for thread in threads:
         thread.join()
     assert not failures and seen[0] and refined
+
+
+def test_executors_make_the_same_bits():
+    positions, faces = make_torus(40, 30)
+    assert osh.get_executor() == osh.ExecutorType.DEFAULT
+    assert osh.ExecutorType.DEFAULT in osh.get_executors()
+    results = []
+    for executor in osh.get_executors():
+        for num_threads in (1, 3):
+            with osh.ExecutorScope(executor, num_threads):
+                assert osh.get_executor() == executor and osh.get_num_threads() == num_threads
+                refiner = osh.TopologyRefiner(faces)
+                refiner.refine_uniform(3)
+                table = osh.StencilTable(refiner, max_level=2)
+                results.append((refiner.get_level(3).face_vertices.tobytes(),
+                                table.weights.tobytes(),
+                                osh.OmpEvaluator.eval_stencils(table, positions).tobytes(),
+                                osh.RefinementEvaluator(refiner).evaluate(positions).tobytes()))
+    assert len(results) > 1 and all(result == results[0] for result in results)
+    assert osh.get_executor() == osh.ExecutorType.DEFAULT
+
+
+def test_scopes_are_of_their_thread_and_nested():
+    before = osh.get_num_threads()
+    with osh.ExecutorScope(num_threads=3) as outer:
+        assert osh.get_num_threads() == 3
+        found = []
+        thread = threading.Thread(target=lambda: found.append(osh.get_num_threads()))
+        thread.start()
+        thread.join()
+        assert found == [before]
+        with osh.ExecutorScope("default", 2):
+            assert osh.get_num_threads() == 2
+            with pytest.raises(RuntimeError, match="the last first"):
+                outer.__exit__(None, None, None)
+            with pytest.raises(RuntimeError, match="already"):
+                outer.__enter__()
+            assert osh.get_num_threads() == 2
+        assert osh.get_num_threads() == 3
+    assert osh.get_num_threads() == before
+    with outer:  # once more
+        assert osh.get_num_threads() == 3
+    with pytest.raises(ZeroDivisionError):
+        with outer:
+            1 / 0
+    assert osh.get_num_threads() == before
+    with pytest.raises(ValueError, match="negative"):
+        osh.ExecutorScope(num_threads=-1)
+
+
+def test_scopes_of_dropped_generators_end():
+    before = osh.get_num_threads()
+
+    def wait():
+        with osh.ExecutorScope(num_threads=3):
+            yield
+
+    generator = wait()
+    next(generator)
+    assert osh.get_num_threads() == 3
+    del generator
+    assert osh.get_num_threads() == before
+    scope = osh.ExecutorScope(num_threads=3)
+    scope.__enter__()
+    del scope
+    assert osh.get_num_threads() == before
+
+
+def test_the_executor_of_all_threads_is_set():
+    found = []
+    for executor in osh.get_executors():
+        osh.set_executor(executor)
+        try:
+            thread = threading.Thread(target=lambda: found.append(osh.get_executor()))
+            thread.start()
+            thread.join()
+        finally:
+            osh.set_executor("default")
+    assert found == osh.get_executors()
+    with pytest.raises(ValueError, match="'default', 'omp', 'tbb'"):
+        osh.set_executor("cuda")
+    for executor in set(osh.ExecutorType.__members__.values()) - set(osh.get_executors()):
+        with pytest.raises(ValueError, match="without"):
+            osh.set_executor(executor)
