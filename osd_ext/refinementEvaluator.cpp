@@ -3,6 +3,7 @@
 
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
+#include "osd_ext/refinement/evaluationChecks.h"
 #include "osd_ext/refinement/preparedLimit.h"
 
 #include <algorithm>
@@ -27,15 +28,6 @@ namespace {
 
 Status invalidArgument(std::string const &message) {
     return FarExt::internal::Failure(StatusCode::InvalidArgument, message);
-}
-
-FarExt::Interpolation getInterpolation(TopologyRefiner const &refiner,
-                                       RefinementEvaluator::Options options) {
-    bool const isLinear =
-        options.interpolationMode == FarExt::INTERPOLATE_VARYING ||
-        (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING &&
-         refiner.GetFVarLinearInterpolation(options.fvarChannel) == Sdc::Options::FVAR_LINEAR_ALL);
-    return isLinear ? FarExt::Interpolation::Varying : FarExt::Interpolation::Vertex;
 }
 
 void copyElements(internal::Elements<float const> src, int length, Index count,
@@ -151,8 +143,9 @@ RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options 
             tileMap.Refine(*refinements[level - 1], level > 1 ? refinements[level - 2] : nullptr);
         }
         refinements.push_back(&mesh.refinements[level]);
-        FarExt::internal::RefinementMask const mask(
-            mesh.levels[level], refiner.GetHexSchemeOptions(), getInterpolation(refiner, options));
+        FarExt::internal::RefinementMask const mask(mesh.levels[level],
+                                                    refiner.GetHexSchemeOptions(),
+                                                    internal::GetInterpolation(refiner, options));
         internal::PrepareRefinement(mask, refinements, tileMap, _refinements[level]);
     }
     for (int level = 0; level <= maxLevel; ++level) {
@@ -174,27 +167,13 @@ Status RefinementEvaluator::Impl::Check(float const *src, Osd::BufferDescriptor 
     if (refiner.GetNumRefinements() != _numRefinements) {
         return invalidArgument("the refiner has refined again since the evaluator was made");
     }
-    if (level < 0 || level > GetMaxLevel()) {
-        return Status(StatusCode::InvalidArgument, ComponentType::Level, level,
-                      "level " + std::to_string(level) + " is not between 0 and " +
-                          std::to_string(GetMaxLevel()));
+    if (Status status = internal::CheckLevel(level, GetMaxLevel()); !status.IsOk()) {
+        return status;
     }
     if (numWritten > 0 && (!src || !dst)) {
         return invalidArgument(std::string("the ") + (src ? "destination" : "source") + " is null");
     }
-    if (srcDesc.length < 1 || srcDesc.length != dstDesc.length) {
-        return invalidArgument("the lengths of source and destination are " +
-                               std::to_string(srcDesc.length) + " and " +
-                               std::to_string(dstDesc.length) + ": not the same, or less than 1");
-    }
-    for (Osd::BufferDescriptor const *desc : {&srcDesc, &dstDesc}) {
-        if (desc->stride < desc->length || desc->offset < 0) {
-            return invalidArgument("a descriptor has stride " + std::to_string(desc->stride) +
-                                   " for length " + std::to_string(desc->length) + " and offset " +
-                                   std::to_string(desc->offset));
-        }
-    }
-    return Status();
+    return internal::CheckDescriptors(srcDesc, dstDesc);
 }
 
 // The control values by vertex of the mesh of level 0, multiplied by scale.
@@ -287,16 +266,7 @@ void RefinementEvaluator::Impl::EvaluateLimit(Source values, Destination points,
 
 std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner const &refiner,
                                                                  Options options, Status *status) {
-    Status result;
-    if (!FarExt::internal::IsInEnum(options.interpolationMode, FarExt::INTERPOLATE_FACE_VARYING)) {
-        result = invalidArgument("there is no interpolationMode " +
-                                 std::to_string(int(options.interpolationMode)));
-    } else if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING &&
-               (options.fvarChannel < 0 || options.fvarChannel >= refiner.GetNumFVarChannels())) {
-        result = invalidArgument("there is no face-varying channel " +
-                                 std::to_string(options.fvarChannel) + " among the refiner's " +
-                                 std::to_string(refiner.GetNumFVarChannels()));
-    }
+    Status const result = internal::CheckOptions(refiner, options);
     if (!FarExt::internal::Report(result, status)) {
         return nullptr;
     }

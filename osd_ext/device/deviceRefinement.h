@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_REFINEMENT_H
+#define OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_REFINEMENT_H
+
+#include "far_ext/vtr/refinement.h"
+#include "far_ext/vtr/refinementMask.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+/// \brief The arrays that the refinements of all levels point into.
+struct DeviceArrays {
+    FarExt::internal::Buffer<std::int32_t> indices;
+    std::vector<float> weights;
+};
+
+/// \brief Plain faces of one size that follow one another.
+struct DeviceFaceRun {
+    int size;
+    std::uint32_t count;
+    std::uint32_t firstCorner;
+    /// Whether the vertices of the faces follow one another, from \c first on, as those of F-faces do;
+    /// else they are indices, from position \c first on.
+    bool areConsecutive;
+    std::uint32_t first;
+    /// Position of the weights of corner 0, which stand twice in a row, so that every rotation of
+    /// them is contiguous.
+    std::uint32_t firstWeight;
+};
+
+/// \brief Vertices with three faces, and the mask that all these have, that follow one another and
+/// keep their index.  The three corners of each are indices, from position firstIndex on.
+struct DeviceVertexRun {
+    std::uint32_t count;
+    std::uint32_t firstVertex;
+    std::uint32_t firstIndex;
+};
+
+/// \brief Any corner: its F-vertex is the sum of weights[firstWeight + j] indices[firstIndex + j],
+/// j < size.
+struct DeviceCorner {
+    std::uint32_t corner;
+    std::uint32_t size;
+    std::uint32_t firstIndex;
+    std::uint32_t firstWeight;
+};
+
+/// \brief Any V-vertex: from its first index on it has sources, each with a weight, and then corners,
+/// whose F-vertices are summed up and multiplied by the weight behind those.
+struct DeviceVertex {
+    std::uint32_t child;
+    std::uint32_t numSources;
+    std::uint32_t numCorners;
+    std::uint32_t firstIndex;
+    std::uint32_t firstWeight;
+};
+
+/// \brief A refinement as a device evaluates it, with what the numbering does not give.
+///
+/// Nearly all faces and vertices of a refined level are in runs.  There, indices take 24 bytes for
+/// each face of the parent that is no F-face, and 12 for each of its vertices: together about 5
+/// bytes for a vertex that is made.  All others are listed, in \c corners and \c vertices.
+struct DeviceRefinement {
+    Far::Index numVVertices = 0; ///< F-vertices follow in the child
+    Far::Index numVertices = 0;  ///< of the child
+
+    std::vector<DeviceFaceRun> faceRuns;
+    std::vector<DeviceCorner> corners;
+    std::vector<DeviceVertexRun> vertexRuns;
+    std::vector<DeviceVertex> vertices;
+    float vertexWeight = 1;    ///< of vertices in runs, and of each F-vertex around them ...
+    bool averagesFaces = true; ///< ... unless this is false
+};
+
+/// \brief Prepares all refinements of a mesh, which lead from level 0 on.
+///
+/// \param masks  by refinement
+///
+/// \return  empty where there are more than 2^32 indices or weights
+std::vector<DeviceRefinement>
+MakeDeviceRefinements(std::vector<FarExt::internal::Refinement const *> const &refinements,
+                      std::vector<FarExt::internal::RefinementMask> const &masks,
+                      DeviceArrays &arrays);
+
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif

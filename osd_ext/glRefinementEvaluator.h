@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_GL_REFINEMENT_EVALUATOR_H
+#define OPENSUBDIVHEX_OSD_EXT_GL_REFINEMENT_EVALUATOR_H
+
+#include "refinementEvaluator.h"
+
+#include "far_ext/export.h"
+#include "far_ext/status.h"
+#include "far_ext/topologyRefiner.h"
+
+#include <opensubdiv/osd/bufferDescriptor.h>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+namespace OpenSubdivHex::OsdExt {
+
+/// \brief Evaluates refined levels on a device by compute shaders of OpenGL 4.3, without a stencil
+/// table: RefinementEvaluator for buffers of OpenGL.  Programs link OpenSubdivHex::osd_ext_gl, which
+/// is built where CMake's OPENSUBDIVHEX_GL is on.
+///
+/// Control values are refined level by level.  Of the topology, the device has about 8 bytes for
+/// each vertex of the last level, where a stencil table has about 200; all else follows from the
+/// numbering (far_ext/INDEXING.md).
+///
+/// \code
+///     auto const evaluator = OsdExt::GLRefinementEvaluator::Create(*refiner);
+///     Osd::BufferDescriptor const desc(0, 3, 3);
+///     for each frame:
+///         evaluator->Evaluate(controlPositions, desc, positions, desc, evaluator->GetMaxLevel());
+/// \endcode
+///
+/// **Context.** A context of OpenGL 4.3 or later must be current in all functions, always the same or
+/// one that shares its objects.  Afterwards no program is current, and nothing is bound to
+/// GL_ARRAY_BUFFER and to GL_SHADER_STORAGE_BUFFER and its first four indices.  Who reads the result
+/// by other means than shader storage buffers calls glMemoryBarrier() before, as behind
+/// Osd::GLComputeEvaluator.
+///
+/// **Elements.** Element j of a buffer is the \c length floats from <tt>offset + j * stride</tt>
+/// on, computed in 32 bits without sign.  Nothing else is written.  Source and destination may be
+/// one buffer, as long as no float is both read and written.
+///
+/// **Results.** The sums of RefinementEvaluator in another order: they differ by rounding, a few units
+/// in the last place of the largest control value for each level.  Values whose sums are too large
+/// for a float are not scaled as there.
+///
+/// **Lifetime.** The evaluator keeps what it needs of the refiner.
+class OPENSUBDIVHEX_API GLRefinementEvaluator {
+    /// So that the name of a buffer is not taken for one.
+    template <class BUFFER>
+    using IfBuffer = decltype(std::declval<BUFFER &>().BindVBO());
+
+public:
+    /// What is evaluated.
+    using Options = RefinementEvaluator::Options;
+
+    /// \brief Prepares for the levels that \p refiner has, and loads what the device needs.
+    ///
+    /// \return  null with
+    ///           - StatusCode::InvalidArgument for a channel that is not there, or an
+    ///             interpolationMode that is none,
+    ///           - StatusCode::Unsupported without a context of OpenGL 4.3, or if its compiler takes
+    ///             no shader,
+    ///           - StatusCode::TooLarge if there are more than 2^32 indices
+    static std::unique_ptr<GLRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
+                                                         Options options,
+                                                         FarExt::Status *status = nullptr);
+    /// The same with the default options.
+    static std::unique_ptr<GLRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
+                                                         FarExt::Status *status = nullptr) {
+        return Create(refiner, Options(), status);
+    }
+
+    /// Deletes its objects of OpenGL.
+    ~GLRefinementEvaluator();
+
+    /// The last level that can be evaluated, that of the refiner when this was made.
+    int GetMaxLevel() const;
+    /// Elements of a level: its vertices or face-varying values.  Those of level 0 are the source.
+    int GetNumElements(int level) const;
+    /// Elements of levels 1 ... GetMaxLevel() together.
+    std::int64_t GetNumElementsAllLevels() const;
+    /// Bytes that lie on the device, but for the levels below the one that was asked for.
+    std::int64_t GetNumDeviceBytes() const;
+
+    /// \brief Writes the values of one level to elements [0, GetNumElements(level)) of \p dst.
+    ///
+    /// The programs for a length are compiled when it first comes; the levels below are kept in
+    /// buffers that only the first frame takes.
+    ///
+    /// \param src,dst  names of buffers
+    /// \param level    0 ... GetMaxLevel(); 0 copies the control values
+    ///
+    /// \return  false, with nothing written, with
+    ///           - StatusCode::InvalidArgument if \p level is out of range, the lengths of the
+    ///             descriptors differ or are less than 1, a stride is less than the length, an
+    ///             offset is negative, or a buffer is 0 or ends before its last element,
+    ///           - StatusCode::Unsupported if the compiler takes no shader,
+    ///           - StatusCode::TooLarge if the last element ends behind 2^32 floats
+    bool Evaluate(unsigned src, Osd::BufferDescriptor const &srcDesc, unsigned dst,
+                  Osd::BufferDescriptor const &dstDesc, int level,
+                  FarExt::Status *status = nullptr);
+
+    /// \brief Writes the values of levels 1 ... GetMaxLevel() to elements
+    /// [0, GetNumElementsAllLevels()), level behind level: the order of a stencil table with
+    /// intermediate levels.  Fails as Evaluate does.
+    bool EvaluateAllLevels(unsigned src, Osd::BufferDescriptor const &srcDesc, unsigned dst,
+                           Osd::BufferDescriptor const &dstDesc, FarExt::Status *status = nullptr);
+
+    /// @name With buffers
+    /// Whose function BindVBO() returns a name, such as Osd::GLVertexBuffer.
+    /// @{
+
+    /// Evaluate() from and to buffers.
+    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
+    bool Evaluate(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
+                  DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc, int level,
+                  FarExt::Status *status = nullptr) {
+        return Evaluate(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, level, status);
+    }
+    /// EvaluateAllLevels() from and to buffers.
+    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
+    bool EvaluateAllLevels(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
+                           DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc,
+                           FarExt::Status *status = nullptr) {
+        return EvaluateAllLevels(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, status);
+    }
+    /// @}
+
+private:
+    class Impl;
+
+    explicit GLRefinementEvaluator(std::unique_ptr<Impl> impl);
+
+    template <class BUFFER>
+    static unsigned bind(BUFFER *buffer) {
+        return buffer ? buffer->BindVBO() : 0;
+    }
+
+    std::unique_ptr<Impl> _impl;
+};
+
+} // namespace OpenSubdivHex::OsdExt
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_EVALUATION_CHECKS_H
+#define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_EVALUATION_CHECKS_H
+
+#include "osd_ext/refinementEvaluator.h"
+
+#include "far_ext/mask.h"
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+/// Whether \p refiner has what \p options ask for.
+OPENSUBDIVHEX_API FarExt::Status CheckOptions(FarExt::TopologyRefiner const &refiner,
+                                              RefinementEvaluator::Options options);
+
+/// By which masks it is interpolated.
+OPENSUBDIVHEX_API FarExt::Interpolation GetInterpolation(FarExt::TopologyRefiner const &refiner,
+                                                         RefinementEvaluator::Options options);
+
+/// Whether \p level is one of 0 ... \p maxLevel.
+OPENSUBDIVHEX_API FarExt::Status CheckLevel(int level, int maxLevel);
+
+/// Whether the descriptors of a source and a destination fit one another.
+OPENSUBDIVHEX_API FarExt::Status CheckDescriptors(Osd::BufferDescriptor const &srcDesc,
+                                                  Osd::BufferDescriptor const &dstDesc);
+
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif
