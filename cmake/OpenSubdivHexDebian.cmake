@@ -5,8 +5,13 @@
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME opensubdivhex)
-set(CPACK_PACKAGE_CONTACT "OpenSubdivHex maintainers <maintainers@opensubdivhex.invalid>"
-  CACHE STRING "Maintainer of the packages")
+# Who makes packages for others says who maintains them, as Debian's tools are told; else the address
+# says of itself that it is none (RFC 2606).
+set(contact "The OpenSubdivHex authors <nobody@opensubdivhex.invalid>")
+if(NOT "$ENV{DEBEMAIL}" STREQUAL "" AND NOT "$ENV{DEBFULLNAME}" STREQUAL "")
+  set(contact "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+endif()
+set(CPACK_PACKAGE_CONTACT "${contact}" CACHE STRING "Maintainer of the packages")
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
@@ -103,5 +108,12 @@ if(TARGET opensubdivhex_python)
     "${libraryPackage} (= ${debianVersion})" python3-numpy
     "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~)"
     "python3 (<< ${Python_VERSION_MAJOR}.${nextMinor})")
+
+  # Where Debian's Blender, whose Python is the system's, looks for add-ons.
+  opensubdivhex_add_debian_package(blender blender-opensubdivhex graphics
+    "This package has the add-on for Blender: objects that follow a mesh,\nsubdivided into hexagons."
+    "python3-opensubdivhex (= ${debianVersion})")
+  set(CPACK_DEBIAN_BLENDER_PACKAGE_ARCHITECTURE all)
+  set(CPACK_DEBIAN_BLENDER_PACKAGE_RECOMMENDS "blender (>= 3.4)")
 endif()
 include(CPack)

@@ -42,6 +42,23 @@ refiner.refine_uniform(2)
 assert refiner.get_level(2).num_vertices == 128
 PYTHON
 
+step "the add-on, without Blender itself"
+install /packages/blender-opensubdivhex_*.deb
+python3 - "$version" <<'PYTHON'
+import ast
+import pathlib
+import sys
+folder = pathlib.Path("/usr/share/blender/scripts/addons/opensubdivhex_blender")
+trees = {path.name: ast.parse(path.read_text()) for path in folder.glob("*.py")}
+info = next(ast.literal_eval(node.value) for node in trees["__init__.py"].body
+            if isinstance(node, ast.Assign) and node.targets[0].id == "bl_info")
+assert ".".join(map(str, info["version"])) == sys.argv[1], info["version"]
+for tree in trees.values():
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.level == 1 and node.module:
+            assert node.module + ".py" in trees, node.module
+PYTHON
+
 step "the same program with pkg-config"
 test "$(pkg-config --modversion opensubdivhex)" = "$version"
 # shellcheck disable=SC2046  # words are meant

@@ -64,6 +64,9 @@ class AddonTest(unittest.TestCase):
     def tearDown(self):
         addon.unregister()
 
+    def test_its_version_is_that_of_the_module(self):
+        self.assertEqual(".".join(map(str, addon.bl_info["version"])), osh.__version__)
+
     def test_positions_are_those_of_the_library(self):
         for mask in ("SMOOTH", "COSINE", "AVERAGE"):
             source = make_cube()
