@@ -165,6 +165,54 @@ Shape makeSharpCube() {
     return cube;
 }
 
+constexpr int kTorusColumns = 5;
+constexpr int kTorusRows = 4;
+
+/// From one place to another on a flat torus of unit squares, on the shortest way.
+std::array<double, 2> subtractOnTorus(std::array<double, 2> const &p,
+                                      std::array<double, 2> const &q) {
+    return {std::remainder(p[0] - q[0], kTorusColumns), std::remainder(p[1] - q[1], kTorusRows)};
+}
+
+/// A place on that torus with the interface of Far's primvar refiner.
+struct TorusPoint {
+    void Clear() { isClear = true; }
+    void AddWithWeight(TorusPoint const &other, double weight) {
+        if (isClear) { // weights sum to 1: the rest is in terms of this one
+            isClear = false;
+            start = place = other.place;
+        }
+        std::array<double, 2> const way = subtractOnTorus(other.place, start);
+        place[0] += weight * way[0];
+        place[1] += weight * way[1];
+    }
+
+    std::array<double, 2> place = {};
+    std::array<double, 2> start = {};
+    bool isClear = true;
+};
+
+/// Quads, of which face j * kTorusColumns + i has its corners at (i, j) ... (i + 1, j + 1).
+Shape makeFlatTorus() {
+    Shape torus;
+    torus.name = "flat torus";
+    torus.closed = torus.manifold = true;
+    auto const vertex = [](int i, int j) {
+        return j % kTorusRows * kTorusColumns + i % kTorusColumns;
+    };
+    for (int j = 0; j < kTorusRows; ++j) {
+        for (int i = 0; i < kTorusColumns; ++i) {
+            torus.positions.insert(torus.positions.end(), {double(i), double(j), 0});
+            torus.faceSizes.push_back(4);
+            for (int const corner :
+                 {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)}) {
+                torus.faceVertices.push_back(corner);
+            }
+        }
+    }
+    return torus;
+}
+
 } // namespace
 
 TEST(BaseFace, RegionsAndHolesEqualReference) {
@@ -198,6 +246,62 @@ TEST(BaseFace, SharpCubeKnowsItsSides) {
                     }
                 }
             }
+        }
+    }
+}
+
+// Mirrored at each line of the lattice a flat torus stays as it is, and so do its refinements: points
+// on lines stay there, others on their side.  So the squares themselves say what lies in them.
+TEST(BaseFace, SmoothTorusLiesInItsSquares) {
+    Shape const torus = makeFlatTorus();
+    int const numFaces = torus.GetNumFaces();
+    auto const refiner = CreateRefiner(torus, ReferenceMask::Smooth, 6);
+    FarExt::PrimvarRefinerReal<double> const primvarRefiner(*refiner);
+    for (bool const isVarying : {false, true}) {
+        std::vector<TorusPoint> points(std::size_t(torus.GetNumVertices()));
+        for (std::size_t v = 0; v < points.size(); ++v) {
+            points[v].place = {torus.positions[3 * v], torus.positions[3 * v + 1]};
+        }
+        for (int depth = 1; depth <= 6; ++depth) {
+            SCOPED_TRACE(testing::Message() << "level " << depth << ", varying " << isVarying);
+            TopologyLevel const &level = refiner->GetLevel(depth);
+            std::vector<TorusPoint> refined(std::size_t(level.GetNumVertices()));
+            if (isVarying) {
+                primvarRefiner.InterpolateVarying(depth, points, refined);
+            } else {
+                primvarRefiner.Interpolate(depth, points, refined);
+            }
+            points = refined;
+
+            std::vector<double> areas(torus.faceSizes.size());
+            std::vector<double> parameterAreas(torus.faceSizes.size());
+            for (Piece const &piece : findPieces(level)) {
+                std::array<double, 2> const middle = {piece.baseFace % kTorusColumns + 0.5,
+                                                      piece.baseFace / kTorusColumns + 0.5};
+                Polygon polygon;
+                for (int const vertex : piece.corners) {
+                    auto const way = subtractOnTorus(points[std::size_t(vertex)].place, middle);
+                    ASSERT_LE(std::max(std::abs(way[0]), std::abs(way[1])), 0.5 + 1e-12)
+                        << "vertex " << vertex << ", base face " << piece.baseFace;
+                    polygon.push_back({way[0], way[1]});
+                }
+                double const area = computeArea(polygon);
+                ASSERT_GT(area, 0);
+                areas[std::size_t(piece.baseFace)] += area;
+                parameterAreas[std::size_t(piece.baseFace)] += computeArea(piece.polygon);
+            }
+            for (int face = 0; face < numFaces; ++face) {
+                EXPECT_NEAR(areas[std::size_t(face)], 1, 1e-12) << "base face " << face;
+                EXPECT_EQ(parameterAreas[std::size_t(face)], 1) << "base face " << face;
+            }
+            // Along an edge of the base mesh (2^n - (-1)^n) / 3 hexagons: each becomes one and two
+            // edges, and each edge becomes one.
+            int numSplit = 0;
+            for (int face = 0; face < level.GetNumFaces(); ++face) {
+                numSplit += level.IsFaceBaseSplit(face) ? 1 : 0;
+            }
+            int const numOfEdge = ((1 << depth) + (depth % 2 == 0 ? -1 : 1)) / 3;
+            EXPECT_EQ(numSplit, 2 * numFaces * numOfEdge);
         }
     }
 }
