@@ -2,7 +2,9 @@
 //
 // Colours and other numbers, objects, groups and materials through hexrefine.
 #include "far_ext/primvarRefiner.h"
+#include "pictureColors.h"
 #include "programFixture.h"
+#include "tools/mesh/fileError.h"
 
 namespace OpenSubdivHex::Tools {
 
@@ -455,6 +457,26 @@ TEST_F(HexrefineAttribute, MaterialLibrariesAreFoundFromOtherFolders) {
               (Names{"my colors.mtl", "colors/b.mtl /c.mtl missing.mtl"}));
     EXPECT_EQ(refine(input + " -l 1", "in/colors/b.obj").materialLibraries,
               (Names{"../my colors.mtl", "b.mtl /c.mtl ../missing.mtl"}));
+}
+
+TEST(PictureColors, AreThoseOfLabels) {
+    Mesh mesh;
+    mesh.faceSizes.assign(5, 3);
+    mesh.labels = {{"o", "g", "red"}, {"o", "h", "red"}, {"p", "g", ""}};
+    mesh.faceLabels = {0, 1, 2, 0, 2};
+    using Regions = std::vector<int>;
+    EXPECT_EQ(FindRegions("", mesh, "file"), Regions());
+    EXPECT_EQ(FindRegions("base-faces", mesh, "file"), (Regions{0, 1, 2, 3, 4}));
+    EXPECT_EQ(FindRegions("materials", mesh, "file"), (Regions{0, 0, 1, 0, 1}));
+    EXPECT_EQ(FindRegions("groups", mesh, "file"), (Regions{0, 1, 0, 0, 0}));
+    EXPECT_EQ(FindRegions("objects", mesh, "file"), (Regions{0, 0, 1, 0, 1}));
+    // One for all is one colour; none is a mistake.
+    mesh.faceLabels.assign(5, 0);
+    EXPECT_EQ(FindRegions("materials", mesh, "file"), Regions(5, 0));
+    mesh.faceLabels.assign(5, 2);
+    EXPECT_THROW(FindRegions("materials", mesh, "file"), FileError);
+    mesh.faceLabels.clear();
+    EXPECT_THROW(FindRegions("groups", mesh, "file"), FileError);
 }
 
 } // namespace OpenSubdivHex::Tools

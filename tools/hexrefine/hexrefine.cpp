@@ -13,6 +13,7 @@
 #include "libraryPaths.h"
 #include "osd_ext/simdLevel.h"
 #include "picture.h"
+#include "pictureColors.h"
 #include "progress.h"
 #include "ruleNames.h"
 #include "statistics.h"
@@ -60,6 +61,7 @@ struct Arguments {
     std::optional<int> numThreads;
     std::optional<std::string> simd;
     std::string png;
+    std::string pngColors;
     std::string stats;
     bool isLimit = false;
     bool printsTags = false;
@@ -229,6 +231,11 @@ void addOptions(CLI::App &app, Arguments *arguments) {
             return std::string(HasRenderer() ? "" : "this program was built without Embree");
         })
         ->type_name("FILE");
+    app.add_option("--png-colors", arguments->pngColors,
+                   "What has a colour of its own in the picture: each face of INPUT with what is "
+                   "refined from it, or all faces of a material, group or object of an .obj file")
+        ->check(CLI::IsMember(kPictureColors))
+        ->needs("--png");
     app.add_option("--stats", arguments->stats, "File for statistics as JSON; - is standard output")
         ->type_name("FILE|-");
     app.add_flag("--tags", arguments->printsTags,
@@ -543,6 +550,8 @@ void run(Arguments const &arguments) {
         Mesh mesh;
         milliseconds.read = measure(progress, "reading", [&] { mesh = ReadMesh(arguments.input); });
 
+        std::vector<int> const regions = FindRegions(arguments.pngColors, mesh, arguments.input);
+
         std::unique_ptr<FarExt::TopologyRefiner> refiner;
         milliseconds.validate = measure(progress, "validating", [&] {
             if (arguments.creaseAngle) {
@@ -598,7 +607,8 @@ void run(Arguments const &arguments) {
         }
         if (!arguments.png.empty()) {
             milliseconds.render = measure(progress, "rendering", [&] {
-                WritePicture(refiner->GetLevel(arguments.level), mesh.positions, arguments.png);
+                WritePicture(refiner->GetLevel(arguments.level), mesh.positions, regions,
+                             arguments.png);
             });
         }
     }

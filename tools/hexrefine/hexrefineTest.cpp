@@ -408,6 +408,15 @@ TEST_F(Hexrefine, MakesAPicture) {
 
     expectFailure(makeCubeFile() + " --png " + getPath("none/cube.png"), getPath("none/cube.png"),
                   "");
+
+    EXPECT_EQ(run(makeCubeFile() + " -l 2 --png " + path + " --png-colors base-faces").status, 0);
+    EXPECT_NE(getContent(path), content);
+    std::string const cube = makeCubeFile();
+    expectFailure(cube + " --png " + getPath("none.png") + " --png-colors materials", cube,
+                  "has no materials to colour");
+    EXPECT_FALSE(std::filesystem::exists(getPath("none.png")));
+    expectBadUsage(cube + " --png-colors base-faces", "--png");
+    expectBadUsage(cube + " --png " + path + " --png-colors red", "red");
 }
 #else
 TEST_F(Hexrefine, RefusesPicturesWithoutTheRenderer) {

@@ -16,10 +16,11 @@ bool HasRenderer();
 /// \p path.
 ///
 /// \param positions  x y z of each vertex of the level
+/// \param regions    of FindRegions(); empty: all faces have the colour of clay
 ///
 /// Throws FileError.
 void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> positions,
-                  std::string const &path);
+                  std::vector<int> const &regions, std::string const &path);
 
 } // namespace OpenSubdivHex::Tools
 

@@ -233,7 +233,9 @@ private:
             return Mix(kZebraDark, kZebraLight, SmoothStep(-0.12f, 0.12f, stripe));
         }
         if (_options.hasRegions) {
-            return getRegionColor(_scene.GetSurface()->GetBaseFace(hit.triangle));
+            int const baseFace = _scene.GetSurface()->GetBaseFace(hit.triangle);
+            return getRegionColor(
+                _options.regions.empty() ? baseFace : _options.regions[std::size_t(baseFace)]);
         }
         bool const isTinted =
             _options.isTinted && _scene.GetSurface()->GetFaceSize(hit.triangle) != 6;

@@ -6,6 +6,8 @@
 #include "image.h"
 #include "scene.h"
 
+#include <vector>
+
 namespace OpenSubdivHex::Tools {
 
 enum class SurfaceLook {
@@ -19,9 +21,12 @@ struct RenderOptions {
     bool hasWireframe = false; ///< draws the edges of the polygons
     bool isTinted = false;     ///< colours faces that are no hexagons
     bool hasRegions = false;   ///< colours the region of each face of the control mesh
-    float lineWidth = 1.5f;    ///< of the wireframe, in pixels
-    bool hasGround = true;     ///< shadows fall on a plane below the scene
-    int numSamples = 16;       ///< per pixel; each with four rays to the key light and to the sky
+    /// A number for each of these faces, of which those with the same have one colour; empty: each has
+    /// its own.
+    std::vector<int> regions{};
+    float lineWidth = 1.5f; ///< of the wireframe, in pixels
+    bool hasGround = true;  ///< shadows fall on a plane below the scene
+    int numSamples = 16;    ///< per pixel; each with four rays to the key light and to the sky
 };
 
 /// \brief Ray traces \p scene: a soft key light from the upper left and a bright sky, before a

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TOOLS_PICTURE_COLORS_H
+#define OPENSUBDIVHEX_TOOLS_PICTURE_COLORS_H
+
+#include "tools/mesh/mesh.h"
+
+#include <string>
+#include <vector>
+
+namespace OpenSubdivHex::Tools {
+
+/// What may have a colour of its own in a picture, as users call it.
+inline std::vector<std::string> const kPictureColors = {"base-faces", "materials", "groups",
+                                                        "objects"};
+
+/// \brief A number for each face of a control mesh, the same for those that get one colour.
+///
+/// \param colors  one of kPictureColors, or empty, for which there are no numbers
+/// \param path    the file of the mesh
+///
+/// Throws FileError where no face has such a thing.
+std::vector<int> FindRegions(std::string const &colors, Mesh const &mesh, std::string const &path);
+
+} // namespace OpenSubdivHex::Tools
+
+#endif
