@@ -49,8 +49,6 @@ int countSides(FanItems const &fan) {
 
 // The fans one after the other, as the level has them, but closed ones from their first face on.
 void LimitPatchGatherer::orderFans(Index vert, LimitPatch &patch) {
-    _ringFaces.clear();
-    _ringEdges.clear();
     Index firstEdge = _level.vertFirstEdge[vert];
     ForEachFan(_level, vert, [&](VertexFan const &fan) {
         GatherFanItems(_level, fan, _fan);
@@ -246,17 +244,20 @@ void LimitPatchGatherer::addSignature(LimitPatch &patch) {
     }
 }
 
-void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
+void LimitPatchGatherer::clear(LimitPatch &patch) {
     _verts.Clear();
     _faces.Clear();
     _edges.Clear();
     _corners.clear();
     _lines.clear();
+    _ringFaces.clear();
+    _ringEdges.clear();
     patch = LimitPatch();
+}
 
-    // The vertices whose faces are all there come first: vertex 0 and its neighbours.
-    addVertex(vert, patch);
-    orderFans(vert, patch);
+// The vertices whose faces are all there come first: the centres, for which the patch is made and
+// which it has already, and their neighbours.
+void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
     for (Index ringEdge : _ringEdges) {
         for (Index end : _level.edgeVerts[ringEdge]) {
             addVertex(end, patch);
@@ -270,20 +271,15 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
     for (Index k : _ringFaces) {
         addFaceAt(k, true);
     }
-    for (int i = 1; i < _numComplete; ++i) {
+    for (int i = numCenters; i < _numComplete; ++i) {
         Index const neighbor = patch.sources[i];
-        // Each fan from the edge of the vertex on, where the fan has it: so neighbours of a pole of
-        // several fans look alike.
+        // Each fan from its edge to the first centre on, where the fan has one: so neighbours of a
+        // pole of several fans look alike.
         Index firstEdge = _level.vertFirstEdge[neighbor];
         ForEachFan(_level, neighbor, [&](VertexFan const &fan) {
             int const numFaces = fan.end - fan.begin;
             int const numEdges = numFaces + !fan.isClosed;
-            Index const *const edges = _level.vertEdges.data() + firstEdge;
-            Index const *const found = std::find_if(edges, edges + numEdges, [&](Index edge) {
-                IndexPair const &ends = _level.edgeVerts[edge];
-                return ends[0] == vert || ends[1] == vert;
-            });
-            auto const first = int(found - edges) % numEdges;
+            int const first = findCenterEdge(neighbor, firstEdge, numEdges, numCenters) % numEdges;
             for (int k = 0; k < numFaces; ++k) {
                 addFaceAt(fan.begin + (first + k) % numFaces, false);
             }
@@ -299,6 +295,60 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
     addTags(patch);
     addSharpVertices(patch);
     addSignature(patch);
+}
+
+// Which of the edges of a fan leads to the first centre; numEdges where none does.
+int LimitPatchGatherer::findCenterEdge(Index neighbor, Index firstEdge, int numEdges,
+                                       int numCenters) const {
+    int best = numEdges;
+    Index bestCenter = numCenters;
+    for (int i = 0; i < numEdges; ++i) {
+        IndexPair const &ends = _level.edgeVerts[_level.vertEdges[firstEdge + i]];
+        Index const center = _verts.Find(ends[0] == neighbor ? ends[1] : ends[0]);
+        if (center != Far::INDEX_INVALID && center < bestCenter) {
+            best = i;
+            bestCenter = center;
+        }
+    }
+    return best;
+}
+
+void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
+    clear(patch);
+    addVertex(vert, patch);
+    orderFans(vert, patch);
+    addNeighborhood(1, patch);
+}
+
+int LimitPatchGatherer::GatherCell(Index face, int const *locals, int numCorners,
+                                   LimitPatch &patch) {
+    clear(patch);
+    Index const first = _level.faceFirstCorner[face];
+    for (int i = 0; i < numCorners; ++i) {
+        addVertex(_level.faceVerts[first + locals[i]], patch);
+    }
+    int const numCenters = int(patch.sources.size());
+    addFace(face, locals[0], true, patch);
+    for (int center = 0; center < numCenters; ++center) {
+        Index const vert = patch.sources[std::size_t(center)];
+        // A fan that has the face begins with it.
+        Index firstEdge = _level.vertFirstEdge[vert];
+        ForEachFan(_level, vert, [&](VertexFan const &fan) {
+            int const numFaces = fan.end - fan.begin;
+            int const numEdges = numFaces + !fan.isClosed;
+            Index const *const faces = _level.vertFaces.data() + fan.begin;
+            int const firstFace = int(std::find(faces, faces + numFaces, face) - faces) % numFaces;
+            for (int i = 0; i < numFaces; ++i) {
+                _ringFaces.push_back(fan.begin + (firstFace + i) % numFaces);
+            }
+            for (int i = 0; i < numEdges; ++i) {
+                _ringEdges.push_back(_level.vertEdges[firstEdge + (firstFace + i) % numEdges]);
+            }
+            firstEdge += numEdges;
+        });
+    }
+    addNeighborhood(numCenters, patch);
+    return _corners[0] - first;
 }
 
 void BuildPatchLevel(LimitPatch const &patch, Level &level) {
@@ -411,6 +461,26 @@ std::vector<int> mapSides(Level const &pLevel, LimitPatch const &cPatch) {
 
 } // namespace
 
+PatchRefinement MakePatchStep(Refinement const &refinement, HexSchemeOptions const &schemeOptions,
+                              Interpolation interpolation, std::vector<Index> const &cVerts) {
+    std::vector<Index> wanted = cVerts;
+    SortUnique(wanted);
+    RefinementRows::Part const part = FindPart(refinement, schemeOptions, interpolation, wanted);
+    RefinementRows const rows(refinement, schemeOptions, interpolation, part);
+    std::vector<SparseRow> sparseRows(std::size_t(rows.GetNumRows()));
+    Interpolate<double>(rows, Columns{part.verts}, sparseRows);
+
+    PatchRefinement step;
+    step.numParentVerts = refinement.parent->numVertices;
+    step.firsts.push_back(0);
+    std::vector<Index> const made = GetMadeVertices(refinement, part);
+    for (Index cVert : cVerts) {
+        auto const place = std::lower_bound(made.begin(), made.end(), cVert);
+        addRow(std::move(sparseRows[std::size_t(place - made.begin())]), step);
+    }
+    return step;
+}
+
 PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
                             HexSchemeOptions const &schemeOptions, LimitPatch &cPatch) {
     Level parent;
@@ -420,22 +490,8 @@ PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
     RefineHexagonally(parent, sdcOptions, true, refinement, child);
     LimitPatchGatherer(child).Gather(refinement.GetVertexChildVertex(0), cPatch);
 
-    std::vector<Index> wanted = cPatch.sources;
-    SortUnique(wanted);
-    RefinementRows::Part const part =
-        FindPart(refinement, schemeOptions, Interpolation::Vertex, wanted);
-    RefinementRows const rows(refinement, schemeOptions, Interpolation::Vertex, part);
-    std::vector<SparseRow> sparseRows(std::size_t(rows.GetNumRows()));
-    Interpolate<double>(rows, Columns{part.verts}, sparseRows);
-
-    PatchRefinement step;
-    step.numParentVerts = parent.numVertices;
-    step.firsts.push_back(0);
-    std::vector<Index> const made = GetMadeVertices(refinement, part);
-    for (Index cVert : cPatch.sources) {
-        auto const place = std::lower_bound(made.begin(), made.end(), cVert);
-        addRow(std::move(sparseRows[std::size_t(place - made.begin())]), step);
-    }
+    PatchRefinement step =
+        MakePatchStep(refinement, schemeOptions, Interpolation::Vertex, cPatch.sources);
     step.sides = mapSides(parent, cPatch);
     return step;
 }

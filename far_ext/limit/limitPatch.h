@@ -4,6 +4,7 @@
 
 #include "far_ext/hexSchemeOptions.h"
 #include "far_ext/vtr/indexSet.h"
+#include "far_ext/vtr/refinement.h"
 #include "far_ext/vtr/vertexFan.h"
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -52,7 +53,17 @@ public:
 
     void Gather(Index vert, LimitPatch &patch);
 
+    /// \brief Gathers what the surface of a cell depends on: the faces around its corners and around
+    /// their neighbours, in one patch.  Its first vertices are those at the corners, in their order.
+    ///
+    /// \param locals  the corners, as places in the face, which is face 0 of the patch
+    /// \return        where in the face it begins in the patch
+    int GatherCell(Index face, int const *locals, int numCorners, LimitPatch &patch);
+
 private:
+    void clear(LimitPatch &patch);
+    void addNeighborhood(int numCenters, LimitPatch &patch);
+    int findCenterEdge(Index neighbor, Index firstEdge, int numEdges, int numCenters) const;
     void orderFans(Index vert, LimitPatch &patch);
     int findFirstFace(VertexFan const &fan, int &firstSide);
     Index addVertex(Index vert, LimitPatch &patch);
@@ -70,7 +81,7 @@ private:
     int _numComplete = 0;        // vertices, the first ones, all of whose faces are in the patch
     std::vector<Index> _corners; // the level's corner of each corner of the patch
     std::vector<Index> _lines;   // the level's line of each line of the patch
-    // Of the vertex that the patch is for: positions in vertFaces, and edges.
+    // Of the vertices that the patch is for: positions in vertFaces, and edges.
     std::vector<Index> _ringFaces;
     std::vector<Index> _ringEdges;
     FanItems _fan = {{}, false};
@@ -88,10 +99,15 @@ struct PatchRefinement {
     std::vector<int> sides; ///< which side of the child patch each side of the parent becomes
 
     /// result = left A: what the vertices of the child patch weigh, in terms of the parent's.
-    void ApplyLeft(std::vector<double> const &left, std::vector<double> &result) const;
+    OPENSUBDIVHEX_API void ApplyLeft(std::vector<double> const &left,
+                                     std::vector<double> &result) const;
     /// result = A right: values of the child patch's vertices from those of the parent's.
     void ApplyRight(std::vector<double> const &right, std::vector<double> &result) const;
 };
+
+/// The vertices \p cVerts of a child, whose parent is a patch's level, in terms of the parent's.
+PatchRefinement MakePatchStep(Refinement const &refinement, HexSchemeOptions const &schemeOptions,
+                              Interpolation interpolation, std::vector<Far::Index> const &cVerts);
 
 /// Refines \p pPatch to \p cPatch.
 PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,

@@ -14,7 +14,7 @@
 namespace OpenSubdivHex::FarExt::internal {
 
 /// The options of the steps from any level on to its limit, none of which is a first step.
-HexSchemeOptions GetStepsToLimit(HexSchemeOptions schemeOptions);
+OPENSUBDIVHEX_API HexSchemeOptions GetStepsToLimit(HexSchemeOptions schemeOptions);
 
 /// \brief Whether a level has limit points, or why not: InvalidArgument where it is none of the
 /// hierarchy or has not its full topology, Unsupported where it is not refined by hexagonal steps.
