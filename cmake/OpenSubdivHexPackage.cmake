@@ -27,7 +27,7 @@ set(pcCflags "-I\${includedir}/opensubdivhex")
 if(NOT OpenSubdiv_INCLUDE_DIR IN_LIST CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES)
   string(APPEND pcCflags " -I${OpenSubdiv_INCLUDE_DIR}")
 endif()
-set(pcLibs "-L\${libdir} -lopensubdivhex_osd_ext -lopensubdivhex_far_ext")
+set(pcLibs "-L\${libdir} -lopensubdivhex_bfr_ext -lopensubdivhex_osd_ext -lopensubdivhex_far_ext")
 set(osdDir "$<TARGET_FILE_DIR:OpenSubdiv::osdCPU>")
 string(APPEND pcLibs
   "$<$<NOT:$<IN_LIST:${osdDir},${CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES}>>: -L${osdDir}> -losdCPU")

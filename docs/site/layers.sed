@@ -2,4 +2,5 @@
 # opened and closed where its namespace is.
 s@^namespace (OpenSubdivHex::)?FarExt \{$@& /** \\addtogroup far_ext */ /** \\{ */@
 s@^namespace (OpenSubdivHex::)?OsdExt \{$@& /** \\addtogroup osd_ext */ /** \\{ */@
-s@^\} // namespace (OpenSubdivHex::)?(Far|Osd)Ext$@/** \\} */ &@
+s@^namespace (OpenSubdivHex::)?BfrExt \{$@& /** \\addtogroup bfr_ext */ /** \\{ */@
+s@^\} // namespace (OpenSubdivHex::)?(Far|Osd|Bfr)Ext$@/** \\} */ &@

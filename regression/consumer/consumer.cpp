@@ -3,6 +3,7 @@
 // A program that already refines a cube with Far and Osd, and now with the hexagonal scheme too.
 // Exits with 1 when a result is not what the schemes prescribe.
 
+#include <bfr_ext/surfaceFactory.h>
 #include <far_ext/primvarRefiner.h>
 #include <far_ext/stencilTableFactory.h>
 #include <far_ext/topologyRefinerFactory.h>
@@ -28,6 +29,7 @@ namespace Osd = OpenSubdiv::Osd;
 namespace Sdc = OpenSubdiv::Sdc;
 namespace FarExt = OpenSubdivHex::FarExt;
 namespace OsdExt = OpenSubdivHex::OsdExt;
+namespace BfrExt = OpenSubdivHex::BfrExt;
 
 namespace {
 
@@ -152,6 +154,23 @@ void checkHex(Far::TopologyRefiner const &base) {
     expect(OsdExt::CreateTriangleIndices(level).GetNumTriangles() ==
                level.GetNumFaceVertices() - 2 * level.GetNumFaces(),
            "hexagonal: n - 2 triangles per face");
+
+    // The limit of a face's centre is its centroid.
+    BfrExt::Surface<float> surface;
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    if (!factory || !factory->InitVertexSurface(0, &surface)) {
+        expect(false, "hexagonal: a face has a surface");
+        return;
+    }
+    std::vector<float> control(3 * std::size_t(surface.GetNumControlPoints()));
+    surface.GatherControlPoints(kPositions, 3, control.data(), 3);
+    float uv[2];
+    surface.GetParameterization().GetCenterCoord(uv);
+    float point[3];
+    surface.Evaluate(uv, control.data(), 3, point);
+    expect(std::abs(point[0]) < 1e-6f && std::abs(point[1]) < 1e-6f &&
+               std::abs(point[2] + 1) < 1e-6f,
+           "hexagonal: the surface of a face has its centroid");
 }
 
 } // namespace

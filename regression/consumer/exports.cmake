@@ -3,10 +3,11 @@
 # cmake -D nm=... -D library=... -D public=NAME -P exports.cmake
 #
 # Checks that a shared library exports its public API, of which public is a part of a mangled name,
-# and of what is internal no more than the inline code of public headers, osd_ext and osd_ext_gl call.
+# and of what is internal no more than the inline code of public headers and other layers call.
 set(called AllocateArray FreeArray RangeQueue ForEachRange Report SortUnique RefinementMask LimitRows
-  CheckLimitLevel PrimvarRows PrimvarLimitRows FindUniformSources
-  CheckOptions CheckLevel CheckDescriptors GetInterpolation)
+  CheckLimitLevel PrimvarRows PrimvarLimitRows FindUniformSources GetStepsToLimit GatherBaseCell
+  RefineCell FindCornerLimits PatchRefinement CheckOptions CheckLevel CheckDescriptors
+  GetInterpolation)
 
 execute_process(COMMAND ${nm} --dynamic --defined-only --format=posix ${library}
   OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)

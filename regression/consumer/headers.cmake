@@ -4,7 +4,8 @@
 # compiles alone, but for those whose names begin with one of missing, which need what is not there:
 # cmake -D sourceDir=DIR -D includeDir=DIR -D compiler=PATH -D flags=LIST -D missing=LIST
 #   -P headers.cmake
-file(GLOB expected RELATIVE ${sourceDir} ${sourceDir}/far_ext/*.h ${sourceDir}/osd_ext/*.h)
+file(GLOB expected RELATIVE ${sourceDir} ${sourceDir}/far_ext/*.h ${sourceDir}/osd_ext/*.h
+  ${sourceDir}/bfr_ext/*.h)
 list(APPEND expected far_ext/version.h)
 list(SORT expected)
 file(GLOB_RECURSE installed RELATIVE ${includeDir} ${includeDir}/*.h)

@@ -85,8 +85,9 @@ endif()
 if(UNIX AND NOT APPLE)
   get_target_property(libraryType far_ext TYPE)
   if(libraryType STREQUAL "SHARED_LIBRARY")
-    set(libraries far_ext osd_ext)
-    set(publicNames 22TopologyRefinerFactory6Create 19RefinementEvaluator6Create)
+    set(libraries far_ext osd_ext bfr_ext)
+    set(publicNames 22TopologyRefinerFactory6Create 19RefinementEvaluator6Create
+      14SurfaceFactory6Create)
     foreach(library publicName IN ZIP_LISTS libraries publicNames)
       add_test(NAME consumer.exports.${library}
         COMMAND ${CMAKE_COMMAND} -D nm=${CMAKE_NM} -D library=$<TARGET_FILE:${library}>

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cellStencil.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+using FarExt::internal::BasePolygon;
+
+namespace {
+
+// In a regular lattice the error of a bilinear cell falls by 4 in a step where curvature is bounded.
+// Elsewhere it falls as the cells do, by 1.25 at least.
+constexpr int kRegularDepth = 16;
+constexpr int kLastDepth = 40;
+
+// Vertices of the first levels have coordinates that are multiples of it.
+constexpr double kGrid = 1.0 / (1 << 16);
+
+double snap(double coordinate, double tolerance) {
+    double const multiple = std::round(coordinate / kGrid) * kGrid;
+    return std::abs(coordinate - multiple) <= tolerance ? multiple : coordinate;
+}
+
+Pair clampToSector(Pair const &coords) {
+    double const a = std::max(coords[0], 0.0);
+    double const b = std::max(coords[1], 0.0);
+    double const scale = 1 / std::max(a + b, 1.0);
+    return {a * scale, b * scale};
+}
+
+Pair clampToHalf(Pair const &coords) {
+    double const h = std::min(std::max(coords[1], 0.0), 0.5);
+    return {std::min(std::max(coords[0], 0.5 * h), 1 - 0.5 * h), h};
+}
+
+// The linear map from u and v, relative to the centre, to the coordinates in a sector.
+void findSectorMap(BasePolygon const &polygon, int sector, Pair (&rows)[2]) {
+    Pair const start = polygon.GetCorner(sector);
+    Pair const end = polygon.GetCorner((sector + 1) % polygon.GetSize());
+    double const determinant = start[0] * end[1] - start[1] * end[0];
+    rows[0] = {end[1] / determinant, -end[0] / determinant};
+    rows[1] = {-start[1] / determinant, start[0] / determinant};
+}
+
+} // namespace
+
+BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
+    BasePolygon const polygon(size);
+    Pair const center = polygon.GetCenter();
+    double const x = u - center[0];
+    double const y = v - center[1];
+    BasePoint best = {};
+    double bestLeast = 0;
+    for (int sector = 0; sector < size; ++sector) {
+        BasePoint point = {sector, {}, {}};
+        findSectorMap(polygon, sector, point.toCoords);
+        for (std::size_t i = 0; i < 2; ++i) {
+            point.coords[i] = point.toCoords[i][0] * x + point.toCoords[i][1] * y;
+        }
+        double const least = std::min(point.coords[0], point.coords[1]);
+        if (sector == 0 || least > bestLeast) {
+            best = point;
+            bestLeast = least;
+        }
+    }
+    best.coords = clampToSector({snap(best.coords[0], tolerance), snap(best.coords[1], tolerance)});
+    return best;
+}
+
+bool CellStencil::findCorner(Place const &place, std::size_t *corner) const {
+    if (place.type->IsWhole()) {
+        if (place.coords != Pair{1, 0} && place.coords != Pair{0, 1}) {
+            return false;
+        }
+        auto const sector = std::size_t(place.sector);
+        *corner = (sector + (place.coords[1] == 1)) % std::size_t(place.type->GetNumCorners());
+        return true;
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (place.coords == HalfCell::kCorners[i]) {
+            *corner = i;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool CellStencil::isLast(Place const &place) const {
+    return place.depth >= kLastDepth ||
+           (place.depth >= kRegularDepth && !place.type->IsWhole() &&
+            place.type->HasBoundedCurvature() && place.type->IsRegular());
+}
+
+void CellStencil::addCorner(Place const &place, std::size_t corner, double weight,
+                            bool hasDerivatives) {
+    auto const add = [](std::vector<double> &sum, double factor, std::vector<double> const &row) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            sum[i] += factor * row[i];
+        }
+    };
+    if (!hasDerivatives) {
+        add(_weights[0], weight, place.type->GetCornerPoints()[corner]);
+        return;
+    }
+    CellType::Corner const &values = place.type->GetCorners()[corner];
+    add(_weights[0], weight, values.point);
+    Pair toCoords[2] = {place.toCoords[0], place.toCoords[1]};
+    if (place.type->IsWhole()) {
+        // The corner has the coordinates of its own sector, larger by what the steps have made them.
+        findSectorMap(BasePolygon(place.type->GetNumCorners()), int(corner), toCoords);
+        for (Pair &row : toCoords) {
+            row = {std::ldexp(row[0], place.depth), std::ldexp(row[1], place.depth)};
+        }
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        add(_weights[1 + k], weight * toCoords[0][k], values.derivatives[0]);
+        add(_weights[1 + k], weight * toCoords[1][k], values.derivatives[1]);
+    }
+}
+
+void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
+    Place place = {&_root, 0, point.sector, point.coords, {point.toCoords[0], point.toCoords[1]}};
+    _steps.clear();
+    std::size_t corner = 0;
+    bool isCorner = false;
+    while (!(isCorner = findCorner(place, &corner)) && !isLast(place)) {
+        static constexpr CellMap kToFFace = {{{2, 0}, {0, 2}}, {0, 0}};
+        CellMap const *map = &kToFFace;
+        std::size_t child = 0;
+        if (!place.type->IsWhole()) {
+            child = std::size_t(HalfCell::FindChild(place.coords));
+            map = &HalfCell::kChildren[child];
+        } else if (place.coords[0] + place.coords[1] > 0.5) {
+            child = std::size_t(place.sector) + 1;
+            map = &HalfCell::kFromSector;
+        }
+        CellType::Child const &next = place.type->GetChildren()[child];
+        Pair const coords = map->Apply(place.coords);
+        place.coords = next.type->IsWhole() ? clampToSector(coords) : clampToHalf(coords);
+        Pair toCoords[2];
+        for (std::size_t i = 0; i < 2; ++i) {
+            for (std::size_t k = 0; k < 2; ++k) {
+                toCoords[i][k] =
+                    map->rows[i][0] * place.toCoords[0][k] + map->rows[i][1] * place.toCoords[1][k];
+            }
+        }
+        place.toCoords[0] = toCoords[0];
+        place.toCoords[1] = toCoords[1];
+        place.type = next.type;
+        ++place.depth;
+        _steps.push_back(&next.step);
+    }
+
+    int const numRows = hasDerivatives ? 3 : 1;
+    for (int i = 0; i < numRows; ++i) {
+        _weights[i].assign(std::size_t(place.type->GetNumPoints()), 0.0);
+    }
+    if (isCorner) {
+        addCorner(place, corner, 1, hasDerivatives);
+    } else if (place.type->IsWhole()) {
+        auto const numCorners = std::size_t(place.type->GetNumCorners());
+        double const inner = (1 - place.coords[0] - place.coords[1]) / double(numCorners);
+        auto const sector = std::size_t(place.sector);
+        for (std::size_t i = 0; i < numCorners; ++i) {
+            double const outer = (i == sector ? place.coords[0] : 0) +
+                                 (i == (sector + 1) % numCorners ? place.coords[1] : 0);
+            addCorner(place, i, inner + outer, hasDerivatives);
+        }
+    } else {
+        std::array<double, 4> const weights = HalfCell::GetCornerWeights(place.coords);
+        for (std::size_t i = 0; i < 4; ++i) {
+            addCorner(place, i, weights[i], hasDerivatives);
+        }
+    }
+    for (auto step = _steps.rbegin(); step != _steps.rend(); ++step) {
+        for (int i = 0; i < numRows; ++i) {
+            (*step)->ApplyLeft(_weights[i], _scratch);
+            _weights[i].swap(_scratch);
+        }
+    }
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal

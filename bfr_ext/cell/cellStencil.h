@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_STENCIL_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_STENCIL_H
+
+#include "cellType.h"
+#include "halfCell.h"
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// A point of a base face: a sector of its polygon, and coordinates there.
+struct BasePoint {
+    int sector;
+    Pair coords;
+    Pair toCoords[2]; ///< of u and v: the derivatives of the coordinates by them
+};
+
+/// \brief Finds a point of the parameter plane in a base face of \p size sides, or the nearest there.
+///
+/// \param tolerance  of coordinates: those that are so close to a multiple of a small power of 1/2, as
+///                   vertices have, are taken for it
+BasePoint FindBasePoint(int size, double u, double v, double tolerance);
+
+/// \brief The stencils of points of a base face and of their derivatives by u and v.
+///
+/// The cells that have a point are followed until it is a corner of one, or they are so small that
+/// the surface between their corners is bilinear as far as anyone sees.
+class CellStencil {
+public:
+    /// Those of a type of base faces.
+    explicit CellStencil(CellType const &root) : _root(root) {}
+
+    void Find(BasePoint const &point, bool hasDerivatives);
+
+    /// By point of the type: weights of the surface's point, and of its derivatives.
+    std::vector<double> const &GetWeights() const { return _weights[0]; }
+    std::vector<double> const &GetDuWeights() const { return _weights[1]; }
+    std::vector<double> const &GetDvWeights() const { return _weights[2]; }
+
+private:
+    // Where a point is in the cells that have it, from the root on.
+    struct Place {
+        CellType const *type;
+        int depth;
+        int sector; // of a whole cell
+        Pair coords;
+        Pair toCoords[2];
+    };
+
+    bool findCorner(Place const &place, std::size_t *corner) const;
+    bool isLast(Place const &place) const;
+    void addCorner(Place const &place, std::size_t corner, double weight, bool hasDerivatives);
+
+    CellType const &_root;
+    std::vector<FarExt::internal::PatchRefinement const *> _steps;
+    std::vector<double> _weights[3];
+    std::vector<double> _scratch;
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

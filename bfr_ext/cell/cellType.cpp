@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cellType.h"
+
+#include "halfCell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+using namespace FarExt::internal;
+using FarExt::Interpolation;
+
+namespace {
+
+using Vector = std::vector<double>;
+
+double dot(Vector const &a, Vector const &b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+// The factors of two vectors in the sums of them that come closest to the rows.
+struct Projection {
+    // False where the two vectors do not span a plane, or the rows do not turn in it as they do.
+    bool Find(Vector const (&rows)[2], LimitMask::Tangents const &tangents) {
+        double const uu = dot(tangents.du, tangents.du);
+        double const uv = dot(tangents.du, tangents.dv);
+        double const vv = dot(tangents.dv, tangents.dv);
+        double const determinant = uu * vv - uv * uv;
+        if (!(determinant > 1e-10 * uu * vv)) {
+            return false;
+        }
+        for (std::size_t i = 0; i < 2; ++i) {
+            double const u = dot(rows[i], tangents.du);
+            double const v = dot(rows[i], tangents.dv);
+            factors[i] = {(u * vv - v * uv) / determinant, (v * uu - u * uv) / determinant};
+        }
+        return factors[0][0] * factors[1][1] > factors[0][1] * factors[1][0];
+    }
+
+    double GetLength(std::size_t column) const {
+        return std::hypot(factors[0][column], factors[1][column]);
+    }
+
+    Pair factors[2];
+};
+
+} // namespace
+
+std::vector<CellType::Child> const &CellType::GetChildren() const {
+    std::call_once(_onceChildren, [&] {
+        std::vector<Child> children;
+        for (CellChild &child :
+             RefineCell(_cell, _rules.sdcOptions, _rules.schemeOptions, _rules.interpolation)) {
+            children.push_back(
+                {&_types.Find(std::move(child.cell), _rules), std::move(child.step)});
+        }
+        _children = std::move(children);
+    });
+    return _children;
+}
+
+bool CellType::IsRegular() const {
+    std::vector<Child> const &children = GetChildren();
+    return std::all_of(children.begin(), children.end(),
+                       [&](Child const &child) { return child.type == this; });
+}
+
+std::vector<Vector> const &CellType::GetCornerPoints() const {
+    std::call_once(_oncePoints, [&] {
+        std::vector<Vector> points;
+        std::vector<LimitMask::Tangents> tangents;
+        if (_rules.interpolation == Interpolation::Varying) {
+            // Vertices stay.
+            for (Far::Index const vert : _cell.corners) {
+                points.emplace_back(std::size_t(GetNumPoints()));
+                points.back()[std::size_t(vert)] = 1;
+            }
+        } else {
+            std::vector<CornerLimit> limits = _types.UseMasks(
+                _rules, [&](LimitMaskFinder &finder) { return FindCornerLimits(_cell, finder); });
+            for (CornerLimit &limit : limits) {
+                points.push_back(std::move(limit.weights));
+                tangents.push_back(std::move(limit.tangents));
+            }
+        }
+        _points = std::move(points);
+        _tangents = std::move(tangents);
+    });
+    return _points;
+}
+
+// The derivatives at a corner, from the edges there of the cell that has it \p numSteps steps on.
+void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) const {
+    CellType const *type = this;
+    CellMap map = {{{1, 0}, {0, 1}}, {0, 0}};
+    std::vector<PatchRefinement const *> steps;
+    for (int i = 0; i < numSteps; ++i) {
+        auto const c = std::size_t(corner);
+        auto const child = type->IsWhole() ? c + 1 : std::size_t(HalfCell::kCornerChildren[c]);
+        map =
+            Concatenate(map, type->IsWhole() ? HalfCell::kFromSector : HalfCell::kChildren[child]);
+        corner = type->IsWhole() ? 0 : HalfCell::kCornersOfChildren[c];
+        steps.push_back(&type->GetChildren()[child].step);
+        type = type->GetChildren()[child].type;
+    }
+    // Of a half cell, at an end of its long edge.
+    std::vector<Vector> const &points = type->GetCornerPoints();
+    Vector along(points[0].size());
+    Vector across(points[0].size());
+    for (std::size_t i = 0; i < along.size(); ++i) {
+        along[i] = points[1][i] - points[0][i];
+        across[i] = corner == 0 ? 2 * (points[3][i] - points[0][i]) - 0.5 * along[i]
+                                : 2 * (points[2][i] - points[1][i]) + 0.5 * along[i];
+    }
+    Vector scratch;
+    for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+        for (Vector *left : {&along, &across}) {
+            (*step)->ApplyLeft(*left, scratch);
+            left->swap(scratch);
+        }
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        result[k].resize(along.size());
+        for (std::size_t i = 0; i < along.size(); ++i) {
+            result[k][i] = map.rows[0][k] * along[i] + map.rows[1][k] * across[i];
+        }
+    }
+}
+
+// Differences tend to sums of the masks of the tangents, with factors that tend to those of the
+// derivatives; or grow or shrink by a rate that each step makes, where there are no derivatives: then
+// that is taken off.  Where they tend to nothing of the kind, as at some tips of cones, there is no
+// tangent plane, and they are taken as they are.
+void CellType::findDerivatives(std::size_t corner, Vector (&result)[2]) const {
+    // Sharp features alternate, so that two steps make a rate.
+    constexpr int kSteps = 20;
+    constexpr int kStepsAlone = 6;
+    constexpr double kLeastRate = 1e-4; // of two steps; less is what convergence leaves
+    if (!_tangents.empty()) {
+        findDifferences(int(corner), kSteps, result);
+    }
+    Projection last;
+    Projection before;
+    if (_tangents.empty() || !last.Find(result, _tangents[corner])) {
+        findDifferences(int(corner), kStepsAlone, result);
+        return;
+    }
+    LimitMask::Tangents const &tangents = _tangents[corner];
+    findDifferences(int(corner), kSteps - 2, result);
+    before.Find(result, tangents);
+    Pair scales;
+    for (std::size_t column = 0; column < 2; ++column) {
+        double const rate = last.GetLength(column) / before.GetLength(column);
+        bool const isRate = std::abs(rate - 1) > kLeastRate && std::isnormal(rate);
+        scales[column] = isRate ? std::pow(rate, -kSteps / 2) : 1;
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        for (std::size_t i = 0; i < result[k].size(); ++i) {
+            result[k][i] = scales[0] * last.factors[k][0] * tangents.du[i] +
+                           scales[1] * last.factors[k][1] * tangents.dv[i];
+        }
+    }
+}
+
+std::vector<CellType::Corner> const &CellType::GetCorners() const {
+    std::call_once(_onceCorners, [&] {
+        std::vector<Corner> corners(GetCornerPoints().size());
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            corners[i].point = GetCornerPoints()[i];
+            findDerivatives(i, corners[i].derivatives);
+        }
+        _corners = std::move(corners);
+    });
+    return _corners;
+}
+
+CellTypes::Key CellTypes::getKey(CellRules const &rules) {
+    return {int(rules.sdcOptions.GetVtxBoundaryInterpolation()),
+            int(rules.sdcOptions.GetCreasingMethod()), int(rules.schemeOptions.faceMask),
+            int(rules.interpolation)};
+}
+
+std::size_t CellTypes::Hash::operator()(Key const &key) const {
+    std::uint64_t hash = key.size();
+    for (int const number : key) {
+        hash = (hash ^ std::uint32_t(number)) * 0x9e3779b97f4a7c15;
+        hash ^= hash >> 29;
+    }
+    return std::size_t(hash);
+}
+
+CellType const &CellTypes::Find(CellPatch &&cell, CellRules const &rules) {
+    Key key = getKey(rules);
+    key.insert(key.end(), cell.locals.begin(), cell.locals.end());
+    key.push_back(cell.isWhole ? -1 : -2);
+    key.insert(key.end(), cell.patch.signature.begin(), cell.patch.signature.end());
+    cell.patch.signature = {};
+    {
+        std::shared_lock<std::shared_mutex> const lock(_mutex);
+        auto const found = _types.find(key);
+        if (found != _types.end()) {
+            return *found->second;
+        }
+    }
+    auto type = std::make_unique<CellType>(*this, std::move(cell), rules);
+    std::lock_guard<std::shared_mutex> const lock(_mutex);
+    return *_types.emplace(std::move(key), std::move(type)).first->second;
+}
+
+std::size_t CellTypes::GetSize() const {
+    std::shared_lock<std::shared_mutex> const lock(_mutex);
+    return _types.size();
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal

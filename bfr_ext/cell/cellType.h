@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_TYPE_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_TYPE_H
+
+#include "far_ext/limit/cellPatch.h"
+
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <unordered_map>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+class CellTypes;
+
+/// What besides its patch tells the surface of a cell.
+struct CellRules {
+    Sdc::Options sdcOptions;
+    FarExt::HexSchemeOptions schemeOptions; ///< those of the steps to the limit
+    FarExt::Interpolation interpolation = FarExt::Interpolation::Vertex;
+};
+
+/// \brief All cells whose patches look alike: what the surface in them is in terms of the vertices of
+/// the patch, its *points*.
+///
+/// The cells that a step makes of such a cell are of the same types each; and since patches repeat
+/// themselves some steps on, a few types are all that a base face leads to, however deep.  What is
+/// asked for is computed once.  Any number of threads may ask.
+class CellType {
+public:
+    /// A cell that a step makes.
+    struct Child {
+        CellType const *type;
+        FarExt::internal::PatchRefinement step; ///< its points in terms of the parent's
+    };
+
+    /// The surface at a corner, as sums of points: it, and its first derivatives by the coordinates of
+    /// HalfCell or, in a whole cell, of the sector that begins at the corner.
+    struct Corner {
+        std::vector<double> point;
+        std::vector<double> derivatives[2];
+    };
+
+    CellType(CellTypes &types, FarExt::internal::CellPatch cell, CellRules const &rules)
+        : _types(types), _cell(std::move(cell)), _rules(rules) {}
+
+    bool IsWhole() const { return _cell.isWhole; }
+    int GetNumCorners() const { return _cell.GetNumCorners(); }
+    int GetNumPoints() const { return int(_cell.patch.sources.size()); }
+
+    /// Whether the surface has bounded curvature where the lattice is regular.
+    bool HasBoundedCurvature() const {
+        return _rules.schemeOptions.faceMask != FarExt::FaceMask::Average &&
+               _rules.interpolation == FarExt::Interpolation::Vertex;
+    }
+
+    /// Children are in the order of RefineCell().
+    std::vector<Child> const &GetChildren() const;
+    /// Whether all children are of this type, too: so is every cell of a regular lattice.
+    bool IsRegular() const;
+
+    /// Whether the surface is known at the corners.
+    bool HasCorners() const { return !GetCornerPoints().empty(); }
+    /// By corner, without derivatives.
+    std::vector<std::vector<double>> const &GetCornerPoints() const;
+    /// By corner.
+    std::vector<Corner> const &GetCorners() const;
+
+private:
+    void findDifferences(int corner, int numSteps, std::vector<double> (&result)[2]) const;
+    void findDerivatives(std::size_t corner, std::vector<double> (&result)[2]) const;
+
+    CellTypes &_types;
+    FarExt::internal::CellPatch const _cell;
+    CellRules const _rules;
+    mutable std::once_flag _onceChildren;
+    mutable std::vector<Child> _children;
+    mutable std::once_flag _oncePoints;
+    mutable std::vector<std::vector<double>> _points;
+    mutable std::vector<FarExt::internal::LimitMask::Tangents> _tangents;
+    mutable std::once_flag _onceCorners;
+    mutable std::vector<Corner> _corners;
+};
+
+/// \brief The types that have been met.  Any number of threads may use it.
+class CellTypes {
+public:
+    /// The type of a cell, which belongs to these types.
+    CellType const &Find(FarExt::internal::CellPatch &&cell, CellRules const &rules);
+    /// Calls function(finder), which no other thread uses then, for the limit masks of \p rules.
+    template <typename FUNCTION>
+    auto UseMasks(CellRules const &rules, FUNCTION function) {
+        std::lock_guard<std::mutex> const lock(_masksMutex);
+        std::unique_ptr<FarExt::internal::LimitMaskFinder> &finder = _masks[getKey(rules)];
+        if (!finder) {
+            finder = std::make_unique<FarExt::internal::LimitMaskFinder>(rules.sdcOptions,
+                                                                         rules.schemeOptions);
+        }
+        return function(*finder);
+    }
+    std::size_t GetSize() const;
+
+private:
+    using Key = std::vector<int>;
+    struct Hash {
+        std::size_t operator()(Key const &key) const;
+    };
+
+    static Key getKey(CellRules const &rules);
+
+    mutable std::shared_mutex _mutex;
+    std::unordered_map<Key, std::unique_ptr<CellType>, Hash> _types;
+    std::mutex _masksMutex;
+    std::unordered_map<Key, std::unique_ptr<FarExt::internal::LimitMaskFinder>, Hash> _masks;
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

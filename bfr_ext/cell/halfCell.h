@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_HALF_CELL_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_HALF_CELL_H
+
+#include "far_ext/vtr/basePolygon.h"
+
+#include <array>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// Two coordinates in a cell, or derivatives of these.
+using Pair = std::array<double, 2>;
+
+/// \brief What the coordinates in one cell are in terms of those in another: a linear map and a shift.
+struct CellMap {
+    Pair Apply(Pair const &p) const {
+        return {shift[0] + (rows[0][0] * p[0] + rows[0][1] * p[1]),
+                shift[1] + (rows[1][0] * p[0] + rows[1][1] * p[1])};
+    }
+
+    Pair rows[2];
+    Pair shift;
+};
+
+/// first, then second.
+inline CellMap Concatenate(CellMap const &first, CellMap const &second) {
+    CellMap result;
+    for (std::size_t i = 0; i < 2; ++i) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            result.rows[i][k] =
+                second.rows[i][0] * first.rows[0][k] + second.rows[i][1] * first.rows[1][k];
+        }
+    }
+    result.shift = second.Apply(first.shift);
+    return result;
+}
+
+/// \brief The coordinates of half cells, which all are affine images of one trapezoid.
+///
+/// Its corners are those of a CellPatch: the long edge from (0, 0) to (1, 0), the short one from
+/// (3/4, 1/2) to (1/4, 1/2).  A point of it is in the child that FindChild says: 0 is the same half of
+/// the F-face, half as large and around the middle of the long edge, and 1 to 3 the half cells that
+/// the edges behind corners 1 to 3 make.
+class HalfCell {
+public:
+    static constexpr Pair kCorners[4] = {{0, 0}, {1, 0}, {0.75, 0.5}, {0.25, 0.5}};
+
+    /// The coordinates in the children.
+    static constexpr CellMap kChildren[4] = {{{{2, 0}, {0, 2}}, {-0.5, 0}},
+                                             {{{-1, 1.5}, {-2, -1}}, {1, 2}},
+                                             {{{-2, 0}, {0, -2}}, {1.5, 1}},
+                                             {{{-1, -1.5}, {2, -1}}, {1, 0}}};
+
+    static int FindChild(Pair const &point) {
+        double const x = 2 * point[0] - 1;
+        double const h = point[1];
+        int const edge = x > h ? 1 : -x > h ? 3 : 2;
+        double const fromMiddle = edge == 2 ? 2 * h : (edge == 1 ? x : -x) + h;
+        return fromMiddle <= 0.5 ? 0 : edge;
+    }
+
+    /// The child that has a corner, and which corner of that it is.
+    static constexpr int kCornerChildren[4] = {3, 1, 2, 3};
+    static constexpr int kCornersOfChildren[4] = {1, 0, 0, 0};
+
+    /// How much the corners weigh in the bilinear interpolation between them.
+    static std::array<double, 4> GetCornerWeights(Pair const &point) {
+        double const t = 2 * point[1];
+        double const s = (point[0] - 0.5 * point[1]) / (1 - point[1]);
+        return {(1 - t) * (1 - s), (1 - t) * s, t * s, t * (1 - s)};
+    }
+
+    /// The coordinates in the half cell of an edge of a whole cell, from those in the sector of the
+    /// edge.
+    static constexpr CellMap kFromSector = {{{-0.5, 0.5}, {-1, -1}}, {0.5, 1}};
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

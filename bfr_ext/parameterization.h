@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_PARAMETERIZATION_H
+#define OPENSUBDIVHEX_BFR_EXT_PARAMETERIZATION_H
+
+#include "far_ext/export.h"
+
+namespace OpenSubdivHex::BfrExt {
+
+/// \brief The parameter plane of a base face, with the names of Bfr::Parameterization.
+///
+/// There the face is a regular polygon with sides 1 long, counter-clockwise, whose edge 0 runs from
+/// (0, 0) to (1, 0): of a quad the unit square.  So it is in one piece, whatever its size, and there
+/// are no sub-faces.  These are the coordinates of FarExt::TopologyLevel::GetFaceBaseCoords(), which
+/// says where the vertices of all levels lie.
+class OPENSUBDIVHEX_API Parameterization {
+public:
+    /// An invalid one.
+    Parameterization() = default;
+    /// That of a face of \p faceSize vertices; invalid for fewer than 3.
+    explicit Parameterization(int faceSize) : _faceSize(faceSize < 3 ? 0 : faceSize) {}
+
+    /// Whether it is that of a face.
+    bool IsValid() const { return _faceSize > 0; }
+    /// Vertices of the face; 0 of an invalid one.
+    int GetFaceSize() const { return _faceSize; }
+    /// Never: see above.
+    static bool HasSubFaces() { return false; }
+
+    /// Writes u and v of vertex 0 ... GetFaceSize() - 1.
+    template <typename REAL>
+    void GetVertexCoord(int vertex, REAL uv[2]) const {
+        GetEdgeCoord(vertex, REAL(0), uv);
+    }
+    /// Writes u and v of the point of edge 0 ... GetFaceSize() - 1 at \p t, which is 0 at vertex
+    /// \p edge and 1 at the next.
+    template <typename REAL>
+    void GetEdgeCoord(int edge, REAL t, REAL uv[2]) const {
+        double coords[2];
+        findCoords(edge, 1 - double(t), double(t), coords);
+        uv[0] = REAL(coords[0]);
+        uv[1] = REAL(coords[1]);
+    }
+    /// Writes u and v of the centre.
+    template <typename REAL>
+    void GetCenterCoord(REAL uv[2]) const {
+        double coords[2];
+        findCoords(0, 0, 0, coords);
+        uv[0] = REAL(coords[0]);
+        uv[1] = REAL(coords[1]);
+    }
+
+private:
+    void findCoords(int edge, double start, double end, double uv[2]) const;
+
+    int _faceSize = 0;
+};
+
+} // namespace OpenSubdivHex::BfrExt
+
+#endif

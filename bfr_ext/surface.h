@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_SURFACE_H
+#define OPENSUBDIVHEX_BFR_EXT_SURFACE_H
+
+#include "parameterization.h"
+
+#include <opensubdiv/far/types.h>
+
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex {
+
+namespace Far = OpenSubdiv::Far;
+
+namespace BfrExt {
+
+namespace internal {
+class CellType;
+}
+
+/// \brief The limit surface of a base face, as Bfr::Surface: a function of u and v.
+///
+/// It depends on the *control points* of a face, which are vertices of the base mesh (or values of a
+/// face-varying channel) around it: the faces at its vertices and at their neighbours have them.  All
+/// that is evaluated is a weighted sum of these, and the weights of points are not negative: the hull
+/// of the control points contains the surface.
+///
+/// The scheme is no spline: its surface has no polynomials.
+///  - At the places of vertices of any level (see FarExt::TopologyLevel::GetFaceBaseCoords()) a point
+///    is exact, as in a limit stencil table.
+///  - Elsewhere the cells, faces and halves of hexagons, that have the place are followed level by
+///    level until the surface between the corners of one is bilinear: 16 levels, which leaves less
+///    than a billionth of the size of the face, or 40 where the surface is less smooth, at most a
+///    millionth.
+///
+/// **First derivatives.** Du and Dv span the tangent plane, and Du x Dv points to the side from which
+/// the face is counter-clockwise.
+///  - With FaceMask::Smooth and FaceMask::Cosine they are derivatives by u and v, from the side of the
+///    cell that has the place: cells meet at the lines from the centre of the face to its corners and
+///    at its edges, and across these the plane goes on, but u and v have a bend.
+///  - At some places the plane exists and derivatives do not, since cells shrink by another factor
+///    than 1/2 from level to level: at base vertices that have not three faces, and everywhere with
+///    FaceMask::Average.  What is given there has the size that it has between the vertices of the
+///    level in which the place becomes a vertex; with FaceMask::Average its length at other places
+///    than vertices of the first levels means nothing.
+///  - Varying data have kinks along edges of all levels: there the differences some levels on are
+///    given.
+///
+/// **Second derivatives** are not offered: with FaceMask::Average curvature is unbounded, with
+/// FaceMask::Cosine it has no limit at most places, and with any mask it grows or alternates towards
+/// base vertices.
+///
+/// Bfr evaluates *patch points*, which it makes of control points: here they are the control points,
+/// and its functions are there for programs that call them.
+///
+/// Const functions may be called by several threads at once.  A surface may outlive the factory and
+/// the cache.  Arguments are not checked; std::bad_alloc passes through.
+template <typename REAL>
+class OPENSUBDIVHEX_API Surface {
+public:
+    /// A vertex of the base mesh, or a face-varying value.
+    using Index = Far::Index;
+
+    /// \brief The size of the points in an array, and the distance from one to the next, in numbers.
+    struct PointDescriptor {
+        /// None.
+        PointDescriptor() = default;
+        /// Points of \p n numbers, without gaps.
+        PointDescriptor(int n) : size(n), stride(n) {}
+        /// Points of \p n numbers, \p m from one to the next.
+        PointDescriptor(int n, int m) : size(n), stride(m) {}
+
+        int size = 0;   ///< numbers of a point
+        int stride = 0; ///< from the begin of a point to that of the next
+    };
+
+    /// An invalid surface, for SurfaceFactory to initialize.
+    Surface();
+    ~Surface();
+    /// Copies share what the cache has.
+    Surface(Surface const &other);
+    /// \copydoc Surface(Surface const &)
+    Surface &operator=(Surface const &other);
+
+    /// Whether SurfaceFactory initialized it.
+    bool IsValid() const { return _type != nullptr; }
+    /// Makes it invalid.
+    void Clear();
+
+    /// The parameter plane of the face.
+    Parameterization GetParameterization() const { return _parameterization; }
+    /// Vertices of the face.
+    int GetFaceSize() const { return _parameterization.GetFaceSize(); }
+
+    /// @name Control points
+    /// @{
+
+    /// Control points of the face.
+    int GetNumControlPoints() const { return int(_controlPoints.size()); }
+    /// Writes which points of the mesh they are: the vertices of the face first, none twice unless the
+    /// face has it twice.
+    /// \return  GetNumControlPoints()
+    int GetControlPointIndices(Index meshPointIndices[]) const;
+    /// Copies the control points from those of the mesh.
+    template <typename REAL_MESH>
+    void GatherControlPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
+                             REAL controlPoints[], PointDescriptor const &controlPointDesc) const {
+        for (Index const point : _controlPoints) {
+            REAL_MESH const *const from = meshPoints + std::ptrdiff_t(point) * meshPointDesc.stride;
+            for (int i = 0; i < meshPointDesc.size; ++i) {
+                controlPoints[i] = REAL(from[i]);
+            }
+            controlPoints += controlPointDesc.stride;
+        }
+    }
+    /// Writes the box of the control points, in which the surface lies.
+    void BoundControlPoints(REAL const controlPoints[], PointDescriptor const &controlPointDesc,
+                            REAL minExtent[], REAL maxExtent[]) const;
+    /// The same from the points of the mesh.
+    void BoundControlPointsFromMesh(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+                                    REAL minExtent[], REAL maxExtent[]) const;
+
+    /// GetNumControlPoints().
+    int GetNumPatchPoints() const { return GetNumControlPoints(); }
+    /// As GatherControlPoints().
+    void PreparePatchPoints(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+                            REAL patchPoints[], PointDescriptor const &patchPointDesc) const {
+        GatherControlPoints(meshPoints, meshPointDesc, patchPoints, patchPointDesc);
+    }
+    /// Nothing: control points are all that there is.
+    void ComputePatchPoints(REAL *, PointDescriptor const &) const {}
+    /// @}
+
+    /// @name Evaluation
+    /// Of a place outside of the face, the nearest coordinates inside are taken.
+    /// @{
+
+    /// Writes the point at \p uv: pointDesc.size numbers.
+    void Evaluate(REAL const uv[2], REAL const controlPoints[], PointDescriptor const &pointDesc,
+                  REAL P[]) const;
+    /// The same with first derivatives.
+    void Evaluate(REAL const uv[2], REAL const controlPoints[], PointDescriptor const &pointDesc,
+                  REAL P[], REAL Du[], REAL Dv[]) const;
+
+    /// Writes the weights of the control points that make the point at \p uv.
+    /// \return  GetNumControlPoints()
+    int EvaluateStencil(REAL const uv[2], REAL sP[]) const;
+    /// The same with those of the first derivatives.
+    int EvaluateStencil(REAL const uv[2], REAL sP[], REAL sDu[], REAL sDv[]) const;
+    /// Writes the weighted sum of control points.
+    void ApplyStencil(REAL const stencil[], REAL const controlPoints[],
+                      PointDescriptor const &controlPointDesc, REAL result[]) const;
+    /// The same from the points of the mesh.
+    void ApplyStencilFromMesh(REAL const stencil[], REAL const meshPoints[],
+                              PointDescriptor const &meshPointDesc, REAL result[]) const;
+    /// @}
+
+private:
+    friend class SurfaceFactory;
+
+    std::shared_ptr<internal::CellType const> _type;
+    std::vector<Index> _controlPoints;
+    Parameterization _parameterization;
+};
+
+extern template class Surface<float>;
+extern template class Surface<double>;
+
+} // namespace BfrExt
+} // namespace OpenSubdivHex
+
+#endif

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_SURFACE_FACTORY_H
+#define OPENSUBDIVHEX_BFR_EXT_SURFACE_FACTORY_H
+
+#include "surface.h"
+#include "surfaceFactoryCache.h"
+
+#include "far_ext/topologyRefiner.h"
+
+#include <memory>
+
+namespace OpenSubdivHex::BfrExt {
+
+/// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
+///
+/// It takes level 0 of a refiner, which need not be refined and to which it refers: surfaces need no
+/// levels.  Sharpness, corners, boundaries, non-manifold parts and face-varying seams are as in
+/// refinement.
+///
+/// Two kinds of faces have no surface: holes, and with VTX_BOUNDARY_NONE those at a boundary, where
+/// the border of every level lies elsewhere.
+///
+/// Any number of threads may call its functions at once.  std::bad_alloc passes through.
+class OPENSUBDIVHEX_API SurfaceFactory {
+public:
+    /// A face.
+    using Index = Far::Index;
+    /// A face-varying channel.
+    using FVarID = int;
+
+    /// \brief What all surfaces of a factory have in common, as in Bfr.
+    class Options {
+    public:
+        /// Channel 0, and a cache of its own.
+        Options() = default;
+
+        /// Sets the channel of InitFaceVaryingSurface() without one.
+        Options &SetDefaultFVarID(FVarID id) {
+            _defaultFVarID = id;
+            return *this;
+        }
+        /// That channel.
+        FVarID GetDefaultFVarID() const { return _defaultFVarID; }
+
+        /// Sets a cache to share, which must live as long as the factory; null: one of its own.
+        Options &SetExternalCache(SurfaceFactoryCache *cache) {
+            _externalCache = cache;
+            return *this;
+        }
+        /// That cache.
+        SurfaceFactoryCache *GetExternalCache() const { return _externalCache; }
+
+    private:
+        FVarID _defaultFVarID = 0;
+        SurfaceFactoryCache *_externalCache = nullptr;
+    };
+
+    /// \brief Makes a factory for \p refiner, which must live as long.
+    ///
+    /// \return  null on failure: Unsupported where level 0 is not refined by hexagonal steps, which
+    ///          alone have limits
+    static std::unique_ptr<SurfaceFactory> Create(FarExt::TopologyRefiner const &refiner,
+                                                  Options options,
+                                                  FarExt::Status *status = nullptr);
+    /// The same with the default options.
+    static std::unique_ptr<SurfaceFactory> Create(FarExt::TopologyRefiner const &refiner,
+                                                  FarExt::Status *status = nullptr) {
+        return Create(refiner, Options(), status);
+    }
+    ~SurfaceFactory();
+
+    SurfaceFactory(SurfaceFactory const &) = delete;
+    SurfaceFactory &operator=(SurfaceFactory const &) = delete;
+
+    /// The refiner that was given.
+    FarExt::TopologyRefiner const &GetMesh() const { return _refiner; }
+    /// Faces of level 0.
+    int GetNumFaces() const { return _refiner.GetLevel(0).GetNumFaces(); }
+    /// Face-varying channels.
+    int GetNumFVarChannels() const { return _refiner.GetNumFVarChannels(); }
+
+    /// \brief Whether a face has a surface.
+    ///
+    /// \param status  says why not: InvalidArgument for a face out of range and for a hole,
+    ///                Unsupported for a face at a boundary with VTX_BOUNDARY_NONE
+    bool FaceHasLimitSurface(Index face, FarExt::Status *status = nullptr) const;
+    /// The parameter plane of a face, which is in range.
+    Parameterization GetFaceParameterization(Index face) const;
+
+    /// @name Surfaces
+    /// \return  false, and \p surface is invalid, where the face has none: with the causes of
+    ///          FaceHasLimitSurface(), InvalidArgument for a channel out of range, or Unsupported for a
+    ///          vertex with so many faces and a single sharp edge that it has no limit stencil
+    ///          (FarExt::LimitStencilTableFactoryReal)
+    /// @{
+
+    /// For vertex data, whose control points are vertices of level 0.
+    template <typename REAL>
+    bool InitVertexSurface(Index face, Surface<REAL> *surface,
+                           FarExt::Status *status = nullptr) const;
+    /// For varying data, likewise.
+    template <typename REAL>
+    bool InitVaryingSurface(Index face, Surface<REAL> *surface,
+                            FarExt::Status *status = nullptr) const;
+    /// For face-varying data of a channel, whose control points are values of level 0.
+    template <typename REAL>
+    bool InitFaceVaryingSurface(Index face, Surface<REAL> *surface, FVarID channel,
+                                FarExt::Status *status = nullptr) const;
+    /// The same for the default channel.
+    template <typename REAL>
+    bool InitFaceVaryingSurface(Index face, Surface<REAL> *surface,
+                                FarExt::Status *status = nullptr) const {
+        return InitFaceVaryingSurface(face, surface, _options.GetDefaultFVarID(), status);
+    }
+    /// @}
+
+private:
+    SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
+
+    FarExt::Status checkFace(Index face) const;
+    template <typename REAL>
+    bool init(Index face, FarExt::Interpolation interpolation, int channel, Surface<REAL> *surface,
+              FarExt::Status *status) const;
+
+    FarExt::TopologyRefiner const &_refiner;
+    Options const _options;
+    std::shared_ptr<internal::CellTypes> _types;
+};
+
+} // namespace OpenSubdivHex::BfrExt
+
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_SURFACE_FACTORY_CACHE_H
+#define OPENSUBDIVHEX_BFR_EXT_SURFACE_FACTORY_CACHE_H
+
+#include "far_ext/export.h"
+
+#include <cstddef>
+#include <memory>
+
+namespace OpenSubdivHex::BfrExt {
+
+namespace internal {
+class CellTypes;
+}
+
+/// \brief What surfaces of faces that look alike have in common, as Bfr::SurfaceFactoryCache.
+///
+/// Faces whose neighbourhoods have the same topology and tags are of the same *type*, be they of one
+/// mesh or of several with any options, and the weights that make the surface of its control points
+/// are found once for a type.  Every SurfaceFactory has a cache of its own unless it is given one.
+///
+/// Any number of threads and of factories may share a cache.  It grows with the types that it meets:
+/// some kilobytes for each, and those for each type of cell that evaluation goes through.  Surfaces
+/// keep what they need of it, so that it may go before them.
+class OPENSUBDIVHEX_API SurfaceFactoryCache {
+public:
+    SurfaceFactoryCache();
+    ~SurfaceFactoryCache();
+
+    SurfaceFactoryCache(SurfaceFactoryCache const &) = delete;
+    SurfaceFactoryCache &operator=(SurfaceFactoryCache const &) = delete;
+
+    /// Types that are there: those of faces, and those of the cells that evaluation went through.
+    std::size_t GetNumTypes() const;
+
+private:
+    friend class SurfaceFactory;
+
+    std::shared_ptr<internal::CellTypes> _types;
+};
+
+} // namespace OpenSubdivHex::BfrExt
+
+#endif

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_BFR_EXT_SURFACE_FIXTURE_H
+#define OPENSUBDIVHEX_REGRESSION_BFR_EXT_SURFACE_FIXTURE_H
+
+#include "bfr_ext/surfaceFactory.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+using Vector3 = std::array<double, 3>;
+
+inline Vector3 Scale(Vector3 const &a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
+inline Vector3 Subtract(Vector3 const &a, Vector3 const &b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline double GetLength(Vector3 const &a) { return std::hypot(a[0], a[1], a[2]); }
+inline double GetDistance(Vector3 const &a, Vector3 const &b) { return GetLength(Subtract(a, b)); }
+inline Vector3 Cross(Vector3 const &a, Vector3 const &b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline Vector3 Normalize(Vector3 const &a) { return Scale(a, 1 / GetLength(a)); }
+
+/// A point of a surface, with first derivatives.
+struct SurfacePoint {
+    Vector3 p;
+    Vector3 du;
+    Vector3 dv;
+};
+
+inline Vector3 GetNormal(SurfacePoint const &point) { return Normalize(Cross(point.du, point.dv)); }
+
+template <typename REAL>
+SurfacePoint EvaluateSurface(BfrExt::Surface<REAL> const &surface,
+                             std::vector<REAL> const &positions, REAL const uv[2]) {
+    std::vector<REAL> points(3 * std::size_t(surface.GetNumControlPoints()));
+    surface.GatherControlPoints(positions.data(), 3, points.data(), 3);
+    REAL values[3][3];
+    surface.Evaluate(uv, points.data(), 3, values[0], values[1], values[2]);
+    SurfacePoint result;
+    for (std::size_t k = 0; k < 3; ++k) {
+        result.p[k] = double(values[0][k]);
+        result.du[k] = double(values[1][k]);
+        result.dv[k] = double(values[2][k]);
+    }
+    return result;
+}
+
+/// The surfaces of all base faces, as far as they have any.
+template <typename REAL>
+class SurfaceSet {
+public:
+    /// \p positions is referred to.
+    SurfaceSet(FarExt::TopologyRefiner const &refiner, std::vector<REAL> const &positions)
+        : _positions(positions), _surfaces(std::size_t(refiner.GetLevel(0).GetNumFaces())) {
+        auto const factory = BfrExt::SurfaceFactory::Create(refiner);
+        for (int face = 0; face < factory->GetNumFaces(); ++face) {
+            factory->InitVertexSurface(face, &_surfaces[std::size_t(face)]);
+        }
+    }
+
+    BfrExt::Surface<REAL> const &operator[](int face) const { return _surfaces[std::size_t(face)]; }
+
+    SurfacePoint Evaluate(int face, REAL const uv[2]) const {
+        return EvaluateSurface((*this)[face], _positions, uv);
+    }
+
+private:
+    std::vector<REAL> const &_positions;
+    std::vector<BfrExt::Surface<REAL>> _surfaces;
+};
+
+} // namespace OpenSubdivHex::Regression
+
+#endif

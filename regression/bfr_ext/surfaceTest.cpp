@@ -1,0 +1,511 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Surfaces of base faces, against limit tables of whole meshes and against what they must be.
+#include "surfaceFixture.h"
+
+#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/primvarRefiner.h"
+#include "regression/far_ext/referenceMatch.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <thread>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::StatusCode;
+using FarExt::TopologyLevel;
+using FarExt::TopologyRefiner;
+using Tables = FarExt::LimitStencilTableFactoryReal<double>;
+
+namespace {
+
+constexpr double kTolerance = 1e-11;
+
+Vector3 apply(Tables::Table const &table, std::vector<double> const &weights, int row,
+              std::vector<double> const &points) {
+    Vector3 sum{};
+    int const offset = table.GetOffsets()[std::size_t(row)];
+    for (int k = offset; k < offset + table.GetSizes()[row]; ++k) {
+        auto const point = 3 * std::size_t(table.GetControlIndices()[std::size_t(k)]);
+        for (std::size_t i = 0; i < 3; ++i) {
+            sum[i] += weights[std::size_t(k)] * points[point + i];
+        }
+    }
+    return sum;
+}
+
+/// A corner of a face of a level, in a base face.
+struct LevelCorner {
+    int baseFace;
+    int vert;
+    int side; ///< as LimitSides numbers them
+    double uv[2];
+};
+
+std::vector<LevelCorner> getCorners(TopologyLevel const &level) {
+    FarExt::LimitSides const sides(level);
+    std::vector<LevelCorner> result;
+    for (int face = 0; face < level.GetNumFaces(); ++face) {
+        auto const verts = level.GetFaceVertices(face);
+        bool const isSplit = level.IsFaceBaseSplit(face);
+        for (int half = 0; half < 1 + isSplit; ++half) {
+            std::vector<double> uv(2 * std::size_t(verts.size()));
+            EXPECT_TRUE(level.GetFaceBaseCoords(face, half, uv.data()));
+            for (int i = 0; i < (isSplit ? 4 : verts.size()); ++i) {
+                int const local = isSplit ? FarExt::kHexagonHalves[half][i] : i;
+                result.push_back({level.GetFaceBaseFace(face, half),
+                                  verts[local],
+                                  sides.FindSide(level, face, local, half),
+                                  {uv[2 * std::size_t(i)], uv[2 * std::size_t(i) + 1]}});
+            }
+        }
+    }
+    return result;
+}
+
+struct Limits {
+    explicit Limits(TopologyRefiner const &refiner) {
+        Tables::Options options;
+        options.level = refiner.GetMaxLevel();
+        options.generateFurtherSides = true;
+        table = Tables::Create(refiner, options);
+    }
+
+    std::unique_ptr<Tables::Table const> table;
+};
+
+bool isAtFreeBoundary(TopologyLevel const &level, int face) {
+    for (int const vert : level.GetFaceVertices(face)) {
+        for (int const edge : level.GetVertexEdges(vert)) {
+            if (level.IsEdgeBoundary(edge) && level.GetEdgeSharpness(edge) == 0) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+void expectLimits(Shape const &shape, ReferenceMask mask, Sdc::Options const &options) {
+    auto const refiner = CreateRefiner(shape, mask, GetTestLevel(shape, 2, 8000), options);
+    Limits const limits(*refiner);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    TopologyLevel const &base = refiner->GetLevel(0);
+    bool const isFree = options.GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE;
+    for (int face = 0; face < base.GetNumFaces(); ++face) {
+        ASSERT_EQ(surfaces[face].IsValid(),
+                  !base.IsFaceHole(face) && !(isFree && isAtFreeBoundary(base, face)))
+            << "face " << face;
+    }
+    for (LevelCorner const &corner : getCorners(refiner->GetLevel(refiner->GetMaxLevel()))) {
+        if (surfaces[corner.baseFace].IsValid()) {
+            ASSERT_LE(GetDistance(surfaces.Evaluate(corner.baseFace, corner.uv).p,
+                                  apply(*limits.table, limits.table->GetWeights(), corner.vert,
+                                        shape.positions)),
+                      kTolerance)
+                << "vertex " << corner.vert << " in base face " << corner.baseFace;
+        }
+    }
+}
+
+Sdc::Options getOptions(Sdc::Options::VtxBoundaryInterpolation boundary) {
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(boundary);
+    return options;
+}
+
+/// Places in a polygon, none of them near its edges.
+std::vector<std::array<double, 2>> getRandomPlaces(int size, int count) {
+    std::mt19937 random{unsigned(size)};
+    std::uniform_real_distribution<double> uniform(0.05, 1);
+    BfrExt::Parameterization const parameterization(size);
+    std::vector<std::array<double, 2>> result(std::size_t(count), {0.0, 0.0});
+    for (std::array<double, 2> &place : result) {
+        std::vector<double> weights(static_cast<std::size_t>(size));
+        double sum = 0;
+        for (double &weight : weights) {
+            sum += weight = uniform(random);
+        }
+        for (int i = 0; i < size; ++i) {
+            double uv[2];
+            parameterization.GetVertexCoord(i, uv);
+            place[0] += weights[std::size_t(i)] / sum * uv[0];
+            place[1] += weights[std::size_t(i)] / sum * uv[1];
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+class SurfaceTest : public testing::TestWithParam<ReferenceMask> {};
+
+TEST_P(SurfaceTest, GivesTheLimitsOfVerticesOfAllLevels) {
+    for (Shape const &shape : GetShapes()) {
+        SCOPED_TRACE(shape.name);
+        ASSERT_NO_FATAL_FAILURE(
+            expectLimits(shape, GetParam(), getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY)));
+    }
+}
+
+TEST_P(SurfaceTest, GivesTheLimitsBesideFeatures) {
+    for (Shape const &shape : GetFeatureShapes()) {
+        for (auto const boundary : kBoundaries) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", boundary rule " << boundary);
+            ASSERT_NO_FATAL_FAILURE(expectLimits(shape, GetParam(), getOptions(boundary)));
+        }
+    }
+}
+
+TEST_P(SurfaceTest, HasTheNormalsOfLimitTables) {
+    // Such small n-gons that all vertices have tangent planes that iteration finds.
+    for (char const *const name : {"cube", "icosahedron", "hexTorus", "dodecahedron"}) {
+        Shape const &shape = GetShape(name);
+        SCOPED_TRACE(name);
+        auto const refiner = CreateRefiner(shape, GetParam(), 2);
+        Limits const limits(*refiner);
+        SurfaceSet<double> const surfaces(*refiner, shape.positions);
+        for (LevelCorner const &corner : getCorners(refiner->GetLevel(2))) {
+            Vector3 const normal = GetNormal(surfaces.Evaluate(corner.baseFace, corner.uv));
+            Vector3 const expected = Normalize(Cross(
+                apply(*limits.table, limits.table->GetDuWeights(), corner.side, shape.positions),
+                apply(*limits.table, limits.table->GetDvWeights(), corner.side, shape.positions)));
+            ASSERT_LE(GetDistance(normal, expected), 1e-7) << "vertex " << corner.vert;
+        }
+    }
+}
+
+TEST_P(SurfaceTest, HasAnyPlaceBetweenThoseAround) {
+    Shape const &shape = GetShape("icosahedron");
+    auto const refiner = CreateRefiner(shape, GetParam(), 0);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    for (std::array<double, 2> const &uv : getRandomPlaces(3, 50)) {
+        std::vector<double> weights(std::size_t(surfaces[0].GetNumControlPoints()));
+        ASSERT_EQ(surfaces[0].EvaluateStencil(uv.data(), weights.data()), int(weights.size()));
+        double sum = 0;
+        for (double const weight : weights) {
+            ASSERT_GE(weight, 0);
+            sum += weight;
+        }
+        ASSERT_NEAR(sum, 1, kTolerance);
+        Vector3 const p = surfaces.Evaluate(0, uv.data()).p;
+        for (double const step : {1e-9, -1e-9}) {
+            double const beside[2] = {uv[0] + step, uv[1] - step};
+            ASSERT_LE(GetDistance(surfaces.Evaluate(0, beside).p, p), 2e-6);
+        }
+    }
+}
+
+// On a plane of regular hexagons linear functions are kept, and parameters are one.
+TEST_P(SurfaceTest, IsThePlaneOfRegularHexagons) {
+    Shape const shape = MakeTiling(Tiling::Hexagons, 7, 7);
+    auto const refiner = CreateRefiner(shape, GetParam(), 0);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    int const face = 24; // the middle
+    TopologyLevel const &base = refiner->GetLevel(0);
+    Vector3 corners[6];
+    for (int i = 0; i < 6; ++i) {
+        double uv[2];
+        surfaces[face].GetParameterization().GetVertexCoord(i, uv);
+        corners[i] = surfaces.Evaluate(face, uv).p;
+        auto const vert = 3 * std::size_t(base.GetFaceVertices(face)[i]);
+        ASSERT_LE(GetDistance(corners[i], {shape.positions[vert], shape.positions[vert + 1],
+                                           shape.positions[vert + 2]}),
+                  kTolerance);
+    }
+    Vector3 const du = Subtract(corners[1], corners[0]);
+    Vector3 const dv = Scale(Subtract(corners[4], corners[0]), 1 / std::sqrt(3.0));
+    for (std::array<double, 2> const &uv : getRandomPlaces(6, 50)) {
+        SurfacePoint const point = surfaces.Evaluate(face, uv.data());
+        Vector3 const away =
+            Subtract(Subtract(Subtract(point.p, corners[0]), Scale(du, uv[0])), Scale(dv, uv[1]));
+        if (GetParam() == ReferenceMask::Average) {
+            // Linear functions are kept at vertices alone.
+            ASSERT_NEAR(GetLength(Cross(GetNormal(point), Normalize(Cross(du, dv)))), 0, 1e-6);
+            continue;
+        }
+        ASSERT_LE(GetLength(away), kTolerance);
+        ASSERT_LE(GetDistance(point.du, du), 2e-6);
+        ASSERT_LE(GetDistance(point.dv, dv), 2e-6);
+    }
+}
+
+TEST_P(SurfaceTest, HasTheDerivativesOfItsPoints) {
+    if (GetParam() == ReferenceMask::Average) {
+        return; // has none
+    }
+    constexpr double kStep = 1e-4;
+    for (char const *const name : {"cube", "icosahedron", "creasedBall", "dartsQuads"}) {
+        SCOPED_TRACE(name);
+        bool const isFeature =
+            std::string(name) == "creasedBall" || std::string(name) == "dartsQuads";
+        Shape const &shape = isFeature ? GetFeatureShape(name) : GetShape(name);
+        auto const refiner =
+            CreateRefiner(shape, GetParam(), 0, getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
+        SurfaceSet<double> const surfaces(*refiner, shape.positions);
+        for (int face = 0; face < refiner->GetLevel(0).GetNumFaces(); ++face) {
+            for (std::array<double, 2> const &uv :
+                 getRandomPlaces(surfaces[face].GetFaceSize(), 10)) {
+                SurfacePoint const point = surfaces.Evaluate(face, uv.data());
+                double const next[2][2] = {{uv[0] + kStep, uv[1]}, {uv[0], uv[1] + kStep}};
+                double const before[2][2] = {{uv[0] - kStep, uv[1]}, {uv[0], uv[1] - kStep}};
+                for (int k = 0; k < 2; ++k) {
+                    Vector3 const difference = Scale(Subtract(surfaces.Evaluate(face, next[k]).p,
+                                                              surfaces.Evaluate(face, before[k]).p),
+                                                     0.5 / kStep);
+                    Vector3 const &derivative = k == 0 ? point.du : point.dv;
+                    ASSERT_LE(GetDistance(derivative, difference), 0.02 * GetLength(derivative))
+                        << "face " << face << " at " << uv[0] << ", " << uv[1];
+                }
+            }
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Masks, SurfaceTest, testing::ValuesIn(kMasks),
+                         [](auto const &mask) { return std::string(ToString(mask.param)); });
+
+namespace {
+
+/// A number for PrimvarRefiner.
+struct Number {
+    void Clear() { value = 0; }
+    void AddWithWeight(Number const &other, double weight) { value += weight * other.value; }
+
+    double value = 0;
+};
+
+std::vector<Number> makeNumbers(int count) {
+    std::vector<Number> result(static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        result[i].value = std::sin(3.0 * double(i));
+    }
+    return result;
+}
+
+double evaluate(BfrExt::Surface<double> const &surface, std::vector<Number> const &points,
+                double const uv[2]) {
+    std::vector<double> gathered(std::size_t(surface.GetNumControlPoints()));
+    surface.GatherControlPoints(&points[0].value, 1, gathered.data(), 1);
+    double result = 0;
+    surface.Evaluate(uv, gathered.data(), 1, &result);
+    return result;
+}
+
+} // namespace
+
+TEST(SurfaceDataTest, VaryingDataStay) {
+    constexpr int kLevel = 3;
+    for (char const *const name : {"creasedBall", "creaseMeetsBorderTriangles", "bowTieOfFans"}) {
+        SCOPED_TRACE(name);
+        Shape const &shape = GetFeatureShape(name);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, kLevel,
+                                           getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
+        auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+        std::vector<Number> const base = makeNumbers(shape.GetNumVertices());
+        std::vector<Number> values = base;
+        for (int level = 1; level <= kLevel; ++level) {
+            std::vector<Number> next(std::size_t(refiner->GetLevel(level).GetNumVertices()));
+            FarExt::PrimvarRefinerReal<double>(*refiner).InterpolateVarying(level, values, next);
+            values = std::move(next);
+        }
+        for (LevelCorner const &corner : getCorners(refiner->GetLevel(kLevel))) {
+            BfrExt::Surface<double> surface;
+            ASSERT_TRUE(factory->InitVaryingSurface(corner.baseFace, &surface));
+            ASSERT_NEAR(evaluate(surface, base, corner.uv), values[std::size_t(corner.vert)].value,
+                        kTolerance)
+                << "vertex " << corner.vert;
+        }
+    }
+}
+
+TEST(SurfaceDataTest, FaceVaryingValuesAreTheirLimits) {
+    constexpr int kLevel = 6;
+    for (auto const rule : {Sdc::Options::FVAR_LINEAR_ALL, Sdc::Options::FVAR_LINEAR_NONE,
+                            Sdc::Options::FVAR_LINEAR_CORNERS_ONLY}) {
+        for (char const *const name : {"seamAcrossCrease", "seamsCross", "cornersOnSeam"}) {
+            SCOPED_TRACE(testing::Message() << name << ", rule " << rule);
+            Shape const &shape = GetFeatureShape(name);
+            Sdc::Options options = getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+            options.SetFVarLinearInterpolation(rule);
+            auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, kLevel, options);
+            auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+            std::vector<Number> const base = makeNumbers(refiner->GetLevel(0).GetNumFVarValues());
+            std::vector<Number> values = base;
+            for (int level = 1; level <= kLevel; ++level) {
+                std::vector<Number> next(std::size_t(refiner->GetLevel(level).GetNumFVarValues()));
+                FarExt::PrimvarRefinerReal<double>(*refiner).InterpolateFaceVarying(level, values,
+                                                                                    next);
+                values = std::move(next);
+            }
+            TopologyLevel const &level = refiner->GetLevel(kLevel);
+            for (int face = 0; face < level.GetNumFaces(); face += 7) {
+                bool const isSplit = level.IsFaceBaseSplit(face);
+                if (level.IsFaceFVarSplit(face) || isSplit) {
+                    continue;
+                }
+                BfrExt::Surface<double> surface;
+                ASSERT_TRUE(factory->InitFaceVaryingSurface(level.GetFaceBaseFace(face), &surface));
+                auto const faceValues = level.GetFaceFVarValues(face);
+                std::vector<double> uv(2 * std::size_t(faceValues.size()));
+                level.GetFaceBaseCoords(face, 0, uv.data());
+                for (int i = 0; i < faceValues.size(); ++i) {
+                    // Those of the level are as far from their limits as its faces are large.
+                    ASSERT_NEAR(evaluate(surface, base, uv.data() + 2 * i),
+                                values[std::size_t(faceValues[i])].value,
+                                rule == Sdc::Options::FVAR_LINEAR_ALL ? kTolerance : 1e-2)
+                        << "value " << faceValues[i];
+                }
+            }
+        }
+    }
+}
+
+TEST(SurfaceFactoryTest, RefusesFacesWithoutASurface) {
+    Shape const &shape = GetShape("quadGrid");
+    auto const refiner =
+        CreateRefiner(shape, ReferenceMask::Smooth, 0, getOptions(Sdc::Options::VTX_BOUNDARY_NONE));
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    BfrExt::Surface<float> surface;
+    FarExt::Status status;
+    EXPECT_FALSE(factory->InitVertexSurface(0, &surface, &status));
+    EXPECT_FALSE(surface.IsValid());
+    EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
+    EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Face);
+    EXPECT_EQ(status.GetComponentIndex(), 0);
+    EXPECT_NE(status.GetMessage().find("VTX_BOUNDARY_NONE"), std::string::npos);
+
+    for (int const face : {-1, shape.GetNumFaces()}) {
+        EXPECT_FALSE(factory->FaceHasLimitSurface(face, &status));
+        EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+        EXPECT_EQ(status.GetComponentIndex(), face);
+    }
+    for (int const channel : {-1, 0}) {
+        EXPECT_FALSE(factory->InitFaceVaryingSurface(0, &surface, channel, &status));
+        EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+    }
+
+    Shape withHole = GetShape("cube");
+    withHole.holeFaces = {2};
+    auto const refinerOfHole = CreateRefiner(withHole, ReferenceMask::Smooth, 0);
+    auto const factoryOfHole = BfrExt::SurfaceFactory::Create(*refinerOfHole);
+    EXPECT_FALSE(factoryOfHole->FaceHasLimitSurface(2, &status));
+    EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+    EXPECT_EQ(status.GetComponentIndex(), 2);
+    EXPECT_TRUE(factoryOfHole->InitVertexSurface(1, &surface, &status));
+    EXPECT_TRUE(status.IsOk());
+}
+
+TEST(SurfaceFactoryTest, RefusesOtherSchemes) {
+    FarExt::HexSchemeOptions options;
+    options.schemeType = FarExt::SchemeType::DooSabin;
+    auto const refiner =
+        CreateRefiner(GetShape("cube"), ReferenceMask::Cosine, 0, Sdc::Options(), options);
+    FarExt::Status status;
+    EXPECT_FALSE(BfrExt::SurfaceFactory::Create(*refiner, &status));
+    EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
+}
+
+TEST(SurfaceFactoryTest, TypesAreSharedByFacesThatLookAlike) {
+    Shape const shape = MakeTiling(Tiling::Quads, 12, 12);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);
+    BfrExt::SurfaceFactoryCache cache;
+    BfrExt::SurfaceFactory::Options options;
+    options.SetExternalCache(&cache);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner, options);
+    BfrExt::Surface<float> surface;
+    for (int row = 3; row < 9; ++row) {
+        for (int column = 3; column < 9; ++column) {
+            ASSERT_TRUE(factory->InitVertexSurface(12 * row + column, &surface));
+        }
+    }
+    EXPECT_EQ(cache.GetNumTypes(), 1u);
+    EXPECT_EQ(surface.GetNumControlPoints(), 32);
+}
+
+TEST(SurfaceFactoryTest, ThreadsMayShareACacheThatGoesFirst) {
+    Shape const &shape = GetFeatureShape("dartsTriangles");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0,
+                                       getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
+    int const numFaces = refiner->GetLevel(0).GetNumFaces();
+    double const uv[2] = {0.3, 0.2};
+    auto const evaluateAll = [&](BfrExt::SurfaceFactoryCache *cache) {
+        BfrExt::SurfaceFactory::Options options;
+        options.SetExternalCache(cache);
+        auto factory = BfrExt::SurfaceFactory::Create(*refiner, options);
+        std::vector<BfrExt::Surface<double>> surfaces(static_cast<std::size_t>(numFaces));
+        for (int face = 0; face < numFaces; ++face) {
+            factory->InitVertexSurface(face, &surfaces[std::size_t(face)]);
+        }
+        factory.reset();
+        std::vector<Vector3> points;
+        for (BfrExt::Surface<double> const &surface : surfaces) {
+            SurfacePoint const point = EvaluateSurface(surface, shape.positions, uv);
+            points.insert(points.end(), {point.p, point.du, point.dv});
+        }
+        return points;
+    };
+    std::vector<Vector3> const expected = evaluateAll(nullptr);
+    for (int round = 0; round < 5; ++round) {
+        BfrExt::SurfaceFactoryCache cache;
+        std::vector<Vector3> results[4];
+        std::vector<std::thread> threads;
+        for (std::vector<Vector3> &result : results) {
+            threads.emplace_back([&] { result = evaluateAll(&cache); });
+        }
+        for (std::thread &thread : threads) {
+            thread.join();
+        }
+        for (std::vector<Vector3> const &result : results) {
+            ASSERT_EQ(result, expected);
+        }
+    }
+}
+
+TEST(SurfaceDataTest, ControlPointsBoundTheSurface) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0);
+    std::vector<float> const positions(shape.positions.begin(), shape.positions.end());
+    SurfaceSet<float> const surfaces(*refiner, positions);
+    SurfaceSet<double> const exact(*refiner, shape.positions);
+    for (int face = 0; face < shape.GetNumFaces(); ++face) {
+        BfrExt::Surface<float> const &surface = surfaces[face];
+        std::vector<int> indices(std::size_t(surface.GetNumControlPoints()));
+        ASSERT_EQ(surface.GetControlPointIndices(indices.data()), int(indices.size()));
+        for (int i = 0; i < surface.GetFaceSize(); ++i) {
+            EXPECT_EQ(indices[std::size_t(i)], refiner->GetLevel(0).GetFaceVertices(face)[i]);
+        }
+        std::vector<float> controlPoints(5 * indices.size());
+        surface.GatherControlPoints(positions.data(), 3, controlPoints.data(), {3, 5});
+        float least[2][3];
+        float most[2][3];
+        surface.BoundControlPoints(controlPoints.data(), {3, 5}, least[0], most[0]);
+        surface.BoundControlPointsFromMesh(positions.data(), 3, least[1], most[1]);
+        for (std::array<double, 2> const &place : getRandomPlaces(4, 20)) {
+            float const uv[2] = {float(place[0]), float(place[1])};
+            float p[3];
+            surface.Evaluate(uv, controlPoints.data(), {3, 5}, p);
+            std::vector<float> weights(indices.size());
+            surface.EvaluateStencil(uv, weights.data());
+            float ofStencil[2][3];
+            surface.ApplyStencil(weights.data(), controlPoints.data(), {3, 5}, ofStencil[0]);
+            surface.ApplyStencilFromMesh(weights.data(), positions.data(), 3, ofStencil[1]);
+            double const exactUv[2] = {double(uv[0]), double(uv[1])};
+            Vector3 const expected = exact.Evaluate(face, exactUv).p;
+            for (std::size_t k = 0; k < 3; ++k) {
+                EXPECT_EQ(least[0][k], least[1][k]);
+                EXPECT_EQ(most[0][k], most[1][k]);
+                EXPECT_LE(least[0][k], p[k]);
+                EXPECT_GE(most[0][k], p[k]);
+                EXPECT_NEAR(p[k], expected[k], 2e-6);
+                EXPECT_NEAR(ofStencil[0][k], expected[k], 2e-6);
+                EXPECT_EQ(ofStencil[0][k], ofStencil[1][k]);
+            }
+        }
+    }
+}
+
+} // namespace OpenSubdivHex::Regression
