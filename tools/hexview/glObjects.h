@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TOOLS_HEXVIEW_GL_OBJECTS_H
+#define OPENSUBDIVHEX_TOOLS_HEXVIEW_GL_OBJECTS_H
+
+#include <epoxy/gl.h>
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace OpenSubdivHex::Tools {
+
+/// \brief An array in a buffer of OpenGL, deleted with this.  A context is current wherever one lives.
+class GlArray {
+public:
+    GlArray() = default;
+    GlArray(GlArray const &) = delete;
+    GlArray &operator=(GlArray const &) = delete;
+    ~GlArray() { glDeleteBuffers(1, &_name); }
+
+    /// Makes room for \p size numbers of 4 bytes, whose values are not known.
+    void Resize(std::size_t size) { allocate(size, nullptr); }
+    /// Takes the numbers, of 4 bytes each, of another array.
+    template <typename T>
+    void Assign(std::vector<T> const &values) {
+        static_assert(sizeof(T) == kBytes);
+        allocate(values.size(), values.data());
+    }
+    /// Its numbers, as those of type T.
+    template <typename T>
+    std::vector<T> Read() const {
+        static_assert(sizeof(T) == kBytes);
+        std::vector<T> values(_size);
+        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        glBindBuffer(GL_COPY_READ_BUFFER, _name);
+        glGetBufferSubData(GL_COPY_READ_BUFFER, 0, GLsizeiptr(_size * kBytes), values.data());
+        return values;
+    }
+
+    /// The name of the buffer, as Osd's vertex buffers give it.
+    GLuint BindVBO() const { return _name; }
+    std::size_t GetSize() const { return _size; }
+
+    /// Binds it for shaders.
+    void Bind(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, _name); }
+
+private:
+    static constexpr std::size_t kBytes = 4;
+
+    void allocate(std::size_t size, void const *values) {
+        if (_name == 0) {
+            glGenBuffers(1, &_name);
+        }
+        _size = size;
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, _name);
+        // A buffer without a byte cannot be bound for shaders.
+        std::size_t const bytes = size > 0 ? size * kBytes : kBytes;
+        glBufferData(GL_SHADER_STORAGE_BUFFER, GLsizeiptr(bytes), size > 0 ? values : nullptr,
+                     GL_DYNAMIC_DRAW);
+    }
+
+    GLuint _name = 0;
+    std::size_t _size = 0;
+};
+
+/// \brief A program of OpenGL, deleted with this.
+class GlProgram {
+public:
+    struct Shader {
+        GLenum type;
+        char const *source;
+    };
+
+    /// Throws std::runtime_error with what the compiler says.
+    explicit GlProgram(std::vector<Shader> const &shaders) : _name(glCreateProgram()) {
+        for (Shader const &shader : shaders) {
+            GLuint const name = glCreateShader(shader.type);
+            glShaderSource(name, 1, &shader.source, nullptr);
+            glCompileShader(name);
+            glAttachShader(_name, name);
+            glDeleteShader(name);
+        }
+        glLinkProgram(_name);
+        GLint isLinked = GL_FALSE;
+        glGetProgramiv(_name, GL_LINK_STATUS, &isLinked);
+        if (isLinked != GL_TRUE) {
+            char log[2000] = "";
+            glGetProgramInfoLog(_name, sizeof log, nullptr, log);
+            glDeleteProgram(_name);
+            throw std::runtime_error(std::string("OpenGL takes no shader of this program: ") + log);
+        }
+    }
+    GlProgram(GlProgram const &) = delete;
+    GlProgram &operator=(GlProgram const &) = delete;
+    ~GlProgram() { glDeleteProgram(_name); }
+
+    void Use() const { glUseProgram(_name); }
+    /// The place of a uniform.
+    GLint operator[](char const *uniform) const { return glGetUniformLocation(_name, uniform); }
+
+private:
+    GLuint _name;
+};
+
+} // namespace OpenSubdivHex::Tools
+
+#endif

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TOOLS_HEXVIEW_SHADERS_H
+#define OPENSUBDIVHEX_TOOLS_HEXVIEW_SHADERS_H
+
+namespace OpenSubdivHex::Tools {
+
+/// The bindings of the arrays of a ViewedSurface.
+enum ArrayBinding : unsigned {
+    kPointArray,
+    kSideVertexArray,
+    kNormalArray,
+    kFirstFanArray,
+    kFanArray,
+    kCornerSideArray,
+    kCoordArray,
+    kBaseFaceArray
+};
+
+/// \brief The normal of each side: the sum of the vector areas that it spans with its neighbours in
+/// the polygons around.
+inline constexpr char const *kNormalShader = R"(#version 430
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Points { float points[]; };
+layout(std430, binding = 1) readonly buffer SideVertices { uint sideVertices[]; };
+layout(std430, binding = 2) buffer Normals { vec4 normals[]; };
+layout(std430, binding = 3) readonly buffer FirstFans { uint firstFans[]; };
+layout(std430, binding = 4) readonly buffer Fans { uint fans[]; };
+uniform uint count;
+
+vec3 getPoint(uint side) {
+    uint place = 3u * sideVertices[side];
+    return vec3(points[place], points[place + 1u], points[place + 2u]);
+}
+
+void main() {
+    uint side = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+    if (side >= count) {
+        return;
+    }
+    vec3 point = getPoint(side);
+    vec3 sum = vec3(0.0);
+    for (uint i = firstFans[side]; i < firstFans[side + 1u]; ++i) {
+        sum += cross(getPoint(fans[2u * i + 1u]) - point, getPoint(fans[2u * i]) - point);
+    }
+    float size = length(sum);
+    normals[side] = vec4(size > 0.0 ? sum / size : vec3(0.0), 0.0);
+}
+)";
+
+/// \brief The mean curvature at each side: the mean of the normal curvatures towards its neighbours.
+inline constexpr char const *kCurvatureShader = R"(#version 430
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Points { float points[]; };
+layout(std430, binding = 1) readonly buffer SideVertices { uint sideVertices[]; };
+layout(std430, binding = 2) buffer Normals { vec4 normals[]; };
+layout(std430, binding = 3) readonly buffer FirstFans { uint firstFans[]; };
+layout(std430, binding = 4) readonly buffer Fans { uint fans[]; };
+uniform uint count;
+
+vec3 getPoint(uint side) {
+    uint place = 3u * sideVertices[side];
+    return vec3(points[place], points[place + 1u], points[place + 2u]);
+}
+
+void main() {
+    uint side = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+    if (side >= count) {
+        return;
+    }
+    vec3 point = getPoint(side);
+    vec3 normal = normals[side].xyz;
+    float sum = 0.0;
+    uint first = firstFans[side];
+    uint last = firstFans[side + 1u];
+    for (uint i = first; i < last; ++i) {
+        uint neighbor = fans[2u * i + 1u];
+        vec3 edge = getPoint(neighbor) - point;
+        float square = dot(edge, edge);
+        if (square > 0.0) {
+            sum += dot(normals[neighbor].xyz - normal, edge) / square;
+        }
+    }
+    normals[side].w = last > first ? sum / float(last - first) : 0.0;
+}
+)";
+
+/// Corners of triangles, without vertex attributes.
+inline constexpr char const *kSurfaceVertexShader = R"(#version 430
+layout(std430, binding = 0) readonly buffer Points { float points[]; };
+layout(std430, binding = 1) readonly buffer SideVertices { uint sideVertices[]; };
+layout(std430, binding = 2) readonly buffer Normals { vec4 normals[]; };
+layout(std430, binding = 5) readonly buffer CornerSides { uint cornerSides[]; };
+layout(std430, binding = 6) readonly buffer Coords { vec2 coords[]; };
+layout(std430, binding = 7) readonly buffer BaseFaces { uint baseFaces[]; };
+uniform mat4 projection;
+out vec3 position;
+out vec3 normal;
+out float curvature;
+out vec2 coord;
+flat out uint baseFace;
+
+void main() {
+    uint corner = uint(gl_VertexID);
+    uint side = cornerSides[corner];
+    uint place = 3u * sideVertices[side];
+    position = vec3(points[place], points[place + 1u], points[place + 2u]);
+    normal = normals[side].xyz;
+    curvature = normals[side].w;
+    coord = coords[corner];
+    baseFace = baseFaces[corner / 3u];
+    gl_Position = projection * vec4(position, 1.0);
+}
+)";
+
+inline constexpr char const *kSurfaceFragmentShader = R"(#version 430
+in vec3 position;
+in vec3 normal;
+in float curvature;
+in vec2 coord;
+flat in uint baseFace;
+uniform vec3 eye;
+uniform vec3 up;
+uniform float size; // of the mesh
+uniform int shading;
+out vec4 color;
+
+const vec3 kPaint = vec3(0.92, 0.72, 0.46);
+
+// Colours that differ, golden ratio apart.
+vec3 getFaceColor(uint face) {
+    float hue = fract(float(face) * 0.618034);
+    vec3 rgb = clamp(abs(fract(hue + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
+    return mix(vec3(0.9), rgb, 0.55);
+}
+
+void main() {
+    vec3 toEye = normalize(eye - position);
+    vec3 n = shading == 1 ? normalize(cross(dFdx(position), dFdy(position))) : normalize(normal);
+    if (dot(n, toEye) < 0.0) {
+        n = -n;
+    }
+    vec3 light = normalize(toEye + 0.6 * up + 0.4 * cross(up, toEye));
+    float diffuse = 0.40 + 0.60 * max(dot(n, light), 0.0);
+    vec3 paint = kPaint;
+    if (shading == 2) { // lines of light, all around
+        vec3 r = reflect(-toEye, n);
+        float angle = atan(dot(r, up), length(r - dot(r, up) * up));
+        float wave = sin(angle * 18.0);
+        float width = fwidth(angle * 18.0);
+        paint = vec3(mix(0.12, 0.95, smoothstep(-width, width, wave)));
+        diffuse = 0.85;
+    } else if (shading == 3) { // blue is hollow, red round
+        float t = clamp(curvature * size * 0.12, -1.0, 1.0);
+        paint = t < 0.0 ? mix(vec3(0.95), vec3(0.10, 0.25, 0.75), -t)
+                        : mix(vec3(0.95), vec3(0.80, 0.15, 0.10), t);
+    } else if (shading == 4) {
+        paint = getFaceColor(baseFace);
+    } else if (shading == 5) {
+        vec2 squares = floor(coord * 8.0);
+        paint = mod(squares.x + squares.y, 2.0) < 0.5 ? vec3(0.92) : vec3(0.25, 0.40, 0.55);
+    }
+    vec3 halfway = normalize(light + toEye);
+    float gloss = shading == 2 ? 0.0 : 0.25 * pow(max(dot(n, halfway), 0.0), 40.0);
+    color = vec4(paint * diffuse + gloss, 1.0);
+}
+)";
+
+/// Edges of polygons.
+inline constexpr char const *kEdgeVertexShader = R"(#version 430
+layout(std430, binding = 0) readonly buffer Points { float points[]; };
+layout(std430, binding = 1) readonly buffer SideVertices { uint sideVertices[]; };
+layout(std430, binding = 5) readonly buffer EdgeSides { uint edgeSides[]; };
+uniform mat4 projection;
+
+void main() {
+    uint place = 3u * sideVertices[edgeSides[gl_VertexID]];
+    vec3 position = vec3(points[place], points[place + 1u], points[place + 2u]);
+    gl_Position = projection * vec4(position, 1.0);
+    gl_Position.z -= 2e-4 * gl_Position.w; // before the faces
+}
+)";
+
+/// Vertices and edges of the control mesh.
+inline constexpr char const *kControlVertexShader = R"(#version 430
+layout(std430, binding = 0) readonly buffer Points { float points[]; };
+layout(std430, binding = 5) readonly buffer Ends { uint ends[]; };
+uniform mat4 projection;
+uniform bool areEnds;
+uniform int chosen; // vertex
+out float isChosen;
+
+void main() {
+    uint vert = areEnds ? ends[gl_VertexID] : uint(gl_VertexID);
+    gl_Position = projection * vec4(points[3u * vert], points[3u * vert + 1u],
+                                    points[3u * vert + 2u], 1.0);
+    gl_Position.z -= 4e-4 * gl_Position.w;
+    isChosen = int(vert) == chosen ? 1.0 : 0.0;
+    gl_PointSize = int(vert) == chosen ? 11.0 : 6.0;
+}
+)";
+
+inline constexpr char const *kControlFragmentShader = R"(#version 430
+in float isChosen;
+uniform vec4 lineColor;
+out vec4 color;
+
+void main() {
+    color = mix(lineColor, vec4(0.9, 0.1, 0.1, 1.0), isChosen);
+}
+)";
+
+inline constexpr char const *kEdgeFragmentShader = R"(#version 430
+uniform vec4 lineColor;
+out vec4 color;
+
+void main() {
+    color = lineColor;
+}
+)";
+
+} // namespace OpenSubdivHex::Tools
+
+#endif

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surfacePainter.h"
+
+#include "shaders.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace OpenSubdivHex::Tools {
+
+namespace {
+
+constexpr float kFieldOfView = 35; // degrees, of the height
+
+} // namespace
+
+OrbitCamera OrbitCamera::Around(std::vector<float> const &points) {
+    constexpr float kLarge = std::numeric_limits<float>::max();
+    glm::vec3 low(kLarge);
+    glm::vec3 high(-kLarge);
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
+        glm::vec3 const point(points[i], points[i + 1], points[i + 2]);
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    OrbitCamera camera;
+    camera.center = low + 0.5f * (high - low);
+    camera.size = std::numeric_limits<float>::min();
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
+        camera.size =
+            std::max(camera.size, glm::length(glm::vec3(points[i], points[i + 1], points[i + 2]) -
+                                              camera.center));
+    }
+    return camera;
+}
+
+glm::vec3 OrbitCamera::GetEye() const {
+    float const turn = glm::radians(azimuth);
+    float const rise = glm::radians(elevation);
+    glm::vec3 const direction(std::sin(turn) * std::cos(rise), std::sin(rise),
+                              std::cos(turn) * std::cos(rise));
+    return center + size * distance / std::sin(glm::radians(kFieldOfView / 2)) * direction;
+}
+
+glm::vec3 OrbitCamera::GetUp() const {
+    glm::vec3 const back = glm::normalize(GetEye() - center);
+    return glm::normalize(glm::vec3(0, 1, 0) - back.y * back);
+}
+
+glm::mat4 OrbitCamera::GetProjection(float aspect) const {
+    float const eyeDistance = glm::length(GetEye() - center);
+    // A picture that is higher than wide sees as much of the width.
+    float const height =
+        2 * std::atan(std::tan(glm::radians(kFieldOfView / 2)) / std::min(aspect, 1.0f));
+    float const nearest = std::max(eyeDistance - 2 * size, 0.01f * eyeDistance);
+    return glm::perspective(height, aspect, nearest, eyeDistance + 2 * size) *
+           glm::lookAt(GetEye(), center, GetUp());
+}
+
+SurfacePainter::SurfacePainter()
+    : _surfaceProgram(
+          {{GL_VERTEX_SHADER, kSurfaceVertexShader}, {GL_FRAGMENT_SHADER, kSurfaceFragmentShader}}),
+      _edgeProgram(
+          {{GL_VERTEX_SHADER, kEdgeVertexShader}, {GL_FRAGMENT_SHADER, kEdgeFragmentShader}}),
+      _controlProgram({{GL_VERTEX_SHADER, kControlVertexShader},
+                       {GL_FRAGMENT_SHADER, kControlFragmentShader}}) {
+    glGenVertexArrays(1, &_vertexArray);
+}
+
+SurfacePainter::~SurfacePainter() { glDeleteVertexArrays(1, &_vertexArray); }
+
+void SurfacePainter::Draw(ViewedSurface &surface, OrbitCamera const &camera,
+                          DrawSettings const &settings, int width, int height) {
+    glViewport(0, 0, width, height);
+    glClearColor(1, 1, 1, 1);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_CULL_FACE);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glBindVertexArray(_vertexArray);
+    glm::mat4 const projection = camera.GetProjection(float(width) / float(std::max(height, 1)));
+    if (settings.hasFaces) {
+        surface.Bind();
+        _surfaceProgram.Use();
+        glUniformMatrix4fv(_surfaceProgram["projection"], 1, GL_FALSE, glm::value_ptr(projection));
+        glUniform3fv(_surfaceProgram["eye"], 1, glm::value_ptr(camera.GetEye()));
+        glUniform3fv(_surfaceProgram["up"], 1, glm::value_ptr(camera.GetUp()));
+        glUniform1f(_surfaceProgram["size"], camera.size);
+        glUniform1i(_surfaceProgram["shading"], int(settings.shading));
+        glDrawArrays(GL_TRIANGLES, 0, 3 * surface.GetNumTriangles());
+    }
+    if (settings.hasEdges) {
+        surface.Bind();
+        surface.BindEdges();
+        _edgeProgram.Use();
+        glUniformMatrix4fv(_edgeProgram["projection"], 1, GL_FALSE, glm::value_ptr(projection));
+        glUniform4f(_edgeProgram["lineColor"], 0.25f, 0.20f, 0.15f, 1);
+        glDrawArrays(GL_LINES, 0, 2 * surface.GetNumEdges());
+    }
+    if (settings.hasControlMesh) {
+        drawControlMesh(surface, projection, settings.chosenVertex);
+    }
+    glBindVertexArray(0);
+    glUseProgram(0);
+}
+
+void SurfacePainter::drawControlMesh(ViewedSurface &surface, glm::mat4 const &projection,
+                                     int chosenVertex) {
+    _controlPoints.Assign(surface.GetControlPoints());
+    _controlEnds.Assign(surface.GetControlEdges());
+    _controlPoints.Bind(kPointArray);
+    _controlEnds.Bind(kCornerSideArray);
+    _controlProgram.Use();
+    glUniformMatrix4fv(_controlProgram["projection"], 1, GL_FALSE, glm::value_ptr(projection));
+    glUniform1i(_controlProgram["chosen"], -1);
+    glUniform1i(_controlProgram["areEnds"], 1);
+    glUniform4f(_controlProgram["lineColor"], 0.15f, 0.35f, 0.75f, 1);
+    glDrawArrays(GL_LINES, 0, GLsizei(surface.GetControlEdges().size()));
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    glUniform1i(_controlProgram["chosen"], chosenVertex);
+    glUniform1i(_controlProgram["areEnds"], 0);
+    glDrawArrays(GL_POINTS, 0, GLsizei(surface.GetControlPoints().size() / 3));
+    glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+} // namespace OpenSubdivHex::Tools

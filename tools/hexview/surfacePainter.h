@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TOOLS_HEXVIEW_SURFACE_PAINTER_H
+#define OPENSUBDIVHEX_TOOLS_HEXVIEW_SURFACE_PAINTER_H
+
+#include "glObjects.h"
+#include "viewedSurface.h"
+
+#include <glm/glm.hpp>
+
+namespace OpenSubdivHex::Tools {
+
+/// How faces are drawn; in the numbers of kSurfaceFragmentShader.
+enum class Shading { Smooth, Facets, Reflection, Curvature, BaseFaces, Checker };
+
+/// What is drawn.
+struct DrawSettings {
+    Shading shading = Shading::Smooth;
+    bool hasFaces = true;
+    bool hasEdges = true;
+    bool hasControlMesh = false;
+    int chosenVertex = -1; ///< of the control mesh
+};
+
+/// \brief A perspective camera that goes around a point, with y up.
+struct OrbitCamera {
+    /// Sees all of a mesh.
+    static OrbitCamera Around(std::vector<float> const &points);
+
+    glm::vec3 GetEye() const;
+    glm::vec3 GetUp() const;
+    /// From space to the cube that OpenGL draws.
+    glm::mat4 GetProjection(float aspect) const;
+
+    glm::vec3 center{0};
+    float size = 1; ///< radius of what is seen
+    float azimuth = 30;
+    float elevation = 20;
+    float distance = 1; ///< 1 sees all
+};
+
+/// \brief Draws surfaces into the current framebuffer.
+class SurfacePainter {
+public:
+    SurfacePainter();
+    ~SurfacePainter();
+    SurfacePainter(SurfacePainter const &) = delete;
+    SurfacePainter &operator=(SurfacePainter const &) = delete;
+
+    /// Clears a picture of \p width by \p height pixels, and draws.
+    void Draw(ViewedSurface &surface, OrbitCamera const &camera, DrawSettings const &settings,
+              int width, int height);
+
+private:
+    void drawControlMesh(ViewedSurface &surface, glm::mat4 const &projection, int chosenVertex);
+
+    GLuint _vertexArray = 0; // without attributes
+    GlArray _controlPoints;
+    GlArray _controlEnds;
+    GlProgram _surfaceProgram;
+    GlProgram _edgeProgram;
+    GlProgram _controlProgram;
+};
+
+} // namespace OpenSubdivHex::Tools
+
+#endif

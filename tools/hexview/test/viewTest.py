@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Looks at what hexview shows.
+
+usage: viewTest.py pictures|window HEXVIEW MESHES
+
+pictures  draws without a window: every evaluator the same picture, every shading another one
+window    opens a window in Xvfb, presses keys and drags with the mouse, and looks at the screen
+"""
+
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+from PIL import Image, ImageChops
+
+WIDTH, HEIGHT = 480, 360
+TIMEOUT = 60  # seconds, of a busy machine without a GPU
+
+
+def share_of_different(a, b, by=32):
+    """The share of pixels that differ by that many of 255 levels of grey or more."""
+    difference = ImageChops.difference(a, b).convert("L")
+    return sum(difference.histogram()[by:]) / (a.width * a.height)
+
+
+def share_of_dark(image):
+    return sum(image.convert("L").histogram()[:64]) / (image.width * image.height)
+
+
+def share_of_white(image):
+    return image.convert("L").histogram()[255] / (image.width * image.height)
+
+
+def expect(condition, what):
+    if not condition:
+        sys.exit("failed: " + what)
+
+
+def draw(program, mesh, *options):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "view.png")
+        subprocess.run([program, mesh, "--png", path, "--width", str(WIDTH), "--height",
+                        str(HEIGHT), *options], check=True, timeout=TIMEOUT)
+        image = Image.open(path).convert("RGB")
+        image.load()
+        return image
+
+
+def test_pictures(program, meshes):
+    torus = os.path.join(meshes, "torus.obj")
+    smooth = draw(program, torus, "-l", "3")
+    expect(smooth.size == (WIDTH, HEIGHT), "the picture has the size that was asked for")
+    expect(0.3 < share_of_white(smooth) < 0.8, "a torus fills a part of the picture")
+    for options in ([], ["--limit"]):
+        pictures = [draw(program, torus, "-l", "3", "--evaluator", evaluator, *options)
+                    for evaluator in ("cpu", "tables")]
+        expect(share_of_different(*pictures) < 1e-3, "tables draw what the CPU does")
+    expect(share_of_different(smooth, draw(program, torus, "-l", "3", "--evaluator", "opengl")) <
+           1e-3, "OpenGL draws what the CPU does")
+    expect(share_of_different(smooth, pictures[0]) > 1e-3, "limit points are others")
+    shadings = {name: draw(program, torus, "-l", "3", "--no-edges", "--shading", name)
+                for name in ("smooth", "facets", "reflection", "curvature", "base-faces",
+                             "checker")}
+    for name, picture in shadings.items():
+        for other in shadings:
+            expect(name == other or share_of_different(picture, shadings[other], 4) > 0.02,
+                   f"{name} differs from {other}")
+    expect(share_of_dark(shadings["reflection"]) > 0.1, "there are dark reflection lines")
+    cube = draw(program, os.path.join(meshes, "cube.obj"), "-l", "4", "--no-edges", "--shading",
+                "base-faces")
+    hues = {tuple(value // 32 for value in color) for count, color in cube.getcolors(1 << 20)
+            if count > 500 and min(color) < 250}
+    expect(len(hues) >= 3, "three sides of a cube have three colours")
+    for options, cause in ((["--level", "99"], "99"), (["--mask", "none"], "none")):
+        run = subprocess.run([program, torus, *options], capture_output=True, text=True)
+        expect(run.returncode == 2 and cause in run.stderr, "bad options are named")
+    run = subprocess.run([program, torus, "--evaluator", "opengl", "--limit", "--png", "no.png"],
+                         capture_output=True, text=True)
+    expect(run.returncode == 1 and "limit points" in run.stderr and not os.path.exists("no.png"),
+           "OpenGL has no limit points")
+
+
+def read_screen(display):
+    """The picture of an X server."""
+    data = subprocess.run(["xwd", "-root", "-silent", "-display", display], check=True,
+                          capture_output=True).stdout
+    header = struct.unpack(">25I", data[:100])
+    size, width, height, order = header[0], header[4], header[5], header[7]
+    line, colors = header[12], header[19]
+    pixels = data[size + 12 * colors:]
+    return Image.frombuffer("RGB", (width, height), pixels, "raw",
+                            "BGRX" if order == 0 else "XRGB", line, 1)
+
+
+class Screen:
+    """An X server without a screen, and what lies on it."""
+
+    def __enter__(self):
+        read, write = os.pipe()
+        self.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{WIDTH}x{HEIGHT}x24"],
+            pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as numbers:
+            self.display = ":" + numbers.readline().strip()
+        return self
+
+    def __exit__(self, *_):
+        self.server.terminate()
+        self.server.wait()
+
+    def read(self):
+        """What is beside the panel."""
+        return read_screen(self.display).crop((WIDTH * 11 // 20, 0, WIDTH, HEIGHT))
+
+    def do(self, *arguments):
+        subprocess.run(["xdotool", *arguments], check=True,
+                       env={**os.environ, "DISPLAY": self.display})
+
+    def wait(self, condition, what):
+        end = time.monotonic() + TIMEOUT
+        while not condition(self.read()):
+            expect(time.monotonic() < end, what)
+            time.sleep(0.2)
+        return self.read()
+
+
+def test_window(program, meshes):
+    torus = os.path.join(meshes, "torus.obj")
+    with Screen() as screen:
+        viewer = subprocess.Popen([program, torus, "--width", str(WIDTH), "--height", str(HEIGHT)],
+                                  env={**os.environ, "DISPLAY": screen.display})
+        try:
+            first = screen.wait(lambda image: 0.1 < share_of_white(image) < 0.9,
+                                "the window shows a torus")
+            time.sleep(1)
+            window = subprocess.run(["xdotool", "search", "--name", "hexview"], check=True,
+                                    capture_output=True, text=True,
+                                    env={**os.environ, "DISPLAY": screen.display}).stdout.split()[0]
+            screen.do("windowfocus", "--sync", window)
+            screen.do("key", "4")
+            fine = screen.wait(lambda image: share_of_different(image, first) > 0.02,
+                               "4 shows another level")
+            screen.do("key", "e", "Tab", "Tab")
+            lines = screen.wait(lambda image: share_of_dark(image) > share_of_dark(fine) + 0.05 and
+                                share_of_different(image, fine) > 0.1, "Tab shows reflection lines")
+            screen.do("mousemove", str(WIDTH * 3 // 4), str(HEIGHT // 8))
+            time.sleep(1)
+            screen.do("mousedown", "1")
+            time.sleep(1)
+            screen.do("mousemove_relative", "--", "30", "60")
+            screen.wait(lambda image: share_of_different(image, lines) > 0.05,
+                        "the mouse turns the mesh")
+            screen.do("mouseup", "1")
+            screen.do("key", "Escape")
+            expect(viewer.wait(TIMEOUT) == 0, "Esc ends the program")
+        finally:
+            viewer.kill()
+
+
+if __name__ == "__main__":
+    {"pictures": test_pictures, "window": test_window}[sys.argv[1]](*sys.argv[2:])

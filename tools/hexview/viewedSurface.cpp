@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewedSurface.h"
+
+#include "shaders.h"
+
+#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
+#include "far_ext/topologyRefinerFactory.h"
+#include "osd_ext/triangleIndices.h"
+#include "tools/hexrefine/creaseAngle.h"
+#include "tools/mesh/topologyDescriptor.h"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+namespace OpenSubdivHex::Tools {
+
+namespace {
+
+using OsdExt::DrawnFaces;
+using OsdExt::PolygonIndices;
+
+constexpr int kLength = 3;
+Osd::BufferDescriptor const kPacked(0, kLength, kLength);
+
+[[noreturn]] void fail(FarExt::Status const &status) {
+    throw std::runtime_error(status.GetMessage());
+}
+
+std::unique_ptr<FarExt::TopologyRefiner> makeRefiner(Mesh const &mesh,
+                                                     SurfaceSettings const &settings) {
+    Mesh creased = mesh;
+    if (settings.creaseAngle) {
+        AddCreases(*settings.creaseAngle, &creased);
+    }
+    Far::TopologyDescriptor descriptor = DescribeTopology(creased);
+    auto const channels = DescribeChannels(creased);
+    descriptor.numFVarChannels = int(channels.size());
+    descriptor.fvarChannels = channels.data();
+    Sdc::Options sdcOptions;
+    sdcOptions.SetVtxBoundaryInterpolation(settings.boundary);
+    sdcOptions.SetFVarLinearInterpolation(
+        mesh.tags.fvarInterpolation.value_or(sdcOptions.GetFVarLinearInterpolation()));
+    sdcOptions.SetCreasingMethod(mesh.tags.creasingMethod.value_or(sdcOptions.GetCreasingMethod()));
+    FarExt::TopologyRefinerFactory::Options options;
+    options.schemeOptions = settings.scheme;
+    FarExt::Status status;
+    auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options, &status);
+    FarExt::TopologyRefiner::UniformOptions uniform(settings.level);
+    uniform.fullTopologyInLastLevel = true;
+    if (!refiner || !refiner->RefineUniform(uniform, &status)) {
+        fail(status);
+    }
+    return refiner;
+}
+
+/// The channel with texture coordinates; -1 if there is none.
+int findUvChannel(Mesh const &mesh) {
+    auto const found =
+        std::find_if(mesh.channels.begin(), mesh.channels.end(),
+                     [](FVarChannel const &channel) { return channel.kind == FVarKind::Uv; });
+    return found == mesh.channels.end() ? -1 : int(found - mesh.channels.begin());
+}
+
+/// The texture coordinates of the last level.
+std::vector<float> evaluateCoords(FarExt::TopologyRefiner const &refiner, Mesh const &mesh,
+                                  int channel) {
+    OsdExt::RefinementEvaluator::Options options;
+    options.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
+    options.fvarChannel = channel;
+    FarExt::Status status;
+    auto const evaluator = OsdExt::RefinementEvaluator::Create(refiner, options, &status);
+    FVarChannel const &values = mesh.channels[std::size_t(channel)];
+    Osd::BufferDescriptor const desc(0, values.width, values.width);
+    int const level = refiner.GetMaxLevel();
+    std::vector<float> result;
+    if (evaluator) {
+        result.resize(std::size_t(evaluator->GetNumElements(level)) * std::size_t(values.width));
+    }
+    if (!evaluator ||
+        !evaluator->Evaluate(values.values.data(), desc, result.data(), desc, level, &status)) {
+        fail(status);
+    }
+    return result;
+}
+
+} // namespace
+
+ViewedSurface::ViewedSurface(Mesh mesh)
+    : _mesh(std::move(mesh)), _controlPoints(_mesh.positions),
+      _normalProgram({{GL_COMPUTE_SHADER, kNormalShader}}),
+      _curvatureProgram({{GL_COMPUTE_SHADER, kCurvatureShader}}) {
+    int const *vert = _mesh.faceVertices.data();
+    for (int const size : _mesh.faceSizes) {
+        for (int i = 0; i < size; ++i) {
+            _controlEdges.push_back(unsigned(vert[i]));
+            _controlEdges.push_back(unsigned(vert[(i + 1) % size]));
+        }
+        vert += size;
+    }
+}
+
+int ViewedSurface::GetNumVertices() const { return int(_points.GetSize()) / kLength; }
+
+int ViewedSurface::GetNumFaces() const {
+    return _refiner->GetLevel(_refiner->GetMaxLevel()).GetNumFaces();
+}
+
+void ViewedSurface::Refine(SurfaceSettings const &settings) {
+    auto refiner = makeRefiner(_mesh, settings);
+    FarExt::TopologyLevel const &level = refiner->GetLevel(settings.level);
+    FarExt::Status status;
+
+    // The evaluator, and with it all that may be refused.
+    std::unique_ptr<OsdExt::RefinementEvaluator> cpuEvaluator;
+    std::unique_ptr<OsdExt::GLRefinementEvaluator> glEvaluator;
+    std::unique_ptr<Osd::GLStencilTableSSBO> glTable;
+    std::unique_ptr<Osd::GLComputeEvaluator> tableEvaluator;
+    if (settings.evaluator == ViewEvaluator::Cpu) {
+        cpuEvaluator = OsdExt::RefinementEvaluator::Create(*refiner, &status);
+        std::vector<float> points(std::size_t(kLength * level.GetNumVertices()));
+        if (!cpuEvaluator || (settings.isLimit && !cpuEvaluator->EvaluateLimit(
+                                                      _controlPoints.data(), kPacked, points.data(),
+                                                      kPacked, settings.level, &status))) {
+            fail(status);
+        }
+    } else if (settings.evaluator == ViewEvaluator::OpenGl) {
+        if (settings.isLimit) {
+            throw std::runtime_error("limit points are made by the CPU and by tables alone");
+        }
+        glEvaluator = OsdExt::GLRefinementEvaluator::Create(*refiner, &status);
+        if (!glEvaluator) {
+            fail(status);
+        }
+    } else {
+        if (settings.isLimit) {
+            FarExt::LimitStencilTableFactory::Options options;
+            options.level = settings.level;
+            auto const table = FarExt::LimitStencilTableFactory::Create(*refiner, options, &status);
+            glTable =
+                table ? OsdExt::CreateGLStencilTable<Osd::GLStencilTableSSBO>(*table) : nullptr;
+        } else {
+            FarExt::StencilTableFactory::Options options;
+            options.generateIntermediateLevels = false;
+            options.generateControlVerts = settings.level == 0;
+            auto const table = FarExt::StencilTableFactory::Create(*refiner, options, &status);
+            glTable =
+                table ? OsdExt::CreateGLStencilTable<Osd::GLStencilTableSSBO>(*table) : nullptr;
+        }
+        if (!glTable) {
+            fail(status);
+        }
+        tableEvaluator.reset(Osd::GLComputeEvaluator::Create(
+            kPacked, kPacked, Osd::BufferDescriptor(), Osd::BufferDescriptor()));
+    }
+
+    FarExt::LimitSides const sides(level);
+    OsdExt::DrawOptions drawOptions;
+    drawOptions.sides = &sides;
+    drawOptions.splitVertices = true;
+    int const channel = findUvChannel(_mesh);
+    if (channel >= 0) {
+        drawOptions.fvarChannels.push_back(channel);
+    } else {
+        drawOptions.generateBaseCoords = settings.scheme.IsHexagonal();
+    }
+    PolygonIndices const polygons = OsdExt::CreatePolygonIndices(level, drawOptions, &status);
+    if (!status.IsOk()) {
+        fail(status);
+    }
+    OsdExt::TriangleIndices const triangles = OsdExt::CreateTriangleIndices(polygons);
+    std::vector<float> coords(2 * triangles.vertices.size());
+    if (channel >= 0) {
+        std::vector<float> const values = evaluateCoords(*refiner, _mesh, channel);
+        auto const width = std::size_t(_mesh.channels[std::size_t(channel)].width);
+        for (std::size_t i = 0; i < triangles.vertices.size(); ++i) {
+            std::copy_n(values.begin() +
+                            std::ptrdiff_t(width * std::size_t(triangles.fvarValues[0][i])),
+                        2, coords.begin() + std::ptrdiff_t(2 * i));
+        }
+    } else if (!triangles.baseCoords.empty()) {
+        coords = triangles.baseCoords;
+    }
+
+    // The neighbours of each side in the polygons around it, and the edges.
+    auto const numSides = std::size_t(sides.GetNumSides());
+    std::vector<unsigned> firstFans(numSides + 1, 0);
+    for (int const side : polygons.vertices) {
+        ++firstFans[std::size_t(side) + 1];
+    }
+    for (std::size_t i = 0; i < numSides; ++i) {
+        firstFans[i + 1] += firstFans[i];
+    }
+    std::vector<unsigned> next(firstFans.begin(), firstFans.end() - 1);
+    std::vector<unsigned> fans(2 * polygons.vertices.size());
+    std::vector<unsigned> edges;
+    int const *polygon = polygons.vertices.data();
+    for (int const size : polygons.sizes) {
+        for (int i = 0; i < size; ++i) {
+            auto const before = unsigned(polygon[(i + size - 1) % size]);
+            auto const behind = unsigned(polygon[(i + 1) % size]);
+            unsigned const fan = next[std::size_t(polygon[i])]++;
+            fans[2 * fan] = before;
+            fans[2 * fan + 1] = behind;
+            edges.push_back(unsigned(polygon[i]));
+            edges.push_back(behind);
+        }
+        polygon += size;
+    }
+    std::vector<unsigned> sideVertices;
+    for (int side = 0; side < sides.GetNumSides(); ++side) {
+        sideVertices.push_back(unsigned(sides.GetVertex(side)));
+    }
+
+    _settings = settings;
+    _refiner = std::move(refiner);
+    _cpuEvaluator = std::move(cpuEvaluator);
+    _glEvaluator = std::move(glEvaluator);
+    _glTable = std::move(glTable);
+    _tableEvaluator = std::move(tableEvaluator);
+    _points.Resize(std::size_t(kLength * level.GetNumVertices()));
+    _sideVertices.Assign(sideVertices);
+    _normals.Resize(4 * numSides);
+    _firstFans.Assign(firstFans);
+    _fans.Assign(fans);
+    _cornerSides.Assign(triangles.vertices);
+    _coords.Assign(coords);
+    _baseFaces.Assign(triangles.baseFaces);
+    _edgeSides.Assign(edges);
+    Evaluate();
+}
+
+void ViewedSurface::Evaluate() {
+    glFinish();
+    auto const start = std::chrono::steady_clock::now();
+    if (_cpuEvaluator) {
+        std::vector<float> points(_points.GetSize());
+        if (_settings.isLimit) {
+            _cpuEvaluator->EvaluateLimit(_controlPoints.data(), kPacked, points.data(), kPacked,
+                                         _settings.level);
+        } else {
+            _cpuEvaluator->Evaluate(_controlPoints.data(), kPacked, points.data(), kPacked,
+                                    _settings.level);
+        }
+        _points.Assign(points);
+    } else {
+        _controlArray.Assign(_controlPoints);
+        if (_glEvaluator) {
+            _glEvaluator->Evaluate(&_controlArray, kPacked, &_points, kPacked, _settings.level);
+        } else {
+            OsdExt::EvalStencilsInRanges(*_tableEvaluator, &_controlArray, kPacked, &_points,
+                                         kPacked, *_glTable);
+        }
+    }
+    makeNormals();
+    glFinish();
+    _milliseconds =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+void ViewedSurface::makeNormals() const {
+    constexpr GLuint kGroup = 64;
+    constexpr GLuint kMaxGroups = 65535;
+    auto const numSides = GLuint(_sideVertices.GetSize());
+    GLuint const numGroups = (numSides + kGroup - 1) / kGroup;
+    GLuint const numRows = (numGroups + kMaxGroups - 1) / kMaxGroups;
+    Bind();
+    _firstFans.Bind(kFirstFanArray);
+    _fans.Bind(kFanArray);
+    for (GlProgram const *program : {&_normalProgram, &_curvatureProgram}) {
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        program->Use();
+        glUniform1ui((*program)["count"], numSides);
+        if (numRows > 0) {
+            glDispatchCompute((numGroups + numRows - 1) / numRows, numRows, 1);
+        }
+    }
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void ViewedSurface::Bind() const {
+    _points.Bind(kPointArray);
+    _sideVertices.Bind(kSideVertexArray);
+    _normals.Bind(kNormalArray);
+    _cornerSides.Bind(kCornerSideArray);
+    _coords.Bind(kCoordArray);
+    _baseFaces.Bind(kBaseFaceArray);
+}
+
+void ViewedSurface::BindEdges() const { _edgeSides.Bind(kCornerSideArray); }
+
+} // namespace OpenSubdivHex::Tools
