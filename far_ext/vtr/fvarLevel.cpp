@@ -4,11 +4,11 @@
 #include "baseLevel.h"
 #include "hierarchy.h"
 #include "indexSet.h"
+#include "parallel.h"
 #include "sharpFeatures.h"
 #include "vertexFan.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -16,52 +16,64 @@ namespace {
 
 using Far::Index;
 
-// The edges of the value mesh: an edge of the mesh whose sides differ in a value falls into two.
-// meshEdges gets the mesh edge that each comes from.
-std::vector<EdgeSides> cutSeams(Level const &mesh, Buffer<Index> const &faceValues,
-                                std::vector<Index> &meshEdges) {
-    std::vector<EdgeSides> result;
-    std::vector<EdgeSides> secondSides;
-    std::vector<Index> secondMeshEdges;
-    for (Index edge = 0; edge < mesh.numEdges; ++edge) {
-        EdgeSides sides = {{mesh.GetSideCorner(edge, 0), mesh.GetSideCorner(edge, 1)}};
-        if (sides.corners[1] >= 0) {
-            Index const next0 = mesh.GetNextCorner(mesh.edgeFaces[edge][0], sides.corners[0]);
-            Index const next1 = mesh.GetNextCorner(mesh.edgeFaces[edge][1], sides.corners[1]);
-            if (faceValues[sides.corners[0]] != faceValues[next1] ||
-                faceValues[sides.corners[1]] != faceValues[next0]) {
-                secondSides.push_back({{sides.corners[1], kSharpBoundaryA}});
-                secondMeshEdges.push_back(edge);
-                sides.corners[1] = kSharpBoundaryA;
-            }
-        }
-        result.push_back(sides);
-        meshEdges.push_back(edge);
-    }
-    result.insert(result.end(), secondSides.begin(), secondSides.end());
-    meshEdges.insert(meshEdges.end(), secondMeshEdges.begin(), secondMeshEdges.end());
+// The edges of the mesh whose sides differ in a value, ascending.
+std::vector<Index> findSeams(Level const &mesh, Buffer<Index> const &faceValues) {
+    return ParallelSelect(mesh.numEdges, [&](Index edge) {
+        Index const corner0 = mesh.GetSideCorner(edge, 0);
+        Index const corner1 = mesh.GetSideCorner(edge, 1);
+        return corner1 >= 0 &&
+               (faceValues[corner0] !=
+                    faceValues[mesh.GetNextCorner(mesh.edgeFaces[edge][1], corner1)] ||
+                faceValues[corner1] !=
+                    faceValues[mesh.GetNextCorner(mesh.edgeFaces[edge][0], corner0)]);
+    });
+}
+
+// The edges of the value mesh: a seam falls into two, of which the second follow all edges.
+std::vector<EdgeSides> cutSeams(Level const &mesh, std::vector<Index> const &seams) {
+    std::vector<EdgeSides> result(std::size_t(mesh.numEdges) + seams.size());
+    ParallelFor(mesh.numEdges, [&](Index edge) {
+        result[edge] = {{mesh.GetSideCorner(edge, 0), mesh.GetSideCorner(edge, 1)}};
+    });
+    ParallelFor(Index(seams.size()), [&](Index i) {
+        EdgeSides &sides = result[seams[i]];
+        result[mesh.numEdges + i] = {{sides.corners[1], kSharpBoundaryA}};
+        sides.corners[1] = kSharpBoundaryA;
+    });
     return result;
 }
 
 // Gives every fan of faces around a vertex of the value mesh a vertex of its own: the first keeps
 // the index, others are appended.
 void splitFans(std::vector<EdgeSides> const &edges, Level &level, FVarChannel &channel) {
-    std::vector<Index> valuesOfVertices(channel.numValues);
-    std::iota(valuesOfVertices.begin(), valuesOfVertices.end(), 0);
-    for (Index vert = 0; vert < channel.numValues; ++vert) {
+    auto const hasFurtherFans = [&](Index vert) {
+        bool result = false;
+        ForEachFan(level, vert, [&](VertexFan const &fan) {
+            result = result || fan.begin != level.vertFirstFace[vert];
+        });
+        return result;
+    };
+    std::vector<Index> furtherValues; // of the vertices that are appended
+    for (Index vert : ParallelSelect(channel.numValues, hasFurtherFans)) {
         ForEachFan(level, vert, [&](VertexFan const &fan) {
             if (fan.begin == level.vertFirstFace[vert]) {
                 return;
             }
             for (Index i = fan.begin; i < fan.end; ++i) {
-                level.faceVerts[level.GetVertexCorner(i)] = Index(valuesOfVertices.size());
+                level.faceVerts[level.GetVertexCorner(i)] =
+                    channel.numValues + Index(furtherValues.size());
             }
-            valuesOfVertices.push_back(vert);
+            furtherValues.push_back(vert);
         });
     }
-    channel.valuesOfVertices.Assign(valuesOfVertices);
-    if (Index(valuesOfVertices.size()) > channel.numValues) {
-        level.numVertices = Index(valuesOfVertices.size());
+    Index const numVertices = channel.numValues + Index(furtherValues.size());
+    channel.valuesOfVertices.Resize(numVertices);
+    ParallelFor(numVertices, [&](Index vert) {
+        channel.valuesOfVertices[vert] =
+            vert < channel.numValues ? vert : furtherValues[vert - channel.numValues];
+    });
+    if (!furtherValues.empty()) {
+        level.numVertices = numVertices;
         BuildBaseLevel({edges.data(), Index(edges.size())}, level);
     }
 }
@@ -108,15 +120,15 @@ void BuildFVarChannel(Level const &mesh, Index numValues, Buffer<Index> faceValu
     channel.linearInterpolation = sdcOptions.GetFVarLinearInterpolation();
     fvarLevel.values = &level;
     fvarLevel.valueFaces.Resize(mesh.numFaces);
-    std::iota(fvarLevel.valueFaces.data(), fvarLevel.valueFaces.data() + mesh.numFaces, 0);
+    ParallelFor(mesh.numFaces, [&](Index face) { fvarLevel.valueFaces[face] = face; });
 
     level.numVertices = numValues;
     level.numFaces = mesh.numFaces;
     level.numCorners = mesh.numCorners;
     level.faceFirstCorner.Assign(mesh.faceFirstCorner);
     level.faceVerts.Assign(faceValues);
-    std::vector<Index> meshEdges;
-    std::vector<EdgeSides> const edges = cutSeams(mesh, faceValues, meshEdges);
+    std::vector<Index> const seams = findSeams(mesh, faceValues);
+    std::vector<EdgeSides> const edges = cutSeams(mesh, seams);
     BuildBaseLevel({edges.data(), Index(edges.size())}, level);
     splitFans(edges, level, channel);
     findNonManifoldVertices(mesh, level);
@@ -124,24 +136,24 @@ void BuildFVarChannel(Level const &mesh, Index numValues, Buffer<Index> faceValu
     // The tags of the mesh; a seam is sharp without one.
     if (!mesh.edgeSharpness.empty()) {
         level.edgeSharpness.Resize(level.numEdges);
-        for (Index edge = 0; edge < level.numEdges; ++edge) {
+        ParallelFor(level.numEdges, [&](Index edge) {
+            Index const meshEdge = edge < mesh.numEdges ? edge : seams[edge - mesh.numEdges];
             level.edgeSharpness[edge] =
-                level.IsBoundary(edge) ? 0 : mesh.GetEdgeSharpness(meshEdges[edge]);
-        }
+                level.IsBoundary(edge) ? 0 : mesh.GetEdgeSharpness(meshEdge);
+        });
     }
     level.vertSharpness.Resize(level.numVertices);
-    std::fill_n(level.vertSharpness.data(), level.numVertices, Sdc::Crease::SHARPNESS_SMOOTH);
-    for (Index corner = 0; corner < level.numCorners; ++corner) {
-        float &vertSharpness = level.vertSharpness[level.faceVerts[corner]];
-        vertSharpness = std::max(vertSharpness, sharpness[corner]);
-    }
-    for (Index vert = 0; vert < level.numVertices; ++vert) {
+    ParallelFor(level.numVertices, [&](Index vert) {
+        float vertSharpness = Sdc::Crease::SHARPNESS_SMOOTH;
+        for (Index i = level.vertFirstFace[vert]; i < level.vertFirstFace[vert + 1]; ++i) {
+            vertSharpness = std::max(vertSharpness, sharpness[level.GetVertexCorner(i)]);
+        }
         // Where a seam meets a boundary that follows the paper's rule no curve goes on: a corner.
         bool meetsSharp;
-        if (meetsFreeBoundary(level, vert, meetsSharp) && meetsSharp) {
-            level.vertSharpness[vert] = Sdc::Crease::SHARPNESS_INFINITE;
-        }
-    }
+        level.vertSharpness[vert] = meetsFreeBoundary(level, vert, meetsSharp) && meetsSharp
+                                        ? Sdc::Crease::SHARPNESS_INFINITE
+                                        : vertSharpness;
+    });
     ComputeSharpMasks(sdcOptions, level);
     channel.faceValues = std::move(faceValues);
 }
