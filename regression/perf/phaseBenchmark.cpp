@@ -55,6 +55,34 @@ Contest makeBaseLevels(BenchMesh const &mesh) {
     return contest;
 }
 
+/// The same mesh with texture coordinates: two charts of half the faces each.
+BenchMesh addCharts(BenchMesh const &mesh) {
+    auto const shape = std::make_shared<Shape>(*mesh.shape);
+    int const numVertices = shape->GetNumVertices();
+    FVarChannel channel;
+    channel.values.resize(2 * 2 * std::size_t(numVertices));
+    channel.valueIndices = shape->faceVertices;
+    for (std::size_t i = channel.valueIndices.size() / 2; i < channel.valueIndices.size(); ++i) {
+        channel.valueIndices[i] += numVertices;
+    }
+    shape->fvarChannels = {channel};
+    BenchMesh result = mesh;
+    result.shape = shape;
+    return result;
+}
+
+Contest makeBaseLevelsWithCharts(BenchMesh const &plainMesh) {
+    BenchMesh const mesh = addCharts(plainMesh);
+    auto const fromDescriptor = [=] {
+        ShapeDescriptor const descriptor(*mesh.shape);
+        return FarExt::TopologyRefinerFactory::Create(descriptor.Get());
+    };
+    return {{makeBaseLevel("Far", 1, [=] { return MakeFarBase(mesh); }),
+             makeBaseLevel("FarExt, descriptor", 1, fromDescriptor),
+             makeBaseLevel("FarExt, descriptor", 2, fromDescriptor)},
+            {{"base-channel-1", 1, {0}}, {"base-channel-2", 2, {0}}}};
+}
+
 struct Point {
     void Clear() { x = y = z = 0; }
     void AddWithWeight(Point const &point, float weight) {
@@ -107,6 +135,8 @@ void AddPhaseBenchmarks(Suite &suite) {
         for (Memory memory : {Memory::Default, Memory::Warm}) {
             suite.AddContest({"base level", "vertex", mesh, memory},
                              [=] { return makeBaseLevels(mesh); });
+            suite.AddContest({"base level with charts", "vertex", mesh, memory},
+                             [=] { return makeBaseLevelsWithCharts(mesh); });
         }
     }
     for (BenchMesh const &mesh : suite.GetMeshes()) {

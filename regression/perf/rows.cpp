@@ -17,6 +17,10 @@ std::vector<Row> const &GetRows() {
              3, 6},
             {"base-refiner-1", "base level from a refiner, 1 thread",
              "Far::TopologyRefinerFactory, which made that", 4, 6},
+            {"base-channel-1", "base level with texture coordinates, 1 thread",
+             "Far::TopologyRefinerFactory", 1, 2},
+            {"base-channel-2", "base level with texture coordinates, 2 threads",
+             "Far::TopologyRefinerFactory", 1.8, 3.6},
             {"topology-full", "topology, full last level, 1 thread",
              "Far::TopologyRefiner, full last level", 5, 10},
             {"topology-faces", "topology, face-vertices, 1 thread", "Far::TopologyRefiner", 8, 15},
@@ -61,6 +65,12 @@ std::vector<Row> const &GetRows() {
                           "own, level alone", 0.4, 0.5});
         result.push_back({"limit-evaluation-table", "limit with derivatives, table-free, 1 thread",
                           "own limit table", 1, 3});
+        result.push_back({"polygons-1", "polygons with their base faces, per corner, 1 thread",
+                          "loop over Far::TopologyLevel", 0.5, 1});
+        result.push_back({"polygons-2", "polygons with their base faces, per corner, 2 threads",
+                          "loop over Far::TopologyLevel", 0.9, 1.8});
+        result.push_back({"base-face-map", "map of base faces, per face, 1 thread",
+                          "own, topology, face-vertices", 1, 2});
         result.push_back({"evaluation-catmark", "Far's Catmull-Clark table, length 3",
                           "Osd::CpuEvaluator", 5, 8});
         // 1.3 times as slow at most.
