@@ -100,9 +100,9 @@ public:
 
     /// Finds the masks of a level, unless it has.
     Status PrepareLimit(int level);
-    /// Derivatives are not wanted where \p du is null.
-    void EvaluateLimit(Source values, Destination points, Destination du, Destination dv,
-                       int length, int level);
+    /// The outputs are those of PreparedLimit.
+    void EvaluateLimit(Source values, std::vector<Destination> const &outputs, int length,
+                       int level);
 
     TopologyRefiner const &refiner;
     std::vector<int> numElements; // by level
@@ -111,6 +111,7 @@ public:
 
 private:
     Source toVertices(Source src, int length, float scale);
+    void resizeScratch(int length, int last);
 
     int const _numRefinements; // of the refiner, when the evaluator was made
     bool const _isOfVertices;  // not of face-varying values, nor varying
@@ -121,10 +122,10 @@ private:
     FarExt::internal::Buffer<Index> const *_valuesOfVertices = nullptr;
 
     FarExt::internal::Buffer<float> _controlValues; // by vertex of that value mesh
-    FarExt::internal::Buffer<float> _scratch[2];    // levels below the one asked for
+    // Levels below the one asked for, by whether they are odd; that one, too, for its limit.
+    FarExt::internal::Buffer<float> _scratch[2];
 
     std::vector<std::unique_ptr<internal::PreparedLimit>> _limits; // by level; null: not yet asked
-    FarExt::internal::Buffer<float> _limitValues; // of the level whose limit is evaluated
 };
 
 RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options options)
@@ -182,10 +183,19 @@ auto RefinementEvaluator::Impl::toVertices(Source src, int length, float scale) 
         return src;
     }
     Index const numVertices = _valuesOfVertices ? Index(_valuesOfVertices->size()) : numElements[0];
-    _controlValues.Resize(std::size_t(numVertices) * std::size_t(length));
+    _controlValues.Resize(std::size_t(numVertices) * std::size_t(length) + 1);
     copyElements(src, length, numVertices, _valuesOfVertices ? _valuesOfVertices->data() : nullptr,
                  scale, {_controlValues.data(), length});
     return {_controlValues.data(), length};
+}
+
+// For levels 1 ... last, which grow: the last two have room for those before, and for one float behind
+// the last, which may be read.
+void RefinementEvaluator::Impl::resizeScratch(int length, int last) {
+    for (int level = std::max(1, last - 1); level <= last; ++level) {
+        _scratch[level % 2].Resize(
+            std::size_t(numElements[std::size_t(level)]) * std::size_t(length) + 1);
+    }
 }
 
 void RefinementEvaluator::Impl::Evaluate(Source values, Destination result, int length, int level) {
@@ -195,11 +205,7 @@ void RefinementEvaluator::Impl::Evaluate(Source values, Destination result, int 
     }
     float const scale = findScale(values, length, numElements[0]);
     values = toVertices(values, length, scale);
-    // The levels grow: the last two below the one asked for have room for those before.
-    for (int below = std::max(1, level - 2); below < level; ++below) {
-        _scratch[below % 2].Resize(std::size_t(numElements[std::size_t(below)]) *
-                                   std::size_t(length));
-    }
+    resizeScratch(length, level - 1);
     std::vector<internal::RefinementTask> tasks;
     for (int made = 1; made <= level; ++made) {
         Destination const next =
@@ -243,25 +249,43 @@ Status RefinementEvaluator::Impl::PrepareLimit(int level) {
     }
     FarExt::internal::LimitRows rows(hierarchy.mesh.levels[std::size_t(level)],
                                      refiner.GetSchemeOptions(), refiner.GetHexSchemeOptions());
-    result = rows.Find();
+    auto prepared = std::make_unique<internal::PreparedLimit>();
+    result = prepared->Prepare(hierarchy.mesh, refiner.GetHexSchemeOptions(), rows);
     if (result.IsOk()) {
-        auto prepared = std::make_unique<internal::PreparedLimit>();
-        result = prepared->Prepare(rows);
-        if (result.IsOk()) {
-            limit = std::move(prepared);
-        }
+        limit = std::move(prepared);
     }
     return result;
 }
 
-void RefinementEvaluator::Impl::EvaluateLimit(Source values, Destination points, Destination du,
-                                              Destination dv, int length, int level) {
-    if (level > 0) {
-        _limitValues.Resize(std::size_t(numElements[std::size_t(level)]) * std::size_t(length));
-        Evaluate(values, {_limitValues.data(), length}, length, level);
-        values = {_limitValues.data(), length};
+void RefinementEvaluator::Impl::EvaluateLimit(Source values,
+                                              std::vector<Destination> const &outputs, int length,
+                                              int level) {
+    internal::PreparedLimit &limit = *_limits[std::size_t(level)];
+    float const scale = findScale(values, length, numElements[0]);
+    values = toVertices(values, length, scale);
+    if (limit.HasFaces(0) && values.data != _controlValues.data()) {
+        // Only our own memory may be read behind its values.
+        _controlValues.Resize(std::size_t(numElements[0]) * std::size_t(length) + 1);
+        copyElements(values, length, numElements[0], nullptr, 1, {_controlValues.data(), length});
+        values = {_controlValues.data(), length};
     }
-    _limits[std::size_t(level)]->Evaluate(values, length, points, du, dv);
+    int const last = limit.HasOthers() ? level : level - 1;
+    resizeScratch(length, last);
+    for (int made = 1; made <= level; ++made) {
+        limit.EvaluateFVertices(made - 1, values, length, outputs);
+        if (made <= last) {
+            Destination const next = {_scratch[made % 2].data(), length};
+            internal::RefineElements({{&_refinements[std::size_t(made) - 1], values, next}},
+                                     length);
+            values = {next.data, next.stride};
+        }
+    }
+    if (limit.HasOthers()) {
+        limit.EvaluateOthers(values, level > 0, length, outputs);
+    }
+    for (Destination const &output : outputs) {
+        undoScale(scale, output, length, numElements[std::size_t(level)]);
+    }
 }
 
 std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner const &refiner,
@@ -323,8 +347,7 @@ bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescrip
 bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
                                         float *dst, Osd::BufferDescriptor const &dstDesc, int level,
                                         Status *status) {
-    return evaluateLimit(src, srcDesc, dst, dstDesc, nullptr, dstDesc, nullptr, dstDesc, level,
-                         status);
+    return evaluateLimit(src, srcDesc, {{dst, dstDesc}}, level, status);
 }
 
 bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
@@ -332,39 +355,32 @@ bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor 
                                         Osd::BufferDescriptor const &duDesc, float *dv,
                                         Osd::BufferDescriptor const &dvDesc, int level,
                                         Status *status) {
-    bool const isLevel = level >= 0 && level <= GetMaxLevel();
-    std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
-    Status result = _impl->Check(src, srcDesc, du, duDesc, level, numWritten);
-    if (result.IsOk()) {
-        result = _impl->Check(src, srcDesc, dv, dvDesc, level, numWritten);
-    }
-    if (!FarExt::internal::Report(result, status)) {
-        return false;
-    }
-    return evaluateLimit(src, srcDesc, dst, dstDesc, du, duDesc, dv, dvDesc, level, status);
+    return evaluateLimit(src, srcDesc, {{dst, dstDesc}, {du, duDesc}, {dv, dvDesc}}, level, status);
 }
 
-// Derivatives that are null are not wanted.
 bool RefinementEvaluator::evaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                        float *dst, Osd::BufferDescriptor const &dstDesc, float *du,
-                                        Osd::BufferDescriptor const &duDesc, float *dv,
-                                        Osd::BufferDescriptor const &dvDesc, int level,
+                                        std::vector<Output> const &outputs, int level,
                                         Status *status) {
     bool const isLevel = level >= 0 && level <= GetMaxLevel();
     std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
-    Status result = _impl->Check(src, srcDesc, dst, dstDesc, level, numWritten);
+    Status result;
+    for (Output const &output : outputs) {
+        if (result.IsOk()) {
+            result = _impl->Check(src, srcDesc, output.dst, output.desc, level, numWritten);
+        }
+    }
     if (result.IsOk()) {
         result = _impl->PrepareLimit(level);
     }
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
-    auto const bindElements = [](float *data, Osd::BufferDescriptor const &desc) {
-        return internal::Elements<float>{data ? data + desc.offset : nullptr, desc.stride};
-    };
     if (numWritten > 0) {
-        _impl->EvaluateLimit({src + srcDesc.offset, srcDesc.stride}, bindElements(dst, dstDesc),
-                             bindElements(du, duDesc), bindElements(dv, dvDesc), srcDesc.length,
+        std::vector<internal::Elements<float>> elements;
+        for (Output const &output : outputs) {
+            elements.push_back({output.dst + output.desc.offset, output.desc.stride});
+        }
+        _impl->EvaluateLimit({src + srcDesc.offset, srcDesc.stride}, elements, srcDesc.length,
                              level);
     }
     return true;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace OpenSubdivHex {
 
@@ -117,8 +118,14 @@ public:
     /// its table gives, up to the rounding of floats, of which derivatives have more at each level,
     /// as they are differences of near values.
     ///
-    /// The first frame of a level finds the masks, which takes as long as ten to twenty, and keeps
-    /// about 110 bytes for each of its vertices.
+    /// Most vertices come from hexagons of the levels before, six at a time: with them a frame takes
+    /// four to seven times as long as Evaluate() on deep levels, of which it needs the last one for
+    /// the other vertices alone.  These are near the irregular vertices and faces of level 0 and near
+    /// features, and all of the first two or three levels of meshes without hexagons; with
+    /// FaceMask::Cosine they are all.
+    ///
+    /// The first frame of a level finds the masks, which takes as long as seven to thirty, and keeps
+    /// about 21 bytes for each vertex and 100 for each of the others.
     ///
     /// \param dst,du,dv  elements [0, GetNumElements(level)) each
     ///
@@ -181,10 +188,12 @@ private:
 
     explicit RefinementEvaluator(std::unique_ptr<Impl> impl);
 
-    bool evaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
-                       Osd::BufferDescriptor const &dstDesc, float *du,
-                       Osd::BufferDescriptor const &duDesc, float *dv,
-                       Osd::BufferDescriptor const &dvDesc, int level, FarExt::Status *status);
+    struct Output {
+        float *dst;
+        Osd::BufferDescriptor const &desc;
+    };
+    bool evaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
+                       std::vector<Output> const &outputs, int level, FarExt::Status *status);
 
     template <class BUFFER>
     static float *bind(BUFFER *buffer) {

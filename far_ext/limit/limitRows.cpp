@@ -5,6 +5,7 @@
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <unordered_map>
 
@@ -123,8 +124,15 @@ LimitRows::LimitRows(Level const &level, Sdc::Options sdcOptions,
 LimitRows::~LimitRows() = default;
 
 Status LimitRows::Find() {
+    std::vector<Index> verts(std::size_t(_level.numVertices));
+    std::iota(verts.begin(), verts.end(), 0);
+    return Find(verts);
+}
+
+Status LimitRows::Find(std::vector<Index> const &verts) {
     std::vector<bool> const featureVerts = MarkFeatures(_level);
-    _ranges.resize(std::size_t(GetNumParallelRanges(_level.numVertices, kRange)));
+    _ranges.assign(std::size_t(GetNumParallelRanges(_level.numVertices, kRange)), Range());
+    _regularMask.reset();
     ParallelForRange(
         _level.numVertices, [&] { return Finder(*this, featureVerts); },
         [&](Finder &finder, Index begin, Index end) {
@@ -133,8 +141,9 @@ Status LimitRows::Find() {
             Range &range = _ranges[std::size_t(begin / kRange)];
             range.firstSources.push_back(0);
             range.firstSides.push_back(0);
-            for (Index vert = begin; vert < end && range.status.IsOk(); ++vert) {
-                finder.Add(vert, range);
+            auto vert = std::lower_bound(verts.begin(), verts.end(), begin);
+            for (; vert != verts.end() && *vert < end && range.status.IsOk(); ++vert) {
+                finder.Add(*vert, range);
             }
         },
         kRange);

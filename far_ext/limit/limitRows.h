@@ -48,6 +48,8 @@ public:
 
     /// Finds all masks, in parallel, or says for which vertex there is none.
     Status Find();
+    /// Those of \p verts alone, which ascend.
+    Status Find(std::vector<Index> const &verts);
 
     Level const &GetLevel() const { return _level; }
 

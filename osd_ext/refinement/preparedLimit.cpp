@@ -4,24 +4,25 @@
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
-#include <limits>
-#include <string>
 #include <unordered_map>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
-using FarExt::ComponentType;
 using FarExt::Status;
-using FarExt::StatusCode;
 using FarExt::internal::LimitRow;
 using FarExt::internal::LimitRows;
 using FarExt::internal::PlainNeighborhoodGatherer;
+using FarExt::internal::RegularFaces;
 
 namespace {
 
-// Vertices, of some ten nanoseconds each.
-constexpr Index kRange = 1024;
+// Groups of vertices, of some ten nanoseconds each.
+constexpr Index kRange = 256;
+
+// Vertices among which groups of a type are looked for: few enough for what they depend on to stay in
+// the cache, and enough for groups to be full.
+constexpr std::size_t kWindow = 8192;
 
 // A row and room for its sources.
 struct Reader {
@@ -30,66 +31,129 @@ struct Reader {
     Index sources[PlainNeighborhoodGatherer::kNumRegular];
 };
 
-} // namespace
-
-void PreparedLimit::addWeights(LimitRow const &row) {
-    _weights.insert(_weights.end(), row.weights, row.weights + row.size);
-    _duWeights.insert(_duWeights.end(), row.du, row.du + row.size);
-    _dvWeights.insert(_dvWeights.end(), row.dv, row.dv + row.size);
-}
-
-Status PreparedLimit::Prepare(LimitRows const &rows) {
-    FarExt::internal::Level const &level = rows.GetLevel();
-    _blocks.Resize(std::size_t(level.numVertices));
-    std::unordered_map<double const *, int> firstWeights; // of the types, by their weights
-    std::int64_t numIndices = 0;
-    Reader reader;
-    for (Index vert = 0; vert < level.numVertices; ++vert) {
-        LimitRow const row = reader.Read(rows, vert);
-        // The sides of a vertex share the weights of its point.
-        auto const [found, isNew] = firstWeights.try_emplace(row.du, int(_weights.size()));
-        if (isNew) {
-            addWeights(row);
-        }
-        _blocks[std::size_t(vert)] = {vert, 1, row.size, int(numIndices), found->second};
-        numIndices += row.size;
-        if (std::max(numIndices, std::int64_t(_weights.size())) > std::numeric_limits<int>::max()) {
-            return Status(StatusCode::TooLarge, ComponentType::Level, level.depth,
-                          "the limit of level " + std::to_string(level.depth) +
-                              " has more sources than 32-bit offsets reach");
+// Sets the places of a group's sources.
+void setPlaces(VertexGroup const &group, LimitRows const &rows, Reader &reader,
+               std::uint32_t *places) {
+    for (int k = 0; k < VertexGroup::kSize; ++k) {
+        LimitRow const row = reader.Read(rows, group.verts[k]);
+        std::uint32_t *place = places + group.firstPlace + k;
+        for (int i = 0; i < row.size; ++i, place += VertexGroup::kSize) {
+            *place = std::uint32_t(row.sources[i]) * RegularFaceGroup::kPointStride;
         }
     }
-    _indices.Resize(std::size_t(numIndices));
+}
+
+// What all tasks have.
+void setTask(Elements<float const> values, bool isReadBehind, int length,
+             PreparedLimit::Outputs const &outputs, LimitTask &task) {
+    task.length = length;
+    task.values = values;
+    task.isReadBehind = isReadBehind;
+    task.numOutputs = int(outputs.size());
+    std::copy(outputs.begin(), outputs.end(), task.outputs);
+}
+
+} // namespace
+
+Status PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
+                              FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows) {
+    RegularFaces regularFaces(mesh, rows.GetLevel().depth);
+    Status result = regularFaces.FindMasks(schemeOptions, rows);
+    if (!result.IsOk()) {
+        return result;
+    }
+    prepareOthers(regularFaces.GetOthers(), rows);
+    std::vector<RegularFaces::OfLevel> const &levels = regularFaces.GetLevels();
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        RegularLevel level = {
+            &mesh.levels[i], MakeRegularFaceGroups(mesh.levels[i], levels[i].faces), {}};
+        if (!level.groups.empty()) {
+            level.weights = MakeRegularLimitWeights(levels[i].mask);
+        }
+        _regularLevels.push_back(std::move(level));
+    }
+    return result;
+}
+
+void PreparedLimit::prepareOthers(std::vector<Index> const &verts, LimitRows const &rows) {
+    struct Other {
+        Index vert;
+        int numSources;
+        std::size_t firstWeight;
+    };
+    std::vector<Other> others;
+    others.reserve(verts.size());
+    std::unordered_map<double const *, std::size_t> firstWeights; // of the types, by their weights
+    Reader reader;
+    for (Index const vert : verts) {
+        LimitRow const row = reader.Read(rows, vert);
+        // The sides of a vertex share the weights of its point.
+        auto const [found, isNew] = firstWeights.try_emplace(row.du, _weights.size());
+        for (int i = 0; i < row.size && isNew; ++i) {
+            _weights.insert(_weights.end(),
+                            {float(row.weights[i]), float(row.du[i]), float(row.dv[i])});
+        }
+        others.push_back({vert, row.size, found->second});
+    }
+    std::size_t numPlaces = 0;
+    for (std::size_t begin = 0; begin < others.size(); begin += kWindow) {
+        auto const first = others.begin() + std::ptrdiff_t(begin);
+        auto const end = others.begin() + std::ptrdiff_t(std::min(begin + kWindow, others.size()));
+        std::stable_sort(first, end, [](Other const &a, Other const &b) {
+            return a.firstWeight < b.firstWeight;
+        });
+        for (auto other = first; other != end;) {
+            auto const last = std::find_if_not(
+                other, std::min(other + VertexGroup::kSize, end),
+                [&](Other const &next) { return next.firstWeight == other->firstWeight; });
+            VertexGroup group = {{}, other->numSources, numPlaces, other->firstWeight};
+            for (int i = 0; i < VertexGroup::kSize; ++i) {
+                group.verts[i] = (other + i < last ? other + i : last - 1)->vert;
+            }
+            _vertexGroups.push_back(group);
+            numPlaces += std::size_t(group.numSources) * VertexGroup::kSize;
+            other = last;
+        }
+    }
+    _places.Resize(numPlaces);
     FarExt::internal::ParallelForRange(
-        level.numVertices, [] { return Reader(); },
+        Index(_vertexGroups.size()), [] { return Reader(); },
         [&](Reader &rangeReader, Index begin, Index end) {
-            for (Index vert = begin; vert < end; ++vert) {
-                LimitRow const row = rangeReader.Read(rows, vert);
-                std::copy_n(row.sources, row.size,
-                            _indices.data() + _blocks[std::size_t(vert)].firstIndex);
+            for (Index i = begin; i < end; ++i) {
+                setPlaces(_vertexGroups[std::size_t(i)], rows, rangeReader, _places.data());
             }
         },
         kRange);
-    return Status();
 }
 
-void PreparedLimit::Evaluate(Elements<float const> values, int length, Elements<float> points,
-                             Elements<float> du, Elements<float> dv) const {
-    StencilTask task;
-    task.src = values.data;
-    task.srcStride = values.stride;
-    task.length = length;
-    task.rows.blocks = _blocks.data();
-    task.rows.indices = _indices.data();
-    task.outputs[0] = {points.data, points.stride, _weights.data()};
-    task.outputs[1] = {du.data, du.stride, _duWeights.data()};
-    task.outputs[2] = {dv.data, dv.stride, _dvWeights.data()};
-    task.numOutputs = du.data ? 3 : 1;
-    StencilKernel const kernel = GetStencilKernel();
-    struct Nothing {};
-    FarExt::internal::ParallelForRange(
-        Index(_blocks.size()), [] { return Nothing(); },
-        [&](Nothing, Index begin, Index end) { kernel(task, begin, end, 0); }, kRange);
+void PreparedLimit::EvaluateFVertices(int level, Elements<float const> values, int length,
+                                      Outputs const &outputs) {
+    if (!HasFaces(level)) {
+        return;
+    }
+    RegularLevel const &regular = _regularLevels[std::size_t(level)];
+    RegularLimitTask task;
+    setTask(values, true, length, outputs, task);
+    for (int i = 0; i < task.numOutputs; ++i) {
+        task.outputs[i].data += std::ptrdiff_t(regular.level->numVertices) * task.outputs[i].stride;
+    }
+    task.level = regular.level;
+    task.sums.stride = RegularLimitTask::GetSumStride(length);
+    _sums.Resize(std::size_t(regular.level->numFaces) * std::size_t(task.sums.stride));
+    task.sums.data = _sums.data();
+    task.groups = regular.groups.data();
+    task.weights = &regular.weights;
+    EvaluateLimit(task, Index(regular.groups.size()));
+}
+
+void PreparedLimit::EvaluateOthers(Elements<float const> values, bool isReadBehind, int length,
+                                   Outputs const &outputs) const {
+    VertexLimitTask task;
+    setTask(values, isReadBehind, length, outputs, task);
+    task.groups = _vertexGroups.data();
+    task.places = _places.data();
+    task.weights = _weights.data();
+    EvaluateLimit(task, Index(_vertexGroups.size()));
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

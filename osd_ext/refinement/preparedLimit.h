@@ -2,35 +2,71 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_PREPARED_LIMIT_H
 #define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_PREPARED_LIMIT_H
 
-#include "refinementKernel.h"
+#include "limitKernel.h"
 
 #include "far_ext/limit/limitRows.h"
-#include "osd_ext/stencil/stencilKernel.h"
+#include "far_ext/limit/regularFaces.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-/// \brief The limit of a level prepared for evaluation: stencils of the level's vertices, whose
-/// weights are those of their type.  So what a frame reads is mostly indices.
+/// \brief The limit of a level prepared for evaluation.
+///
+/// Most vertices are F-vertices of regular faces, of the level or of one before: their limit is made
+/// from the values of the level of their face, so that a frame needs no values of the last level for
+/// them.  What is kept for them is the regular faces.  The others are stencils of the level's
+/// vertices, whose weights are those of their type: so what a frame reads is mostly indices.
 class PreparedLimit {
 public:
-    /// Of side 0 of each vertex.
-    /// \return  TooLarge where the indices of all vertices are more than 2^31 - 1
-    FarExt::Status Prepare(FarExt::internal::LimitRows const &rows);
+    /// Elements of all vertices of the level: points, and behind them du and dv or nothing.
+    using Outputs = std::vector<Elements<float>>;
 
-    /// Writes points, and where du is not null both derivatives, of all vertices of the level, whose
-    /// values are \p values.
-    void Evaluate(Elements<float const> values, int length, Elements<float> points,
-                  Elements<float> du, Elements<float> dv) const;
+    /// Of side 0 of each vertex of the level of \p rows, one of a refiner's \p mesh.
+    /// \return  as LimitRows
+    FarExt::Status Prepare(FarExt::internal::MeshLevels const &mesh,
+                           FarExt::HexSchemeOptions const &schemeOptions,
+                           FarExt::internal::LimitRows &rows);
+
+    /// \brief Writes the outputs of those vertices that regular faces of \p level, one before the
+    /// last, make.
+    ///
+    /// \param values  of \p level; one float may be read behind the last of them
+    void EvaluateFVertices(int level, Elements<float const> values, int length,
+                           Outputs const &outputs);
+    /// Whether a level has such faces.
+    bool HasFaces(int level) const {
+        return std::size_t(level) < _regularLevels.size() &&
+               !_regularLevels[std::size_t(level)].groups.empty();
+    }
+
+    /// Whether there are vertices that no regular face makes.
+    bool HasOthers() const { return !_vertexGroups.empty(); }
+    /// \brief Writes their outputs.
+    ///
+    /// \param values        of the last level
+    /// \param isReadBehind  whether one float may be read behind the last of them
+    void EvaluateOthers(Elements<float const> values, bool isReadBehind, int length,
+                        Outputs const &outputs) const;
 
 private:
-    void addWeights(FarExt::internal::LimitRow const &row);
+    /// The regular faces of a level.
+    struct RegularLevel {
+        FarExt::internal::Level const *level;
+        std::vector<RegularFaceGroup> groups;
+        RegularLimitWeights<Scalar> weights;
+    };
 
-    FarExt::internal::Buffer<StencilBlock> _blocks; // one for each vertex
-    FarExt::internal::Buffer<int> _indices;
-    // Of all types in turn.
-    std::vector<float> _weights;
-    std::vector<float> _duWeights;
-    std::vector<float> _dvWeights;
+    void prepareOthers(std::vector<Far::Index> const &verts,
+                       FarExt::internal::LimitRows const &rows);
+
+    std::vector<RegularLevel> _regularLevels;
+    FarExt::internal::Buffer<float> _sums; // of the faces of a level
+
+    std::vector<VertexGroup> _vertexGroups;
+    FarExt::internal::Buffer<std::uint32_t> _places; // of their sources
+    std::vector<float> _weights;                     // of all types in turn
 };
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -8,8 +8,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-/// \brief Stencils in a row that share a list of indices: see CompactStencilTable.  In a task with
-/// three outputs a block has one stencil, and blocks may have the same weights: see PreparedLimit.
+/// \brief Stencils in a row that share a list of indices: see CompactStencilTable.
 struct StencilBlock {
     int firstStencil;
     int numStencils; ///< StencilTask::kMaxRows at most
@@ -38,7 +37,7 @@ struct StencilTask {
 
     StencilRows rows{};
 
-    int numOutputs = 0; ///< 1, 3 or 6; of blocks 1 or 3
+    int numOutputs = 0; ///< 1, 3 or 6; of blocks 1
     Output outputs[kMaxOutputs];
 };
 

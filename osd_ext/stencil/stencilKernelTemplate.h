@@ -163,38 +163,12 @@ OPENSUBDIVHEX_NOINLINE StencilBlock const *sumBlocks(StencilTask const &task, So
     return block;
 }
 
-/// \brief The same of all blocks [begin, end), which have one stencil each, and of ROWS outputs.
-template <class SIMD, int WIDTH, int ROWS, int STRIDE>
-OPENSUBDIVHEX_NOINLINE void sumBlockOutputs(StencilTask const &task, Source<STRIDE> src,
-                                            int firstFloat, StencilBlock const *begin,
-                                            StencilBlock const *end) {
-    int const *const indices = task.rows.indices;
-    StencilTask::Output outputs[ROWS];
-    for (int row = 0; row < ROWS; ++row) {
-        outputs[row] = task.outputs[row];
-    }
-    for (StencilBlock const *block = begin; block != end; ++block) {
-        float const *weights[ROWS];
-        float *dst[ROWS];
-        for (int row = 0; row < ROWS; ++row) {
-            weights[row] = outputs[row].weights + block->firstWeight;
-            dst[row] = outputs[row].dst + block->firstStencil * outputs[row].stride + firstFloat;
-        }
-        sumRows<SIMD, WIDTH, ROWS>(src, indices + block->firstIndex, block->size, weights, dst);
-    }
-}
-
 /// \brief WIDTH floats, from float \p firstFloat of the elements on, of all outputs of stencils, or
 /// of blocks, [begin, end).
 /// \return  where the indices of stencil \p end start
 template <class SIMD, int WIDTH, int STRIDE>
 std::size_t sumFloats(StencilTask const &task, Source<STRIDE> src, int firstFloat, int begin,
                       int end, std::size_t firstWeight) {
-    if (task.rows.blocks && task.numOutputs == 3) {
-        sumBlockOutputs<SIMD, WIDTH, 3>(task, src, firstFloat, task.rows.blocks + begin,
-                                        task.rows.blocks + end);
-        return firstWeight;
-    }
     if (task.rows.blocks) {
         static_assert(StencilTask::kMaxRows == 6);
         constexpr decltype(&sumBlocks<SIMD, WIDTH, 1, STRIDE>) kSums[] = {

@@ -30,11 +30,12 @@ constexpr float kUntouched = -12345.678f;
 
 std::unique_ptr<TopologyRefiner>
 createRefiner(Shape const &shape, int level, bool isFull = true,
-              Sdc::Options::VtxBoundaryInterpolation boundary = Sdc::Options::VTX_BOUNDARY_NONE) {
+              Sdc::Options::VtxBoundaryInterpolation boundary = Sdc::Options::VTX_BOUNDARY_NONE,
+              FarExt::FaceMask faceMask = FarExt::FaceMask::Smooth) {
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(boundary);
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+    options.schemeOptions.faceMask = faceMask;
     auto refiner =
         FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(), sdcOptions, options);
     TopologyRefiner::UniformOptions uniformOptions(level);
@@ -93,7 +94,8 @@ void expectOutput(Output const &output, Factory::Table const &table,
     EXPECT_EQ(numTouched + numUntouched, output.floats.size()) << name;
 }
 
-void expectLimits(TopologyRefiner const &refiner, int length) {
+/// \param gap  floats between the elements that are written
+void expectLimits(TopologyRefiner const &refiner, int length, int gap = 2) {
     auto const evaluator = RefinementEvaluator::Create(refiner);
     ASSERT_TRUE(evaluator);
     Osd::BufferDescriptor const srcDesc(0, length, length);
@@ -105,9 +107,9 @@ void expectLimits(TopologyRefiner const &refiner, int length) {
         auto const table = Factory::Create(refiner, options);
         ASSERT_TRUE(table);
         int const count = evaluator->GetNumElements(level);
-        Output points(count, length, length + 2, 1);
+        Output points(count, length, length + gap, 1);
         Output du(count, length, length, 3);
-        Output dv(count, length, 2 * length, 0);
+        Output dv(count, length, length + gap / 2 * length, 0);
         FarExt::Status status;
         ASSERT_TRUE(evaluator->EvaluateLimit(base.data(), srcDesc, points.floats.data(),
                                              points.desc, du.floats.data(), du.desc,
@@ -143,7 +145,7 @@ TEST(LimitEvaluator, IsThatOfLimitStencilTables) {
 }
 
 TEST(LimitEvaluator, TakesAnyLengthAndSimdLevel) {
-    auto const refiner = createRefiner(GetShape("cube"), 3);
+    auto const refiner = createRefiner(GetShape("dodecahedron"), 3);
     auto const saved = OsdExt::GetSimdLevel();
     for (auto simdLevel :
          {OsdExt::SimdLevel::Portable, OsdExt::SimdLevel::Avx2, OsdExt::SimdLevel::Avx512}) {
@@ -153,9 +155,51 @@ TEST(LimitEvaluator, TakesAnyLengthAndSimdLevel) {
         OsdExt::SetSimdLevel(simdLevel);
         for (int length : {1, 2, 3, 4, 7, 8, 11}) {
             ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, length));
+            ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, length, 0));
         }
     }
     OsdExt::SetSimdLevel(saved);
+}
+
+// Most vertices are made of regular faces: from level 0 on, from a later level on, near irregular
+// vertices and borders.
+TEST(LimitEvaluator, TakesRegularFacesOfAnyMask) {
+    for (auto faceMask :
+         {FarExt::FaceMask::Average, FarExt::FaceMask::Cosine, FarExt::FaceMask::Smooth}) {
+        for (char const *name : {"hexTorus", "dodecahedron", "hexGrid", "mixedPatch"}) {
+            for (auto boundary :
+                 {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}) {
+                SCOPED_TRACE(testing::Message()
+                             << name << ", mask " << int(faceMask) << ", boundary " << boundary);
+                auto const refiner = createRefiner(GetShape(name), 3, true, boundary, faceMask);
+                ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, 3, 0));
+                ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, 3));
+                ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, 5));
+            }
+        }
+    }
+}
+
+// Up to half of the largest float: sums of such values are larger.
+TEST(LimitEvaluator, LargeValuesAreAsSmallOnes) {
+    auto const refiner = createRefiner(GetShape("hexTorus"), 3);
+    auto const evaluator = RefinementEvaluator::Create(*refiner);
+    constexpr float kFactor = 0x1p127f;
+    Osd::BufferDescriptor const desc(0, 3, 3);
+    std::vector<float> base = makeValues(3 * evaluator->GetNumElements(0));
+    auto const evaluate = [&] {
+        std::vector<float> points(std::size_t(3 * evaluator->GetNumElements(3)));
+        EXPECT_TRUE(evaluator->EvaluateLimit(base.data(), desc, points.data(), desc, 3));
+        return points;
+    };
+    std::vector<float> const small = evaluate();
+    for (float &value : base) {
+        value *= kFactor;
+    }
+    std::vector<float> const large = evaluate();
+    for (std::size_t i = 0; i < small.size(); ++i) {
+        ASSERT_EQ(large[i], small[i] * kFactor) << "float " << i;
+    }
 }
 
 TEST(LimitEvaluator, SameBitsForAnyNumberOfThreads) {

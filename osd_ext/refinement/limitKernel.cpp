@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitKernel.h"
+
+#include "far_ext/vtr/parallel.h"
+#include "osd_ext/simdLevel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+using Far::Index;
+using FarExt::internal::kRegularFaceSize;
+using FarExt::internal::Level;
+using FarExt::internal::RegularFace;
+using FarExt::internal::RegularFaceMask;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kSine = 0.86602540378443864676; ///< of 60 degrees
+constexpr int kPairs = 2;                        ///< among the sources, those between corners
+
+/// Of the six weights that a mask has for one kind of source.
+struct SourceWeights {
+    double const *weights;
+    int kind;
+
+    /// What the wave of a frequency is multiplied by, where the weights are symmetric or change
+    /// their sign.
+    double SumCosines(int frequency) const { return sum(frequency, 0); }
+    double SumSines(int frequency) const { return sum(frequency, kPi / 2); }
+
+    /// What FaceWaves is short of.
+    double GetCosineFactor(int frequency) const {
+        return kind == kPairs && frequency == 1 ? kSine : 1;
+    }
+    double GetSineFactor(int frequency) const {
+        return kind == kPairs && frequency == 1 ? 1 : kSine;
+    }
+
+private:
+    double sum(int frequency, double phase) const {
+        double result = 0;
+        for (int i = 0; i < kRegularFaceSize; ++i) {
+            double const place = kind == kPairs ? i + 0.5 : i;
+            result += weights[i] * std::cos(2 * kPi * frequency * place / kRegularFaceSize - phase);
+        }
+        return result;
+    }
+};
+
+/// The derivative along a direction that is turned from that of du to dv.
+struct Combination {
+    RegularFaceMask::Sum const &du;
+    RegularFaceMask::Sum const &dv;
+    double ofDu;
+    double ofDv;
+};
+
+RegularFaceMask::Sum combine(Combination const &c) {
+    RegularFaceMask::Sum sum;
+    for (int i = 0; i < kRegularFaceSize; ++i) {
+        sum.verts[i] = c.ofDu * c.du.verts[i] + c.ofDv * c.dv.verts[i];
+        sum.neighbors[i] = c.ofDu * c.du.neighbors[i] + c.ofDv * c.dv.neighbors[i];
+        sum.pairs[i] = c.ofDu * c.du.pairs[i] + c.ofDv * c.dv.pairs[i];
+    }
+    sum.tip = c.ofDu * c.du.tip + c.ofDv * c.dv.tip;
+    return sum;
+}
+
+SourceWeights getSource(RegularFaceMask::Sum const &sum, int kind) {
+    return {kind == 0 ? sum.verts : kind == kPairs ? sum.pairs : sum.neighbors, kind};
+}
+
+SymmetricWeights<Scalar> makeSymmetric(RegularFaceMask::Sum const &sum) {
+    SymmetricWeights<Scalar> result;
+    for (int kind = 0; kind < kNumRegularSources; ++kind) {
+        SourceWeights const source = getSource(sum, kind);
+        auto const findCosine = [&](int frequency) {
+            return float(source.SumCosines(frequency) * source.GetCosineFactor(frequency) / 3);
+        };
+        auto const findSine = [&](int frequency) {
+            return float(source.SumCosines(frequency) * source.GetSineFactor(frequency) * kSine /
+                         3);
+        };
+        result.mean[kind] = float(source.SumCosines(0) / 6);
+        result.cosine1[kind] = findCosine(1);
+        result.sine1[kind] = findSine(1);
+        result.cosine2[kind] = findCosine(2);
+        result.sine2[kind] = findSine(2);
+        if (kind != kPairs) {
+            result.alternating[kind] = float(source.SumCosines(3) / 6);
+        }
+    }
+    result.tip = float(sum.tip);
+    return result;
+}
+
+AntisymmetricWeights<Scalar> makeAntisymmetric(RegularFaceMask::Sum const &sum) {
+    AntisymmetricWeights<Scalar> result;
+    for (int kind = 0; kind < kNumRegularSources; ++kind) {
+        SourceWeights const source = getSource(sum, kind);
+        auto const findCosine = [&](int frequency) {
+            return float(source.SumSines(frequency) * source.GetSineFactor(frequency) / 3);
+        };
+        auto const findSine = [&](int frequency) {
+            return float(-source.SumSines(frequency) * source.GetCosineFactor(frequency) * kSine /
+                         3);
+        };
+        result.cosineOfSine1[kind] = findCosine(1);
+        result.sineOfCosine1[kind] = findSine(1);
+        result.cosineOfSine2[kind] = findCosine(2);
+        result.sineOfCosine2[kind] = findSine(2);
+    }
+    result.alternatingOfPairs = float(getSource(sum, kPairs).SumSines(3) / 6);
+    return result;
+}
+
+LimitKernel const &getKernel() {
+    switch (GetSimdLevel()) {
+#ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
+    case SimdLevel::Avx512:
+        return kLimitKernelAvx512;
+    case SimdLevel::Avx2:
+        return kLimitKernelAvx2;
+#endif
+    default:
+        return kLimitKernelPortable;
+    }
+}
+
+// Calls evaluate(task, begin, end) for ranges of \p count, of some microseconds each, in parallel.
+template <class TASK, typename EVALUATE>
+void forEachRange(TASK const &task, Index count, Index range, EVALUATE evaluate) {
+    struct Nothing {};
+    FarExt::internal::ParallelForRange(
+        count, [] { return Nothing(); },
+        [&](Nothing, Index begin, Index end) { evaluate(task, begin, end); }, range);
+}
+
+constexpr Index kFaceRange = 2048;
+constexpr Index kGroupRange = 128;
+
+} // namespace
+
+// A reflection at the axis of corner 0 exchanges corners 1 and 5: what is along the axis weighs both
+// alike, what is across with opposite signs.  With cos and sin of the angle from the axis to du,
+// du = cos along + sin across and dv = cos across - sin along; the angle is a multiple of 60 degrees,
+// so that cos is not 0, and along and across are scaled to save two products.
+RegularLimitWeights<Scalar> MakeRegularLimitWeights(RegularFaceMask const &mask) {
+    RegularFaceMask::Sum const &du = mask.sums[1];
+    RegularFaceMask::Sum const &dv = mask.sums[2];
+    double cosine = du.verts[0] - du.verts[3];
+    double sine = dv.verts[3] - dv.verts[0];
+    double const length = std::hypot(cosine, sine);
+    cosine /= length;
+    sine /= length;
+
+    RegularLimitWeights<Scalar> weights;
+    weights.point = makeSymmetric(mask.sums[0]);
+    weights.along = makeSymmetric(combine({du, dv, cosine * cosine, -cosine * sine}));
+    weights.across = makeAntisymmetric(combine({du, dv, sine / cosine, 1}));
+    weights.duOfAcross = float(sine * cosine);
+    weights.dvOfDu = float(-sine / cosine);
+    weights.beyondOfTip = float(mask.beyondOfTip);
+    return weights;
+}
+
+std::vector<RegularFaceGroup> MakeRegularFaceGroups(Level const &level,
+                                                    std::vector<RegularFace> const &faces) {
+    constexpr int kSize = RegularFaceGroup::kSize;
+    auto const numFaces = Index(faces.size());
+    std::vector<RegularFaceGroup> groups(std::size_t((numFaces + kSize - 1) / kSize));
+    FarExt::internal::ParallelFor(Index(groups.size()) * kSize, [&](Index k) {
+        RegularFace const &face = faces[std::size_t(std::min(k, numFaces - 1))];
+        RegularFaceGroup &group = groups[std::size_t(k / kSize)];
+        int const member = k % kSize;
+        for (int i = 0; i < kRegularFaceSize; ++i) {
+            auto const setPlace = [&](RegularFaceGroup::Places &places, Index index, int stride) {
+                places[i][member] = std::uint32_t(index) * std::uint32_t(stride);
+            };
+            auto const setPoint = [&](RegularFaceGroup::Places &places, Index vert) {
+                setPlace(places, vert, RegularFaceGroup::kPointStride);
+            };
+            setPoint(group.verts, level.faceVerts[std::size_t(face.firstCorner) + std::size_t(i)]);
+            setPoint(group.neighbors, face.neighbors[i]);
+            setPoint(group.next, face.next[i]);
+            setPoint(group.previous, face.previous[i]);
+            setPlace(group.beyond, face.beyond[i], RegularFaceGroup::kSumStride);
+        }
+        group.firstCorners[member] = face.firstCorner;
+    });
+    return groups;
+}
+
+void EvaluateLimit(RegularLimitTask const &task, Index numGroups) {
+    LimitKernel const &kernel = getKernel();
+    forEachRange(task, task.level->numFaces, kFaceRange, kernel.sumFaces);
+    forEachRange(task, numGroups, kGroupRange, kernel.evaluateFaces);
+}
+
+void EvaluateLimit(VertexLimitTask const &task, Index numGroups) {
+    forEachRange(task, numGroups, kGroupRange, getKernel().evaluateVertices);
+}
+
+} // namespace OpenSubdivHex::OsdExt::internal

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_LIMIT_KERNEL_H
+#define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_LIMIT_KERNEL_H
+
+#include "refinementKernel.h"
+
+#include "far_ext/limit/regularFaces.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+/// Numbers one by one, as SIMD levels have vectors of them.
+struct Scalar {
+    using Vector = float;
+};
+
+/// What the weights of a mask are for: vertices of the face, their neighbours, pairs.
+constexpr int kNumRegularSources = 3;
+
+/// For the waves of a symmetric mask; alternating pairs have no part.
+template <class SIMD>
+struct SymmetricWeights {
+    using T = typename SIMD::Vector;
+    T mean[kNumRegularSources];
+    T cosine1[kNumRegularSources];
+    T sine1[kNumRegularSources];
+    T cosine2[kNumRegularSources];
+    T sine2[kNumRegularSources];
+    T alternating[kNumRegularSources - 1];
+    T tip;
+};
+
+/// For the waves of a mask that changes its sign; only the pairs' alternating one has a part.
+template <class SIMD>
+struct AntisymmetricWeights {
+    using T = typename SIMD::Vector;
+    T cosineOfSine1[kNumRegularSources];
+    T sineOfCosine1[kNumRegularSources];
+    T cosineOfSine2[kNumRegularSources];
+    T sineOfCosine2[kNumRegularSources];
+    T alternatingOfPairs;
+};
+
+/// \brief A RegularFaceMask by the waves that FaceWaves tells of, with derivatives along and across the axis of each
+/// corner, from which du and dv are turned.
+template <class SIMD>
+struct RegularLimitWeights {
+    using T = typename SIMD::Vector;
+    SymmetricWeights<SIMD> point;
+    SymmetricWeights<SIMD> along;
+    AntisymmetricWeights<SIMD> across;
+    T duOfAcross; ///< du = along + duOfAcross across
+    T dvOfDu;     ///< dv = across + dvOfDu du
+    T beyondOfTip;
+};
+
+RegularLimitWeights<Scalar> MakeRegularLimitWeights(FarExt::internal::RegularFaceMask const &mask);
+
+/// \brief Some regular faces, side by side: as many as the widest vectors hold, the last ones of a
+/// level filled up by repeating one.
+///
+/// Instead of vertices and faces there are their places in arrays of points and of sums of points,
+/// which have these strides: so that evaluating points, as is mostly done, takes no products.
+struct RegularFaceGroup {
+    static constexpr int kSize = 4;
+    static constexpr int kPointStride = 3;
+    static constexpr int kSumStride = 4;
+    using Places = std::uint32_t[FarExt::internal::kRegularFaceSize][kSize];
+
+    Places verts;
+    Places neighbors; ///< these three as in RegularFace
+    Places next;
+    Places previous;
+    Places beyond; ///< the only faces
+    Far::Index firstCorners[kSize];
+};
+
+std::vector<RegularFaceGroup>
+MakeRegularFaceGroups(FarExt::internal::Level const &level,
+                      std::vector<FarExt::internal::RegularFace> const &faces);
+
+/// \brief Some vertices of one type, side by side; the last ones of a type filled up likewise.
+struct VertexGroup {
+    static constexpr int kSize = RegularFaceGroup::kSize;
+
+    Far::Index verts[kSize];
+    int numSources;
+    std::size_t firstPlace;  ///< of the first source of all; those of the next follow
+    std::size_t firstWeight; ///< of the first source: of the point, du and dv; then the next one's
+};
+
+/// \brief What is evaluated of points that some sources have.
+struct LimitTask {
+    static constexpr int kMaxOutputs = FarExt::internal::RegularFaceMask::kNumSums;
+
+    /// Goes on to the floats behind \p count.
+    void Skip(int count) {
+        length -= count;
+        values.data += count;
+        for (Elements<float> &output : outputs) {
+            output.data += count;
+        }
+    }
+
+    int length;
+    Elements<float const> values; ///< of the level of the sources
+    bool isReadBehind;            ///< whether one float may be read behind the last of the values
+    Elements<float> outputs[kMaxOutputs]; ///< points, du, dv
+    int numOutputs;                       ///< 1 or 3
+};
+
+/// \brief The limit at the F-vertices of regular faces of a level: outputs are by corner.
+struct RegularLimitTask : LimitTask {
+    /// Floats from the sum of a face to the next.
+    static std::ptrdiff_t GetSumStride(int length) {
+        return length == RegularFaceGroup::kPointStride ? RegularFaceGroup::kSumStride : length;
+    }
+    void Skip(int count) {
+        LimitTask::Skip(count);
+        sums.data += count;
+    }
+
+    FarExt::internal::Level const *level;
+    Elements<float> sums; ///< of the values of the vertices of each face of the level
+    RegularFaceGroup const *groups;
+    RegularLimitWeights<Scalar> const *weights;
+};
+
+/// \brief The limit at vertices of a level.
+struct VertexLimitTask : LimitTask {
+    VertexGroup const *groups;
+    std::uint32_t const *places; ///< as in RegularFaceGroup
+    float const *weights;
+};
+
+/// \brief The kernels of one SimdLevel; all are instances of limitKernelTemplate.h.
+struct LimitKernel {
+    /// Writes the sums of faces [begin, end) of the level.
+    void (*sumFaces)(RegularLimitTask const &task, Far::Index begin, Far::Index end);
+    /// Writes the outputs of groups [begin, end), the sums being there.
+    void (*evaluateFaces)(RegularLimitTask const &task, Far::Index begin, Far::Index end);
+    /// Writes the outputs of groups [begin, end).
+    void (*evaluateVertices)(VertexLimitTask const &task, Far::Index begin, Far::Index end);
+};
+
+extern LimitKernel const kLimitKernelPortable;
+extern LimitKernel const kLimitKernelAvx2;
+extern LimitKernel const kLimitKernelAvx512;
+
+/// @name All groups, in parallel, with the kernel of the SimdLevel in use
+/// @{
+void EvaluateLimit(RegularLimitTask const &task, Far::Index numGroups);
+void EvaluateLimit(VertexLimitTask const &task, Far::Index numGroups);
+/// @}
+
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which vertices of a level have a limit that regular faces of the levels before make.
+#include "far_ext/limit/regularFaces.h"
+#include "far_ext/topologyRefinerFactory.h"
+#include "far_ext/vtr/hierarchy.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::TopologyRefiner;
+using FarExt::internal::LimitRows;
+using FarExt::internal::RegularFaces;
+
+namespace {
+
+std::unique_ptr<TopologyRefiner> createRefiner(char const *shape, FarExt::FaceMask mask,
+                                               int level) {
+    FarExt::TopologyRefinerFactory::Options options;
+    options.schemeOptions.faceMask = mask;
+    auto refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(GetShape(shape)).Get(),
+                                                          Sdc::Options(), options);
+    TopologyRefiner::UniformOptions uniformOptions(level);
+    uniformOptions.fullTopologyInLastLevel = true;
+    if (!refiner || !refiner->RefineUniform(uniformOptions)) {
+        throw std::runtime_error("not refined");
+    }
+    return refiner;
+}
+
+RegularFaces findFaces(TopologyRefiner const &refiner) {
+    auto const &mesh = refiner.GetHierarchy().mesh;
+    int const level = refiner.GetMaxLevel();
+    RegularFaces faces(mesh, level);
+    LimitRows rows(mesh.levels[std::size_t(level)], refiner.GetSchemeOptions(),
+                   refiner.GetHexSchemeOptions());
+    if (!faces.FindMasks(refiner.GetHexSchemeOptions(), rows).IsOk()) {
+        throw std::runtime_error("no masks");
+    }
+    return faces;
+}
+
+std::size_t countFaces(RegularFaces const &faces, int level) {
+    return faces.GetLevels()[std::size_t(level)].faces.size();
+}
+
+} // namespace
+
+// All faces are regular there, and what they do not make are the vertices of level 0.
+TEST(RegularFaces, AreAllOfATorusOfHexagons) {
+    auto const refiner = createRefiner("hexTorus", FarExt::FaceMask::Smooth, 3);
+    RegularFaces const faces = findFaces(*refiner);
+    for (int level = 0; level < 3; ++level) {
+        EXPECT_EQ(countFaces(faces, level), std::size_t(refiner->GetLevel(level).GetNumFaces()));
+    }
+    std::vector<Far::Index> const &others = faces.GetOthers();
+    EXPECT_EQ(others.size(), std::size_t(refiner->GetLevel(0).GetNumVertices()));
+    EXPECT_EQ(others.back() + 1, refiner->GetLevel(0).GetNumVertices());
+    EXPECT_TRUE(std::is_sorted(others.begin(), others.end()));
+}
+
+// A pentagon has five faces around it, and five further ones with a neighbour of one of its vertices:
+// from level 2 on, where these are hexagons for each of twelve pentagons, all but they are regular.
+TEST(RegularFaces, AreAllThatAreNotNearAPentagon) {
+    auto const refiner = createRefiner("dodecahedron", FarExt::FaceMask::Average, 5);
+    RegularFaces const faces = findFaces(*refiner);
+    EXPECT_EQ(countFaces(faces, 0), 0u);
+    for (int level : {3, 4}) {
+        EXPECT_EQ(countFaces(faces, level),
+                  std::size_t(refiner->GetLevel(level).GetNumFaces() - 12 * 11))
+            << "level " << level;
+    }
+}
+
+// Its masks weigh opposite vertices of hexagons more than others.
+TEST(RegularFaces, AreNoneForTheCosineMask) {
+    auto const refiner = createRefiner("hexTorus", FarExt::FaceMask::Cosine, 2);
+    RegularFaces const faces = findFaces(*refiner);
+    EXPECT_EQ(countFaces(faces, 0) + countFaces(faces, 1), 0u);
+    EXPECT_EQ(faces.GetOthers().size(), std::size_t(refiner->GetLevel(2).GetNumVertices()));
+}
+
+} // namespace OpenSubdivHex::Regression
