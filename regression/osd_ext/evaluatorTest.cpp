@@ -30,19 +30,7 @@ TEST(Evaluator, WritesEachStencilToItsElement) {
 }
 
 TEST(Evaluator, WritesDerivatives) {
-    TestTable const &table = *GetTestTables()[0];
-    for (Evaluator const &evaluator : GetOwnEvaluators()) {
-        SCOPED_TRACE(evaluator.name);
-        EvaluatorScope const scope(evaluator);
-        for (int const numOutputs : {3, 6}) {
-            ASSERT_NO_FATAL_FAILURE(ForEachLayoutAndRange(table, [&](Layout const &layout,
-                                                                     Range range) {
-                Workspace workspace(table, layout, numOutputs);
-                ASSERT_TRUE(workspace.Run(evaluator.functions, numOutputs, range.start, range.end));
-                workspace.ExpectWritten(numOutputs, range.start, range.end, range.start);
-            }));
-        }
-    }
+    ASSERT_NO_FATAL_FAILURE(ExpectDerivativesWritten(GetOwnEvaluators(), false));
 }
 
 TEST(Evaluator, NeedsNoOffsets) {

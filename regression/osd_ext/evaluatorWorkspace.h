@@ -204,6 +204,26 @@ void ForEachLayoutAndRange(TestTable const &table, CHECK const &check) {
     }
 }
 
+/// \brief Expects that evaluators write the first derivatives, and the second ones, of all ranges.
+///
+/// \param isFromStart  whether to the first elements, wherever the range begins
+inline void ExpectDerivativesWritten(std::vector<Evaluator> const &evaluators, bool isFromStart) {
+    TestTable const &table = *GetTestTables()[0];
+    for (Evaluator const &evaluator : evaluators) {
+        SCOPED_TRACE(evaluator.name);
+        EvaluatorScope const scope(evaluator);
+        for (int const numOutputs : {3, 6}) {
+            ASSERT_NO_FATAL_FAILURE(ForEachLayoutAndRange(table, [&](Layout const &layout,
+                                                                     Range range) {
+                Workspace workspace(table, layout, numOutputs);
+                ASSERT_TRUE(workspace.Run(evaluator.functions, numOutputs, range.start, range.end));
+                workspace.ExpectWritten(numOutputs, range.start, range.end,
+                                        isFromStart ? 0 : range.start);
+            }));
+        }
+    }
+}
+
 } // namespace OpenSubdivHex::Regression
 
 #endif

@@ -66,19 +66,7 @@ TEST(OsdEvaluator, WritesRangesOfFourWithOtherSizes) {
 }
 
 TEST(OsdEvaluator, WritesDerivatives) {
-    TestTable const &table = *GetTestTables()[0];
-    for (Evaluator const &evaluator : GetOsdEvaluators()) {
-        SCOPED_TRACE(evaluator.name);
-        EvaluatorScope const scope(evaluator);
-        for (int const numOutputs : {3, 6}) {
-            ASSERT_NO_FATAL_FAILURE(ForEachLayoutAndRange(table, [&](Layout const &layout,
-                                                                     Range range) {
-                Workspace workspace(table, layout, numOutputs);
-                ASSERT_TRUE(workspace.Run(evaluator.functions, numOutputs, range.start, range.end));
-                workspace.ExpectWritten(numOutputs, range.start, range.end, 0);
-            }));
-        }
-    }
+    ASSERT_NO_FATAL_FAILURE(ExpectDerivativesWritten(GetOsdEvaluators(), true));
 }
 
 } // namespace
