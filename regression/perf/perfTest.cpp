@@ -58,7 +58,7 @@ TEST(Perf, RowsHaveNamesOfTheirOwn) {
     std::set<std::string> names;
     for (Row const &row : GetRows()) {
         EXPECT_TRUE(names.insert(row.name).second) << row.name;
-        EXPECT_TRUE(row.isLimit ? row.aim <= row.atLeast : row.aim >= row.atLeast) << row.name;
+        EXPECT_TRUE(row.isUpperBound ? row.aim <= row.atLeast : row.aim >= row.atLeast) << row.name;
     }
     EXPECT_THROW(GetRow("topology"), std::out_of_range);
 }
@@ -117,7 +117,7 @@ TEST(Perf, QuickRunHasEveryFigure) {
                 } else {
                     EXPECT_EQ(settings.count(meshSize + " default"), 1u) << row.name;
 #ifdef __GLIBC__
-                    EXPECT_EQ(settings.count(meshSize + " warm"), row.isLimit ? 0u : 1u)
+                    EXPECT_EQ(settings.count(meshSize + " warm"), row.isUpperBound ? 0u : 1u)
                         << row.name;
 #endif
                 }

@@ -178,7 +178,7 @@ bool isGrowth(Setting const &setting) { return setting.mesh.size.rfind("level ",
 double getWorst(Row const &row, std::vector<double> const &values) {
     double worst = values[0];
     for (double value : values) {
-        bool const isWorse = row.isLimit ? value > worst : value < worst;
+        bool const isWorse = row.isUpperBound ? value > worst : value < worst;
         worst = isWorse || std::isnan(value) ? value : worst;
     }
     return worst;
@@ -193,9 +193,9 @@ std::string formatRows(Results const &results) {
     columns.emplace_back("verdict");
     TableText table(columns);
     for (Row const &row : *results.rows) {
-        std::string const limit = row.isLimit ? "<= " : "";
-        std::vector<std::string> const head = {
-            row.work, row.peer, limit + formatNumber(row.atLeast), limit + formatNumber(row.aim)};
+        std::string const sign = row.isUpperBound ? "<= " : "";
+        std::vector<std::string> const head = {row.work, row.peer, sign + formatNumber(row.atLeast),
+                                               sign + formatNumber(row.aim)};
         bool isMeasured = false;
         for (Memory memory : {Memory::Default, Memory::Warm, Memory::Resident}) {
             for (std::string const &size : getNames(results, &BenchMesh::size)) {
@@ -315,7 +315,7 @@ constexpr char kRatiosIntroduction[] = R"(
 
 Own speed over that of the peer: the median of the ratios of turns, in which all contestants of a
 benchmark run one after the other. The verdict is that of the worst of the meshes: *aim*, *at
-least* or *below*. Bounds with `<=` are limits, and figures in brackets are the peer's own.
+least* or *below*. Bounds with `<=` are upper bounds, and figures in brackets are the peer's own.
 
 )";
 
@@ -392,7 +392,7 @@ std::string FormatJson(Results const &results, Environment const &environment) {
                                 {"peer", row.peer},
                                 {"atLeast", row.atLeast},
                                 {"aim", row.aim},
-                                {"isLimit", row.isLimit},
+                                {"isUpperBound", row.isUpperBound},
                                 {"figures", figures}});
     }
     json["costs"] = Json::array();

@@ -111,7 +111,7 @@ Row const &GetRow(std::string const &name) {
 
 std::string GetVerdict(Row const &row, double figure) {
     auto const meets = [&](double bound) {
-        return row.isLimit ? figure <= bound : figure >= bound;
+        return row.isUpperBound ? figure <= bound : figure >= bound;
     };
     return meets(row.aim) ? "aim" : meets(row.atLeast) ? "at least" : "below";
 }

@@ -14,7 +14,7 @@ struct Row {
     std::string peer;
     double atLeast;
     double aim;
-    bool isLimit = false; ///< figures must not exceed the bounds, instead of reaching them
+    bool isUpperBound = false; ///< figures must not exceed the bounds, instead of reaching them
 };
 
 /// The rows of the program perf itself, in the order in which they are printed.
@@ -27,7 +27,7 @@ std::vector<Row> const &GetPythonRows();
 Row const &GetRow(std::string const &name);
 
 /// \brief Which of the bounds \p figure meets: "aim", "at least" or "below".  A figure that is NaN
-/// is below, and where the bounds are limits, "at least" is to be read as "at most".
+/// is below, and where the bounds are upper ones, "at least" is to be read as "at most".
 std::string GetVerdict(Row const &row, double figure);
 
 } // namespace OpenSubdivHex::Regression
