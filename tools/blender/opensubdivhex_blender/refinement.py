@@ -94,10 +94,6 @@ class Refinement:
         self.polygons = Polygons(self.refiner, self.level, mesh, sharpness, options)
         self.materials = mesh.materials[self.polygons.base_faces]
         self.smooth = mesh.smooth[self.polygons.base_faces]
-        self.limit = None
-        if options.use_limit:
-            self.limit = osh.LimitStencilTable(self.refiner, options.level,
-                                               generate_1st_derivatives=False)
         self.vertex_evaluator = osh.RefinementEvaluator(self.refiner)
         self.varying_evaluator = None
 
@@ -105,8 +101,8 @@ class Refinement:
         return self.options == options and are_equal(self.topology, mesh.get_topology())
 
     def get_positions(self, mesh):
-        if self.limit is not None:
-            return osh.OmpEvaluator.eval_stencils(self.limit, mesh.positions)
+        if self.options.use_limit:
+            return self.vertex_evaluator.evaluate_limit(mesh.positions)
         return self.vertex_evaluator.evaluate(mesh.positions)
 
     def get_varying(self, values):
