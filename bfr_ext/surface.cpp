@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface.h"
 
-#include "cell/cellStencil.h"
+#include "cell/cellPattern.h"
+#include "cell/surfaceTurns.h"
 
 #include <algorithm>
 #include <limits>
@@ -11,13 +12,6 @@ namespace OpenSubdivHex::BfrExt {
 namespace {
 
 using internal::CellStencil;
-
-template <typename REAL>
-void findStencil(int faceSize, REAL const uv[2], bool hasDerivatives, CellStencil &stencil) {
-    constexpr double kTolerance = 8 * double(std::numeric_limits<REAL>::epsilon());
-    stencil.Find(internal::FindBasePoint(faceSize, double(uv[0]), double(uv[1]), kTolerance),
-                 hasDerivatives);
-}
 
 // A weighted sum of points, in double precision.
 template <typename REAL, typename WEIGHT>
@@ -90,8 +84,12 @@ void Surface<REAL>::BoundControlPointsFromMesh(REAL const meshPoints[],
 template <typename REAL>
 void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL P[]) const {
+    internal::BasePoint const point = findPoint(uv);
+    if (evaluateOnBorder(point, controlPoints, pointDesc, P)) {
+        return;
+    }
     CellStencil stencil(*_type);
-    findStencil(GetFaceSize(), uv, false, stencil);
+    stencil.Find(point, false);
     sumUp(stencil.GetWeights().data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc, P);
 }
 
@@ -99,18 +97,87 @@ template <typename REAL>
 void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL P[], REAL Du[],
                              REAL Dv[]) const {
+    internal::BasePoint const point = findPoint(uv);
     CellStencil stencil(*_type);
-    findStencil(GetFaceSize(), uv, true, stencil);
+    stencil.Find(point, true);
     int const size = GetNumControlPoints();
-    sumUp(stencil.GetWeights().data(), size, controlPoints, nullptr, pointDesc, P);
+    if (!evaluateOnBorder(point, controlPoints, pointDesc, P)) {
+        sumUp(stencil.GetWeights().data(), size, controlPoints, nullptr, pointDesc, P);
+    }
     sumUp(stencil.GetDuWeights().data(), size, controlPoints, nullptr, pointDesc, Du);
     sumUp(stencil.GetDvWeights().data(), size, controlPoints, nullptr, pointDesc, Dv);
 }
 
 template <typename REAL>
+void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+                             PointDescriptor const &pointDesc, REAL P[],
+                             PointDescriptor const &resultDesc) const {
+    REAL *const results[3] = {P, nullptr, nullptr};
+    evaluate(tessellation, controlPoints, pointDesc, results, resultDesc);
+}
+
+template <typename REAL>
+void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+                             PointDescriptor const &pointDesc, REAL P[], REAL Du[], REAL Dv[],
+                             PointDescriptor const &resultDesc) const {
+    REAL *const results[3] = {P, Du, Dv};
+    evaluate(tessellation, controlPoints, pointDesc, results, resultDesc);
+}
+
+template <typename REAL>
+internal::BasePoint Surface<REAL>::findPoint(REAL const uv[2]) const {
+    // Rounding of u and v matters more in larger polygons.
+    double const tolerance = 2 * GetFaceSize() * double(std::numeric_limits<REAL>::epsilon());
+    return internal::FindBasePoint(GetFaceSize(), double(uv[0]), double(uv[1]), tolerance);
+}
+
+template <typename REAL>
+bool Surface<REAL>::evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
+                                     PointDescriptor const &pointDesc, REAL P[]) const {
+    if (!point.IsOnBorder()) {
+        return false;
+    }
+    internal::CellType::Border const &border = _type->GetBorder(_turns->turns);
+    internal::BorderPlace const place = internal::FindBorderPlace(point, border);
+    internal::CellType::BorderItem const &item = border[place.item];
+    internal::BorderStencil stencil;
+    stencil.Find(*item.type, place.point);
+    for (int k = 0; k < pointDesc.size; ++k) {
+        P[k] = internal::SumBorderPoints(stencil.GetWeights(), item.points, controlPoints + k,
+                                         pointDesc.stride);
+    }
+    return true;
+}
+
+// The levels and the turns say which pattern it is.
+template <typename REAL>
+void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+                             PointDescriptor const &pointDesc, REAL *const results[3],
+                             PointDescriptor const &resultDesc) const {
+    using Pattern = internal::CellPattern<REAL>;
+    bool const hasDerivatives = results[1] != nullptr;
+    std::vector<int> key = tessellation._levels;
+    key.insert(key.end(), {int(sizeof(REAL)), int(hasDerivatives)});
+    key.insert(key.end(), _turns->turns.turns.begin(), _turns->turns.turns.end());
+    key.insert(key.end(), _turns->turns.isReversed.begin(), _turns->turns.isReversed.end());
+    Pattern const &pattern = _type->template GetPattern<Pattern>(std::move(key), [&] {
+        std::vector<internal::BasePoint> places;
+        for (Tessellation::SectorCoords const &place : tessellation._places) {
+            places.push_back(
+                internal::MakeBasePoint(GetFaceSize(), place.sector, {place.start, place.end}));
+        }
+        return Pattern(*_type, _type->GetBorder(_turns->turns), places, hasDerivatives);
+    });
+    for (int kind = 0; kind < (hasDerivatives ? 3 : 1); ++kind) {
+        pattern.Evaluate(kind, {controlPoints, pointDesc.size, pointDesc.stride}, results[kind],
+                         resultDesc.stride);
+    }
+}
+
+template <typename REAL>
 int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL sP[]) const {
     CellStencil stencil(*_type);
-    findStencil(GetFaceSize(), uv, false, stencil);
+    stencil.Find(findPoint(uv), false);
     copyWeights(stencil.GetWeights(), sP);
     return GetNumControlPoints();
 }
@@ -118,7 +185,7 @@ int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL sP[]) const {
 template <typename REAL>
 int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL sP[], REAL sDu[], REAL sDv[]) const {
     CellStencil stencil(*_type);
-    findStencil(GetFaceSize(), uv, true, stencil);
+    stencil.Find(findPoint(uv), true);
     copyWeights(stencil.GetWeights(), sP);
     copyWeights(stencil.GetDuWeights(), sDu);
     copyWeights(stencil.GetDvWeights(), sDv);

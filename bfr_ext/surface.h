@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_SURFACE_H
 #define OPENSUBDIVHEX_BFR_EXT_SURFACE_H
 
-#include "parameterization.h"
+#include "tessellation.h"
 
 #include <opensubdiv/far/types.h>
 
@@ -17,7 +17,9 @@ namespace BfrExt {
 
 namespace internal {
 class CellType;
-}
+struct SurfaceTurns;
+struct BasePoint;
+} // namespace internal
 
 /// \brief The limit surface of a base face, as Bfr::Surface: a function of u and v.
 ///
@@ -136,12 +138,30 @@ public:
     /// Of a place outside of the face, the nearest coordinates inside are taken.
     /// @{
 
-    /// Writes the point at \p uv: pointDesc.size numbers.
+    /// Writes the point at \p uv: pointDesc.size numbers.  At the places of vertices that levels up to
+    /// 12 have on an edge, it is the same to the bit from both sides of that, as for a tessellation.
     void Evaluate(REAL const uv[2], REAL const controlPoints[], PointDescriptor const &pointDesc,
                   REAL P[]) const;
     /// The same with first derivatives.
     void Evaluate(REAL const uv[2], REAL const controlPoints[], PointDescriptor const &pointDesc,
                   REAL P[], REAL Du[], REAL Dv[]) const;
+
+    /// \brief Writes the points at all places of a tessellation, of a face of this size, from one to the
+    /// next by the stride of \p resultDesc.
+    ///
+    /// Two faces that share an edge get the same points there, to the bit, if the edge has the same
+    /// level in both and their control points come from the same mesh: so facets of neighbours can be
+    /// joined by comparing points.  That holds for any threads, orders and levels of the inside; not at
+    /// non-manifold edges and vertices, nor for face-varying values on the two sides of a seam.
+    ///
+    /// The weights are found when a type of faces is first evaluated so, and kept in the cache.
+    void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+                  PointDescriptor const &pointDesc, REAL P[],
+                  PointDescriptor const &resultDesc) const;
+    /// The same with first derivatives.
+    void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+                  PointDescriptor const &pointDesc, REAL P[], REAL Du[], REAL Dv[],
+                  PointDescriptor const &resultDesc) const;
 
     /// Writes the weights of the control points that make the point at \p uv.
     /// \return  GetNumControlPoints()
@@ -159,7 +179,15 @@ public:
 private:
     friend class SurfaceFactory;
 
+    internal::BasePoint findPoint(REAL const uv[2]) const;
+    bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
+                          PointDescriptor const &pointDesc, REAL P[]) const;
+    void evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+                  PointDescriptor const &pointDesc, REAL *const results[3],
+                  PointDescriptor const &resultDesc) const;
+
     std::shared_ptr<internal::CellType const> _type;
+    std::shared_ptr<internal::SurfaceTurns const> _turns;
     std::vector<Index> _controlPoints;
     Parameterization _parameterization;
 };

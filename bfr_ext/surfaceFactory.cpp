@@ -2,6 +2,7 @@
 #include "surfaceFactory.h"
 
 #include "cell/cellType.h"
+#include "cell/surfaceTurns.h"
 
 #include "far_ext/limit/limitRows.h"
 
@@ -117,6 +118,8 @@ bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
         return FarExt::internal::Report(result, status);
     }
     surface->_type = std::shared_ptr<internal::CellType const>(_types, &type);
+    surface->_turns = std::make_shared<internal::SurfaceTurns const>(
+        internal::SurfaceTurns{FindBaseCellTurns(level, levelFace)});
     surface->_controlPoints = std::move(controlPoints);
     surface->_parameterization = Parameterization(verts.size());
     return FarExt::internal::Report(result, status);

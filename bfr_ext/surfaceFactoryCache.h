@@ -20,7 +20,8 @@ class CellTypes;
 /// are found once for a type.  Every SurfaceFactory has a cache of its own unless it is given one.
 ///
 /// Any number of threads and of factories may share a cache.  It grows with the types that it meets:
-/// some kilobytes for each, and those for each type of cell that evaluation goes through.  Surfaces
+/// some kilobytes for each, and those for each type of cell that evaluation goes through; and with the
+/// tessellations that are evaluated, whose weights are kept for each type of face.  Surfaces
 /// keep what they need of it, so that it may go before them.
 class OPENSUBDIVHEX_API SurfaceFactoryCache {
 public:

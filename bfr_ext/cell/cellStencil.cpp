@@ -20,7 +20,8 @@ constexpr double kGrid = 1.0 / (1 << 16);
 
 double snap(double coordinate, double tolerance) {
     double const multiple = std::round(coordinate / kGrid) * kGrid;
-    return std::abs(coordinate - multiple) <= tolerance ? multiple : coordinate;
+    return std::abs(coordinate - multiple) <= std::min(tolerance, kGrid / 4) ? multiple
+                                                                             : coordinate;
 }
 
 Pair clampToSector(Pair const &coords) {
@@ -66,7 +67,17 @@ BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
         }
     }
     best.coords = clampToSector({snap(best.coords[0], tolerance), snap(best.coords[1], tolerance)});
+    // Between two sectors it is the second, as in tessellations.
+    if (best.coords[0] == 0) {
+        return MakeBasePoint(size, (best.sector + 1) % size, {best.coords[1], 0});
+    }
     return best;
+}
+
+BasePoint MakeBasePoint(int size, int sector, Pair const &coords) {
+    BasePoint point = {sector, coords, {}};
+    findSectorMap(BasePolygon(size), sector, point.toCoords);
+    return point;
 }
 
 bool CellStencil::findCorner(Place const &place, std::size_t *corner) const {
@@ -179,6 +190,36 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
             (*step)->ApplyLeft(_weights[i], _scratch);
             _weights[i].swap(_scratch);
         }
+    }
+}
+
+void BorderStencil::Find(CellType const &root, double point) {
+    _steps.clear();
+    CellType const *type = &root;
+    bool const isVertex = root.GetNumCorners() == 1;
+    for (int depth = 0; !isVertex && point != 0 && point != 1 && depth < kLastDepth; ++depth) {
+        std::vector<CellType::Child> const &children = type->GetChildren();
+        std::size_t child = 0;
+        if (children.size() > 1) {
+            // The edges at both ends run to the middle.
+            child = point < 0.25 ? 0 : point > 0.75 ? 2 : 1;
+            point = child == 0 ? 4 * point : child == 1 ? 2 * point - 0.5 : 4 * (1 - point);
+        }
+        _steps.push_back(&children[child].step);
+        type = children[child].type;
+    }
+    std::vector<std::vector<double>> const &ends = type->GetCornerPoints();
+    if (isVertex || point == 0 || point == 1) {
+        _weights = ends[point == 1 && !isVertex ? 1 : 0];
+    } else {
+        _weights.resize(ends[0].size());
+        for (std::size_t i = 0; i < _weights.size(); ++i) {
+            _weights[i] = (1 - point) * ends[0][i] + point * ends[1][i];
+        }
+    }
+    for (auto step = _steps.rbegin(); step != _steps.rend(); ++step) {
+        (*step)->ApplyLeft(_weights, _scratch);
+        _weights.swap(_scratch);
     }
 }
 

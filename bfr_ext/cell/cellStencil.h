@@ -12,6 +12,9 @@ struct BasePoint {
     int sector;
     Pair coords;
     Pair toCoords[2]; ///< of u and v: the derivatives of the coordinates by them
+
+    /// Whether it lies on the edge of the sector.
+    bool IsOnBorder() const { return coords[0] + coords[1] == 1; }
 };
 
 /// \brief Finds a point of the parameter plane in a base face of \p size sides, or the nearest there.
@@ -19,6 +22,8 @@ struct BasePoint {
 /// \param tolerance  of coordinates: those that are so close to a multiple of a small power of 1/2, as
 ///                   vertices have, are taken for it
 BasePoint FindBasePoint(int size, double u, double v, double tolerance);
+/// The point with coordinates in a sector, which are inside.
+BasePoint MakeBasePoint(int size, int sector, Pair const &coords);
 
 /// \brief The stencils of points of a base face and of their derivatives by u and v.
 ///
@@ -53,6 +58,21 @@ private:
     CellType const &_root;
     std::vector<FarExt::internal::PatchRefinement const *> _steps;
     std::vector<double> _weights[3];
+    std::vector<double> _scratch;
+};
+
+/// \brief The stencils of points of edges and vertices of base faces.
+class BorderStencil {
+public:
+    /// \param point  of an edge, from its start, 0, to its end, 1; of no matter for a vertex
+    void Find(CellType const &root, double point);
+
+    /// By point of the type.
+    std::vector<double> const &GetWeights() const { return _weights; }
+
+private:
+    std::vector<FarExt::internal::PatchRefinement const *> _steps;
+    std::vector<double> _weights;
     std::vector<double> _scratch;
 };
 

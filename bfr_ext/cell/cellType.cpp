@@ -168,6 +168,24 @@ void CellType::findDerivatives(std::size_t corner, Vector (&result)[2]) const {
     }
 }
 
+CellType::Border const &CellType::GetBorder(BaseCellTurns const &turns) const {
+    std::vector<int> key = turns.turns;
+    key.insert(key.end(), turns.isReversed.begin(), turns.isReversed.end());
+    std::lock_guard<std::mutex> const lock(_borderMutex);
+    auto const found = _borders.find(key);
+    if (found != _borders.end()) {
+        return found->second;
+    }
+    Border border;
+    for (CellPatch &item : GatherBorder(_cell, turns)) {
+        bool const isReversed =
+            border.size() < turns.isReversed.size() && turns.isReversed[border.size()];
+        std::vector<int> points = item.patch.sources;
+        border.push_back({&_types.Find(std::move(item), _rules), std::move(points), isReversed});
+    }
+    return _borders.emplace(std::move(key), std::move(border)).first->second;
+}
+
 std::vector<CellType::Corner> const &CellType::GetCorners() const {
     std::call_once(_onceCorners, [&] {
         std::vector<Corner> corners(GetCornerPoints().size());
@@ -198,7 +216,7 @@ std::size_t CellTypes::Hash::operator()(Key const &key) const {
 CellType const &CellTypes::Find(CellPatch &&cell, CellRules const &rules) {
     Key key = getKey(rules);
     key.insert(key.end(), cell.locals.begin(), cell.locals.end());
-    key.push_back(cell.isWhole ? -1 : -2);
+    key.push_back(-1 - int(cell.kind));
     key.insert(key.end(), cell.patch.signature.begin(), cell.patch.signature.end());
     cell.patch.signature = {};
     {

@@ -4,6 +4,7 @@
 
 #include "far_ext/limit/cellPatch.h"
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
@@ -45,7 +46,7 @@ public:
     CellType(CellTypes &types, FarExt::internal::CellPatch cell, CellRules const &rules)
         : _types(types), _cell(std::move(cell)), _rules(rules) {}
 
-    bool IsWhole() const { return _cell.isWhole; }
+    bool IsWhole() const { return _cell.kind == FarExt::internal::CellKind::Whole; }
     int GetNumCorners() const { return _cell.GetNumCorners(); }
     int GetNumPoints() const { return int(_cell.patch.sources.size()); }
 
@@ -64,8 +65,34 @@ public:
     bool HasCorners() const { return !GetCornerPoints().empty(); }
     /// By corner, without derivatives.
     std::vector<std::vector<double>> const &GetCornerPoints() const;
-    /// By corner.
+    /// By corner; of cells.
     std::vector<Corner> const &GetCorners() const;
+
+    /// \brief An edge or a vertex of a base face, with which of the face's points its points are.
+    struct BorderItem {
+        CellType const *type;
+        std::vector<int> points;
+        bool isReversed; ///< whether the edge runs against the face
+    };
+    /// The edges and then the vertices of a base face, which neighbours have the same of.
+    using Border = std::vector<BorderItem>;
+    Border const &GetBorder(FarExt::internal::BaseCellTurns const &turns) const;
+
+    /// \brief What make(), which gives a PATTERN, made when it was first called with a key.
+    template <typename PATTERN, typename MAKE>
+    PATTERN const &GetPattern(std::vector<int> key, MAKE make) const {
+        {
+            std::lock_guard<std::mutex> const lock(_patternMutex);
+            auto const found = _patterns.find(key);
+            if (found != _patterns.end()) {
+                return *static_cast<PATTERN const *>(found->second.get());
+            }
+        }
+        auto pattern = std::make_shared<PATTERN const>(make());
+        std::lock_guard<std::mutex> const lock(_patternMutex);
+        return *static_cast<PATTERN const *>(
+            _patterns.emplace(std::move(key), std::move(pattern)).first->second.get());
+    }
 
 private:
     void findDifferences(int corner, int numSteps, std::vector<double> (&result)[2]) const;
@@ -81,6 +108,10 @@ private:
     mutable std::vector<FarExt::internal::LimitMask::Tangents> _tangents;
     mutable std::once_flag _onceCorners;
     mutable std::vector<Corner> _corners;
+    mutable std::mutex _borderMutex;
+    mutable std::map<std::vector<int>, Border> _borders; // by turns
+    mutable std::mutex _patternMutex;
+    mutable std::map<std::vector<int>, std::shared_ptr<void const>> _patterns;
 };
 
 /// \brief The types that have been met.  Any number of threads may use it.

@@ -32,12 +32,27 @@ void gatherHalf(LimitPatchGatherer &gatherer, Level const &level, Index face, in
                 CellPatch &cell) {
     int const(&locals)[kNumHalfCellCorners] =
         HasHalves(level.GetFaceSize(face)) ? kHexagonHalves[half] : kBoundaryCorners;
-    cell.isWhole = false;
+    cell.kind = CellKind::Half;
     cell.locals.assign(std::begin(locals), std::end(locals));
     gather(gatherer, level, face, cell);
 }
 
-// The side of vertex 0 of a level's vertex that a half of a face lies on.
+// Whether edge number local of a face runs as the face does.
+bool isFirstSide(Level const &level, Index face, int local) {
+    Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
+    return level.edgeFaces[edge][0] == face && level.edgeFaceLocals[edge][0] == local;
+}
+
+// Makes an edge of a level that runs along one of level 0, from the start of one of its sides.
+void gatherEdge(LimitPatchGatherer &gatherer, Level const &level, Index edge, int side,
+                CellPatch &cell) {
+    Index const face = level.edgeFaces[edge][side];
+    int const local = level.edgeFaceLocals[edge][side];
+    cell.locals = {local, (local + 1) % level.GetFaceSize(face)};
+    gather(gatherer, level, face, cell);
+}
+
+// The side of a level's vertex that a half of a face lies on.
 int findSide(Level const &level, Index vert, Index face, int half) {
     std::vector<VertexSide> const sides = FindVertexSides(level, vert);
     for (std::size_t side = 0; side < sides.size(); ++side) {
@@ -53,12 +68,155 @@ int findSide(Level const &level, Index vert, Index face, int half) {
 } // namespace
 
 void GatherBaseCell(Level const &level, Index face, CellPatch &cell) {
-    cell.isWhole = true;
+    cell.kind = CellKind::Whole;
     cell.locals.resize(std::size_t(level.GetFaceSize(face)));
     std::iota(cell.locals.begin(), cell.locals.end(), 0);
     LimitPatchGatherer gatherer(level);
     gather(gatherer, level, face, cell);
 }
+
+BaseCellTurns FindBaseCellTurns(Level const &level, Index face) {
+    BaseCellTurns result;
+    Index const first = level.faceFirstCorner[face];
+    for (int i = 0; i < level.GetFaceSize(face); ++i) {
+        result.isReversed.push_back(!isFirstSide(level, face, i));
+        int turn = 0;
+        ForEachFan(level, level.faceVerts[first + i], [&](VertexFan const &fan) {
+            for (Index k = fan.begin; k < fan.end; ++k) {
+                if (level.GetVertexCorner(k) == first + i) {
+                    turn = int(k - fan.begin);
+                }
+            }
+        });
+        result.turns.push_back(turn);
+    }
+    return result;
+}
+
+std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, BaseCellTurns const &turns) {
+    Level level;
+    BuildPatchLevel(baseCell.patch, level);
+    LimitPatchGatherer gatherer(level);
+    int const size = baseCell.GetNumCorners();
+    std::vector<CellPatch> border;
+    for (int i = 0; i < size; ++i) {
+        Index const edge = level.faceEdges[i];
+        int const side = isFirstSide(level, 0, i) == turns.isReversed[std::size_t(i)] ? 1 : 0;
+        border.push_back({CellKind::Edge, {}, {}, {}});
+        gatherEdge(gatherer, level, edge, side, border.back());
+    }
+    for (int i = 0; i < size; ++i) {
+        border.push_back({CellKind::Vertex, {}, {}, {}});
+        ForEachFan(level, level.faceVerts[i], [&](VertexFan const &fan) {
+            int const numFaces = int(fan.end - fan.begin);
+            for (int k = 0; k < numFaces; ++k) {
+                if (level.GetVertexCorner(fan.begin + k) == i) {
+                    int const turn = turns.turns[std::size_t(i)];
+                    Index const place = fan.begin + (k + numFaces - turn) % numFaces;
+                    border.back().locals = {level.vertFaceLocals[place]};
+                    gather(gatherer, level, level.vertFaces[place], border.back());
+                }
+            }
+        });
+    }
+    return border;
+}
+
+namespace {
+
+// What a step makes of a parent's cell, without the step.
+class CellRefiner {
+public:
+    CellRefiner(Refinement const &refinement, CellPatch const &cell)
+        : _refinement(refinement), _parent(*refinement.parent), _child(*refinement.child),
+          _cell(cell), _gatherer(_child) {}
+
+    std::vector<CellPatch> Refine() {
+        switch (_cell.kind) {
+        case CellKind::Whole:
+            addFFace();
+            addHalves(0);
+            break;
+        case CellKind::Half:
+            addFFace();
+            addHalves(1); // the long edge makes none
+            break;
+        case CellKind::Edge:
+            addLongEdge();
+            break;
+        case CellKind::LongEdge:
+            addSpoke(_cell.locals[0]);
+            addFFace();
+            addSpoke(_cell.locals[1]);
+            break;
+        case CellKind::Vertex:
+            break;
+        }
+        return std::move(_children);
+    }
+
+private:
+    CellPatch &add(CellKind kind) {
+        _children.emplace_back();
+        _children.back().kind = kind;
+        return _children.back();
+    }
+
+    void addFFace() {
+        CellPatch &child = add(_cell.kind);
+        child.locals = _cell.locals;
+        gather(_gatherer, _child, 0, child);
+    }
+
+    void addHalves(int firstCorner) {
+        for (int i = firstCorner; i < _cell.GetNumCorners(); ++i) {
+            int const local = _cell.locals[std::size_t(i)];
+            Index const edge = _parent.faceEdges[local];
+            gatherHalf(_gatherer, _child, _refinement.GetEdgeChildFace(edge),
+                       isFirstSide(_parent, 0, local) ? 0 : 1, add(CellKind::Half));
+        }
+    }
+
+    // The edge runs from the first of its two places in face 0, which may be behind the second.
+    void addLongEdge() {
+        int const size = _parent.GetFaceSize(0);
+        bool const isForward = (_cell.locals[0] + 1) % size == _cell.locals[1];
+        int const local = _cell.locals[isForward ? 0 : 1];
+        Index const face = _refinement.GetEdgeChildFace(_parent.faceEdges[local]);
+        bool const isStart = isForward == isFirstSide(_parent, 0, local);
+        int const end = HasHalves(_child.GetFaceSize(face)) ? kDiagonalEnd : 1;
+        CellPatch &child = add(CellKind::LongEdge);
+        child.locals = {isStart ? 0 : end, isStart ? end : 0};
+        gather(_gatherer, _child, face, child);
+    }
+
+    // From the V-vertex to the F-vertex of a corner of face 0.
+    void addSpoke(int local) {
+        Index const vert = _refinement.GetVertexChildVertex(_parent.faceVerts[local]);
+        Index const fVertex = _refinement.GetCornerChildVertex(local);
+        for (Index const edge : _child.GetVertexEdges(fVertex)) {
+            IndexPair const &ends = _child.edgeVerts[edge];
+            if (ends[0] == vert || ends[1] == vert) {
+                Index const face = _child.edgeFaces[edge][0];
+                int const start = _child.edgeFaceLocals[edge][0];
+                int const end = (start + 1) % _child.GetFaceSize(face);
+                CellPatch &child = add(CellKind::Edge);
+                child.locals = {ends[0] == vert ? start : end, ends[0] == vert ? end : start};
+                gather(_gatherer, _child, face, child);
+                return;
+            }
+        }
+    }
+
+    Refinement const &_refinement;
+    Level const &_parent;
+    Level const &_child;
+    CellPatch const &_cell;
+    LimitPatchGatherer _gatherer;
+    std::vector<CellPatch> _children;
+};
+
+} // namespace
 
 std::vector<CellChild> RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
                                   HexSchemeOptions const &schemeOptions,
@@ -69,29 +227,11 @@ std::vector<CellChild> RefineCell(CellPatch const &cell, Sdc::Options sdcOptions
     Refinement refinement;
     BuildPatchLevel(cell.patch, parent);
     RefineHexagonally(parent, sdcOptions, true, refinement, child);
-    LimitPatchGatherer gatherer(child);
-
-    int const numCorners = cell.GetNumCorners();
-    int const firstEdge =
-        cell.isWhole ? 0 : 1; // the long edge of a half cell makes none of its own
-    std::vector<CellChild> children(std::size_t(numCorners - firstEdge + 1));
-    if (cell.isWhole) {
-        children[0].cell.locals = cell.locals;
-        gather(gatherer, child, 0, children[0].cell);
-    } else {
-        gatherHalf(gatherer, child, 0, cell.GetHalf(), children[0].cell);
-    }
-    for (int i = firstEdge; i < numCorners; ++i) {
-        int const local = cell.locals[std::size_t(i)];
-        Index const edge = parent.faceEdges[local];
-        bool const isFirst =
-            parent.edgeFaces[edge][0] == 0 && parent.edgeFaceLocals[edge][0] == local;
-        gatherHalf(gatherer, child, refinement.GetEdgeChildFace(edge), isFirst ? 0 : 1,
-                   children[std::size_t(i - firstEdge + 1)].cell);
-    }
-    for (CellChild &result : children) {
-        result.step =
-            MakePatchStep(refinement, schemeOptions, interpolation, result.cell.patch.sources);
+    std::vector<CellChild> children;
+    for (CellPatch &result : CellRefiner(refinement, cell).Refine()) {
+        PatchRefinement step =
+            MakePatchStep(refinement, schemeOptions, interpolation, result.patch.sources);
+        children.push_back({std::move(result), std::move(step)});
     }
     return children;
 }
@@ -109,7 +249,7 @@ std::vector<CornerLimit> FindCornerLimits(CellPatch const &cell, LimitMaskFinder
         if (!mask) {
             return {};
         }
-        int const half = cell.isWhole ? 0 : cell.GetHalf();
+        int const half = cell.kind == CellKind::Half ? cell.GetHalf() : 0;
         int const side = patch.sides[std::size_t(findSide(level, vert, 0, half))];
         LimitMask::Tangents const &tangents = mask->sides[std::size_t(side)];
         auto const spread = [&](std::vector<double> const &weights) {

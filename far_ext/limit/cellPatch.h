@@ -10,14 +10,24 @@ namespace OpenSubdivHex::FarExt::internal {
 /// and the first of these, those of the edge across from it.
 inline constexpr int kNumHalfCellCorners = HexIndexing::kNumBoundaryEFaceCorners;
 
+/// Kinds of cells, and of what is shared by those that meet.
+enum class CellKind {
+    Whole,    ///< a base face, or the F-face that comes of it step by step
+    Half,     ///< half of a hexagon, or a half face
+    Edge,     ///< an edge that runs along an edge of level 0
+    LongEdge, ///< the same across a hexagon, or along a half face
+    Vertex    ///< a vertex of level 0
+};
+
 /// \brief A cell, with the patch that all of the surface in it depends on.
 ///
-/// Cells are what a base face is made of at some level: the F-face that comes of it step by step, a
-/// *whole cell*, and halves of hexagons, *half cells*, be they cut off by a boundary or not.  The
-/// patch has the cell's face as its face 0.
+/// So that neighbours agree on what they share to the bit, edges and vertices have patches of their
+/// own, whose numbering does not depend on the cell that asks for them.
+///
+/// The patch has the face of the cell, or one beside the edge or vertex, as its face 0.
 struct CellPatch {
-    bool isWhole = true;
-    std::vector<int> locals;         ///< the corners of the cell, as places in face 0
+    CellKind kind = CellKind::Whole;
+    std::vector<int> locals;         ///< the corners, or ends, as places in face 0
     std::vector<Far::Index> corners; ///< the vertices there
     LimitPatch patch;
 
@@ -29,6 +39,18 @@ struct CellPatch {
 /// Gathers the cell of a base face, \p level being level 0.
 OPENSUBDIVHEX_API void GatherBaseCell(Level const &level, Far::Index face, CellPatch &cell);
 
+/// \brief What the edges and vertices of a base face are in its own eyes, which all faces that share
+/// one need to number it alike.
+struct BaseCellTurns {
+    std::vector<bool> isReversed; ///< by edge: whether the edge runs against the face
+    std::vector<int> turns;       ///< by vertex: how many faces of its fan lie before the face
+};
+OPENSUBDIVHEX_API BaseCellTurns FindBaseCellTurns(Level const &level, Far::Index face);
+
+/// The edges and then the vertices of a base cell, whose patch's vertices are their sources.
+OPENSUBDIVHEX_API std::vector<CellPatch> GatherBorder(CellPatch const &baseCell,
+                                                      BaseCellTurns const &turns);
+
 /// A cell that one step makes of another, and the vertices of its patch in terms of the other's.
 struct CellChild {
     CellPatch cell;
@@ -38,12 +60,16 @@ struct CellChild {
 /// \brief The cells that a step makes of a cell: first the F-face, or the same half of it, then the
 /// half cells on this side of the edges, which are those behind corner 0 and so on of a whole cell
 /// and behind corners 1 to 3 of a half cell.
+///
+/// Of an edge it is the long edge from end to end; of a long edge the edge from its start, the long
+/// edge in its middle and the edge from its end.
 OPENSUBDIVHEX_API std::vector<CellChild> RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
                                                     HexSchemeOptions const &schemeOptions,
                                                     Interpolation interpolation);
 
 /// \brief The limit at a corner of a cell, and the first derivatives there on the side of the cell, in
 /// terms of the vertices of the patch.  LimitStencilTableFactory says what they are derivatives by.
+/// Edges and vertices have none.
 struct CornerLimit {
     std::vector<double> weights;
     LimitMask::Tangents tangents;

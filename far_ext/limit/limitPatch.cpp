@@ -328,7 +328,12 @@ int LimitPatchGatherer::GatherCell(Index face, int const *locals, int numCorners
         addVertex(_level.faceVerts[first + locals[i]], patch);
     }
     int const numCenters = int(patch.sources.size());
-    addFace(face, locals[0], true, patch);
+    Index const firstVert = patch.sources[0];
+    for (Index k = _level.vertFirstFace[firstVert]; k < _level.vertFirstFace[firstVert + 1]; ++k) {
+        if (_level.GetVertexCorner(k) == first + locals[0]) {
+            _ringFaces.push_back(k);
+        }
+    }
     for (int center = 0; center < numCenters; ++center) {
         Index const vert = patch.sources[std::size_t(center)];
         // A fan that has the face begins with it.

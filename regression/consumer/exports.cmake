@@ -6,8 +6,8 @@
 # and of what is internal no more than the inline code of public headers and other layers call.
 set(called AllocateArray FreeArray RangeQueue ForEachRange Report SortUnique RefinementMask LimitRows
   RegularFaces CheckLimitLevel PrimvarRows PrimvarLimitRows FindUniformSources GetStepsToLimit
-  GatherBaseCell RefineCell FindCornerLimits PatchRefinement CheckOptions CheckLevel
-  CheckDescriptors GetInterpolation)
+  GatherBaseCell FindBaseCellTurns GatherBorder RefineCell FindCornerLimits PatchRefinement
+  CheckOptions CheckLevel CheckDescriptors GetInterpolation)
 
 execute_process(COMMAND ${nm} --dynamic --defined-only --format=posix ${library}
   OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)

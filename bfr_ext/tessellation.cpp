@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tessellation.h"
+
+#include "cell/cellMesh.h"
+
+#include "far_ext/vtr/basePolygon.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opensubdiv/far/types.h>
+
+namespace OpenSubdivHex::BfrExt {
+
+using internal::CellMesh;
+
+namespace {
+
+constexpr int kInvalid = OpenSubdiv::Far::INDEX_INVALID;
+
+// Cuts convex polygons, with vertices in straight lines, into triangles that all have an area.
+class Triangulator {
+public:
+    explicit Triangulator(std::vector<double> const &coords) : _coords(coords) {}
+
+    // Appends the triangles of a polygon, corner by corner.
+    void Add(std::vector<int> polygon, std::vector<std::array<int, 3>> &triangles) const {
+        while (polygon.size() > 3) {
+            std::size_t const ear = findEar(polygon);
+            triangles.push_back(getCorner(polygon, ear));
+            polygon.erase(polygon.begin() + std::ptrdiff_t(ear));
+        }
+        triangles.push_back({polygon[0], polygon[1], polygon[2]});
+    }
+
+private:
+    static std::array<int, 3> getCorner(std::vector<int> const &polygon, std::size_t i) {
+        std::size_t const size = polygon.size();
+        return {polygon[(i + size - 1) % size], polygon[i], polygon[(i + 1) % size]};
+    }
+
+    double getX(int vert) const { return _coords[2 * std::size_t(vert)]; }
+    double getY(int vert) const { return _coords[2 * std::size_t(vert) + 1]; }
+
+    double getSquare(int from, int to) const {
+        return std::pow(getX(to) - getX(from), 2) + std::pow(getY(to) - getY(from), 2);
+    }
+
+    // Twice the area over the square of the longest side.
+    double getQuality(std::array<int, 3> const &t) const {
+        double const area = (getX(t[1]) - getX(t[0])) * (getY(t[2]) - getY(t[0])) -
+                            (getY(t[1]) - getY(t[0])) * (getX(t[2]) - getX(t[0]));
+        return area /
+               std::max({getSquare(t[0], t[1]), getSquare(t[1], t[2]), getSquare(t[2], t[0])});
+    }
+
+    // Whether all that would be left were a straight line.
+    bool isRestFlat(std::vector<int> const &polygon, std::size_t ear) const {
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            if (i == ear) {
+                continue;
+            }
+            std::vector<int> rest = polygon;
+            rest.erase(rest.begin() + std::ptrdiff_t(ear));
+            std::size_t const place = i < ear ? i : i - 1;
+            if (getQuality(getCorner(rest, place)) > kLeastQuality) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    // The best triangle that does not leave a line behind; the first of those that are as good.
+    std::size_t findEar(std::vector<int> const &polygon) const {
+        std::size_t best = 0;
+        double bestQuality = 0;
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            double const quality = getQuality(getCorner(polygon, i));
+            if (quality > bestQuality * (1 + kLeastQuality) && quality > kLeastQuality &&
+                !isRestFlat(polygon, i)) {
+                best = i;
+                bestQuality = quality;
+            }
+        }
+        return best;
+    }
+
+    static constexpr double kLeastQuality = 1e-9;
+
+    std::vector<double> const &_coords;
+};
+
+} // namespace
+
+Tessellation::Tessellation(Parameterization const &parameterization, int level, Options options) {
+    initialize(parameterization, 1, &level, options);
+}
+
+Tessellation::Tessellation(Parameterization const &parameterization, int numLevels,
+                           int const levels[], Options options) {
+    initialize(parameterization, numLevels, levels, options);
+}
+
+void Tessellation::initialize(Parameterization const &parameterization, int numLevels,
+                              int const levels[], Options const &options) {
+    int const size = parameterization.GetFaceSize();
+    int const facetSize = options.GetFacetSize();
+    int const facetStride = options.GetFacetStride() == 0 ? facetSize : options.GetFacetStride();
+    int const coordStride = options.GetCoordStride() == 0 ? 2 : options.GetCoordStride();
+    bool const areLevelsValid = (numLevels == 1 || numLevels == size || numLevels == size + 1) &&
+                                std::all_of(levels, levels + numLevels, [](int level) {
+                                    return 0 <= level && level <= kLastLevel;
+                                });
+    _firstFacetIndices = {0};
+    if (!parameterization.IsValid() || !areLevelsValid || coordStride < 2 ||
+        (facetSize != 0 && facetSize != 3 && facetSize != 4) || facetStride < facetSize) {
+        return;
+    }
+    _parameterization = parameterization;
+    _facetSize = facetSize;
+    _facetStride = facetSize == 0 ? 0 : facetStride;
+    _coordStride = coordStride;
+    if (numLevels == 1) {
+        _levels.assign(std::size_t(size) + 1, levels[0]);
+    } else {
+        _levels.assign(levels, levels + size);
+        _levels.push_back(numLevels > size ? levels[size]
+                                           : *std::max_element(levels, levels + size));
+    }
+
+    CellMesh const mesh(size, {_levels.begin(), _levels.end() - 1}, _levels.back());
+    std::vector<CellMesh::Vertex> const &verts = mesh.GetVertices();
+    std::vector<int> places(verts.size(), kInvalid);
+    std::vector<int> order;
+    auto const addVertex = [&](int vert) {
+        places[std::size_t(vert)] = int(order.size());
+        order.push_back(vert);
+    };
+    for (int edge = 0; edge < size; ++edge) {
+        std::vector<int> const edgeVerts = mesh.GetEdgeVertices(edge);
+        _firstEdgeCoords.push_back(int(order.size()));
+        std::for_each(edgeVerts.begin(), edgeVerts.end() - 1, addVertex);
+    }
+    _firstEdgeCoords.push_back(int(order.size()));
+    for (std::size_t vert = 0; vert < verts.size(); ++vert) {
+        if (places[vert] == kInvalid) {
+            addVertex(int(vert));
+        }
+    }
+    FarExt::internal::BasePolygon const polygon(size);
+    _coords.resize(2 * order.size());
+    for (std::size_t place = 0; place < order.size(); ++place) {
+        CellMesh::Vertex const &vert = verts[std::size_t(order[place])];
+        double const start = std::ldexp(double(vert.a), -CellMesh::kBits);
+        double const end = std::ldexp(double(vert.b), -CellMesh::kBits);
+        polygon.Write(vert.sector, {start, end}, &_coords[2 * place]);
+        _places.push_back({vert.sector, start, end});
+    }
+
+    auto const addFacet = [&](int const *facet, int numVerts) {
+        _facetIndices.insert(_facetIndices.end(), facet, facet + numVerts);
+        _firstFacetIndices.push_back(int(_facetIndices.size()));
+    };
+    Triangulator const triangulator(_coords);
+    std::vector<std::array<int, 3>> triangles;
+    for (std::vector<int> &facet : mesh.GetPolygons(facetSize == 0)) {
+        for (int &vert : facet) {
+            vert = places[std::size_t(vert)];
+        }
+        int const numVerts = int(facet.size());
+        if (facetSize == 0 || (facetSize == 4 && numVerts == 4)) {
+            addFacet(facet.data(), numVerts);
+            continue;
+        }
+        triangles.clear();
+        triangulator.Add(std::move(facet), triangles);
+        for (std::array<int, 3> const &triangle : triangles) {
+            addFacet(triangle.data(), 3);
+        }
+    }
+}
+
+int Tessellation::GetLevels(int levels[]) const {
+    std::copy(_levels.begin(), _levels.end(), levels);
+    return int(_levels.size());
+}
+
+bool Tessellation::IsUniform() const {
+    return std::all_of(_levels.begin(), _levels.end(),
+                       [&](int level) { return level == _levels[0]; });
+}
+
+int Tessellation::GetFacetSizes(int sizes[]) const {
+    for (std::size_t i = 0; i + 1 < _firstFacetIndices.size(); ++i) {
+        sizes[i] = _firstFacetIndices[i + 1] - _firstFacetIndices[i];
+    }
+    return GetNumFacets();
+}
+
+int Tessellation::GetFacets(int facetTuples[]) const {
+    for (std::size_t i = 0; i + 1 < _firstFacetIndices.size(); ++i) {
+        int const *const begin = _facetIndices.data() + _firstFacetIndices[i];
+        int const *const end = _facetIndices.data() + _firstFacetIndices[i + 1];
+        std::copy(begin, end, facetTuples);
+        std::fill(facetTuples + (end - begin), facetTuples + std::max(_facetSize, int(end - begin)),
+                  kInvalid);
+        facetTuples += _facetSize == 0 ? int(end - begin) : _facetStride;
+    }
+    return GetNumFacets();
+}
+
+template <typename FUNCTION>
+void Tessellation::transform(int facetTuples[], FUNCTION function) const {
+    for (std::size_t i = 0; i + 1 < _firstFacetIndices.size(); ++i) {
+        int const size = _firstFacetIndices[i + 1] - _firstFacetIndices[i];
+        std::transform(facetTuples, facetTuples + size, facetTuples, function);
+        facetTuples += _facetSize == 0 ? size : _facetStride;
+    }
+}
+
+void Tessellation::TransformFacetCoordIndices(int facetTuples[], int commonOffset) const {
+    transform(facetTuples, [=](int index) { return index + commonOffset; });
+}
+
+void Tessellation::TransformFacetCoordIndices(int facetTuples[], int const boundaryIndices[],
+                                              int interiorOffset) const {
+    int const numBoundary = GetNumBoundaryCoords();
+    transform(facetTuples, [=](int index) {
+        return index < numBoundary ? boundaryIndices[index] : index + interiorOffset;
+    });
+}
+
+void Tessellation::TransformFacetCoordIndices(int facetTuples[], int const boundaryIndices[],
+                                              int const interiorIndices[]) const {
+    int const numBoundary = GetNumBoundaryCoords();
+    transform(facetTuples, [=](int index) {
+        return index < numBoundary ? boundaryIndices[index] : interiorIndices[index - numBoundary];
+    });
+}
+
+} // namespace OpenSubdivHex::BfrExt

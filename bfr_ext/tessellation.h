@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_TESSELLATION_H
+#define OPENSUBDIVHEX_BFR_EXT_TESSELLATION_H
+
+#include "parameterization.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt {
+
+/// \brief A base face cut into facets, as Bfr::Tessellation: places in its parameter plane, at which a
+/// Surface is evaluated, and the facets between them.
+///
+/// In place of Bfr's rates there are levels of refinement.  The places are those of vertices, and the
+/// facets are cells: the F-face and the halves of hexagons that the refined levels have in the face.
+/// At level d an edge is a polyline of 1, 1, 3, 5, 11, 21, 43 ... segments (d = 0, 1, 2 ...), each of
+/// which has the points of the one before, too.
+///
+/// Cells are refined to the level of the inside, but for those whose refinement would give an edge of
+/// the face more points than its level has; and where a cell meets smaller ones, or an edge of a finer
+/// level, it has their points in its own sides.  So neighbours fit whatever their levels are, as long
+/// as both take the same level for the edge that they share: there are no gaps, and no more facets
+/// than the levels ask for.
+///
+/// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
+class OPENSUBDIVHEX_API Tessellation {
+public:
+    /// The last level, of the inside and of edges.
+    static constexpr int kLastLevel = 12;
+
+    /// \brief How facets and arrays are to be, as in Bfr.
+    class Options {
+    public:
+        /// Triangles, without gaps.
+        Options() : _facetSize(3), _facetStride(0), _coordStride(0) {}
+
+        /// \brief Sets the size of facets: 3 for triangles, 4 for cells as they are, where these are
+        /// quads, and else triangles with INDEX_INVALID as their last index; 0 for polygons of any
+        /// size.
+        Options &SetFacetSize(int size) {
+            _facetSize = size;
+            return *this;
+        }
+        /// That size.
+        int GetFacetSize() const { return _facetSize; }
+        /// Sets how far it is from one facet to the next, in indices; 0: the size of facets.  Of no
+        /// matter for polygons.
+        Options &SetFacetStride(int stride) {
+            _facetStride = stride;
+            return *this;
+        }
+        /// That distance.
+        int GetFacetStride() const { return _facetStride; }
+        /// Sets how far it is from one pair of coordinates to the next; 0: 2.
+        Options &SetCoordStride(int stride) {
+            _coordStride = stride;
+            return *this;
+        }
+        /// That distance.
+        int GetCoordStride() const { return _coordStride; }
+
+    private:
+        int _facetSize;
+        int _facetStride;
+        int _coordStride;
+    };
+
+    /// \brief The same level everywhere, 0 ... kLastLevel.
+    ///
+    /// The tessellation is invalid for other levels, for an invalid parameterization, for a facet size
+    /// that is none of the three, and for strides that are less than what they are between.
+    Tessellation(Parameterization const &parameterization, int level, Options options = Options());
+    /// \brief Levels of the edges and of the inside.
+    ///
+    /// \param numLevels  1: that of all; the number of edges: those of edges 0 ..., edge i from vertex
+    ///                   i to the next, and inside the largest of them; one more: those of edges, then
+    ///                   that of the inside
+    Tessellation(Parameterization const &parameterization, int numLevels, int const levels[],
+                 Options options = Options());
+
+    /// Whether the arguments were as they have to be.
+    bool IsValid() const { return _parameterization.IsValid(); }
+
+    /// The parameter plane of the face.
+    Parameterization GetParameterization() const { return _parameterization; }
+    /// Vertices of the face.
+    int GetFaceSize() const { return _parameterization.GetFaceSize(); }
+    /// Writes the levels of the edges and of the inside.
+    /// \return  how many they are: GetFaceSize() + 1
+    int GetLevels(int levels[]) const;
+    /// Whether all of them are the same.
+    bool IsUniform() const;
+
+    /// @name Coordinates
+    /// Those of the boundary come first, from vertex 0 on around the face: each vertex and then the
+    /// inner points of the edge behind it.
+    /// @{
+
+    /// All places.
+    int GetNumCoords() const { return int(_coords.size() / 2); }
+    /// Numbers from one pair to the next.
+    int GetCoordStride() const { return _coordStride; }
+    /// Places on the boundary.
+    int GetNumBoundaryCoords() const {
+        return _firstEdgeCoords.empty() ? 0 : _firstEdgeCoords.back();
+    }
+    /// Places inside.
+    int GetNumInteriorCoords() const { return GetNumCoords() - GetNumBoundaryCoords(); }
+    /// Places of an edge, without its ends.
+    int GetNumEdgeCoords(int edge) const {
+        return _firstEdgeCoords[std::size_t(edge) + 1] - _firstEdgeCoords[std::size_t(edge)] - 1;
+    }
+
+    /// Writes u and v of all places.
+    /// \return  how many they are, as do the following
+    template <typename REAL>
+    int GetCoords(REAL coordTuples[]) const {
+        return writeCoords(0, GetNumCoords(), coordTuples);
+    }
+    /// Writes those of the boundary.
+    template <typename REAL>
+    int GetBoundaryCoords(REAL coordTuples[]) const {
+        return writeCoords(0, GetNumBoundaryCoords(), coordTuples);
+    }
+    /// Writes those inside.
+    template <typename REAL>
+    int GetInteriorCoords(REAL coordTuples[]) const {
+        return writeCoords(GetNumBoundaryCoords(), GetNumCoords(), coordTuples);
+    }
+    /// Writes that of a vertex of the face.
+    template <typename REAL>
+    int GetVertexCoord(int vertex, REAL coord[]) const {
+        int const place = _firstEdgeCoords[std::size_t(vertex)];
+        return writeCoords(place, place + 1, coord);
+    }
+    /// Writes those of an edge, without its ends, from vertex \p edge to the next.
+    template <typename REAL>
+    int GetEdgeCoords(int edge, REAL coordTuples[]) const {
+        return writeCoords(_firstEdgeCoords[std::size_t(edge)] + 1,
+                           _firstEdgeCoords[std::size_t(edge) + 1], coordTuples);
+    }
+    /// @}
+
+    /// @name Facets
+    /// They are counter-clockwise in the parameter plane.
+    /// @{
+
+    /// All facets.
+    int GetNumFacets() const { return int(_firstFacetIndices.size()) - 1; }
+    /// 3, 4, or 0 for polygons.
+    int GetFacetSize() const { return _facetSize; }
+    /// Indices from one facet to the next; 0 for polygons.
+    int GetFacetStride() const { return _facetStride; }
+    /// Writes the sizes of all facets.
+    /// \return  GetNumFacets()
+    int GetFacetSizes(int sizes[]) const;
+    /// Sum of the sizes of all facets: what GetFacets() writes of polygons.
+    int GetNumFacetVertices() const { return int(_facetIndices.size()); }
+    /// Writes which coordinates the facets have: one facet every GetFacetStride() indices, polygons
+    /// one behind the other.
+    /// \return  GetNumFacets()
+    int GetFacets(int facetTuples[]) const;
+
+    /// Adds an offset to all indices of facets that GetFacets() wrote.
+    void TransformFacetCoordIndices(int facetTuples[], int commonOffset) const;
+    /// Replaces those of the boundary by \p boundaryIndices, and adds an offset to those inside.
+    void TransformFacetCoordIndices(int facetTuples[], int const boundaryIndices[],
+                                    int interiorOffset) const;
+    /// Replaces those of the boundary and those inside.
+    void TransformFacetCoordIndices(int facetTuples[], int const boundaryIndices[],
+                                    int const interiorIndices[]) const;
+    /// @}
+
+private:
+    template <typename REAL>
+    friend class Surface;
+
+    // The sector of an edge, and what the places of its start and its end weigh beside the centre.
+    struct SectorCoords {
+        int sector;
+        double start;
+        double end;
+    };
+
+    void initialize(Parameterization const &parameterization, int numLevels, int const levels[],
+                    Options const &options);
+    template <typename FUNCTION>
+    void transform(int facetTuples[], FUNCTION function) const;
+
+    template <typename REAL>
+    int writeCoords(int begin, int end, REAL coordTuples[]) const {
+        for (int i = begin; i < end; ++i, coordTuples += _coordStride) {
+            coordTuples[0] = REAL(_coords[2 * std::size_t(i)]);
+            coordTuples[1] = REAL(_coords[2 * std::size_t(i) + 1]);
+        }
+        return end - begin;
+    }
+
+    Parameterization _parameterization;
+    int _facetSize = 3;
+    int _facetStride = 3;
+    int _coordStride = 2;
+    std::vector<int> _levels;            // of edges, then of the inside
+    std::vector<double> _coords;         // two of each place
+    std::vector<SectorCoords> _places;   // the same, exactly
+    std::vector<int> _firstEdgeCoords;   // by edge, the place of its first vertex; then their end
+    std::vector<int> _firstFacetIndices; // by facet; then their end
+    std::vector<int> _facetIndices;      // of all facets
+};
+
+} // namespace OpenSubdivHex::BfrExt
+
+#endif
