@@ -142,10 +142,8 @@ bool Surface<REAL>::evaluateOnBorder(internal::BasePoint const &point, REAL cons
     internal::CellType::BorderItem const &item = border[place.item];
     internal::BorderStencil stencil;
     stencil.Find(*item.type, place.point);
-    for (int k = 0; k < pointDesc.size; ++k) {
-        P[k] = internal::SumBorderPoints(stencil.GetWeights(), item.points, controlPoints + k,
-                                         pointDesc.stride);
-    }
+    internal::SumBorderPoints(stencil.GetWeights(), item.points, controlPoints, pointDesc.stride,
+                              pointDesc.size, P);
     return true;
 }
 

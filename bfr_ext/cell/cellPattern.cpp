@@ -1,9 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellPattern.h"
 
-#include <algorithm>
+#include <cstring>
 
 namespace OpenSubdivHex::BfrExt::internal {
+
+namespace {
+
+constexpr std::size_t kLaneBytes = 16;
+
+// Numbers that are computed with at once, in a register where the machine has such.
+template <typename REAL>
+struct PlainLanes {
+    static constexpr std::size_t kSize = kLaneBytes / sizeof(REAL);
+
+    PlainLanes operator*(REAL factor) const {
+        PlainLanes result;
+        for (std::size_t i = 0; i < kSize; ++i) {
+            result.values[i] = values[i] * factor;
+        }
+        return result;
+    }
+    PlainLanes &operator+=(PlainLanes const &other) {
+        for (std::size_t i = 0; i < kSize; ++i) {
+            values[i] += other.values[i];
+        }
+        return *this;
+    }
+
+    REAL values[kSize];
+};
+
+template <typename REAL>
+struct LanesOf {
+    using Type = PlainLanes<REAL>;
+};
+#if defined(__GNUC__)
+template <>
+struct LanesOf<float> {
+    using Type = float __attribute__((vector_size(kLaneBytes)));
+};
+template <>
+struct LanesOf<double> {
+    using Type = double __attribute__((vector_size(kLaneBytes)));
+};
+#endif
+
+// Sums up a block of rows for LENGTH numbers of the points, which stand side by side.
+template <int LENGTH, std::size_t BLOCK, typename REAL>
+void sumBlock(REAL const *block, std::size_t numPoints, REAL const *points, std::ptrdiff_t stride,
+              REAL (&results)[LENGTH][BLOCK]) {
+    using Lanes = typename LanesOf<REAL>::Type;
+    constexpr std::size_t kNumLanes = BLOCK * sizeof(REAL) / kLaneBytes;
+    Lanes sums[LENGTH][kNumLanes] = {};
+    for (std::size_t i = 0; i < numPoints; ++i, block += BLOCK, points += stride) {
+        Lanes weights[kNumLanes];
+        std::memcpy(weights, block, sizeof(weights));
+        for (int k = 0; k < LENGTH; ++k) {
+            for (std::size_t lane = 0; lane < kNumLanes; ++lane) {
+                sums[k][lane] += weights[lane] * points[k];
+            }
+        }
+    }
+    std::memcpy(results, sums, sizeof(results));
+}
+
+} // namespace
 
 BorderPlace FindBorderPlace(BasePoint const &point, CellType::Border const &border) {
     std::size_t const numEdges = border.size() / 2;
@@ -64,28 +126,32 @@ void CellPattern<REAL>::Evaluate(int kind, Points const &points, REAL *results,
     for (std::size_t begin = 0; begin < _numPlaces; begin += kBlock) {
         REAL const *const block = rows.data() + begin * _numPoints;
         std::size_t const numRows = std::min(kBlock, _numPlaces - begin);
-        for (int k = 0; k < points.size; ++k) {
-            REAL const *const values = points.points + k;
-            REAL sums[kBlock] = {};
-            for (std::size_t i = 0; i < _numPoints; ++i) {
-                REAL const value = values[std::ptrdiff_t(i) * points.stride];
-                for (std::size_t row = 0; row < kBlock; ++row) {
-                    sums[row] += block[i * kBlock + row] * value;
+        REAL *const blockResults = results + std::ptrdiff_t(begin) * resultStride;
+        int k = 0;
+        auto const sumNext = [&](auto length) {
+            constexpr int kLength = decltype(length)::value;
+            REAL sums[kLength][kBlock];
+            sumBlock(block, _numPoints, points.points + k, points.stride, sums);
+            for (std::size_t row = 0; row < numRows; ++row) {
+                for (int i = 0; i < kLength; ++i) {
+                    blockResults[std::ptrdiff_t(row) * resultStride + k + i] = sums[i][row];
                 }
             }
-            for (std::size_t row = 0; row < numRows; ++row) {
-                results[std::ptrdiff_t(begin + row) * resultStride + k] = sums[row];
-            }
+            k += kLength;
+        };
+        while (k + 3 <= points.size) {
+            sumNext(std::integral_constant<int, 3>());
+        }
+        while (k < points.size) {
+            sumNext(std::integral_constant<int, 1>());
         }
     }
     if (kind > 0) {
         return;
     }
     for (BorderRow const &row : _borderRows) {
-        for (int k = 0; k < points.size; ++k) {
-            results[std::ptrdiff_t(row.place) * resultStride + k] =
-                SumBorderPoints(row.weights, *row.points, points.points + k, points.stride);
-        }
+        SumBorderPoints(row.weights, *row.points, points.points, points.stride, points.size,
+                        results + std::ptrdiff_t(row.place) * resultStride);
     }
 }
 

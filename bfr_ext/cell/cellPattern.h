@@ -4,6 +4,9 @@
 
 #include "cellStencil.h"
 
+#include <algorithm>
+#include <type_traits>
+
 namespace OpenSubdivHex::BfrExt::internal {
 
 /// \brief A pattern of places of a base face, as the dense matrices of their stencils.
@@ -14,7 +17,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 template <typename REAL>
 class CellPattern {
 public:
-    static constexpr std::size_t kBlock = 8;
+    static constexpr std::size_t kBlock = 64 / sizeof(REAL);
 
     /// \param border  the items of \p root's border; it is referred to
     CellPattern(CellType const &root, CellType::Border const &border,
@@ -53,15 +56,31 @@ struct BorderPlace {
 };
 BorderPlace FindBorderPlace(BasePoint const &point, CellType::Border const &border);
 
-/// The sum of some of the points, as all faces that share a place on the border form it.
+/// \brief Writes the sum of some of the points, \p size numbers each, as all faces that share a place
+/// on the border form it: every number in the order of \p points.
 template <typename REAL>
-REAL SumBorderPoints(std::vector<double> const &weights, std::vector<int> const &points,
-                     REAL const *values, std::ptrdiff_t stride) {
-    double sum = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        sum += weights[i] * double(values[points[i] * stride]);
+void SumBorderPoints(std::vector<double> const &weights, std::vector<int> const &points,
+                     REAL const *values, std::ptrdiff_t stride, int size, REAL *result) {
+    auto const sum = [&](auto length) {
+        constexpr int kLength = decltype(length)::value;
+        double sums[kLength] = {};
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            REAL const *const point = values + points[i] * stride;
+            for (int k = 0; k < kLength; ++k) {
+                sums[k] += weights[i] * double(point[k]);
+            }
+        }
+        std::copy(sums, sums + kLength, result);
+        values += kLength;
+        result += kLength;
+        size -= kLength;
+    };
+    while (size >= 3) {
+        sum(std::integral_constant<int, 3>());
     }
-    return REAL(sum);
+    while (size > 0) {
+        sum(std::integral_constant<int, 1>());
+    }
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

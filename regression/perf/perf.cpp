@@ -65,6 +65,7 @@ void run(Suite::Options const &options, std::string const &command, Paths const 
     AddEvaluationBenchmarks(suite);
     AddTableFreeBenchmarks(suite);
     AddLimitBenchmarks(suite);
+    AddSurfaceBenchmarks(suite);
     AddDrawingBenchmarks(suite);
     AddGrowthBenchmarks(suite);
     AddBusyBenchmarks(suite);

@@ -65,6 +65,15 @@ std::vector<Row> const &GetRows() {
                           "own, level alone", 0.4, 0.5});
         result.push_back({"limit-evaluation-table", "limit with derivatives, table-free, 1 thread",
                           "own limit table", 1, 3});
+        result.push_back({"surface-points", "tessellated surfaces, per point, 1 thread",
+                          "Bfr::Surface::Evaluate", 8, 15});
+        result.push_back({"surface-derivatives",
+                          "tessellated surfaces with derivatives, per point, 1 thread",
+                          "Bfr::Surface::Evaluate", 8, 15});
+        result.push_back({"surface-cold", "making surfaces, empty cache, per face, 1 thread",
+                          "Bfr::RefinerSurfaceFactory", 3, 10});
+        result.push_back({"surface-warm", "making surfaces, full cache, per face, 1 thread",
+                          "Bfr::RefinerSurfaceFactory", 5, 10});
         result.push_back({"polygons-1", "polygons with their base faces, per corner, 1 thread",
                           "loop over Far::TopologyLevel", 0.5, 1});
         result.push_back({"polygons-2", "polygons with their base faces, per corner, 2 threads",

@@ -78,6 +78,7 @@ void AddStencilTableBenchmarks(Suite &suite);
 void AddEvaluationBenchmarks(Suite &suite);
 void AddTableFreeBenchmarks(Suite &suite);
 void AddLimitBenchmarks(Suite &suite);
+void AddSurfaceBenchmarks(Suite &suite);
 void AddDrawingBenchmarks(Suite &suite);
 void AddGrowthBenchmarks(Suite &suite);
 void AddBusyBenchmarks(Suite &suite);

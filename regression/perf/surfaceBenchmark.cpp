@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Surfaces of faces against Bfr's of Catmull-Clark or, of triangles, Loop: nanoseconds per point of a
+// tessellation of every face, without and with first derivatives, and per surface that is made, with
+// a cache that is empty or full.
+#include "makers.h"
+#include "suite.h"
+
+#include "bfr_ext/surfaceFactory.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <opensubdiv/bfr/refinerSurfaceFactory.h>
+#include <opensubdiv/bfr/surface.h>
+#include <opensubdiv/far/topologyRefinerFactory.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace OpenSubdivHex::Regression {
+namespace {
+
+namespace Bfr = OpenSubdiv::Bfr;
+
+constexpr int kLevel = 4;
+
+using OwnSurface = BfrExt::Surface<float>;
+using PeerSurface = Bfr::Surface<float>;
+
+/// What surfaces are made of, and what they are evaluated from and to.
+struct Workspace {
+    explicit Workspace(BenchMesh const &mesh)
+        : shape(mesh.shape), refiner(MakeBase(mesh)),
+          positions(shape->positions.begin(), shape->positions.end()) {
+        using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
+        bool const isLoop = shape->faceSizes[0] == 3;
+        ShapeDescriptor const descriptor(*shape);
+        peerRefiner.reset(Factory::Create(
+            descriptor.Get(),
+            Factory::Options(isLoop ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK, Sdc::Options())));
+        Require(refiner && peerRefiner, "no refiners");
+    }
+
+    int GetNumFaces() const { return shape->GetNumFaces(); }
+
+    std::shared_ptr<Shape const> shape;
+    std::unique_ptr<FarExt::TopologyRefiner> refiner;
+    std::unique_ptr<Far::TopologyRefiner> peerRefiner;
+    std::vector<float> positions;
+    std::vector<float> gathered;
+    std::vector<float> results[3];
+};
+
+/// A factory, and the surfaces of all faces.
+template <class FACTORY, class SURFACE>
+struct Surfaces {
+    void Init(int numFaces) {
+        surfaces.resize(std::size_t(numFaces));
+        for (int face = 0; face < numFaces; ++face) {
+            Require(factory->InitVertexSurface(face, &surfaces[std::size_t(face)]), "no surface");
+        }
+    }
+
+    std::unique_ptr<FACTORY> factory;
+    std::vector<SURFACE> surfaces;
+};
+using OwnSurfaces = Surfaces<BfrExt::SurfaceFactory, OwnSurface>;
+using PeerSurfaces = Surfaces<Bfr::RefinerSurfaceFactory<>, PeerSurface>;
+
+/// Evaluates a tessellation of each face.
+double evaluateOwn(OwnSurfaces const &own, BfrExt::Tessellation const &tessellation,
+                   bool hasDerivatives, Workspace &workspace) {
+    for (OwnSurface const &surface : own.surfaces) {
+        float *const gathered = workspace.gathered.data();
+        surface.GatherControlPoints(workspace.positions.data(), 3, gathered, 3);
+        if (hasDerivatives) {
+            surface.Evaluate(tessellation, gathered, 3, workspace.results[0].data(),
+                             workspace.results[1].data(), workspace.results[2].data(), 3);
+        } else {
+            surface.Evaluate(tessellation, gathered, 3, workspace.results[0].data(), 3);
+        }
+    }
+    return double(own.surfaces.size()) * tessellation.GetNumCoords();
+}
+
+/// Evaluates about as many places of each face, all inside of it.
+double evaluatePeer(PeerSurfaces const &peer, int numPlaces, bool hasDerivatives,
+                    Workspace &workspace) {
+    int const numSteps = int(std::lround(std::sqrt(double(numPlaces))));
+    for (PeerSurface const &surface : peer.surfaces) {
+        // A square in the corner of a triangle, or of the first sub-face of a larger face.
+        float const width = surface.GetFaceSize() == 4 ? 1.0F : 0.5F;
+        float *const gathered = workspace.gathered.data();
+        surface.PreparePatchPoints(workspace.positions.data(), 3, gathered, 3);
+        for (int i = 0; i < numSteps * numSteps; ++i) {
+            float const uv[2] = {width * (float(i % numSteps) + 0.5F) / float(numSteps),
+                                 width * (float(i / numSteps) + 0.5F) / float(numSteps)};
+            float *const p = workspace.results[0].data() + 3 * std::size_t(i);
+            if (hasDerivatives) {
+                surface.Evaluate(uv, gathered, 3, p,
+                                 workspace.results[1].data() + 3 * std::size_t(i),
+                                 workspace.results[2].data() + 3 * std::size_t(i));
+            } else {
+                surface.Evaluate(uv, gathered, 3, p);
+            }
+        }
+    }
+    return double(peer.surfaces.size()) * numSteps * numSteps;
+}
+
+/// \param evaluate  gives the number of points that it makes
+template <typename EVALUATE>
+Contestant makePointContestant(std::string const &name, std::shared_ptr<Workspace> const &workspace,
+                               EVALUATE evaluate) {
+    auto const count = std::make_shared<double>(0);
+    Contestant contestant;
+    contestant.name = name;
+    contestant.work = [=] { *count = evaluate(); };
+    contestant.validate = [=] {
+        for (std::size_t i = 0; i < 3; ++i) {
+            Require(std::isfinite(workspace->results[0][i]), name + ": no point");
+        }
+        return *count;
+    };
+    return contestant;
+}
+
+Contest makePointContest(BenchMesh const &mesh) {
+    auto const workspace = std::make_shared<Workspace>(mesh);
+    auto const own = std::make_shared<OwnSurfaces>();
+    auto const peer = std::make_shared<PeerSurfaces>();
+    own->factory = BfrExt::SurfaceFactory::Create(*workspace->refiner);
+    peer->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*workspace->peerRefiner);
+    own->Init(workspace->GetNumFaces());
+    peer->Init(workspace->GetNumFaces());
+    auto const tessellation =
+        std::make_shared<BfrExt::Tessellation>(own->surfaces[0].GetParameterization(), kLevel);
+    int const numPlaces = tessellation->GetNumCoords();
+    std::size_t numPoints = 0;
+    for (OwnSurface const &surface : own->surfaces) {
+        Require(surface.GetFaceSize() == tessellation->GetFaceSize(), "faces of several sizes");
+        numPoints = std::max(numPoints, std::size_t(surface.GetNumControlPoints()));
+    }
+    for (PeerSurface const &surface : peer->surfaces) {
+        numPoints = std::max(numPoints, std::size_t(surface.GetNumPatchPoints()));
+    }
+    workspace->gathered.resize(3 * numPoints);
+    for (std::vector<float> &result : workspace->results) {
+        result.resize(3 * 2 * std::size_t(numPlaces));
+    }
+    Contest contest;
+    for (bool const hasDerivatives : {false, true}) {
+        std::string const suffix = hasDerivatives ? ", derivatives" : "";
+        contest.contestants.push_back(
+            makePointContestant("BfrExt::Surface" + suffix, workspace, [=] {
+                return evaluateOwn(*own, *tessellation, hasDerivatives, *workspace);
+            }));
+        contest.contestants.push_back(makePointContestant("Bfr::Surface" + suffix, workspace, [=] {
+            return evaluatePeer(*peer, numPlaces, hasDerivatives, *workspace);
+        }));
+    }
+    contest.pairings = {{"surface-points", 0, {1}}, {"surface-derivatives", 2, {3}}};
+    return contest;
+}
+
+/// \param isCold  whether each turn makes a factory, which has found nothing
+template <class SURFACES, typename MAKE>
+Contestant makeInitContestant(std::string const &name, std::shared_ptr<Workspace> const &workspace,
+                              MAKE makeFactory, bool isCold) {
+    auto const surfaces = std::make_shared<SURFACES>();
+    int const numFaces = workspace->GetNumFaces();
+    surfaces->factory = makeFactory();
+    surfaces->Init(numFaces);
+    Contestant contestant;
+    contestant.name = name;
+    contestant.work = [=] {
+        if (isCold) {
+            surfaces->factory = makeFactory();
+        }
+        surfaces->Init(numFaces);
+    };
+    contestant.validate = [=] {
+        Require(surfaces->surfaces.back().IsValid(), name + ": no surface");
+        return double(numFaces);
+    };
+    return contestant;
+}
+
+Contest makeInitContest(BenchMesh const &mesh) {
+    auto const workspace = std::make_shared<Workspace>(mesh);
+    auto const makeOwn = [=] { return BfrExt::SurfaceFactory::Create(*workspace->refiner); };
+    auto const makePeer = [=] {
+        return std::make_unique<Bfr::RefinerSurfaceFactory<>>(*workspace->peerRefiner);
+    };
+    Contest contest;
+    for (bool const isCold : {true, false}) {
+        std::string const suffix = isCold ? ", cold" : ", warm";
+        contest.contestants.push_back(makeInitContestant<OwnSurfaces>(
+            "BfrExt::SurfaceFactory" + suffix, workspace, makeOwn, isCold));
+        contest.contestants.push_back(makeInitContestant<PeerSurfaces>(
+            "Bfr::SurfaceFactory" + suffix, workspace, makePeer, isCold));
+    }
+    contest.pairings = {{"surface-cold", 0, {1}}, {"surface-warm", 2, {3}}};
+    return contest;
+}
+
+} // namespace
+
+void AddSurfaceBenchmarks(Suite &suite) {
+    for (BenchMesh const &mesh : suite.GetMeshes()) {
+        suite.AddContest({"surfaces, level 4", "point", mesh, Memory::Resident},
+                         [=] { return makePointContest(mesh); });
+        suite.AddContest({"making surfaces", "surface", mesh, Memory::Warm},
+                         [=] { return makeInitContest(mesh); });
+    }
+}
+
+} // namespace OpenSubdivHex::Regression
