@@ -1,14 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 
-# What a new version may change: before 1.0 a new minor one may, then a new major one.  Shared
-# libraries are named after it, and the package's version files tell by it.
-if(PROJECT_VERSION_MAJOR EQUAL 0)
-  set(OPENSUBDIVHEX_SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  set(OPENSUBDIVHEX_COMPATIBILITY SameMinorVersion)
-else()
-  set(OPENSUBDIVHEX_SOVERSION ${PROJECT_VERSION_MAJOR})
-  set(OPENSUBDIVHEX_COMPATIBILITY SameMajorVersion)
-endif()
+# A new major version may change what is there.  Shared libraries are named after it, and the
+# package's version files tell by it.
+set(OPENSUBDIVHEX_SOVERSION ${PROJECT_VERSION_MAJOR})
+set(OPENSUBDIVHEX_COMPATIBILITY SameMajorVersion)
 
 # opensubdivhex_add_library(NAME SOURCES...): a library of this project, OpenSubdivHex::NAME to all
 # who link it, installed with the headers at the top of its folder; those in subfolders are its own.
