@@ -98,4 +98,100 @@ VertexVertexMask ComputeVertexVertexMask(Interpolation interpolation, int numFac
     return {weight, weight};
 }
 
+namespace {
+
+// The weights around an irregular vertex V, with the names of the vertices as in the header.
+struct IrregularWeights {
+    double atVertex[4];   // of V, of N and of M, of A and of C, of B
+    double atNeighbor[4]; // of N, V, A, M
+    double ofFaces;       // of the mean of the F-vertices, in V'
+};
+
+// The first levels beside quads, and at vertices with four faces: found by a search.
+constexpr int kNumUnevenSteps = kNumStepsToConstantMasks - 1;
+constexpr IrregularWeights kUnevenWeights[kNumUnevenSteps] = {
+    {{11 / 64.0, 23 / 64.0, 3 / 64.0, 1 / 64.0},
+     {14 / 32.0, 4 / 32.0, 9 / 32.0, 5 / 32.0},
+     23 / 64.0},
+    {{24 / 64.0, 16 / 64.0, 4 / 64.0, 0}, {41 / 64.0, 0, 8 / 64.0, 15 / 64.0}, 40 / 64.0}};
+constexpr double kQuadNeighborWeights[kNumUnevenSteps][6] = {
+    {35 / 64.0, 13 / 64.0, 0, 4 / 64.0, 12 / 64.0, 0},
+    {32 / 64.0, 13 / 64.0, 2 / 64.0, 6 / 64.0, 5 / 64.0, 6 / 64.0}};
+
+// The share of a vertex with many faces that goes along its edges; see the header.
+constexpr double kMaxSpokeShare = 0.77;
+
+double cosOfHalfTurn(int j, int n) { return double(cosOfTurn(j, 2 * n)); }
+
+// The linear equation of c1 and a2 by which frequency w has the eigenvalue x.
+struct EigenEquation {
+    EigenEquation(int numFaces, int w, double x, double const atNeighbor[4]) {
+        double const c = cosOfHalfTurn(w, numFaces);
+        double const d = cosOfHalfTurn(2 * w, numFaces);
+        double const n = atNeighbor[0];
+        double const a = atNeighbor[2];
+        double const m = atNeighbor[3];
+        ofSide = 2 * c * (x * x - a * a);
+        ofNext = 2 * (x * (n + m * d) + a * c * (n + m));
+        right = x * (x * x - a * a);
+    }
+    double ofSide;
+    double ofNext;
+    double right;
+};
+
+// Four or five faces: lambda and its square are eigenvalues.
+IrregularWeights solveWeights(int numFaces, double lambda, double const atNeighbor[4]) {
+    double const m = lambda * lambda;
+    EigenEquation const first(numFaces, 1, lambda, atNeighbor);
+    EigenEquation const second(numFaces, 2, m, atNeighbor);
+    double const determinant = first.ofSide * second.ofNext - second.ofSide * first.ofNext;
+    double const side = (first.right * second.ofNext - second.right * first.ofNext) / determinant;
+    double const next = (first.ofSide * second.right - second.ofSide * first.right) / determinant;
+    double const a = atNeighbor[2];
+    double const sum = atNeighbor[0] + atNeighbor[3];
+    double const ofFaces =
+        ((2 * side - m) * (a - m) - 2 * next * sum) / (2 * side * (a - m) - 2 * next * (m + sum));
+    return {{1 - 2 * side - 2 * next, side, next, 0},
+            {atNeighbor[0], atNeighbor[1], atNeighbor[2], atNeighbor[3]},
+            ofFaces};
+}
+
+IrregularWeights findWeights(int numFaces, int numSteps) {
+    constexpr double kAtNeighborOfFour[4] = {14 / 32.0, 4 / 32.0, 9 / 32.0, 5 / 32.0};
+    constexpr double kAtNeighbor[4] = {15 / 32.0, 4 / 32.0, 8 / 32.0, 5 / 32.0};
+    constexpr double kLambda = 4 / 7.0;
+    if (numFaces == 4) {
+        return numSteps <= kNumUnevenSteps ? kUnevenWeights[numSteps - 1]
+                                           : solveWeights(4, kLambda, kAtNeighborOfFour);
+    }
+    if (numFaces == 5) {
+        return solveWeights(5, kLambda, kAtNeighbor);
+    }
+    double const c = cosOfHalfTurn(1, numFaces);
+    double const share = std::min(cosOfHalfTurn(2, numFaces) / (c * c), kMaxSpokeShare);
+    return {{1 - share, share / 2, 0, 0},
+            {kAtNeighbor[0], kAtNeighbor[1], kAtNeighbor[2], kAtNeighbor[3]},
+            1 - share * c * c};
+}
+
+} // namespace
+
+IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps) {
+    IrregularWeights const weights = findWeights(numFaces, numSteps);
+    auto const [self, side, next, opposite] = weights.atVertex;
+    auto const [n, v, a, m] = weights.atNeighbor;
+    return {{self, side, next, opposite, next, side},
+            {n, a, 0, 0, m, v},
+            {1 - weights.ofFaces, weights.ofFaces / numFaces}};
+}
+
+bool ComputeQuadNeighborMask(int numSteps, double *weights) {
+    if (numSteps > kNumUnevenSteps) {
+        return false;
+    }
+    std::copy_n(kQuadNeighborWeights[numSteps - 1], 6, weights);
+    return true;
+}
+
 } // namespace OpenSubdivHex::FarExt

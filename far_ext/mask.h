@@ -19,10 +19,13 @@ namespace OpenSubdivHex::FarExt {
 /// Average is (vertex + its two edge midpoints + centroid)/4, the paper's stage 1 (Ghaleb and
 /// Abd El-Latif 2005, section 3).  Cosine is Doo and Sabin's of 1978.  Smooth has eigenvalues
 /// 1, 1/2, 1/2, 1/4, 1/4, 1/8 ...; for n < 5 it is Cosine.
+///
+/// Smooth has masks of its own besides where hexagons meet what is not of the hexagonal lattice:
+/// see ComputeIrregularVertexMask() and ComputeQuadNeighborMask().
 enum class FaceMask {
     Average, ///< the paper's: tangent planes, unbounded curvature
     Cosine,  ///< Doo and Sabin's: bounded curvature at vertices with three faces
-    Smooth   ///< this project's: as Cosine, and smoother on hexagons; for renderers
+    Smooth   ///< this project's: bounded curvature at nearly all vertices; for renderers
 };
 
 /// \brief What is interpolated: as Far's vertex, varying and face-varying primvars.
@@ -81,6 +84,53 @@ struct VertexVertexMask {
 /// 1/(numFaces + 1) for vertex data (the paper's stage 2); 1 and 0 for varying data.
 OPENSUBDIVHEX_API VertexVertexMask ComputeVertexVertexMask(Interpolation interpolation,
                                                            int numFaces);
+
+/// \brief The faces from which on a vertex inside the mesh is irregular, and Smooth has masks of its
+/// own around it.
+inline constexpr int kMinIrregularFaces = 4;
+
+/// \brief The hexagonal steps from which on the masks of irregular vertices and beside quads do not
+/// change any more.
+inline constexpr int kNumStepsToConstantMasks = 3;
+
+/// \brief The masks of Smooth around an irregular vertex V, where four hexagons or more meet.
+///
+/// The vertices of a hexagon at V are V, N, A, B, C and M in turn: N and M are neighbours of V.
+/// Weights are in the order that the vertices have from the one whose F-vertex is made, on the way
+/// around the face.
+struct IrregularVertexMask {
+    double atVertex[6];      ///< of the F-vertex at V, for V, N, A, B, C, M
+    double atNeighbor[6];    ///< of that at N, for N, A, B, C, M, V; at M the same the other way
+    VertexVertexMask vertex; ///< of V' itself
+};
+
+/// \brief Returns the masks around a vertex inside the mesh with \p numFaces hexagons,
+/// kMinIrregularFaces or more, after \p numSteps hexagonal steps, 1 or more.
+///
+/// With the mask of all hexagons curvature would grow there from level to level without bound, by
+/// 1.14 with 4 faces and 1.32 with 6.  These keep the square of the sub-dominant eigenvalue as the
+/// next one for 4 to 7 faces, so that it is bounded, and nearly do beyond: it grows by 1.08 at 8
+/// and by 1.30 at 64.  Weights are not negative, linear functions are kept.
+///
+/// With C = cos(pi w/k), D = cos(2 pi w/k) and the weights nN of N, nA of A, nM of M in atNeighbor,
+/// frequency w around k faces has as eigenvalues the roots x of
+///
+///     (x - 2 c1 C)(x^2 - nA^2) = 2 a2 (x (nN + nM D) + nA C (nN + nM))
+///
+/// where atVertex is (a, c1, a2, 0, a2, c1).  x = lambda at w = 1 and x = lambda^2 at w = 2 give c1
+/// and a2, and the same for w = 0 the weight of V'.  In the first levels, where points are still
+/// uneven, other weights at four faces make surfaces of quads more even: they were found by a
+/// search (see docs/guide/masks.md), and have no bearing on the limit of curvature.
+OPENSUBDIVHEX_API IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps);
+
+/// \brief Writes the six weights with which Smooth makes the F-vertex of a hexagon at an end of an
+/// edge that it shares with a quad, for the vertices from there on around the hexagon, along that
+/// edge first.
+///
+/// \param numSteps  hexagonal steps that made the level, 1 or more
+/// \return  whether there are such weights at this level: after three steps and more hexagons beside
+///          quads are like others, and the weights are not written
+OPENSUBDIVHEX_API bool ComputeQuadNeighborMask(int numSteps, double *weights);
 
 } // namespace OpenSubdivHex::FarExt
 

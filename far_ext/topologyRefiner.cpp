@@ -78,7 +78,7 @@ Status TopologyRefiner::replaceLevels(REFINE refine) {
 
 bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
     int const refinementLevel = options.refinementLevel;
-    LevelRefiner refiner(*_hierarchy, _sdcOptions);
+    LevelRefiner refiner(*_hierarchy, _sdcOptions, _schemeOptions.faceMask);
     Status result = checkLevel(refinementLevel);
     if (result.IsOk()) {
         result = checkSizes(refinementLevel,
@@ -110,7 +110,7 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
 template <typename REAL>
 bool TopologyRefiner::refineCoplanar(REAL const *restPositions, CoplanarOptions const &options,
                                      Status *status) {
-    LevelRefiner refiner(*_hierarchy, _sdcOptions);
+    LevelRefiner refiner(*_hierarchy, _sdcOptions, _schemeOptions.faceMask);
     internal::CoplanarEdges edges(*_hierarchy, _schemeOptions, options.angleTolerance);
     Status result = checkLevel(options.refinementLevel);
     if (result.IsOk()) {

@@ -3,6 +3,7 @@
 
 #include "far_ext/executor.h"
 #include "far_ext/vtr/hexRefinement.h"
+#include "far_ext/vtr/irregularFeatures.h"
 
 #include <numeric>
 
@@ -11,6 +12,9 @@ namespace OpenSubdivHex::FarExt::internal {
 namespace {
 
 using Far::Index;
+
+// Level 0 has no irregular corners yet, whatever the mask.
+constexpr FaceMask kMaskOfBase = FaceMask::Average;
 
 constexpr int kBoundaryCorners[kNumHalfCellCorners] = {0, 1, 2, 3};
 
@@ -71,7 +75,7 @@ void GatherBaseCell(Level const &level, Index face, CellPatch &cell) {
     cell.kind = CellKind::Whole;
     cell.locals.resize(std::size_t(level.GetFaceSize(face)));
     std::iota(cell.locals.begin(), cell.locals.end(), 0);
-    LimitPatchGatherer gatherer(level);
+    LimitPatchGatherer gatherer(level, kMaskOfBase);
     gather(gatherer, level, face, cell);
 }
 
@@ -96,7 +100,7 @@ BaseCellTurns FindBaseCellTurns(Level const &level, Index face) {
 std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, BaseCellTurns const &turns) {
     Level level;
     BuildPatchLevel(baseCell.patch, level);
-    LimitPatchGatherer gatherer(level);
+    LimitPatchGatherer gatherer(level, kMaskOfBase);
     int const size = baseCell.GetNumCorners();
     std::vector<CellPatch> border;
     for (int i = 0; i < size; ++i) {
@@ -127,9 +131,9 @@ namespace {
 // What a step makes of a parent's cell, without the step.
 class CellRefiner {
 public:
-    CellRefiner(Refinement const &refinement, CellPatch const &cell)
+    CellRefiner(Refinement const &refinement, FaceMask faceMask, CellPatch const &cell)
         : _refinement(refinement), _parent(*refinement.parent), _child(*refinement.child),
-          _cell(cell), _gatherer(_child) {}
+          _cell(cell), _gatherer(_child, faceMask) {}
 
     std::vector<CellPatch> Refine() {
         switch (_cell.kind) {
@@ -227,8 +231,9 @@ std::vector<CellChild> RefineCell(CellPatch const &cell, Sdc::Options sdcOptions
     Refinement refinement;
     BuildPatchLevel(cell.patch, parent);
     RefineHexagonally(parent, sdcOptions, true, refinement, child);
+    FindIrregularFeatures(schemeOptions.faceMask, child);
     std::vector<CellChild> children;
-    for (CellPatch &result : CellRefiner(refinement, cell).Refine()) {
+    for (CellPatch &result : CellRefiner(refinement, schemeOptions.faceMask, cell).Refine()) {
         PatchRefinement step =
             MakePatchStep(refinement, schemeOptions, interpolation, result.patch.sources);
         children.push_back({std::move(result), std::move(step)});
@@ -240,7 +245,7 @@ std::vector<CornerLimit> FindCornerLimits(CellPatch const &cell, LimitMaskFinder
     ExecutorScope const alone(nullptr, 1);
     Level level;
     BuildPatchLevel(cell.patch, level);
-    LimitPatchGatherer gatherer(level);
+    LimitPatchGatherer gatherer(level, finder.GetFaceMask());
     LimitPatch patch;
     std::vector<CornerLimit> limits;
     for (Index const vert : cell.corners) {

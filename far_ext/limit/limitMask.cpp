@@ -619,11 +619,13 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
     }
     Index const first = _level.faceFirstCorner[face];
     bool const hasSector = !_level.GetSectorCorners(first, first + size).empty();
-    return hasSector || Crease::IsSharp(diagonal) ? findAfterStep(face) : makePlainFaceMask(size);
+    bool const isIrregular = !_level.GetIrregularCorners(first, first + size).empty();
+    return hasSector || isIrregular || Crease::IsSharp(diagonal) ? findAfterStep(face)
+                                                                 : makePlainFaceMask(size);
 }
 
-// The F-face is a level of its own here: it has no sector corners, and a diagonal that is less
-// sharp.
+// The F-face is a level of its own here: it has no sector corners and no irregular ones, and a
+// diagonal that is less sharp.
 LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     int const size = _level.GetFaceSize(face);
     Level child;

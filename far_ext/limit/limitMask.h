@@ -47,6 +47,8 @@ public:
     /// repeats itself has no eigenvectors that iteration finds.
     MaskPointer Find(LimitPatch const &patch);
 
+    FaceMask GetFaceMask() const { return _schemeOptions.faceMask; }
+
     /// A patch, and the step that leads to the next.
     struct Node {
         LimitPatch patch;

@@ -4,6 +4,7 @@
 #include "far_ext/vtr/baseLevel.h"
 #include "far_ext/vtr/hexRefinement.h"
 #include "far_ext/vtr/indexSet.h"
+#include "far_ext/vtr/irregularFeatures.h"
 #include "far_ext/vtr/refinementRows.h"
 
 #include <cstring>
@@ -152,6 +153,10 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
             for (SectorCorner const &sector : _level.GetSectorCorners(corner, corner + 1)) {
                 patch.sectorCorners.push_back({patchFirst + i, sector.sectorSize, sector.weight});
             }
+            for (IrregularCorner irregular : _level.GetIrregularCorners(corner, corner + 1)) {
+                irregular.corner = patchFirst + i;
+                patch.irregularCorners.push_back(irregular);
+            }
         }
     }
     patch.faceSizes.push_back(size);
@@ -214,6 +219,40 @@ void LimitPatchGatherer::addSharpVertices(LimitPatch &patch) {
     }
 }
 
+// Whether the steps to come make irregular vertices or corners, at most.
+bool LimitPatchGatherer::hasIrregularities(LimitPatch const &patch) const {
+    constexpr int kQuad = 4;
+    auto const isIrregular = [this](Index source) {
+        return _level.GetNumVertexFaces(source) >= kMinIrregularFaces;
+    };
+    if (_level.numHexagonalSteps == 0 || !patch.irregularCorners.empty() ||
+        std::any_of(patch.sources.begin(), patch.sources.begin() + _numComplete, isIrregular)) {
+        return true;
+    }
+    std::size_t longEdge = kHalfFaceLongEdge;
+    for (int const size : patch.faceSizes) {
+        if (size == kQuad && patch.otherCorners[longEdge] != kSharpBoundaryB) {
+            return true;
+        }
+        longEdge += std::size_t(size);
+    }
+    return false;
+}
+
+void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
+    if (_faceMask == FaceMask::Smooth) {
+        patch.numHexagonalSteps = hasIrregularities(patch)
+                                      ? std::min(_level.numHexagonalSteps, kNumStepsToConstantMasks)
+                                      : kNumStepsToConstantMasks;
+    }
+    for (Index vert = 0; vert < _numComplete; ++vert) {
+        if (IrregularVertex const *const irregular =
+                _level.FindIrregularVertex(patch.sources[vert])) {
+            patch.irregularVerts.push_back({vert, irregular->weight});
+        }
+    }
+}
+
 void LimitPatchGatherer::addSignature(LimitPatch &patch) {
     std::vector<int> &signature = patch.signature;
     auto const add = [&](auto const &numbers) {
@@ -241,6 +280,11 @@ void LimitPatchGatherer::addSignature(LimitPatch &patch) {
     for (SectorCorner const &sector : patch.sectorCorners) {
         signature.insert(signature.end(),
                          {sector.corner, getBits(sector.sectorSize), getBits(sector.weight)});
+    }
+    signature.push_back(patch.numHexagonalSteps);
+    for (IrregularCorner const &irregular : patch.irregularCorners) {
+        signature.insert(signature.end(), {irregular.corner, irregular.numFaces,
+                                           getBits(irregular.weight), irregular.kind});
     }
 }
 
@@ -294,6 +338,7 @@ void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
         [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
     addTags(patch);
     addSharpVertices(patch);
+    addIrregularVertices(patch);
     addSignature(patch);
 }
 
@@ -389,6 +434,9 @@ void BuildPatchLevel(LimitPatch const &patch, Level &level) {
     }
     level.sharpVerts = patch.sharpVerts;
     level.sectorCorners = patch.sectorCorners;
+    level.irregularVerts = patch.irregularVerts;
+    level.irregularCorners = patch.irregularCorners;
+    level.numHexagonalSteps = patch.numHexagonalSteps;
 }
 
 void PatchRefinement::ApplyLeft(std::vector<double> const &left,
@@ -493,7 +541,9 @@ PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
     Refinement refinement;
     BuildPatchLevel(pPatch, parent);
     RefineHexagonally(parent, sdcOptions, true, refinement, child);
-    LimitPatchGatherer(child).Gather(refinement.GetVertexChildVertex(0), cPatch);
+    FindIrregularFeatures(schemeOptions.faceMask, child);
+    LimitPatchGatherer(child, schemeOptions.faceMask)
+        .Gather(refinement.GetVertexChildVertex(0), cPatch);
 
     PatchRefinement step =
         MakePatchStep(refinement, schemeOptions, Interpolation::Vertex, cPatch.sources);

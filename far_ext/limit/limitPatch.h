@@ -38,9 +38,13 @@ struct LimitPatch {
     std::vector<Index> lines;                ///< of these, in the order of their first corners
     std::vector<SectorCorner> sectorCorners; ///< ascending
     std::vector<SharpVertex> sharpVerts;     ///< ascending; of vertex 0 and its neighbours
+    std::vector<IrregularCorner> irregularCorners; ///< ascending; as far as sectorCorners
+    std::vector<IrregularVertex> irregularVerts;   ///< ascending; of vertex 0 and its neighbours
+    /// As of the level, as long as it matters for the masks of this patch or of those that it makes.
+    int numHexagonalSteps = 0;
 
-    /// All of the above but the sources, the sides and the masks of sharpVerts, which follow from
-    /// the rest.
+    /// All of the above but the sources, the sides, the masks of sharpVerts and irregularVerts, which
+    /// follow from the rest.
     std::vector<int> signature;
 };
 
@@ -49,7 +53,9 @@ class LimitPatchGatherer {
 public:
     using Index = Far::Index;
 
-    explicit LimitPatchGatherer(Level const &level) : _level(level) {}
+    /// Of a level that is refined with \p faceMask.
+    LimitPatchGatherer(Level const &level, FaceMask faceMask)
+        : _level(level), _faceMask(faceMask) {}
 
     void Gather(Index vert, LimitPatch &patch);
 
@@ -71,9 +77,12 @@ private:
     void addEdge(Index corner, Index edge, LimitPatch &patch);
     void addTags(LimitPatch &patch);
     void addSharpVertices(LimitPatch &patch);
+    void addIrregularVertices(LimitPatch &patch);
+    bool hasIrregularities(LimitPatch const &patch) const;
     static void addSignature(LimitPatch &patch);
 
     Level const &_level;
+    FaceMask const _faceMask;
     // Numbers in the patch.
     IndexMap _verts;
     IndexMap _faces;

@@ -43,18 +43,19 @@ Status CheckLimitLevel(Hierarchy const &hierarchy, HexSchemeOptions const &schem
 /// What one thread finds masks with.
 class LimitRows::Finder {
 public:
-    Finder(LimitRows const &rows, std::vector<bool> const &featureVerts)
-        : _level(rows._level), _featureVerts(featureVerts), _plainGatherer(rows._level),
-          _gatherer(rows._level), _finder(rows._sdcOptions, rows._schemeOptions) {}
+    Finder(LimitRows const &rows, std::vector<VertexMark> const &marks)
+        : _level(rows._level), _marks(marks), _plainGatherer(rows._level),
+          _gatherer(rows._level, rows._schemeOptions.faceMask),
+          _finder(rows._sdcOptions, rows._schemeOptions) {}
 
     /// Adds what a vertex has to a range.
     void Add(Index vert, Range &range) {
         if (_level.GetNumVertexFaces(vert) == 0) {
             range.sources.push_back(vert);
             add(vert, findIsolated(), {0}, range);
-        } else if (_plainGatherer.IsRegular(vert, _featureVerts)) {
+        } else if (_plainGatherer.IsRegular(vert, _marks)) {
             range.firstRegular = vert;
-        } else if (!_plainGatherer.Gather(vert, _featureVerts, _neighborhood)) {
+        } else if (!_plainGatherer.Gather(vert, _marks, _neighborhood)) {
             _gatherer.Gather(vert, _patch);
             range.sources.insert(range.sources.end(), _patch.sources.begin(), _patch.sources.end());
             add(vert, _finder.Find(_patch), _patch.sides, range);
@@ -107,7 +108,7 @@ private:
     }
 
     Level const &_level;
-    std::vector<bool> const &_featureVerts;
+    std::vector<VertexMark> const &_marks;
     PlainNeighborhoodGatherer _plainGatherer;
     PlainNeighborhood _neighborhood;
     LimitPatchGatherer _gatherer;
@@ -130,11 +131,11 @@ Status LimitRows::Find() {
 }
 
 Status LimitRows::Find(std::vector<Index> const &verts) {
-    std::vector<bool> const featureVerts = MarkFeatures(_level);
+    std::vector<VertexMark> const marks = MarkFeatures(_level);
     _ranges.assign(std::size_t(GetNumParallelRanges(_level.numVertices, kRange)), Range());
     _regularMask.reset();
     ParallelForRange(
-        _level.numVertices, [&] { return Finder(*this, featureVerts); },
+        _level.numVertices, [&] { return Finder(*this, marks); },
         [&](Finder &finder, Index begin, Index end) {
             // Patches are small: their loops gain nothing by help, and lose much where that is busy.
             ExecutorScope const alone(nullptr, 1);
@@ -152,7 +153,7 @@ Status LimitRows::Find(std::vector<Index> const &verts) {
             return range.status;
         }
         if (!_regularMask && range.firstRegular != Far::INDEX_INVALID) {
-            _regularMask = Finder(*this, featureVerts).Find(range.firstRegular);
+            _regularMask = Finder(*this, marks).Find(range.firstRegular);
         }
     }
     return Status();

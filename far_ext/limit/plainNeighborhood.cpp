@@ -2,6 +2,7 @@
 #include "plainNeighborhood.h"
 
 #include <bitset>
+#include <cstring>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -118,7 +119,34 @@ bool PlainNeighborhoodGatherer::addFace(Index face, int local, PlainNeighborhood
         }
         result.key.push_back(char(number));
     }
+    addIrregularCorners(face, local, result);
     return size < kEndOfBytes && result.sources.size() < kEndOfBytes;
+}
+
+// Of the faces further out, only the corners at the neighbours of the vertex matter.
+void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local,
+                                                    PlainNeighborhood &result) const {
+    if (_level.irregularCorners.empty()) {
+        return;
+    }
+    auto const numComplete = Index(1 + _neighbors.size());
+    bool const isRing = _faces.size() <= _neighbors.size();
+    Index const first = _level.faceFirstCorner[face];
+    int const size = _level.GetFaceSize(face);
+    char numAdded = 0;
+    for (IrregularCorner const &irregular : _level.GetIrregularCorners(first, first + size)) {
+        if (isRing || _numbers.Find(_level.faceVerts[irregular.corner]) < numComplete) {
+            char bytes[sizeof irregular.numFaces + sizeof irregular.weight];
+            std::memcpy(bytes, &irregular.numFaces, sizeof irregular.numFaces);
+            std::memcpy(bytes + sizeof irregular.numFaces, &irregular.weight,
+                        sizeof irregular.weight);
+            result.key.push_back(char((irregular.corner - first - local + size) % size));
+            result.key.push_back(irregular.kind);
+            result.key.append(bytes, sizeof bytes);
+            ++numAdded;
+        }
+    }
+    result.key.push_back(numAdded);
 }
 
 // The faces around a neighbour, from its edge to the vertex on, but for the first and the last.
@@ -152,10 +180,10 @@ bool PlainNeighborhoodGatherer::addOuterFaces(int neighbor, PlainNeighborhood &r
     return true;
 }
 
-bool PlainNeighborhoodGatherer::Gather(Index vert, std::vector<bool> const &featureVerts,
+bool PlainNeighborhoodGatherer::Gather(Index vert, std::vector<VertexMark> const &marks,
                                        PlainNeighborhood &result) {
     auto const hasFeature = [&](Index index) {
-        return !featureVerts.empty() && featureVerts[std::size_t(index)];
+        return !marks.empty() && marks[std::size_t(index)] == VertexMark::Feature;
     };
     int const numFaces = _level.GetNumVertexFaces(vert);
     if (hasFeature(vert) || numFaces < kRegularValence || numFaces >= kEndOfBytes) {
@@ -200,9 +228,9 @@ void PlainNeighborhoodGatherer::GatherRegular(Level const &level, Index vert,
     gatherHexagons(level, vert, sources, [](FaceCorner const &, Index) { return true; });
 }
 
-bool PlainNeighborhoodGatherer::IsRegular(Index vert, std::vector<bool> const &featureVerts) const {
+bool PlainNeighborhoodGatherer::IsRegular(Index vert, std::vector<VertexMark> const &marks) const {
     auto const isPlain = [&](Index index) {
-        return (featureVerts.empty() || !featureVerts[std::size_t(index)]) &&
+        return (marks.empty() || marks[std::size_t(index)] == VertexMark::Plain) &&
                _level.GetNumVertexFaces(index) == kRegularValence;
     };
     // The neighbours are plain before the faces around them are looked for.
@@ -222,15 +250,20 @@ bool PlainNeighborhoodGatherer::IsRegular(Index vert, std::vector<bool> const &f
     return numEqual == kNumRegular;
 }
 
-std::vector<bool> MarkFeatures(Level const &level) {
-    std::vector<bool> result;
+std::vector<VertexMark> MarkFeatures(Level const &level) {
+    std::vector<VertexMark> result;
     if (level.GetNumBoundaries() == 0 && level.edgeSharpness.empty() &&
         level.vertSharpness.empty() && level.nonManifoldVerts.empty() && level.sharpVerts.empty() &&
         !level.HasFeatures()) {
         return result;
     }
-    result.resize(std::size_t(level.numVertices));
-    auto const mark = [&](Index vert) { result[std::size_t(vert)] = true; };
+    result.resize(std::size_t(level.numVertices), VertexMark::Plain);
+    for (IrregularCorner const &irregular : level.irregularCorners) {
+        for (Index vert : level.GetFaceVertices(level.FindFaceOfCorner(irregular.corner))) {
+            result[std::size_t(vert)] = VertexMark::Irregular;
+        }
+    }
+    auto const mark = [&](Index vert) { result[std::size_t(vert)] = VertexMark::Feature; };
     auto const markEdge = [&](Index edge) {
         mark(level.edgeVerts[edge][0]);
         mark(level.edgeVerts[edge][1]);

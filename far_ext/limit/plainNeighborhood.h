@@ -19,10 +19,17 @@ struct PlainNeighborhood {
     std::string key;
 };
 
+/// \brief What there is at a vertex, or in the faces around it.
+enum class VertexMark : unsigned char {
+    Plain,
+    Irregular, ///< irregular corners alone
+    Feature    ///< something sharp, a boundary or several fans
+};
+
 /// \brief Gathers the neighbourhoods of the vertices of a level, which has full topology.
 ///
-/// A vertex is *regular* when it and its neighbours have three faces each, all these are hexagons,
-/// and all their vertices are different: two steps after a level nearly all vertices are.
+/// A vertex is *regular* when it and its neighbours have three faces each, all these are plain
+/// hexagons, and all their vertices are different: two steps after a level nearly all vertices are.
 class PlainNeighborhoodGatherer {
 public:
     using Index = Far::Index;
@@ -34,12 +41,12 @@ public:
 
     /// \brief Gathers the neighbourhood of \p vert.
     ///
-    /// \param featureVerts  as MarkFeatures() marks them
+    /// \param marks  those of MarkFeatures()
     /// \return  false where there is a feature, or something that a key cannot tell; then the
     ///          result is of no use
-    bool Gather(Index vert, std::vector<bool> const &featureVerts, PlainNeighborhood &result);
+    bool Gather(Index vert, std::vector<VertexMark> const &marks, PlainNeighborhood &result);
 
-    bool IsRegular(Index vert, std::vector<bool> const &featureVerts) const;
+    bool IsRegular(Index vert, std::vector<VertexMark> const &marks) const;
     /// The sources alone, of a vertex that is regular.
     static void GatherRegular(Level const &level, Index vert, Index sources[kNumRegular]);
 
@@ -47,6 +54,7 @@ private:
     int findFirstFace(Index vert);
     bool addFace(Index face, int local, PlainNeighborhood &result);
     bool addOuterFaces(int neighbor, PlainNeighborhood &result);
+    void addIrregularCorners(Index face, int local, PlainNeighborhood &result) const;
 
     Level const &_level;
     IndexMap _numbers;             // of the sources
@@ -54,9 +62,10 @@ private:
     std::vector<Index> _neighbors; // of the vertex
 };
 
-/// The vertices of a level that are on a boundary or not manifold, sharp, on sharp edges, or in faces
-/// that have features.  Empty where the level has none.
-std::vector<bool> MarkFeatures(Level const &level);
+/// Marks the vertices of a level: Feature are those that are on a boundary or not manifold, sharp, on
+/// sharp edges, or in faces that have features; Irregular others in faces with irregular corners.
+/// Empty where all are plain.
+std::vector<VertexMark> MarkFeatures(Level const &level);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -55,6 +55,7 @@ void RefineHexagonally(Level const &parent, Sdc::Options sdcOptions, bool fullTo
                        Refinement &refinement, Level &child) {
     BeginRefinement(parent, GetHexagonalSizes(GetSizes(parent)), fullTopology, refinement, child);
     child.isHexagonal = true;
+    child.numHexagonalSteps = parent.numHexagonalSteps + 1;
     child.numVVertices = parent.numVertices;
     child.numVertsOfAnyValence = parent.numVertsOfAnyValence;
     child.numVFaces = 0;

@@ -45,6 +45,31 @@ struct SectorCorner {
     float weight;     ///< share of the thresholds; the entries of a corner sum to 1 at most
 };
 
+/// \brief A vertex inside the mesh where four hexagons or more meet: see ComputeIrregularVertexMask
+/// in mask.h.
+struct IrregularVertex {
+    Far::Index vert;
+    float
+        weight; ///< share of its masks: less than 1 where it, or an edge or diagonal at it, is sharp
+};
+
+/// \brief A corner of a hexagon whose F-vertex has a mask of its own, since an irregular vertex or a
+/// quad is beside it.
+struct IrregularCorner {
+    /// What is irregular, seen from the corner.
+    enum Kind : char {
+        kAtVertex,     ///< its vertex
+        kBehindVertex, ///< the vertex before it in the face
+        kBeforeVertex, ///< the vertex behind it in the face
+        kAlongQuad,    ///< the face across the edge from it
+        kBehindQuad    ///< the face across the edge to it
+    };
+    Far::Index corner;
+    Far::Index numFaces; ///< of the irregular vertex; 0 beside a quad
+    float weight;        ///< as of the vertex
+    Kind kind;
+};
+
 /// \brief A boundary edge where an edge of level 0 came apart into one for each of its faces.  Edges
 /// of one line run along one curve.
 struct LineEdge {
@@ -141,7 +166,9 @@ struct Level {
         return numFreeBoundaries + numSharpBoundariesA + numSharpBoundariesB;
     }
     /// Whether any face of the level has another mask than that of its size.
-    bool HasFeatures() const {
+    bool HasFeatures() const { return HasSharpFaces() || !irregularCorners.empty(); }
+    /// Whether that is so because of something sharp.
+    bool HasSharpFaces() const {
         return !halfFaces.empty() || !diagonalSharpness.empty() || !sectorCorners.empty();
     }
     float GetEdgeSharpness(Index e) const { return edgeSharpness.empty() ? 0 : edgeSharpness[e]; }
@@ -178,6 +205,30 @@ struct Level {
             std::lower_bound(sectorCorners.begin(), sectorCorners.end(), begin, isBefore);
         auto const last = std::lower_bound(first, sectorCorners.end(), end, isBefore);
         return {sectorCorners.data() + (first - sectorCorners.begin()), int(last - first)};
+    }
+
+    /// The irregular vertex \p v, null when it is none.
+    IrregularVertex const *FindIrregularVertex(Index v) const {
+        if (irregularVerts.empty() || v > irregularVerts.back().vert) {
+            return nullptr; // F-vertices, which are most, and the last
+        }
+        auto const found = std::lower_bound(
+            irregularVerts.begin(), irregularVerts.end(), v,
+            [](IrregularVertex const &irregular, Index vert) { return irregular.vert < vert; });
+        return found->vert == v ? &*found : nullptr;
+    }
+    /// The irregular corners from \p begin to \p end - 1.
+    OpenSubdiv::Vtr::ConstArray<IrregularCorner> GetIrregularCorners(Index begin, Index end) const {
+        auto const isBefore = [](IrregularCorner const &irregular, Index c) {
+            return irregular.corner < c;
+        };
+        auto const first =
+            std::lower_bound(irregularCorners.begin(), irregularCorners.end(), begin, isBefore);
+        auto last = first;
+        while (last != irregularCorners.end() && last->corner < end) {
+            ++last;
+        }
+        return {irregularCorners.data() + (first - irregularCorners.begin()), int(last - first)};
     }
 
     /// Whether the level has no orders of edges around vertices of its own: where a hexagonal
@@ -226,6 +277,8 @@ struct Level {
         function(level.lineEdges);
         function(level.sharpVerts);
         function(level.sectorCorners);
+        function(level.irregularVerts);
+        function(level.irregularCorners);
     }
 
     int depth = 0;
@@ -240,6 +293,7 @@ struct Level {
 
     // What the numbering tells of how a refined level was made.
     bool isHexagonal = false;  ///< by a hexagonal refinement, whose E-faces' sides are known
+    int numHexagonalSteps = 0; ///< that made it, behind the last step of another scheme
     Index numVVertices = 0;    ///< the first vertices, made of vertices; F-vertices follow
     Index numFFaces = 0;       ///< the first faces, made of faces; they have ...
     Index numFFaceCorners = 0; ///< ... the first corners, and from each of these an edge
@@ -284,6 +338,10 @@ struct Level {
 
     std::vector<SharpVertex> sharpVerts;     ///< ascending; all with a rule but RULE_SMOOTH
     std::vector<SectorCorner> sectorCorners; ///< ascending
+
+    // What has masks of its own with FaceMask::Smooth; empty with others.
+    std::vector<IrregularVertex> irregularVerts;   ///< ascending
+    std::vector<IrregularCorner> irregularCorners; ///< ascending; one for a corner at most
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -2,6 +2,7 @@
 #include "levelRefiner.h"
 
 #include "hexRefinement.h"
+#include "irregularFeatures.h"
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -28,8 +29,8 @@ struct NextLevel {
 
 } // namespace
 
-LevelRefiner::LevelRefiner(Hierarchy &hierarchy, Sdc::Options sdcOptions)
-    : _hierarchy(hierarchy), _sdcOptions(sdcOptions) {
+LevelRefiner::LevelRefiner(Hierarchy &hierarchy, Sdc::Options sdcOptions, FaceMask faceMask)
+    : _hierarchy(hierarchy), _sdcOptions(sdcOptions), _faceMask(faceMask) {
     _checkers.emplace_back(GetSizes(hierarchy.mesh.levels[0]), "");
     for (std::size_t channel = 0; channel < hierarchy.channels.size(); ++channel) {
         _checkers.emplace_back(GetSizes(hierarchy.channels[channel].values.levels[0]),
@@ -89,6 +90,7 @@ Status LevelRefiner::addHexagonalLevel(bool fullTopology) {
         Status status = checker.Add(GetHexagonalSizes(GetSizes(next.parent)));
         if (status.IsOk()) {
             RefineHexagonally(next.parent, _sdcOptions, fullTopology, next.refinement, next.child);
+            FindIrregularFeatures(_faceMask, next.child);
         }
         return status;
     };
@@ -116,6 +118,7 @@ Status LevelRefiner::addPolygonLevel(PolygonRules const &rules, bool fullTopolog
     auto const refine = [&](PolygonRefiner &refiner, MeshLevels &levels) {
         NextLevel next(levels, _numLevels);
         refiner.Refine(fullTopology, next.refinement, next.child);
+        FindIrregularFeatures(_faceMask, next.child);
     };
     refine(refiners[0], _hierarchy.mesh);
     for (std::size_t i = 0; i < _hierarchy.channels.size(); ++i) {

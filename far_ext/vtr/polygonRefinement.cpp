@@ -559,6 +559,7 @@ void findPartedVertices(Refinement const &refinement, Level &child) {
 void PolygonRefiner::Refine(bool fullTopology, Refinement &refinement, Level &child) {
     BeginRefinement(_parent, _sizes, fullTopology, refinement, child);
     child.isHexagonal = false;
+    child.numHexagonalSteps = isHexagonal() ? _parent.numHexagonalSteps + 1 : 0;
     child.numVVertices = Index(_vertexCounts.back().vertices);
     child.numVFaces = Index(_vertexCounts.back().faces);
     relate(refinement);

@@ -32,6 +32,8 @@ void EndRefinement(Sdc::Options sdcOptions, Refinement const &refinement, Level 
         child.sharpVerts.clear();
         child.sectorCorners.clear();
     }
+    child.irregularVerts.clear();
+    child.irregularCorners.clear();
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

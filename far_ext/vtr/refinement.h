@@ -99,12 +99,12 @@ struct Refinement {
 };
 
 /// \brief Begins a refinement of any scheme to a level of \p sizes: sets the counts of \p child
-/// but for numVVertices, numVertsOfAnyValence and numVFaces.
+/// but for numVVertices, numVertsOfAnyValence, numVFaces and numHexagonalSteps.
 void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopology,
                      Refinement &refinement, Level &child);
 
 /// \brief Ends a refinement whose child has its relations: adds the tags and, with full topology,
-/// the masks of sharp vertices.
+/// the masks of sharp vertices.  No irregular ones: see FindIrregularFeatures.
 void EndRefinement(Sdc::Options sdcOptions, Refinement const &refinement, Level &child);
 
 } // namespace OpenSubdivHex::FarExt::internal

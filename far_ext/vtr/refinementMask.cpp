@@ -11,7 +11,10 @@ RefinementMask::RefinementMask(Level const &parent, HexSchemeOptions schemeOptio
                                Interpolation interpolation)
     : _level(parent), _faceMask(schemeOptions.faceMask), _interpolation(interpolation) {
     SchemeType const scheme = schemeOptions.GetSchemeOfLevel(parent.depth + 1);
-    _hasFeatures = scheme == SchemeType::Hexagonal && _level.HasFeatures();
+    bool const isHexagonal = scheme == SchemeType::Hexagonal;
+    _hasSharpFaces = isHexagonal && _level.HasSharpFaces();
+    _hasIrregular =
+        isHexagonal && interpolation == Interpolation::Vertex && !_level.irregularCorners.empty();
     _hasSharpVertices = interpolation == Interpolation::Vertex && !_level.sharpVerts.empty();
     for (int numFaces = 0; numFaces < kNumKept; ++numFaces) {
         _plainVertexMasks[numFaces] = ComputeVertexVertexMask(interpolation, numFaces);
@@ -42,15 +45,43 @@ RefinementMask::RefinementMask(Level const &parent, HexSchemeOptions schemeOptio
             }
         }
     }
+    if (_hasIrregular) {
+        findIrregularMasks();
+    }
+}
+
+void RefinementMask::findIrregularMasks() {
+    _areIrregular.assign(std::size_t(_level.numFaces), false);
+    for (IrregularCorner const &irregular : _level.irregularCorners) {
+        _areIrregular[_level.FindFaceOfCorner(irregular.corner)] = true;
+        if (irregular.numFaces == 0) {
+            ComputeQuadNeighborMask(_level.numHexagonalSteps, _quadNeighborWeights);
+            continue;
+        }
+        auto const place =
+            std::lower_bound(_irregularMasks.begin(), _irregularMasks.end(), irregular.numFaces,
+                             [](auto const &mask, Index size) { return mask.first < size; });
+        if (place == _irregularMasks.end() || place->first != irregular.numFaces) {
+            _irregularMasks.insert(
+                place, {irregular.numFaces,
+                        ComputeIrregularVertexMask(irregular.numFaces, _level.numHexagonalSteps)});
+        }
+    }
+}
+
+IrregularVertexMask const &RefinementMask::getIrregularMask(Index numFaces) const {
+    return std::lower_bound(_irregularMasks.begin(), _irregularMasks.end(), numFaces,
+                            [](auto const &mask, Index size) { return mask.first < size; })
+        ->second;
 }
 
 double const *RefinementMask::GetFaceVertexWeights(Index face, int corner,
                                                    std::vector<double> &scratch) const {
-    return _hasFeatures ? featureWeights(face, corner, scratch)
-                        : smoothWeights(_level.GetFaceSize(face), corner);
+    return IsFacePlain(face) ? smoothWeights(_level.GetFaceSize(face), corner)
+                             : featureWeights(face, corner, scratch);
 }
 
-bool RefinementMask::hasFeatures(Index face) const {
+bool RefinementMask::isSharp(Index face) const {
     if (_level.IsHalfFace(face)) {
         return true;
     }
@@ -72,21 +103,64 @@ double const *RefinementMask::featureWeights(Index face, int corner,
     if (_interpolation == Interpolation::Varying) {
         return smooth;
     }
+    scratch.assign(smooth, smooth + size);
+    if (_hasSharpFaces) {
+        addSharpWeights(face, corner, scratch);
+    }
+    if (_hasIrregular) {
+        addIrregularWeights(face, corner, scratch);
+    }
+    return scratch.data();
+}
+
+void RefinementMask::addSharpWeights(Index face, int corner, std::vector<double> &weights) const {
     double const sharp = std::min(1.0f, _level.GetDiagonalSharpness(face));
     double towards = 0;
     Index const levelCorner = _level.faceFirstCorner[face] + corner;
     for (SectorCorner const &sector : _level.GetSectorCorners(levelCorner, levelCorner + 1)) {
         towards += sector.weight * (1 - ComputeSectorShrink(_faceMask, sector.sectorSize));
     }
-    scratch.assign(smooth, smooth + size);
-    for (double &weight : scratch) {
+    for (double &weight : weights) {
         weight *= 1 - sharp - towards;
     }
-    scratch[corner] += towards;
-    for (int j = 0; j < size && sharp > 0; ++j) {
-        scratch[j] += sharp * _diagonalWeights[corner][j];
+    weights[std::size_t(corner)] += towards;
+    for (std::size_t j = 0; j < weights.size() && sharp > 0; ++j) {
+        weights[j] += sharp * _diagonalWeights[corner][j];
     }
-    return scratch.data();
+}
+
+void RefinementMask::addIrregularWeights(Index face, int corner,
+                                         std::vector<double> &weights) const {
+    constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
+    Index const levelCorner = _level.faceFirstCorner[face] + corner;
+    for (IrregularCorner const &irregular :
+         _level.GetIrregularCorners(levelCorner, levelCorner + 1)) {
+        double const *mask = _quadNeighborWeights;
+        if (irregular.numFaces > 0) {
+            IrregularVertexMask const &masks = getIrregularMask(irregular.numFaces);
+            mask = irregular.kind == IrregularCorner::kAtVertex ? masks.atVertex : masks.atNeighbor;
+        }
+        bool const isBackwards = irregular.kind == IrregularCorner::kBeforeVertex ||
+                                 irregular.kind == IrregularCorner::kBehindQuad;
+        for (int j = 0; j < kHexagon; ++j) {
+            int const place = (corner + (isBackwards ? kHexagon - j : j)) % kHexagon;
+            double &weight = weights[std::size_t(place)];
+            weight += irregular.weight * (mask[j] - weight);
+        }
+    }
+}
+
+auto RefinementMask::irregularMask(IrregularVertex const &irregular, VertexMask mask) const
+    -> VertexMask {
+    Index const numFaces = _level.GetNumVertexFaces(irregular.vert);
+    VertexVertexMask const plain = GetPlainVertexMask(numFaces);
+    VertexVertexMask const full = getIrregularMask(numFaces).vertex;
+    // Rules of sharp vertices do not depend on the faces: the smooth one has the share that these
+    // have.
+    double const share = irregular.weight * mask.faceWeight / plain.faceWeight;
+    mask.faceWeight += share * (full.faceWeight - plain.faceWeight);
+    mask.weights[mask.numSources - 1] += share * (full.vertexWeight - plain.vertexWeight);
+    return mask;
 }
 
 auto RefinementMask::sharpMask(SharpVertex const &sharp) -> VertexMask {
@@ -104,8 +178,8 @@ auto RefinementMask::sharpMask(SharpVertex const &sharp) -> VertexMask {
     return mask;
 }
 
-std::vector<Far::Index> RefinementMask::FindFeatureFaces() const {
-    if (!_hasFeatures) {
+std::vector<Far::Index> RefinementMask::FindSharpFaces() const {
+    if (!_hasSharpFaces) {
         return {};
     }
     std::vector<Index> faces(_level.halfFaces.begin(), _level.halfFaces.end());
@@ -130,6 +204,12 @@ std::vector<Far::Index> RefinementMask::FindFeatureVertices() const {
         for (SharpVertex const &sharp : _level.sharpVerts) {
             verts.push_back(sharp.vert);
         }
+    }
+    if (_hasIrregular) {
+        for (IrregularVertex const &irregular : _level.irregularVerts) {
+            verts.push_back(irregular.vert);
+        }
+        SortUnique(verts);
     }
     return verts;
 }

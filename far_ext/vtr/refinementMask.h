@@ -36,11 +36,10 @@ public:
 
     VertexMask GetVertexMask(Index vert) const {
         SharpVertex const *sharp = _hasSharpVertices ? _level.FindSharpVertex(vert) : nullptr;
-        if (sharp) {
-            return sharpMask(*sharp);
-        }
-        VertexVertexMask const mask = GetPlainVertexMask(_level.GetNumVertexFaces(vert));
-        return {mask.faceWeight, 1, {vert}, {mask.vertexWeight}};
+        VertexMask const mask = sharp ? sharpMask(*sharp) : plainMask(vert);
+        IrregularVertex const *irregular =
+            _hasIrregular ? _level.FindIrregularVertex(vert) : nullptr;
+        return irregular ? irregularMask(*irregular, mask) : mask;
     }
 
     /// @name The plain majority and the rest
@@ -54,10 +53,18 @@ public:
         return numFaces < kNumKept ? _plainVertexMasks[numFaces]
                                    : ComputeVertexVertexMask(_interpolation, numFaces);
     }
-    bool IsFacePlain(Index face) const { return !_hasFeatures || !hasFeatures(face); }
-    /// All faces and vertices that are not plain, and perhaps some that are; ascending.
-    std::vector<Index> FindFeatureFaces() const;
+    bool IsFacePlain(Index face) const {
+        return !(_hasSharpFaces && isSharp(face)) && !(_hasIrregular && _areIrregular[face]);
+    }
+    /// All vertices that are not plain, and perhaps some that are; ascending.
     std::vector<Index> FindFeatureVertices() const;
+    /// Faces whose corners may all have weights of their own, since something is sharp there;
+    /// ascending.  Besides these only the irregular corners have.
+    std::vector<Index> FindSharpFaces() const;
+    OpenSubdiv::Vtr::ConstArray<IrregularCorner> GetIrregularCorners() const {
+        return {_level.irregularCorners.data(),
+                _hasIrregular ? int(_level.irregularCorners.size()) : 0};
+    }
     /// @}
 
 private:
@@ -66,18 +73,32 @@ private:
         return _faceMasks[faceSize].data() + faceSize - corner;
     }
 
+    VertexMask plainMask(Index vert) const {
+        VertexVertexMask const mask = GetPlainVertexMask(_level.GetNumVertexFaces(vert));
+        return {mask.faceWeight, 1, {vert}, {mask.vertexWeight}};
+    }
     static VertexMask sharpMask(SharpVertex const &sharp);
-    bool hasFeatures(Index face) const;
+    VertexMask irregularMask(IrregularVertex const &irregular, VertexMask mask) const;
+    bool isSharp(Index face) const;
     double const *featureWeights(Index face, int corner, std::vector<double> &scratch) const;
+    void addSharpWeights(Index face, int corner, std::vector<double> &weights) const;
+    void addIrregularWeights(Index face, int corner, std::vector<double> &weights) const;
+    void findIrregularMasks();
+    IrregularVertexMask const &getIrregularMask(Index numFaces) const;
 
     Level const &_level;
     FaceMask _faceMask;
-    bool _hasFeatures;
+    bool _hasSharpFaces;
     bool _hasSharpVertices;
+    bool _hasIrregular;
     Interpolation _interpolation;
     static constexpr int kNumKept = 8;
     VertexVertexMask _plainVertexMasks[kNumKept]; ///< by number of faces
     std::vector<std::vector<double>> _faceMasks;  ///< by face size
+
+    std::vector<bool> _areIrregular;                                    ///< by face
+    std::vector<std::pair<Index, IrregularVertexMask>> _irregularMasks; ///< by number of faces
+    double _quadNeighborWeights[HexIndexing::kNumEFaceCorners];
 
     // One row of weights per corner of a half face and of a hexagon with a sharp diagonal.
     double _halfFaceWeights[HexIndexing::kNumBoundaryEFaceCorners]

@@ -164,7 +164,7 @@ private:
 
 // The faces that need weights of their own, or exact access (see PreparedRefinement).
 std::vector<Index> findWeightedFaces(RefinementMask const &mask, Level const &parent) {
-    std::vector<Index> faces = mask.FindFeatureFaces();
+    std::vector<Index> faces = mask.FindSharpFaces();
     if (parent.numVertices > 0) {
         for (Index const face : parent.GetVertexFaces(parent.numVertices - 1)) {
             if (parent.GetFaceSize(face) <= kMaxUnrolledSize) {
@@ -193,6 +193,37 @@ std::vector<Index> findWeightedVertices(RefinementMask const &mask, Refinement c
         SortUnique(verts);
     }
     return verts;
+}
+
+// Groups the irregular corners of plain faces, and makes their weights.  Few faces have any: runs of
+// plain faces stay whole.
+void makeCorners(RefinementMask const &mask, Level const &parent,
+                 std::vector<Index> const &weightedFaces, std::vector<Group> const &groupOfTile,
+                 TileMap const &tileMap, PreparedRefinement &prepared) {
+    std::vector<WeightedCorner> corners;
+    std::vector<Group> groupOfCorners;
+    std::vector<double> scratch;
+    auto irregular = mask.GetIrregularCorners().begin();
+    auto const end = mask.GetIrregularCorners().end();
+    for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
+        for (; irregular != end && irregular->corner < parent.faceFirstCorner[run.end];
+             ++irregular) {
+            Index const face = parent.FindFaceOfCorner(irregular->corner);
+            if (std::binary_search(weightedFaces.begin(), weightedFaces.end(), face)) {
+                continue;
+            }
+            Index const first = parent.faceFirstCorner[std::size_t(face)];
+            Far::ConstIndexArray const verts = parent.GetFaceVertices(face);
+            corners.push_back(
+                {irregular->corner, verts.size(), verts.begin(), prepared.faceWeights.size()});
+            groupOfCorners.push_back(groupOfTile[run.tile]);
+            double const *const weights =
+                mask.GetFaceVertexWeights(face, irregular->corner - first, scratch);
+            prepared.faceWeights.insert(prepared.faceWeights.end(), weights,
+                                        weights + verts.size());
+        }
+    }
+    prepared.weightedCorners = makeGroups(corners, groupOfCorners, prepared.numTiles);
 }
 
 // Groups all faces of the level, and makes the weights of those that need their own.
@@ -224,6 +255,7 @@ void makeFaces(RefinementMask const &mask, Level const &parent,
     }
     prepared.weightedFaces = makeGroups(weighted, groupOfWeighted, prepared.numTiles);
     prepared.plainFaces = plain.Take(prepared.numTiles);
+    makeCorners(mask, parent, indices, groupOfTile, tileMap, prepared);
 }
 
 WeightedVertex makeWeightedVertex(RefinementMask const &mask, Refinement const &refinement,

@@ -41,6 +41,14 @@ struct WeightedFace {
     std::size_t firstWeight; ///< position in faceWeights
 };
 
+/// \brief A corner with weights of its own, in a face that is plain else: its F-vertex is made again.
+struct WeightedCorner {
+    Far::Index corner;
+    int size; ///< of the face
+    Far::Index const *verts;
+    std::size_t firstWeight; ///< position in faceWeights
+};
+
 /// \brief A vertex with weights of its own.
 struct WeightedVertex {
     Far::Index vert;
@@ -102,6 +110,7 @@ struct PreparedRefinement {
     // Of the parent, by tile.  The faces of a run are of one size, and all F-faces or none.
     Groups<IndexRun> plainFaces;
     Groups<WeightedFace> weightedFaces;
+    Groups<WeightedCorner> weightedCorners;
     std::vector<float> faceWeights;
 
     // Vertices of the parent that are F-vertices of all corners of a face of the level before it,

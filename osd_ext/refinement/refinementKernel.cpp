@@ -178,20 +178,31 @@ void refinePlainFace(PlainFaceMask const &mask, Elements<float const> const &src
     }
 }
 
+// The F-vertex of a corner with weights for the vertices of its face.
+template <class ACCESS>
+void refineWeightedCorner(float const *weights, Elements<float const> const &src,
+                          Index const *verts, int size, Elements<float> const &dst, Index corner) {
+    int j = 0;
+    while (weights[j] == 0) {
+        ++j;
+    }
+    auto point = Spread(weights[j]) * ACCESS::LoadExactly(src, verts[j]);
+    for (++j; j < size; ++j) {
+        // What weighs nothing has no part in the sign of a zero either.
+        if (weights[j] != 0) {
+            point = point + Spread(weights[j]) * ACCESS::LoadExactly(src, verts[j]);
+        }
+    }
+    ACCESS::StoreExactly(dst, corner, point);
+}
+
 // A face with a row of weights for each corner, rowStride floats apart.
 template <class ACCESS>
 void refineWeightedFace(float const *weights, std::ptrdiff_t rowStride,
                         Elements<float const> const &src, Index const *verts, int size,
                         Elements<float> const &dst, Index corner) {
     for (int i = 0; i < size; ++i, weights += rowStride) {
-        auto point = Spread(weights[0]) * ACCESS::LoadExactly(src, verts[0]);
-        for (int j = 1; j < size; ++j) {
-            // What weighs nothing has no part in the sign of a zero either.
-            if (weights[j] != 0) {
-                point = point + Spread(weights[j]) * ACCESS::LoadExactly(src, verts[j]);
-            }
-        }
-        ACCESS::StoreExactly(dst, corner + i, point);
+        refineWeightedCorner<ACCESS>(weights, src, verts, size, dst, corner + i);
     }
 }
 
@@ -433,6 +444,14 @@ struct FaceKernel {
                                        task.FVertices(), begin->corner);
         }
     }
+    static void Run(RefinementTask const &task, WeightedCorner const *begin,
+                    WeightedCorner const *end) {
+        for (; begin < end; ++begin) {
+            refineWeightedCorner<ACCESS>(task.refinement->faceWeights.data() + begin->firstWeight,
+                                         task.src, begin->verts, begin->size, task.FVertices(),
+                                         begin->corner);
+        }
+    }
 };
 template <class ACCESS>
 struct VertexKernel {
@@ -572,6 +591,7 @@ void RefineElements(std::vector<RefinementTask> const &tasks, int length) {
         forEachGroup(0, refinement.numTiles, [&](int tile) {
             runKernel<FaceKernel>(task, length, refinement.plainFaces, tile);
             runKernel<FaceKernel>(task, length, refinement.weightedFaces, tile);
+            runKernel<FaceKernel>(task, length, refinement.weightedCorners, tile);
             refineVertices(task, length, tile);
         });
         // Their F-vertices are in several tiles, which are done by now.

@@ -134,8 +134,9 @@ TEST(Smoothness, CurvatureGrowsAsForetold) {
             HexSchemeOptions const scheme{mask, SchemeType::Hexagonal, false};
             Spectrum const spectrum =
                 ComputeSpectrum(MakeLocalSubdivision(scheme, CenterKind::Vertex, n));
+            // With Smooth it grows so slowly that what is bounded is still half of it.
             EXPECT_NEAR(findLastGrowth(measureTip(n, scheme, kLevel)),
-                        spectrum.GetCurvatureGrowth(), 0.06);
+                        spectrum.GetCurvatureGrowth(), mask == FaceMask::Smooth ? 0.08 : 0.06);
         }
     }
 }
@@ -164,10 +165,11 @@ TEST(Smoothness, TracedCurvature) {
                 EXPECT_LT(growth, 0.98 * (bounded[15] - bounded[14]));
             }
 
-            // ... and without, it grows at vertices with more than three faces.
+            // ... and without, it grows at vertices with more than three faces, with Smooth with more
+            // than seven, slowly.
             LocalSubdivision const vertex = MakeLocalSubdivision(
                 {mask, SchemeType::Hexagonal, false}, CenterKind::Vertex, order);
-            std::vector<double> const growing = TraceCurvature(vertex, 14);
+            std::vector<double> const growing = TraceCurvature(vertex, order < 8 ? 14 : 40);
             EXPECT_NEAR(findLastGrowth(growing), ComputeSpectrum(vertex).GetCurvatureGrowth(),
                         0.01);
         }

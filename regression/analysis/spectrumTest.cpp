@@ -170,8 +170,8 @@ TEST(Spectrum, SubdominantEigenvalues) {
         int order;
         double values[3]; // Average, Cosine, Smooth
     };
-    for (Row const &row : {Row{3, {0.4405, 0.5, 0.5}}, Row{4, {0.493, 0.562, 0.564}},
-                           Row{6, {0.535, 0.613, 0.615}}}) {
+    for (Row const &row : {Row{3, {0.4405, 0.5, 0.5}}, Row{4, {0.493, 0.562, 4.0 / 7}},
+                           Row{6, {0.535, 0.613, 1 / std::sqrt(3.0)}}}) {
         for (FaceMask mask : kMasks) {
             double const tolerance = row.order == 3 ? 5e-5 : 6e-4;
             EXPECT_NEAR(computeSubdominant(hexagonal(mask), CenterKind::Vertex, row.order),
@@ -203,7 +203,7 @@ TEST(Spectrum, LimitMasksOfVertices) {
                         {4,
                          {{.54009, .08305, .01123, .00917},
                           {.44159, .08765, .02004, .01127},
-                          {.43146, .09312, .01719, .01398}}}};
+                          {.391345, .126877, .012643, 0}}}};
     for (Row const &row : rows) {
         for (FaceMask mask : kMasks) {
             LocalSubdivision const vertex =
@@ -223,7 +223,8 @@ TEST(Spectrum, LimitMasksOfVertices) {
                 }
             }
             for (int i = 0; i < weights.size(); ++i) {
-                EXPECT_TRUE(isPrinted[i] || (weights(i) > 0 && weights(i) < 4e-4)) << weights(i);
+                EXPECT_TRUE(isPrinted[i] || (weights(i) > -1e-15 && weights(i) < 4e-4))
+                    << weights(i);
             }
         }
     }
@@ -309,10 +310,74 @@ TEST(Spectrum, TriHexFirstBoundsCurvature) {
     }
 }
 
-// Without it curvature is unbounded at vertices with more than three faces, and with Average also
-// at the regular ones.
+// Smooth's masks around irregular vertices: eigenvalues by frequency, and the limits that they give.
+TEST(Spectrum, IrregularVerticesOfSmooth) {
+    struct Row {
+        int order;
+        std::vector<double> eigenvalues[3]; // of frequencies 0, 1 and 2, some of them
+        double limit[3];                    // the vertex, each neighbour, each next to these
+        double p, f;                        // of the tangents
+    };
+    Row const rows[] = {
+        {4,
+         {{.326531, .135770}, {.571429, .137046, -.282612}, {.326531, -.326531, 0}},
+         {.391345, .126877, .012643},
+         .157311,
+         .140040},
+        {5,
+         {{.326531, .185297}, {.571429, .192956, -.250281}, {.326531, .126013, -.256173}},
+         {.457419, .101238, .003639},
+         .053506,
+         .126464},
+        {6, {{.333333, .25}, {.577350, .25, -.25}, {.333333, .25, -.25}}, {.5, 1 / 12.0, 0}, 0, 0},
+        {7,
+         {{.478894, .25}, {.692021, .25, -.25}, {.478894, .25, -.25}},
+         {.445042, .079280, 0},
+         0,
+         0}};
+    constexpr double kDigits = 6e-7;
+    for (Row const &row : rows) {
+        SCOPED_TRACE(row.order);
+        LocalSubdivision const vertex =
+            MakeLocalSubdivision(hexagonal(FaceMask::Smooth), CenterKind::Vertex, row.order);
+        Spectrum const spectrum = ComputeSpectrum(vertex);
+        EXPECT_NEAR(spectrum.subdominant, row.eigenvalues[1][0], kDigits);
+        EXPECT_NEAR(spectrum.next, spectrum.subdominant * spectrum.subdominant, 1e-12);
+        std::vector<Eigenvalue> const eigenvalues = ComputeEigenvalues(vertex);
+        for (int frequency = 0; frequency < 3; ++frequency) {
+            for (double expected : row.eigenvalues[frequency]) {
+                EXPECT_TRUE(std::any_of(eigenvalues.begin(), eigenvalues.end(),
+                                        [&](Eigenvalue const &eigenvalue) {
+                                            return eigenvalue.frequency == frequency &&
+                                                   std::abs(eigenvalue.value - expected) < kDigits;
+                                        }))
+                    << expected << ", frequency " << frequency;
+            }
+        }
+        // By place in a hexagon that begins at the vertex; the tangents as complex numbers.
+        Eigen::VectorXd limit = Eigen::VectorXd::Zero(vertex.GetNumVertices());
+        Eigen::VectorXcd tangent = Eigen::VectorXcd::Zero(vertex.GetNumVertices());
+        double const angle = 2 * kPi / row.order;
+        for (int i = 0; i < row.order; ++i) {
+            std::vector<int> const &face = vertex.faces[i];
+            limit(face[0]) = row.limit[0];
+            limit(face[1]) = row.limit[1];
+            limit(face[2]) = limit(face[4]) = row.limit[2];
+            tangent(face[1]) = std::polar(1.0, angle * i);
+            tangent(face[2]) = std::polar(row.p, angle * (i + 0.25) + row.f);
+            tangent(face[4]) = std::polar(row.p, angle * (i + 0.75) - row.f);
+        }
+        EXPECT_LT((ComputeLimitMask(vertex) - limit).cwiseAbs().maxCoeff(), kDigits);
+        std::complex<double> const factor = std::polar(spectrum.subdominant, -angle * vertex.turn);
+        EXPECT_LT((vertex.matrix.transpose() * tangent - factor * tangent).cwiseAbs().maxCoeff(),
+                  2 * kDigits);
+    }
+}
+
+// Without it curvature is unbounded at vertices with more than three faces, with Smooth with more
+// than seven, and with Average also at the regular ones.
 TEST(Spectrum, CurvatureGrowsAtVertices) {
-    for (FaceMask mask : kMasks) {
+    for (FaceMask mask : {FaceMask::Average, FaceMask::Cosine}) {
         double last = 1;
         for (int order = kMinOrder; order <= kMaxOrder; ++order) {
             Spectrum const spectrum =
@@ -324,6 +389,21 @@ TEST(Spectrum, CurvatureGrowsAtVertices) {
                 last = spectrum.GetCurvatureGrowth();
             }
             EXPECT_EQ(spectrum.nextFrequency, order == 3 ? 0 : 2);
+        }
+    }
+    double last = 1;
+    for (int order : {3, 4, 5, 6, 7, 8, 9, 10, 12, 16, 32, 64}) {
+        double const growth = ComputeSpectrum(MakeLocalSubdivision(hexagonal(FaceMask::Smooth),
+                                                                   CenterKind::Vertex, order))
+                                  .GetCurvatureGrowth();
+        if (order < 8) {
+            EXPECT_NEAR(growth, 1, 1e-9) << order;
+        } else {
+            EXPECT_GT(growth, last) << order;
+            last = growth;
+        }
+        if (order == 8 || order == 12 || order == 64) {
+            EXPECT_NEAR(growth, order == 8 ? 1.08 : order == 12 ? 1.21 : 1.30, 0.005);
         }
     }
 }

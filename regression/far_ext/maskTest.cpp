@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 namespace OpenSubdivHex::Regression {
 
@@ -164,6 +165,67 @@ TEST(Mask, VertexMask) {
         EXPECT_EQ(varying.vertexWeight, 1);
         EXPECT_EQ(varying.faceWeight, 0);
     }
+}
+
+// Smooth around irregular vertices: averages of what is there, the same from three steps on.
+TEST(Mask, IrregularVertices) {
+    for (int numFaces = FarExt::kMinIrregularFaces; numFaces <= 400; ++numFaces) {
+        for (int numSteps = 1; numSteps <= 5; ++numSteps) {
+            auto const mask = FarExt::ComputeIrregularVertexMask(numFaces, numSteps);
+            for (auto const &weights : {mask.atVertex, mask.atNeighbor}) {
+                EXPECT_NEAR(std::accumulate(weights, weights + 6, 0.0), 1, 1e-15);
+                EXPECT_GE(*std::min_element(weights, weights + 6), -1e-16) << numFaces;
+            }
+            for (int i = 1; i < 3; ++i) {
+                EXPECT_EQ(mask.atVertex[i], mask.atVertex[6 - i]);
+            }
+            EXPECT_NEAR(mask.vertex.vertexWeight + numFaces * mask.vertex.faceWeight, 1, 1e-15);
+            EXPECT_GE(mask.vertex.vertexWeight, 0);
+            EXPECT_GE(mask.vertex.faceWeight, 0);
+            if (numSteps > FarExt::kNumStepsToConstantMasks) {
+                auto const before = FarExt::ComputeIrregularVertexMask(numFaces, numSteps - 1);
+                EXPECT_EQ(mask.atVertex[0], before.atVertex[0]);
+                EXPECT_EQ(mask.atNeighbor[0], before.atNeighbor[0]);
+                EXPECT_EQ(mask.vertex.faceWeight, before.vertex.faceWeight);
+            }
+        }
+    }
+}
+
+// To the digits of the derivation: a, c1, a2 at the vertex, the weight of the faces in V'.
+TEST(Mask, IrregularVerticesByFaces) {
+    struct Row {
+        int numFaces;
+        double self, side, next, faces;
+    };
+    for (Row const &row :
+         {Row{4, .299888, .301130, .048926, .601633}, Row{5, .328654, .317734, .017939, .556553},
+          Row{6, 1 / 3.0, 1 / 3.0, 0, 0.5}, Row{7, .231914, .384043, 0, .376510},
+          Row{8, .23, .385, 0, 1 - .77 * (2 + std::sqrt(2.0)) / 4}}) {
+        auto const mask = FarExt::ComputeIrregularVertexMask(row.numFaces, 3);
+        EXPECT_NEAR(mask.atVertex[0], row.self, 6e-7) << row.numFaces;
+        EXPECT_NEAR(mask.atVertex[1], row.side, 6e-7);
+        EXPECT_NEAR(mask.atVertex[2], row.next, 6e-7);
+        EXPECT_EQ(mask.atVertex[3], 0);
+        EXPECT_NEAR(mask.vertex.faceWeight * row.numFaces, row.faces, 6e-7);
+        double const four[] = {14, 9, 0, 0, 5, 4};
+        double const more[] = {15, 8, 0, 0, 5, 4};
+        for (int i = 0; i < 6; ++i) {
+            EXPECT_EQ(32 * mask.atNeighbor[i], row.numFaces == 4 ? four[i] : more[i]);
+        }
+    }
+}
+
+TEST(Mask, BesideQuads) {
+    double weights[6];
+    for (int numSteps : {1, 2}) {
+        ASSERT_TRUE(FarExt::ComputeQuadNeighborMask(numSteps, weights));
+        EXPECT_EQ(std::accumulate(weights, weights + 6, 0.0), 1);
+        EXPECT_GE(*std::min_element(weights, weights + 6), 0);
+    }
+    double untouched = 7;
+    EXPECT_FALSE(FarExt::ComputeQuadNeighborMask(3, &untouched));
+    EXPECT_EQ(untouched, 7);
 }
 
 TEST(Mask, HalfFaceByHand) {

@@ -382,9 +382,9 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
         "With the paper's mask curvature grows without bound: at a regular vertex by " +
             FormatNumber(paperGrowth, 3) +
             " with every step.  With Cosine or Smooth it is bounded at regular vertices and at "
-            "all faces, and grows by up to " +
+            "all faces, with Smooth at vertices with up to seven faces, too, and grows by up to " +
             FormatNumber(smoothVertexGrowth, 2) +
-            " at vertices with up to 12 faces; with a tri-hex step first the factor is " +
+            " at those with up to 12; with a tri-hex step first the factor is " +
             FormatNumber(triHexFirstGrowth, 2) + " everywhere.");
 
     int const level = settings.solidLevel;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference.h"
 
+#include "irregularReference.h"
+
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -93,6 +95,54 @@ std::vector<VertexHandle> numberFVertices(ReferenceMesh const &mesh) {
     return fVertices;
 }
 
+/// The faces of a vertex if it is irregular, 0 if it is not: of four faces or more, all hexagons, in
+/// the interior, of a refined mesh.
+int irregularFaces(ReferenceMesh const &mesh, VertexHandle vertex) {
+    int count = 0;
+    for (FaceHandle face : mesh.vf_range(vertex)) {
+        if (mesh.valence(face) != 6) {
+            return 0;
+        }
+        ++count;
+    }
+    return mesh.numSteps > 0 && count >= 4 && !mesh.is_boundary(vertex) ? count : 0;
+}
+
+/// Whether across the edge from a corner is the smaller copy of a quad: quads made for edges are at
+/// boundaries.
+bool isBesideQuad(ReferenceMesh const &mesh, HalfedgeHandle corner) {
+    HalfedgeHandle const other = mesh.opposite_halfedge_handle(corner);
+    if (mesh.is_boundary(other)) {
+        return false;
+    }
+    FaceHandle const face = mesh.face_handle(other);
+    return mesh.numSteps > 0 && mesh.valence(face) == 4 && !mesh.is_boundary(face);
+}
+
+/// The rules of Smooth for hexagons that are beside a quad, or have an irregular vertex; quads come
+/// first.
+std::optional<Point> irregularPoint(ReferenceMesh const &mesh,
+                                    std::vector<HalfedgeHandle> const &corners,
+                                    std::vector<Point> const &points, int i) {
+    if (corners.size() != 6) {
+        return {};
+    }
+    for (int edge : {i, (i + 5) % 6}) {
+        if (isBesideQuad(mesh, corners[edge])) {
+            if (auto const point = NewPointBesideQuad(mesh.numSteps, points, i, edge)) {
+                return point;
+            }
+        }
+    }
+    for (int corner : {i, (i + 1) % 6, (i + 5) % 6}) {
+        int const numFaces = irregularFaces(mesh, mesh.from_vertex_handle(corners[corner]));
+        if (numFaces > 0) {
+            return NewIrregularPoint(MakeIrregularRule(numFaces, mesh.numSteps), points, i, corner);
+        }
+    }
+    return {};
+}
+
 /// Stage 1: a new point at each corner of each face, from the points of that face alone.
 template <typename NewPoint>
 void makeFVertices(ReferenceMesh const &mesh, ReferenceValues const &values,
@@ -105,15 +155,16 @@ void makeFVertices(ReferenceMesh const &mesh, ReferenceValues const &values,
             points.push_back(values.row(mesh.from_vertex_handle(corner).idx()));
         }
         for (int i = 0; i < int(corners.size()); ++i) {
-            result.row(fVertices[corners[i].idx()].idx()) = makePoint(points, i);
+            result.row(fVertices[corners[i].idx()].idx()) = makePoint(corners, points, i);
         }
     }
 }
 
-/// Stage 2: an old vertex moves to the average of itself and the new points around it.
+/// Stage 2: an old vertex moves to the average of itself and the new points around it, or in between
+/// as the rule of an irregular one says.
 Point movedVertex(ReferenceMesh const &mesh, ReferenceValues const &values,
                   std::vector<VertexHandle> const &fVertices, VertexHandle vertex,
-                  ReferenceValues const &newPoints) {
+                  ReferenceMask mask, ReferenceValues const &newPoints) {
     Point sum = values.row(vertex.idx());
     int numPoints = 1;
     for (auto it = mesh.cvoh_iter(vertex); it.is_valid(); ++it) {
@@ -121,6 +172,12 @@ Point movedVertex(ReferenceMesh const &mesh, ReferenceValues const &values,
             sum += newPoints.row(fVertices[it->idx()].idx());
             ++numPoints;
         }
+    }
+    int const numFaces = mask == ReferenceMask::Smooth ? irregularFaces(mesh, vertex) : 0;
+    if (numFaces > 0) {
+        double const weight = MakeIrregularRule(numFaces, mesh.numSteps).meanWeight;
+        Point const old = values.row(vertex.idx());
+        return (1 - weight) * old + weight / numFaces * (sum - old);
     }
     return sum / double(numPoints);
 }
@@ -232,6 +289,7 @@ ReferenceValues GetPoints(ReferenceMesh const &mesh) {
 
 ReferenceLevel Refine(ReferenceMesh const &mesh, ReferenceMask mask) {
     ReferenceLevel child;
+    child.mesh.numSteps = mesh.numSteps + 1;
     std::vector<VertexHandle> const fVertices = numberFVertices(mesh);
     std::size_t const numFVertices = countCorners(mesh);
     child.vertexOrigins.resize(numFVertices + mesh.n_vertices());
@@ -258,14 +316,17 @@ ReferenceValues Interpolate(ReferenceMesh const &mesh, ReferenceLevel const &chi
                             ReferenceMask mask, ReferenceValues const &values) {
     ReferenceValues result(child.vertexOrigins.size(), values.cols());
     std::vector<VertexHandle> const fVertices = numberFVertices(mesh);
-    auto const makePoint = [mask](std::vector<Point> const &face, int i) {
-        return NewPoint(mask, face, i);
+    auto const makePoint = [&](std::vector<HalfedgeHandle> const &corners,
+                               std::vector<Point> const &face, int i) {
+        std::optional<Point> const point =
+            mask == ReferenceMask::Smooth ? irregularPoint(mesh, corners, face, i) : std::nullopt;
+        return point ? *point : NewPoint(mask, face, i);
     };
     makeFVertices(mesh, values, fVertices, makePoint, result);
     std::size_t const numFVertices = countCorners(mesh);
     for (VertexHandle v : mesh.vertices()) {
         result.row(vVertex(numFVertices, v).idx()) =
-            movedVertex(mesh, values, fVertices, v, result);
+            movedVertex(mesh, values, fVertices, v, mask, result);
     }
     return result;
 }
@@ -273,7 +334,9 @@ ReferenceValues Interpolate(ReferenceMesh const &mesh, ReferenceLevel const &chi
 ReferenceValues InterpolateVarying(ReferenceMesh const &mesh, ReferenceLevel const &child,
                                    ReferenceValues const &values) {
     ReferenceValues result(child.vertexOrigins.size(), values.cols());
-    makeFVertices(mesh, values, numberFVertices(mesh), NewVaryingPoint, result);
+    auto const makePoint = [](std::vector<HalfedgeHandle> const &, std::vector<Point> const &face,
+                              int i) { return NewVaryingPoint(face, i); };
+    makeFVertices(mesh, values, numberFVertices(mesh), makePoint, result);
     std::size_t const numFVertices = countCorners(mesh);
     for (VertexHandle v : mesh.vertices()) {
         result.row(vVertex(numFVertices, v).idx()) = values.row(v.idx());

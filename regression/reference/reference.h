@@ -16,7 +16,9 @@ struct ReferenceTraits : OpenMesh::DefaultTraits {
 };
 
 /// A polygon mesh with positions in double precision.
-using ReferenceMesh = OpenMesh::PolyMesh_ArrayKernelT<ReferenceTraits>;
+struct ReferenceMesh : OpenMesh::PolyMesh_ArrayKernelT<ReferenceTraits> {
+    int numSteps = 0; ///< that made it
+};
 
 /// Values of any width, one row per vertex.
 using ReferenceValues = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "taggedReference.h"
 
+#include "irregularReference.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -376,6 +378,7 @@ public:
         _child.chaikin = parent.chaikin;
         _child.freeBoundaries = parent.freeBoundaries;
         _child.madeBy = step.scheme;
+        _child.numHexagonalSteps = isHexagonal() ? parent.numHexagonalSteps + 1 : 0;
     }
 
     TaggedMesh Run() {
@@ -786,12 +789,101 @@ Pulls findPulls(TaggedMesh const &mesh, ReferenceMask mask) {
     return pulls;
 }
 
+/// What of a mesh follows the rules of Smooth for hexagons beside what is not of their lattice.
+class Irregularities {
+public:
+    explicit Irregularities(TaggedMesh const &mesh) : _mesh(mesh) {}
+
+    /// A vertex whose faces are four hexagons or more, each made for an edge.
+    struct Vertex {
+        int numFaces = 0;
+        double share = 0; ///< of its rule: what is left by the sharpest thing at it
+    };
+    /// Of no faces for others.
+    Vertex FindVertex(int vertex) const {
+        TaggedMesh::Vertex const &tags = _mesh.vertices[vertex];
+        double sharpness = tags.sharpness;
+        double size = 0;
+        for (Side corner : tags.corners) {
+            Face const &face = _mesh.faces[corner.face];
+            for (int place : {corner.place, previousPlace(face, corner.place)}) {
+                Edge const &edge = _mesh.edges[face.edges[place]];
+                sharpness = std::max(sharpness, double(edge.sharpness));
+                if (edge.sides.size() == 1) {
+                    return {};
+                }
+            }
+            if (!isMadeForEdge(corner.face) || (!face.isHalf && face.vertices.size() != 6)) {
+                return {};
+            }
+            size += face.isHalf ? 0.5 : 1;
+        }
+        bool const isIrregular = _mesh.numHexagonalSteps > 0 &&
+                                 _mesh.vertexOrigins[vertex].face < 0 && !tags.isNonManifold &&
+                                 size >= 4 && sharpness < 1;
+        return isIrregular ? Vertex{int(size), 1 - sharpness} : Vertex();
+    }
+
+    /// \brief \p plain, with the rules' share at corner \p i of a hexagon.
+    ///
+    /// \param hexagon    its points
+    /// \param corners    where its corners are in faces: in two halves, one of those on the line
+    /// \param sharpness  of the line between two halves, else 0
+    Point Apply(std::vector<Point> const &hexagon, std::vector<Side> const &corners,
+                double sharpness, int i, Point const &plain) const {
+        if (_mesh.numHexagonalSteps == 0 || !isMadeForEdge(corners[0].face)) {
+            return plain;
+        }
+        for (int edge : {i, (i + 5) % 6}) {
+            if (isQuad(across(corners[edge]))) {
+                double const share = std::max(0.0, 1 - sharpness);
+                if (auto const point =
+                        NewPointBesideQuad(_mesh.numHexagonalSteps, hexagon, i, edge)) {
+                    return share > 0 ? Point(share * *point + (1 - share) * plain) : plain;
+                }
+            }
+        }
+        for (int corner : {i, (i + 1) % 6, (i + 5) % 6}) {
+            Vertex const vertex = FindVertex(_mesh.GetStart(corners[corner]));
+            if (vertex.numFaces > 0) {
+                IrregularRule const rule =
+                    MakeIrregularRule(vertex.numFaces, _mesh.numHexagonalSteps);
+                return vertex.share * NewIrregularPoint(rule, hexagon, i, corner) +
+                       (1 - vertex.share) * plain;
+            }
+        }
+        return plain;
+    }
+
+private:
+    bool isMadeForEdge(int face) const {
+        return !_mesh.faceOrigins.empty() && _mesh.faceOrigins[face].edge >= 0;
+    }
+    /// The face on the other side of the edge that starts at a corner, or -1.
+    int across(Side corner) const {
+        Edge const &edge = _mesh.edges[_mesh.faces[corner.face].edges[corner.place]];
+        if (edge.sides.size() == 1) {
+            return -1;
+        }
+        bool const isFirst =
+            edge.sides[0].face == corner.face && edge.sides[0].place == corner.place;
+        return edge.sides[isFirst ? 1 : 0].face;
+    }
+    /// The smaller copy of a quad.
+    bool isQuad(int face) const {
+        return face >= 0 && _mesh.faceOrigins[face].face >= 0 && !_mesh.faces[face].isHalf &&
+               _mesh.faces[face].vertices.size() == 4;
+    }
+
+    TaggedMesh const &_mesh;
+};
+
 class Interpolation {
 public:
     Interpolation(TaggedMesh const &mesh, TaggedMesh const &child, ReferenceMask mask,
                   bool isVarying, ReferenceValues const &values)
         : _mesh(mesh), _child(child), _mask(mask), _isVarying(isVarying), _values(values),
-          _result(child.vertexOrigins.size(), values.cols()) {}
+          _irregularities(mesh), _result(child.vertexOrigins.size(), values.cols()) {}
 
     ReferenceValues Run() {
         bool const isPlain = _isVarying || _child.madeBy != ReferenceScheme::Hexagonal;
@@ -835,8 +927,16 @@ private:
             return edgePoint(pointsOf(face.vertices), corner.place);
         }
         if (!face.isHalf) {
-            return towards * vertex +
-                   (1 - towards) * maskPoint(pointsOf(face.vertices), corner.place);
+            std::vector<Point> const points = pointsOf(face.vertices);
+            Point const plain = towards * vertex + (1 - towards) * maskPoint(points, corner.place);
+            if (!hasIrregularRules() || points.size() != 6) {
+                return plain;
+            }
+            std::vector<Side> corners;
+            for (int i = 0; i < 6; ++i) {
+                corners.push_back({corner.face, i});
+            }
+            return _irregularities.Apply(points, corners, 0, corner.place, plain);
         }
         Edge const &line = _mesh.edges[face.edges[0]];
         if (line.sides.size() == 1) {
@@ -851,8 +951,21 @@ private:
         int const places[] = {0, 3, 4, 5};
         Point const smooth = maskPoint(hexagon, places[corner.place]);
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
-        return sharp * halfPoint(face, corner.place) + towards * vertex +
-               (1 - sharp - towards) * smooth;
+        Point const plain = sharp * halfPoint(face, corner.place) + towards * vertex +
+                            (1 - sharp - towards) * smooth;
+        if (!hasIrregularRules()) {
+            return plain;
+        }
+        int const self = corner.face;
+        int const partner = line.sides[isFirst ? 1 : 0].face;
+        return _irregularities.Apply(
+            hexagon, {{partner, 1}, {partner, 2}, {partner, 3}, {self, 1}, {self, 2}, {self, 3}},
+            line.sharpness, places[corner.place], plain);
+    }
+
+    bool hasIrregularRules() const {
+        return !_isVarying && _mask == ReferenceMask::Smooth &&
+               _child.madeBy == ReferenceScheme::Hexagonal;
     }
 
     /// Beside the edge that starts at a corner.
@@ -890,7 +1003,18 @@ private:
         for (int vertex : around) {
             sum += _result.row(vertex);
         }
-        return sum / double(around.size() + 1);
+        Point const plain = sum / double(around.size() + 1);
+        Irregularities::Vertex const irregular =
+            hasIrregularRules() ? _irregularities.FindVertex(v) : Irregularities::Vertex();
+        if (irregular.numFaces == 0) {
+            return plain;
+        }
+        double const weight =
+            MakeIrregularRule(irregular.numFaces, _mesh.numHexagonalSteps).meanWeight;
+        Point const old = _values.row(v);
+        Point const mean = (sum - old) / double(around.size());
+        return irregular.share * ((1 - weight) * old + weight * mean) +
+               (1 - irregular.share) * plain;
     }
 
     Point creaseVertex(int v, SharpEdge a, SharpEdge b) const {
@@ -957,6 +1081,7 @@ private:
     ReferenceMask _mask;
     bool _isVarying;
     ReferenceValues const &_values;
+    Irregularities const _irregularities;
     ReferenceValues _result;
 };
 

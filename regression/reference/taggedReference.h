@@ -68,6 +68,7 @@ struct TaggedMesh {
 
     // Of a refined mesh.
     ReferenceScheme madeBy = ReferenceScheme::Hexagonal;
+    int numHexagonalSteps = 0; ///< that made it, behind the last step of another scheme
     std::vector<VertexOrigin> vertexOrigins;
     std::vector<int> vVertices;              ///< the child of each parent vertex, or -1
     std::vector<std::vector<int>> fVertices; ///< the new vertex of each corner of each parent face

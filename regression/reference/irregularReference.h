@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_REFERENCE_IRREGULAR_REFERENCE_H
+#define OPENSUBDIVHEX_REGRESSION_REFERENCE_IRREGULAR_REFERENCE_H
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+/// \brief The rules of the mask Smooth around a vertex where four hexagons or more meet, at a level
+/// that some hexagonal steps made.
+///
+/// The vertices of a hexagon are named from the vertex on: V, N, A, B, C, M.
+struct IrregularRule {
+    double ofV[6];     ///< the new point beside V: weights of V, N, A, B, C, M
+    double ofN[6];     ///< that beside N: of V, N, A, B, C, M; beside M it is mirrored
+    double meanWeight; ///< V' = (1 - meanWeight) V + meanWeight (mean of the new points beside V)
+};
+
+/// Of a vertex with \p numFaces hexagons, four or more, at a level made by \p numSteps steps, one or
+/// more.
+IrregularRule MakeIrregularRule(int numFaces, int numSteps);
+
+/// \brief The new point beside corner \p i of a hexagon, from the values at its corners.
+///
+/// \param vertex  the corner, \p i or one next to it, where the rule's vertex is
+Eigen::RowVectorXd NewIrregularPoint(IrregularRule const &rule,
+                                     std::vector<Eigen::RowVectorXd> const &face, int i,
+                                     int vertex);
+
+/// \brief The new point beside corner \p i of a hexagon that has a quad across the edge from corner
+/// \p edge, i or the one before, to the next.
+///
+/// \return  nothing where the level has no such rule
+std::optional<Eigen::RowVectorXd>
+NewPointBesideQuad(int numSteps, std::vector<Eigen::RowVectorXd> const &face, int i, int edge);
+
+} // namespace OpenSubdivHex::Regression
+
+#endif
