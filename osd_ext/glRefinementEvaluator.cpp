@@ -402,6 +402,8 @@ void GLRefinementEvaluator::Impl::refine(std::size_t number, Elements const &src
         dispatch(program, run.count);
     }
     if (!refinement.corners.empty()) {
+        // Some corners are made again behind the runs that they are in.
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
         Program const &program = useWith(Kernel::Corners, 0);
         program.Set("firstIndex", _places[number].corners);
         dispatch(program, std::uint32_t(refinement.corners.size()));

@@ -61,9 +61,10 @@ public:
     /// Faces whose corners may all have weights of their own, since something is sharp there;
     /// ascending.  Besides these only the irregular corners have.
     std::vector<Index> FindSharpFaces() const;
-    OpenSubdiv::Vtr::ConstArray<IrregularCorner> GetIrregularCorners() const {
-        return {_level.irregularCorners.data(),
-                _hasIrregular ? int(_level.irregularCorners.size()) : 0};
+    /// Those from \p begin to \p end - 1.
+    OpenSubdiv::Vtr::ConstArray<IrregularCorner> GetIrregularCorners(Index begin, Index end) const {
+        return _hasIrregular ? _level.GetIrregularCorners(begin, end)
+                             : OpenSubdiv::Vtr::ConstArray<IrregularCorner>();
     }
     /// @}
 

@@ -67,6 +67,8 @@ private:
     void planVertices();
     void addRun(Range const &range);
     void listFace(Index face);
+    void listIrregularCorners(Range const &run);
+    std::uint32_t takeIndicesOf(Index face);
     void listVertex(Index vert);
     void fill(std::int32_t *indices) const;
 
@@ -113,7 +115,7 @@ void Maker::planFaces() {
     Index const numFFaces = _before && _level.isHexagonal ? _level.numFFaces : 0;
     std::vector<Range> ranges;
     ForEachRun(
-        0, _level.numFaces, _mask.FindFeatureFaces(),
+        0, _level.numFaces, _mask.FindSharpFaces(),
         [&](Index begin, Index end, Index) {
             for (Index face = begin; face < end; ++face) {
                 append(ranges, {face, face + 1, _level.GetFaceSize(face)}, numFFaces);
@@ -141,14 +143,40 @@ void Maker::addRun(Range const &range) {
     _result.faceRuns.push_back({range.size, std::uint32_t(range.end - range.begin),
                                 std::uint32_t(firstCorner), areConsecutive, first,
                                 getPlainWeights(range.size)});
+    listIrregularCorners(range);
+}
+
+// Behind runs, which make all F-vertices of their faces: these few again.
+void Maker::listIrregularCorners(Range const &run) {
+    Index const firstCorner = _level.faceFirstCorner[std::size_t(run.begin)];
+    Index const endCorner = _level.faceFirstCorner[std::size_t(run.end)];
+    Index endOfFace = firstCorner;
+    std::uint32_t firstIndex = 0;
+    for (FarExt::internal::IrregularCorner const &irregular :
+         _mask.GetIrregularCorners(firstCorner, endCorner)) {
+        Index const corner = irregular.corner;
+        if (corner >= endOfFace) {
+            Index const face = _level.FindFaceOfCorner(corner);
+            endOfFace = _level.faceFirstCorner[std::size_t(face) + 1];
+            firstIndex = takeIndicesOf(face);
+        }
+        double const *const weights = _mask.GetFaceVertexWeights(
+            _listedFaces.back(), corner - (endOfFace - run.size), _scratch);
+        _result.corners.push_back({std::uint32_t(corner), std::uint32_t(run.size), firstIndex,
+                                   addWeights(weights, run.size)});
+    }
+}
+
+std::uint32_t Maker::takeIndicesOf(Index face) {
+    _listedFaces.push_back(face);
+    _firstIndices.push_back(takeIndices(std::size_t(_level.GetFaceSize(face))));
+    return _firstIndices.back();
 }
 
 void Maker::listFace(Index face) {
     int const size = _level.GetFaceSize(face);
     Index const firstCorner = _level.faceFirstCorner[std::size_t(face)];
-    std::uint32_t const firstIndex = takeIndices(std::size_t(size));
-    _listedFaces.push_back(face);
-    _firstIndices.push_back(firstIndex);
+    std::uint32_t const firstIndex = takeIndicesOf(face);
     bool const isPlain = _mask.IsFacePlain(face);
     for (int i = 0; i < size; ++i) {
         std::uint32_t const firstWeight =

@@ -61,13 +61,14 @@ struct DeviceVertex {
 ///
 /// Nearly all faces and vertices of a refined level are in runs.  There, indices take 24 bytes for
 /// each face of the parent that is no F-face, and 12 for each of its vertices: together about 5
-/// bytes for a vertex that is made.  All others are listed, in \c corners and \c vertices.
+/// bytes for a vertex that is made.  All others are listed, in \c corners and \c vertices, and so are
+/// the irregular corners of faces in runs.
 struct DeviceRefinement {
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
     Far::Index numVertices = 0;  ///< of the child
 
     std::vector<DeviceFaceRun> faceRuns;
-    std::vector<DeviceCorner> corners;
+    std::vector<DeviceCorner> corners; ///< some of them in runs: these come behind those
     std::vector<DeviceVertexRun> vertexRuns;
     std::vector<DeviceVertex> vertices;
     float vertexWeight = 1;    ///< of vertices in runs, and of each F-vertex around them ...

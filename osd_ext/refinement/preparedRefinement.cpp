@@ -203,11 +203,11 @@ void makeCorners(RefinementMask const &mask, Level const &parent,
     std::vector<WeightedCorner> corners;
     std::vector<Group> groupOfCorners;
     std::vector<double> scratch;
-    auto irregular = mask.GetIrregularCorners().begin();
-    auto const end = mask.GetIrregularCorners().end();
+    auto const irregulars = mask.GetIrregularCorners(0, parent.numCorners);
+    auto irregular = irregulars.begin();
     for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
-        for (; irregular != end && irregular->corner < parent.faceFirstCorner[run.end];
-             ++irregular) {
+        Index const end = parent.faceFirstCorner[std::size_t(run.end)];
+        for (; irregular != irregulars.end() && irregular->corner < end; ++irregular) {
             Index const face = parent.FindFaceOfCorner(irregular->corner);
             if (std::binary_search(weightedFaces.begin(), weightedFaces.end(), face)) {
                 continue;
