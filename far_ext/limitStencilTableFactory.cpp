@@ -4,6 +4,7 @@
 #include "stencilTableFactory.h"
 
 #include "far_ext/limit/limitMultiplier.h"
+#include "far_ext/limit/regularFaces.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
 
@@ -11,6 +12,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 namespace OpenSubdivHex::FarExt {
 
@@ -20,6 +22,9 @@ using internal::Level;
 using internal::LimitMask;
 using internal::LimitRow;
 using internal::LimitRows;
+using internal::RegularFace;
+using internal::RegularFaces;
+using internal::SourceStencils;
 
 LimitSides::LimitSides(TopologyLevel const &level) : _numVertices(level.GetNumVertices()) {
     internal::Level const &topology = level.GetLevel();
@@ -155,16 +160,18 @@ private:
     Index const _numSides;
 };
 
-// Cuts the rows of a table into groups whose rows are near one another: the F-vertices that the
-// steps before made of the same face.
-std::vector<Index> makeGroups(internal::MeshLevels const &mesh, int level, Index numVertexRows,
-                              Index numRows) {
-    std::vector<Index> firsts;
-    auto const add = [&](Index begin, Index end) {
-        for (Index row = begin; row < end; row += internal::kMaxLimitRows) {
-            firsts.push_back(row);
-        }
-    };
+// Rows of a table that are near one another, up to the first one of the next group.
+struct RowGroup {
+    Index first;
+    int level;               ///< of the face
+    RegularFace const *face; ///< whose F-vertices' rows they are, or null
+};
+
+// Cuts the rows of a table into groups: the F-vertices that the steps before made of the same face.
+std::vector<RowGroup> makeGroups(internal::MeshLevels const &mesh, int level, Index numVertexRows,
+                                 Index numRows,
+                                 std::vector<RegularFaces::OfLevel> const &regularLevels) {
+    std::vector<RowGroup> groups;
     // Vertices are numbered as those of the levels before, as far as all of these make V-vertices.
     int firstLevel = level;
     while (firstLevel > 0 && mesh.levels[std::size_t(firstLevel)].numVVertices ==
@@ -173,23 +180,57 @@ std::vector<Index> makeGroups(internal::MeshLevels const &mesh, int level, Index
     }
     Index const numFirst =
         std::min(numVertexRows, mesh.levels[std::size_t(firstLevel)].numVertices);
+    groups.reserve(std::size_t(numFirst) + 1);
     for (Index row = 0; row < numFirst; ++row) {
-        firsts.push_back(row);
+        groups.push_back({row, level, nullptr});
     }
     for (int child = firstLevel + 1; child <= level && numVertexRows > 0; ++child) {
-        Level const &parent = mesh.levels[std::size_t(child) - 1];
+        auto const number = std::size_t(child) - 1;
+        Level const &parent = mesh.levels[number];
+        std::size_t next = 0; // of the regular faces
         for (Index face = 0; face < parent.numFaces; ++face) {
-            add(parent.numVertices + parent.faceFirstCorner[face],
-                parent.numVertices + parent.faceFirstCorner[face + 1]);
+            Index const begin = parent.faceFirstCorner[face];
+            Index const end = parent.faceFirstCorner[face + 1];
+            if (number < regularLevels.size() && next < regularLevels[number].faces.size() &&
+                regularLevels[number].faces[next].firstCorner == begin) {
+                groups.push_back(
+                    {parent.numVertices + begin, child - 1, &regularLevels[number].faces[next++]});
+                continue;
+            }
+            for (Index corner = begin; corner < end; corner += internal::kMaxLimitRows) {
+                groups.push_back({parent.numVertices + corner, level, nullptr});
+            }
         }
     }
     Index const numVertices = mesh.levels[std::size_t(level)].numVertices;
     for (Index row = std::min(numVertexRows, numVertices); row < numRows; ++row) {
-        firsts.push_back(row);
+        groups.push_back({row, level, nullptr});
     }
-    firsts.push_back(numRows);
-    return firsts;
+    groups.push_back({numRows, level, nullptr});
+    return groups;
 }
+
+// The rows of regular faces by level.
+struct RegularRows {
+    struct OfLevel {
+        Level const *level;
+        Index firstSource; ///< among the stencils of the levels before, those of vertex 0
+        internal::RegularFaceRows rows;
+    };
+
+    RegularRows(internal::MeshLevels const &mesh,
+                std::vector<RegularFaces::OfLevel> const &regularLevels) {
+        Index firstSource = 0;
+        for (std::size_t i = 0; i < regularLevels.size(); ++i) {
+            Level const &level = mesh.levels[i];
+            levels.push_back(
+                {&level, firstSource, internal::RegularFaceRows(regularLevels[i].mask)});
+            firstSource += level.numVertices;
+        }
+    }
+
+    std::vector<OfLevel> levels;
+};
 
 // Makes a table of rows: first the sizes of all stencils, then the stencils.
 template <typename REAL>
@@ -199,11 +240,11 @@ class TableBuilder {
     using RowBits = typename Multiplier::RowBits;
 
 public:
-    TableBuilder(PointRows const &rows, std::vector<Index> const &groups,
-                 Far::StencilTableReal<double> const *stencils, Index numVertices, Index numIndices,
-                 bool hasDerivatives)
-        : _rows(rows), _groups(groups), _stencils(stencils), _numVertices(numVertices),
-          _numIndices(numIndices), _hasDerivatives(hasDerivatives),
+    TableBuilder(PointRows const &rows, std::vector<RowGroup> const &groups,
+                 RegularRows regularRows, SourceStencils const &stencils, Index numSources,
+                 Index numIndices, bool hasDerivatives)
+        : _rows(rows), _groups(groups), _regularRows(std::move(regularRows)), _stencils(stencils),
+          _numSources(numSources), _numIndices(numIndices), _hasDerivatives(hasDerivatives),
           _table(new WritableLimitTable<REAL>(numIndices)) {}
 
     Status Build(int level) {
@@ -215,7 +256,7 @@ public:
         forEachGroup([&](Multiplier &multiplier, Index group) {
             Columns const columns = multiplier.FindColumns();
             kept[std::size_t(group / kRange)].Add(columns);
-            int *const ofRows = sizes.data() + _groups[std::size_t(group)];
+            int *const ofRows = sizes.data() + _groups[std::size_t(group)].first;
             for (int row = 0; row < multiplier.GetNumRows(); ++row) {
                 ofRows[row] =
                     int(std::count_if(columns.rows, columns.rows + columns.size,
@@ -235,7 +276,7 @@ public:
         forEachGroup([&](Multiplier &multiplier, Index group) {
             typename Multiplier::Place places[internal::kMaxLimitRows];
             for (int row = 0; row < multiplier.GetNumRows(); ++row) {
-                places[row] = _table->GetPlace(_groups[std::size_t(group)] + row);
+                places[row] = _table->GetPlace(_groups[std::size_t(group)].first + row);
             }
             multiplier.Fill(kept[std::size_t(group / kRange)].Get(group % kRange), places);
         });
@@ -265,27 +306,42 @@ private:
         std::vector<RowBits> rows;
     };
 
+    // What a thread makes rows with.
+    struct State {
+        Multiplier multiplier;
+        PointRows::Scratch scratch;
+    };
+
     Index getNumGroups() const { return Index(_groups.size()) - 1; }
+
+    void setRows(std::size_t number, State &state) {
+        state.multiplier.Clear();
+        RowGroup const &group = _groups[number];
+        if (group.face) {
+            RegularRows::OfLevel const &rows = _regularRows.levels[std::size_t(group.level)];
+            Index sources[internal::RegularFaceRows::kNumSources];
+            for (int corner = 0; corner < internal::kRegularFaceSize; ++corner) {
+                state.multiplier.AddRow(rows.rows.GetRow(*rows.level, *group.face, corner, sources),
+                                        rows.firstSource);
+            }
+            return;
+        }
+        for (Index row = group.first; row < _groups[number + 1].first; ++row) {
+            state.multiplier.AddRow(_rows.GetRow(row, state.scratch), _stencils.GetNumBefore());
+        }
+    }
 
     // Calls function(multiplier, group) for each group, whose rows the multiplier has.
     template <typename FUNCTION>
     void forEachGroup(FUNCTION function) {
-        struct State {
-            Multiplier multiplier;
-            PointRows::Scratch scratch;
-        };
         internal::ParallelForRange(
             getNumGroups(),
             [&] {
-                return State{Multiplier(_stencils, _numVertices, _numIndices, _hasDerivatives), {}};
+                return State{Multiplier(_stencils, _numSources, _numIndices, _hasDerivatives), {}};
             },
             [&](State &state, Index begin, Index end) {
                 for (Index group = begin; group < end; ++group) {
-                    state.multiplier.Clear();
-                    Index const last = _groups[std::size_t(group) + 1];
-                    for (Index row = _groups[std::size_t(group)]; row < last; ++row) {
-                        state.multiplier.AddRow(_rows.GetRow(row, state.scratch));
-                    }
+                    setRows(std::size_t(group), state);
                     function(state.multiplier, group);
                 }
             },
@@ -295,9 +351,10 @@ private:
     static constexpr Index kRange = 64; // groups, which take some microseconds each
 
     PointRows const &_rows;
-    std::vector<Index> const &_groups;
-    Far::StencilTableReal<double> const *const _stencils;
-    Index const _numVertices;
+    std::vector<RowGroup> const &_groups;
+    RegularRows const _regularRows;
+    SourceStencils const _stencils;
+    Index const _numSources;
     Index const _numIndices;
     bool const _hasDerivatives;
     std::unique_ptr<WritableLimitTable<REAL>> _table;
@@ -343,10 +400,18 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
     TopologyLevel const &topologyLevel = refiner.GetLevel(options.level);
     Level const &level = topologyLevel.GetLevel();
     HexSchemeOptions const schemeOptions = refiner.GetHexSchemeOptions();
+    internal::MeshLevels const &mesh = refiner.GetHierarchy().mesh;
+    bool const hasStencils = options.factorizeIntermediateLevels && options.level > 0;
     std::optional<LimitRows> vertexRows;
+    std::optional<RegularFaces> regularFaces;
     if (options.generateVertices) {
         vertexRows.emplace(level, refiner.GetSchemeOptions(), schemeOptions);
-        if (!internal::Report(vertexRows->Find(), status)) {
+        if (hasStencils) {
+            regularFaces.emplace(mesh, options.level);
+        }
+        Status const result =
+            regularFaces ? regularFaces->FindMasks(schemeOptions, *vertexRows) : vertexRows->Find();
+        if (!internal::Report(result, status)) {
             return nullptr;
         }
     }
@@ -365,22 +430,31 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
         return nullptr;
     }
 
-    std::unique_ptr<Far::StencilTableReal<double> const> stencils;
-    if (options.factorizeIntermediateLevels && options.level > 0) {
-        StencilTableFactoryReal<double>::Options levelOptions;
-        levelOptions.generateControlVerts = false;
-        levelOptions.generateIntermediateLevels = false;
-        levelOptions.maxLevel = options.level;
-        stencils = StencilTableFactoryReal<double>::Create(refiner, levelOptions, status);
-        if (!stencils) {
+    std::vector<RegularFaces::OfLevel> const noLevels;
+    auto const &regularLevels = regularFaces ? regularFaces->GetLevels() : noLevels;
+    bool const hasRegular =
+        std::any_of(regularLevels.begin(), regularLevels.end(),
+                    [](RegularFaces::OfLevel const &ofLevel) { return !ofLevel.faces.empty(); });
+    std::unique_ptr<Far::StencilTableReal<double> const>
+        tables[2]; // of the levels before, the last
+    for (int i = hasRegular ? 0 : 1; i < 2 && hasStencils; ++i) {
+        bool const isLast = i == 1;
+        StencilTableFactoryReal<double>::Options ofTable;
+        ofTable.generateControlVerts = !isLast;
+        ofTable.generateIntermediateLevels = !isLast;
+        ofTable.maxLevel = isLast ? options.level : options.level - 1;
+        tables[i] = StencilTableFactoryReal<double>::Create(refiner, ofTable, status);
+        if (!tables[i]) {
             return nullptr;
         }
     }
-    std::vector<Index> const groups =
-        makeGroups(refiner.GetHierarchy().mesh, options.level,
-                   options.generateVertices ? level.numVertices : 0, Index(rows.GetNumRows()));
-    TableBuilder<REAL> builder(rows, groups, stencils.get(), level.numVertices,
-                               refiner.GetLevel(stencils ? 0 : options.level).GetNumVertices(),
+    SourceStencils const stencils(tables[0].get(), tables[1].get());
+    std::vector<RowGroup> const groups =
+        makeGroups(mesh, options.level, options.generateVertices ? level.numVertices : 0,
+                   Index(rows.GetNumRows()), regularLevels);
+    TableBuilder<REAL> builder(rows, groups, RegularRows(mesh, regularLevels), stencils,
+                               stencils.GetNumBefore() + level.numVertices,
+                               refiner.GetLevel(hasStencils ? 0 : options.level).GetNumVertices(),
                                options.generate1stDerivatives);
     if (!internal::Report(builder.Build(options.level), status)) {
         return nullptr;

@@ -50,11 +50,11 @@ void LimitMultiplier<REAL>::Clear() {
     _firstTerms.clear();
     _terms.clear();
     _sources.clear();
-    beginRound(_numberOfVertex, _round);
+    beginRound(_numberOfSource, _round);
 }
 
 template <typename REAL>
-void LimitMultiplier<REAL>::AddRow(LimitRow const &row) {
+void LimitMultiplier<REAL>::AddRow(LimitRow const &row, Index firstSource) {
     auto const rowBit = RowBits(1u << _firstTerms.size());
     std::size_t const first = _terms.size();
     _firstTerms.push_back(int(first));
@@ -65,11 +65,11 @@ void LimitMultiplier<REAL>::AddRow(LimitRow const &row) {
         if (!isUsed) {
             continue;
         }
-        Index const vert = row.sources[i];
-        Entry &number = _numberOfVertex[std::size_t(vert)];
+        Index const source = firstSource + row.sources[i];
+        Entry &number = _numberOfSource[std::size_t(source)];
         if (number.round != _round) {
             number = {_round, int(_sources.size())};
-            _sources.push_back({vert, 0});
+            _sources.push_back({source, 0});
         }
         _sources[std::size_t(number.value)].rows |= rowBit;
         *term++ = {number.value, {REAL(row.weights[i]), REAL(row.du[i]), REAL(row.dv[i])}};
@@ -79,12 +79,11 @@ void LimitMultiplier<REAL>::AddRow(LimitRow const &row) {
 
 template <typename REAL>
 auto LimitMultiplier<REAL>::getList(Source const &source) const -> List {
-    if (!_stencils) {
-        return {&source.vert, 1, source.rows};
+    if (_stencils.IsEmpty()) {
+        return {&source.index, 1, source.rows};
     }
-    auto const vert = std::size_t(source.vert);
-    return {_stencils->GetControlIndices().data() + _stencils->GetOffsets()[vert],
-            _stencils->GetSizes()[vert], source.rows};
+    SourceStencils::Stencil const stencil = _stencils.Get(source.index);
+    return {stencil.indices, stencil.size, source.rows};
 }
 
 template <typename REAL>
@@ -117,10 +116,10 @@ void LimitMultiplier<REAL>::findLists() {
                    std::memcmp(known.indices, list.indices,
                                std::size_t(list.size) * sizeof(Index)) == 0;
         };
-        auto const end =
-            _stencils ? _lists.rbegin() +
-                            std::min<std::ptrdiff_t>(kNumCompared, std::ptrdiff_t(_lists.size()))
-                      : _lists.rbegin();
+        auto const end = _stencils.IsEmpty()
+                             ? _lists.rbegin()
+                             : _lists.rbegin() + std::min<std::ptrdiff_t>(
+                                                     kNumCompared, std::ptrdiff_t(_lists.size()));
         auto const known = std::find_if(_lists.rbegin(), end, isSame);
         if (known != end) {
             known->rows |= list.rows;
@@ -159,7 +158,7 @@ template <typename REAL>
 void LimitMultiplier<REAL>::makeDense(Columns const &columns) {
     auto const numColumns = std::size_t(columns.size);
     auto const getWeights = [&](Source const &source) {
-        return _stencils->GetWeights().data() + _stencils->GetOffsets()[std::size_t(source.vert)];
+        return _stencils.Get(source.index).weights;
     };
     auto const getColumn = [&](Index index) {
         return std::size_t(_columnOfIndex[std::size_t(index)].value);
@@ -196,8 +195,8 @@ template <typename REAL>
 void LimitMultiplier<REAL>::scatterTerms(int row, int numColumns) {
     std::fill(_sums.begin(), _sums.end(), REAL(0));
     for (Term const *term = getTerms(row); term != getTerms(row + 1); ++term) {
-        Index const vert = _sources[std::size_t(term->source)].vert;
-        REAL *const sums = _sums.data() + _columnOfIndex[std::size_t(vert)].value;
+        Index const index = _sources[std::size_t(term->source)].index;
+        REAL *const sums = _sums.data() + _columnOfIndex[std::size_t(index)].value;
         for (int sum = 0; sum < kNumSums; ++sum) {
             sums[sum * std::ptrdiff_t(roundUp(numColumns))] += term->factors[sum];
         }
@@ -259,11 +258,11 @@ void LimitMultiplier<REAL>::Fill(Columns const &columns, Place const *places) {
         _columnOfIndex[std::size_t(columns.indices[i])].value = i;
     }
     _sums.resize(kNumSums * std::size_t(roundUp(columns.size)));
-    if (_stencils) {
+    if (!_stencils.IsEmpty()) {
         makeDense(columns);
     }
     for (int row = 0; row < GetNumRows(); ++row) {
-        if (!_stencils) {
+        if (_stencils.IsEmpty()) {
             scatterTerms(row, columns.size);
         } else if (_hasDerivatives) {
             sumTerms<kNumSums>(row, columns.size);

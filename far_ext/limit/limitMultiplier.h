@@ -13,7 +13,51 @@ namespace OpenSubdivHex::FarExt::internal {
 /// Rows that a LimitMultiplier has at most.
 inline constexpr int kMaxLimitRows = 8;
 
-/// \brief Multiplies limit rows by the stencils of their level, some rows at a time that are near
+/// \brief The stencils of sources: those of the levels before one, level by level from the control
+/// vertices on, then those of the vertices of the level.  Either table may be null.
+class SourceStencils {
+public:
+    using Table = Far::StencilTableReal<double>;
+
+    struct Stencil {
+        Far::Index const *indices;
+        double const *weights;
+        int size;
+    };
+
+    SourceStencils(Table const *before, Table const *last)
+        : _tables{getArrays(before), getArrays(last)},
+          _numBefore(before ? before->GetNumStencils() : 0), _isEmpty(!before && !last) {}
+
+    bool IsEmpty() const { return _isEmpty; }
+    Far::Index GetNumBefore() const { return _numBefore; }
+    Stencil Get(Far::Index source) const {
+        bool const isBefore = source < _numBefore;
+        Arrays const &table = _tables[isBefore ? 0 : 1];
+        Far::Index const row = isBefore ? source : source - _numBefore;
+        Far::Index const offset = table.offsets[row];
+        return {table.indices + offset, table.weights + offset, table.sizes[row]};
+    }
+
+private:
+    struct Arrays {
+        int const *sizes;
+        Far::Index const *offsets;
+        Far::Index const *indices;
+        double const *weights;
+    };
+    static Arrays getArrays(Table const *table) {
+        return table ? Arrays{table->GetSizes().data(), table->GetOffsets().data(),
+                              table->GetControlIndices().data(), table->GetWeights().data()}
+                     : Arrays{};
+    }
+
+    Arrays _tables[2];
+    Far::Index _numBefore;
+    bool _isEmpty;
+};
+
+/// \brief Multiplies limit rows by the stencils of their sources, some rows at a time that are near
 /// one another: these have most sources in common, and sources mostly have the same indices.
 /// Without stencils, sources are the indices.
 ///
@@ -35,19 +79,21 @@ public:
         int size;
     };
 
-    /// \param stencils        of the vertices of the level, or null
-    /// \param numVertices     of the level
+    /// \param stencils        of the sources
+    /// \param numSources      more than any source
     /// \param numIndices      more than any index
     /// \param hasDerivatives  whether those are wanted
-    LimitMultiplier(Far::StencilTableReal<double> const *stencils, Index numVertices,
-                    Index numIndices, bool hasDerivatives)
+    LimitMultiplier(SourceStencils const &stencils, Index numSources, Index numIndices,
+                    bool hasDerivatives)
         : _stencils(stencils), _hasDerivatives(hasDerivatives),
-          _numberOfVertex(std::size_t(numVertices)), _columnOfIndex(std::size_t(numIndices)) {}
+          _numberOfSource(std::size_t(numSources)), _columnOfIndex(std::size_t(numIndices)) {}
 
     /// Forgets all rows.
     void Clear();
     /// Adds a row, of which nothing is referred to afterwards; kMaxLimitRows at most.
-    void AddRow(LimitRow const &row);
+    ///
+    /// \param firstSource  that of vertex 0 of the level whose vertices the row has
+    void AddRow(LimitRow const &row, Index firstSource);
     int GetNumRows() const { return int(_firstTerms.size()); }
 
     /// Valid until the next call.
@@ -76,7 +122,7 @@ private:
         REAL factors[kNumSums];
     };
     struct Source {
-        Index vert;
+        Index index;
         RowBits rows;
     };
     // The indices of a source's stencil, ascending.
@@ -99,13 +145,13 @@ private:
     void sumTerms(int row, int numColumns);
     void write(int row, Columns const &columns, Place const &place) const;
 
-    Far::StencilTableReal<double> const *const _stencils;
+    SourceStencils const _stencils;
     bool const _hasDerivatives;
 
     std::vector<int> _firstTerms; // by row
     std::vector<Term> _terms;     // of all rows in turn
     std::vector<Source> _sources;
-    std::vector<Entry> _numberOfVertex; // among the sources
+    std::vector<Entry> _numberOfSource; // among the sources of the rows
     unsigned _round = 0;
 
     std::vector<List> _lists;

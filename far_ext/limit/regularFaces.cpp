@@ -207,7 +207,50 @@ bool isRow(Level const &level, RegularFace const &face, RegularFaceMask const &m
     });
 }
 
+// Where the sources of a row begin, behind the vertices of the face.
+constexpr int kNeighbors = kSize;
+constexpr int kNext = 2 * kSize;
+constexpr int kPrevious = 3 * kSize;
+constexpr int kBeyond = 4 * kSize;
+
 } // namespace
+
+RegularFaceRows::RegularFaceRows(RegularFaceMask const &mask) {
+    for (int i = 0; i < RegularFaceMask::kNumSums; ++i) {
+        RegularFaceMask::Sum const &sum = mask.sums[i];
+        double *const weights = _weights[i];
+        double const ofBeyond = mask.beyondOfTip * sum.tip;
+        for (int k = 0; k < kSize; ++k) {
+            weights[k] = sum.verts[k];
+            weights[kNeighbors + k] = sum.neighbors[k];
+            weights[kNext + k] = sum.pairs[k];
+            weights[kPrevious + k] = sum.pairs[(k + kSize - 1) % kSize];
+        }
+        weights[kNeighbors] += ofBeyond;
+        weights[kNext] += sum.tip + ofBeyond;
+        weights[kPrevious] += sum.tip + ofBeyond;
+        std::fill(weights + kBeyond, weights + kNumSources, ofBeyond);
+    }
+}
+
+LimitRow RegularFaceRows::GetRow(Level const &level, RegularFace const &face, int corner,
+                                 Index sources[kNumSources]) const {
+    for (int k = 0; k < kSize; ++k) {
+        int const at = (corner + k) % kSize;
+        sources[k] = level.faceVerts[face.firstCorner + at];
+        sources[kNeighbors + k] = face.neighbors[at];
+        sources[kNext + k] = face.next[at];
+        sources[kPrevious + k] = face.previous[at];
+    }
+    Index *rest = sources + kBeyond;
+    for (Index const vert : level.GetFaceVertices(face.beyond[corner])) {
+        if (vert != face.neighbors[corner] && vert != face.next[corner] &&
+            vert != face.previous[corner]) {
+            *rest++ = vert;
+        }
+    }
+    return {kNumSources, sources, _weights[0], _weights[1], _weights[2]};
+}
 
 RegularFaces::RegularFaces(MeshLevels const &mesh, int level) : _mesh(mesh), _level(level) {
     // Vertices keep their index in hexagonal steps.

@@ -47,6 +47,21 @@ struct RegularFaceMask {
     double beyondOfTip;
 };
 
+/// \brief The rows of the F-vertices of regular faces, in terms of the vertices of their level.
+struct RegularFaceRows {
+    /// Those of the face, their neighbours, "next", "previous" and the others of the face beyond.
+    static constexpr int kNumSources = 4 * kRegularFaceSize + 3;
+
+    explicit RegularFaceRows(RegularFaceMask const &mask);
+
+    /// Of the F-vertex of a corner.  Valid until \p sources are used again.
+    LimitRow GetRow(Level const &level, RegularFace const &face, int corner,
+                    Far::Index sources[kNumSources]) const;
+
+private:
+    double _weights[RegularFaceMask::kNumSums][kNumSources];
+};
+
 /// \brief The vertices of a level that steps before made of regular faces: their limit follows from
 /// the level of their face, which is smaller, and for all six of a face together.
 class OPENSUBDIVHEX_API RegularFaces {
@@ -56,7 +71,7 @@ public:
     struct OfLevel {
         std::vector<RegularFace> faces;
         std::size_t sample = 0; ///< the face from which the mask is found
-        RegularFaceMask mask;
+        RegularFaceMask mask = {};
     };
 
     /// Finds the regular faces of all levels before \p level, one for which CheckLimitLevel() is

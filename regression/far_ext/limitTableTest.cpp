@@ -156,6 +156,19 @@ TEST(LimitTable, RegularVerticesShareAMaskAtDeepLevels) {
     }
 }
 
+// Where all faces are hexagons most rows come from the levels before, whichever the mask, but for
+// Cosine.
+TEST(LimitTable, RowsOfRegularFacesAreThoseOfTheLevel) {
+    for (char const *name : {"hexTorus", "hexGrid"}) {
+        for (auto mask : {ReferenceMask::Average, ReferenceMask::Cosine, ReferenceMask::Smooth}) {
+            SCOPED_TRACE(testing::Message() << name << ", mask " << int(mask));
+            Sdc::Options options;
+            options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+            ASSERT_NO_FATAL_FAILURE(expectSameLimits(GetShape(name), mask, options, 3));
+        }
+    }
+}
+
 TEST(LimitTable, PrimvarRefinerRefusesWhatHasNoLimit) {
     ShapeDescriptor const descriptor(GetShape("cube"));
     auto const refiner = FarExt::TopologyRefinerFactory::Create(descriptor.Get());
