@@ -83,44 +83,44 @@ void Surface<REAL>::BoundControlPointsFromMesh(REAL const meshPoints[],
 
 template <typename REAL>
 void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
-                             PointDescriptor const &pointDesc, REAL P[]) const {
+                             PointDescriptor const &pointDesc, REAL p[]) const {
     internal::BasePoint const point = findPoint(uv);
-    if (evaluateOnBorder(point, controlPoints, pointDesc, P)) {
+    if (evaluateOnBorder(point, controlPoints, pointDesc, p)) {
         return;
     }
     CellStencil stencil(*_type);
     stencil.Find(point, false);
-    sumUp(stencil.GetWeights().data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc, P);
+    sumUp(stencil.GetWeights().data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc, p);
 }
 
 template <typename REAL>
 void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
-                             PointDescriptor const &pointDesc, REAL P[], REAL Du[],
-                             REAL Dv[]) const {
+                             PointDescriptor const &pointDesc, REAL p[], REAL du[],
+                             REAL dv[]) const {
     internal::BasePoint const point = findPoint(uv);
     CellStencil stencil(*_type);
     stencil.Find(point, true);
     int const size = GetNumControlPoints();
-    if (!evaluateOnBorder(point, controlPoints, pointDesc, P)) {
-        sumUp(stencil.GetWeights().data(), size, controlPoints, nullptr, pointDesc, P);
+    if (!evaluateOnBorder(point, controlPoints, pointDesc, p)) {
+        sumUp(stencil.GetWeights().data(), size, controlPoints, nullptr, pointDesc, p);
     }
-    sumUp(stencil.GetDuWeights().data(), size, controlPoints, nullptr, pointDesc, Du);
-    sumUp(stencil.GetDvWeights().data(), size, controlPoints, nullptr, pointDesc, Dv);
+    sumUp(stencil.GetDuWeights().data(), size, controlPoints, nullptr, pointDesc, du);
+    sumUp(stencil.GetDvWeights().data(), size, controlPoints, nullptr, pointDesc, dv);
 }
 
 template <typename REAL>
 void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
-                             PointDescriptor const &pointDesc, REAL P[],
+                             PointDescriptor const &pointDesc, REAL p[],
                              PointDescriptor const &resultDesc) const {
-    REAL *const results[3] = {P, nullptr, nullptr};
+    REAL *const results[3] = {p, nullptr, nullptr};
     evaluate(tessellation, controlPoints, pointDesc, results, resultDesc);
 }
 
 template <typename REAL>
 void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
-                             PointDescriptor const &pointDesc, REAL P[], REAL Du[], REAL Dv[],
+                             PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                              PointDescriptor const &resultDesc) const {
-    REAL *const results[3] = {P, Du, Dv};
+    REAL *const results[3] = {p, du, dv};
     evaluate(tessellation, controlPoints, pointDesc, results, resultDesc);
 }
 
@@ -133,7 +133,7 @@ internal::BasePoint Surface<REAL>::findPoint(REAL const uv[2]) const {
 
 template <typename REAL>
 bool Surface<REAL>::evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
-                                     PointDescriptor const &pointDesc, REAL P[]) const {
+                                     PointDescriptor const &pointDesc, REAL p[]) const {
     if (!point.IsOnBorder()) {
         return false;
     }
@@ -143,11 +143,11 @@ bool Surface<REAL>::evaluateOnBorder(internal::BasePoint const &point, REAL cons
     internal::BorderStencil stencil;
     stencil.Find(*item.type, place.point);
     internal::SumBorderPoints(stencil.GetWeights(), item.points, controlPoints, pointDesc.stride,
-                              pointDesc.size, P);
+                              pointDesc.size, p);
     return true;
 }
 
-// The levels and the turns say which pattern it is.
+// The levels say which pattern it is.
 template <typename REAL>
 void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[3],
@@ -156,37 +156,81 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
     bool const hasDerivatives = results[1] != nullptr;
     std::vector<int> key = tessellation._levels;
     key.insert(key.end(), {int(sizeof(REAL)), int(hasDerivatives)});
-    key.insert(key.end(), _turns->turns.turns.begin(), _turns->turns.turns.end());
-    key.insert(key.end(), _turns->turns.isReversed.begin(), _turns->turns.isReversed.end());
     Pattern const &pattern = _type->template GetPattern<Pattern>(std::move(key), [&] {
         std::vector<internal::BasePoint> places;
         for (Tessellation::SectorCoords const &place : tessellation._places) {
             places.push_back(
                 internal::MakeBasePoint(GetFaceSize(), place.sector, {place.start, place.end}));
         }
-        return Pattern(*_type, _type->GetBorder(_turns->turns), places, hasDerivatives);
+        return Pattern(*_type, places, hasDerivatives);
     });
     for (int kind = 0; kind < (hasDerivatives ? 3 : 1); ++kind) {
         pattern.Evaluate(kind, {controlPoints, pointDesc.size, pointDesc.stride}, results[kind],
                          resultDesc.stride);
     }
+    evaluateBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
+}
+
+// Edges are evaluated in their own direction, by what all faces at an edge of this level share.
+template <typename REAL>
+void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const controlPoints[],
+                                   PointDescriptor const &pointDesc, REAL p[],
+                                   PointDescriptor const &resultDesc) const {
+    using internal::BorderPattern;
+    internal::CellType::Border const &border = _type->GetBorder(_turns->turns);
+    auto const sum = [&](std::vector<double> const &weights, std::vector<int> const &points,
+                         int place) {
+        internal::SumBorderPoints(weights, points, controlPoints, pointDesc.stride, pointDesc.size,
+                                  p + std::ptrdiff_t(place) * resultDesc.stride);
+    };
+    int const numEdges = GetFaceSize();
+    for (int edge = 0; edge < numEdges; ++edge) {
+        int const first = tessellation._firstEdgeCoords[std::size_t(edge)];
+        internal::CellType::BorderItem const &vertex =
+            border[std::size_t(numEdges) + std::size_t(edge)];
+        sum(vertex.type
+                ->template GetPattern<BorderPattern>(
+                    {}, [&] { return BorderPattern(*vertex.type, {0}); })
+                .rows[0],
+            vertex.points, first);
+
+        internal::CellType::BorderItem const &item = border[std::size_t(edge)];
+        int const level = tessellation._levels[std::size_t(edge)];
+        int const numPlaces = tessellation.GetNumEdgeCoords(edge);
+        auto const getPlace = [&](int i) {
+            return first + (item.isReversed ? numPlaces - i : i + 1);
+        };
+        BorderPattern const &pattern = item.type->template GetPattern<BorderPattern>({level}, [&] {
+            std::vector<double> points;
+            for (int i = 0; i < numPlaces; ++i) {
+                Tessellation::SectorCoords const &place =
+                    tessellation._places[std::size_t(getPlace(i))];
+                points.push_back(item.isReversed ? place.start : place.end);
+            }
+            return BorderPattern(*item.type, points);
+        });
+        for (int i = 0; i < numPlaces; ++i) {
+            sum(pattern.rows[std::size_t(i)], item.points, getPlace(i));
+        }
+    }
 }
 
 template <typename REAL>
-int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL sP[]) const {
+int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[]) const {
     CellStencil stencil(*_type);
     stencil.Find(findPoint(uv), false);
-    copyWeights(stencil.GetWeights(), sP);
+    copyWeights(stencil.GetWeights(), weights);
     return GetNumControlPoints();
 }
 
 template <typename REAL>
-int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL sP[], REAL sDu[], REAL sDv[]) const {
+int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[],
+                                   REAL dvWeights[]) const {
     CellStencil stencil(*_type);
     stencil.Find(findPoint(uv), true);
-    copyWeights(stencil.GetWeights(), sP);
-    copyWeights(stencil.GetDuWeights(), sDu);
-    copyWeights(stencil.GetDvWeights(), sDv);
+    copyWeights(stencil.GetWeights(), weights);
+    copyWeights(stencil.GetDuWeights(), duWeights);
+    copyWeights(stencil.GetDvWeights(), dvWeights);
     return GetNumControlPoints();
 }
 

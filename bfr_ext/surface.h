@@ -139,12 +139,13 @@ public:
     /// @{
 
     /// Writes the point at \p uv: pointDesc.size numbers.  At the places of vertices that levels up to
-    /// 12 have on an edge, it is the same to the bit from both sides of that, as for a tessellation.
+    /// 12 have on an edge, it is the same to the bit from both sides of that, as for a tessellation; in
+    /// single precision for faces of 64 vertices at most, whose coordinates tell places that well.
     void Evaluate(REAL const uv[2], REAL const controlPoints[], PointDescriptor const &pointDesc,
-                  REAL P[]) const;
+                  REAL p[]) const;
     /// The same with first derivatives.
     void Evaluate(REAL const uv[2], REAL const controlPoints[], PointDescriptor const &pointDesc,
-                  REAL P[], REAL Du[], REAL Dv[]) const;
+                  REAL p[], REAL du[], REAL dv[]) const;
 
     /// \brief Writes the points at all places of a tessellation, of a face of this size, from one to the
     /// next by the stride of \p resultDesc.
@@ -156,18 +157,18 @@ public:
     ///
     /// The weights are found when a type of faces is first evaluated so, and kept in the cache.
     void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
-                  PointDescriptor const &pointDesc, REAL P[],
+                  PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;
     /// The same with first derivatives.
     void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
-                  PointDescriptor const &pointDesc, REAL P[], REAL Du[], REAL Dv[],
+                  PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                   PointDescriptor const &resultDesc) const;
 
     /// Writes the weights of the control points that make the point at \p uv.
     /// \return  GetNumControlPoints()
-    int EvaluateStencil(REAL const uv[2], REAL sP[]) const;
+    int EvaluateStencil(REAL const uv[2], REAL weights[]) const;
     /// The same with those of the first derivatives.
-    int EvaluateStencil(REAL const uv[2], REAL sP[], REAL sDu[], REAL sDv[]) const;
+    int EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[], REAL dvWeights[]) const;
     /// Writes the weighted sum of control points.
     void ApplyStencil(REAL const stencil[], REAL const controlPoints[],
                       PointDescriptor const &controlPointDesc, REAL result[]) const;
@@ -181,10 +182,13 @@ private:
 
     internal::BasePoint findPoint(REAL const uv[2]) const;
     bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
-                          PointDescriptor const &pointDesc, REAL P[]) const;
+                          PointDescriptor const &pointDesc, REAL p[]) const;
     void evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[3],
                   PointDescriptor const &resultDesc) const;
+    void evaluateBorder(Tessellation const &tessellation, REAL const controlPoints[],
+                        PointDescriptor const &pointDesc, REAL p[],
+                        PointDescriptor const &resultDesc) const;
 
     std::shared_ptr<internal::CellType const> _type;
     std::shared_ptr<internal::SurfaceTurns const> _turns;

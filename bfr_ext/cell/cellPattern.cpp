@@ -79,9 +79,17 @@ BorderPlace FindBorderPlace(BasePoint const &point, CellType::Border const &bord
     return {sector, point.coords[border[sector].isReversed ? 0 : 1]};
 }
 
+BorderPattern::BorderPattern(CellType const &type, std::vector<double> const &points) {
+    BorderStencil stencil;
+    for (double const point : points) {
+        stencil.Find(type, point);
+        rows.push_back(stencil.GetWeights());
+    }
+}
+
 template <typename REAL>
-CellPattern<REAL>::CellPattern(CellType const &root, CellType::Border const &border,
-                               std::vector<BasePoint> const &places, bool hasDerivatives)
+CellPattern<REAL>::CellPattern(CellType const &root, std::vector<BasePoint> const &places,
+                               bool hasDerivatives)
     : _numPlaces(places.size()), _numPoints(std::size_t(root.GetNumPoints())) {
     std::size_t const numBlocks = (_numPlaces + kBlock - 1) / kBlock;
     std::size_t const numKinds = hasDerivatives ? 3 : 1;
@@ -89,34 +97,21 @@ CellPattern<REAL>::CellPattern(CellType const &root, CellType::Border const &bor
         _rows[kind].resize(numBlocks * kBlock * _numPoints);
     }
     CellStencil stencil(root);
-    BorderStencil borderStencil;
     for (std::size_t place = 0; place < _numPlaces; ++place) {
-        bool const isOnBorder = places[place].IsOnBorder();
-        if (isOnBorder) {
-            addBorderRow(border, places[place], place, borderStencil);
-        }
-        if (isOnBorder && !hasDerivatives) {
+        std::size_t const firstKind = places[place].IsOnBorder() ? 1 : 0;
+        if (firstKind == numKinds) {
             continue;
         }
         stencil.Find(places[place], hasDerivatives);
         std::vector<double> const *const weights[3] = {
             &stencil.GetWeights(), &stencil.GetDuWeights(), &stencil.GetDvWeights()};
-        for (std::size_t kind = 0; kind < numKinds; ++kind) {
+        for (std::size_t kind = firstKind; kind < numKinds; ++kind) {
             REAL *const block = _rows[kind].data() + place / kBlock * kBlock * _numPoints;
             for (std::size_t i = 0; i < _numPoints; ++i) {
                 block[i * kBlock + place % kBlock] = REAL((*weights[kind])[i]);
             }
         }
     }
-}
-
-template <typename REAL>
-void CellPattern<REAL>::addBorderRow(CellType::Border const &border, BasePoint const &point,
-                                     std::size_t place, BorderStencil &stencil) {
-    BorderPlace const borderPlace = FindBorderPlace(point, border);
-    CellType::BorderItem const &item = border[borderPlace.item];
-    stencil.Find(*item.type, borderPlace.point);
-    _borderRows.push_back({place, &item.points, stencil.GetWeights()});
 }
 
 template <typename REAL>
@@ -145,13 +140,6 @@ void CellPattern<REAL>::Evaluate(int kind, Points const &points, REAL *results,
         while (k < points.size) {
             sumNext(std::integral_constant<int, 1>());
         }
-    }
-    if (kind > 0) {
-        return;
-    }
-    for (BorderRow const &row : _borderRows) {
-        SumBorderPoints(row.weights, *row.points, points.points, points.stride, points.size,
-                        results + std::ptrdiff_t(row.place) * resultStride);
     }
 }
 

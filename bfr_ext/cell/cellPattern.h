@@ -12,16 +12,13 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// \brief A pattern of places of a base face, as the dense matrices of their stencils.
 ///
 /// Rows stand in blocks of kBlock, column by column, so that a block is summed up at once.  Points on
-/// the border have rows of their own, those of their edges and vertices, and are summed up in an order
-/// that all faces share.
+/// the border are made by BorderPattern.
 template <typename REAL>
 class CellPattern {
 public:
     static constexpr std::size_t kBlock = 64 / sizeof(REAL);
 
-    /// \param border  the items of \p root's border; it is referred to
-    CellPattern(CellType const &root, CellType::Border const &border,
-                std::vector<BasePoint> const &places, bool hasDerivatives);
+    CellPattern(CellType const &root, std::vector<BasePoint> const &places, bool hasDerivatives);
 
     /// A sum of \p size numbers for each place, the points being \p stride apart.
     struct Points {
@@ -29,23 +26,22 @@ public:
         int size;
         std::ptrdiff_t stride;
     };
-    /// \param kind  0: the points of all places; 1, 2: their derivatives
+    /// \param kind  0: the points of all places but for those on the border, which get 0; 1, 2: the
+    ///              derivatives of all
     void Evaluate(int kind, Points const &points, REAL *results, std::ptrdiff_t resultStride) const;
 
 private:
-    struct BorderRow {
-        std::size_t place;
-        std::vector<int> const *points;
-        std::vector<double> weights;
-    };
-
-    void addBorderRow(CellType::Border const &border, BasePoint const &point, std::size_t place,
-                      BorderStencil &stencil);
-
     std::size_t _numPlaces;
     std::size_t _numPoints;
     std::vector<REAL> _rows[3];
-    std::vector<BorderRow> _borderRows;
+};
+
+/// The stencils of some points of an edge of a base face, in the direction of the edge, or that of a
+/// vertex.
+struct BorderPattern {
+    BorderPattern(CellType const &type, std::vector<double> const &points);
+
+    std::vector<std::vector<double>> rows;
 };
 
 /// \brief What a place on the border is summed up with: an item of the border, by edge and then by
