@@ -67,6 +67,11 @@ std::vector<float> GlContext::Read(GLuint buffer, std::size_t numFloats) const {
     return values;
 }
 
+std::string GlContext::GetRenderer() const {
+    GLubyte const *const name = getFunction<GLubyte const *(*)(GLenum)>("glGetString")(GL_RENDERER);
+    return reinterpret_cast<char const *>(name);
+}
+
 GLenum GlContext::GetGlError() const { return getFunction<GLenum (*)()>("glGetError")(); }
 
 void GlContext::BindFramebuffer() {

@@ -23,6 +23,9 @@ public:
     /// Empty, or why there is none.
     std::string const &GetError() const { return _error; }
 
+    /// What draws, in the words of its driver.
+    std::string GetRenderer() const;
+
     /// The floats of a buffer of OpenGL, once all that was called before is done.
     std::vector<float> Read(GLuint buffer, std::size_t numFloats) const;
 

@@ -7,6 +7,10 @@
 
 #include "tools/mesh/program.h"
 
+#ifdef PERF_HAS_GL
+#include "regression/gl/glContext.h"
+#endif
+
 #include <fstream>
 #include <iostream>
 #include <regex>
@@ -53,6 +57,14 @@ void report(std::string const &measuredPath, std::string const &command, Paths c
     write(results, environment, paths);
 }
 
+void runSuite(Suite &suite, Environment const &environment, Paths const &paths) {
+    bool const isComplete = suite.Run();
+    write(suite.GetResults(), environment, paths);
+    if (!isComplete) {
+        throw std::runtime_error("not complete, see above");
+    }
+}
+
 void run(Suite::Options const &options, std::string const &command, Paths const &paths) {
     Environment const environment = describeRun(command);
     Suite suite(options);
@@ -69,13 +81,27 @@ void run(Suite::Options const &options, std::string const &command, Paths const 
     AddDrawingBenchmarks(suite);
     AddGrowthBenchmarks(suite);
     AddBusyBenchmarks(suite);
-    bool const isComplete = suite.Run();
-
-    write(suite.GetResults(), environment, paths);
-    if (!isComplete) {
-        throw std::runtime_error("not complete, see above");
-    }
+    runSuite(suite, environment, paths);
 }
+
+#ifdef PERF_HAS_GL
+void runDevice(Suite::Options options, std::string const &command, Paths const &paths) {
+    GlContext const context;
+    if (!context.GetError().empty()) {
+        throw std::runtime_error(context.GetError());
+    }
+    Environment environment = describeRun(command);
+    environment.emplace_back("OpenGL", context.GetRenderer());
+    options.rows = &GetDeviceRows();
+    Suite suite(std::move(options));
+    AddDeviceBenchmarks(suite, context);
+    runSuite(suite, environment, paths);
+}
+#else
+void runDevice(Suite::Options const &, std::string const &, Paths const &) {
+    throw std::runtime_error("--device: this program was built without OPENSUBDIVHEX_GL");
+}
+#endif
 
 } // namespace
 } // namespace OpenSubdivHex::Regression
@@ -88,6 +114,10 @@ int main(int argc, char **argv) {
     std::string measuredPath;
     std::string command = "perf";
     CLI::App app("Compares OpenSubdivHex with Far, Osd, OpenMesh and CGAL.", "perf");
+    bool isOfDevice = false;
+    app.add_flag("--device", isOfDevice,
+                 "Instead of the processor, measure evaluators of OpenGL, in a context without a "
+                 "window");
     app.add_flag("--quick", options.isQuick, "Tiny sizes and one turn: to see that all runs");
     app.add_option(
            "--filter", options.filter,
@@ -110,10 +140,12 @@ int main(int argc, char **argv) {
         ->type_name("FILE");
     app.add_option("--command", command, "Command to name in the results")->group("");
     return OpenSubdivHex::Tools::RunProgram(app, argc, argv, [&] {
-        if (measuredPath.empty()) {
-            run(options, command, paths);
-        } else {
+        if (!measuredPath.empty()) {
             report(measuredPath, command, paths);
+        } else if (isOfDevice) {
+            runDevice(options, command, paths);
+        } else {
+            run(options, command, paths);
         }
     });
 }

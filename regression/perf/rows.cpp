@@ -96,6 +96,14 @@ std::vector<Row> const &GetRows() {
     return kRows;
 }
 
+std::vector<Row> const &GetDeviceRows() {
+    static std::vector<Row> const kRows = {{"gl-levels", "OpenGL, all levels, length 3",
+                                            "Osd::GLComputeEvaluator, table of all levels", 3, 5},
+                                           {"gl-preparation", "OpenGL, preparation and upload",
+                                            "making and uploading a table of all levels", 50, 200}};
+    return kRows;
+}
+
 std::vector<Row> const &GetPythonRows() {
     static std::vector<Row> const kRows = {
         {"python-refinement", "topology, face-vertices", "C++", 0.9, 1},
@@ -108,7 +116,7 @@ std::vector<Row> const &GetPythonRows() {
 }
 
 Row const &GetRow(std::string const &name) {
-    for (std::vector<Row> const *rows : {&GetRows(), &GetPythonRows()}) {
+    for (std::vector<Row> const *rows : {&GetRows(), &GetDeviceRows(), &GetPythonRows()}) {
         for (Row const &row : *rows) {
             if (row.name == name) {
                 return row;

@@ -20,6 +20,9 @@ struct Row {
 /// The rows of the program perf itself, in the order in which they are printed.
 std::vector<Row> const &GetRows();
 
+/// Those of perf --device.
+std::vector<Row> const &GetDeviceRows();
+
 /// Those of pythonBenchmark.py.
 std::vector<Row> const &GetPythonRows();
 

@@ -31,7 +31,7 @@ std::shared_ptr<Shape const> share(Shape shape) {
 
 } // namespace
 
-Suite::Suite(Options options) : _options(std::move(options)), _results{&GetRows(), kConditions} {
+Suite::Suite(Options options) : _options(std::move(options)), _results{_options.rows, kConditions} {
     auto const quad = share(MakeQuadMesh());
     auto const triangle = share(MakeTriangleMesh());
     auto const hexagon = share(MakeHexMesh());

@@ -11,6 +11,8 @@
 
 namespace OpenSubdivHex::Regression {
 
+class GlContext;
+
 /// \brief Contestants, and the rows that their costs make figures of.
 struct Contest {
     std::vector<Contestant> contestants;
@@ -24,6 +26,7 @@ public:
         bool isQuick = false; ///< tiny sizes and one turn, to see that everything runs
         int numTurns = 7;     ///< of large sizes; small ones have three times as many
         std::string filter;   ///< regular expression that names of benchmarks must contain
+        std::vector<Row> const *rows = &GetRows(); ///< that are to be measured
     };
 
     explicit Suite(Options options);
@@ -82,6 +85,8 @@ void AddSurfaceBenchmarks(Suite &suite);
 void AddDrawingBenchmarks(Suite &suite);
 void AddGrowthBenchmarks(Suite &suite);
 void AddBusyBenchmarks(Suite &suite);
+/// Those of GetDeviceRows(), in a context of OpenGL that lives as long as the suite.
+void AddDeviceBenchmarks(Suite &suite, GlContext const &context);
 /// @}
 
 } // namespace OpenSubdivHex::Regression
