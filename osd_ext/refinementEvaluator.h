@@ -124,7 +124,7 @@ public:
     /// features, and all of the first two or three levels of meshes without hexagons; with
     /// FaceMask::Cosine they are all.
     ///
-    /// The first frame of a level finds the masks, which takes as long as seven to thirty, and keeps
+    /// The first frame of a level finds the masks, which takes as long as eight to forty, and keeps
     /// about 21 bytes for each vertex and 100 for each of the others.
     ///
     /// \param dst,du,dv  elements [0, GetNumElements(level)) each
