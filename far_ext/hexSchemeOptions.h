@@ -24,19 +24,50 @@ enum class SchemeType {
     TriHex     ///< tri-hex corner cutting
 };
 
+/// \brief A step of another kind that makes level 1, whatever the scheme of the levels behind it.
+///
+/// Both make vertices with three faces each, so that all irregularities are faces, where Cosine and
+/// Smooth have bounded curvature.
+///
+/// - TriHex is one step of the scheme of that name, with the same limits.
+/// - Truncate cuts the corners off: a face of n sides becomes one of 2n, a vertex the polygon of the
+///   points beside it on its edges.  Of triangles it makes hexagons.  It takes what the hexagonal
+///   scheme takes: boundaries, creases, corners and face-varying data.  ComputeTruncateWeight has
+///   its masks, INDEXING.md its numbering.
+enum class FirstStep {
+    None,    ///< level 1 is made as those behind it
+    TriHex,  ///< a step of SchemeType::TriHex
+    Truncate ///< for meshes of triangles
+};
+
+/// \brief How a level was made of the one before it: by a step of the scheme of that name, or by
+/// FirstStep::Truncate.
+enum class StepType { Hexagonal, DooSabin, TriHex, Truncate };
+
 /// \brief What distinguishes one refinement from another.
 struct HexSchemeOptions {
     FaceMask faceMask = FaceMask::Average;         ///< of Hexagonal and DooSabin
-    SchemeType schemeType = SchemeType::Hexagonal; ///< of all levels, but see triHexFirst
-    /// Makes level 1 with a TriHex step, whatever the scheme.  All vertices in the interior have
-    /// three faces then.
-    bool triHexFirst = false;
+    SchemeType schemeType = SchemeType::Hexagonal; ///< of all levels, but see firstStep
+    FirstStep firstStep = FirstStep::None;         ///< of level 1
 
     /// Whether all levels are made by hexagonal steps.
-    bool IsHexagonal() const { return schemeType == SchemeType::Hexagonal && !triHexFirst; }
-    /// The scheme that makes level \p level, 1 or more.
-    SchemeType GetSchemeOfLevel(int level) const {
-        return triHexFirst && level == 1 ? SchemeType::TriHex : schemeType;
+    bool IsHexagonal() const {
+        return schemeType == SchemeType::Hexagonal && firstStep == FirstStep::None;
+    }
+    /// The step that makes level \p level, 1 or more.
+    StepType GetStepOfLevel(int level) const {
+        if (level == 1 && firstStep != FirstStep::None) {
+            return firstStep == FirstStep::TriHex ? StepType::TriHex : StepType::Truncate;
+        }
+        switch (schemeType) {
+        case SchemeType::Hexagonal:
+            break;
+        case SchemeType::DooSabin:
+            return StepType::DooSabin;
+        case SchemeType::TriHex:
+            return StepType::TriHex;
+        }
+        return StepType::Hexagonal;
     }
 };
 

@@ -174,8 +174,9 @@ std::vector<RowGroup> makeGroups(internal::MeshLevels const &mesh, int level, In
     std::vector<RowGroup> groups;
     // Vertices are numbered as those of the levels before, as far as all of these make V-vertices.
     int firstLevel = level;
-    while (firstLevel > 0 && mesh.levels[std::size_t(firstLevel)].numVVertices ==
-                                 mesh.levels[std::size_t(firstLevel) - 1].numVertices) {
+    while (firstLevel > 0 && !mesh.refinements[std::size_t(firstLevel) - 1].isTruncation &&
+           mesh.levels[std::size_t(firstLevel)].numVVertices ==
+               mesh.levels[std::size_t(firstLevel) - 1].numVertices) {
         --firstLevel;
     }
     Index const numFirst =

@@ -83,6 +83,10 @@ void ComputeTriHexMask(int n, double *weights) {
     weights[0] = weights[1] = (n + 1) / (3.0 * n);
 }
 
+double ComputeTruncateWeight(int numFaces) {
+    return std::min(0.5, double((4 - 2 * cosOfTurn(1, numFaces)) / 9));
+}
+
 double ComputeSectorShrink(FaceMask mask, double sectorSize) {
     bool const isAverage = mask == FaceMask::Average;
     double const alpha = isAverage ? 0.98 : 1.31;

@@ -57,6 +57,15 @@ OPENSUBDIVHEX_API void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation in
 /// symmetric and reproduce linear functions this is the smoothest.
 OPENSUBDIVHEX_API void ComputeTriHexMask(int n, double *weights);
 
+/// \brief Weight b of FirstStep::Truncate beside a vertex V with \p numFaces faces: the vertex on the
+/// edge between faces with the centroids G and G' is T = (1 - 2b) V + b (G + G').
+///
+///     b = min(1/2, (4 - 2 cos(2 pi/k))/9)
+///
+/// At k = 6 this is 1/3.  All new points of a regular mesh of triangles then have the same second
+/// moments, alike in all directions, so that quadratics are kept but for a constant.
+OPENSUBDIVHEX_API double ComputeTruncateWeight(int numFaces);
+
 /// \brief The least sector that ComputeSectorShrink is for.
 inline constexpr double kMinShrunkSector = 3;
 

@@ -230,7 +230,8 @@ public:
     ///
     /// Quads of flat edges (RefineCoplanar, Doo-Sabin) and V-faces lie across such polylines, and
     /// count to the first base face: that of the first face of the quad's edge, that around the last
-    /// F-vertex of the V-face.
+    /// F-vertex of the V-face.  Behind a truncation the V-faces of level 1 alone do, and
+    /// UniformOptions::faceLabels keep them in base faces of one label.
     ///
     /// Closed form, without memory; the time is proportional to the depth.  BaseFaceMap has those of
     /// all faces.
@@ -275,7 +276,8 @@ public:
     /// The F-face of a face: one element.  Empty in a level that was not refined, as are the
     /// relations below.
     ChildFaceArray GetFaceChildFaces(Index f) const;
-    /// The F-vertices of a face, in the order of its vertices.
+    /// The F-vertices of a face, in the order of its vertices; behind a truncation two for each: the
+    /// one beside it on the edge that leads to the vertex, then the one on the edge that leads on.
     ConstIndexArray GetFaceChildVertices(Index f) const;
     /// The edges of the F-face, in the order of its vertices.
     ConstIndexArray GetFaceChildEdges(Index f) const;

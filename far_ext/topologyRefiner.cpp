@@ -5,6 +5,7 @@
 #include "far_ext/vtr/levelRefiner.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace OpenSubdivHex::FarExt {
 
@@ -20,6 +21,15 @@ Status checkLevel(int refinementLevel) {
     }
     return Status(StatusCode::InvalidArgument, ComponentType::Level, refinementLevel,
                   "refinement level " + std::to_string(refinementLevel) + " is negative");
+}
+
+Status checkLabels(Far::ConstIndexArray labels, int numFaces) {
+    if (labels.empty() || labels.size() == numFaces) {
+        return Status();
+    }
+    return Status(StatusCode::InvalidArgument, ComponentType::None, Far::INDEX_INVALID,
+                  "there are " + std::to_string(labels.size()) + " labels of " +
+                      std::to_string(numFaces) + " base faces");
 }
 
 // Whether check(level), which goes through the sizes of the levels up to that one, and the number of
@@ -79,10 +89,15 @@ Status TopologyRefiner::replaceLevels(REFINE refine) {
 bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
     int const refinementLevel = options.refinementLevel;
     LevelRefiner refiner(*_hierarchy, _sdcOptions, _schemeOptions.faceMask);
+    Far::ConstIndexArray const labels(options.faceLabels.data(), int(options.faceLabels.size()));
     Status result = checkLevel(refinementLevel);
     if (result.IsOk()) {
-        result = checkSizes(refinementLevel,
-                            [&](int level) { return refiner.CheckSizes(_schemeOptions, level); });
+        result = checkLabels(labels, GetLevel(0).GetNumFaces());
+    }
+    if (result.IsOk()) {
+        result = checkSizes(refinementLevel, [&](int level) {
+            return refiner.CheckSizes(_schemeOptions, labels, level);
+        });
     }
     if (!result.IsOk()) {
         return internal::Report(result, status);
@@ -91,18 +106,20 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
         Status levelStatus;
         for (int level = 1; level <= refinementLevel && levelStatus.IsOk(); ++level) {
             PolygonRules rules;
-            rules.scheme = _schemeOptions.GetSchemeOfLevel(level);
+            rules.step = _schemeOptions.GetStepOfLevel(level);
+            rules.faceLabels = labels;
             bool const isLast = level == refinementLevel;
             levelStatus = refiner.AddLevel(rules, !isLast || options.fullTopologyInLastLevel);
-            if (level == 1 && !isLast && _schemeOptions.triHexFirst && levelStatus.IsOk()) {
-                // All sizes are known by now, of borders too.
-                levelStatus = refiner.CheckSizes(_schemeOptions, refinementLevel);
+            if (level == 1 && !isLast && _schemeOptions.firstStep != FirstStep::None &&
+                levelStatus.IsOk()) {
+                // All sizes are known by now, of borders and cut polygons too.
+                levelStatus = refiner.CheckSizes(_schemeOptions, labels, refinementLevel);
             }
         }
         return levelStatus;
     });
     if (result.IsOk()) {
-        _uniformOptions = options;
+        _uniformOptions = std::move(options);
     }
     return internal::Report(result, status);
 }

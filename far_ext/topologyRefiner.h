@@ -79,16 +79,22 @@ public:
 
         int refinementLevel;                  ///< number of refinement steps, 0 or more
         bool fullTopologyInLastLevel = false; ///< false: the last level has face-vertices alone
+        /// A label of each base face, such as the number of its material, or empty: where labels
+        /// differ, FirstStep::Truncate cuts the polygons of vertices, so that every face lies in base
+        /// faces of one label.  Other steps need none.
+        std::vector<int> faceLabels;
     };
 
     /// \brief Refines all faces \p options.refinementLevel times, replacing earlier refinements.
     ///
     /// \return  false with StatusCode::InvalidArgument for a negative level, and with
     ///          StatusCode::TooLarge, which names the level and the count, when a size or the sum
-    ///          of a size over the levels exceeds 2^31 - 1, or for a level beyond kLastLevel.  No
-    ///          memory is taken then and the levels are as before.  With borders the sizes of a
-    ///          tri-hex step and what follows are known only once it is made: there the base alone
-    ///          is left.  When std::bad_alloc is thrown, it is, too, unless all levels are as before.
+    ///          of a size over the levels exceeds 2^31 - 1, or for a level beyond kLastLevel; with
+    ///          InvalidArgument for another number of labels than of base faces.  No memory is taken
+    ///          then and the levels are as before.  The sizes of a tri-hex step with borders, and of
+    ///          a truncation that cuts polygons, and what follows are known only once it is made:
+    ///          there the base alone is left.  When std::bad_alloc is thrown, it is, too, unless all
+    ///          levels are as before.
     bool RefineUniform(UniformOptions options, Status *status = nullptr);
 
     /// The options of the last successful RefineUniform; of level 0 after RefineCoplanar and

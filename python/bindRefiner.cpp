@@ -178,7 +178,7 @@ std::shared_ptr<Refiner> createRefiner(py::object const &faces, std::optional<in
                                        py::object const &vtxBoundaryInterpolation,
                                        py::object const &fvarLinearInterpolation,
                                        py::object const &creasingMethod, py::object const &faceMask,
-                                       py::object const &schemeType, bool triHexFirst) {
+                                       py::object const &schemeType, py::object const &firstStep) {
     OpenSubdiv::Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(
         TakeEnum<OpenSubdiv::Sdc::Options::VtxBoundaryInterpolation>(vtxBoundaryInterpolation,
@@ -191,7 +191,7 @@ std::shared_ptr<Refiner> createRefiner(py::object const &faces, std::optional<in
     TopologyRefinerFactory::Options options;
     options.schemeOptions.faceMask = TakeEnum<FaceMask>(faceMask, "face_mask");
     options.schemeOptions.schemeType = TakeEnum<SchemeType>(schemeType, "scheme_type");
-    options.schemeOptions.triHexFirst = triHexFirst;
+    options.schemeOptions.firstStep = TakeEnum<FirstStep>(firstStep, "first_step");
 
     BaseMesh mesh;
     if (faceOffsets.is_none()) {
@@ -268,7 +268,7 @@ void BindRefiner(py::module_ &module) {
         "                corners=None, holes=None, fvar_channels=None, num_fvar_values=None,\n"
         "                is_left_handed=False, vtx_boundary_interpolation='none',\n"
         "                fvar_linear_interpolation='all', creasing_method='uniform',\n"
-        "                face_mask='average', scheme_type='hexagonal', tri_hex_first=False)\n\n"
+        "                face_mask='average', scheme_type='hexagonal', first_step='none')\n\n"
         "The topology of a mesh and of its refinements, level by level.\n\n"
         "Args:\n"
         "    faces: the vertices of each face: a sequence of sequences, an integer array of the\n"
@@ -297,21 +297,30 @@ void BindRefiner(py::module_ &module) {
              py::arg("is_left_handed") = false, py::arg("vtx_boundary_interpolation") = "none",
              py::arg("fvar_linear_interpolation") = "all", py::arg("creasing_method") = "uniform",
              py::arg("face_mask") = "average", py::arg("scheme_type") = "hexagonal",
-             py::arg("tri_hex_first") = false)
+             py::arg("first_step") = "none")
         .def(
             "refine_uniform",
-            [](Refiner &self, int level, bool fullTopologyInLastLevel) {
+            [](Refiner &self, int level, bool fullTopologyInLastLevel,
+               py::object const &faceLabels) {
                 TopologyRefiner::UniformOptions options(level);
                 options.fullTopologyInLastLevel = fullTopologyInLastLevel;
+                if (!faceLabels.is_none()) {
+                    py::array_t<int> const labels = TakeIndices(faceLabels, "face_labels");
+                    options.faceLabels.assign(labels.data(), labels.data() + labels.size());
+                }
                 self.Change([&](TopologyRefiner &refiner, Status *status) {
                     refiner.RefineUniform(options, status);
                 });
             },
-            "refine_uniform(level, full_topology_in_last_level=False)\n\n"
+            "refine_uniform(level, full_topology_in_last_level=False, face_labels=None)\n\n"
             "Refines all faces so many times, in place of earlier refinements.  The last level "
             "has\n"
-            "face-vertices alone unless asked for more.  Raises StatusError.",
-            py::arg("level"), py::arg("full_topology_in_last_level") = false)
+            "face-vertices alone unless asked for more.  face_labels, integers, shape (faces,), "
+            "are\n"
+            "those that first_step 'truncate' keeps apart: every face lies in base faces of one.\n"
+            "Raises StatusError.",
+            py::arg("level"), py::arg("full_topology_in_last_level") = false,
+            py::arg("face_labels") = py::none())
         .def("refine_coplanar", &refineCoplanar,
              "refine_coplanar(rest_positions, level, angle_tolerance=0.1, close_gaps=True,\n"
              "                full_topology_in_last_level=False)\n\n"
@@ -397,9 +406,9 @@ void BindRefiner(py::module_ &module) {
                                        return refiner.GetHexSchemeOptions().schemeType;
                                    });
                                })
-        .def_property_readonly("tri_hex_first", [](Refiner const &self) {
+        .def_property_readonly("first_step", [](Refiner const &self) {
             return self.Read([](TopologyRefiner const &refiner) {
-                return refiner.GetHexSchemeOptions().triHexFirst;
+                return refiner.GetHexSchemeOptions().firstStep;
             });
         });
 }

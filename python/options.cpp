@@ -28,6 +28,10 @@ void bindEnums(py::module_ &module) {
         .value("HEXAGONAL", SchemeType::Hexagonal)
         .value("DOO_SABIN", SchemeType::DooSabin)
         .value("TRI_HEX", SchemeType::TriHex);
+    py::enum_<FirstStep>(module, "FirstStep", "A step of another kind that makes level 1.")
+        .value("NONE", FirstStep::None)
+        .value("TRI_HEX", FirstStep::TriHex, "A step of the tri-hex scheme.")
+        .value("TRUNCATE", FirstStep::Truncate, "Corners are cut off: for meshes of triangles.");
     py::enum_<Interpolation>(module, "Interpolation", "What a mask is for.")
         .value("VERTEX", Interpolation::Vertex)
         .value("VARYING", Interpolation::Varying);

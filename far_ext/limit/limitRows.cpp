@@ -14,7 +14,7 @@ namespace OpenSubdivHex::FarExt::internal {
 using Far::Index;
 
 HexSchemeOptions GetStepsToLimit(HexSchemeOptions schemeOptions) {
-    schemeOptions.triHexFirst = false;
+    schemeOptions.firstStep = FirstStep::None;
     return schemeOptions;
 }
 
@@ -29,7 +29,7 @@ Status CheckLimitLevel(Hierarchy const &hierarchy, HexSchemeOptions const &schem
         return fail(StatusCode::InvalidArgument, " is not one of the levels 0 to " +
                                                      std::to_string(maxLevel) + " of the refiner");
     }
-    if (schemeOptions.GetSchemeOfLevel(level + 1) != SchemeType::Hexagonal) {
+    if (schemeOptions.GetStepOfLevel(level + 1) != StepType::Hexagonal) {
         return fail(StatusCode::Unsupported,
                     " is not refined by hexagonal steps, which alone have limit stencils");
     }

@@ -226,10 +226,9 @@ void StencilMultiplier<REAL>::fillVVertex(Index vVertex, Scratch &scratch) const
             sumOfSource[sources[k]] += weight * double(weights[k]);
         }
     };
-    for (int i = 0; i < mask.numSources; ++i) {
-        Index const source = mask.sources[i];
-        add(mask.weights[i], parentWeights(source), _pSupports.OfVertices()[source]);
-    }
+    _rows.ForEachSource(vVertex, mask, [&](Index source, double weight) {
+        add(weight, parentWeights(source), _pSupports.OfVertices()[source]);
+    });
     if (mask.faceWeight > 0) {
         _rows.ForEachVertexFace(pVert, [&](Index face, Index row) {
             add(mask.faceWeight, _stencils.GetWeights(row), _supports.OfFaces()[face]);

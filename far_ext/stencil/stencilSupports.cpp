@@ -212,17 +212,18 @@ void RowSupports::formVVertices(RefinementRows const &rows, RowSupports const &p
         Index const pVert = rows.GetVVertexParent(vVertex);
         RefinementMask::VertexMask const mask = rows.GetVertexMask(pVert);
         bool const hasFaces = mask.faceWeight > 0 && rows.HasVertexFaces(pVert);
-        supports.assign(1, parents._ofVertices[pVert]);
+        supports.clear();
         if (hasFaces) {
+            supports.push_back(parents._ofVertices[pVert]);
             rows.ForEachVertexFace(pVert, [&](Index face, Index) {
                 if (!(_ofFaces[face] == supports[0])) {
                     supports.push_back(_ofFaces[face]);
                 }
             });
         } else {
-            for (int i = 0; i + 1 < mask.numSources; ++i) {
-                supports.push_back(parents._ofVertices[mask.sources[i]]);
-            }
+            rows.ForEachSource(vVertex, mask, [&](Index source, double) {
+                supports.push_back(parents._ofVertices[source]);
+            });
         }
         bool const isCovered = hasFaces && supports.size() > 1;
         sources.Form(supports.data() + isCovered, int(supports.size()) - isCovered);

@@ -35,7 +35,7 @@ RowWeights countUnfactorizedWeights(StencilPlan const &plan, int level) {
         Index const pVert = rows.GetVVertexParent(vVertex);
         auto const mask = rows.GetVertexMask(pVert);
         if (!(mask.faceWeight > 0) || !rows.HasVertexFaces(pVert)) {
-            result.ofVVertices += mask.numSources;
+            rows.ForEachSource(vVertex, mask, [&](Index, double) { ++result.ofVVertices; });
             continue;
         }
         // The vertex, its neighbors, and the rest of each face.
@@ -107,13 +107,31 @@ std::vector<Index> WeightSampler::getFaces(int level, std::vector<FacePart> cons
     return faces;
 }
 
-// The vertices made of faces' corners, one for each face, and of their vertices.
+// Calls function(cVert, count) for F-vertices of a face, of which count have stencils of that size: in
+// a truncation each its own, and the far ones of boundaries, too.
+template <typename FUNCTION>
+void forEachFVertex(Refinement const &refinement, Index pFace, FUNCTION function) {
+    Level const &parent = *refinement.parent;
+    Index const begin = parent.faceFirstCorner[pFace];
+    if (!refinement.isTruncation) {
+        function(refinement.GetCornerChildVertex(begin), parent.GetFaceSize(pFace));
+        return;
+    }
+    for (Index corner = begin; corner < parent.faceFirstCorner[pFace + 1]; ++corner) {
+        function(refinement.GetCornerChildVertex(corner), 1);
+        if (parent.IsBoundary(parent.faceEdges[corner])) {
+            function(GetEdgeEndVertex(refinement, FindEdgeEnd(parent, corner) ^ 1u), 1);
+        }
+    }
+}
+
+// The vertices made of faces' corners, one for each stencil size of a face, and of their vertices.
 std::vector<Index> WeightSampler::findMade(int level, std::vector<Index> const &pFaces) const {
     Level const &parent = _plan.GetLevel(level - 1);
     Refinement const &refinement = _plan.GetRefinement(level);
     std::vector<Index> verts;
     for (Index pFace : pFaces) {
-        verts.push_back(refinement.GetCornerChildVertex(parent.faceFirstCorner[pFace]));
+        forEachFVertex(refinement, pFace, [&](Index cVert, int) { verts.push_back(cVert); });
         for (Index pVert : parent.GetFaceVertices(pFace)) {
             if (Index const cVert = refinement.GetVertexChildVertex(pVert);
                 cVert != Far::INDEX_INVALID) {
@@ -134,13 +152,13 @@ RowWeights WeightSampler::average(int level, std::vector<Index> const &pFaces,
         return sizes[std::lower_bound(made.begin(), made.end(), cVert) - made.begin()];
     };
     RowWeights weights;
-    double numCorners = 0;
+    double numFVertices = 0;
     double numVVertices = 0;
     for (Index pFace : pFaces) {
-        double const size = parent.GetFaceSize(pFace);
-        numCorners += size;
-        weights.ofFVertices +=
-            size * sizeOf(refinement.GetCornerChildVertex(parent.faceFirstCorner[pFace]));
+        forEachFVertex(refinement, pFace, [&](Index cVert, int count) {
+            numFVertices += count;
+            weights.ofFVertices += double(count) * sizeOf(cVert);
+        });
         for (Index pVert : parent.GetFaceVertices(pFace)) {
             Index const cVert = refinement.GetVertexChildVertex(pVert);
             if (cVert != Far::INDEX_INVALID) {
@@ -150,7 +168,7 @@ RowWeights WeightSampler::average(int level, std::vector<Index> const &pFaces,
             }
         }
     }
-    weights.ofFVertices /= std::max(numCorners, 1.0);
+    weights.ofFVertices /= std::max(numFVertices, 1.0);
     weights.ofVVertices /= numVVertices > 0 ? numVVertices : 1;
     return weights;
 }
@@ -212,8 +230,9 @@ RowWeights WeightSampler::Estimate(int level) const {
         average.ofVVertices += growth * (average.ofVVertices - before.ofVVertices);
     }
     Index const numIsolated = countIsolated(level);
-    return {average.ofFVertices * _plan.GetLevel(level - 1).numCorners,
-            average.ofVVertices * (_plan.GetLevel(level).numVVertices - numIsolated) + numIsolated};
+    Level const &made = _plan.GetLevel(level);
+    return {average.ofFVertices * (made.numVertices - made.numVVertices),
+            average.ofVVertices * (made.numVVertices - numIsolated) + numIsolated};
 }
 
 // Bytes that the supports of a refinement take, by what RowSupports keeps.

@@ -258,4 +258,13 @@ void FindFaceSizes(Level &level) {
     SortUnique(level.faceSizes);
 }
 
+void FinishFaces(Level &level) {
+    FindFaceSizes(level);
+    Level::ForEachRelation(level, [](auto &array, std::size_t size) {
+        if (size == 0) {
+            array.Resize(0);
+        }
+    });
+}
+
 } // namespace OpenSubdivHex::FarExt::internal

@@ -33,6 +33,9 @@ void BeginVertices(Level &level);
 /// \brief Finds the sizes of the faces of \p level that occur.
 void FindFaceSizes(Level &level);
 
+/// \brief The last step of a level without full topology: leaves no relation of a refinement before.
+void FinishFaces(Level &level);
+
 } // namespace OpenSubdivHex::FarExt::internal
 
 #endif

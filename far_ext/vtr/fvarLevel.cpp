@@ -160,7 +160,8 @@ void BuildFVarChannel(Level const &mesh, Index numValues, Buffer<Index> faceValu
 
 namespace {
 
-// A V-face has the F-vertices of corners that no other V-face has.  No seam crosses these faces.
+// A V-face has the F-vertices of corners that no other V-face has, but for the one before the V-vertex
+// in a truncation.  No seam crosses these faces.
 void relateVFaces(Refinement const &mesh, Refinement const &values, FVarLevel const &pLevel,
                   FVarLevel &cLevel) {
     Level const &pMesh = *mesh.parent;
@@ -173,9 +174,12 @@ void relateVFaces(Refinement const &mesh, Refinement const &values, FVarLevel co
     std::vector<Index> vFaceOfCorner(pValues.numCorners, Far::INDEX_INVALID);
     for (Index face = cValues.numFaces - cValues.numVFaces; face < cValues.numFaces; ++face) {
         // All of its F-vertices, since it may begin with another than the mesh's does.
-        for (Index vert : cValues.GetFaceVertices(face)) {
-            if (vert >= cValues.numVVertices) {
-                vFaceOfCorner[values.GetChildVertexCorner(vert)] = face;
+        Far::ConstIndexArray const verts = cValues.GetFaceVertices(face);
+        for (int i = 0; i < verts.size(); ++i) {
+            bool const isNext =
+                values.isTruncation && i + 1 < verts.size() && verts[i + 1] < cValues.numVVertices;
+            if (verts[i] >= cValues.numVVertices && !isNext) {
+                vFaceOfCorner[values.GetChildVertexCorner(verts[i])] = face;
             }
         }
     }

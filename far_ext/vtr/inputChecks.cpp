@@ -37,6 +37,7 @@ Status CheckOptions(HexSchemeOptions schemeOptions, Sdc::Options sdcOptions) {
     for (Status const &status :
          {checkEnum(int(schemeOptions.faceMask), FaceMask::Smooth, "faceMask"),
           checkEnum(int(schemeOptions.schemeType), SchemeType::TriHex, "schemeType"),
+          checkEnum(int(schemeOptions.firstStep), FirstStep::Truncate, "firstStep"),
           checkEnum(sdcOptions.GetVtxBoundaryInterpolation(),
                     Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER, "VtxBoundaryInterpolation"),
           checkEnum(sdcOptions.GetFVarLinearInterpolation(), Sdc::Options::FVAR_LINEAR_ALL,
@@ -116,7 +117,8 @@ Status CheckScheme(HexSchemeOptions schemeOptions, Hierarchy const &base) {
         return Status(StatusCode::Unsupported, component, index,
                       what + ", which only the hexagonal scheme has rules for");
     };
-    if (schemeOptions.IsHexagonal()) {
+    if (schemeOptions.schemeType == SchemeType::Hexagonal &&
+        schemeOptions.firstStep != FirstStep::TriHex) {
         return Status();
     }
     if (!level.nonManifoldEdges.empty()) {

@@ -3,6 +3,7 @@
 
 #include "hexRefinement.h"
 #include "irregularFeatures.h"
+#include "truncationRefinement.h"
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -38,7 +39,19 @@ LevelRefiner::LevelRefiner(Hierarchy &hierarchy, Sdc::Options sdcOptions, FaceMa
     }
 }
 
-Status LevelRefiner::CheckSizes(HexSchemeOptions schemeOptions, int refinementLevel) const {
+// Whether the sizes behind a step depend on more than those before it: of tri-hex on borders, of a
+// truncation on where it cuts polygons, too.
+bool LevelRefiner::isSizeOpen(StepType step, bool hasLabels, ExpectedSizes const &sizes) const {
+    Level const &base = _hierarchy.mesh.levels[0];
+    bool const isCut = hasLabels || sizes.digons > 0 || !base.edgeSharpness.empty() ||
+                       !base.vertSharpness.empty() || !base.faceHoles.empty() ||
+                       !base.nonManifoldVerts.empty() || !_hierarchy.channels.empty();
+    return (step == StepType::TriHex && !sizes.IsClosed()) ||
+           (step == StepType::Truncate && (isCut || !sizes.IsClosed()));
+}
+
+Status LevelRefiner::CheckSizes(HexSchemeOptions schemeOptions, Far::ConstIndexArray faceLabels,
+                                int refinementLevel) const {
     for (std::size_t i = 0; i < _checkers.size(); ++i) {
         SizeChecker checker = _checkers[i];
         Level const &last = _hierarchy.GetMesh(int(i) - 1).levels[std::size_t(_numLevels) - 1];
@@ -47,11 +60,11 @@ Status LevelRefiner::CheckSizes(HexSchemeOptions schemeOptions, int refinementLe
             sizes.CountFans(last);
         }
         for (int level = last.depth + 1; level <= refinementLevel; ++level) {
-            SchemeType const scheme = schemeOptions.GetSchemeOfLevel(level);
-            if (scheme == SchemeType::TriHex && !sizes.IsClosed()) {
+            StepType const step = schemeOptions.GetStepOfLevel(level);
+            if (isSizeOpen(step, !faceLabels.empty(), sizes)) {
                 break;
             }
-            sizes.Refine(scheme);
+            sizes.Refine(step);
             if (Status status = checker.Add(sizes.sizes); !status.IsOk()) {
                 return status;
             }
@@ -74,9 +87,11 @@ Status LevelRefiner::CheckLeastSizes(bool closeGaps, int refinementLevel) const 
 }
 
 Status LevelRefiner::AddLevel(PolygonRules const &rules, bool fullTopology) {
-    bool const isPlain = rules.scheme == SchemeType::Hexagonal && rules.flatEdges.empty();
-    Status status =
-        isPlain ? addHexagonalLevel(fullTopology) : addPolygonLevel(rules, fullTopology);
+    bool const isPlain = rules.step == StepType::Hexagonal && rules.flatEdges.empty();
+    Status status = isPlain ? addHexagonalLevel(fullTopology)
+                    : rules.step == StepType::Truncate
+                        ? addTruncation(rules.faceLabels, fullTopology)
+                        : addPolygonLevel(rules, fullTopology);
     if (status.IsOk()) {
         relateChannels();
         _hierarchy.numLevels = ++_numLevels;
@@ -110,12 +125,30 @@ Status LevelRefiner::addPolygonLevel(PolygonRules const &rules, bool fullTopolog
         refiners.emplace_back(channel.values.levels[last],
                               GetRulesOfChannel(mesh, rules, channel.levels[last]), _sdcOptions);
     }
+    return addLevels(refiners, fullTopology);
+}
+
+Status LevelRefiner::addTruncation(Far::ConstIndexArray faceLabels, bool fullTopology) {
+    Level const &mesh = _hierarchy.mesh.levels[0];
+    EndCuts const cuts = FindEndCuts(_hierarchy, faceLabels);
+    std::deque<TruncationRefiner> refiners;
+    refiners.emplace_back(mesh, cuts, _sdcOptions);
+    for (FVarChannel const &channel : _hierarchy.channels) {
+        refiners.emplace_back(channel.values.levels[0],
+                              GetEndCutsOfChannel(mesh, cuts, channel.levels[0]), _sdcOptions);
+    }
+    return addLevels(refiners, fullTopology);
+}
+
+// Adds the levels of the mesh and of each channel, whose refiners have counted them.
+template <class REFINER>
+Status LevelRefiner::addLevels(std::deque<REFINER> &refiners, bool fullTopology) {
     for (std::size_t i = 0; i < refiners.size(); ++i) {
         if (Status status = _checkers[i].Add(refiners[i].GetSizes()); !status.IsOk()) {
             return status;
         }
     }
-    auto const refine = [&](PolygonRefiner &refiner, MeshLevels &levels) {
+    auto const refine = [&](REFINER &refiner, MeshLevels &levels) {
         NextLevel next(levels, _numLevels);
         refiner.Refine(fullTopology, next.refinement, next.child);
         FindIrregularFeatures(_faceMask, next.child);

@@ -17,8 +17,9 @@ public:
 
     /// \brief Checks the sizes of the levels behind the last one, up to \p refinementLevel, as far
     /// as they are known before any is made: all, but for tri-hex refinements of a mesh with
-    /// borders and what follows them.
-    Status CheckSizes(HexSchemeOptions schemeOptions, int refinementLevel) const;
+    /// borders, truncations that cut polygons, and what follows them.
+    Status CheckSizes(HexSchemeOptions schemeOptions, Far::ConstIndexArray faceLabels,
+                      int refinementLevel) const;
     /// The same for refinement by coplanar faces, as far as sizes are too large whichever edges are
     /// flat.
     Status CheckLeastSizes(bool closeGaps, int refinementLevel) const;
@@ -32,6 +33,10 @@ public:
 private:
     Status addHexagonalLevel(bool fullTopology);
     Status addPolygonLevel(PolygonRules const &rules, bool fullTopology);
+    Status addTruncation(Far::ConstIndexArray faceLabels, bool fullTopology);
+    template <class REFINER>
+    Status addLevels(std::deque<REFINER> &refiners, bool fullTopology);
+    bool isSizeOpen(StepType step, bool hasLabels, ExpectedSizes const &sizes) const;
     void relateChannels();
 
     Hierarchy &_hierarchy;

@@ -61,18 +61,18 @@ void ExpectedSizes::CountFans(Level const &level) {
     }
 }
 
-void ExpectedSizes::Refine(SchemeType scheme) {
+void ExpectedSizes::Refine(StepType step) {
     LevelSizes const p = sizes;
     std::int64_t const pInteriorEdges = interiorEdges;
     sizes = {};
-    switch (scheme) {
-    case SchemeType::Hexagonal:
+    switch (step) {
+    case StepType::Hexagonal:
         sizes = GetHexagonalSizes(p);
         interiorEdges =
             sizes.edges - sizes.freeBoundaries - sizes.sharpBoundariesA - sizes.sharpBoundariesB;
         closedVertices = closedCorners = digons = 0; // not asked for again
         break;
-    case SchemeType::DooSabin: {
+    case StepType::DooSabin: {
         // A quad per interior edge, a V-face per closed vertex but for digons, where two quads
         // share an edge.  The F-vertices of V-faces are closed, with four faces each, those of
         // digons with three.
@@ -88,8 +88,19 @@ void ExpectedSizes::Refine(SchemeType scheme) {
         digons = 0;
         break;
     }
-    case SchemeType::TriHex:
+    case StepType::TriHex:
         // A V-face per vertex, of two F-vertices for each of its faces.
+        sizes.vertices = p.corners;
+        sizes.edges = p.corners + p.edges;
+        sizes.faces = p.faces + closedVertices;
+        sizes.corners = 3 * p.corners;
+        interiorEdges = sizes.edges;
+        closedVertices = sizes.vertices;
+        closedCorners = sizes.corners;
+        digons = 0;
+        break;
+    case StepType::Truncate:
+        // A vertex for each end of an edge, a face for each vertex.
         sizes.vertices = p.corners;
         sizes.edges = p.corners + p.edges;
         sizes.faces = p.faces + closedVertices;

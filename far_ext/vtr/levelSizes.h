@@ -34,8 +34,8 @@ struct ExpectedSizes {
 
     bool IsClosed() const { return interiorEdges == sizes.edges; }
     /// Goes on to the child.  Exact where the level is closed, and for Hexagonal and DooSabin;
-    /// with borders TriHex may make fewer.
-    void Refine(SchemeType scheme);
+    /// with borders TriHex may make fewer.  Truncate makes more where it cuts polygons.
+    void Refine(StepType step);
     /// The same for refinement by coplanar faces: the least, whichever edges are flat.
     void RefineToLeast(bool closeGaps);
 

@@ -573,13 +573,7 @@ void PolygonRefiner::Refine(bool fullTopology, Refinement &refinement, Level &ch
         }
     } else {
         Builder<false>(*this, refinement, child).Build();
-        FindFaceSizes(child);
-        // No other relations, of a refinement before.
-        Level::ForEachRelation(child, [](auto &array, std::size_t size) {
-            if (size == 0) {
-                array.Resize(0);
-            }
-        });
+        FinishFaces(child);
     }
     EndRefinement(_sdcOptions, refinement, child);
 }

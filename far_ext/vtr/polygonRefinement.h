@@ -10,7 +10,10 @@ namespace OpenSubdivHex::FarExt::internal {
 
 /// \brief Which polygons a refinement makes, beside the F-face of every face.
 struct PolygonRules {
-    SchemeType scheme = SchemeType::Hexagonal;
+    StepType step = StepType::Hexagonal;
+    /// Of Truncate, by face of level 0: faces with other labels are kept apart.  Empty when all have
+    /// the same.
+    Far::ConstIndexArray faceLabels;
     /// Of Hexagonal, by edge: whether an interior edge makes a quad, of its F-vertices alone.
     /// Empty when none does.
     std::vector<unsigned char> flatEdges;
@@ -87,8 +90,8 @@ private:
         bool hasVVertex; ///< in the polygon too
     };
 
-    bool isHexagonal() const { return _rules.scheme == SchemeType::Hexagonal; }
-    bool isTriHex() const { return _rules.scheme == SchemeType::TriHex; }
+    bool isHexagonal() const { return _rules.step == StepType::Hexagonal; }
+    bool isTriHex() const { return _rules.step == StepType::TriHex; }
     bool isQuad(Index pEdge) const {
         return isHexagonal() ? !_rules.flatEdges.empty() && _rules.flatEdges[std::size_t(pEdge)]
                              : !isTriHex() && !_parent.IsBoundary(pEdge);

@@ -10,6 +10,7 @@ void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopo
     using Index = Far::Index;
     refinement.parent = &parent;
     refinement.child = &child;
+    refinement.isTruncation = false;
     child.depth = parent.depth + 1;
     child.numVertices = Index(sizes.vertices);
     child.numEdges = Index(sizes.edges);

@@ -92,6 +92,9 @@ struct Refinement {
 
     Level const *parent = nullptr;
     Level const *child = nullptr;
+    /// By FirstStep::Truncate: all new vertices lie on edges.  That of a corner is beside its vertex on
+    /// the edge where its face begins there; those at the far ends of boundaries follow.
+    bool isTruncation = false;
 
     Buffer<Index> vertChildVerts; ///< by vertex; empty when V-vertices have their parent's index
     Buffer<Index> vVertexParents; ///< by V-vertex, ascending; empty likewise

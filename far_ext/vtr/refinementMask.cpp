@@ -10,8 +10,8 @@ namespace OpenSubdivHex::FarExt::internal {
 RefinementMask::RefinementMask(Level const &parent, HexSchemeOptions schemeOptions,
                                Interpolation interpolation)
     : _level(parent), _faceMask(schemeOptions.faceMask), _interpolation(interpolation) {
-    SchemeType const scheme = schemeOptions.GetSchemeOfLevel(parent.depth + 1);
-    bool const isHexagonal = scheme == SchemeType::Hexagonal;
+    StepType const step = schemeOptions.GetStepOfLevel(parent.depth + 1);
+    bool const isHexagonal = step == StepType::Hexagonal;
     _hasSharpFaces = isHexagonal && _level.HasSharpFaces();
     _hasIrregular =
         isHexagonal && interpolation == Interpolation::Vertex && !_level.irregularCorners.empty();
@@ -24,7 +24,7 @@ RefinementMask::RefinementMask(Level const &parent, HexSchemeOptions schemeOptio
     for (Index size : _level.faceSizes) {
         std::vector<double> &mask = _faceMasks[size];
         mask.resize(2 * std::size_t(size));
-        if (scheme == SchemeType::TriHex) {
+        if (step == StepType::TriHex) {
             ComputeTriHexMask(size, mask.data());
         } else {
             ComputeFaceVertexMask(_faceMask, interpolation, size, mask.data());

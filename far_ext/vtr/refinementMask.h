@@ -42,6 +42,8 @@ public:
         return irregular ? irregularMask(*irregular, mask) : mask;
     }
 
+    Interpolation GetInterpolation() const { return _interpolation; }
+
     /// @name The plain majority and the rest
     /// All faces of a size have the same weights, and all vertices with as many faces the same mask
     /// of one source, but for those that a feature gives others.

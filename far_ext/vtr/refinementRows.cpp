@@ -22,6 +22,12 @@ RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions sc
     _vertFirstFace = parent.vertFirstFace.data();
     _vertFaces = parent.vertFaces.data();
     _vertFaceLocals = parent.vertFaceLocals.data();
+    if (refinement.isTruncation) {
+        _truncation.emplace(refinement, interpolation);
+        _numFaces = 0;
+        _numVVertices = refinement.child->numVertices;
+        _vVertexParents = nullptr; // of no matter
+    }
 }
 
 RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions schemeOptions,
@@ -41,6 +47,12 @@ RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions sc
     }
     _partVertFirstFace.assign(_part.verts.size() + 1, 0);
     Index nextVert = 0;
+    if (refinement.isTruncation) {
+        _truncation.emplace(refinement, interpolation);
+        _faceFirstCorner = _partFaceFirstCorner.data();
+        _vVertexParents = nullptr;
+        return;
+    }
     for (Index vVertex : _part.vVertices) {
         Index const pVert = refinement.GetVVertexParent(vVertex);
         Index const vert = numberOfVert(pVert);
@@ -71,15 +83,51 @@ RefinementMask::VertexMask RefinementRows::partVertexMask(Index vert) const {
     int const last = mask.numSources - 1;
     mask.sources[last] = vert;
     for (int i = 0; i < last; ++i) {
-        auto const place =
-            std::lower_bound(_part.verts.begin(), _part.verts.end(), mask.sources[i]);
-        mask.sources[i] = Index(place - _part.verts.begin());
+        mask.sources[i] = partVertex(mask.sources[i]);
     }
     return mask;
 }
 
+// The number in the part of a vertex of the parent.
+Index RefinementRows::partVertex(Index vert) const {
+    return Index(std::lower_bound(_part.verts.begin(), _part.verts.end(), vert) -
+                 _part.verts.begin());
+}
+
+void RefinementRows::getTruncationSources(Index vVertex, TruncationMask::Sources &sources) const {
+    if (_part.verts.empty()) {
+        _truncation->GetSources(vVertex, sources);
+        return;
+    }
+    _truncation->GetSources(_part.vVertices[vVertex], sources);
+    for (Index &vert : sources.verts) {
+        vert = partVertex(vert);
+    }
+}
+
+namespace {
+
+RefinementRows::Part findTruncationPart(Refinement const &refinement, Interpolation interpolation,
+                                        std::vector<Index> const &wanted) {
+    RefinementRows::Part part;
+    part.vVertices = wanted;
+    TruncationMask const mask(refinement, interpolation);
+    TruncationMask::Sources sources;
+    for (Index cVert : wanted) {
+        mask.GetSources(cVert, sources);
+        part.verts.insert(part.verts.end(), sources.verts.begin(), sources.verts.end());
+    }
+    SortUnique(part.verts, refinement.parent->numVertices);
+    return part;
+}
+
+} // namespace
+
 RefinementRows::Part FindPart(Refinement const &refinement, HexSchemeOptions schemeOptions,
                               Interpolation interpolation, std::vector<Index> const &wanted) {
+    if (refinement.isTruncation) {
+        return findTruncationPart(refinement, interpolation, wanted);
+    }
     Level const &parent = *refinement.parent;
     RefinementMask const mask(parent, schemeOptions, interpolation);
     RefinementRows::Part part;

@@ -4,7 +4,9 @@
 
 #include "refinement.h"
 #include "refinementMask.h"
+#include "truncationMask.h"
 
+#include <optional>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -17,6 +19,8 @@ namespace OpenSubdivHex::FarExt::internal {
 /// is taken whole, all numbers are those of the levels.  Of a part, the vertices, faces and
 /// V-vertices of the part are numbered without gaps, in the order that they have in the levels, so
 /// that sums come out the same.
+///
+/// All rows of a truncation are those of V-vertices, whose sources are vertices of the parent alone.
 class RefinementRows {
 public:
     using Index = Far::Index;
@@ -58,12 +62,31 @@ public:
     /// the F-vertex of each at the vertex.
     template <typename FUNCTION>
     void ForEachVertexFace(Index vert, FUNCTION function) const {
+        if (_truncation) {
+            return;
+        }
         for (Index k = _vertFirstFace[vert]; k < _vertFirstFace[vert + 1]; ++k) {
             function(_vertFaces[k], GetFaceFirstRow(_vertFaces[k]) + _vertFaceLocals[k]);
         }
     }
     bool HasVertexFaces(Index vert) const {
-        return _vertFirstFace[vert] < _vertFirstFace[vert + 1];
+        return !_truncation && _vertFirstFace[vert] < _vertFirstFace[vert + 1];
+    }
+    /// Calls function(vert, weight) for the sources of a V-vertex, of whose parent \p mask is, beside
+    /// the F-vertices around it.
+    template <typename FUNCTION>
+    void ForEachSource(Index vVertex, RefinementMask::VertexMask const &mask,
+                       FUNCTION function) const {
+        if (_truncation) {
+            TruncationMask::Sources sources;
+            getTruncationSources(vVertex, sources);
+            for (std::size_t i = 0; i < sources.verts.size(); ++i) {
+                function(sources.verts[i], sources.weights[i]);
+            }
+        }
+        for (int i = 0; i < mask.numSources; ++i) {
+            function(mask.sources[i], mask.weights[i]);
+        }
     }
 
     /// As in RefinementMask, with the numbers of the rows.
@@ -75,14 +98,20 @@ public:
         return _mask.GetFaceVertexWeights(faceId(face), corner, scratch);
     }
     RefinementMask::VertexMask GetVertexMask(Index vert) const {
+        if (_truncation) {
+            return {0, 0, {}, {}};
+        }
         return _part.verts.empty() ? _mask.GetVertexMask(vert) : partVertexMask(vert);
     }
 
 private:
     RefinementMask::VertexMask partVertexMask(Index vert) const;
+    void getTruncationSources(Index vVertex, TruncationMask::Sources &sources) const;
+    Index partVertex(Index vert) const;
     Index faceId(Index face) const { return _part.faces.empty() ? face : _part.faces[face]; }
 
     RefinementMask const _mask;
+    std::optional<TruncationMask> _truncation;
     Part _part; // empty when the refinement is taken whole
     Index _numFaces;
     Index _numVVertices;
@@ -145,9 +174,9 @@ void InterpolateVVertices(RefinementRows const &rows, Far::Index begin, Far::Ind
         RefinementMask::VertexMask const mask = rows.GetVertexMask(pVert);
         auto &&point = dst[vVertex];
         point.Clear();
-        for (int i = 0; i < mask.numSources; ++i) {
-            point.AddWithWeight(src[mask.sources[i]], REAL(mask.weights[i]));
-        }
+        rows.ForEachSource(vVertex, mask, [&](Far::Index vert, double weight) {
+            point.AddWithWeight(src[vert], REAL(weight));
+        });
         if (mask.faceWeight > 0) {
             rows.ForEachVertexFace(pVert, [&](Far::Index, Far::Index row) {
                 point.AddWithWeight(dst[row], REAL(mask.faceWeight));

@@ -3,6 +3,7 @@
 
 #include "far_ext/mask.h"
 #include "indexSet.h"
+#include "truncationMask.h"
 #include "vertexFan.h"
 
 #include <algorithm>
@@ -334,10 +335,9 @@ void refineVertices(Refinement const &refinement, SharpnessRefiner const &refine
     dropIfSmooth(child.vertSharpness);
 }
 
-// The child edge from the V-vertex to the F-vertex of a corner.
-Index findSpoke(Refinement const &refinement, Index corner, Level const &child) {
-    Index const vVertex = refinement.GetVertexChildVertex(refinement.parent->faceVerts[corner]);
-    Index const fVertex = refinement.GetCornerChildVertex(corner);
+// The child edge from the V-vertex of a vertex to an F-vertex.
+Index findSpoke(Refinement const &refinement, Index pVert, Index fVertex, Level const &child) {
+    Index const vVertex = refinement.GetVertexChildVertex(pVert);
     Far::LocalIndex const *local = child.GetVertexEdgeLocals(fVertex);
     for (Index i = child.vertFirstEdge[fVertex]; i < child.vertFirstEdge[fVertex + 1]; ++i) {
         Index const edge = child.vertEdges[i];
@@ -346,6 +346,12 @@ Index findSpoke(Refinement const &refinement, Index corner, Level const &child) 
         }
     }
     return Far::INDEX_INVALID;
+}
+
+// That to the F-vertex of a corner.
+Index findSpoke(Refinement const &refinement, Index corner, Level const &child) {
+    return findSpoke(refinement, refinement.parent->faceVerts[corner],
+                     refinement.GetCornerChildVertex(corner), child);
 }
 
 void refineEdges(Refinement const &refinement, SharpnessRefiner const &refiner, Level &child) {
@@ -373,6 +379,17 @@ void refineEdges(Refinement const &refinement, SharpnessRefiner const &refiner, 
 void refineLines(Refinement const &refinement, Level &child) {
     Level const &parent = *refinement.parent;
     for (LineEdge const &pEdge : parent.lineEdges) {
+        if (refinement.isTruncation) {
+            std::size_t const end = 2 * std::size_t(pEdge.edge);
+            for (Index edge : {parent.numCorners + pEdge.edge,
+                               findSpoke(refinement, parent.edgeVerts[pEdge.edge][0],
+                                         GetEdgeEndVertex(refinement, end), child),
+                               findSpoke(refinement, parent.edgeVerts[pEdge.edge][1],
+                                         GetEdgeEndVertex(refinement, end + 1), child)}) {
+                child.lineEdges.push_back({edge, pEdge.line});
+            }
+            continue;
+        }
         Index const eFace = refinement.GetEdgeChildFace(pEdge.edge);
         if (eFace != Far::INDEX_INVALID) {
             Index const corner = child.faceFirstCorner[eFace] + kHalfFaceLongEdge;
@@ -389,6 +406,31 @@ void refineLines(Refinement const &refinement, Level &child) {
     }
     std::sort(child.lineEdges.begin(), child.lineEdges.end(),
               [](LineEdge const &a, LineEdge const &b) { return a.edge < b.edge; });
+}
+
+// In a truncation a sharp edge has a child between its two new vertices, and a spoke at each end where
+// the polygon of its vertex is cut.
+void refineEdgesOfTruncation(Refinement const &refinement, SharpnessRefiner const &refiner,
+                             Level &child) {
+    Level const &parent = *refinement.parent;
+    fillZero(child.edgeSharpness, std::size_t(child.numEdges));
+    for (Index edge = 0; edge < parent.numEdges; ++edge) {
+        float const sharpness = parent.edgeSharpness[edge];
+        if (!Crease::IsSharp(sharpness) || parent.IsBoundary(edge)) {
+            continue;
+        }
+        IndexPair const &verts = parent.edgeVerts[edge];
+        child.edgeSharpness[parent.numCorners + edge] =
+            refiner.Between(sharpness, verts[0], verts[1]);
+        for (int side : {0, 1}) {
+            Index const corner = parent.GetSideCorner(edge, side);
+            if (Index const spoke = findSpoke(refinement, corner, child);
+                spoke != Far::INDEX_INVALID) {
+                child.edgeSharpness[spoke] = refiner.AtVertex(sharpness, verts[side]);
+            }
+        }
+    }
+    dropIfSmooth(child.edgeSharpness);
 }
 
 // The halves of a hexagon lie in the cells of its edge's faces.  Other faces that lie in several cells
@@ -417,6 +459,10 @@ void refineHoles(Refinement const &refinement, Level &child) {
                                                                 : holes[0] & holes[1]);
     }
     for (Index cFace = child.numFaces - child.numVFaces; cFace < child.numFaces; ++cFace) {
+        if (refinement.isTruncation) { // holes end at cuts
+            child.faceHoles[cFace] = parent.faceHoles[refinement.GetFaceParentFace(cFace)];
+            continue;
+        }
         unsigned hole = kHole;
         for (Index k = child.faceFirstCorner[cFace]; k < child.faceFirstCorner[cFace + 1]; ++k) {
             if (Index const cVert = child.faceVerts[k]; cVert >= child.numVVertices) {
@@ -456,7 +502,11 @@ void RefineTags(Refinement const &refinement, Sdc::Options sdcOptions, Level &ch
         refineLines(refinement, child);
     }
     SharpnessRefiner const refiner(parent, sdcOptions);
-    if (!parent.edgeSharpness.empty() || !parent.diagonalSharpness.empty()) {
+    if (refinement.isTruncation) {
+        if (!parent.edgeSharpness.empty() && child.hasFullTopology) {
+            refineEdgesOfTruncation(refinement, refiner, child);
+        }
+    } else if (!parent.edgeSharpness.empty() || !parent.diagonalSharpness.empty()) {
         refineDiagonals(refinement, refiner, child);
         if (child.hasFullTopology) {
             refineEdges(refinement, refiner, child);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "validator.h"
 
+#include "truncationMask.h"
+
 #include <algorithm>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -65,6 +67,7 @@ private:
     bool checkFFaces();
     bool checkEFaces();
     bool checkVFaces();
+    bool isBesideVertex(Index cVert, Index pVert) const;
 
     Level const &_level;
     Refinement const *_refinement; // that made the level
@@ -233,6 +236,18 @@ bool Validator::checkFFaces() {
     for (Index face = 0; face < parent.numFaces; ++face) {
         Far::ConstIndexArray const verts = _level.GetFaceVertices(face);
         Index const first = parent.faceFirstCorner[face];
+        if (_refinement->isTruncation) {
+            bool good = verts.size() == 2 * parent.GetFaceSize(face);
+            for (int i = 0; good && i < verts.size(); ++i) {
+                Index const corner = first + (i == 0 ? verts.size() - 1 : i - 1) / 2;
+                std::size_t const end = FindEdgeEnd(parent, corner) ^ (i % 2 == 0 ? 1u : 0u);
+                good = verts[i] == GetEdgeEndVertex(*_refinement, end);
+            }
+            if (!require(good, ComponentType::Face, face, "not the F-face of its parent")) {
+                return false;
+            }
+            continue;
+        }
         bool good = verts.size() == parent.GetFaceSize(face);
         for (int i = 0; good && i < verts.size(); ++i) {
             good = verts[i] == _refinement->GetCornerChildVertex(first + i);
@@ -281,8 +296,21 @@ bool Validator::checkEFaces() {
     return true;
 }
 
-// A V-face has its V-vertex first or not at all, and F-vertices of faces around its vertex: those
-// of corners there or, in tri-hex, of the corners before.
+// Whether a truncation made a vertex beside one of the parent, on any of its edges.
+bool Validator::isBesideVertex(Index cVert, Index pVert) const {
+    Level const &parent = *_refinement->parent;
+    Far::ConstIndexArray const edges = parent.GetVertexEdges(pVert);
+    LocalIndex const *const locals = parent.GetVertexEdgeLocals(pVert);
+    for (int i = 0; i < edges.size(); ++i) {
+        if (GetEdgeEndVertex(*_refinement, 2 * std::size_t(edges[i]) + locals[i]) == cVert) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A V-face has its V-vertex first, in a truncation before its last vertex, or not at all, and
+// F-vertices of faces around its vertex: those of corners there or, in tri-hex, of the corners before.
 bool Validator::checkVFaces() {
     Level const &parent = *_refinement->parent;
     for (Index cFace = _level.numFaces - _level.numVFaces; cFace < _level.numFaces; ++cFace) {
@@ -291,7 +319,12 @@ bool Validator::checkVFaces() {
         Index const vert = good ? _refinement->GetVFaceParent(cFace) : Far::INDEX_INVALID;
         for (int i = 0; good && i < verts.size(); ++i) {
             if (verts[i] < _level.numVVertices) {
-                good = i == 0 && _refinement->GetVertexChildVertex(vert) == verts[i];
+                good = i == (_refinement->isTruncation ? verts.size() - 2 : 0) &&
+                       _refinement->GetVertexChildVertex(vert) == verts[i];
+                continue;
+            }
+            if (_refinement->isTruncation) {
+                good = isBesideVertex(verts[i], vert);
                 continue;
             }
             Index const corner = _refinement->GetChildVertexCorner(verts[i]);

@@ -3,6 +3,7 @@
 
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/runs.h"
+#include "far_ext/vtr/truncationMask.h"
 
 #include <algorithm>
 #include <limits>
@@ -53,6 +54,10 @@ public:
     }
 
     void Plan() {
+        if (_refinement.isTruncation) {
+            planTruncation();
+            return;
+        }
         planFaces();
         planVertices();
     }
@@ -65,6 +70,7 @@ public:
 private:
     void planFaces();
     void planVertices();
+    void planTruncation();
     void addRun(Range const &range);
     void listFace(Index face);
     void listIrregularCorners(Range const &run);
@@ -106,6 +112,7 @@ private:
     std::vector<std::uint32_t> _plainWeights; // by size
     std::vector<Index> _listedFaces;
     std::vector<std::uint32_t> _firstIndices; // of those
+    std::vector<Index> _truncationSources;
     DeviceRefinement _result;
     std::vector<double> _scratch;
 };
@@ -231,7 +238,27 @@ void Maker::listVertex(Index vert) {
                                 firstIndex, firstWeight});
 }
 
+// All vertices have sources in the parent alone.
+void Maker::planTruncation() {
+    FarExt::internal::TruncationMask const mask(_refinement, _mask.GetInterpolation());
+    FarExt::internal::TruncationMask::Sources sources;
+    for (Index cVert = 0; cVert < _refinement.child->numVertices; ++cVert) {
+        mask.GetSources(cVert, sources);
+        auto const numSources = std::uint32_t(sources.verts.size());
+        std::uint32_t const firstIndex = takeIndices(numSources);
+        _result.vertices.push_back({std::uint32_t(cVert), numSources, 0, firstIndex,
+                                    addWeights(sources.weights.data(), int(numSources))});
+        _truncationSources.insert(_truncationSources.end(), sources.verts.begin(),
+                                  sources.verts.end());
+    }
+}
+
 void Maker::fill(std::int32_t *indices) const {
+    if (_refinement.isTruncation) {
+        // Those of level 0 are the first of all.
+        std::copy(_truncationSources.begin(), _truncationSources.end(), indices);
+        return;
+    }
     for (DeviceFaceRun const &run : _result.faceRuns) {
         if (!run.areConsecutive) {
             Index const *const verts = _level.faceVerts.data() + run.firstCorner;

@@ -4,6 +4,7 @@
 #include "far_ext/vtr/indexSet.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/runs.h"
+#include "far_ext/vtr/truncationMask.h"
 
 #include <algorithm>
 #include <numeric>
@@ -456,6 +457,34 @@ PlainMasks makePlainMasks(RefinementMask const &mask, Level const &parent) {
     return masks;
 }
 
+// All that a truncation makes.
+void listVertices(Refinement const &refinement, FarExt::Interpolation interpolation,
+                  PreparedRefinement &prepared) {
+    constexpr Index kTile = 1024;
+    Index const numVertices = refinement.child->numVertices;
+    FarExt::internal::TruncationMask const mask(refinement, interpolation);
+    FarExt::internal::TruncationMask::Sources sources;
+    prepared.parent = refinement.parent;
+    prepared.numTiles = numVertices / kTile + 1;
+    prepared.plainVertices.firsts.assign(std::size_t(prepared.numTiles) + 1, 0);
+    Groups<ListedVertex> &groups = prepared.listedVertices;
+    groups.firsts.clear();
+    groups.items.Resize(std::size_t(numVertices));
+    for (Index cVert = 0; cVert < numVertices; ++cVert) {
+        if (cVert % kTile == 0) {
+            groups.firsts.push_back(std::size_t(cVert));
+        }
+        mask.GetSources(cVert, sources);
+        groups.items[std::size_t(cVert)] = {cVert, int(sources.verts.size()),
+                                            prepared.listedSources.size()};
+        prepared.listedSources.insert(prepared.listedSources.end(), sources.verts.begin(),
+                                      sources.verts.end());
+        prepared.listedWeights.insert(prepared.listedWeights.end(), sources.weights.begin(),
+                                      sources.weights.end());
+    }
+    groups.firsts.resize(std::size_t(prepared.numTiles) + 1, std::size_t(numVertices));
+}
+
 } // namespace
 
 int GetNumTiles(Level const &lastParent) {
@@ -470,6 +499,10 @@ void PrepareRefinement(RefinementMask const &mask,
                        std::vector<Refinement const *> const &refinements, TileMap const &tileMap,
                        PreparedRefinement &prepared) {
     Refinement const &refinement = *refinements.back();
+    if (refinement.isTruncation) {
+        listVertices(refinement, mask.GetInterpolation(), prepared);
+        return;
+    }
     Level const &parent = *refinement.parent;
     std::size_t const numBefore = refinements.size() - 1;
     prepared.numVVertices = refinement.child->numVVertices;

@@ -49,6 +49,13 @@ struct WeightedCorner {
     std::size_t firstWeight; ///< position in faceWeights
 };
 
+/// \brief A vertex that a truncation makes, with sources of its own.
+struct ListedVertex {
+    Far::Index child; ///< in the level that is made
+    int numSources;
+    std::size_t firstSource; ///< position in listedSources and listedWeights
+};
+
 /// \brief A vertex with weights of its own.
 struct WeightedVertex {
     Far::Index vert;
@@ -112,6 +119,11 @@ struct PreparedRefinement {
     Groups<WeightedFace> weightedFaces;
     Groups<WeightedCorner> weightedCorners;
     std::vector<float> faceWeights;
+
+    // Of a truncation, all vertices that it makes, in tiles of some each.
+    Groups<ListedVertex> listedVertices;
+    std::vector<Far::Index> listedSources;
+    std::vector<float> listedWeights;
 
     // Vertices of the parent that are F-vertices of all corners of a face of the level before it,
     // and of the level before that one, by tile.  Runs of faces as above.

@@ -454,6 +454,21 @@ struct FaceKernel {
     }
 };
 template <class ACCESS>
+struct ListedVertexKernel {
+    static void Run(RefinementTask const &task, ListedVertex const *begin,
+                    ListedVertex const *end) {
+        for (; begin < end; ++begin) {
+            Index const *const sources = task.refinement->listedSources.data() + begin->firstSource;
+            float const *const weights = task.refinement->listedWeights.data() + begin->firstSource;
+            auto point = Spread(weights[0]) * ACCESS::LoadExactly(task.src, sources[0]);
+            for (int i = 1; i < begin->numSources; ++i) {
+                point = point + Spread(weights[i]) * ACCESS::LoadExactly(task.src, sources[i]);
+            }
+            ACCESS::StoreExactly(task.dst, begin->child, point);
+        }
+    }
+};
+template <class ACCESS>
 struct VertexKernel {
     static void Run(RefinementTask const &task, VertexRun const *begin, VertexRun const *end) {
         for (; begin < end; ++begin) {
@@ -589,6 +604,7 @@ void RefineElements(std::vector<RefinementTask> const &tasks, int length) {
     for (RefinementTask const &task : tasks) {
         PreparedRefinement const &refinement = *task.refinement;
         forEachGroup(0, refinement.numTiles, [&](int tile) {
+            runKernel<ListedVertexKernel>(task, length, refinement.listedVertices, tile);
             runKernel<FaceKernel>(task, length, refinement.plainFaces, tile);
             runKernel<FaceKernel>(task, length, refinement.weightedFaces, tile);
             runKernel<FaceKernel>(task, length, refinement.weightedCorners, tile);

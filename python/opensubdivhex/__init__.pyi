@@ -122,6 +122,17 @@ class SchemeType:
     @property
     def value(self) -> int: ...
 
+class FirstStep:
+    NONE: FirstStep
+    TRI_HEX: FirstStep
+    TRUNCATE: FirstStep
+    def __init__(self, value: int) -> None: ...
+    def __int__(self) -> int: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
 class SimdLevel:
     PORTABLE: SimdLevel
     AVX2: SimdLevel
@@ -214,9 +225,14 @@ class TopologyRefiner:
         creasing_method: CreasingMethod | str = "uniform",
         face_mask: FaceMask | str = "average",
         scheme_type: SchemeType | str = "hexagonal",
-        tri_hex_first: bool = False,
+        first_step: FirstStep | str = "none",
     ) -> None: ...
-    def refine_uniform(self, level: int, full_topology_in_last_level: bool = False) -> None: ...
+    def refine_uniform(
+        self,
+        level: int,
+        full_topology_in_last_level: bool = False,
+        face_labels: ArrayLike | None = None,
+    ) -> None: ...
     def refine_coplanar(
         self,
         rest_positions: ArrayLike,
@@ -256,7 +272,7 @@ class TopologyRefiner:
     @property
     def scheme_type(self) -> SchemeType: ...
     @property
-    def tri_hex_first(self) -> bool: ...
+    def first_step(self) -> FirstStep: ...
 
 class TopologyLevel:
     @property

@@ -86,7 +86,8 @@ def test_options_are_taken_by_name_and_by_member():
         assert refiner.face_mask == osh.FaceMask.SMOOTH
         assert (refiner.get_fvar_linear_interpolation() ==
                 osh.FVarLinearInterpolation.BOUNDARIES)
-        assert refiner.scheme_type == osh.SchemeType.HEXAGONAL and not refiner.tri_hex_first
+        assert refiner.scheme_type == osh.SchemeType.HEXAGONAL
+        assert refiner.first_step == osh.FirstStep.NONE
     plain = osh.TopologyRefiner(CUBE_FACES)
     assert plain.face_mask == osh.FaceMask.AVERAGE
     assert plain.vtx_boundary_interpolation == osh.VtxBoundaryInterpolation.NONE
@@ -103,9 +104,25 @@ def test_schemes_make_their_counts(scheme, counts):
 
 
 def test_tri_hex_first_makes_level_1():
-    refiner = osh.TopologyRefiner(CUBE_FACES, tri_hex_first=True)
+    refiner = osh.TopologyRefiner(CUBE_FACES, first_step="tri_hex")
     refiner.refine_uniform(1)
     assert refiner.get_level(1).num_vertices == 24
+
+
+def test_truncation_keeps_labels_apart():
+    refiner = osh.TopologyRefiner(CUBE_FACES, first_step=osh.FirstStep.TRUNCATE)
+    refiner.refine_uniform(1, full_topology_in_last_level=True)
+    level = refiner.get_level(1)
+    assert (level.num_vertices, level.num_edges, level.num_faces) == (24, 36, 14)
+    del level
+    # Two halves: a ring of four vertices, each with two sectors, and another of four without.
+    refiner.refine_uniform(1, full_topology_in_last_level=True, face_labels=[0, 1, 1, 1, 1, 1])
+    level = refiner.get_level(1)
+    assert level.num_vertices == 24 + 4 and level.num_faces == 14 + 4
+    level.validate()
+    del level
+    with pytest.raises(osh.StatusError, match="labels"):
+        refiner.refine_uniform(1, face_labels=[0, 1])
 
 
 def test_tags_arrive_at_the_level():

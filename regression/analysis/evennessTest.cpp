@@ -87,4 +87,19 @@ TEST(Evenness, Triangles) {
     EXPECT_NEAR(measureSphere(hull, Sdc::SCHEME_LOOP), 0.0765, kDigits);
 }
 
+// A truncation makes vertices faces, where curvature is bounded: as calm as Loop, and calmer where it
+// is irregular.
+TEST(Evenness, TrianglesTruncatedFirst) {
+    AnyScheme const truncate = HexSchemeOptions{FaceMask::Smooth, FarExt::SchemeType::Hexagonal,
+                                                FarExt::FirstStep::Truncate};
+    EXPECT_LT(measureTorus(14, 8, true, truncate), 0.03);
+    double const bounds[] = {0.32, 0.12, 0.05};
+    std::vector<Shape> const shapes = MakeTrianglePlatonics();
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        SCOPED_TRACE(shapes[i].name);
+        EXPECT_LT(measureSphere(shapes[i], truncate), bounds[i]);
+    }
+    EXPECT_LT(measureSphere(MakeSphereHull(60, 200), truncate), 0.08);
+}
+
 } // namespace OpenSubdivHex::Regression

@@ -16,6 +16,7 @@ namespace OpenSubdivHex::Regression {
 namespace {
 
 using FarExt::FaceMask;
+using FarExt::FirstStep;
 using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
 namespace Sdc = OpenSubdiv::Sdc;
@@ -113,7 +114,8 @@ TEST(Smoothness, CenterIsFollowed) {
     }
     EXPECT_EQ(getSize(HexSchemeOptions{FaceMask::Cosine, SchemeType::DooSabin}, &kind), n);
     EXPECT_EQ(kind, CenterKind::Face);
-    EXPECT_EQ(getSize(HexSchemeOptions{FaceMask::Cosine, SchemeType::Hexagonal, true}, &kind),
+    EXPECT_EQ(getSize(HexSchemeOptions{FaceMask::Cosine, SchemeType::Hexagonal, FirstStep::TriHex},
+                      &kind),
               2 * n);
     EXPECT_EQ(kind, CenterKind::Face);
     EXPECT_THROW(RefineSurface(MakeSaddleBipyramid(n), Sdc::SCHEME_LOOP, 1, {CenterKind::Face, 0}),
@@ -131,7 +133,7 @@ TEST(Smoothness, CurvatureGrowsAsForetold) {
         double const loop = computeLoopEigenvalue(n, 2) / std::pow(computeLoopEigenvalue(n, 1), 2);
         EXPECT_NEAR(findLastGrowth(measureTip(n, Sdc::SCHEME_LOOP, kLevel)), loop, 0.06);
         for (FaceMask mask : {FaceMask::Average, FaceMask::Cosine, FaceMask::Smooth}) {
-            HexSchemeOptions const scheme{mask, SchemeType::Hexagonal, false};
+            HexSchemeOptions const scheme{mask, SchemeType::Hexagonal, FirstStep::None};
             Spectrum const spectrum =
                 ComputeSpectrum(MakeLocalSubdivision(scheme, CenterKind::Vertex, n));
             // With Smooth it grows so slowly that what is bounded is still half of it.
@@ -148,8 +150,8 @@ TEST(Smoothness, TracedCurvature) {
         for (FaceMask mask : {FaceMask::Cosine, FaceMask::Smooth}) {
             // With a tri-hex step first it grows less and less, by the ratio of frequency 2's
             // second eigenvalue to its first, 1/4: the sum of what is to come is finite.
-            LocalSubdivision const face = MakeLocalSubdivision({mask, SchemeType::Hexagonal, true},
-                                                               CenterKind::Vertex, order);
+            LocalSubdivision const face = MakeLocalSubdivision(
+                {mask, SchemeType::Hexagonal, FirstStep::TriHex}, CenterKind::Vertex, order);
             std::vector<double> values;
             for (Eigenvalue const &eigenvalue : ComputeEigenvalues(face)) {
                 if (eigenvalue.frequency == 2) {
@@ -168,7 +170,7 @@ TEST(Smoothness, TracedCurvature) {
             // ... and without, it grows at vertices with more than three faces, with Smooth with more
             // than seven, slowly.
             LocalSubdivision const vertex = MakeLocalSubdivision(
-                {mask, SchemeType::Hexagonal, false}, CenterKind::Vertex, order);
+                {mask, SchemeType::Hexagonal, FirstStep::None}, CenterKind::Vertex, order);
             std::vector<double> const growing = TraceCurvature(vertex, order < 8 ? 14 : 40);
             EXPECT_NEAR(findLastGrowth(growing), ComputeSpectrum(vertex).GetCurvatureGrowth(),
                         0.01);
@@ -181,7 +183,7 @@ TEST(Smoothness, TracedCurvature) {
 TEST(Smoothness, DooSabinAddsCurvature) {
     for (int order : {5, 6, 8, 12}) {
         LocalSubdivision const face = MakeLocalSubdivision(
-            {FaceMask::Cosine, SchemeType::DooSabin, false}, CenterKind::Vertex, order);
+            {FaceMask::Cosine, SchemeType::DooSabin, FirstStep::None}, CenterKind::Vertex, order);
         EXPECT_NEAR(ComputeSpectrum(face).GetCurvatureGrowth(), 1, 1e-6);
         std::vector<double> const curvatures = TraceCurvature(face, 16);
         double const growth = curvatures[16] - curvatures[15];

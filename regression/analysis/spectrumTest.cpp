@@ -15,6 +15,7 @@ namespace OpenSubdivHex::Regression {
 namespace {
 
 using FarExt::FaceMask;
+using FarExt::FirstStep;
 using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
 
@@ -23,10 +24,12 @@ constexpr int kMinOrder = 3;
 constexpr int kMaxOrder = 12;
 double const kPi = std::acos(-1.0);
 
-HexSchemeOptions hexagonal(FaceMask mask) { return {mask, SchemeType::Hexagonal, false}; }
-HexSchemeOptions triHexFirst(FaceMask mask) { return {mask, SchemeType::Hexagonal, true}; }
-HexSchemeOptions dooSabin(FaceMask mask) { return {mask, SchemeType::DooSabin, false}; }
-HexSchemeOptions triHex() { return {FaceMask::Average, SchemeType::TriHex, false}; }
+HexSchemeOptions hexagonal(FaceMask mask) { return {mask, SchemeType::Hexagonal, FirstStep::None}; }
+HexSchemeOptions triHexFirst(FaceMask mask) {
+    return {mask, SchemeType::Hexagonal, FirstStep::TriHex};
+}
+HexSchemeOptions dooSabin(FaceMask mask) { return {mask, SchemeType::DooSabin, FirstStep::None}; }
+HexSchemeOptions triHex() { return {FaceMask::Average, SchemeType::TriHex, FirstStep::None}; }
 
 std::vector<HexSchemeOptions> allSchemes() {
     std::vector<HexSchemeOptions> schemes{triHex()};
@@ -38,7 +41,8 @@ std::vector<HexSchemeOptions> allSchemes() {
 
 std::string describe(HexSchemeOptions const &scheme, CenterKind kind, int order) {
     return "scheme " + std::to_string(int(scheme.schemeType)) + ", mask " +
-           std::to_string(int(scheme.faceMask)) + (scheme.triHexFirst ? ", tri-hex first" : "") +
+           std::to_string(int(scheme.faceMask)) +
+           (scheme.firstStep == FirstStep::TriHex ? ", tri-hex first" : "") +
            (kind == CenterKind::Vertex ? ", vertex " : ", face ") + std::to_string(order);
 }
 
@@ -76,6 +80,22 @@ void expectNear(std::vector<double> const &values, std::vector<double> const &ex
     ASSERT_EQ(values.size(), expected.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
         EXPECT_NEAR(values[i], expected[i], 1e-12) << i;
+    }
+}
+
+/// The eigenvalues are 1/2, 1/2 and the next 1/4, which has as many eigenvectors as its multiplicity,
+/// one for each frequency.
+void expectBoundedCurvature(LocalSubdivision const &center) {
+    SCOPED_TRACE(center.order);
+    Spectrum const spectrum = ComputeSpectrum(center);
+    EXPECT_NEAR(spectrum.subdominant, 0.5, 1e-10);
+    EXPECT_NEAR(spectrum.next, 0.25, 1e-10);
+    EXPECT_NEAR(spectrum.GetCurvatureGrowth(), 1, 1e-9);
+    std::vector<int> counts(std::size_t(center.order), 0);
+    for (Eigenvalue const &eigenvalue : ComputeEigenvalues(center)) {
+        if (std::abs(std::abs(eigenvalue.value) - 0.25) < 1e-6) {
+            EXPECT_EQ(++counts[eigenvalue.frequency], 1);
+        }
     }
 }
 
@@ -282,8 +302,7 @@ TEST(Spectrum, FoldedMapsAreNotRegular) {
 }
 
 // After a tri-hex step all vertices have three faces; Cosine and Smooth then have bounded curvature
-// everywhere: the eigenvalues are 1/2, 1/2 and the next 1/4, at vertices and at all faces, and 1/4
-// has as many eigenvectors as its multiplicity, one for each frequency.
+// everywhere, at vertices and at all faces.
 TEST(Spectrum, TriHexFirstBoundsCurvature) {
     for (FaceMask mask : {FaceMask::Cosine, FaceMask::Smooth}) {
         std::vector<LocalSubdivision> centers{
@@ -295,18 +314,24 @@ TEST(Spectrum, TriHexFirstBoundsCurvature) {
             }
         }
         for (LocalSubdivision const &center : centers) {
-            SCOPED_TRACE(center.order);
-            Spectrum const spectrum = ComputeSpectrum(center);
-            EXPECT_NEAR(spectrum.subdominant, 0.5, 1e-10);
-            EXPECT_NEAR(spectrum.next, 0.25, 1e-10);
-            EXPECT_NEAR(spectrum.GetCurvatureGrowth(), 1, 1e-9);
-            std::vector<int> counts(std::size_t(center.order), 0);
-            for (Eigenvalue const &eigenvalue : ComputeEigenvalues(center)) {
-                if (std::abs(std::abs(eigenvalue.value) - 0.25) < 1e-6) {
-                    EXPECT_EQ(++counts[eigenvalue.frequency], 1);
-                }
-            }
+            expectBoundedCurvature(center);
         }
+    }
+}
+
+// So after a truncation, where a vertex becomes a face with as many sides.
+TEST(Spectrum, TruncateFirstBoundsCurvature) {
+    HexSchemeOptions const scheme{FaceMask::Smooth, SchemeType::Hexagonal, FirstStep::Truncate};
+    for (int order : {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 16, 23, 32, 48, 64}) {
+        LocalSubdivision const center = MakeLocalSubdivision(scheme, CenterKind::Vertex, order);
+        EXPECT_EQ(center.centerKind, CenterKind::Face);
+        EXPECT_EQ(center.order, order);
+        expectBoundedCurvature(center);
+    }
+    for (int order = kMinOrder; order <= kMaxOrder; ++order) {
+        LocalSubdivision const center = MakeLocalSubdivision(scheme, CenterKind::Face, order);
+        EXPECT_EQ(center.order, 2 * order);
+        expectBoundedCurvature(center);
     }
 }
 

@@ -390,13 +390,15 @@ TEST(BaseFace, CoordsOfAVertexAreTheSameBits) {
 
 TEST(BaseFace, OtherStepsCountToTheFirst) {
     for (Shape const &shape : GetShapes()) {
-        for (int kind = 0; kind < 4; ++kind) {
+        for (int kind = 0; kind < 5; ++kind) {
             SCOPED_TRACE(testing::Message() << shape.name << ", kind " << kind);
             FarExt::HexSchemeOptions options;
             options.schemeType = kind == 0   ? FarExt::SchemeType::DooSabin
                                  : kind == 1 ? FarExt::SchemeType::TriHex
                                              : FarExt::SchemeType::Hexagonal;
-            options.triHexFirst = kind == 2;
+            options.firstStep = kind == 2   ? FarExt::FirstStep::TriHex
+                                : kind == 4 ? FarExt::FirstStep::Truncate
+                                            : FarExt::FirstStep::None;
             auto const refiner =
                 FarExt::TopologyRefinerFactory::Create(*CreateFarRefiner(shape), {options});
             if (!refiner) {

@@ -183,14 +183,15 @@ void expectSameLevels(Shape const &shape, FarExt::HexSchemeOptions schemeOptions
 
 TEST(Determinism, SameBitsOfOtherSchemes) {
     FarExt::HexSchemeOptions const schemes[] = {
-        {FarExt::FaceMask::Smooth, FarExt::SchemeType::DooSabin, false},
-        {FarExt::FaceMask::Smooth, FarExt::SchemeType::TriHex, false},
-        {FarExt::FaceMask::Smooth, FarExt::SchemeType::Hexagonal, true}};
+        {FarExt::FaceMask::Smooth, FarExt::SchemeType::DooSabin, FarExt::FirstStep::None},
+        {FarExt::FaceMask::Smooth, FarExt::SchemeType::TriHex, FarExt::FirstStep::None},
+        {FarExt::FaceMask::Smooth, FarExt::SchemeType::Hexagonal, FarExt::FirstStep::TriHex},
+        {FarExt::FaceMask::Smooth, FarExt::SchemeType::Hexagonal, FarExt::FirstStep::Truncate}};
     Shape const shapes[] = {MakeBox(54, 54, 54), splitEdges(MakeBox(54, 54, 54)),
                             makeGridWithHoles(140)};
     for (FarExt::HexSchemeOptions const &scheme : schemes) {
         SCOPED_TRACE(testing::Message()
-                     << "scheme " << int(scheme.schemeType) << ", first " << scheme.triHexFirst);
+                     << "scheme " << int(scheme.schemeType) << ", first " << int(scheme.firstStep));
         expectSameBits([&] {
             return CreateRefiner(GetShape("quadGrid"), ReferenceMask::Smooth, 5, Sdc::Options(),
                                  scheme);

@@ -579,22 +579,25 @@ TEST(Limit, IsOfHexagonalStepsAlone) {
         EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
     }
 
-    // After one tri-hex step the limit is that of the steps which follow, from every level.
+    // After a first step the limit is that of the steps which follow, from every level.
     scheme.schemeType = FarExt::SchemeType::Hexagonal;
-    scheme.triHexFirst = true;
-    auto const refiner = createRefiner();
-    EXPECT_FALSE(Factory::Create(*refiner, options, &status));
-    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
-    ReferenceValues const positions = GetPositions(GetShape("prism5"));
-    options.level = 1;
-    LimitValues const fromFirst = evaluate<double>(*refiner, options, positions);
-    options.level = 2;
-    LimitValues const fromSecond = evaluate<double>(*refiner, options, positions);
-    int const numVertices = refiner->GetLevel(1).GetNumVertices();
-    EXPECT_LT((fromFirst.points.topRows(numVertices) - fromSecond.points.topRows(numVertices))
-                  .cwiseAbs()
-                  .maxCoeff(),
-              1e-12);
+    for (FarExt::FirstStep firstStep : {FarExt::FirstStep::TriHex, FarExt::FirstStep::Truncate}) {
+        scheme.firstStep = firstStep;
+        auto const refiner = createRefiner();
+        options.level = 0;
+        EXPECT_FALSE(Factory::Create(*refiner, options, &status));
+        EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
+        ReferenceValues const positions = GetPositions(GetShape("prism5"));
+        options.level = 1;
+        LimitValues const fromFirst = evaluate<double>(*refiner, options, positions);
+        options.level = 2;
+        LimitValues const fromSecond = evaluate<double>(*refiner, options, positions);
+        int const numVertices = refiner->GetLevel(1).GetNumVertices();
+        EXPECT_LT((fromFirst.points.topRows(numVertices) - fromSecond.points.topRows(numVertices))
+                      .cwiseAbs()
+                      .maxCoeff(),
+                  1e-12);
+    }
 }
 
 } // namespace OpenSubdivHex::Regression

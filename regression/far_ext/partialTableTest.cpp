@@ -38,7 +38,7 @@ void forEachRefiner(int maxLevel, double maxCorners, CHECK const &check) {
         int const level = GetTestLevel(shape, maxLevel, maxCorners);
         for (auto boundary :
              {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
-            for (int kind = 0; kind < 6; ++kind) {
+            for (int kind = 0; kind < 7; ++kind) {
                 SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary
                                                 << ", kind of refinement " << kind);
                 Sdc::Options sdcOptions;
@@ -49,7 +49,9 @@ void forEachRefiner(int maxLevel, double maxCorners, CHECK const &check) {
                 scheme.schemeType = kind == 1   ? FarExt::SchemeType::DooSabin
                                     : kind == 2 ? FarExt::SchemeType::TriHex
                                                 : FarExt::SchemeType::Hexagonal;
-                scheme.triHexFirst = kind == 3;
+                scheme.firstStep = kind == 3   ? FarExt::FirstStep::TriHex
+                                   : kind == 6 ? FarExt::FirstStep::Truncate
+                                               : FarExt::FirstStep::None;
                 auto const refiner = FarExt::TopologyRefinerFactory::Create(
                     *CreateFarRefiner(shape, sdcOptions), {scheme});
                 if (!refiner) {

@@ -94,7 +94,7 @@ TEST_F(StatusTest, OtherSchemesTakeSharpBorders) {
             TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status);
         ASSERT_TRUE(refiner) << status.GetMessage();
         EXPECT_EQ(refiner->GetHexSchemeOptions().schemeType, scheme.schemeType);
-        EXPECT_EQ(refiner->GetHexSchemeOptions().triHexFirst, scheme.triHexFirst);
+        EXPECT_EQ(refiner->GetHexSchemeOptions().firstStep, scheme.firstStep);
         EXPECT_TRUE(refiner->RefineUniform(2));
     }
 }

@@ -13,6 +13,7 @@
 
 namespace OpenSubdivHex::Regression {
 
+using FarExt::FirstStep;
 using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
 using FarExt::TopologyLevel;
@@ -23,20 +24,21 @@ namespace {
 struct NamedScheme {
     char const *name;
     SchemeType schemeType;
-    bool triHexFirst;
+    FirstStep firstStep;
 };
 
-constexpr NamedScheme kSchemes[] = {{"Doo-Sabin", SchemeType::DooSabin, false},
-                                    {"tri-hex", SchemeType::TriHex, false},
-                                    {"tri-hex, then hexagonal", SchemeType::Hexagonal, true},
-                                    {"tri-hex, then Doo-Sabin", SchemeType::DooSabin, true}};
+constexpr NamedScheme kSchemes[] = {
+    {"Doo-Sabin", SchemeType::DooSabin, FirstStep::None},
+    {"tri-hex", SchemeType::TriHex, FirstStep::None},
+    {"tri-hex, then hexagonal", SchemeType::Hexagonal, FirstStep::TriHex},
+    {"tri-hex, then Doo-Sabin", SchemeType::DooSabin, FirstStep::TriHex}};
 
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, ReferenceMask mask,
                                                NamedScheme const &scheme, int level,
                                                Sdc::Options options = Sdc::Options()) {
     HexSchemeOptions schemeOptions;
     schemeOptions.schemeType = scheme.schemeType;
-    schemeOptions.triHexFirst = scheme.triHexFirst;
+    schemeOptions.firstStep = scheme.firstStep;
     return CreateRefiner(shape, mask, level, options, schemeOptions);
 }
 

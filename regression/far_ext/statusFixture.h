@@ -13,9 +13,9 @@
 namespace OpenSubdivHex::Regression {
 
 inline FarExt::HexSchemeOptions const kOtherSchemes[] = {
-    {FarExt::FaceMask::Average, FarExt::SchemeType::DooSabin, false},
-    {FarExt::FaceMask::Average, FarExt::SchemeType::TriHex, false},
-    {FarExt::FaceMask::Average, FarExt::SchemeType::Hexagonal, true}};
+    {FarExt::FaceMask::Average, FarExt::SchemeType::DooSabin, FarExt::FirstStep::None},
+    {FarExt::FaceMask::Average, FarExt::SchemeType::TriHex, FarExt::FirstStep::None},
+    {FarExt::FaceMask::Average, FarExt::SchemeType::Hexagonal, FarExt::FirstStep::TriHex}};
 
 inline std::string lastError;
 inline int numErrors = 0;

@@ -122,8 +122,16 @@ void TaggedMatch::makeBase(Shape const &shape) {
         }
     }
     _levels.push_back(MakeTaggedMesh(base));
+    TaggedMesh const mesh = _levels[0];
+    std::vector<TaggedMesh> values;
+    for (FVarChannel const &channel : shape.fvarChannels) {
+        std::vector<int> valuesOfVertices;
+        values.push_back(MakeValueMesh(mesh, rightHanded(shape, channel.valueIndices),
+                                       std::vector<float>(base.faceVertices.size()),
+                                       valuesOfVertices));
+    }
+    _cuts = FindCuts(mesh, values);
     if (_channel >= 0) {
-        TaggedMesh const mesh = _levels[0];
         _levels[0] =
             MakeValueMesh(mesh, rightHanded(shape, shape.fvarChannels[_channel].valueIndices),
                           valueSharpness(*farBase, _channel, mesh), _valuesOfVertices);
@@ -146,15 +154,19 @@ int TaggedMatch::GetLibraryEdge(int level, TaggedMesh::Edge const &edge) const {
 
 ReferenceStep TaggedMatch::makeStep(int level) const {
     ReferenceStep step;
-    switch (_refiner.GetHexSchemeOptions().GetSchemeOfLevel(level)) {
-    case FarExt::SchemeType::Hexagonal:
+    switch (_refiner.GetHexSchemeOptions().GetStepOfLevel(level)) {
+    case FarExt::StepType::Hexagonal:
         step.scheme = ReferenceScheme::Hexagonal;
         break;
-    case FarExt::SchemeType::DooSabin:
+    case FarExt::StepType::DooSabin:
         step.scheme = ReferenceScheme::DooSabin;
         break;
-    case FarExt::SchemeType::TriHex:
+    case FarExt::StepType::TriHex:
         step.scheme = ReferenceScheme::TriHex;
+        break;
+    case FarExt::StepType::Truncate:
+        step.scheme = ReferenceScheme::Truncate;
+        step.cuts = _cuts;
         break;
     }
     if (_refiner.IsUniform()) {
@@ -174,20 +186,29 @@ ReferenceStep TaggedMatch::makeStep(int level) const {
     return step;
 }
 
+/// The vertices of a face from the lowest that is not negative on.
+std::vector<int> fromLowest(std::vector<int> vertices) {
+    auto const isLess = [](int a, int b) { return unsigned(a) < unsigned(b); };
+    std::rotate(vertices.begin(), std::min_element(vertices.begin(), vertices.end(), isLess),
+                vertices.end());
+    return vertices;
+}
+
 TaggedMatch::VFaces TaggedMatch::findVFaces(int level) const {
     TopologyLevel const &library = _refiner.GetLevel(level);
-    int const firstFVertex = _refiner.GetLevel(level - 1).GetFaceChildVertices(0)[0];
+    TopologyLevel const &pLevel = _refiner.GetLevel(level - 1);
+    int firstFVertex = 0;
+    for (int v = 0; v < pLevel.GetNumVertices(); ++v) {
+        firstFVertex += pLevel.GetVertexChildVertex(v) >= 0;
+    }
     VFaces vFaces;
     for (int f = 0; f < library.GetNumFaces(); ++f) {
         if (library.GetFaceKind(f) == FarExt::FaceKind::Vertex) {
-            std::vector<int> fVertices;
+            std::vector<int> vertices;
             for (int v : library.GetFaceVertices(f)) {
-                if (v >= firstFVertex) {
-                    fVertices.push_back(v);
-                }
+                vertices.push_back(v < firstFVertex ? -1 : v);
             }
-            std::sort(fVertices.begin(), fVertices.end());
-            vFaces.emplace(fVertices, f);
+            vFaces.emplace(fromLowest(std::move(vertices)), f);
         }
     }
     return vFaces;
@@ -198,19 +219,21 @@ TaggedMatch::Place TaggedMatch::placeOfVFace(TaggedMesh::Face const &face, VFace
     TopologyLevel const &pLevel = _refiner.GetLevel(level - 1);
     // The library's vertex of each corner; negative for a V-vertex.
     std::vector<int> vertices;
-    std::vector<int> key;
     for (int v : face.vertices) {
         TaggedMesh::VertexOrigin const &origin = _levels[level].vertexOrigins[v];
         vertices.push_back(-1);
         if (origin.face >= 0) {
             Place const &pPlace = _places[level - 1][origin.face];
-            vertices.back() =
-                pLevel.GetFaceChildVertices(pPlace.face)[pPlace.corners[origin.place]];
-            key.push_back(vertices.back());
+            auto const made = pLevel.GetFaceChildVertices(pPlace.face);
+            int corner = pPlace.corners[origin.place];
+            if (_levels[level].madeBy == ReferenceScheme::Truncate) {
+                // Two on each edge, behind that at the end of the edge before.
+                corner = (2 * corner + (origin.isFar ? 2 : 1)) % made.size();
+            }
+            vertices.back() = made[corner];
         }
     }
-    std::sort(key.begin(), key.end());
-    auto const found = vFaces.find(key);
+    auto const found = vFaces.find(fromLowest(vertices));
     Place place;
     if (found == vFaces.end()) {
         return place;
@@ -239,6 +262,14 @@ TaggedMatch::Place TaggedMatch::placeOf(TaggedMesh::FaceOrigin const &origin,
     if (origin.face >= 0) {
         Place place = pPlaces[origin.face];
         place.face = pLevel.GetFaceChildFaces(place.face)[0];
+        if (_levels[level].madeBy == ReferenceScheme::Truncate) {
+            std::vector<int> const corners = std::move(place.corners);
+            place.corners.clear();
+            for (int corner : corners) {
+                place.corners.push_back(2 * corner);
+                place.corners.push_back(2 * corner + 1);
+            }
+        }
         return place;
     }
     // The order that INDEXING.md tells: an E-face begins where its edge's first face does.

@@ -58,7 +58,8 @@ private:
     /// Of a place that is half a face.
     static int GetHalf(Place const &place) { return place.corners[0] == 0 ? 0 : 1; }
 
-    /// The library's V-faces, by their F-vertices in ascending order.
+    /// The library's V-faces, by their vertices from the F-vertex with the lowest index on; -1 for a
+    /// V-vertex.
     using VFaces = std::map<std::vector<int>, int>;
 
     void makeBase(Shape const &shape);
@@ -78,6 +79,7 @@ private:
     int _channel;
     bool _closeGaps;
     std::vector<TaggedMesh> _levels;
+    ReferenceCuts _cuts; ///< of a truncation
     std::vector<std::vector<Place>> _places;
     std::vector<std::vector<int>> _vertices; ///< the library's, of the mesh or of the values
     std::vector<int> _valuesOfVertices;      ///< of a channel at level 0

@@ -132,9 +132,14 @@ void checkNextLevel(OracleLevels const &levels, int depth, LimitLevel const &par
 
 void CheckLimits(OracleLevels const &levels) {
     ReferenceValues const &base = levels.values[0].levels[0];
+    // A truncation has no limit of its own: level 1 is its base.
+    int const first = levels.refiner.GetHexSchemeOptions().IsHexagonal() ? 0 : 1;
     int const maxLevel = std::min(levels.refiner.GetMaxLevel(), 2);
-    LimitLevel parent = makeLimit<double>(levels.refiner, 0, base);
-    LimitLevel const inFloat = makeLimit<float>(levels.refiner, 0, base);
+    if (maxLevel < first) {
+        return;
+    }
+    LimitLevel parent = makeLimit<double>(levels.refiner, first, base);
+    LimitLevel const inFloat = makeLimit<float>(levels.refiner, first, base);
     double const allowed = 2e-6 * std::max(1.0, GetSize(base));
     for (Eigen::Index row = 0; row < parent.points.rows(); ++row) {
         double const size =
@@ -145,7 +150,7 @@ void CheckLimits(OracleLevels const &levels) {
             Fail("the limit table of floats has another row ", row);
         }
     }
-    for (int level = 1; level <= maxLevel; ++level) {
+    for (int level = first + 1; level <= maxLevel; ++level) {
         LimitLevel child = makeLimit<double>(levels.refiner, level, base);
         checkNextLevel(levels, level - 1, parent, child);
         parent = std::move(child);

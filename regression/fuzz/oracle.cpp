@@ -39,9 +39,9 @@ void checkRefusal(OracleCase const &oracleCase, Status const &status) {
     if (status.IsOk() || status.GetMessage().empty()) {
         Fail("no refiner, and no cause");
     }
-    bool const isHexagonal =
-        oracleCase.schemeType == FarExt::SchemeType::Hexagonal && !oracleCase.triHexFirst;
-    if (status.GetCode() == StatusCode::Unsupported && !isHexagonal) {
+    bool const takesTags = oracleCase.schemeType == FarExt::SchemeType::Hexagonal &&
+                           oracleCase.firstStep != FarExt::FirstStep::TriHex;
+    if (status.GetCode() == StatusCode::Unsupported && !takesTags) {
         return;
     }
     // A channel that does not come apart where its mesh does.
@@ -180,10 +180,11 @@ void CheckOracleCase(OracleCase const &oracleCase) {
             Fail("base faces differ from the reference: ", error);
         }
     }
-    if (isHexagonal && dice.IsOneOf(4)) {
+    bool const isTruncation = oracleCase.firstStep == FarExt::FirstStep::Truncate;
+    if ((isHexagonal || isTruncation) && dice.IsOneOf(4)) {
         CheckOrders(levels, dice);
     }
-    if (isHexagonal && !oracleCase.isCoplanar && dice.IsOneOf(8)) {
+    if ((isHexagonal || isTruncation) && !oracleCase.isCoplanar && dice.IsOneOf(8)) {
         CheckLimits(levels);
     }
     if (dice.IsOneOf(2048)) {

@@ -16,6 +16,7 @@
 
 namespace OpenSubdivHex::Regression {
 
+using FarExt::FirstStep;
 using FarExt::SchemeType;
 
 namespace {
@@ -326,7 +327,9 @@ OracleCase MakeOracleCase(std::uint8_t const *data, std::size_t size) {
     result.schemeType = scheme == 15   ? SchemeType::DooSabin
                         : scheme == 14 ? SchemeType::TriHex
                                        : SchemeType::Hexagonal;
-    result.triHexFirst = scheme == 13;
+    result.firstStep = scheme == 13                  ? FirstStep::TriHex
+                       : scheme == 9 || scheme == 10 ? FirstStep::Truncate
+                                                     : FirstStep::None;
     result.isCoplanar = scheme == 11 || scheme == 12;
     result.angleTolerance = scheme == 11 ? 0.1 : 50; // of no two coarse faces
     result.closeGaps = scheme == 11 || bytes.Choose(2) == 0;
@@ -344,8 +347,9 @@ OracleCase MakeOracleCase(std::uint8_t const *data, std::size_t size) {
         shape.positions.push_back(makeCoordinate(seed, i, isCoarse));
     }
     // Other schemes refuse tags and channels; that they do is worth some cases alone.
-    bool const isHexagonal = result.schemeType == SchemeType::Hexagonal && !result.triHexFirst;
-    if (isHexagonal || bytes.IsOneOf(8)) {
+    bool const takesTags =
+        result.schemeType == SchemeType::Hexagonal && result.firstStep != FirstStep::TriHex;
+    if (takesTags || bytes.IsOneOf(8)) {
         addTags(bytes, shape);
         for (int i = std::max(0, bytes.Choose(5) - 2); i > 0; --i) {
             shape.fvarChannels.push_back(makeChannel(bytes, shape));
@@ -377,6 +381,7 @@ std::string Print(OracleCase const &oracleCase) {
     static char const *const kLinearNames[] = {"NONE",          "CORNERS_ONLY", "CORNERS_PLUS1",
                                                "CORNERS_PLUS2", "BOUNDARIES",   "ALL"};
     static char const *const kMaskNames[] = {"Average", "Cosine", "Smooth"};
+    static char const *const kFirstStepNames[] = {"None", "TriHex", "Truncate"};
     static char const *const kSchemeNames[] = {"Hexagonal", "DooSabin", "TriHex"};
     Shape const &shape = oracleCase.shape;
     Sdc::Options const &options = oracleCase.sdcOptions;
@@ -421,7 +426,8 @@ std::string Print(OracleCase const &oracleCase) {
     line("mask", std::string("ReferenceMask::") + kMaskNames[int(oracleCase.mask)]);
     line("schemeType",
          std::string("FarExt::SchemeType::") + kSchemeNames[int(oracleCase.schemeType)]);
-    line("triHexFirst", toString(oracleCase.triHexFirst));
+    line("firstStep",
+         std::string("FarExt::FirstStep::") + kFirstStepNames[int(oracleCase.firstStep)]);
     line("level", std::to_string(oracleCase.level));
     if (oracleCase.isCoplanar) {
         line("isCoplanar", "true");
@@ -594,7 +600,7 @@ std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(OracleCase const &oracleC
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions.faceMask = ToFaceMask(oracleCase.mask);
     options.schemeOptions.schemeType = oracleCase.schemeType;
-    options.schemeOptions.triHexFirst = oracleCase.triHexFirst;
+    options.schemeOptions.firstStep = oracleCase.firstStep;
     auto refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(oracleCase.shape).Get(),
                                                           oracleCase.sdcOptions, options, status);
     bool isRefined = false;

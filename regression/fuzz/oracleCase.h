@@ -20,7 +20,7 @@ struct OracleCase {
     Sdc::Options sdcOptions;
     ReferenceMask mask = ReferenceMask::Average;
     FarExt::SchemeType schemeType = FarExt::SchemeType::Hexagonal;
-    bool triHexFirst = false;
+    FarExt::FirstStep firstStep = FarExt::FirstStep::None;
     int level = 1;
     bool isCoplanar = false;
     double angleTolerance = 0.1; ///< of a coplanar refinement

@@ -36,8 +36,8 @@ TEST(Oracle, BytesMakeCasesOfAllKinds) {
         OracleCase const oracleCase = makeCase(seed);
         Shape const &shape = oracleCase.shape;
         faceSizes.insert(shape.faceSizes.begin(), shape.faceSizes.end());
-        schemes.insert(int(oracleCase.schemeType) + 3 * int(oracleCase.triHexFirst) +
-                       6 * int(oracleCase.isCoplanar));
+        schemes.insert(int(oracleCase.schemeType) + 3 * int(oracleCase.firstStep) +
+                       9 * int(oracleCase.isCoplanar));
         options.insert(int(oracleCase.sdcOptions.GetVtxBoundaryInterpolation()) +
                        3 * int(oracleCase.sdcOptions.GetCreasingMethod()) +
                        6 * int(oracleCase.sdcOptions.GetFVarLinearInterpolation()) +
@@ -55,7 +55,7 @@ TEST(Oracle, BytesMakeCasesOfAllKinds) {
         }
     }
     EXPECT_EQ(faceSizes, (std::set<int>{3, 4, 5, 6, 7, 8}));
-    EXPECT_EQ(schemes, (std::set<int>{0, 1, 2, 3, 6}));
+    EXPECT_EQ(schemes, (std::set<int>{0, 1, 2, 3, 6, 9}));
     EXPECT_EQ(int(options.size()), 108);
     EXPECT_GT(numNonManifold, 300);
     EXPECT_GT(numWithAllTags, 15);

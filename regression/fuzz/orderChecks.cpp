@@ -17,8 +17,9 @@ namespace {
 /// other numbers for its vertices.
 struct Reordered {
     Reordered(OracleCase const &original, std::vector<int> const &faceOrder, Dice &dice,
-              bool isReversed)
-        : oracleCase(original), vertices(std::size_t(original.shape.GetNumVertices())) {
+              bool isTurnedOver)
+        : oracleCase(original), vertices(std::size_t(original.shape.GetNumVertices())),
+          isReversed(isTurnedOver) {
         Shape const &from = original.shape;
         Shape &to = oracleCase.shape;
         std::iota(vertices.begin(), vertices.end(), 0);
@@ -68,6 +69,7 @@ struct Reordered {
     OracleCase oracleCase;
     std::vector<int> vertices; ///< the new number of each vertex
     std::vector<int> corners;  ///< the new number of each corner, where faces are right-handed
+    bool isReversed;
 };
 
 /// The limit points of the vertices of level 0.
@@ -132,13 +134,19 @@ void checkOrder(OracleLevels const &levels, Reordered const &other, ReferenceVal
     if (own.size() < 2) {
         return;
     }
-    bool const isLeftHanded = levels.oracleCase.shape.leftHanded;
-    int const firstFVertex = levels.refiner.GetLevel(0).GetFaceChildVertices(0)[0];
-    for (std::size_t c = 0; c < other.corners.size() && !isLeftHanded; ++c) {
+    bool const isTruncation = levels.oracleCase.firstStep == FarExt::FirstStep::Truncate;
+    // The edge that begins in a corner is another where faces are turned over.
+    if (levels.oracleCase.shape.leftHanded || (isTruncation && other.isReversed)) {
+        return;
+    }
+    std::size_t const perCorner =
+        isTruncation ? 2 : 1; // vertices of F-faces, that of a corner last
+    int const firstFVertex = levels.refiner.GetLevel(0).GetFaceChildVertices(0)[int(perCorner) - 1];
+    for (std::size_t c = 0; c < other.corners.size(); ++c) {
         check(own[1].row(firstFVertex + int(c)), others[1].row(firstFVertex + other.corners[c]),
               "the point at corner " + std::to_string(c));
     }
-    for (std::size_t i = 2; i < levels.values.size() && !isLeftHanded; ++i) {
+    for (std::size_t i = 2; i < levels.values.size(); ++i) {
         int const channel = levels.values[i].channel;
         auto const otherValues = InterpolateLevels(*refiner, levels.values[i].levels[0],
                                                    ValueKind::FaceVarying, channel);
@@ -154,9 +162,10 @@ void checkOrder(OracleLevels const &levels, Reordered const &other, ReferenceVal
         int const numFaces = levels.oracleCase.shape.GetNumFaces();
         std::vector<int> const ownCorners = valuesOf(levels.refiner.GetLevel(1), numFaces);
         std::vector<int> const otherCorners = valuesOf(refiner->GetLevel(1), numFaces);
-        for (std::size_t c = 0; c < ownCorners.size(); ++c) {
-            check(levels.values[i].levels[1].row(ownCorners[c]),
-                  otherValues[1].row(otherCorners[std::size_t(other.corners[c])]),
+        auto const place = [=](std::size_t corner) { return perCorner * corner + perCorner - 1; };
+        for (std::size_t c = 0; c < other.corners.size(); ++c) {
+            check(levels.values[i].levels[1].row(ownCorners[place(c)]),
+                  otherValues[1].row(otherCorners[place(std::size_t(other.corners[c]))]),
                   "the value of channel " + std::to_string(channel) + " at corner " +
                       std::to_string(c));
         }
@@ -166,7 +175,8 @@ void checkOrder(OracleLevels const &levels, Reordered const &other, ReferenceVal
 } // namespace
 
 void CheckOrders(OracleLevels const &levels, Dice &dice) {
-    bool const hasLimits = !levels.oracleCase.isCoplanar && dice.IsOneOf(8);
+    bool const hasLimits = levels.refiner.GetHexSchemeOptions().IsHexagonal() &&
+                           !levels.oracleCase.isCoplanar && dice.IsOneOf(8);
     ReferenceValues limits;
     if (hasLimits) {
         limits = limitPoints(levels.refiner, levels.values[0].levels[0]);

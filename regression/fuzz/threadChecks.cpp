@@ -73,7 +73,9 @@ Made make(OracleCase const &oracleCase, int numThreads) {
         options.factorizeIntermediateLevels = false;
         addTable(FarExt::StencilTableFactory::Create(*refiner, options, &status));
     }
-    if (refiner->GetHexSchemeOptions().IsHexagonal() && !oracleCase.isCoplanar) {
+    if (refiner->GetHexSchemeOptions().GetStepOfLevel(oracleCase.level + 1) ==
+            FarExt::StepType::Hexagonal &&
+        !oracleCase.isCoplanar) {
         FarExt::LimitStencilTableFactory::Options limitOptions;
         limitOptions.level = oracleCase.level;
         limitOptions.generateFaceCenters = true;

@@ -149,10 +149,14 @@ TEST_F(GlRefinement, TakesEveryLengthMaskSchemeAndMode) {
             if (hasCharts != isHexagonal) {
                 continue; // the others have no rules for charts
             }
-            for (auto mask : {FarExt::FaceMask::Average, FarExt::FaceMask::Smooth}) {
+            for (auto mask :
+                 {FarExt::FaceMask::Average, FarExt::FaceMask::Cosine, FarExt::FaceMask::Smooth}) {
                 FarExt::HexSchemeOptions schemeOptions;
                 schemeOptions.schemeType = type;
                 schemeOptions.faceMask = mask;
+                if (mask == FarExt::FaceMask::Smooth && isHexagonal) {
+                    schemeOptions.firstStep = FarExt::FirstStep::Truncate;
+                }
                 auto const refiner =
                     makeRefiner(hasCharts ? GetFeatureShape(name) : GetShape(name), 3,
                                 Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions);
@@ -160,6 +164,10 @@ TEST_F(GlRefinement, TakesEveryLengthMaskSchemeAndMode) {
                     ASSERT_NO_FATAL_FAILURE(expectEqual(*refiner, {}, length));
                 }
                 ASSERT_NO_FATAL_FAILURE(expectEqual(*refiner, {FarExt::INTERPOLATE_VARYING, 0}, 3));
+                for (int channel = 0; channel < refiner->GetNumFVarChannels(); ++channel) {
+                    ASSERT_NO_FATAL_FAILURE(
+                        expectEqual(*refiner, {FarExt::INTERPOLATE_FACE_VARYING, channel}, 2));
+                }
             }
         }
     }

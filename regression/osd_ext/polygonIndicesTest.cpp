@@ -77,9 +77,11 @@ TEST(PolygonIndices, AllOptionsOfAllShapes) {
 
 TEST(PolygonIndices, OtherSteps) {
     for (Shape const &shape : GetManifoldShapes()) {
-        for (int kind = 0; kind < 4; ++kind) {
+        for (int kind = 0; kind < 5; ++kind) {
             FarExt::TopologyRefinerFactory::Options factoryOptions;
-            factoryOptions.schemeOptions.triHexFirst = kind == 1;
+            factoryOptions.schemeOptions.firstStep = kind == 1   ? FarExt::FirstStep::TriHex
+                                                     : kind == 4 ? FarExt::FirstStep::Truncate
+                                                                 : FarExt::FirstStep::None;
             factoryOptions.schemeOptions.schemeType = kind == 2   ? FarExt::SchemeType::DooSabin
                                                       : kind == 3 ? FarExt::SchemeType::TriHex
                                                                   : FarExt::SchemeType::Hexagonal;

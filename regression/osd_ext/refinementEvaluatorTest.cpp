@@ -338,13 +338,17 @@ TEST(RefinementEvaluator, EqualsTablesOfOtherSchemes) {
     shapes.insert(shapes.end(), GetFlatShapes().begin(), GetFlatShapes().end());
     for (Shape &shape : shapes) {
         shape.fvarChannels.clear();
-        for (auto const schemeType : {FarExt::SchemeType::DooSabin, FarExt::SchemeType::TriHex,
-                                      FarExt::SchemeType::Hexagonal}) {
-            SCOPED_TRACE(testing::Message() << shape.name << ", scheme " << int(schemeType));
-            FarExt::HexSchemeOptions schemeOptions;
+        for (FarExt::HexSchemeOptions schemeOptions :
+             {FarExt::HexSchemeOptions{FaceMask::Average, FarExt::SchemeType::DooSabin},
+              FarExt::HexSchemeOptions{FaceMask::Average, FarExt::SchemeType::TriHex},
+              FarExt::HexSchemeOptions{FaceMask::Average, FarExt::SchemeType::Hexagonal,
+                                       FarExt::FirstStep::TriHex},
+              FarExt::HexSchemeOptions{FaceMask::Average, FarExt::SchemeType::Hexagonal,
+                                       FarExt::FirstStep::Truncate}}) {
+            SCOPED_TRACE(testing::Message()
+                         << shape.name << ", scheme " << int(schemeOptions.schemeType)
+                         << ", first step " << int(schemeOptions.firstStep));
             schemeOptions.faceMask = kMasks[seed % 3];
-            schemeOptions.schemeType = schemeType;
-            schemeOptions.triHexFirst = schemeType == FarExt::SchemeType::Hexagonal;
             auto const refiner = createRefiner(shape, schemeOptions, GetTestLevel(shape, 3, 2500));
             ASSERT_NO_FATAL_FAILURE(
                 expectEqualsTable(*refiner, FarExt::INTERPOLATE_VERTEX, 0, 1 + seed++ % 5));
@@ -468,8 +472,10 @@ TEST(RefinementEvaluator, EqualsPrimvarRefinerInManyTilesOfOtherSchemes) {
     FarExt::HexSchemeOptions dooSabin;
     dooSabin.schemeType = FarExt::SchemeType::DooSabin;
     FarExt::HexSchemeOptions triHexFirst;
-    triHexFirst.triHexFirst = true;
-    for (FarExt::HexSchemeOptions const schemeOptions : {dooSabin, triHexFirst}) {
+    triHexFirst.firstStep = FarExt::FirstStep::TriHex;
+    FarExt::HexSchemeOptions truncateFirst;
+    truncateFirst.firstStep = FarExt::FirstStep::Truncate;
+    for (FarExt::HexSchemeOptions const schemeOptions : {dooSabin, triHexFirst, truncateFirst}) {
         auto const refiner = createRefiner(GetShape("prism64"), schemeOptions,
                                            GetTestLevel(GetShape("prism64"), 6, 600000));
         ASSERT_GT(refiner->GetLevel(refiner->GetMaxLevel()).GetNumFaceVertices(), 150000);

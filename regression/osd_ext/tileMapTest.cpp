@@ -124,11 +124,14 @@ TEST(TileMap, KnowsItInLevelsOfOtherSchemes) {
     FarExt::HexSchemeOptions dooSabin;
     dooSabin.schemeType = FarExt::SchemeType::DooSabin;
     FarExt::HexSchemeOptions triHexFirst;
-    triHexFirst.triHexFirst = true;
+    triHexFirst.firstStep = FarExt::FirstStep::TriHex;
+    FarExt::HexSchemeOptions truncateFirst;
+    truncateFirst.firstStep = FarExt::FirstStep::Truncate;
     for (Shape const *const shape : {&GetShape("cube"), &GetShape("prism64")}) {
         SCOPED_TRACE(shape->name);
         ASSERT_NO_FATAL_FAILURE(expectTiles(*shape, Sdc::Options(), dooSabin));
         ASSERT_NO_FATAL_FAILURE(expectTiles(*shape, Sdc::Options(), triHexFirst));
+        ASSERT_NO_FATAL_FAILURE(expectTiles(*shape, Sdc::Options(), truncateFirst));
     }
 }
 

@@ -39,9 +39,11 @@ void AddEvennessSection(Page *page, Settings const &settings) {
     AnyScheme const cosine = MakeHexagonal(FaceMask::Cosine);
     AnyScheme const smooth = MakeHexagonal(FaceMask::Smooth);
     AnyScheme const triHexFirst = MakeTriHexFirst(FaceMask::Smooth);
+    AnyScheme const truncateFirst = MakeTruncateFirst(FaceMask::Smooth);
     int const level = std::min(kMeasuredLevel, settings.smoothnessLevel);
     Table table{
-        {"control mesh", "Cosine", "Smooth", "Smooth, tri-hex first", "Catmull-Clark", "Loop"},
+        {"control mesh", "Cosine", "Smooth", "Smooth, tri-hex first", "Smooth, truncate first",
+         "Catmull-Clark", "Loop"},
         {},
         "Deviation of the mean curvature from its mean, as a part of that mean (root of the "
         "mean square by area), level " +
@@ -50,7 +52,7 @@ void AddEvennessSection(Page *page, Settings const &settings) {
                             double (*unevenness)(PolygonMesh const &)) {
         std::vector<std::string> row{name};
         for (AnyScheme const &scheme :
-             {cosine, smooth, triHexFirst, AnyScheme(Sdc::SCHEME_CATMARK)}) {
+             {cosine, smooth, triHexFirst, truncateFirst, AnyScheme(Sdc::SCHEME_CATMARK)}) {
             row.push_back(measure(unevenness, shape, scheme, level));
         }
         row.push_back(isTriangles ? measure(unevenness, shape, Sdc::SCHEME_LOOP, level) : "");
@@ -85,11 +87,13 @@ void AddEvennessSection(Page *page, Settings const &settings) {
     };
     addPictures("quads", MakeTorus(14, 8, false),
                 {{"Cosine", cosine}, {"Smooth", smooth}, {"Catmull-Clark", Sdc::SCHEME_CATMARK}});
-    addPictures(
-        "triangles", MakeTorus(14, 8, true),
-        {{"Smooth", smooth}, {"Smooth, tri-hex first", triHexFirst}, {"Loop", Sdc::SCHEME_LOOP}});
+    std::vector<Contestant> const ofTriangles = {
+        {"Smooth", smooth}, {"Smooth, truncate first", truncateFirst}, {"Loop", Sdc::SCHEME_LOOP}};
+    addPictures("triangles", MakeTorus(14, 8, true), ofTriangles);
+    addPictures("icosahedron", MakeIcosahedron(), ofTriangles);
     page->AddFigure(pictures, 3,
-                    "Reflection lines of tori of 14 x 8 quads, and of triangles, level " +
+                    "Reflection lines of tori of 14 x 8 quads, and of triangles, and of an "
+                    "icosahedron, level " +
                         std::to_string(settings.maskLevel - 1) + ".");
 }
 

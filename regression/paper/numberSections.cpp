@@ -339,7 +339,7 @@ void AddEigenvalueSection(Page *page, Settings const &settings) {
                                    IsRegular(center, ComputeCharacteristicMap(center));
             }
             bool const isRegular = line.kind == CenterKind::Vertex && n == 3;
-            if (line.scheme.triHexFirst) {
+            if (line.scheme.firstStep == FirstStep::TriHex) {
                 triHexFirstGrowth = std::max(triHexFirstGrowth, spectrum.GetCurvatureGrowth());
             } else if (isRegular && line.scheme.faceMask == FaceMask::Average) {
                 paperGrowth = spectrum.GetCurvatureGrowth();

@@ -7,19 +7,25 @@
 namespace OpenSubdivHex::Regression {
 
 using FarExt::FaceMask;
+using FarExt::FirstStep;
 using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
 
 constexpr HexSchemeOptions MakeHexagonal(FaceMask mask) {
-    return {mask, SchemeType::Hexagonal, false};
+    return {mask, SchemeType::Hexagonal, FirstStep::None};
 }
 constexpr HexSchemeOptions MakeTriHexFirst(FaceMask mask) {
-    return {mask, SchemeType::Hexagonal, true};
+    return {mask, SchemeType::Hexagonal, FirstStep::TriHex};
+}
+constexpr HexSchemeOptions MakeTruncateFirst(FaceMask mask) {
+    return {mask, SchemeType::Hexagonal, FirstStep::Truncate};
 }
 constexpr HexSchemeOptions MakeDooSabin(FaceMask mask) {
-    return {mask, SchemeType::DooSabin, false};
+    return {mask, SchemeType::DooSabin, FirstStep::None};
 }
-constexpr HexSchemeOptions MakeTriHex() { return {FaceMask::Average, SchemeType::TriHex, false}; }
+constexpr HexSchemeOptions MakeTriHex() {
+    return {FaceMask::Average, SchemeType::TriHex, FirstStep::None};
+}
 
 } // namespace OpenSubdivHex::Regression
 

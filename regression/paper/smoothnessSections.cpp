@@ -188,7 +188,7 @@ void AddTipSection(Page *page, Settings const &settings) {
                 series.points.emplace_back(double(step), curvatures[step]);
             }
             traced.series.push_back(series);
-            if (options->triHexFirst && options->faceMask == FaceMask::Smooth) {
+            if (options->firstStep == FirstStep::TriHex && options->faceMask == FaceMask::Smooth) {
                 bounded = curvatures;
             } else if (options->schemeType == SchemeType::DooSabin) {
                 dooSabin = curvatures;

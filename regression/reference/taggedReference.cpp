@@ -2,6 +2,7 @@
 #include "taggedReference.h"
 
 #include "irregularReference.h"
+#include "taggedRules.h"
 
 #include <Eigen/Geometry>
 
@@ -14,10 +15,8 @@
 
 namespace OpenSubdivHex::Regression {
 
-namespace {
+namespace TaggedRules {
 
-using Point = Eigen::RowVectorXd;
-using Side = TaggedMesh::Side;
 using Edge = TaggedMesh::Edge;
 using Face = TaggedMesh::Face;
 
@@ -28,7 +27,6 @@ float decremented(float sharpness) {
     return isInfinite(sharpness) ? sharpness : std::max(0.0f, sharpness - 1);
 }
 
-/// Sides of a new mesh, gathered edge by edge; fills Face::edges and Vertex::corners.
 void connect(TaggedMesh &mesh) {
     for (Face &face : mesh.faces) {
         face.edges.assign(face.vertices.size(), -1);
@@ -53,15 +51,6 @@ Side nextSide(TaggedMesh const &mesh, Side side) {
     return {side.face, (side.place + 1) % int(mesh.faces[side.face].vertices.size())};
 }
 
-/// A sharp edge as seen from one of its ends.
-struct SharpEdge {
-    int edge;
-    int neighbor;
-    bool isLong;
-    float sharpness;
-};
-
-/// The sharp edges that end in a vertex: of an edge with two sides only one leaves the vertex.
 std::vector<SharpEdge> sharpEdges(TaggedMesh const &mesh, int vertex) {
     std::vector<SharpEdge> result;
     for (Side corner : mesh.vertices[vertex].corners) {
@@ -83,7 +72,6 @@ std::vector<SharpEdge> sharpEdges(TaggedMesh const &mesh, int vertex) {
     return result;
 }
 
-/// Of a sharp edge after one step, at the vertex where it ends.
 float childSharpness(TaggedMesh const &mesh, std::vector<SharpEdge> const &around,
                      float sharpness) {
     if (!mesh.chaikin || !isSemiSharp(sharpness)) {
@@ -116,8 +104,6 @@ TaggedRule ruleOf(float vertexSharpness, std::size_t numSharpEdges) {
     return rules[numSharpEdges];
 }
 
-/// The lines that end in a vertex: the boundaries that the faces of one base edge got are one, but
-/// for the vertices in the middle of a line, which a sheet has for itself.
 std::vector<SharpEdge> linesOf(TaggedMesh const &mesh, int vertex,
                                std::vector<SharpEdge> const &edges) {
     if (!mesh.vertices[vertex].isNonManifold) {
@@ -134,11 +120,36 @@ std::vector<SharpEdge> linesOf(TaggedMesh const &mesh, int vertex,
     return lines;
 }
 
-/// Faces of a vertex that follow one another counter-clockwise.
-struct Fan {
-    std::vector<Side> corners;
-    bool isClosed;
-};
+std::vector<RuleShare> ruleShares(TaggedMesh const &mesh, int v) {
+    std::vector<SharpEdge> const all = sharpEdges(mesh, v);
+    std::vector<SharpEdge> const lines = linesOf(mesh, v, all);
+    float const sharpness = mesh.vertices[v].sharpness;
+    float const childVertexSharpness = decremented(sharpness);
+    TaggedRule const rule = ruleOf(sharpness, lines.size());
+
+    // What gets smooth with this step counts by what is left of it.
+    float sum = 0;
+    int count = 0;
+    if (sharpness > 0 && childVertexSharpness <= 0) {
+        sum += sharpness;
+        ++count;
+    }
+    std::vector<SharpEdge> left;
+    for (SharpEdge const &line : lines) {
+        if (childSharpness(mesh, all, line.sharpness) > 0) {
+            left.push_back(line);
+        } else {
+            sum += line.sharpness;
+            ++count;
+        }
+    }
+    TaggedRule const childRule = ruleOf(childVertexSharpness, left.size());
+    if (childRule == rule || count == 0) {
+        return {{1, rule, lines}};
+    }
+    double const weight = std::min(1.0f, sum / float(count));
+    return {{weight, rule, lines}, {1 - weight, childRule, left}};
+}
 
 std::vector<Fan> findFans(TaggedMesh const &mesh, int vertex) {
     using Place = std::pair<int, int>;
@@ -177,6 +188,12 @@ std::vector<Fan> findFans(TaggedMesh const &mesh, int vertex) {
     }
     return fans;
 }
+
+} // namespace TaggedRules
+
+using namespace TaggedRules;
+
+namespace {
 
 /// The two ends of an edge, the smaller first.
 std::pair<int, int> pairOf(int v, int w) { return {std::min(v, w), std::max(v, w)}; }
@@ -1045,35 +1062,11 @@ private:
     }
 
     Point movedVertex(int v) const {
-        std::vector<SharpEdge> const all = sharpEdges(_mesh, v);
-        std::vector<SharpEdge> const lines = linesOf(_mesh, v, all);
-        float const sharpness = _mesh.vertices[v].sharpness;
-        float const childVertexSharpness = decremented(sharpness);
-        TaggedRule const rule = ruleOf(sharpness, lines.size());
-        Point const point = vertexByRule(v, rule, lines);
-
-        // What gets smooth with this step counts by what is left of it.
-        float sum = 0;
-        int count = 0;
-        if (sharpness > 0 && childVertexSharpness <= 0) {
-            sum += sharpness;
-            ++count;
+        Point point = Point::Zero(_values.cols());
+        for (RuleShare const &share : ruleShares(_mesh, v)) {
+            point += share.weight * vertexByRule(v, share.rule, share.lines);
         }
-        std::vector<SharpEdge> left;
-        for (SharpEdge const &line : lines) {
-            if (childSharpness(_mesh, all, line.sharpness) > 0) {
-                left.push_back(line);
-            } else {
-                sum += line.sharpness;
-                ++count;
-            }
-        }
-        TaggedRule const childRule = ruleOf(childVertexSharpness, left.size());
-        if (childRule == rule || count == 0) {
-            return point;
-        }
-        double const weight = std::min(1.0f, sum / float(count));
-        return weight * point + (1 - weight) * vertexByRule(v, childRule, left);
+        return point;
     }
 
     TaggedMesh const &_mesh;
@@ -1088,6 +1081,9 @@ private:
 } // namespace
 
 TaggedMesh Refine(TaggedMesh const &mesh, ReferenceStep const &step) {
+    if (step.scheme == ReferenceScheme::Truncate) {
+        return Truncate(mesh, step.cuts);
+    }
     return Refinement(mesh, step).Run();
 }
 
@@ -1144,11 +1140,17 @@ bool IsPinned(TaggedMesh const &mesh, int vertex) {
 
 ReferenceValues Interpolate(TaggedMesh const &mesh, TaggedMesh const &child, ReferenceMask mask,
                             ReferenceValues const &values) {
+    if (child.madeBy == ReferenceScheme::Truncate) {
+        return InterpolateTruncation(mesh, child, false, values);
+    }
     return Interpolation(mesh, child, mask, false, values).Run();
 }
 
 ReferenceValues InterpolateVarying(TaggedMesh const &mesh, TaggedMesh const &child,
                                    ReferenceValues const &values) {
+    if (child.madeBy == ReferenceScheme::Truncate) {
+        return InterpolateTruncation(mesh, child, true, values);
+    }
     return Interpolation(mesh, child, ReferenceMask::Average, true, values).Run();
 }
 

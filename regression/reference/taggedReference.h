@@ -12,7 +12,7 @@ namespace OpenSubdivHex::Regression {
 inline constexpr float kInfiniteSharpness = 10;
 
 /// The schemes, each by its definition.
-enum class ReferenceScheme { Hexagonal, DooSabin, TriHex };
+enum class ReferenceScheme { Hexagonal, DooSabin, TriHex, Truncate };
 
 /// \brief A mesh with boundaries, creases, corners, holes and flaws, whose
 /// rules are taken at their word: a sharp line goes along edges.
@@ -49,6 +49,7 @@ struct TaggedMesh {
         int vertex = -1;
         int face = -1;
         int place = -1;
+        bool isFar = false; ///< of a truncation: at the end of the edge that begins in the corner
     };
     /// \brief What a face was made from: a face, an edge seen from one of its sides, or a vertex.
     /// A hexagon made for an edge has the side that its first vertices start on.
@@ -115,6 +116,14 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
                          std::vector<float> const &valueSharpness,
                          std::vector<int> &valuesOfVertices);
 
+/// By face and place: whether the edge that begins there cuts the polygon which a truncation makes of
+/// the vertex there.
+using ReferenceCuts = std::vector<std::vector<bool>>;
+
+/// \brief Where the truncation of a base mesh cuts polygons, so that faces stay apart which \p values,
+/// the value meshes of its channels, or holes part, and that creases go on.
+ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &values);
+
 /// How a mesh is refined once.
 struct ReferenceStep {
     ReferenceScheme scheme = ReferenceScheme::Hexagonal;
@@ -124,6 +133,8 @@ struct ReferenceStep {
     /// Whether polygons close the gaps that quads leave around vertices.  The borders of gaps
     /// follow the paper's rule.
     bool closeGaps = true;
+    /// Of a truncation.
+    ReferenceCuts cuts;
 };
 
 /// \brief One step: topology and tags.  Schemes but the hexagonal one drop the faces of boundary

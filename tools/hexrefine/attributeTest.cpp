@@ -433,7 +433,7 @@ TEST_F(HexrefineAttribute, NumbersOfFacesStayInThem) {
 }
 
 TEST_F(HexrefineAttribute, OtherSchemesKeepMaterials) {
-    for (char const *scheme : {"--scheme doo-sabin", "--scheme tri-hex", "--tri-hex-first",
+    for (char const *scheme : {"--scheme doo-sabin", "--scheme tri-hex", "--first-step tri-hex",
                                "--coplanar", "--coplanar --open-gaps --tolerance 100"}) {
         SCOPED_TRACE(scheme);
         Mesh const mesh = refine(makeMaterialCube() + " -l 2 " + scheme, "out.obj");

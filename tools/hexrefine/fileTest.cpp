@@ -146,8 +146,9 @@ TEST_F(Hexrefine, RefusesToWriteNothing) {
 
 TEST_F(Hexrefine, RefusesLevelsWithoutEndAtOnce) {
     std::string const path = makeFile("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    for (char const *scheme : {"doo-sabin", "tri-hex", "hexagonal", "doo-sabin --tri-hex-first",
-                               "hexagonal --coplanar", "hexagonal --coplanar --open-gaps"}) {
+    for (char const *scheme :
+         {"doo-sabin", "tri-hex", "hexagonal", "doo-sabin --first-step tri-hex",
+          "hexagonal --coplanar", "hexagonal --coplanar --open-gaps"}) {
         expectFailure(path + " -l 2147483647 --scheme " + scheme, path, "level");
     }
     EXPECT_EQ(run(path + " -l 100 --scheme doo-sabin").status, 0);

@@ -50,7 +50,7 @@ struct Arguments {
     std::string output;
     std::string mask = "average";
     std::string scheme = "hex";
-    bool isTriHexFirst = false;
+    std::string firstStep = "none";
     bool isCoplanar = false;
     double tolerance = FarExt::TopologyRefiner::CoplanarOptions(0).angleTolerance;
     bool hasOpenGaps = false;
@@ -101,8 +101,13 @@ void addSchemeOptions(CLI::App &app, Arguments *arguments) {
                    "and take neither creases, corners, texture coordinates nor normals")
         ->check(CLI::IsMember({"hex", "hexagonal", "doo-sabin", "tri-hex"}))
         ->capture_default_str();
-    app.add_flag("--tri-hex-first", arguments->isTriHexFirst,
-                 "Begin with one tri-hex step, after which every vertex has three faces");
+    app.add_option(
+           "--first-step", arguments->firstStep,
+           "Make level 1 by another step, after which vertices have three faces each: "
+           "truncate, which cuts off corners, for meshes of triangles; tri-hex, which takes "
+           "what the scheme of that name does")
+        ->check(CLI::IsMember({"none", "tri-hex", "truncate"}))
+        ->capture_default_str();
     auto *const coplanar =
         app.add_flag("--coplanar", arguments->isCoplanar,
                      "Make quads instead of hexagons of edges between faces with the same normal, "
@@ -249,7 +254,8 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         if (arguments->scheme == "hexagonal") {
             arguments->scheme = "hex";
         }
-        if (arguments->isCoplanar && (arguments->scheme != "hex" || arguments->isTriHexFirst)) {
+        if (arguments->isCoplanar &&
+            (arguments->scheme != "hex" || arguments->firstStep != "none")) {
             throw CLI::ValidationError("--coplanar", "is for the hexagonal scheme alone");
         }
         // The library takes a name that it cannot use for none.
@@ -278,7 +284,9 @@ FarExt::HexSchemeOptions findSchemeOptions(Arguments const &arguments) {
     options.schemeType = arguments.scheme == "doo-sabin" ? FarExt::SchemeType::DooSabin
                          : arguments.scheme == "tri-hex" ? FarExt::SchemeType::TriHex
                                                          : FarExt::SchemeType::Hexagonal;
-    options.triHexFirst = arguments.isTriHexFirst;
+    options.firstStep = arguments.firstStep == "tri-hex"    ? FarExt::FirstStep::TriHex
+                        : arguments.firstStep == "truncate" ? FarExt::FirstStep::Truncate
+                                                            : FarExt::FirstStep::None;
     return options;
 }
 
@@ -327,6 +335,7 @@ void refine(Arguments const &arguments, Mesh const &mesh, FarExt::TopologyRefine
     bool const needsFullTopology = arguments.isLimit || !arguments.png.empty();
     FarExt::TopologyRefiner::UniformOptions uniformOptions(arguments.level);
     uniformOptions.fullTopologyInLastLevel = needsFullTopology;
+    uniformOptions.faceLabels = FindFaceClasses(mesh);
     FarExt::TopologyRefiner::CoplanarOptions options(arguments.level);
     options.angleTolerance = arguments.tolerance;
     options.closeGaps = !arguments.hasOpenGaps;
@@ -535,7 +544,7 @@ void setSimdLevel(std::string const &name) {
 void run(Arguments const &arguments) {
     Statistics statistics;
     statistics.scheme = arguments.scheme;
-    statistics.isTriHexFirst = arguments.isTriHexFirst;
+    statistics.firstStep = arguments.firstStep;
     if (arguments.isCoplanar) {
         statistics.coplanar = {arguments.tolerance, arguments.hasOpenGaps};
     }

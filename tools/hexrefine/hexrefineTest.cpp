@@ -18,10 +18,9 @@ TEST_F(Hexrefine, PrintsHelpAndVersion) {
     Result const help = run("--help");
     EXPECT_EQ(help.status, 0);
     for (char const *option :
-         {"INPUT", "-l,--level", "-o,--output", "--mask", "--scheme", "--tri-hex-first",
-          "--coplanar", "--tolerance", "--open-gaps", "--boundary", "--crease-angle",
-          "--fvar-interpolation", "--tags", "--evaluator", "--threads", "--simd", "--stats",
-          "--quiet", "--version"}) {
+         {"INPUT", "-l,--level", "-o,--output", "--mask", "--scheme", "--first-step", "--coplanar",
+          "--tolerance", "--open-gaps", "--boundary", "--crease-angle", "--fvar-interpolation",
+          "--tags", "--evaluator", "--threads", "--simd", "--stats", "--quiet", "--version"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
     EXPECT_EQ(run("--version").out, "hexrefine " OPENSUBDIVHEX_VERSION "\n");
@@ -65,7 +64,7 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
                                               "fvarInterpolation",
                                               "fvarChannels",
                                               "fvarChannelsLeftOut",
-                                              "triHexFirst",
+                                              "firstStep",
                                               "coplanar",
                                               "vertexProperties",
                                               "faceProperties",
@@ -77,7 +76,7 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
                                               "notRead",
                                               "notWritten"}));
     EXPECT_EQ(json["scheme"], "hex");
-    EXPECT_EQ(json["triHexFirst"], false);
+    EXPECT_EQ(json["firstStep"], "none");
     EXPECT_TRUE(json["coplanar"].is_null());
     EXPECT_EQ(json["mask"], "cosine");
     EXPECT_EQ(json["boundary"], "none");
@@ -126,8 +125,8 @@ TEST_F(Hexrefine, RefinesByOtherSchemes) {
                                  {"--scheme hex", 128, 66},
                                  {"--scheme doo-sabin", 96, 98},
                                  {"--scheme tri-hex", 72, 38},
-                                 {"--tri-hex-first", 96, 50},
-                                 {"--scheme doo-sabin --tri-hex-first", 72, 74}}) {
+                                 {"--first-step tri-hex", 96, 50},
+                                 {"--scheme doo-sabin --first-step tri-hex", 72, 74}}) {
         SCOPED_TRACE(expected.arguments);
         std::vector<float> positions;
         for (char const *evaluator : {"refinement", "stencil", "primvar"}) {
@@ -145,9 +144,10 @@ TEST_F(Hexrefine, RefinesByOtherSchemes) {
             }
         }
     }
-    Json const json = Json::parse(run(input + " --scheme tri-hex --tri-hex-first --stats -").out);
+    Json const json =
+        Json::parse(run(input + " --scheme tri-hex --first-step tri-hex --stats -").out);
     EXPECT_EQ(json["scheme"], "tri-hex");
-    EXPECT_EQ(json["triHexFirst"], true);
+    EXPECT_EQ(json["firstStep"], "tri-hex");
     EXPECT_NE(run(input + " --scheme doo-sabin").out.find("scheme doo-sabin, mask"),
               std::string::npos);
 }
@@ -193,7 +193,7 @@ TEST_F(Hexrefine, OtherSchemesRefuseFeatures) {
     path = makeFile("crease.obj", cube + "v 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 2 5 6 3\n"
                                          "t crease 2/1/0 1 2 3\n");
     expectFailure(path + " --scheme tri-hex", path, "is a crease");
-    expectFailure(path + " --tri-hex-first", path, "is a crease");
+    expectFailure(path + " --first-step tri-hex", path, "is a crease");
     EXPECT_EQ(run(path).status, 0);
 }
 
@@ -324,7 +324,7 @@ TEST_F(Hexrefine, RefusesBadUsage) {
     expectBadUsage(input + " --mask best", "best");
     expectBadUsage(input + " --scheme loop", "loop");
     expectBadUsage(input + " --scheme doo-sabin --coplanar", "hexagonal");
-    expectBadUsage(input + " --tri-hex-first --coplanar", "hexagonal");
+    expectBadUsage(input + " --first-step tri-hex --coplanar", "hexagonal");
     expectBadUsage(input + " --tolerance 1", "--coplanar");
     expectBadUsage(input + " --open-gaps", "--coplanar");
     for (char const *angle : {"-1", "181", "nan", "1x"}) {

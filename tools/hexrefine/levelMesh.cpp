@@ -12,11 +12,7 @@
 
 namespace OpenSubdivHex::Tools {
 
-namespace {
-
-/// A number for each base face, the same for those that no label and no property tells apart; empty
-/// where faces have neither.
-std::vector<int> findClasses(Mesh const &mesh) {
+std::vector<int> FindFaceClasses(Mesh const &mesh) {
     std::vector<int> classes = mesh.faceLabels;
     for (FaceProperty const &property : mesh.faceProperties) {
         classes.resize(property.values.size(), 0);
@@ -30,6 +26,8 @@ std::vector<int> findClasses(Mesh const &mesh) {
     }
     return classes;
 }
+
+namespace {
 
 /// The elements of \p from, of face i from firsts[i] on, face by face in the order \p faces.
 std::vector<int> permute(std::vector<int> const &from, std::vector<std::size_t> const &firsts,
@@ -80,7 +78,7 @@ void sortFacesByLabel(Mesh *mesh) {
 
 /// \p sides is null where no channel has their values.
 void copyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sides, Mesh *mesh) {
-    std::vector<int> const classes = findClasses(*mesh);
+    std::vector<int> const classes = FindFaceClasses(*mesh);
     OsdExt::DrawOptions options;
     options.cutBaseFaces = false;
     options.labels = OpenSubdiv::Far::ConstIndexArray(classes.data(), int(classes.size()));

@@ -5,7 +5,13 @@
 #include "far_ext/limitStencilTableFactory.h"
 #include "tools/mesh/mesh.h"
 
+#include <vector>
+
 namespace OpenSubdivHex::Tools {
+
+/// A number for each face, the same for those that no label and no property tells apart; empty where
+/// faces have neither.
+std::vector<int> FindFaceClasses(Mesh const &mesh);
 
 /// \brief Replaces the faces of \p mesh, whose channels are those of \p level, by the faces of
 /// \p level.

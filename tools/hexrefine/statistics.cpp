@@ -184,7 +184,7 @@ std::string FormatJson(Statistics const &statistics) {
                        {"fvarInterpolation", statistics.fvarInterpolation},
                        {"fvarChannels", channels},
                        {"fvarChannelsLeftOut", statistics.channelsLeftOut},
-                       {"triHexFirst", statistics.isTriHexFirst},
+                       {"firstStep", statistics.firstStep},
                        {"coplanar", coplanar},
                        {"vertexProperties", makeJson(attributes.vertexProperties)},
                        {"faceProperties", makeJson(attributes.faceProperties)},
@@ -210,8 +210,9 @@ std::string format(char const *pattern, ARGS... args) {
 
 std::string formatScheme(Statistics const &statistics) {
     std::string text = statistics.scheme;
-    if (statistics.isTriHexFirst) {
-        text += " after a tri-hex step";
+    if (statistics.firstStep != "none") {
+        text += " after " +
+                std::string(statistics.firstStep == "truncate" ? "a truncation" : "a tri-hex step");
     }
     if (statistics.coplanar) {
         text += format(", coplanar within %g degrees", statistics.coplanar->tolerance);

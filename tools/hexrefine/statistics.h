@@ -57,7 +57,7 @@ struct CoplanarStatistics {
 /// \brief What a run of hexrefine did: the content of `--stats`.
 struct Statistics {
     std::string scheme;
-    bool isTriHexFirst = false;
+    std::string firstStep;
     std::optional<CoplanarStatistics> coplanar;
     std::string mask;
     std::string boundary;

@@ -45,6 +45,7 @@ constexpr char kName[] = "osd_ext_2_1_render";
 struct PanelSettings {
     int level = 4;
     FarExt::FaceMask mask = FarExt::FaceMask::Smooth;
+    FarExt::FirstStep firstStep = FarExt::FirstStep::None;
     Sdc::Options::VtxBoundaryInterpolation boundary = Sdc::Options::VTX_BOUNDARY_NONE;
     bool hasWireframe = false;
     bool isTinted = false;
@@ -91,6 +92,14 @@ void addPanelOptions(CLI::App &app, PanelSettings *settings) {
                                                     {"smooth", FarExt::FaceMask::Smooth}}))
         ->type_name("NAME")
         ->default_str("smooth");
+    app.add_option("--first-step", settings->firstStep,
+                   "How level 1 is made: none (as the others), tri-hex or truncate")
+        ->transform(CLI::Transformer(
+            std::map<std::string, FarExt::FirstStep>{{"none", FarExt::FirstStep::None},
+                                                     {"tri-hex", FarExt::FirstStep::TriHex},
+                                                     {"truncate", FarExt::FirstStep::Truncate}}))
+        ->type_name("NAME")
+        ->default_str("none");
     app.add_option("--boundary", settings->boundary,
                    "Rule for boundaries: none, edge-only or edge-and-corner")
         ->transform(CLI::Transformer(std::map<std::string, Sdc::Options::VtxBoundaryInterpolation>{
@@ -244,6 +253,7 @@ public:
         sdcOptions.SetVtxBoundaryInterpolation(settings.boundary);
         FarExt::TopologyRefinerFactory::Options refinerOptions;
         refinerOptions.schemeOptions.faceMask = settings.mask;
+        refinerOptions.schemeOptions.firstStep = settings.firstStep;
         FarExt::Status status;
         _refiner = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), sdcOptions,
                                                           refinerOptions, &status);

@@ -46,7 +46,7 @@ def read_source(source, depsgraph):
 def get_options(settings):
     return Options(settings.level, settings.mask.lower(), settings.boundary.lower(),
                    settings.use_limit, settings.sharp_edges, settings.use_holes,
-                   settings.uv_smooth.lower())
+                   settings.uv_smooth.lower(), settings.first_step.lower())
 
 
 def refine(target, depsgraph):

@@ -11,7 +11,8 @@ class Options:
     """How a mesh is refined."""
 
     def __init__(self, level=2, mask="smooth", boundary="edge_only", use_limit=False,
-                 sharp_edges="SHADE", use_holes=False, uv_smooth="boundaries"):
+                 sharp_edges="SHADE", use_holes=False, uv_smooth="boundaries",
+                 first_step="none"):
         self.level = level
         self.mask = mask
         self.boundary = boundary
@@ -19,6 +20,7 @@ class Options:
         self.sharp_edges = sharp_edges
         self.use_holes = use_holes
         self.uv_smooth = uv_smooth
+        self.first_step = first_step
 
     def __eq__(self, other):
         return vars(self) == vars(other)
@@ -38,9 +40,35 @@ def create_refiner(mesh, options):
         fvar_channels=[channel.indices for channel in channels],
         num_fvar_values=[len(channel.values) for channel in channels] or None,
         vtx_boundary_interpolation=options.boundary, fvar_linear_interpolation=options.uv_smooth,
-        face_mask=options.mask)
-    refiner.refine_uniform(options.level, full_topology_in_last_level=options.use_limit)
+        face_mask=options.mask, first_step=options.first_step)
+    refiner.refine_uniform(options.level, full_topology_in_last_level=options.use_limit,
+                           face_labels=find_parted_faces(refiner, mesh))
     return refiner, sharpness
+
+
+def find_labels(mesh):
+    """The same number for faces with the same material and shading."""
+    return np.unique(np.stack([mesh.materials, mesh.smooth], axis=1), axis=0,
+                     return_inverse=True)[1].reshape(-1)
+
+
+def find_edges(level, edges):
+    """Of all edges of a level, those that join the pairs of vertices."""
+    ends = np.sort(level.edge_vertices, axis=1).astype(np.int64)
+    wanted = np.sort(edges, axis=1).astype(np.int64)
+    scale = level.num_vertices
+    return np.isin(ends[:, 0] * scale + ends[:, 1], wanted[:, 0] * scale + wanted[:, 1])
+
+
+def find_parted_faces(refiner, mesh):
+    """Labels, and a number of its own for each face beside an edge that is sharp in shading: a
+    truncation then cuts along all that shows."""
+    level = refiner.get_level(0)
+    labels = find_labels(mesh)
+    beside = np.unique(level.edge_faces[find_edges(level, mesh.edges[mesh.sharp_edges])])
+    beside = beside[beside >= 0]
+    labels[beside] = len(labels) + np.arange(len(beside))
+    return labels
 
 
 class Polygons:
@@ -51,13 +79,11 @@ class Polygons:
     """
 
     def __init__(self, refiner, level, mesh, sharpness, options):
-        _, labels = np.unique(np.stack([mesh.materials, mesh.smooth], axis=1), axis=0,
-                              return_inverse=True)
         # Sharpness falls by one per level; what is left of it bends faces here, and shading with them.
         creased = (sharpness >= osh.SHARPNESS_INFINITE) | (sharpness > options.level)
         drawn = osh.create_polygon_indices(
             level, cut_base_faces=bool((mesh.sharp_edges & ~creased).any()),
-            labels=labels.reshape(-1), fvar_channels=range(level.num_fvar_channels))
+            labels=find_labels(mesh), fvar_channels=range(level.num_fvar_channels))
         self.sizes, self.corners = drawn["sizes"], drawn["vertices"]
         self.values, self.base_faces = drawn["fvar_values"], drawn["base_faces"]
         self.hard = self.find_hard_pairs(refiner, mesh.edges[mesh.sharp_edges | creased])
@@ -66,11 +92,7 @@ class Polygons:
     def find_hard_pairs(refiner, edges):
         """The pairs of base faces with a hard edge between, each as one number, ascending."""
         level = refiner.get_level(0)
-        ends = np.sort(level.edge_vertices, axis=1).astype(np.int64)
-        wanted = np.sort(edges, axis=1).astype(np.int64)
-        scale = level.num_vertices
-        is_hard = np.isin(ends[:, 0] * scale + ends[:, 1], wanted[:, 0] * scale + wanted[:, 1])
-        pairs = level.edge_faces[is_hard & (level.edge_faces[:, 1] >= 0)]
+        pairs = level.edge_faces[find_edges(level, edges) & (level.edge_faces[:, 1] >= 0)]
         return Polygons.number_pairs(pairs)
 
     @staticmethod

@@ -27,6 +27,11 @@ def make_properties(update):
                    ("COSINE", "Cosine", "Doo and Sabin's mask: bounded curvature"),
                    ("AVERAGE", "Average", "The paper's mask: lumpy from level 4 on")],
             update=update),
+        "first_step": EnumProperty(
+            name="First Step", description="How level 1 is made", default="NONE",
+            items=[("NONE", "Hexagons", "As the levels behind it: for quads"),
+                   ("TRUNCATE", "Truncate", "Corners are cut off: for triangles")],
+            update=update),
         "boundary": EnumProperty(
             name="Boundary", description="What becomes of open borders", default="EDGE_ONLY",
             items=[("EDGE_ONLY", "All", "A smooth curve, corners too"),

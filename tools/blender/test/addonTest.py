@@ -47,12 +47,12 @@ def get_positions(target):
     return get(target.data.vertices, "co", np.float32, 3)
 
 
-def refine(source, level, **options):
+def refine(source, level, labels=None, **options):
     """What the library makes of the source's positions and faces."""
     faces = [list(polygon.vertices) for polygon in source.data.polygons]
     options = {"face_mask": "smooth", "vtx_boundary_interpolation": "edge_only", **options}
     refiner = osh.TopologyRefiner(faces, len(source.data.vertices), **options)
-    refiner.refine_uniform(level, full_topology_in_last_level=True)
+    refiner.refine_uniform(level, full_topology_in_last_level=True, face_labels=labels)
     return refiner, osh.RefinementEvaluator(refiner).evaluate(get_positions(source))
 
 
@@ -76,6 +76,19 @@ class AddonTest(unittest.TestCase):
             self.assertFalse(target.data.validate())
             self.assertEqual(target.parent, source)
             self.assertTrue(source.hide_render)
+
+    def test_first_step(self):
+        source = make_cube()
+        source.data.edges[0].use_edge_sharp = True
+        target = subdivide(source, level=3, first_step="TRUNCATE")
+        ends = sorted(source.data.edges[0].vertices)
+        labels = [9 + number if {*ends} <= {*face.vertices} else 0
+                  for number, face in enumerate(source.data.polygons)]
+        _, expected = refine(source, 3, labels=labels, first_step="truncate")
+        np.testing.assert_array_equal(get_positions(target), expected)
+        self.assertFalse(target.data.validate())
+        # As is the line that the edge becomes.
+        self.assertTrue(get(target.data.edges, "use_edge_sharp", bool).any())
 
     def test_boundaries_and_limit(self):
         positions = [(x, y, 0.3 * x * y) for y in range(3) for x in range(3)]

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_TRUNCATION_MASK_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_TRUNCATION_MASK_H
+
+#include "refinement.h"
+
+#include "far_ext/hexSchemeOptions.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// The end of an edge, 2 e at its first vertex and 2 e + 1 at the other, where a face begins to run
+/// along it in \p corner.
+inline std::size_t FindEdgeEnd(Level const &level, Far::Index corner) {
+    Far::Index const edge = level.faceEdges[corner];
+    return 2 * std::size_t(edge) + (level.GetSideCorner(edge, 0) == corner ? 0 : 1);
+}
+
+/// The vertex that a truncation makes beside an end of an edge of the parent.
+Far::Index GetEdgeEndVertex(Refinement const &truncation, std::size_t end);
+
+/// \brief The masks of a truncation: the sources of each vertex that it makes, with their weights.
+///
+/// Beside the vertex V of an edge V-W, between faces with the centroids G and G',
+/// T = (1 - 2b) V + b (G + G'), with b of ComputeTruncateWeight for the faces around V.  On a sharp
+/// edge T = (2 V + W)/3, and along a crease V' = (7 V + V_l + V_r)/9: new points have the second
+/// moment 2/9 along it, as all have in a regular mesh of triangles.  Between two sharp edges of V
+/// there are as many faces as beside an interior vertex with twice as many.  A free boundary follows
+/// the rules of a sharp one here.  Where a vertex that is cut is smooth, V' is the mean of what the T
+/// around it would be.  Rules of semi-sharp edges and vertices are blended as in the hexagonal step.
+/// Varying data are linear: T = (2 V + W)/3 and V' = V.
+class OPENSUBDIVHEX_API TruncationMask {
+public:
+    using Index = Far::Index;
+
+    /// What a vertex is made of; a vertex may stand among the sources several times.
+    struct Sources {
+        std::vector<Index> verts;
+        std::vector<double> weights;
+    };
+
+    /// Refers to \p truncation and its parent.
+    TruncationMask(Refinement const &truncation, Interpolation interpolation)
+        : _refinement(truncation), _parent(*truncation.parent), _interpolation(interpolation) {}
+
+    void GetSources(Index cVert, Sources &sources) const;
+
+private:
+    /// How much of each rule a vertex has: the rest is that of a corner.
+    struct RuleShares {
+        double smooth;
+        double crease;
+        double border; ///< that of a crease, along a free boundary in place of the smooth rule
+    };
+
+    RuleShares getShares(Index vert, SharpVertex const *sharp) const;
+    double getWeight(Index vert, Index corner) const;
+    void addEdgeVertex(std::size_t end, Sources &sources) const;
+    void addVVertex(Index vert, Sources &sources) const;
+
+    Refinement const &_refinement;
+    Level const &_parent;
+    Interpolation _interpolation;
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truncationRefinement.h"
+
+#include "parallel.h"
+#include "truncationMask.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+using Far::Index;
+using Sdc::Crease;
+
+namespace {
+
+constexpr Index kNoCorner = -1; // of a side of an edge
+
+// The corners of the faces of a level by their places around a vertex.
+Index getInCorner(Level const &level, Index k) {
+    return level.GetPrevCorner(level.vertFaces[k], level.GetVertexCorner(k));
+}
+
+// Finds where polygons are cut, at the ends of edges of one vertex at a time.
+class EndCutter {
+public:
+    EndCutter(Hierarchy const &base, Far::ConstIndexArray labels, EndCuts &cuts)
+        : _base(base), _mesh(base.mesh.levels[0]), _labels(labels), _cuts(cuts) {}
+
+    void CutClosedFan(Index vert, VertexFan const &fan) {
+        int numCuts = 0;
+        bool isDart = true; // as long as there are creases alone
+        for (Index k = fan.begin; k < fan.end; ++k) {
+            Index const edge = _mesh.faceEdges[_mesh.GetVertexCorner(k)];
+            numCuts += isCut(edge) ? 1 : 0;
+            isDart = isDart && !partsFaces(edge);
+        }
+        bool const isSharp =
+            _mesh.IsNonManifold(vert) || Crease::IsSharp(_mesh.GetVertexSharpness(vert));
+        bool const isWhole = isDart && !isSharp && fan.end - fan.begin != 2;
+        for (Index k = fan.begin; k < fan.end; ++k) {
+            Index const corner = _mesh.GetVertexCorner(k);
+            bool const isEndCut = numCuts < 2 ? !isWhole : isCut(_mesh.faceEdges[corner]);
+            _cuts[FindEdgeEnd(_mesh, corner)] = static_cast<unsigned char>(isEndCut);
+        }
+    }
+    // From boundary to boundary.
+    void CutOpenFan(VertexFan const &fan) {
+        for (Index k = fan.begin; k < fan.end; ++k) {
+            Index const corner = _mesh.GetVertexCorner(k);
+            _cuts[FindEdgeEnd(_mesh, corner)] =
+                static_cast<unsigned char>(isCut(_mesh.faceEdges[corner]));
+        }
+        _cuts[FindEdgeEnd(_mesh, getInCorner(_mesh, fan.end - 1)) ^ 1u] = 1;
+    }
+
+private:
+    bool isCut(Index edge) const {
+        return _mesh.IsBoundary(edge) || Crease::IsSharp(_mesh.GetEdgeSharpness(edge)) ||
+               partsFaces(edge);
+    }
+    // Whether the faces of an interior edge must be kept apart.
+    bool partsFaces(Index edge) const {
+        IndexPair const &faces = _mesh.edgeFaces[edge];
+        return (!_labels.empty() && _labels[faces[0]] != _labels[faces[1]]) ||
+               _mesh.GetHoles(faces[0]) != _mesh.GetHoles(faces[1]) || isSeam(edge);
+    }
+    bool isSeam(Index edge) const {
+        auto const partsValues = [&](FVarChannel const &channel) {
+            auto const getValueEdge = [&](int side) {
+                return channel.levels[0].GetFaceEdge(_mesh.edgeFaces[edge][side],
+                                                     _mesh.edgeFaceLocals[edge][side]);
+            };
+            return getValueEdge(0) != getValueEdge(1);
+        };
+        return std::any_of(_base.channels.begin(), _base.channels.end(), partsValues);
+    }
+
+    Hierarchy const &_base;
+    Level const &_mesh;
+    Far::ConstIndexArray const _labels;
+    EndCuts &_cuts;
+};
+
+} // namespace
+
+EndCuts FindEndCuts(Hierarchy const &base, Far::ConstIndexArray labels) {
+    Level const &mesh = base.mesh.levels[0];
+    EndCuts cuts(2 * std::size_t(mesh.numEdges), 0);
+    EndCutter cutter(base, labels, cuts);
+    ParallelFor(mesh.numVertices, [&](Index vert) {
+        ForEachFan(mesh, vert, [&](VertexFan const &fan) {
+            if (fan.isClosed) {
+                cutter.CutClosedFan(vert, fan);
+            } else {
+                cutter.CutOpenFan(fan);
+            }
+        });
+    });
+    return cuts;
+}
+
+EndCuts GetEndCutsOfChannel(Level const &mesh, EndCuts const &cuts, FVarLevel const &channel) {
+    Level const &values = *channel.values;
+    EndCuts result(2 * std::size_t(values.numEdges), 0);
+    // Faces have the same corners in both; the two sides of an edge agree on its ends.
+    ParallelFor(values.numEdges, [&](Index edge) {
+        Index const corner = values.GetSideCorner(edge, 0);
+        std::size_t const end = FindEdgeEnd(mesh, corner);
+        result[2 * std::size_t(edge)] = cuts[end];
+        result[2 * std::size_t(edge) + 1] = cuts[end ^ 1u];
+    });
+    return result;
+}
+
+TruncationRefiner::TruncationRefiner(Level const &parent, EndCuts cuts, Sdc::Options sdcOptions)
+    : _parent(parent), _cuts(std::move(cuts)), _sdcOptions(sdcOptions) {
+    _vertexCounts = ParallelSums<Counts>(_parent.numVertices, [this](Index begin, Index end) {
+        Counts counts;
+        for (Index pVert = begin; pVert < end; ++pVert) {
+            counts.vertices += isCut(pVert) ? 1 : 0;
+            forEachVFace(pVert, [&](VFace const &vFace) {
+                ++counts.faces;
+                counts.corners += vFace.count + (vFace.isWedge ? 2 : 0);
+            });
+        }
+        return counts;
+    });
+    _edgeCounts = ParallelSums<Counts>(_parent.numEdges, [this](Index begin, Index end) {
+        Counts counts;
+        for (std::size_t edgeEnd = 2 * std::size_t(begin); edgeEnd < 2 * std::size_t(end);
+             ++edgeEnd) {
+            counts.spokes += _cuts[edgeEnd];
+        }
+        return counts;
+    });
+    Counts const &vertices = _vertexCounts.back();
+    _sizes.vertices = vertices.vertices + _parent.numCorners + _parent.GetNumBoundaries();
+    _sizes.edges = std::int64_t(_parent.numCorners) + _parent.numEdges + _edgeCounts.back().spokes;
+    _sizes.faces = _parent.numFaces + vertices.faces;
+    _sizes.corners = 2 * std::int64_t(_parent.numCorners) + vertices.corners;
+    // The middle of a boundary, and a spoke at each end.
+    _sizes.freeBoundaries = 3 * std::int64_t(_parent.numFreeBoundaries);
+    _sizes.sharpBoundariesA = 3 * std::int64_t(_parent.numSharpBoundariesA);
+}
+
+// One without edges stays.
+bool TruncationRefiner::isCut(Index pVert) const {
+    Index const begin = _parent.vertFirstEdge[pVert];
+    Index const end = _parent.vertFirstEdge[pVert + 1];
+    Far::LocalIndex const *const locals = _parent.GetVertexEdgeLocals(pVert);
+    for (Index i = begin; i < end; ++i) {
+        if (_cuts[2 * std::size_t(_parent.vertEdges[i]) + locals[i - begin]]) {
+            return true;
+        }
+    }
+    return begin == end;
+}
+
+// Calls function(vFace) for the V-faces of a vertex, in order.
+template <typename FUNCTION>
+void TruncationRefiner::forEachVFace(Index pVert, FUNCTION function) const {
+    ForEachFan(_parent, pVert, [&](VertexFan const &fan) {
+        auto const beginsWedge = [&](Index k) {
+            return _cuts[FindEdgeEnd(_parent, _parent.GetVertexCorner(k))] != 0;
+        };
+        Index start = fan.begin;
+        while (start < fan.end && !beginsWedge(start)) {
+            ++start;
+        }
+        Index const size = fan.end - fan.begin;
+        if (start == fan.end) {
+            function(VFace{fan, fan.begin, size, false});
+            return;
+        }
+        Index begin = 0; // of the wedge, seen from the start
+        for (Index i = 1; i <= size; ++i) {
+            Index const k = start + i < fan.end ? start + i : start + i - size;
+            if (i == size || beginsWedge(k)) {
+                Index const first = start + begin < fan.end ? start + begin : start + begin - size;
+                function(VFace{fan, first, i - begin, true});
+                begin = i;
+            }
+        }
+    });
+}
+
+void TruncationRefiner::relate(Refinement &refinement) const {
+    refinement.isTruncation = true;
+    refinement.edgeChildFaces.Resize(std::size_t(_parent.numEdges));
+    std::fill_n(refinement.edgeChildFaces.data(), _parent.numEdges, Far::INDEX_INVALID);
+    refinement.vertChildVerts.Resize(std::size_t(_parent.numVertices));
+    refinement.vVertexParents.Resize(std::size_t(_vertexCounts.back().vertices));
+    ParallelForRange(_parent.numVertices, [&](Index begin, Index end) {
+        Index cVert = Index(_vertexCounts[std::size_t(begin / kParallelRange)].vertices);
+        for (Index pVert = begin; pVert < end; ++pVert) {
+            bool const isMade = isCut(pVert);
+            refinement.vertChildVerts[std::size_t(pVert)] = isMade ? cVert : Far::INDEX_INVALID;
+            if (isMade) {
+                refinement.vVertexParents[std::size_t(cVert++)] = pVert;
+            }
+        }
+    });
+}
+
+// Fills the faces of a child and, for FULL, the sides of its edges: in this order those across the
+// corners of the F-faces, those along the parent's edges, and the spokes.
+template <bool FULL>
+class TruncationRefiner::Builder {
+public:
+    Builder(TruncationRefiner const &refiner, Refinement const &refinement, Level &child)
+        : _refiner(refiner), _refinement(refinement), _p(refiner._parent), _c(child) {}
+
+    void Build() {
+        _c.faceFirstCorner.Resize(std::size_t(_c.numFaces) + 1);
+        _c.faceVerts.Resize(std::size_t(_c.numCorners));
+        if constexpr (FULL) {
+            _edges.Resize(std::size_t(_c.numEdges));
+            ParallelFor(_c.numEdges, [this](Index cEdge) {
+                _edges[std::size_t(cEdge)] = {{kNoCorner, kNoCorner}};
+            });
+            numberSpokes();
+        }
+        fillFFaces();
+        fillVFaces();
+        _c.faceFirstCorner[std::size_t(_c.numFaces)] = _c.numCorners;
+        if constexpr (FULL) {
+            finishBoundaries();
+        }
+    }
+
+    Buffer<EdgeSides> const &GetEdges() const { return _edges; }
+
+private:
+    // Where the next face goes, and its next corner.
+    struct Place {
+        Index face;
+        Index corner;
+    };
+    // Which of the two sides of its edge a face is.
+    enum Side { kFirst = 0, kSecond = 1 };
+    struct EdgeSide {
+        Index edge;
+        Side side;
+    };
+
+    void beginFace(Place &place) { _c.faceFirstCorner[std::size_t(place.face++)] = place.corner; }
+    // Adds a vertex to the face begun last, and the edge from there to the next one.
+    void addCorner(Place &place, Index vert, EdgeSide edge) {
+        if constexpr (FULL) {
+            _edges[std::size_t(edge.edge)].corners[edge.side] = place.corner;
+        }
+        _c.faceVerts[std::size_t(place.corner++)] = vert;
+    }
+    Index fVertex(Index corner) const { return _refinement.GetCornerChildVertex(corner); }
+    // The vertex at the far end of the edge that a face begins to run along in a corner.
+    Index farVertex(Index corner) const {
+        return GetEdgeEndVertex(_refinement, FindEdgeEnd(_p, corner) ^ 1u);
+    }
+    // It runs around the F-face.
+    EdgeSide cornerEdge(Index corner, Side side) const { return {corner, side}; }
+    EdgeSide spoke(std::size_t end, Side side) const {
+        return {FULL ? _spokes[end] : Far::INDEX_INVALID, side};
+    }
+
+    void numberSpokes() {
+        _spokes.Resize(2 * std::size_t(_p.numEdges));
+        ParallelForRange(_p.numEdges, [this](Index begin, Index end) {
+            Counts const &before = _refiner._edgeCounts[std::size_t(begin / kParallelRange)];
+            Index cEdge = _p.numCorners + _p.numEdges + Index(before.spokes);
+            for (std::size_t i = 2 * std::size_t(begin); i < 2 * std::size_t(end); ++i) {
+                _spokes[i] = _refiner._cuts[i] ? cEdge++ : Far::INDEX_INVALID;
+            }
+        });
+    }
+    void fillFFaces() {
+        ParallelForRange(_p.numFaces, [this](Index begin, Index end) {
+            Place place = {begin, 2 * _p.faceFirstCorner[begin]};
+            for (Index pFace = begin; pFace < end; ++pFace) {
+                beginFace(place);
+                Index corner = _p.faceFirstCorner[pFace];
+                for (; corner < _p.faceFirstCorner[pFace + 1]; ++corner) {
+                    Index const edge = _p.faceEdges[corner];
+                    bool const isFirst = _p.GetSideCorner(edge, 0) == corner;
+                    addCorner(place, farVertex(_p.GetPrevCorner(pFace, corner)),
+                              cornerEdge(corner, kFirst));
+                    addCorner(place, fVertex(corner),
+                              {_p.numCorners + edge, isFirst ? kFirst : kSecond});
+                }
+            }
+        });
+    }
+    void fillVFaces() {
+        ParallelForRange(_p.numVertices, [this](Index begin, Index end) {
+            Counts const &before = _refiner._vertexCounts[std::size_t(begin / kParallelRange)];
+            Place place = {_p.numFaces + Index(before.faces),
+                           2 * _p.numCorners + Index(before.corners)};
+            for (Index pVert = begin; pVert < end; ++pVert) {
+                _refiner.forEachVFace(pVert,
+                                      [&](VFace const &vFace) { fillVFace(pVert, vFace, place); });
+            }
+        });
+    }
+    void fillVFace(Index pVert, VFace const &vFace, Place &place) {
+        auto const positionAt = [&](Index i) {
+            Index const k = vFace.begin + i;
+            return k < vFace.fan.end ? k : k - (vFace.fan.end - vFace.fan.begin);
+        };
+        auto const cornerAt = [&](Index i) { return _p.GetVertexCorner(positionAt(i)); };
+        Index const first = cornerAt(0);
+        beginFace(place);
+        for (Index i = 1; i < vFace.count; ++i) {
+            addCorner(place, fVertex(cornerAt(i)), cornerEdge(cornerAt(i), kSecond));
+        }
+        if (vFace.isWedge) {
+            Index const last = getInCorner(_p, positionAt(vFace.count - 1));
+            addCorner(place, farVertex(last), spoke(FindEdgeEnd(_p, last) ^ 1u, kSecond));
+            addCorner(place, _refinement.GetVertexChildVertex(pVert),
+                      spoke(FindEdgeEnd(_p, first), kFirst));
+        }
+        addCorner(place, fVertex(first), cornerEdge(first, kSecond));
+    }
+    // An edge of one face alone is a boundary, and that face its first side.
+    void finishBoundaries() {
+        for (Index pEdge : _p.boundaryEdges) {
+            std::size_t const end = 2 * std::size_t(pEdge);
+            for (Index cEdge : {_p.numCorners + pEdge, _spokes[end], _spokes[end + 1]}) {
+                auto &corners = _edges[std::size_t(cEdge)].corners;
+                if (corners[kFirst] == kNoCorner) {
+                    std::swap(corners[kFirst], corners[kSecond]);
+                }
+                corners[kSecond] = _p.edgeFaces[pEdge][1];
+            }
+        }
+    }
+
+    TruncationRefiner const &_refiner;
+    Refinement const &_refinement;
+    Level const &_p;
+    Level &_c;
+    Buffer<EdgeSides> _edges;
+    Buffer<Index> _spokes; // by end of an edge, INDEX_INVALID where there is none
+};
+
+void TruncationRefiner::Refine(bool fullTopology, Refinement &refinement, Level &child) const {
+    BeginRefinement(_parent, _sizes, fullTopology, refinement, child);
+    child.isHexagonal = false;
+    child.numHexagonalSteps = 0;
+    child.numFFaceCorners = 2 * _parent.numCorners;
+    child.numVVertices = Index(_vertexCounts.back().vertices);
+    child.numVFaces = Index(_vertexCounts.back().faces);
+    relate(refinement);
+    if (fullTopology) {
+        Builder<true> builder(*this, refinement, child);
+        builder.Build();
+        BuildBaseLevel({builder.GetEdges().data(), child.numEdges}, child);
+    } else {
+        Builder<false>(*this, refinement, child).Build();
+        FinishFaces(child);
+    }
+    EndRefinement(_sdcOptions, refinement, child);
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_TRUNCATION_REFINEMENT_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_TRUNCATION_REFINEMENT_H
+
+#include "baseLevel.h"
+#include "hierarchy.h"
+#include "vertexFan.h"
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief By end of an edge, 2 e for the end at the first vertex of edge e and 2 e + 1 for the other:
+/// whether the truncation of a mesh cuts the polygon of the vertex there.
+using EndCuts = std::vector<unsigned char>;
+
+/// \brief Where the truncation of level 0 of \p base cuts polygons.
+///
+/// They are cut where an edge ends that is a boundary, is sharp, is a seam of a channel, or has faces
+/// of which one is a hole or has another of the \p labels that base faces may have.  A vertex where
+/// one such edge ends, but for a dart, or none though it is sharp itself, is cut at all its edges; so
+/// is one with two faces, whose polygon would have two vertices.
+EndCuts FindEndCuts(Hierarchy const &base, Far::ConstIndexArray labels);
+
+/// The same cuts for the value mesh of a channel of \p mesh, both of level 0.
+EndCuts GetEndCutsOfChannel(Level const &mesh, EndCuts const &cuts, FVarLevel const &channel);
+
+/// \brief Makes the refinement of FirstStep::Truncate.
+///
+/// A face of n sides becomes an F-face of 2n vertices, two on each edge; a vertex a V-face of those
+/// beside it.  Where it is cut, the vertex makes a V-vertex and a V-face for each wedge between two
+/// cuts.  The vertices on edges count as F-vertices: each has the corner where a face begins to run
+/// along the edge from there.  The one at the far end of a boundary has no such corner and follows
+/// them all.  The last vertex of a V-face is the F-vertex of the corner of its first face.
+/// INDEXING.md has the numbering.
+class TruncationRefiner {
+public:
+    /// Counts what the refinement of \p parent, a level 0 to which it refers, makes.
+    TruncationRefiner(Level const &parent, EndCuts cuts, Sdc::Options sdcOptions);
+
+    LevelSizes GetSizes() const { return _sizes; }
+
+    /// Makes \p child, whose sizes must fit 32 bits, as RefineHexagonally does.
+    void Refine(bool fullTopology, Refinement &refinement, Level &child) const;
+
+private:
+    using Index = Far::Index;
+    template <bool FULL>
+    class Builder;
+
+    /// What components of the parent make.
+    struct Counts {
+        Counts &operator+=(Counts const &other) {
+            vertices += other.vertices;
+            faces += other.faces;
+            corners += other.corners;
+            spokes += other.spokes;
+            return *this;
+        }
+
+        std::int64_t vertices = 0;
+        std::int64_t faces = 0;
+        std::int64_t corners = 0;
+        std::int64_t spokes = 0;
+    };
+    /// The faces around a vertex that a V-face is made for: a fan, or a wedge of one.
+    struct VFace {
+        VertexFan fan;
+        Index begin; ///< position in Level::vertFaces; the end of the fan leads to its begin
+        Index count;
+        bool isWedge;
+    };
+
+    bool isCut(Index pVert) const;
+    template <typename FUNCTION>
+    void forEachVFace(Index pVert, FUNCTION function) const;
+    void relate(Refinement &refinement) const;
+
+    Level const &_parent;
+    EndCuts const _cuts;
+    Sdc::Options const _sdcOptions;
+    LevelSizes _sizes{};
+    // What the ranges of components before a range make, by range.
+    std::vector<Counts> _vertexCounts;
+    std::vector<Counts> _edgeCounts;
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

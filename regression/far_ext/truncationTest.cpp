@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// FirstStep::Truncate: every shape, tag and channel against the reference, its numbering, and the
+// labels that it keeps apart.
+#include "expectations.h"
+
+#include "far_ext/baseFaceMap.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::FirstStep;
+using FarExt::HexSchemeOptions;
+using FarExt::TopologyLevel;
+using FarExt::TopologyRefiner;
+
+namespace {
+
+constexpr Sdc::Options::FVarLinearInterpolation kLinearInterpolations[] = {
+    Sdc::Options::FVAR_LINEAR_NONE,          Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
+    Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
+    Sdc::Options::FVAR_LINEAR_BOUNDARIES,    Sdc::Options::FVAR_LINEAR_ALL};
+
+std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, ReferenceMask mask, int level,
+                                               Sdc::Options options = Sdc::Options()) {
+    HexSchemeOptions schemeOptions;
+    schemeOptions.firstStep = FirstStep::Truncate;
+    return CreateRefiner(shape, mask, level, options, schemeOptions);
+}
+
+/// Calls check(shape, options) for all shapes, boundary rules and, with creases, creasing methods.
+template <typename CHECK>
+void forEach(CHECK const &check) {
+    std::vector<Shape> shapes = GetShapes();
+    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
+    for (Shape const &shape : shapes) {
+        for (auto boundary : kBoundaries) {
+            for (auto method : {Sdc::Options::CREASE_UNIFORM, Sdc::Options::CREASE_CHAIKIN}) {
+                if (shape.creaseSharpness.empty() && method != Sdc::Options::CREASE_UNIFORM) {
+                    continue;
+                }
+                SCOPED_TRACE(testing::Message()
+                             << shape.name << ", boundary " << boundary << ", creases " << method);
+                Sdc::Options options;
+                options.SetVtxBoundaryInterpolation(boundary);
+                options.SetCreasingMethod(method);
+                check(shape, options);
+                if (testing::Test::HasFatalFailure()) {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// The numbers that INDEXING.md gives to what a truncation makes of level 0.
+class Numbering {
+public:
+    explicit Numbering(TopologyRefiner const &refiner)
+        : _parent(refiner.GetLevel(0)), _child(refiner.GetLevel(1)) {
+        for (int v = 0; v < _parent.GetNumVertices(); ++v) {
+            if (int const cVert = _parent.GetVertexChildVertex(v); cVert >= 0) {
+                EXPECT_EQ(cVert, _numVVertices++);
+            }
+        }
+        int numBoundaries = 0;
+        for (int e = 0; e < _parent.GetNumEdges(); ++e) {
+            if (_parent.IsEdgeBoundary(e)) {
+                _boundaries[e] = numBoundaries++;
+            }
+            EXPECT_EQ(_parent.GetEdgeChildFace(e), Far::INDEX_INVALID);
+        }
+        EXPECT_EQ(_child.GetNumVertices(),
+                  _numVVertices + _parent.GetNumFaceVertices() + numBoundaries);
+    }
+
+    void ExpectFFaces() const {
+        for (int f = 0; f < _parent.GetNumFaces(); ++f) {
+            auto const vertices = _child.GetFaceVertices(f);
+            auto const edges = _child.GetFaceEdges(f);
+            int const size = _parent.GetFaceVertices(f).size();
+            ASSERT_EQ(_child.GetFaceFirstCorner(f), 2 * _parent.GetFaceFirstCorner(f));
+            ASSERT_EQ(vertices.size(), 2 * size);
+            ASSERT_EQ(_child.GetFaceKind(f), FarExt::FaceKind::Face);
+            for (int i = 0; i < size; ++i) {
+                int const corner = _parent.GetFaceFirstCorner(f) + i;
+                int const edge = _parent.GetFaceEdges(f)[i];
+                ASSERT_EQ(vertices[2 * i + 1], fVertex(corner));
+                ASSERT_EQ(vertices[(2 * i + 2) % (2 * size)], otherVertex(f, i));
+                ASSERT_EQ(edges[2 * i], corner);
+                ASSERT_EQ(edges[2 * i + 1], _parent.GetNumFaceVertices() + edge);
+            }
+        }
+    }
+
+    /// V-faces follow the vertices, and spokes the edges, each with its first end first.
+    void ExpectVFaces() const {
+        int lastVertex = 0;
+        for (int f = _parent.GetNumFaces(); f < _child.GetNumFaces(); ++f) {
+            ASSERT_EQ(_child.GetFaceKind(f), FarExt::FaceKind::Vertex);
+            int const vertex = _child.GetFaceParentVertex(f);
+            ASSERT_GE(vertex, lastVertex);
+            lastVertex = vertex;
+            auto const vertices = _child.GetFaceVertices(f);
+            int const corner = vertices[vertices.size() - 1] - _numVVertices;
+            ASSERT_GE(corner, 0);
+            ASSERT_LT(corner, _parent.GetNumFaceVertices());
+            int const face = _child.GetFaceParentFace(f);
+            int const local = corner - _parent.GetFaceFirstCorner(face);
+            ASSERT_EQ(_parent.GetFaceVertices(face)[local], vertex);
+            ASSERT_EQ(_child.GetFaceBaseFace(f), face);
+            ASSERT_EQ(_child.GetFaceEdges(f)[vertices.size() - 1], corner);
+            int const cVert = _parent.GetVertexChildVertex(vertex);
+            if (cVert >= 0 && vertices[vertices.size() - 2] != cVert) {
+                ADD_FAILURE() << "face " << f << " has its V-vertex elsewhere";
+            }
+        }
+        int spoke = _parent.GetNumFaceVertices() + _parent.GetNumEdges();
+        for (int e = 0; e < _parent.GetNumEdges(); ++e) {
+            auto const ends = _parent.GetEdgeVertices(e);
+            int const face = _parent.GetEdgeFaces(e)[0];
+            int const local = _parent.GetEdgeFaceLocalIndices(e)[0];
+            int const beside[] = {fVertex(_parent.GetFaceFirstCorner(face) + local),
+                                  otherVertex(face, local)};
+            for (int i : {0, 1}) {
+                int const cVert = _parent.GetVertexChildVertex(ends[i]);
+                int const edge = cVert < 0 ? -1 : _child.FindEdge(cVert, beside[i]);
+                if (edge >= 0) {
+                    ASSERT_EQ(edge, spoke++);
+                    ASSERT_EQ(_child.GetEdgeVertices(edge)[0], _child.IsEdgeBoundary(edge)
+                                                                   ? _child.GetEdgeVertices(edge)[0]
+                                                                   : cVert);
+                }
+            }
+        }
+        ASSERT_EQ(spoke, _child.GetNumEdges());
+    }
+
+private:
+    int fVertex(int corner) const { return _numVVertices + corner; }
+    /// At the far end of the edge from a corner.
+    int otherVertex(int face, int local) const {
+        int const edge = _parent.GetFaceEdges(face)[local];
+        if (_parent.IsEdgeBoundary(edge)) {
+            return fVertex(_parent.GetNumFaceVertices() + _boundaries.at(edge));
+        }
+        auto const faces = _parent.GetEdgeFaces(edge);
+        auto const locals = _parent.GetEdgeFaceLocalIndices(edge);
+        int const other = faces[0] == face && locals[0] == local ? 1 : 0;
+        return fVertex(_parent.GetFaceFirstCorner(faces[other]) + locals[other]);
+    }
+
+    TopologyLevel const &_parent;
+    TopologyLevel const &_child;
+    std::map<int, int> _boundaries;
+    int _numVVertices = 0;
+};
+
+} // namespace
+
+TEST(Truncation, EqualsReference) {
+    forEach([](Shape const &shape, Sdc::Options options) {
+        int const level = GetTestLevel(shape, 3, 6000);
+        auto const topology = createRefiner(shape, ReferenceMask::Average, level, options);
+        TaggedMatch const match(shape, *topology);
+        ASSERT_EQ(match.GetError(), "");
+        ASSERT_NO_FATAL_FAILURE(ExpectValid(*topology));
+        ReferenceValues const positions = GetPositions(shape);
+        for (ReferenceMask mask : kMasks) {
+            SCOPED_TRACE(ToString(mask));
+            auto const refiner = createRefiner(shape, mask, level, options);
+            ASSERT_NO_FATAL_FAILURE(ExpectVertexValuesEqual(*refiner, match, mask, positions));
+        }
+        ASSERT_NO_FATAL_FAILURE(ExpectVaryingValuesEqual(*topology, match, positions));
+    });
+}
+
+TEST(Truncation, FaceVaryingEqualsReference) {
+    int seed = 0;
+    forEach([&seed](Shape const &shape, Sdc::Options options) {
+        for (auto linear : kLinearInterpolations) {
+            options.SetFVarLinearInterpolation(linear);
+            ReferenceMask const mask = kMasks[std::size_t(seed++ % 3)];
+            auto const refiner = createRefiner(shape, mask, GetTestLevel(shape, 3, 3000), options);
+            for (int channel = 0; channel < int(shape.fvarChannels.size()); ++channel) {
+                SCOPED_TRACE(testing::Message() << "channel " << channel << ", linear " << linear);
+                TaggedMatch const match(shape, *refiner, channel);
+                ASSERT_EQ(match.GetError(), "");
+                ReferenceValues const values = GetValues(shape.fvarChannels[std::size_t(channel)]);
+                ASSERT_NO_FATAL_FAILURE(
+                    ExpectChannelValuesEqual(*refiner, match, mask, values, channel));
+            }
+        }
+    });
+}
+
+TEST(Truncation, HasDocumentedNumbering) {
+    forEach([](Shape const &shape, Sdc::Options options) {
+        auto const refiner = createRefiner(shape, ReferenceMask::Smooth, 1, options);
+        Numbering const numbering(*refiner);
+        ASSERT_NO_FATAL_FAILURE(numbering.ExpectFFaces());
+        ASSERT_NO_FATAL_FAILURE(numbering.ExpectVFaces());
+    });
+}
+
+TEST(Truncation, MakesHexagonsOfTriangles) {
+    Shape const icosahedron = MakeIcosahedron();
+    auto const refiner = createRefiner(icosahedron, ReferenceMask::Smooth, 3);
+    TopologyLevel const &level = refiner->GetLevel(1);
+    EXPECT_EQ(level.GetNumVertices(), 60);
+    EXPECT_EQ(level.GetNumEdges(), 90);
+    EXPECT_EQ(level.GetNumFaces(), 32);
+    for (int depth = 1; depth <= 3; ++depth) {
+        TopologyLevel const &topology = refiner->GetLevel(depth);
+        int numPentagons = 0;
+        for (int f = 0; f < topology.GetNumFaces(); ++f) {
+            int const size = topology.GetFaceVertices(f).size();
+            ASSERT_TRUE(size == 5 || size == 6);
+            numPentagons += size == 5;
+        }
+        EXPECT_EQ(numPentagons, 12);
+        for (int v = 0; v < topology.GetNumVertices(); ++v) {
+            ASSERT_EQ(topology.GetVertexFaces(v).size(), 3);
+        }
+    }
+}
+
+// A sharp rule reproduces linear functions, along lines and across.
+TEST(Truncation, ReproducesLinearFunctions) {
+    Shape shape = GetShape("triangleGrid");
+    for (std::size_t i = 0; i < shape.positions.size(); i += 3) {
+        shape.positions[i + 2] = 1 + 2 * shape.positions[i] - 3 * shape.positions[i + 1];
+    }
+    for (auto boundary :
+         {Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+        Sdc::Options options;
+        options.SetVtxBoundaryInterpolation(boundary);
+        auto const refiner = createRefiner(shape, ReferenceMask::Smooth, 3, options);
+        for (ReferenceValues const &values : InterpolateLevels(*refiner, GetPositions(shape))) {
+            for (Eigen::Index row = 0; row < values.rows(); ++row) {
+                ASSERT_NEAR(values(row, 2), 1 + 2 * values(row, 0) - 3 * values(row, 1), 1e-12);
+            }
+        }
+    }
+}
+
+TEST(Truncation, KeepsLabelsApart) {
+    std::vector<Shape> shapes = GetShapes();
+    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
+    for (Shape const &shape : shapes) {
+        SCOPED_TRACE(shape.name);
+        auto const refiner = createRefiner(shape, ReferenceMask::Smooth, 0);
+        TopologyRefiner::UniformOptions options(GetTestLevel(shape, 3, 6000));
+        options.fullTopologyInLastLevel = true;
+        for (int f = 0; f < shape.GetNumFaces(); ++f) {
+            options.faceLabels.push_back(f * f % 3);
+        }
+        ASSERT_TRUE(refiner->RefineUniform(options));
+        EXPECT_EQ(refiner->GetUniformOptions().faceLabels, options.faceLabels);
+        ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
+        if (refiner->GetMaxLevel() == 0) {
+            continue;
+        }
+        // All faces around the vertex of a V-face that its own F-vertices lie between have its label.
+        TopologyLevel const &base = refiner->GetLevel(0);
+        TopologyLevel const &level = refiner->GetLevel(1);
+        for (int e = 0; e < level.GetNumEdges(); ++e) {
+            auto const faces = level.GetEdgeFaces(e);
+            if (e < base.GetNumFaceVertices()) {
+                // Between an F-face and the V-face of a vertex of its base face.
+                ASSERT_EQ(options.faceLabels[std::size_t(level.GetFaceBaseFace(faces[0]))],
+                          options.faceLabels[std::size_t(level.GetFaceBaseFace(faces[1]))]);
+            }
+        }
+        // Where all labels are the same nothing is cut for them.
+        int const numFaces = level.GetNumFaces();
+        options.faceLabels.assign(options.faceLabels.size(), 7);
+        ASSERT_TRUE(refiner->RefineUniform(options));
+        int const numUncut = refiner->GetLevel(1).GetNumFaces();
+        options.faceLabels.clear();
+        ASSERT_TRUE(refiner->RefineUniform(options));
+        EXPECT_EQ(refiner->GetLevel(1).GetNumFaces(), numUncut);
+        EXPECT_LE(numUncut, numFaces);
+    }
+}
+
+TEST(Truncation, ChecksTheNumberOfLabels) {
+    auto const refiner = createRefiner(GetShape("cube"), ReferenceMask::Smooth, 2);
+    TopologyRefiner::UniformOptions options(1);
+    options.faceLabels = {1, 2, 3};
+    FarExt::Status status;
+    EXPECT_FALSE(refiner->RefineUniform(options, &status));
+    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
+    EXPECT_NE(status.GetMessage().find("3 labels of 6"), std::string::npos) << status.GetMessage();
+    EXPECT_EQ(refiner->GetMaxLevel(), 2);
+}
+
+TEST(Truncation, RefinesAgainAfterOtherSteps) {
+    Shape const &shape = GetShape("truncatedCube");
+    auto const refiner = createRefiner(shape, ReferenceMask::Smooth, 3);
+    ReferenceValues const positions = GetPositions(shape);
+    std::vector<ReferenceValues> const first = InterpolateLevels(*refiner, positions);
+    ASSERT_TRUE(refiner->RefineUniform(1));
+    EXPECT_FALSE(refiner->GetLevel(1).HasFullTopology());
+    ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
+    EXPECT_EQ(InterpolateLevels(*refiner, positions)[1], first[1]);
+    FarExt::Status status;
+    EXPECT_FALSE(refiner->RefineUniform(40, &status));
+    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::TooLarge);
+    EXPECT_EQ(refiner->GetMaxLevel(), 1);
+    EXPECT_FALSE(refiner->RefineCoplanar(shape.positions.data(), 1, &status));
+    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
+}
+
+} // namespace OpenSubdivHex::Regression

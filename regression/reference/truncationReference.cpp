@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "taggedRules.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace OpenSubdivHex::Regression {
+
+using namespace TaggedRules;
+
+namespace {
+
+using Edge = TaggedMesh::Edge;
+using Face = TaggedMesh::Face;
+
+Side before(TaggedMesh const &mesh, Side corner) {
+    int const size = int(mesh.faces[corner.face].vertices.size());
+    return {corner.face, (corner.place + size - 1) % size};
+}
+
+Edge const &edgeOf(TaggedMesh const &mesh, Side side) {
+    return mesh.edges[mesh.faces[side.face].edges[side.place]];
+}
+
+} // namespace
+
+ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &values) {
+    ReferenceCuts cuts;
+    for (Face const &face : mesh.faces) {
+        cuts.emplace_back(face.vertices.size(), false);
+    }
+    auto const parts = [&](Side side) {
+        std::vector<Side> const &sides = edgeOf(mesh, side).sides;
+        if (sides.size() == 1) {
+            return true;
+        }
+        bool result = mesh.faces[sides[0].face].holes[0] != mesh.faces[sides[1].face].holes[0];
+        for (TaggedMesh const &valueMesh : values) {
+            result = result || edgeOf(valueMesh, side).sides.size() == 1;
+        }
+        return result;
+    };
+    for (int v = 0; v < int(mesh.vertices.size()); ++v) {
+        bool const isSharp = mesh.vertices[v].sharpness > 0 || mesh.vertices[v].isNonManifold;
+        for (Fan const &fan : findFans(mesh, v)) {
+            std::vector<Side> parting;
+            std::vector<Side> all; // with creases
+            for (Side corner : fan.corners) {
+                if (parts(corner)) {
+                    parting.push_back(corner);
+                }
+                if (parts(corner) || edgeOf(mesh, corner).sharpness > 0) {
+                    all.push_back(corner);
+                }
+            }
+            bool const isOneSector = fan.isClosed && all.size() < 2;
+            if (isOneSector && (isSharp || !parting.empty() || fan.corners.size() == 2)) {
+                all = fan.corners;
+            } else if (isOneSector) {
+                all.clear(); // a dart at most
+            }
+            for (Side corner : all) {
+                cuts[corner.face][corner.place] = true;
+            }
+        }
+    }
+    return cuts;
+}
+
+namespace {
+
+/// Builds the truncation of a mesh face by face, with the sides of each edge by what it is.
+class Truncation {
+public:
+    Truncation(TaggedMesh const &parent, ReferenceCuts const &cuts) : _parent(parent), _cuts(cuts) {
+        _child.chaikin = parent.chaikin;
+        _child.freeBoundaries = parent.freeBoundaries;
+        _child.madeBy = ReferenceScheme::Truncate;
+    }
+
+    TaggedMesh Run() {
+        makeVertices();
+        for (int f = 0; f < int(_parent.faces.size()); ++f) {
+            makeFFace(f);
+        }
+        for (int v = 0; v < int(_parent.vertices.size()); ++v) {
+            for (Fan const &fan : findFans(_parent, v)) {
+                makeVFaces(v, fan);
+            }
+        }
+        for (auto const &[key, edge] : _edges) {
+            _child.edges.push_back(edge);
+        }
+        connect(_child);
+        return std::move(_child);
+    }
+
+private:
+    /// What an edge is: beside a corner, along an edge, or from a vertex to a new one on an edge.
+    enum Kind { BesideCorner, AlongEdge, Spoke };
+    using Key = std::array<int, 3>;
+
+    bool isCutBefore(Side corner) const { return _cuts[corner.face][corner.place]; }
+
+    bool isKept(int v) const {
+        std::vector<Side> const &corners = _parent.vertices[v].corners;
+        return corners.empty() || std::any_of(corners.begin(), corners.end(), [&](Side corner) {
+                   return isCutBefore(corner) ||
+                          edgeOf(_parent, before(_parent, corner)).sides.size() == 1;
+               });
+    }
+
+    int addVertex(TaggedMesh::VertexOrigin const &origin) {
+        _child.vertices.emplace_back();
+        _child.vertexOrigins.push_back(origin);
+        return int(_child.vertices.size()) - 1;
+    }
+
+    void makeVertices() {
+        for (int v = 0; v < int(_parent.vertices.size()); ++v) {
+            _child.vVertices.push_back(isKept(v) ? addVertex({v, -1, -1}) : -1);
+            if (isKept(v)) {
+                _child.vertices.back().sharpness = decremented(_parent.vertices[v].sharpness);
+                _child.vertices.back().isNonManifold = _parent.vertices[v].isNonManifold;
+            }
+        }
+        for (int f = 0; f < int(_parent.faces.size()); ++f) {
+            _child.fVertices.emplace_back();
+            for (int i = 0; i < int(_parent.faces[f].vertices.size()); ++i) {
+                Side const side = {f, i};
+                _child.fVertices.back().push_back(addVertex({_parent.GetStart(side), f, i}));
+                if (edgeOf(_parent, side).sides.size() == 1) {
+                    _far[{f, i}] = addVertex({_parent.GetEnd(side), f, i, true});
+                }
+            }
+        }
+    }
+
+    int nearVertex(Side side) const { return _child.fVertices[side.face][side.place]; }
+    int farVertex(Side side) const {
+        std::vector<Side> const &sides = edgeOf(_parent, side).sides;
+        if (sides.size() == 1) {
+            return _far.at({side.face, side.place});
+        }
+        bool const isFirst = sides[0].face == side.face && sides[0].place == side.place;
+        return nearVertex(sides[isFirst ? 1 : 0]);
+    }
+
+    void addFace(std::vector<int> vertices, std::vector<Key> const &keys, bool isHole,
+                 TaggedMesh::FaceOrigin const &origin) {
+        Face face;
+        face.vertices = std::move(vertices);
+        face.holes.assign(face.vertices.size(), isHole);
+        for (int i = 0; i < int(keys.size()); ++i) {
+            auto const [place, isNew] = _edges.try_emplace(keys[i]);
+            if (isNew) {
+                place->second = makeEdge(keys[i]);
+            }
+            place->second.sides.push_back({int(_child.faces.size()), i});
+        }
+        _child.faces.push_back(face);
+        _child.faceOrigins.push_back(origin);
+    }
+
+    /// The tags of a new edge.
+    Edge makeEdge(Key const &key) const {
+        Edge result;
+        if (key[0] == BesideCorner) {
+            return result;
+        }
+        Edge const &edge = _parent.edges[key[1]];
+        result.isFree = edge.isFree;
+        result.line = edge.line;
+        if (key[0] == Spoke) {
+            int const v = _child.vertexOrigins[key[2]].vertex;
+            result.sharpness = childSharpness(_parent, v, edge.sharpness);
+        } else {
+            int const v = _parent.GetStart(edge.sides[0]);
+            int const w = _parent.GetEnd(edge.sides[0]);
+            result.sharpness = 0.5f * (childSharpness(_parent, v, edge.sharpness) +
+                                       childSharpness(_parent, w, edge.sharpness));
+        }
+        if (edge.sharpness >= kInfiniteSharpness) {
+            result.sharpness = edge.sharpness;
+        }
+        return result;
+    }
+
+    void makeFFace(int f) {
+        std::vector<int> vertices;
+        std::vector<Key> keys;
+        for (int i = 0; i < int(_parent.faces[f].vertices.size()); ++i) {
+            vertices.push_back(farVertex(before(_parent, {f, i})));
+            keys.push_back({BesideCorner, f, i});
+            vertices.push_back(nearVertex({f, i}));
+            keys.push_back({AlongEdge, _parent.faces[f].edges[i], 0});
+        }
+        TaggedMesh::FaceOrigin origin;
+        origin.face = f;
+        addFace(vertices, keys, _parent.faces[f].holes[0], origin);
+    }
+
+    void makeVFaces(int v, Fan const &fan) {
+        std::vector<Side> corners = fan.corners;
+        auto const isCut = [this](Side corner) { return isCutBefore(corner); };
+        auto const first = std::find_if(corners.begin(), corners.end(), isCut);
+        if (first == corners.end()) {
+            makeVFace(v, corners, false);
+            return;
+        }
+        std::rotate(corners.begin(), first, corners.end());
+        std::vector<Side> sector;
+        for (Side corner : corners) {
+            if (isCut(corner) && !sector.empty()) {
+                makeVFace(v, sector, true);
+                sector.clear();
+            }
+            sector.push_back(corner);
+        }
+        makeVFace(v, sector, true);
+    }
+
+    void makeVFace(int v, std::vector<Side> const &corners, bool isSector) {
+        std::vector<int> vertices;
+        std::vector<Key> keys;
+        for (Side corner : corners) {
+            vertices.push_back(nearVertex(corner));
+            keys.push_back({BesideCorner, corner.face, corner.place});
+        }
+        if (isSector) {
+            Side const last = before(_parent, corners.back());
+            vertices.push_back(farVertex(last));
+            keys.push_back({Spoke, _parent.faces[last.face].edges[last.place], farVertex(last)});
+            vertices.push_back(_child.vVertices[v]);
+            Side const start = corners.front();
+            keys.push_back(
+                {Spoke, _parent.faces[start.face].edges[start.place], nearVertex(start)});
+        }
+        TaggedMesh::FaceOrigin origin;
+        origin.vertex = v;
+        bool const isHole = std::all_of(corners.begin(), corners.end(), [this](Side corner) {
+            return _parent.faces[corner.face].holes[0];
+        });
+        addFace(vertices, keys, isHole, origin);
+    }
+
+    TaggedMesh const &_parent;
+    ReferenceCuts const &_cuts;
+    TaggedMesh _child;
+    std::map<std::pair<int, int>, int> _far; ///< by face and place of boundaries
+    std::map<Key, Edge> _edges;
+};
+
+/// b of section "truncate first": of a vertex with as many faces.
+double weightOf(int numFaces) {
+    return std::min(0.5, (4 - 2 * std::cos(2 * std::acos(-1.0) / numFaces)) / 9);
+}
+
+class TruncatedValues {
+public:
+    TruncatedValues(TaggedMesh const &mesh, bool isVarying, ReferenceValues const &values)
+        : _mesh(mesh), _isVarying(isVarying), _values(values) {}
+
+    Point MakeVertex(int v) const {
+        Point const vertex = _values.row(v);
+        if (_isVarying || _mesh.vertices[v].corners.empty()) {
+            return vertex;
+        }
+        Point result = Point::Zero(_values.cols());
+        for (RuleShare const &share : ruleShares(_mesh, v)) {
+            switch (share.rule) {
+            case TaggedRule::Corner:
+                result += share.weight * vertex;
+                break;
+            case TaggedRule::Crease:
+                result +=
+                    share.weight * curvePoint(v, share.lines[0].neighbor, share.lines[1].neighbor);
+                break;
+            case TaggedRule::Smooth:
+            case TaggedRule::Dart:
+                result += share.weight * smoothPoint(v);
+                break;
+            }
+        }
+        return result;
+    }
+
+    Point MakeEdgePoint(TaggedMesh::VertexOrigin const &origin) const {
+        Side const side = {origin.face, origin.place};
+        int const other = origin.isFar ? _mesh.GetStart(side) : _mesh.GetEnd(side);
+        Point const vertex = _values.row(origin.vertex);
+        Point const onLine = (2 * vertex + _values.row(other)) / 3;
+        Edge const &edge = edgeOf(_mesh, side);
+        if (_isVarying || edge.sides.size() == 1 || edge.sharpness >= 1) {
+            return onLine;
+        }
+        double const b = findWeight(origin.vertex, side);
+        Point const smooth = (1 - 2 * b) * vertex +
+                             b * (centroid(edge.sides[0].face) + centroid(edge.sides[1].face));
+        double const sharp = std::max(0.0f, edge.sharpness);
+        return sharp * onLine + (1 - sharp) * smooth;
+    }
+
+private:
+    Point centroid(int face) const {
+        Point sum = Point::Zero(_values.cols());
+        for (int v : _mesh.faces[face].vertices) {
+            sum += _values.row(v);
+        }
+        return sum / double(_mesh.faces[face].vertices.size());
+    }
+
+    Point curvePoint(int v, int left, int right) const {
+        return (7 * _values.row(v) + _values.row(left) + _values.row(right)) / 9;
+    }
+
+    /// Where the boundaries around a vertex that is on one lead.
+    std::vector<int> boundaryEnds(int v) const {
+        std::vector<int> ends;
+        for (Side corner : _mesh.vertices[v].corners) {
+            if (edgeOf(_mesh, corner).sides.size() == 1) {
+                ends.push_back(_mesh.GetEnd(corner));
+            }
+            Side const in = before(_mesh, corner);
+            if (edgeOf(_mesh, in).sides.size() == 1) {
+                ends.push_back(_mesh.GetStart(in));
+            }
+        }
+        return ends;
+    }
+
+    Point smoothPoint(int v) const {
+        if (std::vector<int> const ends = boundaryEnds(v); !ends.empty()) {
+            return curvePoint(v, ends[0], ends[1]);
+        }
+        std::vector<Side> const &corners = _mesh.vertices[v].corners;
+        double const b = weightOf(int(corners.size()));
+        Point mean = Point::Zero(_values.cols());
+        for (Side corner : corners) {
+            mean += centroid(corner.face) / double(corners.size());
+        }
+        return (1 - 2 * b) * _values.row(v) + 2 * b * mean;
+    }
+
+    double smoothShare(int v) const {
+        double sum = 0;
+        for (RuleShare const &share : ruleShares(_mesh, v)) {
+            bool const isSmooth =
+                share.rule == TaggedRule::Smooth || share.rule == TaggedRule::Dart;
+            sum += isSmooth && boundaryEnds(v).empty() ? share.weight : 0;
+        }
+        return sum;
+    }
+
+    /// b on the edge that begins in a corner of a vertex.
+    double findWeight(int v, Side corner) const {
+        double const smooth = smoothShare(v);
+        double const whole = weightOf(int(_mesh.vertices[v].corners.size()));
+        for (Fan const &fan : findFans(_mesh, v)) {
+            int const size = int(fan.corners.size());
+            int at = 0;
+            while (at < size && !(fan.corners[at].face == corner.face &&
+                                  fan.corners[at].place == corner.place)) {
+                ++at;
+            }
+            if (at == size) {
+                continue;
+            }
+            // Edge number i is before face number i; an open fan ends with one more.
+            auto const isSharp = [&](int i) {
+                int const k = (i % size + size) % size;
+                return (!fan.isClosed && i == size) ||
+                       edgeOf(_mesh, fan.corners[k]).sharpness > 0 ||
+                       edgeOf(_mesh, fan.corners[k]).sides.size() == 1;
+            };
+            int end = at + 1;
+            while (end < at + size && !isSharp(end)) {
+                ++end;
+            }
+            int begin = at - 1;
+            while (begin > at - size && !isSharp(begin)) {
+                --begin;
+            }
+            int const count = end - begin;
+            bool const isAllAround = fan.isClosed && count >= size;
+            double const own = weightOf(isAllAround ? size : 2 * count);
+            return smooth * whole + (1 - smooth) * own;
+        }
+        return whole;
+    }
+
+    TaggedMesh const &_mesh;
+    bool _isVarying;
+    ReferenceValues const &_values;
+};
+
+} // namespace
+
+TaggedMesh Truncate(TaggedMesh const &mesh, ReferenceCuts const &cuts) {
+    return Truncation(mesh, cuts).Run();
+}
+
+ReferenceValues InterpolateTruncation(TaggedMesh const &mesh, TaggedMesh const &child,
+                                      bool isVarying, ReferenceValues const &values) {
+    TruncatedValues const truncated(mesh, isVarying, values);
+    ReferenceValues result(child.vertexOrigins.size(), values.cols());
+    for (std::size_t v = 0; v < child.vertexOrigins.size(); ++v) {
+        TaggedMesh::VertexOrigin const &origin = child.vertexOrigins[v];
+        result.row(Eigen::Index(v)) =
+            origin.face < 0 ? truncated.MakeVertex(origin.vertex) : truncated.MakeEdgePoint(origin);
+    }
+    return result;
+}
+
+} // namespace OpenSubdivHex::Regression
