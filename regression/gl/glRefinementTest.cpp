@@ -173,6 +173,17 @@ TEST_F(GlRefinement, TakesEveryLengthMaskSchemeAndMode) {
     }
 }
 
+TEST_F(GlRefinement, TakesEveryFirstStep) {
+    for (auto firstStep : {FarExt::FirstStep::TriHex, FarExt::FirstStep::Truncate}) {
+        FarExt::HexSchemeOptions schemeOptions;
+        schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+        schemeOptions.firstStep = firstStep;
+        auto const refiner =
+            makeRefiner(GetShape("torus"), 3, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions);
+        ASSERT_NO_FATAL_FAILURE(expectEqual(*refiner, {}, 3));
+    }
+}
+
 // Long runs of faces and vertices, and what an evaluator keeps of them.
 TEST_F(GlRefinement, KeepsFewBytesOfLargeLevels) {
     auto const refiner = makeRefiner(GetShape("torus"), 5, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);

@@ -19,6 +19,7 @@ namespace OpenSubdivHex::Tools {
 namespace {
 
 std::vector<std::string> const kSchemeNames = {"hexagonal", "doo-sabin", "tri-hex"};
+std::vector<std::string> const kFirstStepNames = {"none", "tri-hex", "truncate"};
 std::vector<std::string> const kMaskNames = {"average", "cosine", "smooth"};
 std::vector<std::string> const kEvaluatorNames = {"cpu", "opengl", "tables"};
 std::vector<std::string> const kShadingNames = {"smooth",    "facets",     "reflection",
@@ -28,6 +29,7 @@ struct Arguments {
     std::string input;
     int level = 2;
     std::string scheme = "hexagonal";
+    std::string firstStep = "none";
     std::string mask = "smooth";
     std::optional<std::string> boundary;
     bool isLimit = false;
@@ -54,6 +56,10 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->capture_default_str();
     app.add_option("--scheme", arguments->scheme, "Subdivision scheme")
         ->check(CLI::IsMember(kSchemeNames))
+        ->capture_default_str();
+    app.add_option("--first-step", arguments->firstStep,
+                   "What makes level 1 in place of the scheme: truncate is for meshes of triangles")
+        ->check(CLI::IsMember(kFirstStepNames))
         ->capture_default_str();
     app.add_option("--mask", arguments->mask, "Mask of the face points")
         ->check(CLI::IsMember(kMaskNames))
@@ -105,6 +111,7 @@ SurfaceSettings findSettings(Arguments const &arguments, MeshTags const &tags) {
     SurfaceSettings settings;
     settings.level = arguments.level;
     settings.scheme.schemeType = FindRule<FarExt::SchemeType>(kSchemeNames, arguments.scheme);
+    settings.scheme.firstStep = FindRule<FarExt::FirstStep>(kFirstStepNames, arguments.firstStep);
     settings.scheme.faceMask = FindRule<FarExt::FaceMask>(kMaskNames, arguments.mask);
     settings.boundary = tags.boundary.value_or(settings.boundary);
     if (arguments.boundary) {

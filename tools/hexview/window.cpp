@@ -19,6 +19,7 @@ namespace OpenSubdivHex::Tools {
 namespace {
 
 constexpr char const *kSchemes[] = {"hexagonal", "Doo-Sabin", "tri-hex"};
+constexpr char const *kFirstSteps[] = {"none", "tri-hex", "truncate"};
 constexpr char const *kMasks[] = {"average", "cosine", "smooth"};
 constexpr char const *kBoundaries[] = {"none", "edge only", "edge and corner"};
 constexpr char const *kEvaluators[] = {"CPU", "OpenGL", "tables"};
@@ -139,6 +140,7 @@ void Viewer::showPanel() {
     ImGui::PushItemWidth(150);
     bool isChanged = ImGui::SliderInt("level", &_settings.level, 0, kMaxLevel);
     isChanged |= chooseEnum("scheme", kSchemes, &_settings.scheme.schemeType);
+    isChanged |= chooseEnum("first step", kFirstSteps, &_settings.scheme.firstStep);
     isChanged |= chooseEnum("mask", kMasks, &_settings.scheme.faceMask);
     isChanged |= chooseEnum("boundary", kBoundaries, &_settings.boundary);
     isChanged |= ImGui::Checkbox("limit points", &_settings.isLimit);
