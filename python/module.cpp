@@ -19,4 +19,5 @@ PYBIND11_MODULE(_opensubdivhex, module) {
     BindPrimvarRefiner(module);
     BindStencilTables(module);
     BindEvaluators(module);
+    BindSurfaces(module);
 }

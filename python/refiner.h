@@ -131,6 +131,7 @@ void BindLevel(py::module_ &module);
 void BindPrimvarRefiner(py::module_ &module);
 void BindStencilTables(py::module_ &module);
 void BindEvaluators(py::module_ &module);
+void BindSurfaces(py::module_ &module);
 
 } // namespace OpenSubdivHex::Python
 

@@ -4,7 +4,7 @@
 A TopologyRefiner takes a base mesh as arrays and refines it; its levels are arrays.  Values, such
 as positions, are refined with a RefinementEvaluator, with a StencilTable and one of the evaluators
 CpuEvaluator and OmpEvaluator, or level by level with a PrimvarRefiner.  A LimitStencilTable has
-points and tangents of the limit surface.
+points and tangents of the limit surface, and a SurfaceFactory the surfaces of the base faces.
 
 Names are those of the C++ API, in Python's spelling.  Values are float32 arrays; wrong types,
 shapes and lengths raise TypeError, ValueError or IndexError, which name the argument.  What the

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arrays.h"
+#include "errors.h"
+#include "refiner.h"
+
+#include "bfr_ext/surfaceFactory.h"
+#include "bfr_ext/tessellation.h"
+
+#include <cmath>
+#include <utility>
+
+namespace OpenSubdivHex::Python {
+
+namespace {
+
+using BfrExt::Tessellation;
+using Points = py::array_t<double>;
+using PointDescriptor = BfrExt::Surface<double>::PointDescriptor;
+
+/// A tessellation of a face, as arrays.
+class FaceTessellation {
+public:
+    FaceTessellation(int faceSize, py::object const &levels, int facetSize)
+        : _tessellation(make(faceSize, levels, facetSize)) {}
+
+    Tessellation const &Get() const { return _tessellation; }
+
+    std::vector<int> GetLevels() const {
+        std::vector<int> levels(std::size_t(_tessellation.GetFaceSize()) + 1);
+        _tessellation.GetLevels(levels.data());
+        return levels;
+    }
+    Points GetCoords() const {
+        Points coords({py::ssize_t(_tessellation.GetNumCoords()), py::ssize_t(2)});
+        _tessellation.GetCoords(coords.mutable_data());
+        return coords;
+    }
+    py::array_t<int> GetFacetSizes() const {
+        std::vector<int> sizes(std::size_t(_tessellation.GetNumFacets()));
+        _tessellation.GetFacetSizes(sizes.data());
+        return TakeOver(std::move(sizes));
+    }
+    py::array_t<int> GetFacets() const {
+        int const stride = _tessellation.GetFacetStride();
+        int const numFacets = _tessellation.GetNumFacets();
+        std::vector<int> facets(
+            std::size_t(stride > 0 ? stride * numFacets : _tessellation.GetNumFacetVertices()));
+        _tessellation.GetFacets(facets.data());
+        py::array_t<int> array = TakeOver(std::move(facets));
+        return stride > 0 ? array.reshape({numFacets, stride}) : array;
+    }
+
+private:
+    static Tessellation make(int faceSize, py::object const &levels, int facetSize) {
+        if (faceSize < 3) {
+            throw py::value_error("face_size: " + std::to_string(faceSize) + " is less than 3");
+        }
+        std::vector<int> numbers;
+        if (py::isinstance<py::int_>(levels)) {
+            numbers.push_back(levels.cast<int>());
+        } else {
+            py::array_t<int> const array = TakeIndices(levels, "levels");
+            numbers.assign(array.data(), array.data() + array.size());
+        }
+        int const count = int(numbers.size());
+        if (count != 1 && count != faceSize && count != faceSize + 1) {
+            throw py::value_error("levels: " + std::to_string(count) + " of them, not 1, " +
+                                  std::to_string(faceSize) + " or " + std::to_string(faceSize + 1));
+        }
+        for (int const level : numbers) {
+            if (level < 0 || level > Tessellation::kLastLevel) {
+                throw py::value_error("levels: " + std::to_string(level) + " is not one of 0 ... " +
+                                      std::to_string(Tessellation::kLastLevel));
+            }
+        }
+        if (facetSize != 0 && facetSize != 3 && facetSize != 4) {
+            throw py::value_error("facet_size: " + std::to_string(facetSize) + " is not 3, 4 or 0");
+        }
+        py::gil_scoped_release const release;
+        return Tessellation(BfrExt::Parameterization(faceSize), count, numbers.data(),
+                            Tessellation::Options().SetFacetSize(facetSize));
+    }
+
+    Tessellation _tessellation;
+};
+
+/// A surface, and how many points its mesh has.
+class FaceSurface {
+public:
+    FaceSurface(BfrExt::Surface<double> surface, int numMeshPoints)
+        : _surface(std::move(surface)), _numMeshPoints(numMeshPoints) {}
+
+    int GetFaceSize() const { return _surface.GetFaceSize(); }
+    py::array_t<int> GetControlPoints() const {
+        std::vector<int> indices(std::size_t(_surface.GetNumControlPoints()));
+        _surface.GetControlPointIndices(indices.data());
+        return TakeOver(std::move(indices));
+    }
+
+    py::object Evaluate(py::object const &uv, py::object const &points) const {
+        return std::move(evaluate(uv, points, 1)[0]);
+    }
+    py::tuple EvaluateWithDerivatives(py::object const &uv, py::object const &points) const {
+        std::vector<py::object> results = evaluate(uv, points, 3);
+        return py::make_tuple(results[0], results[1], results[2]);
+    }
+    Points EvaluateStencil(py::object const &uv) const {
+        std::vector<double> const places = takePlaces(uv);
+        auto const numPlaces = py::ssize_t(places.size() / 2);
+        Points weights({numPlaces, py::ssize_t(_surface.GetNumControlPoints())});
+        double *const data = weights.mutable_data();
+        py::gil_scoped_release const release;
+        for (py::ssize_t i = 0; i < numPlaces; ++i) {
+            _surface.EvaluateStencil(places.data() + 2 * i,
+                                     data + i * _surface.GetNumControlPoints());
+        }
+        return weights;
+    }
+    py::tuple Bound(py::object const &points) const {
+        int length = 0;
+        std::vector<double> const controlPoints = gather(points, &length);
+        Points low(length);
+        Points high(length);
+        _surface.BoundControlPoints(controlPoints.data(), PointDescriptor(length),
+                                    low.mutable_data(), high.mutable_data());
+        return py::make_tuple(low, high);
+    }
+
+private:
+    /// The control points among those of the mesh, side by side.
+    std::vector<double> gather(py::object const &points, int *length) const {
+        std::vector<double> result;
+        auto const take = [&](auto real) {
+            using REAL = decltype(real);
+            Elements<REAL const> const source = TakeSource<REAL>(points, "points", _numMeshPoints);
+            *length = source.desc.length;
+            result.resize(std::size_t(_surface.GetNumControlPoints()) * std::size_t(*length));
+            _surface.GatherControlPoints(source.data, PointDescriptor(*length, source.desc.stride),
+                                         result.data(), PointDescriptor(*length));
+        };
+        if (IsDouble(points)) {
+            take(double());
+        } else {
+            take(float());
+        }
+        return result;
+    }
+
+    /// Pairs of u and v.
+    static std::vector<double> takePlaces(py::object const &uv) {
+        auto const array =
+            py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(uv);
+        if (!array || array.ndim() != 2 || array.shape(1) != 2) {
+            PyErr_Clear();
+            throw py::value_error("uv: not an array of the shape (places, 2)");
+        }
+        std::vector<double> places(array.data(), array.data() + array.size());
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            if (!std::isfinite(places[i])) {
+                throw py::value_error("uv: row " + std::to_string(i / 2) + " is not finite");
+            }
+        }
+        return places;
+    }
+
+    /// Points, or points and derivatives.
+    std::vector<py::object> evaluate(py::object const &uv, py::object const &points,
+                                     int numResults) const {
+        int length = 0;
+        std::vector<double> const controlPoints = gather(points, &length);
+        bool const isPattern = py::isinstance<FaceTessellation>(uv);
+        std::vector<double> const places = isPattern ? std::vector<double>() : takePlaces(uv);
+        Tessellation const *const pattern =
+            isPattern ? &uv.cast<FaceTessellation const &>().Get() : nullptr;
+        if (pattern && pattern->GetFaceSize() != _surface.GetFaceSize()) {
+            throw py::value_error(
+                "uv: a tessellation of " + std::to_string(pattern->GetFaceSize()) +
+                " edges, but the face has " + std::to_string(_surface.GetFaceSize()));
+        }
+        auto const numPlaces =
+            pattern ? py::ssize_t(pattern->GetNumCoords()) : py::ssize_t(places.size() / 2);
+        std::vector<Points> results;
+        std::vector<double *> data;
+        for (int i = 0; i < numResults; ++i) {
+            results.emplace_back(std::vector<py::ssize_t>{numPlaces, py::ssize_t(length)});
+            data.push_back(results.back().mutable_data());
+        }
+        {
+            py::gil_scoped_release const release;
+            PointDescriptor const desc(length);
+            if (pattern && numResults == 1) {
+                _surface.Evaluate(*pattern, controlPoints.data(), desc, data[0], desc);
+            } else if (pattern) {
+                _surface.Evaluate(*pattern, controlPoints.data(), desc, data[0], data[1], data[2],
+                                  desc);
+            }
+            for (std::size_t i = 0; i < places.size() / 2; ++i) {
+                double const *const place = places.data() + 2 * i;
+                std::size_t const first = i * std::size_t(length);
+                if (numResults == 1) {
+                    _surface.Evaluate(place, controlPoints.data(), desc, data[0] + first);
+                } else {
+                    _surface.Evaluate(place, controlPoints.data(), desc, data[0] + first,
+                                      data[1] + first, data[2] + first);
+                }
+            }
+        }
+        return {results.begin(), results.end()};
+    }
+
+    BfrExt::Surface<double> _surface;
+    int _numMeshPoints;
+};
+
+/// BfrExt::SurfaceFactory, which keeps the refiner.
+class FaceSurfaceFactory {
+public:
+    explicit FaceSurfaceFactory(std::shared_ptr<Refiner> refiner) : _refiner(std::move(refiner)) {
+        FarExt::Status status;
+        _refiner->Read([&](FarExt::TopologyRefiner const &base) {
+            _factory = BfrExt::SurfaceFactory::Create(base, &status);
+        });
+        RaiseUnlessOk(status);
+    }
+
+    bool HasLimitSurface(int face) const {
+        checkFace(face);
+        return _refiner->Read(
+            [&](FarExt::TopologyRefiner const &) { return _factory->FaceHasLimitSurface(face); });
+    }
+    FaceSurface MakeVertexSurface(int face) const {
+        return make(face, countVertices(), [&](auto *surface, FarExt::Status *status) {
+            _factory->InitVertexSurface(face, surface, status);
+        });
+    }
+    FaceSurface MakeVaryingSurface(int face) const {
+        return make(face, countVertices(), [&](auto *surface, FarExt::Status *status) {
+            _factory->InitVaryingSurface(face, surface, status);
+        });
+    }
+    FaceSurface MakeFaceVaryingSurface(int face, int channel) const {
+        CheckIndex(channel, _factory->GetNumFVarChannels(), "channel");
+        int const numValues = _refiner->Read([&](FarExt::TopologyRefiner const &refiner) {
+            return refiner.GetLevel(0).GetNumFVarValues(channel);
+        });
+        return make(face, numValues, [&](auto *surface, FarExt::Status *status) {
+            _factory->InitFaceVaryingSurface(face, surface, channel, status);
+        });
+    }
+
+private:
+    void checkFace(int face) const { CheckIndex(face, _factory->GetNumFaces(), "face"); }
+    int countVertices() const {
+        return _refiner->Read([](FarExt::TopologyRefiner const &refiner) {
+            return refiner.GetLevel(0).GetNumVertices();
+        });
+    }
+    template <typename INIT>
+    FaceSurface make(int face, int numMeshPoints, INIT const &init) const {
+        checkFace(face);
+        BfrExt::Surface<double> surface;
+        FarExt::Status status;
+        _refiner->Read([&](FarExt::TopologyRefiner const &) { init(&surface, &status); });
+        RaiseUnlessOk(status);
+        return {std::move(surface), numMeshPoints};
+    }
+
+    std::shared_ptr<Refiner> _refiner;
+    std::unique_ptr<BfrExt::SurfaceFactory> _factory;
+};
+
+} // namespace
+
+void BindSurfaces(py::module_ &module) {
+    py::class_<FaceTessellation>(
+        module, "Tessellation",
+        "Tessellation(face_size, levels, facet_size=3)\n\n"
+        "A base face cut into facets, whose neighbours fit if both take the same level for the\n"
+        "edge that they share.\n\n"
+        "levels is one of 0 ... 12 for all; or one for each edge, edge i from vertex i to the "
+        "next;\nor those of the edges and that of the inside.  facet_size is 3 for triangles, 4 "
+        "for cells as\nthey are, with -1 behind triangles, where all are quads, or 0 for polygons.")
+        .def(py::init<int, py::object, int>(), py::arg("face_size"), py::arg("levels"),
+             py::arg("facet_size") = 3)
+        .def_property_readonly(
+            "face_size", [](FaceTessellation const &self) { return self.Get().GetFaceSize(); },
+            "Vertices of the face.")
+        .def_property_readonly("levels", &FaceTessellation::GetLevels,
+                               "Those of the edges, then that of the inside.")
+        .def_property_readonly("coords", &FaceTessellation::GetCoords,
+                               "float64 of the shape (places, 2): u and v, those of the boundary "
+                               "first, from vertex 0 on.")
+        .def_property_readonly(
+            "num_boundary_coords",
+            [](FaceTessellation const &self) { return self.Get().GetNumBoundaryCoords(); },
+            "Places on the boundary.")
+        .def_property_readonly("facet_sizes", &FaceTessellation::GetFacetSizes,
+                               "int32: corners of each facet.")
+        .def_property_readonly("facets", &FaceTessellation::GetFacets,
+                               "int32: the places that are corners, of the shape (facets, "
+                               "facet_size), or those of all\npolygons one behind the other.");
+
+    py::class_<FaceSurface>(module, "Surface",
+                            "The limit surface of a base face, made by a SurfaceFactory: a "
+                            "function of u and v.\n\nPoints are those of the mesh, float32 or "
+                            "float64 of the shape (points,) or (points, length);\nresults are "
+                            "float64.  uv is of the shape (places, 2), or a Tessellation.")
+        .def_property_readonly("face_size", &FaceSurface::GetFaceSize, "Vertices of the face.")
+        .def_property_readonly("control_points", &FaceSurface::GetControlPoints,
+                               "int32: the points of the mesh that it depends on, those of the "
+                               "face first.")
+        .def("evaluate", &FaceSurface::Evaluate,
+             "evaluate(uv, points)\n\nThe points at places, of the shape (places, length).",
+             py::arg("uv"), py::arg("points"))
+        .def("evaluate_with_derivatives", &FaceSurface::EvaluateWithDerivatives,
+             "evaluate_with_derivatives(uv, points)\n\nReturns (points, du, dv), each of the "
+             "shape (places, length).",
+             py::arg("uv"), py::arg("points"))
+        .def("evaluate_stencil", &FaceSurface::EvaluateStencil,
+             "evaluate_stencil(uv)\n\nWeights of the control points for places that are no "
+             "Tessellation, of the shape\n(places, control points).",
+             py::arg("uv"))
+        .def("bound", &FaceSurface::Bound,
+             "bound(points)\n\nReturns (low, high), the box of the control points, in which the "
+             "surface lies.",
+             py::arg("points"));
+
+    py::class_<FaceSurfaceFactory>(
+        module, "SurfaceFactory",
+        "SurfaceFactory(refiner)\n\n"
+        "Makes the limit surfaces of the faces of level 0, for which the refiner need not be\n"
+        "refined.  Raises StatusError where level 1 is not made by a hexagonal step.")
+        .def(py::init<std::shared_ptr<Refiner>>(), py::arg("refiner").none(false))
+        .def("has_limit_surface", &FaceSurfaceFactory::HasLimitSurface,
+             "has_limit_surface(face)\n\nFalse for holes and, with boundary 'none', for faces at "
+             "a boundary.",
+             py::arg("face"))
+        .def("vertex_surface", &FaceSurfaceFactory::MakeVertexSurface,
+             "vertex_surface(face)\n\nThe Surface of vertex data.  Raises StatusError where the "
+             "face has none.",
+             py::arg("face"))
+        .def("varying_surface", &FaceSurfaceFactory::MakeVaryingSurface,
+             "varying_surface(face)\n\nThe same of varying data.", py::arg("face"))
+        .def("face_varying_surface", &FaceSurfaceFactory::MakeFaceVaryingSurface,
+             "face_varying_surface(face, channel=0)\n\nThe same of face-varying data, whose "
+             "points are values.",
+             py::arg("face"), py::arg("channel") = 0);
+}
+
+} // namespace OpenSubdivHex::Python

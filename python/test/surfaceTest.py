@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Surfaces of base faces and tessellations, against the limits of refined levels."""
+
+import numpy as np
+import opensubdivhex as osh
+import pytest
+from meshes import PYRAMID_FACES, PYRAMID_POSITIONS, make_torus
+
+POSITIONS, FACES = make_torus(8, 6)
+UV = np.stack(np.meshgrid(np.linspace(0, 1, 6), np.linspace(0, 1, 6)), axis=-1).reshape(-1, 2)
+
+
+def make_refiner(**options):
+    return osh.TopologyRefiner(FACES, face_mask="smooth", **options)
+
+
+@pytest.fixture
+def factory():
+    return osh.SurfaceFactory(make_refiner())
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_vertices_of_a_level_are_points_of_surfaces(factory, dtype):
+    refiner = make_refiner()
+    refiner.refine_uniform(3, full_topology_in_last_level=True)
+    limit = osh.RefinementEvaluator(refiner).evaluate_limit(POSITIONS, level=3)
+    level = refiner.get_level(3)
+    vertices = level.face_vertices
+    found = 0
+    for half in (0, 1):
+        coords = level.get_face_base_coords(half)
+        faces = np.repeat(level.get_face_base_faces(half), np.diff(level.face_offsets))
+        for face in (0, 17, 40):
+            here = (faces == face) & np.isfinite(coords).all(axis=1)
+            points = factory.vertex_surface(face).evaluate(
+                coords[here], POSITIONS.astype(dtype))
+            assert points.dtype == np.float64
+            np.testing.assert_allclose(points, limit[vertices[here]], atol=3e-6)
+            found += here.sum()
+    assert found > 300
+
+
+def test_derivatives_are_those_of_the_points(factory):
+    surface = factory.vertex_surface(5)
+    inside = UV * 0.8 + 0.1
+    points, du, dv = surface.evaluate_with_derivatives(inside, POSITIONS)
+    np.testing.assert_array_equal(points, surface.evaluate(inside, POSITIONS))
+    normals = np.cross(du, dv)
+    for axis, derivative in ((0, du), (1, dv)):
+        step = np.zeros(2)
+        step[axis] = 1e-4
+        difference = (surface.evaluate(inside + step, POSITIONS) -
+                      surface.evaluate(inside - step, POSITIONS)) / 2e-4
+        # Along the lines where cells meet u and v have a bend, but the plane goes on.
+        assert np.abs(np.einsum("ij,ij->i", difference, normals)).max() < 2e-2 * np.abs(
+            np.linalg.norm(difference, axis=1) * np.linalg.norm(normals, axis=1)).max()
+        assert np.median(np.abs(difference - derivative)) < 1e-2
+
+
+def test_stencils_are_weights_of_the_control_points(factory):
+    surface = factory.vertex_surface(2)
+    weights = surface.evaluate_stencil(UV)
+    assert weights.shape == (len(UV), len(surface.control_points))
+    np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-12)
+    np.testing.assert_allclose(weights @ POSITIONS[surface.control_points].astype(np.float64),
+                               surface.evaluate(UV, POSITIONS), atol=1e-12)
+    low, high = surface.bound(POSITIONS)
+    points = surface.evaluate(UV, POSITIONS)
+    assert (low <= points.min(axis=0)).all() and (points.max(axis=0) <= high).all()
+
+
+def test_neighbours_share_points_to_the_bit(factory):
+    level = 3
+    edges = {}
+    for face, vertices in enumerate(FACES):
+        tessellation = osh.Tessellation(4, [level] * 4 + [face % 4])
+        assert tessellation.levels == [level] * 4 + [face % 4]
+        points = factory.vertex_surface(face).evaluate(tessellation, POSITIONS)
+        coords = tessellation.coords
+        assert points.shape == (len(coords), 3)
+        facets = tessellation.facets
+        assert facets.shape[1] == 3 and facets.max() == len(coords) - 1
+        a, b, c = (coords[facets[:, i]] for i in range(3))
+        areas = np.cross(b - a, c - a) / 2
+        assert (areas > 0).all()
+        assert areas.sum() == pytest.approx(1)
+        size = tessellation.num_boundary_coords // 4
+        for i in range(4):
+            run = [points[(i * size + j) % (4 * size)].tobytes() for j in range(size + 1)]
+            edges.setdefault(frozenset((int(vertices[i]), int(vertices[(i + 1) % 4]))),
+                             []).append(run)
+    assert len(edges) == 2 * len(FACES)
+    for one, other in edges.values():
+        assert one == other[::-1]
+
+
+def test_faces_of_any_size_and_kinds_of_facets():
+    factory = osh.SurfaceFactory(osh.TopologyRefiner(PYRAMID_FACES))
+    surface = factory.vertex_surface(1)
+    assert surface.face_size == 3
+    polygons = osh.Tessellation(3, 2, facet_size=0)
+    assert polygons.facet_sizes.sum() == len(polygons.facets)
+    assert surface.evaluate(polygons, PYRAMID_POSITIONS).shape == (len(polygons.coords), 3)
+    assert osh.Tessellation(4, 1, facet_size=4).facets.shape[1] == 4
+    with pytest.raises(ValueError, match="a tessellation of 4 edges, but the face has 3"):
+        surface.evaluate(osh.Tessellation(4, 1), PYRAMID_POSITIONS)
+
+
+def test_values_of_channels():
+    values = np.arange(4 * len(FACES))
+    factory = osh.SurfaceFactory(
+        make_refiner(fvar_channels=[values], fvar_linear_interpolation="all"))
+    data = np.random.default_rng(1).random((len(values), 2))
+    surface = factory.face_varying_surface(3)
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    np.testing.assert_allclose(surface.evaluate(corners, data), data[12:16], atol=1e-12)
+    np.testing.assert_allclose(
+        factory.varying_surface(3).evaluate(corners, POSITIONS), POSITIONS[FACES[3]], atol=1e-6)
+    with pytest.raises(IndexError, match="channel"):
+        factory.face_varying_surface(0, 1)
+
+
+def test_errors_name_the_argument(factory):
+    with pytest.raises(IndexError, match="face"):
+        factory.vertex_surface(len(FACES))
+    surface = factory.vertex_surface(0)
+    with pytest.raises(ValueError, match="points"):
+        surface.evaluate(UV, POSITIONS[1:])
+    with pytest.raises(ValueError, match="uv: not an array"):
+        surface.evaluate([0.5, 0.5], POSITIONS)
+    with pytest.raises(ValueError, match="uv: row 1"):
+        surface.evaluate([[0, 0], [np.nan, 0]], POSITIONS)
+    for arguments, name in (((2, 1), "face_size"), ((4, 13), "levels"), ((4, [1, 2]), "levels"),
+                            ((4, 1, 5), "facet_size")):
+        with pytest.raises(ValueError, match=name):
+            osh.Tessellation(*arguments)
+    holes = osh.SurfaceFactory(make_refiner(holes=[4]))
+    assert holes.has_limit_surface(3) and not holes.has_limit_surface(4)
+    with pytest.raises(osh.StatusError):
+        holes.vertex_surface(4)
+    with pytest.raises(osh.StatusError):
+        osh.SurfaceFactory(make_refiner(scheme_type="doo_sabin"))
