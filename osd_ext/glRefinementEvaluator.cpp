@@ -191,7 +191,7 @@ private:
     };
 
     Elements toVertices(Elements const &src, int length);
-    void refine(std::size_t refinement, Elements const &src, Elements const &dst, int length);
+    void refine(std::size_t number, Elements const &src, Elements const &dst, int length);
     Program const &use(Kernel kernel, int length, int faceSize, Elements const &src,
                        Elements const &dst) const;
     static void dispatch(Program const &program, std::uint32_t count);

@@ -16,7 +16,6 @@
 namespace OpenSubdivHex::OsdExt {
 
 using Far::Index;
-using FarExt::ComponentType;
 using FarExt::Status;
 using FarExt::StatusCode;
 using FarExt::TopologyRefiner;
@@ -347,7 +346,7 @@ bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescrip
 bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
                                         float *dst, Osd::BufferDescriptor const &dstDesc, int level,
                                         Status *status) {
-    return evaluateLimit(src, srcDesc, {{dst, dstDesc}}, level, status);
+    return evaluateLimit(src, srcDesc, {Output(dst, dstDesc)}, level, status);
 }
 
 bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
@@ -355,7 +354,9 @@ bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor 
                                         Osd::BufferDescriptor const &duDesc, float *dv,
                                         Osd::BufferDescriptor const &dvDesc, int level,
                                         Status *status) {
-    return evaluateLimit(src, srcDesc, {{dst, dstDesc}, {du, duDesc}, {dv, dvDesc}}, level, status);
+    return evaluateLimit(src, srcDesc,
+                         {Output(dst, dstDesc), Output(du, duDesc), Output(dv, dvDesc)}, level,
+                         status);
 }
 
 bool RefinementEvaluator::evaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
@@ -376,10 +377,10 @@ bool RefinementEvaluator::evaluateLimit(float const *src, Osd::BufferDescriptor 
         return false;
     }
     if (numWritten > 0) {
-        std::vector<internal::Elements<float>> elements;
-        for (Output const &output : outputs) {
-            elements.push_back({output.dst + output.desc.offset, output.desc.stride});
-        }
+        std::vector<internal::Elements<float>> elements(outputs.size());
+        std::transform(outputs.begin(), outputs.end(), elements.begin(), [](Output const &output) {
+            return internal::Elements<float>{output.dst + output.desc.offset, output.desc.stride};
+        });
         _impl->EvaluateLimit({src + srcDesc.offset, srcDesc.stride}, elements, srcDesc.length,
                              level);
     }

@@ -189,6 +189,9 @@ private:
     explicit RefinementEvaluator(std::unique_ptr<Impl> impl);
 
     struct Output {
+        Output(float *buffer, Osd::BufferDescriptor const &bufferDesc)
+            : dst(buffer), desc(bufferDesc) {}
+
         float *dst;
         Osd::BufferDescriptor const &desc;
     };

@@ -89,18 +89,9 @@ void ExpectedSizes::Refine(StepType step) {
         break;
     }
     case StepType::TriHex:
-        // A V-face per vertex, of two F-vertices for each of its faces.
-        sizes.vertices = p.corners;
-        sizes.edges = p.corners + p.edges;
-        sizes.faces = p.faces + closedVertices;
-        sizes.corners = 3 * p.corners;
-        interiorEdges = sizes.edges;
-        closedVertices = sizes.vertices;
-        closedCorners = sizes.corners;
-        digons = 0;
-        break;
     case StepType::Truncate:
-        // A vertex for each end of an edge, a face for each vertex.
+        // A polygon per vertex, and a vertex for each side of an edge (TriHex) or for each end
+        // (Truncate): as many.
         sizes.vertices = p.corners;
         sizes.edges = p.corners + p.edges;
         sizes.faces = p.faces + closedVertices;

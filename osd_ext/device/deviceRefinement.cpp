@@ -230,7 +230,8 @@ void Maker::planVertices() {
 void Maker::listVertex(Index vert) {
     RefinementMask::VertexMask const mask = _mask.GetVertexMask(vert);
     int const numCorners = mask.faceWeight != 0 ? _level.GetNumVertexFaces(vert) : 0;
-    std::uint32_t const firstIndex = takeIndices(std::size_t(mask.numSources + numCorners));
+    std::uint32_t const firstIndex =
+        takeIndices(std::size_t(mask.numSources) + std::size_t(numCorners));
     std::uint32_t const firstWeight = addWeights(mask.weights, mask.numSources);
     addWeights(&mask.faceWeight, 1);
     _result.vertices.push_back({std::uint32_t(_refinement.GetVertexChildVertex(vert)),
@@ -263,8 +264,8 @@ void Maker::fill(std::int32_t *indices) const {
         if (!run.areConsecutive) {
             Index const *const verts = _level.faceVerts.data() + run.firstCorner;
             ParallelFor(Index(run.count), [&](Index i) {
-                std::copy_n(verts + i * run.size, run.size,
-                            indices + run.first + std::size_t(i) * std::size_t(run.size));
+                std::size_t const place = std::size_t(i) * std::size_t(run.size);
+                std::copy_n(verts + place, run.size, indices + run.first + place);
             });
         }
     }
