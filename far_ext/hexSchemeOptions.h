@@ -42,7 +42,12 @@ enum class FirstStep {
 
 /// \brief How a level was made of the one before it: by a step of the scheme of that name, or by
 /// FirstStep::Truncate.
-enum class StepType { Hexagonal, DooSabin, TriHex, Truncate };
+enum class StepType {
+    Hexagonal, ///< of SchemeType::Hexagonal
+    DooSabin,  ///< of SchemeType::DooSabin
+    TriHex,    ///< of SchemeType::TriHex
+    Truncate   ///< FirstStep::Truncate
+};
 
 /// \brief What distinguishes one refinement from another.
 struct HexSchemeOptions {

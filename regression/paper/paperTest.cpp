@@ -77,7 +77,8 @@ TEST_F(Paper, PageIsComplete) {
     EXPECT_EQ(count(page, "<section"), count(page, "</section>"));
     EXPECT_EQ(count(page, "<figcaption>"), 13);
 
-    // Pictures: 2 x 3 levels, 2 x 4 meshes, 3 tips, 2 x 3 tori, 3 x 3 masks, 3 boxes, each a PNG of its size.
+    // Pictures: 2 x 3 levels, 2 x 4 meshes, 3 tips, 3 x 3 even shapes, 3 x 3 masks, 3 boxes, each a
+    // PNG of its size.
     int numPictures = 0;
     for (std::size_t at = page.find("<img"); at != std::string::npos; at = page.find("<img")) {
         std::string const element = page.substr(at, page.find('>', at) + 1 - at);
@@ -96,7 +97,7 @@ TEST_F(Paper, PageIsComplete) {
         page.erase(at, element.size());
         ++numPictures;
     }
-    EXPECT_EQ(numPictures, 6 + 8 + 3 + 6 + 9 + 3);
+    EXPECT_EQ(numPictures, 6 + 8 + 3 + 9 + 9 + 3);
 
     // Drawings: two lattices, three maps and 2 + 2 + 4 + 6 + 2 plots.
     EXPECT_EQ(count(page, "<svg"), 2 + 3 + 16);

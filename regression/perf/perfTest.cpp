@@ -129,7 +129,10 @@ TEST(Perf, QuickRunHasEveryFigure) {
     bool isCopyMeasured = false;
     for (Json const &cost : json["costs"]) {
         EXPECT_GT(cost["nanoseconds"], 0) << cost;
-        EXPECT_GT(cost["shareOfCopyBandwidth"], 0) << cost;
+        // What makes surfaces moves nothing that is counted.
+        if (cost["item"] != "surface") {
+            EXPECT_GT(cost["shareOfCopyBandwidth"], 0) << cost;
+        }
         isCopyMeasured = isCopyMeasured || cost["work"] == "copy";
         std::string const size = cost["size"];
         if (size.rfind("level", 0) == 0) {

@@ -209,8 +209,10 @@ void AddSurfaceBenchmarks(Suite &suite) {
     for (BenchMesh const &mesh : suite.GetMeshes()) {
         suite.AddContest({"surfaces, level 4", "point", mesh, Memory::Resident},
                          [=] { return makePointContest(mesh); });
-        suite.AddContest({"making surfaces", "surface", mesh, Memory::Warm},
-                         [=] { return makeInitContest(mesh); });
+        for (Memory memory : {Memory::Default, Memory::Warm}) {
+            suite.AddContest({"making surfaces", "surface", mesh, memory},
+                             [=] { return makeInitContest(mesh); });
+        }
     }
 }
 

@@ -101,7 +101,9 @@ class Screen:
     def __enter__(self):
         read, write = os.pipe()
         self.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{WIDTH}x{HEIGHT}x24"],
+            # Without -noreset the server begins anew whenever its last client leaves.
+            ["Xvfb", "-noreset", "-displayfd", str(write), "-screen", "0",
+             f"{WIDTH}x{HEIGHT}x24"],
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as numbers:
