@@ -23,6 +23,8 @@ constexpr int kRunValence = 3;
 
 // Runs of fewer faces or vertices are listed: each run is work of its own for the device.
 constexpr Index kMinRun = 256;
+// Faces of more sides are listed: of those in runs a kernel holds all vertices at once.
+constexpr int kMaxRunFaceSize = 12;
 
 // Components [begin, end) that are alike.
 struct Range {
@@ -47,7 +49,6 @@ public:
         : _mask(mask), _refinement(refinement), _before(before), _level(*refinement.parent),
           _numIndices(firstIndex), _weights(weights) {
         _result.numVVertices = refinement.child->numVVertices;
-        _result.numVertices = refinement.child->numVertices;
         FarExt::VertexVertexMask const plain = mask.GetPlainVertexMask(kRunValence);
         _result.vertexWeight = float(plain.vertexWeight);
         _result.averagesFaces = plain.faceWeight != 0;
@@ -130,7 +131,7 @@ void Maker::planFaces() {
         },
         [&](Index face, Index) { listFace(face); });
     for (Range const &range : ranges) {
-        if (range.end - range.begin >= kMinRun) {
+        if (range.end - range.begin >= kMinRun && range.size <= kMaxRunFaceSize) {
             addRun(range);
         } else {
             for (Index face = range.begin; face < range.end; ++face) {

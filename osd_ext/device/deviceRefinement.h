@@ -65,7 +65,6 @@ struct DeviceVertex {
 /// the irregular corners of faces in runs.
 struct DeviceRefinement {
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
-    Far::Index numVertices = 0;  ///< of the child
 
     std::vector<DeviceFaceRun> faceRuns;
     std::vector<DeviceCorner> corners; ///< some of them in runs: these come behind those

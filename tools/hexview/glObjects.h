@@ -28,17 +28,6 @@ public:
         static_assert(sizeof(T) == kBytes);
         allocate(values.size(), values.data());
     }
-    /// Its numbers, as those of type T.
-    template <typename T>
-    std::vector<T> Read() const {
-        static_assert(sizeof(T) == kBytes);
-        std::vector<T> values(_size);
-        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-        glBindBuffer(GL_COPY_READ_BUFFER, _name);
-        glGetBufferSubData(GL_COPY_READ_BUFFER, 0, GLsizeiptr(_size * kBytes), values.data());
-        return values;
-    }
-
     /// The name of the buffer, as Osd's vertex buffers give it.
     GLuint BindVBO() const { return _name; }
     std::size_t GetSize() const { return _size; }

@@ -9,7 +9,6 @@
 #include "far_ext/version.h"
 #include "tools/hexrefine/ruleNames.h"
 #include "tools/mesh/fileError.h"
-#include "tools/mesh/meshCheck.h"
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/program.h"
 #include "tools/render/pngFile.h"

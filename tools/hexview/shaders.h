@@ -17,7 +17,8 @@ enum ArrayBinding : unsigned {
 };
 
 /// \brief The normal of each side: the sum of the vector areas that it spans with its neighbours in
-/// the polygons around.
+/// the polygons around.  Once all normals are there, the mean curvature: the mean of the normal
+/// curvatures towards the neighbours.
 inline constexpr char const *kNormalShader = R"(#version 430
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Points { float points[]; };
@@ -26,36 +27,7 @@ layout(std430, binding = 2) buffer Normals { vec4 normals[]; };
 layout(std430, binding = 3) readonly buffer FirstFans { uint firstFans[]; };
 layout(std430, binding = 4) readonly buffer Fans { uint fans[]; };
 uniform uint count;
-
-vec3 getPoint(uint side) {
-    uint place = 3u * sideVertices[side];
-    return vec3(points[place], points[place + 1u], points[place + 2u]);
-}
-
-void main() {
-    uint side = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
-    if (side >= count) {
-        return;
-    }
-    vec3 point = getPoint(side);
-    vec3 sum = vec3(0.0);
-    for (uint i = firstFans[side]; i < firstFans[side + 1u]; ++i) {
-        sum += cross(getPoint(fans[2u * i + 1u]) - point, getPoint(fans[2u * i]) - point);
-    }
-    float size = length(sum);
-    normals[side] = vec4(size > 0.0 ? sum / size : vec3(0.0), 0.0);
-}
-)";
-
-/// \brief The mean curvature at each side: the mean of the normal curvatures towards its neighbours.
-inline constexpr char const *kCurvatureShader = R"(#version 430
-layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Points { float points[]; };
-layout(std430, binding = 1) readonly buffer SideVertices { uint sideVertices[]; };
-layout(std430, binding = 2) buffer Normals { vec4 normals[]; };
-layout(std430, binding = 3) readonly buffer FirstFans { uint firstFans[]; };
-layout(std430, binding = 4) readonly buffer Fans { uint fans[]; };
-uniform uint count;
+uniform bool areNormalsThere;
 
 vec3 getPoint(uint side) {
     uint place = 3u * sideVertices[side];
@@ -69,18 +41,26 @@ void main() {
     }
     vec3 point = getPoint(side);
     vec3 normal = normals[side].xyz;
-    float sum = 0.0;
+    vec3 area = vec3(0.0);
+    float curvature = 0.0;
     uint first = firstFans[side];
     uint last = firstFans[side + 1u];
     for (uint i = first; i < last; ++i) {
-        uint neighbor = fans[2u * i + 1u];
-        vec3 edge = getPoint(neighbor) - point;
-        float square = dot(edge, edge);
-        if (square > 0.0) {
-            sum += dot(normals[neighbor].xyz - normal, edge) / square;
+        uint next = fans[2u * i + 1u];
+        vec3 edge = getPoint(next) - point;
+        if (areNormalsThere) {
+            float square = dot(edge, edge);
+            curvature += square > 0.0 ? dot(normals[next].xyz - normal, edge) / square : 0.0;
+        } else {
+            area += cross(edge, getPoint(fans[2u * i]) - point);
         }
     }
-    normals[side].w = last > first ? sum / float(last - first) : 0.0;
+    if (areNormalsThere) {
+        normals[side].w = last > first ? curvature / float(last - first) : 0.0;
+    } else {
+        float size = length(area);
+        normals[side] = vec4(size > 0.0 ? area / size : vec3(0.0), 0.0);
+    }
 }
 )";
 

@@ -89,8 +89,7 @@ std::vector<float> evaluateCoords(FarExt::TopologyRefiner const &refiner, Mesh c
 
 ViewedSurface::ViewedSurface(Mesh mesh)
     : _mesh(std::move(mesh)), _controlPoints(_mesh.positions),
-      _normalProgram({{GL_COMPUTE_SHADER, kNormalShader}}),
-      _curvatureProgram({{GL_COMPUTE_SHADER, kCurvatureShader}}) {
+      _normalProgram({{GL_COMPUTE_SHADER, kNormalShader}}) {
     int const *vert = _mesh.faceVertices.data();
     for (int const size : _mesh.faceSizes) {
         for (int i = 0; i < size; ++i) {
@@ -268,10 +267,11 @@ void ViewedSurface::makeNormals() const {
     Bind();
     _firstFans.Bind(kFirstFanArray);
     _fans.Bind(kFanArray);
-    for (GlProgram const *program : {&_normalProgram, &_curvatureProgram}) {
+    _normalProgram.Use();
+    glUniform1ui(_normalProgram["count"], numSides);
+    for (bool const areNormalsThere : {false, true}) {
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-        program->Use();
-        glUniform1ui((*program)["count"], numSides);
+        glUniform1i(_normalProgram["areNormalsThere"], areNormalsThere);
         if (numRows > 0) {
             glDispatchCompute((numGroups + numRows - 1) / numRows, numRows, 1);
         }

@@ -61,8 +61,6 @@ public:
     int GetNumEdges() const { return int(_edgeSides.GetSize() / 2); }
     /// Milliseconds of the last Evaluate(), with the normals.
     double GetMilliseconds() const { return _milliseconds; }
-    /// x y z of the vertices of the level.
-    std::vector<float> ReadPoints() const { return _points.Read<float>(); }
 
     /// Binds the arrays that the shaders of drawings read.
     void Bind() const;
@@ -94,7 +92,6 @@ private:
     GlArray _baseFaces;    // by triangle
     GlArray _edgeSides;    // two for each edge that is drawn
     GlProgram _normalProgram;
-    GlProgram _curvatureProgram;
     double _milliseconds = 0;
 };
 
