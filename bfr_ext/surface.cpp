@@ -12,6 +12,7 @@ namespace OpenSubdivHex::BfrExt {
 namespace {
 
 using internal::CellStencil;
+using internal::CellType;
 
 // A weighted sum of points, in double precision.
 template <typename REAL, typename WEIGHT>
@@ -139,11 +140,10 @@ bool Surface<REAL>::evaluateOnBorder(internal::BasePoint const &point, REAL cons
     }
     internal::CellType::Border const &border = _type->GetBorder(_turns->turns);
     internal::BorderPlace const place = internal::FindBorderPlace(point, border);
-    internal::CellType::BorderItem const &item = border[place.item];
-    internal::BorderStencil stencil;
-    stencil.Find(*item.type, place.point);
-    internal::SumBorderPoints(stencil.GetWeights(), item.points, controlPoints, pointDesc.stride,
-                              pointDesc.size, p);
+    internal::BorderValues const values(border[place.item], controlPoints, pointDesc.stride,
+                                        pointDesc.size);
+    values.Sum(internal::BorderPattern(values.GetType(), {place.point}),
+               [&](std::size_t) { return p; });
     return true;
 }
 
@@ -177,41 +177,39 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
                                    PointDescriptor const &pointDesc, REAL p[],
                                    PointDescriptor const &resultDesc) const {
     using internal::BorderPattern;
-    internal::CellType::Border const &border = _type->GetBorder(_turns->turns);
-    auto const sum = [&](std::vector<double> const &weights, std::vector<int> const &points,
-                         int place) {
-        internal::SumBorderPoints(weights, points, controlPoints, pointDesc.stride, pointDesc.size,
-                                  p + std::ptrdiff_t(place) * resultDesc.stride);
-    };
+    using internal::BorderValues;
+    CellType::Border const &border = _type->GetBorder(_turns->turns);
+    auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
     int const numEdges = GetFaceSize();
     for (int edge = 0; edge < numEdges; ++edge) {
         int const first = tessellation._firstEdgeCoords[std::size_t(edge)];
-        internal::CellType::BorderItem const &vertex =
-            border[std::size_t(numEdges) + std::size_t(edge)];
-        sum(vertex.type
-                ->template GetPattern<BorderPattern>(
-                    {}, [&] { return BorderPattern(*vertex.type, {0}); })
-                .rows[0],
-            vertex.points, first);
+        BorderValues const vertex(border[std::size_t(numEdges) + std::size_t(edge)], controlPoints,
+                                  pointDesc.stride, pointDesc.size);
+        vertex.Sum(vertex.GetType().template GetPattern<BorderPattern>(
+                       {}, [&] { return BorderPattern(vertex.GetType(), {0}); }),
+                   [&](std::size_t) { return getResult(first); });
 
-        internal::CellType::BorderItem const &item = border[std::size_t(edge)];
-        int const level = tessellation._levels[std::size_t(edge)];
         int const numPlaces = tessellation.GetNumEdgeCoords(edge);
+        if (numPlaces == 0) {
+            continue;
+        }
+        CellType::BorderItem const &item = border[std::size_t(edge)];
         auto const getPlace = [&](int i) {
             return first + (item.isReversed ? numPlaces - i : i + 1);
         };
-        BorderPattern const &pattern = item.type->template GetPattern<BorderPattern>({level}, [&] {
-            std::vector<double> points;
-            for (int i = 0; i < numPlaces; ++i) {
-                Tessellation::SectorCoords const &place =
-                    tessellation._places[std::size_t(getPlace(i))];
-                points.push_back(item.isReversed ? place.start : place.end);
-            }
-            return BorderPattern(*item.type, points);
-        });
-        for (int i = 0; i < numPlaces; ++i) {
-            sum(pattern.rows[std::size_t(i)], item.points, getPlace(i));
-        }
+        BorderValues const values(item, controlPoints, pointDesc.stride, pointDesc.size);
+        int const level = tessellation._levels[std::size_t(edge)];
+        BorderPattern const &pattern =
+            values.GetType().template GetPattern<BorderPattern>({level}, [&] {
+                std::vector<double> points;
+                for (int i = 0; i < numPlaces; ++i) {
+                    Tessellation::SectorCoords const &place =
+                        tessellation._places[std::size_t(getPlace(i))];
+                    points.push_back(item.isReversed ? place.start : place.end);
+                }
+                return BorderPattern(values.GetType(), points);
+            });
+        values.Sum(pattern, [&](std::size_t i) { return getResult(getPlace(int(i))); });
     }
 }
 

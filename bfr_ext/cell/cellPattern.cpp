@@ -1,71 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellPattern.h"
 
-#include <cstring>
-
 namespace OpenSubdivHex::BfrExt::internal {
-
-namespace {
-
-constexpr std::size_t kLaneBytes = 16;
-
-// Numbers that are computed with at once, in a register where the machine has such.
-template <typename REAL>
-struct PlainLanes {
-    static constexpr std::size_t kSize = kLaneBytes / sizeof(REAL);
-
-    PlainLanes operator*(REAL factor) const {
-        PlainLanes result;
-        for (std::size_t i = 0; i < kSize; ++i) {
-            result.values[i] = values[i] * factor;
-        }
-        return result;
-    }
-    PlainLanes &operator+=(PlainLanes const &other) {
-        for (std::size_t i = 0; i < kSize; ++i) {
-            values[i] += other.values[i];
-        }
-        return *this;
-    }
-
-    REAL values[kSize];
-};
-
-template <typename REAL>
-struct LanesOf {
-    using Type = PlainLanes<REAL>;
-};
-#if defined(__GNUC__)
-template <>
-struct LanesOf<float> {
-    using Type = float __attribute__((vector_size(kLaneBytes)));
-};
-template <>
-struct LanesOf<double> {
-    using Type = double __attribute__((vector_size(kLaneBytes)));
-};
-#endif
-
-// Sums up a block of rows for LENGTH numbers of the points, which stand side by side.
-template <int LENGTH, std::size_t BLOCK, typename REAL>
-void sumBlock(REAL const *block, std::size_t numPoints, REAL const *points, std::ptrdiff_t stride,
-              REAL (&results)[LENGTH][BLOCK]) {
-    using Lanes = typename LanesOf<REAL>::Type;
-    constexpr std::size_t kNumLanes = BLOCK * sizeof(REAL) / kLaneBytes;
-    Lanes sums[LENGTH][kNumLanes] = {};
-    for (std::size_t i = 0; i < numPoints; ++i, block += BLOCK, points += stride) {
-        Lanes weights[kNumLanes];
-        std::memcpy(weights, block, sizeof(weights));
-        for (int k = 0; k < LENGTH; ++k) {
-            for (std::size_t lane = 0; lane < kNumLanes; ++lane) {
-                sums[k][lane] += weights[lane] * points[k];
-            }
-        }
-    }
-    std::memcpy(results, sums, sizeof(results));
-}
-
-} // namespace
 
 BorderPlace FindBorderPlace(BasePoint const &point, CellType::Border const &border) {
     std::size_t const numEdges = border.size() / 2;
@@ -79,13 +15,75 @@ BorderPlace FindBorderPlace(BasePoint const &point, CellType::Border const &bord
     return {sector, point.coords[border[sector].isReversed ? 0 : 1]};
 }
 
-BorderPattern::BorderPattern(CellType const &type, std::vector<double> const &points) {
+BorderPattern::BorderPattern(CellType const &type, std::vector<double> const &points)
+    : numPlaces(points.size()), weights(points.size() * std::size_t(type.GetNumPoints())) {
     BorderStencil stencil;
-    for (double const point : points) {
-        stencil.Find(type, point);
-        rows.push_back(stencil.GetWeights());
+    for (std::size_t place = 0; place < numPlaces; ++place) {
+        stencil.Find(type, points[place]);
+        double *weight = weights.data() + place;
+        for (double const value : stencil.GetWeights()) {
+            *weight = value;
+            weight += numPlaces;
+        }
     }
 }
+
+namespace {
+
+// Applies a step to LENGTH numbers of each point: writes them number by number.
+template <int LENGTH, typename REAL>
+void applyStep(FarExt::internal::PatchRefinement const &step, std::vector<int> const &points,
+               REAL const *values, std::ptrdiff_t stride, double *result) {
+    std::size_t const numRows = step.firsts.size() - 1;
+    for (std::size_t row = 0; row < numRows; ++row) {
+        double sums[LENGTH] = {};
+        for (auto k = std::size_t(step.firsts[row]); k < std::size_t(step.firsts[row + 1]); ++k) {
+            REAL const *const point = values + points[std::size_t(step.verts[k])] * stride;
+            for (int i = 0; i < LENGTH; ++i) {
+                sums[i] += step.weights[k] * double(point[i]);
+            }
+        }
+        for (int i = 0; i < LENGTH; ++i) {
+            result[std::size_t(i) * numRows + row] = sums[i];
+        }
+    }
+}
+
+} // namespace
+
+template <typename REAL>
+BorderValues::BorderValues(CellType::BorderItem const &item, REAL const *points,
+                           std::ptrdiff_t stride, int size)
+    : _type(item.type), _size(std::size_t(size)) {
+    if (item.type->IsVertex()) {
+        _values.resize(_size * item.points.size());
+        double *value = _values.data();
+        for (int k = 0; k < size; ++k) {
+            for (int const point : item.points) {
+                *value++ = double(points[point * stride + k]);
+            }
+        }
+        return;
+    }
+    CellType::Child const &child = item.type->GetChildren()[0];
+    _type = child.type;
+    auto const numPoints = std::size_t(_type->GetNumPoints());
+    _values.resize(_size * numPoints);
+    int k = 0;
+    for (; k + 3 <= size; k += 3) {
+        applyStep<3>(child.step, item.points, points + k, stride,
+                     &_values[std::size_t(k) * numPoints]);
+    }
+    for (; k < size; ++k) {
+        applyStep<1>(child.step, item.points, points + k, stride,
+                     &_values[std::size_t(k) * numPoints]);
+    }
+}
+
+template BorderValues::BorderValues(CellType::BorderItem const &, float const *, std::ptrdiff_t,
+                                    int);
+template BorderValues::BorderValues(CellType::BorderItem const &, double const *, std::ptrdiff_t,
+                                    int);
 
 template <typename REAL>
 CellPattern<REAL>::CellPattern(CellType const &root, std::vector<BasePoint> const &places,
@@ -117,28 +115,27 @@ CellPattern<REAL>::CellPattern(CellType const &root, std::vector<BasePoint> cons
 template <typename REAL>
 void CellPattern<REAL>::Evaluate(int kind, Points const &points, REAL *results,
                                  std::ptrdiff_t resultStride) const {
-    std::vector<REAL> const &rows = _rows[kind];
-    for (std::size_t begin = 0; begin < _numPlaces; begin += kBlock) {
-        REAL const *const block = rows.data() + begin * _numPoints;
-        std::size_t const numRows = std::min(kBlock, _numPlaces - begin);
-        REAL *const blockResults = results + std::ptrdiff_t(begin) * resultStride;
-        int k = 0;
-        auto const sumNext = [&](auto length) {
-            constexpr int kLength = decltype(length)::value;
-            REAL sums[kLength][kBlock];
-            sumBlock(block, _numPoints, points.points + k, points.stride, sums);
-            for (std::size_t row = 0; row < numRows; ++row) {
-                for (int i = 0; i < kLength; ++i) {
-                    blockResults[std::ptrdiff_t(row) * resultStride + k + i] = sums[i][row];
-                }
-            }
-            k += kLength;
-        };
-        while (k + 3 <= points.size) {
-            sumNext(std::integral_constant<int, 3>());
+    // The points are the matrix, number by number, and the places stand side by side.
+    auto const size = std::size_t(points.size);
+    std::vector<REAL> matrix(size * _numPoints);
+    for (std::size_t i = 0; i < _numPoints; ++i) {
+        REAL const *const point = points.points + std::ptrdiff_t(i) * points.stride;
+        for (std::size_t k = 0; k < size; ++k) {
+            matrix[k * _numPoints + i] = point[k];
         }
-        while (k < points.size) {
-            sumNext(std::integral_constant<int, 1>());
+    }
+    std::vector<REAL> sums(size * kBlock);
+    LaneProduct<REAL> product = {matrix.data(), size,   _numPoints,  nullptr,
+                                 kBlock,        kBlock, sums.data(), kBlock};
+    for (std::size_t begin = 0; begin < _numPlaces; begin += kBlock) {
+        product.block = _rows[kind].data() + begin * _numPoints;
+        Multiply(product);
+        std::size_t const numRows = std::min(kBlock, _numPlaces - begin);
+        REAL *result = results + std::ptrdiff_t(begin) * resultStride;
+        for (std::size_t row = 0; row < numRows; ++row, result += resultStride) {
+            for (std::size_t k = 0; k < size; ++k) {
+                result[k] = sums[k * kBlock + row];
+            }
         }
     }
 }

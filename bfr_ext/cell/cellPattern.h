@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_PATTERN_H
 
 #include "cellStencil.h"
+#include "laneKernel.h"
 
 #include <algorithm>
 #include <type_traits>
@@ -16,7 +17,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 template <typename REAL>
 class CellPattern {
 public:
-    static constexpr std::size_t kBlock = 64 / sizeof(REAL);
+    static constexpr std::size_t kBlock = 192 / sizeof(REAL);
 
     CellPattern(CellType const &root, std::vector<BasePoint> const &places, bool hasDerivatives);
 
@@ -36,12 +37,13 @@ private:
     std::vector<REAL> _rows[3];
 };
 
-/// The stencils of some points of an edge of a base face, in the direction of the edge, or that of a
-/// vertex.
+/// \brief The stencils of some places on what an edge of a base face becomes in a step (EdgeValues), in
+/// the direction of the edge; or that of a vertex.
 struct BorderPattern {
     BorderPattern(CellType const &type, std::vector<double> const &points);
 
-    std::vector<std::vector<double>> rows;
+    std::size_t numPlaces;
+    std::vector<double> weights; ///< by point of the type, and then by place
 };
 
 /// \brief What a place on the border is summed up with: an item of the border, by edge and then by
@@ -52,32 +54,41 @@ struct BorderPlace {
 };
 BorderPlace FindBorderPlace(BasePoint const &point, CellType::Border const &border);
 
-/// \brief Writes the sum of some of the points, \p size numbers each, as all faces that share a place
-/// on the border form it: every number in the order of \p points.
-template <typename REAL>
-void SumBorderPoints(std::vector<double> const &weights, std::vector<int> const &points,
-                     REAL const *values, std::ptrdiff_t stride, int size, REAL *result) {
-    auto const sum = [&](auto length) {
-        constexpr int kLength = decltype(length)::value;
-        double sums[kLength] = {};
-        for (std::size_t i = 0; i < weights.size(); ++i) {
-            REAL const *const point = values + points[i] * stride;
-            for (int k = 0; k < kLength; ++k) {
-                sums[k] += weights[i] * double(point[k]);
+/// \brief The points of what lies on the border, of which all faces that share it form the same sums.
+///
+/// Those of a vertex are its own.  Those of an edge are the points of the long edge that it becomes in
+/// the first step: long edges have far fewer types than edges.
+class BorderValues {
+public:
+    /// Of an edge, or of a vertex.
+    template <typename REAL>
+    BorderValues(CellType::BorderItem const &item, REAL const *points, std::ptrdiff_t stride,
+                 int size);
+
+    /// That of the long edge or of the vertex, which patterns are made for.
+    CellType const &GetType() const { return *_type; }
+    /// \brief Writes the points of a pattern.
+    ///
+    /// \param getResult  gives, of a place, where its first number goes
+    template <typename GET_RESULT>
+    void Sum(BorderPattern const &pattern, GET_RESULT getResult) const {
+        std::vector<double> sums(_size * pattern.numPlaces);
+        Multiply({_values.data(), _size, _values.size() / _size, pattern.weights.data(),
+                  pattern.numPlaces, pattern.numPlaces, sums.data(), pattern.numPlaces});
+        for (std::size_t place = 0; place < pattern.numPlaces; ++place) {
+            auto *const result = getResult(place);
+            for (std::size_t k = 0; k < _size; ++k) {
+                result[k] =
+                    std::remove_reference_t<decltype(*result)>(sums[k * pattern.numPlaces + place]);
             }
         }
-        std::copy(sums, sums + kLength, result);
-        values += kLength;
-        result += kLength;
-        size -= kLength;
-    };
-    while (size >= 3) {
-        sum(std::integral_constant<int, 3>());
     }
-    while (size > 0) {
-        sum(std::integral_constant<int, 1>());
-    }
-}
+
+private:
+    CellType const *_type;
+    std::size_t _size;           // of a point
+    std::vector<double> _values; // by number of a point, and then by point
+};
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

@@ -47,6 +47,7 @@ public:
         : _types(types), _cell(std::move(cell)), _rules(rules) {}
 
     bool IsWhole() const { return _cell.kind == FarExt::internal::CellKind::Whole; }
+    bool IsVertex() const { return _cell.kind == FarExt::internal::CellKind::Vertex; }
     int GetNumCorners() const { return _cell.GetNumCorners(); }
     int GetNumPoints() const { return int(_cell.patch.sources.size()); }
 
