@@ -4,12 +4,23 @@
 
 #include "taggedReference.h"
 
+#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::Regression::TaggedRules {
 
 using Point = Eigen::RowVectorXd;
+using Edge = TaggedMesh::Edge;
+using Face = TaggedMesh::Face;
 using Side = TaggedMesh::Side;
+
+inline bool isInfinite(float sharpness) { return sharpness >= kInfiniteSharpness; }
+
+/// The two ends of an edge, the smaller first.
+std::pair<int, int> pairOf(int v, int w);
+/// The sides of a face before and behind one of it.
+Side previousSide(TaggedMesh const &mesh, Side side);
+Side nextSide(TaggedMesh const &mesh, Side side);
 
 /// Sides of a new mesh, gathered edge by edge; fills Face::edges and Vertex::corners.
 void connect(TaggedMesh &mesh);

@@ -12,14 +12,6 @@ using namespace TaggedRules;
 
 namespace {
 
-using Edge = TaggedMesh::Edge;
-using Face = TaggedMesh::Face;
-
-Side before(TaggedMesh const &mesh, Side corner) {
-    int const size = int(mesh.faces[corner.face].vertices.size());
-    return {corner.face, (corner.place + size - 1) % size};
-}
-
 Edge const &edgeOf(TaggedMesh const &mesh, Side side) {
     return mesh.edges[mesh.faces[side.face].edges[side.place]];
 }
@@ -108,7 +100,7 @@ private:
         std::vector<Side> const &corners = _parent.vertices[v].corners;
         return corners.empty() || std::any_of(corners.begin(), corners.end(), [&](Side corner) {
                    return isCutBefore(corner) ||
-                          edgeOf(_parent, before(_parent, corner)).sides.size() == 1;
+                          edgeOf(_parent, previousSide(_parent, corner)).sides.size() == 1;
                });
     }
 
@@ -192,7 +184,7 @@ private:
         std::vector<int> vertices;
         std::vector<Key> keys;
         for (int i = 0; i < int(_parent.faces[f].vertices.size()); ++i) {
-            vertices.push_back(farVertex(before(_parent, {f, i})));
+            vertices.push_back(farVertex(previousSide(_parent, {f, i})));
             keys.push_back({BesideCorner, f, i});
             vertices.push_back(nearVertex({f, i}));
             keys.push_back({AlongEdge, _parent.faces[f].edges[i], 0});
@@ -230,7 +222,7 @@ private:
             keys.push_back({BesideCorner, corner.face, corner.place});
         }
         if (isSector) {
-            Side const last = before(_parent, corners.back());
+            Side const last = previousSide(_parent, corners.back());
             vertices.push_back(farVertex(last));
             keys.push_back({Spoke, _parent.faces[last.face].edges[last.place], farVertex(last)});
             vertices.push_back(_child.vVertices[v]);
@@ -323,7 +315,7 @@ private:
             if (edgeOf(_mesh, corner).sides.size() == 1) {
                 ends.push_back(_mesh.GetEnd(corner));
             }
-            Side const in = before(_mesh, corner);
+            Side const in = previousSide(_mesh, corner);
             if (edgeOf(_mesh, in).sides.size() == 1) {
                 ends.push_back(_mesh.GetStart(in));
             }

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "irregularReference.h"
+#include "taggedRules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace OpenSubdivHex::Regression {
+
+using namespace TaggedRules;
+
+namespace {
+
+/// How far new points in wide sectors are drawn to the vertex, by face and place.
+using Pulls = std::map<std::pair<int, int>, double>;
+
+/// The factor of a sector of \p size faces: P = factor * mask + (1 - factor) V.
+double sectorFactor(ReferenceMask mask, double size) {
+    double const c = std::cos(std::acos(-1.0) / size);
+    return mask == ReferenceMask::Average ? 1 / (0.98 + 0.305 * c) : 1 / (1.31 + 0.515 * c);
+}
+
+/// How sharp the line is that has the face on one side only; 0 for whole faces.
+double lineSharpness(TaggedMesh const &mesh, Face const &face) {
+    return face.isHalf ? double(mesh.edges[face.edges[0]].sharpness) : 0;
+}
+
+/// Adds \p share of the pulls at a vertex as if all edges of less than \p threshold were smooth.
+void addPulls(TaggedMesh const &mesh, ReferenceMask mask, int vertex, double threshold,
+              double share, Pulls &pulls) {
+    for (Side start : mesh.vertices[vertex].corners) {
+        Face const &startFace = mesh.faces[start.face];
+        Edge const &startEdge = mesh.edges[startFace.edges[start.place]];
+        if (startEdge.sharpness < threshold) {
+            continue;
+        }
+        // Counter-clockwise from one sharp edge to the next.
+        std::vector<Side> corners;
+        double size = 0;
+        Side corner = start;
+        Edge const *edge = nullptr;
+        while (true) {
+            Face const &face = mesh.faces[corner.face];
+            corners.push_back(corner);
+            size += face.isHalf && corner.place < 2 ? 0.5 : 1;
+            int const before = previousSide(mesh, corner).place;
+            edge = &mesh.edges[face.edges[before]];
+            if (edge->sharpness >= threshold || edge->sides.size() == 1) {
+                break;
+            }
+            bool const isFirst =
+                edge->sides[0].face == corner.face && edge->sides[0].place == before;
+            corner = edge->sides[isFirst ? 1 : 0];
+        }
+        // All around, with one sharp edge, lies no sector; a boundary may end where it began.
+        bool const isAllAround = edge == &startEdge && edge->sides.size() == 2;
+        if (edge->sharpness < threshold || isAllAround || size < 3) {
+            continue;
+        }
+        for (Side pulled : corners) {
+            // Halves are one face while their line is smooth.
+            if (lineSharpness(mesh, mesh.faces[pulled.face]) < threshold) {
+                pulls[{pulled.face, pulled.place}] += share * (1 - sectorFactor(mask, size));
+            }
+        }
+    }
+}
+
+/// An edge of sharpness s below 1 is sharp with share s and smooth with share 1 - s, the less sharp
+/// edges whenever a sharper one is.
+Pulls findPulls(TaggedMesh const &mesh, ReferenceMask mask) {
+    std::set<double> thresholds{1};
+    for (Edge const &edge : mesh.edges) {
+        if (edge.sharpness > 0 && edge.sharpness < 1) {
+            thresholds.insert(edge.sharpness);
+        }
+    }
+    Pulls pulls;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        double last = 0;
+        for (double threshold : thresholds) {
+            addPulls(mesh, mask, int(v), threshold, threshold - last, pulls);
+            last = threshold;
+        }
+    }
+    return pulls;
+}
+
+/// What of a mesh follows the rules of Smooth for hexagons beside what is not of their lattice.
+class Irregularities {
+public:
+    explicit Irregularities(TaggedMesh const &mesh) : _mesh(mesh) {}
+
+    /// A vertex whose faces are four hexagons or more, each made for an edge.
+    struct Vertex {
+        int numFaces = 0;
+        double share = 0; ///< of its rule: what is left by the sharpest thing at it
+    };
+    /// Of no faces for others.
+    Vertex FindVertex(int vertex) const {
+        TaggedMesh::Vertex const &tags = _mesh.vertices[vertex];
+        double sharpness = tags.sharpness;
+        double size = 0;
+        for (Side corner : tags.corners) {
+            Face const &face = _mesh.faces[corner.face];
+            for (int place : {corner.place, previousSide(_mesh, corner).place}) {
+                Edge const &edge = _mesh.edges[face.edges[place]];
+                sharpness = std::max(sharpness, double(edge.sharpness));
+                if (edge.sides.size() == 1) {
+                    return {};
+                }
+            }
+            if (!isMadeForEdge(corner.face) || (!face.isHalf && face.vertices.size() != 6)) {
+                return {};
+            }
+            size += face.isHalf ? 0.5 : 1;
+        }
+        bool const isIrregular = _mesh.numHexagonalSteps > 0 &&
+                                 _mesh.vertexOrigins[vertex].face < 0 && !tags.isNonManifold &&
+                                 size >= 4 && sharpness < 1;
+        return isIrregular ? Vertex{int(size), 1 - sharpness} : Vertex();
+    }
+
+    /// \brief \p plain, with the rules' share at corner \p i of a hexagon.
+    ///
+    /// \param hexagon    its points
+    /// \param corners    where its corners are in faces: in two halves, one of those on the line
+    /// \param sharpness  of the line between two halves, else 0
+    Point Apply(std::vector<Point> const &hexagon, std::vector<Side> const &corners,
+                double sharpness, int i, Point const &plain) const {
+        if (_mesh.numHexagonalSteps == 0 || !isMadeForEdge(corners[0].face)) {
+            return plain;
+        }
+        for (int edge : {i, (i + 5) % 6}) {
+            if (isQuad(across(corners[edge]))) {
+                double const share = std::max(0.0, 1 - sharpness);
+                if (auto const point =
+                        NewPointBesideQuad(_mesh.numHexagonalSteps, hexagon, i, edge)) {
+                    return share > 0 ? Point(share * *point + (1 - share) * plain) : plain;
+                }
+            }
+        }
+        for (int corner : {i, (i + 1) % 6, (i + 5) % 6}) {
+            Vertex const vertex = FindVertex(_mesh.GetStart(corners[corner]));
+            if (vertex.numFaces > 0) {
+                IrregularRule const rule =
+                    MakeIrregularRule(vertex.numFaces, _mesh.numHexagonalSteps);
+                return vertex.share * NewIrregularPoint(rule, hexagon, i, corner) +
+                       (1 - vertex.share) * plain;
+            }
+        }
+        return plain;
+    }
+
+private:
+    bool isMadeForEdge(int face) const {
+        return !_mesh.faceOrigins.empty() && _mesh.faceOrigins[face].edge >= 0;
+    }
+    /// The face on the other side of the edge that starts at a corner, or -1.
+    int across(Side corner) const {
+        Edge const &edge = _mesh.edges[_mesh.faces[corner.face].edges[corner.place]];
+        if (edge.sides.size() == 1) {
+            return -1;
+        }
+        bool const isFirst =
+            edge.sides[0].face == corner.face && edge.sides[0].place == corner.place;
+        return edge.sides[isFirst ? 1 : 0].face;
+    }
+    /// The smaller copy of a quad.
+    bool isQuad(int face) const {
+        return face >= 0 && _mesh.faceOrigins[face].face >= 0 && !_mesh.faces[face].isHalf &&
+               _mesh.faces[face].vertices.size() == 4;
+    }
+
+    TaggedMesh const &_mesh;
+};
+
+class Interpolation {
+public:
+    Interpolation(TaggedMesh const &mesh, TaggedMesh const &child, ReferenceMask mask,
+                  bool isVarying, ReferenceValues const &values)
+        : _mesh(mesh), _child(child), _mask(mask), _isVarying(isVarying), _values(values),
+          _irregularities(mesh), _result(child.vertexOrigins.size(), values.cols()) {}
+
+    ReferenceValues Run() {
+        bool const isPlain = _isVarying || _child.madeBy != ReferenceScheme::Hexagonal;
+        Pulls const pulls = isPlain ? Pulls() : findPulls(_mesh, _mask);
+        for (std::size_t v = 0; v < _child.vertexOrigins.size(); ++v) {
+            TaggedMesh::VertexOrigin const &origin = _child.vertexOrigins[v];
+            if (origin.face < 0) {
+                continue;
+            }
+            auto const pull = pulls.find({origin.face, origin.place});
+            double const towards = pull != pulls.end() ? pull->second : 0;
+            _result.row(Eigen::Index(v)) =
+                cornerPoint({origin.face, origin.place}, towards, _values.row(origin.vertex));
+        }
+        for (std::size_t v = 0; v < _mesh.vertices.size(); ++v) {
+            if (_child.vVertices[v] >= 0) {
+                _result.row(_child.vVertices[v]) =
+                    _isVarying ? Point(_values.row(Eigen::Index(v))) : movedVertex(int(v));
+            }
+        }
+        return std::move(_result);
+    }
+
+private:
+    Point maskPoint(std::vector<Point> const &face, int i) const {
+        return _isVarying ? NewVaryingPoint(face, i) : NewPoint(_mask, face, i);
+    }
+
+    std::vector<Point> pointsOf(std::vector<int> const &vertices) const {
+        std::vector<Point> points;
+        for (int v : vertices) {
+            points.push_back(_values.row(v));
+        }
+        return points;
+    }
+
+    /// The share \p towards of the smooth mask is replaced by \p vertex.
+    Point cornerPoint(Side corner, double towards, Point const &vertex) const {
+        Face const &face = _mesh.faces[corner.face];
+        if (_child.madeBy == ReferenceScheme::TriHex) {
+            return edgePoint(pointsOf(face.vertices), corner.place);
+        }
+        if (!face.isHalf) {
+            std::vector<Point> const points = pointsOf(face.vertices);
+            Point const plain = towards * vertex + (1 - towards) * maskPoint(points, corner.place);
+            if (!hasIrregularRules() || points.size() != 6) {
+                return plain;
+            }
+            std::vector<Side> corners;
+            for (int i = 0; i < 6; ++i) {
+                corners.push_back({corner.face, i});
+            }
+            return _irregularities.Apply(points, corners, 0, corner.place, plain);
+        }
+        Edge const &line = _mesh.edges[face.edges[0]];
+        if (line.sides.size() == 1) {
+            return halfPoint(face, corner.place);
+        }
+        // The hexagon that the two halves make: V, R, S, W, Q, P.
+        bool const isFirst = line.sides[0].face == corner.face;
+        Face const &other = _mesh.faces[line.sides[isFirst ? 1 : 0].face];
+        std::vector<int> const &own = face.vertices;
+        std::vector<Point> const hexagon =
+            pointsOf({own[0], other.vertices[2], other.vertices[3], own[1], own[2], own[3]});
+        int const places[] = {0, 3, 4, 5};
+        Point const smooth = maskPoint(hexagon, places[corner.place]);
+        double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
+        Point const plain = sharp * halfPoint(face, corner.place) + towards * vertex +
+                            (1 - sharp - towards) * smooth;
+        if (!hasIrregularRules()) {
+            return plain;
+        }
+        int const self = corner.face;
+        int const partner = line.sides[isFirst ? 1 : 0].face;
+        return _irregularities.Apply(
+            hexagon, {{partner, 1}, {partner, 2}, {partner, 3}, {self, 1}, {self, 2}, {self, 3}},
+            line.sharpness, places[corner.place], plain);
+    }
+
+    bool hasIrregularRules() const {
+        return !_isVarying && _mask == ReferenceMask::Smooth &&
+               _child.madeBy == ReferenceScheme::Hexagonal;
+    }
+
+    /// Beside the edge that starts at a corner.
+    static Point edgePoint(std::vector<Point> const &face, int place) {
+        Point centroid = Point::Zero(face[0].size());
+        for (Point const &point : face) {
+            centroid += point / double(face.size());
+        }
+        return (face[place] + face[(place + 1) % face.size()] + centroid) / 3;
+    }
+
+    Point halfPoint(Face const &face, int place) const {
+        std::vector<Point> const points = pointsOf(face.vertices);
+        Point const &v = points[0];
+        Point const &w = points[1];
+        Point const &q = points[2];
+        Point const &p = points[3];
+        if (place == 0) {
+            return (3 * v + w) / 4;
+        }
+        if (place == 1) {
+            return (v + 3 * w) / 4;
+        }
+        Point const qGhost = (3 * v + w) / 2 - p;
+        Point const pGhost = (v + 3 * w) / 2 - q;
+        return maskPoint({v, qGhost, pGhost, w, q, p}, place == 2 ? 4 : 5);
+    }
+
+    Point smoothVertex(int v) const {
+        std::set<int> around;
+        for (Side corner : _mesh.vertices[v].corners) {
+            around.insert(_child.fVertices[corner.face][corner.place]);
+        }
+        Point sum = _values.row(v);
+        for (int vertex : around) {
+            sum += _result.row(vertex);
+        }
+        Point const plain = sum / double(around.size() + 1);
+        Irregularities::Vertex const irregular =
+            hasIrregularRules() ? _irregularities.FindVertex(v) : Irregularities::Vertex();
+        if (irregular.numFaces == 0) {
+            return plain;
+        }
+        double const weight =
+            MakeIrregularRule(irregular.numFaces, _mesh.numHexagonalSteps).meanWeight;
+        Point const old = _values.row(v);
+        Point const mean = (sum - old) / double(around.size());
+        return irregular.share * ((1 - weight) * old + weight * mean) +
+               (1 - irregular.share) * plain;
+    }
+
+    Point creaseVertex(int v, SharpEdge a, SharpEdge b) const {
+        Point const vertex = _values.row(v);
+        Point const atA = _values.row(a.neighbor);
+        Point const atB = _values.row(b.neighbor);
+        if (a.isLong && b.isLong) {
+            return (26 * vertex + 3 * atA + 3 * atB) / 32;
+        }
+        if (!a.isLong && !b.isLong) {
+            return (6 * vertex + atA + atB) / 8;
+        }
+        return a.isLong ? Point((5 * vertex + atA + 2 * atB) / 8)
+                        : Point((5 * vertex + 2 * atA + atB) / 8);
+    }
+
+    Point vertexByRule(int v, TaggedRule rule, std::vector<SharpEdge> const &edges) const {
+        switch (rule) {
+        case TaggedRule::Corner:
+            return _values.row(v);
+        case TaggedRule::Crease:
+            return creaseVertex(v, edges[0], edges[1]);
+        case TaggedRule::Smooth:
+        case TaggedRule::Dart:
+            break;
+        }
+        return smoothVertex(v);
+    }
+
+    Point movedVertex(int v) const {
+        Point point = Point::Zero(_values.cols());
+        for (RuleShare const &share : ruleShares(_mesh, v)) {
+            point += share.weight * vertexByRule(v, share.rule, share.lines);
+        }
+        return point;
+    }
+
+    TaggedMesh const &_mesh;
+    TaggedMesh const &_child;
+    ReferenceMask _mask;
+    bool _isVarying;
+    ReferenceValues const &_values;
+    Irregularities const _irregularities;
+    ReferenceValues _result;
+};
+
+} // namespace
+
+ReferenceValues Interpolate(TaggedMesh const &mesh, TaggedMesh const &child, ReferenceMask mask,
+                            ReferenceValues const &values) {
+    if (child.madeBy == ReferenceScheme::Truncate) {
+        return InterpolateTruncation(mesh, child, false, values);
+    }
+    return Interpolation(mesh, child, mask, false, values).Run();
+}
+
+ReferenceValues InterpolateVarying(TaggedMesh const &mesh, TaggedMesh const &child,
+                                   ReferenceValues const &values) {
+    if (child.madeBy == ReferenceScheme::Truncate) {
+        return InterpolateTruncation(mesh, child, true, values);
+    }
+    return Interpolation(mesh, child, ReferenceMask::Average, true, values).Run();
+}
+
+} // namespace OpenSubdivHex::Regression
