@@ -15,6 +15,9 @@ namespace Far = OpenSubdiv::Far;
 
 namespace BfrExt {
 
+template <typename REAL>
+class PatchStream;
+
 namespace internal {
 class CellType;
 struct SurfaceTurns;
@@ -179,6 +182,8 @@ public:
 
 private:
     friend class SurfaceFactory;
+    template <typename>
+    friend class PatchStream;
 
     internal::BasePoint findPoint(REAL const uv[2]) const;
     bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],

@@ -8,6 +8,10 @@
 
 namespace OpenSubdivHex::BfrExt {
 
+namespace internal {
+struct PatchPlan;
+}
+
 /// \brief A base face cut into facets, as Bfr::Tessellation: places in its parameter plane, at which a
 /// Surface is evaluated, and the facets between them.
 ///
@@ -174,6 +178,7 @@ public:
 private:
     template <typename REAL>
     friend class Surface;
+    friend struct internal::PatchPlan;
 
     // The sector of an edge, and what the places of its start and its end weigh beside the centre.
     struct SectorCoords {

@@ -80,6 +80,18 @@ BasePoint MakeBasePoint(int size, int sector, Pair const &coords) {
     return point;
 }
 
+CellStep FindCellStep(bool isWhole, int sector, Pair const &coords) {
+    static constexpr CellMap kToFFace = {{{2, 0}, {0, 2}}, {0, 0}};
+    if (!isWhole) {
+        int const child = HalfCell::FindChild(coords);
+        return {std::size_t(child), &HalfCell::kChildren[child], false};
+    }
+    if (coords[0] + coords[1] > 0.5) {
+        return {std::size_t(sector) + 1, &HalfCell::kFromSector, false};
+    }
+    return {0, &kToFFace, true};
+}
+
 bool CellStencil::findCorner(Place const &place, std::size_t *corner) const {
     if (place.type->IsWhole()) {
         if (place.coords != Pair{1, 0} && place.coords != Pair{0, 1}) {
@@ -137,17 +149,9 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
     std::size_t corner = 0;
     bool isCorner = false;
     while (!(isCorner = findCorner(place, &corner)) && !isLast(place)) {
-        static constexpr CellMap kToFFace = {{{2, 0}, {0, 2}}, {0, 0}};
-        CellMap const *map = &kToFFace;
-        std::size_t child = 0;
-        if (!place.type->IsWhole()) {
-            child = std::size_t(HalfCell::FindChild(place.coords));
-            map = &HalfCell::kChildren[child];
-        } else if (place.coords[0] + place.coords[1] > 0.5) {
-            child = std::size_t(place.sector) + 1;
-            map = &HalfCell::kFromSector;
-        }
-        CellType::Child const &next = place.type->GetChildren()[child];
+        CellStep const step = FindCellStep(place.type->IsWhole(), place.sector, place.coords);
+        CellMap const *const map = step.map;
+        CellType::Child const &next = place.type->GetChildren()[step.child];
         Pair const coords = map->Apply(place.coords);
         place.coords = next.type->IsWhole() ? clampToSector(coords) : clampToHalf(coords);
         Pair toCoords[2];

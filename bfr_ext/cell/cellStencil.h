@@ -25,6 +25,15 @@ BasePoint FindBasePoint(int size, double u, double v, double tolerance);
 /// The point with coordinates in a sector, which are inside.
 BasePoint MakeBasePoint(int size, int sector, Pair const &coords);
 
+/// \brief Which child of a cell has a point, and how coordinates become those in the child.
+struct CellStep {
+    std::size_t child; ///< in the order of RefineCell()
+    CellMap const *map;
+    bool isChildWhole;
+};
+/// \param sector, coords  of the point in the cell; the sector of a whole cell alone matters
+CellStep FindCellStep(bool isWhole, int sector, Pair const &coords);
+
 /// \brief The stencils of points of a base face and of their derivatives by u and v.
 ///
 /// The cells that have a point are followed until it is a corner of one, or they are so small that

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cellPlan.h"
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+namespace {
+
+// Matrices with more rows than this makes leave the cache, and those with fewer are taken too often.
+constexpr int kNumStepsOfHalves = 4;
+constexpr int kNumStepsOfWholes = 3;
+
+Pair getMiddle(Pair const &p, Pair const &q) { return {(p[0] + q[0]) / 2, (p[1] + q[1]) / 2}; }
+
+} // namespace
+
+LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSteps(numSteps) {
+    if (faceSize > 0) {
+        for (int sector = 0; sector < faceSize; ++sector) {
+            add({sector, {1, 0}});
+        }
+        refineWhole(1, numSteps);
+    } else {
+        for (Pair const &corner : HalfCell::kCorners) {
+            add({0, corner});
+        }
+        refineHalf(0,
+                   {HalfCell::kCorners[0], HalfCell::kCorners[1], HalfCell::kCorners[2],
+                    HalfCell::kCorners[3]},
+                   numSteps);
+    }
+    auto const getGroup = [&](Place const &place) {
+        return _faceSize > 0 ? 0 : findGroup(place.coords);
+    };
+    std::stable_sort(_places.begin(), _places.end(),
+                     [&](Place const &a, Place const &b) { return getGroup(a) < getGroup(b); });
+    std::size_t row = 0;
+    for (std::size_t group = 0; group <= kNumGroups; ++group) {
+        while (row < _places.size() && getGroup(_places[row]) < group) {
+            ++row;
+        }
+        _groupFirsts[group] = row;
+    }
+    for (row = 0; row < _places.size(); ++row) {
+        _rows[getKey(_places[row])] = row;
+    }
+}
+
+// On the line from the centre to a corner, the sector is that which begins there.
+LeafPlaces::Key LeafPlaces::getKey(Place const &place) const {
+    if (_faceSize > 0 && place.coords[0] == 0) {
+        return {(place.sector + 1) % _faceSize, place.coords[1], 0};
+    }
+    return {place.sector, place.coords[0], place.coords[1]};
+}
+
+std::size_t LeafPlaces::findGroup(Pair const &coords) {
+    double const x = coords[0];
+    double const h = coords[1];
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (coords == HalfCell::kCorners[i]) {
+            return 5 + i;
+        }
+    }
+    return h == 0 ? 1 : x == 1 - 0.5 * h ? 2 : h == 0.5 ? 3 : x == 0.5 * h ? 4 : 0;
+}
+
+void LeafPlaces::add(Place const &place) {
+    if (_rows.emplace(getKey(place), 0).second) {
+        _places.push_back(place);
+    }
+}
+
+void LeafPlaces::refineWhole(double scale, int numSteps) {
+    for (; numSteps > 0; --numSteps, scale /= 2) {
+        for (int sector = 0; sector < _faceSize; ++sector) {
+            add({sector, {scale / 2, 0}});
+        }
+        for (int sector = 0; sector < _faceSize; ++sector) {
+            refineHalf(sector, {{{scale, 0}, {0, scale}, {0, scale / 2}, {scale / 2, 0}}},
+                       numSteps - 1);
+        }
+    }
+}
+
+void LeafPlaces::refineHalf(int sector, std::array<Pair, 4> const &corners, int numSteps) {
+    if (numSteps == 0) {
+        return;
+    }
+    Pair const middle = getMiddle(corners[0], corners[1]);
+    std::array<Pair, 4> inner;
+    for (std::size_t i = 0; i < 4; ++i) {
+        inner[i] = getMiddle(corners[i], middle);
+        add({sector, inner[i]});
+    }
+    refineHalf(sector, inner, numSteps - 1);
+    for (std::size_t i = 1; i < 4; ++i) {
+        std::size_t const next = (i + 1) % 4;
+        refineHalf(sector, {{corners[i], corners[next], inner[next], inner[i]}}, numSteps - 1);
+    }
+}
+
+CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, int first)
+    : _faceSize(faceSize) {
+    _nodes.push_back({0, true, level, {}, nullptr, {}, 0});
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        LeafPlaces::Place place = places[i];
+        std::size_t node = 0;
+        while (!_nodes[node].leaf) {
+            CellStep const step = FindCellStep(_nodes[node].isWhole, place.sector, place.coords);
+            place.coords = step.map->Apply(place.coords);
+            node = findChild(node, step);
+        }
+        Node &leaf = _nodes[node];
+        if (!leaf.isWhole) {
+            place.sector = 0;
+        }
+        std::size_t const row = leaf.leaf->Find(place);
+        leaf.placesOfRows[row] = first + int(i);
+        std::size_t group = 0;
+        while (leaf.leaf->GetFirst(group + 1) <= row) {
+            ++group;
+        }
+        leaf.groups |= 1U << group;
+    }
+}
+
+std::size_t CellPlan::findChild(std::size_t node, CellStep const &step) {
+    for (std::size_t const child : _nodes[node].children) {
+        if (_nodes[child].child == step.child) {
+            return child;
+        }
+    }
+    Node child = {step.child, step.isChildWhole, _nodes[node].numSteps - 1, {}, nullptr, {}, 0};
+    if (child.numSteps <= (child.isWhole ? kNumStepsOfWholes : kNumStepsOfHalves)) {
+        int const size = child.isWhole ? _faceSize : 0;
+        std::unique_ptr<LeafPlaces const> &leafPlaces = _leafPlaces[{size, child.numSteps}];
+        if (!leafPlaces) {
+            leafPlaces = std::make_unique<LeafPlaces>(size, child.numSteps);
+        }
+        child.leaf = leafPlaces.get();
+        child.placesOfRows.assign(leafPlaces->GetSize(), -1);
+    }
+    _nodes[node].children.push_back(_nodes.size());
+    _nodes.push_back(std::move(child));
+    return _nodes.size() - 1;
+}
+
+std::size_t CellPlan::GetSize() const {
+    std::size_t size = 0;
+    for (Node const &node : _nodes) {
+        size += sizeof(Node) + node.children.size() * sizeof(node.children[0]) +
+                node.placesOfRows.size() * sizeof(node.placesOfRows[0]);
+    }
+    return size;
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal

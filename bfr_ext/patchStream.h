@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_PATCH_STREAM_H
+#define OPENSUBDIVHEX_BFR_EXT_PATCH_STREAM_H
+
+#include "surfaceFactory.h"
+
+#include <cstddef>
+#include <functional>
+
+namespace OpenSubdivHex::BfrExt {
+
+/// \brief How fine the patches of a stream are: a level of refinement for the inside of each base face
+/// and one for each edge of the base mesh, 0 ... Tessellation::kLastLevel.
+///
+/// An edge is named by its number in level 0, whichever face asks: so neighbours fit.
+class PatchLevels {
+public:
+    /// Gives the level of a face, or of an edge.  Called by any thread, by several at once.
+    using Function = std::function<int(Far::Index)>;
+
+    /// The same level everywhere.
+    explicit PatchLevels(int level)
+        : PatchLevels([level](Far::Index) { return level; },
+                      [level](Far::Index) { return level; }) {}
+    /// A level for each face and one for each edge; as arrays, [&](int face) { return levels[face]; }.
+    PatchLevels(Function ofFaces, Function ofEdges)
+        : _ofFaces(std::move(ofFaces)), _ofEdges(std::move(ofEdges)) {}
+
+    /// That of the inside of a face.
+    int GetFaceLevel(Far::Index face) const { return _ofFaces(face); }
+    /// That of an edge.
+    int GetEdgeLevel(Far::Index edge) const { return _ofEdges(edge); }
+
+private:
+    Function _ofFaces;
+    Function _ofEdges;
+};
+
+/// \brief Evaluates the surfaces of base faces, some at a time, hands each to a *sink* and forgets it.
+///
+/// So the memory does not depend on how much comes out: it is what Options::SetMaxMemory() says and
+/// what the cache of the factory has.  What comes out is a patch for each base face that is no hole:
+/// its tessellation, and the points of that.
+///
+///  - Two patches that share an edge have the same points there, to the bit, as those of
+///    Surface::Evaluate() of a tessellation have, with the exceptions said there.
+///  - A patch depends on its face alone, to the bit: not on the number of threads, nor on which others
+///    the call makes.  So processes may share the faces of a mesh.
+///  - Points inside of a face are those of Surface::Evaluate() up to rounding.
+///
+/// Several threads may call Run() of one stream at once.  std::bad_alloc passes through.
+template <typename REAL>
+class OPENSUBDIVHEX_API PatchStream {
+public:
+    /// A base face or an edge of the base mesh.
+    using Index = Far::Index;
+    /// The size of points and the distance from one to the next.
+    using PointDescriptor = typename Surface<REAL>::PointDescriptor;
+
+    /// \brief What a sink gets of one base face; it is there during the call.
+    struct Patch {
+        Index face;                       ///< the base face
+        Tessellation const &tessellation; ///< the places of the points, and the facets between them
+        REAL const *points;               ///< tessellation.GetNumCoords() points, without gaps
+        int pointSize;                    ///< numbers of a point
+    };
+
+    /// \brief Takes a patch.
+    ///
+    /// It is called by the threads of the call, several at once, each time with another patch, in any
+    /// order.  What it throws ends the stream and passes through.
+    ///
+    /// \return  false to end the stream: some patches may still come
+    using Sink = std::function<bool(Patch const &)>;
+
+    /// \brief Facets and memory.
+    class Options {
+    public:
+        /// Triangles, and 16 megabytes.
+        Options() = default;
+
+        /// Sets what facets are like; strides of coordinates are of no matter.
+        Options &SetTessellationOptions(Tessellation::Options const &options) {
+            _tessellationOptions = options;
+            return *this;
+        }
+        /// That.
+        Tessellation::Options const &GetTessellationOptions() const { return _tessellationOptions; }
+
+        /// \brief Sets how many bytes the points of patches and their tessellations take at a time, over
+        /// all threads; each thread has one patch at least, whatever its size.
+        ///
+        /// Besides there is what all faces that look alike have in common, in the cache.
+        Options &SetMaxMemory(std::size_t bytes) {
+            _maxMemory = bytes;
+            return *this;
+        }
+        /// That number.
+        std::size_t GetMaxMemory() const { return _maxMemory; }
+
+    private:
+        Tessellation::Options _tessellationOptions;
+        std::size_t _maxMemory = std::size_t(16) << 20;
+    };
+
+    /// A stream of surfaces for vertex data, with the default options.
+    ///
+    /// \param factory  makes the surfaces; it must live as long
+    /// \param levels   how fine they are
+    PatchStream(SurfaceFactory const &factory, PatchLevels levels)
+        : PatchStream(factory, std::move(levels), Options()) {}
+    /// The same with options.
+    PatchStream(SurfaceFactory const &factory, PatchLevels levels, Options const &options)
+        : _factory(factory), _levels(std::move(levels)), _options(options) {}
+
+    /// \brief Hands the patches of all faces to a sink.
+    ///
+    /// \param meshPoints     of level 0
+    /// \param meshPointDesc  their size, and the distance from one to the next
+    /// \param sink           takes patches
+    /// \param status         where Run() gives false without a failure, it is Ok: the sink ended it
+    /// \return               whether all patches were handed out.  Failures are, before any patch is:
+    ///                       InvalidArgument for a level or options that Tessellation does not have,
+    ///                       Unsupported for a face without a surface (SurfaceFactory) that is no hole;
+    ///                       and on the way, Unsupported for a vertex without a limit stencil
+    bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Sink const &sink,
+             FarExt::Status *status = nullptr) const {
+        return Run(meshPoints, meshPointDesc, 0, _factory.GetNumFaces(), sink, status);
+    }
+    /// \brief The same for faces \p beginFace ... \p endFace - 1, as a process takes its share.
+    ///
+    /// \return  false with InvalidArgument, too, for a range that is not one of faces
+    bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Index beginFace,
+             Index endFace, Sink const &sink, FarExt::Status *status = nullptr) const;
+
+    /// The tessellation that the patch of a face has, which is in range and has valid levels.
+    Tessellation MakeTessellation(Index face) const;
+
+    /// The factory that was given.
+    SurfaceFactory const &GetFactory() const { return _factory; }
+    /// The levels that were given.
+    PatchLevels const &GetLevels() const { return _levels; }
+    /// The options that were given.
+    Options const &GetOptions() const { return _options; }
+
+private:
+    class Worker;
+
+    FarExt::Status check(Index beginFace, Index endFace) const;
+    void getLevels(Index face, std::vector<int> &levels) const;
+
+    SurfaceFactory const &_factory;
+    PatchLevels const _levels;
+    Options const _options;
+};
+
+extern template class PatchStream<float>;
+extern template class PatchStream<double>;
+
+} // namespace OpenSubdivHex::BfrExt
+
+#endif

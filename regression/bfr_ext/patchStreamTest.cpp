@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Streams of patches, against surfaces evaluated one by one.
+#include "surfaceFixture.h"
+
+#include "bfr_ext/patchStream.h"
+#include "far_ext/threads.h"
+#include "regression/far_ext/referenceMatch.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <random>
+#include <stdexcept>
+
+namespace OpenSubdivHex::Regression {
+
+using BfrExt::PatchLevels;
+using BfrExt::PatchStream;
+using BfrExt::Surface;
+using BfrExt::SurfaceFactory;
+using BfrExt::Tessellation;
+using FarExt::StatusCode;
+
+namespace {
+
+/// Restores the number of threads.
+struct Threads {
+    explicit Threads(int count) { FarExt::SetNumThreads(count); }
+    ~Threads() { FarExt::SetNumThreads(0); }
+    Threads(Threads const &) = delete;
+    Threads &operator=(Threads const &) = delete;
+};
+
+/// A level for each face and edge of a mesh.
+struct RandomLevels {
+    RandomLevels(FarExt::TopologyLevel const &base, int numLevels, unsigned seed) {
+        std::mt19937 random(seed);
+        for (int face = 0; face < base.GetNumFaces(); ++face) {
+            faces.push_back(int(random() % unsigned(numLevels)));
+        }
+        for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
+            edges.push_back(int(random() % unsigned(numLevels)));
+        }
+    }
+
+    PatchLevels Get() const {
+        return PatchLevels([this](int face) { return faces[std::size_t(face)]; },
+                           [this](int edge) { return edges[std::size_t(edge)]; });
+    }
+
+    std::vector<int> faces;
+    std::vector<int> edges;
+};
+
+/// What a stream hands out, by face.
+template <typename REAL>
+class Collection {
+public:
+    typename PatchStream<REAL>::Sink GetSink() {
+        return [this](typename PatchStream<REAL>::Patch const &patch) {
+            std::size_t const count =
+                std::size_t(patch.tessellation.GetNumCoords()) * std::size_t(patch.pointSize);
+            std::lock_guard<std::mutex> const lock(_mutex);
+            EXPECT_TRUE(
+                patches.emplace(patch.face, std::vector<REAL>(patch.points, patch.points + count))
+                    .second)
+                << "face " << patch.face << " comes twice";
+            return true;
+        };
+    }
+
+    std::map<int, std::vector<REAL>> patches;
+
+private:
+    std::mutex _mutex;
+};
+
+Sdc::Options getEdgeOnly() {
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    return options;
+}
+
+template <typename REAL>
+void expectSurfaces(Shape const &shape, ReferenceMask mask, int numLevels, double tolerance) {
+    SCOPED_TRACE(shape.name);
+    auto const refiner = CreateRefiner(shape, mask, 0, getEdgeOnly());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    FarExt::TopologyLevel const &base = refiner->GetLevel(0);
+    std::vector<REAL> const positions(shape.positions.begin(), shape.positions.end());
+    RandomLevels const levels(base, numLevels, 5);
+    PatchStream<REAL> const stream(*factory, levels.Get());
+    Collection<REAL> collection;
+    ASSERT_TRUE(stream.Run(positions.data(), 3, collection.GetSink()));
+    for (int face = 0; face < base.GetNumFaces(); ++face) {
+        auto const found = collection.patches.find(face);
+        ASSERT_EQ(found == collection.patches.end(), base.IsFaceHole(face)) << "face " << face;
+        if (found == collection.patches.end()) {
+            continue;
+        }
+        Surface<REAL> surface;
+        ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
+        std::vector<REAL> control(3 * std::size_t(surface.GetNumControlPoints()));
+        surface.GatherControlPoints(positions.data(), 3, control.data(), 3);
+        Tessellation const tessellation = stream.MakeTessellation(face);
+        std::vector<REAL> points(3 * std::size_t(tessellation.GetNumCoords()));
+        surface.Evaluate(tessellation, control.data(), 3, points.data(), 3);
+        ASSERT_EQ(found->second.size(), points.size());
+        auto const numBoundary = 3 * std::size_t(tessellation.GetNumBoundaryCoords());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (i < numBoundary) {
+                ASSERT_EQ(found->second[i], points[i]) << "face " << face << ", number " << i;
+            } else {
+                ASSERT_NEAR(found->second[i], points[i], tolerance)
+                    << "face " << face << ", number " << i;
+            }
+        }
+    }
+}
+
+} // namespace
+
+TEST(PatchStreamTest, HandsOutWhatSurfacesAre) {
+    for (char const *const name :
+         {"mixedSharpnessQuads", "cornersTriangles", "creaseLoopClosed", "creasedBall"}) {
+        expectSurfaces<double>(GetFeatureShape(name), ReferenceMask::Cosine, 6, 1e-12);
+    }
+    for (Shape const &shape : GetManifoldShapes()) {
+        if (shape.GetNumFaces() <= 30) {
+            expectSurfaces<double>(shape, ReferenceMask::Smooth, 5, 1e-12);
+            expectSurfaces<float>(shape, ReferenceMask::Average, 4, 1e-5);
+        }
+    }
+    expectSurfaces<double>(GetShape("cube"), ReferenceMask::Smooth, 9, 1e-12);
+}
+
+TEST(PatchStreamTest, PatchesDoNotDependOnThreadsMemoryAndShares) {
+    Shape const &shape = GetFeatureShape("mixedSharpnessQuads");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly());
+    RandomLevels const levels(refiner->GetLevel(0), 7, 3);
+    std::vector<float> const positions(shape.positions.begin(), shape.positions.end());
+    std::map<int, std::vector<float>> expected;
+    for (int const numThreads : {1, 2, 3}) {
+        Threads const threads(numThreads);
+        for (std::size_t const memory :
+             {std::size_t(0), std::size_t(1) << 16, std::size_t(1) << 28}) {
+            for (int const numShares : {1, 4}) {
+                auto const factory = SurfaceFactory::Create(*refiner);
+                PatchStream<float>::Options options;
+                options.SetMaxMemory(memory);
+                PatchStream<float> const stream(*factory, levels.Get(), options);
+                Collection<float> collection;
+                int const numFaces = factory->GetNumFaces();
+                for (int share = numShares - 1; share >= 0; --share) {
+                    ASSERT_TRUE(stream.Run(positions.data(), 3, numFaces * share / numShares,
+                                           numFaces * (share + 1) / numShares,
+                                           collection.GetSink()));
+                }
+                if (expected.empty()) {
+                    expected = collection.patches;
+                }
+                ASSERT_EQ(collection.patches, expected)
+                    << numThreads << " threads, " << memory << " bytes, " << numShares << " shares";
+            }
+        }
+    }
+    EXPECT_EQ(int(expected.size()), shape.GetNumFaces());
+}
+
+TEST(PatchStreamTest, TakesPointsOfAnySize) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    PatchStream<double> const stream(*factory, PatchLevels(5));
+    Collection<double> positions;
+    ASSERT_TRUE(stream.Run(shape.positions.data(), 3, positions.GetSink()));
+    for (int const size : {1, 2, 5}) {
+        // Each number is one of the three coordinates; what is between points is of no matter.
+        int const stride = size + 2;
+        std::vector<double> values(std::size_t(stride) * std::size_t(shape.GetNumVertices()), 1e9);
+        for (std::size_t vert = 0; vert < std::size_t(shape.GetNumVertices()); ++vert) {
+            for (std::size_t k = 0; k < std::size_t(size); ++k) {
+                values[vert * std::size_t(stride) + k] = shape.positions[3 * vert + k % 3];
+            }
+        }
+        Collection<double> collection;
+        ASSERT_TRUE(stream.Run(values.data(), {size, stride}, collection.GetSink()));
+        for (auto const &[face, points] : positions.patches) {
+            std::vector<double> const &found = collection.patches.at(face);
+            ASSERT_EQ(found.size() * 3, points.size() * std::size_t(size));
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                ASSERT_EQ(found[i],
+                          points[3 * (i / std::size_t(size)) + i % std::size_t(size) % 3]);
+            }
+        }
+    }
+}
+
+TEST(PatchStreamTest, RefusesBeforeAnythingIsHandedOut) {
+    Shape const &shape = GetShape("polygon4");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    int numPatches = 0;
+    PatchStream<double>::Sink const sink = [&](PatchStream<double>::Patch const &) {
+        ++numPatches;
+        return true;
+    };
+    FarExt::Status status;
+    auto const run = [&](PatchLevels const &levels, int begin, int end, int facetSize) {
+        PatchStream<double>::Options options;
+        options.SetTessellationOptions(Tessellation::Options().SetFacetSize(facetSize));
+        return PatchStream<double>(*factory, levels, options)
+            .Run(shape.positions.data(), 3, begin, end, sink, &status);
+    };
+    EXPECT_FALSE(run(PatchLevels(13), 0, 1, 3));
+    EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+    EXPECT_EQ(status.GetMessage(), "face 0 has level 13, which is not one of 0 to 12");
+    EXPECT_FALSE(run(
+        PatchLevels([](int) { return 1; }, [](int edge) { return edge == 2 ? -1 : 0; }), 0, 1, 3));
+    EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Edge);
+    EXPECT_EQ(status.GetComponentIndex(), 2);
+    EXPECT_FALSE(run(PatchLevels(1), 0, 2, 3));
+    EXPECT_EQ(status.GetMessage(), "faces 0 to 2 are no range of the 1 of the mesh");
+    EXPECT_FALSE(run(PatchLevels(1), 0, 1, 5));
+    EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+    EXPECT_TRUE(run(PatchLevels(1), 0, 0, 3));
+    EXPECT_EQ(numPatches, 0);
+
+    auto const free = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    auto const freeFactory = SurfaceFactory::Create(*free);
+    EXPECT_FALSE(PatchStream<double>(*freeFactory, PatchLevels(1))
+                     .Run(shape.positions.data(), 3, sink, &status));
+    EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
+    EXPECT_EQ(numPatches, 0);
+    EXPECT_TRUE(run(PatchLevels(1), 0, 1, 3));
+    EXPECT_EQ(numPatches, 1);
+}
+
+TEST(PatchStreamTest, EndsWhenTheSinkSaysSo) {
+    Shape const &shape = GetFeatureShape("mixedSharpnessQuads");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    PatchStream<double> const stream(*factory, PatchLevels(1));
+    Threads const threads(1);
+    int numPatches = 0;
+    FarExt::Status status(StatusCode::TooLarge, FarExt::ComponentType::None, 0, "");
+    EXPECT_FALSE(stream.Run(
+        shape.positions.data(), 3,
+        [&](PatchStream<double>::Patch const &) { return ++numPatches < 3; }, &status));
+    EXPECT_TRUE(status.IsOk());
+    EXPECT_EQ(numPatches, 3);
+    EXPECT_THROW(stream.Run(shape.positions.data(), 3,
+                            [](PatchStream<double>::Patch const &) -> bool {
+                                throw std::runtime_error("the disk is full");
+                            }),
+                 std::runtime_error);
+}
+
+} // namespace OpenSubdivHex::Regression
