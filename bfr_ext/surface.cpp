@@ -2,6 +2,7 @@
 #include "surface.h"
 
 #include "cell/cellPattern.h"
+#include "cell/cellValues.h"
 #include "cell/surfaceTurns.h"
 
 #include <algorithm>
@@ -13,6 +14,9 @@ namespace {
 
 using internal::CellStencil;
 using internal::CellType;
+
+// The key of the stencil of one place of an edge, where levels have their own.
+constexpr int kOfPlace = -1;
 
 // A weighted sum of points, in double precision.
 template <typename REAL, typename WEIGHT>
@@ -153,6 +157,10 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
                              PointDescriptor const &pointDesc, REAL *const results[3],
                              PointDescriptor const &resultDesc) const {
     using Pattern = internal::CellPattern<REAL>;
+    if (tessellation._tree) {
+        evaluateTree(tessellation, controlPoints, pointDesc, results, resultDesc);
+        return;
+    }
     bool const hasDerivatives = results[1] != nullptr;
     std::vector<int> key = tessellation._levels;
     key.insert(key.end(), {int(sizeof(REAL)), int(hasDerivatives)});
@@ -167,6 +175,74 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
     for (int kind = 0; kind < (hasDerivatives ? 3 : 1); ++kind) {
         pattern.Evaluate(kind, {controlPoints, pointDesc.size, pointDesc.stride}, results[kind],
                          resultDesc.stride);
+    }
+    evaluateBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
+}
+
+// The control points are refined along the tree, as far as cells have corners that are asked for.
+template <typename REAL>
+void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const controlPoints[],
+                                 PointDescriptor const &pointDesc, REAL *const results[3],
+                                 PointDescriptor const &resultDesc) const {
+    using internal::CellValues;
+    auto const length = std::size_t(pointDesc.size);
+    std::vector<double> control;
+    for (int i = 0; i < GetNumControlPoints(); ++i) {
+        REAL const *const point = controlPoints + std::ptrdiff_t(i) * pointDesc.stride;
+        control.insert(control.end(), point, point + pointDesc.size);
+    }
+    CellTree const &tree = tessellation._tree->cells;
+    std::vector<Tessellation::CellCorner> const &corners = tessellation._tree->corners;
+    std::vector<double> point(2 * length);
+    std::vector<bool> isDone(tessellation._places.size());
+    auto const write = [&](int place, int kind, double const *from) {
+        std::copy(from, from + length, results[kind] + std::ptrdiff_t(place) * resultDesc.stride);
+    };
+    auto const evaluateCorners = [&](int cell, CellValues const &values) {
+        auto corner = std::lower_bound(
+            corners.begin(), corners.end(), cell,
+            [](Tessellation::CellCorner const &a, int number) { return a.cell < number; });
+        for (; corner != corners.end() && corner->cell == cell; ++corner) {
+            values.EvaluateCorner(corner->corner, point.data());
+            write(corner->place, 0, point.data());
+            if (results[1]) {
+                values.EvaluateCorner(corner->corner, point.data(), point.data() + length);
+                write(corner->place, 1, point.data());
+                write(corner->place, 2, point.data() + length);
+                isDone[std::size_t(corner->place)] = true;
+            }
+        }
+    };
+    std::vector<CellValues> path(std::size_t(CellTree::kLastLevel) + 1);
+    auto const visit = [&](auto const &self, int cell) -> void {
+        auto const level = std::size_t(tree.GetLevel(cell));
+        evaluateCorners(cell, path[level]);
+        int const first = tree.GetFirstChild(cell);
+        for (int i = 0; first > 0 && i < tree.GetNumChildren(cell); ++i) {
+            // Only the first child has corners that the cell has not.
+            if (i == 0 || tree.IsRefined(first + i)) {
+                path[level + 1].SetChild(path[level], i);
+                self(self, first + i);
+            }
+        }
+    };
+    path[0].SetBase(*_type, control.data(), pointDesc.size);
+    visit(visit, 0);
+    // Derivatives at points of neighbours alone.
+    for (std::size_t i = 0; results[1] && i < isDone.size(); ++i) {
+        if (!isDone[i]) {
+            Tessellation::SectorCoords const &place = tessellation._places[i];
+            CellStencil stencil(*_type);
+            stencil.Find(
+                internal::MakeBasePoint(GetFaceSize(), place.sector, {place.start, place.end}),
+                true);
+            auto const sumTo = [&](std::vector<double> const &weights, int kind) {
+                sumUp(weights.data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc,
+                      results[kind] + std::ptrdiff_t(i) * resultDesc.stride);
+            };
+            sumTo(stencil.GetDuWeights(), 1);
+            sumTo(stencil.GetDvWeights(), 2);
+        }
     }
     evaluateBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
 }
@@ -198,17 +274,26 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
             return first + (item.isReversed ? numPlaces - i : i + 1);
         };
         BorderValues const values(item, controlPoints, pointDesc.stride, pointDesc.size);
-        int const level = tessellation._levels[std::size_t(edge)];
-        BorderPattern const &pattern =
-            values.GetType().template GetPattern<BorderPattern>({level}, [&] {
-                std::vector<double> points;
-                for (int i = 0; i < numPlaces; ++i) {
-                    Tessellation::SectorCoords const &place =
-                        tessellation._places[std::size_t(getPlace(i))];
-                    points.push_back(item.isReversed ? place.start : place.end);
-                }
-                return BorderPattern(values.GetType(), points);
-            });
+        std::vector<double> points;
+        for (int i = 0; i < numPlaces; ++i) {
+            Tessellation::SectorCoords const &place =
+                tessellation._places[std::size_t(getPlace(i))];
+            points.push_back(item.isReversed ? place.start : place.end);
+        }
+        if (tessellation._tree) {
+            // Points of polylines are found one by one, since they have few in common.
+            for (int i = 0; i < numPlaces; ++i) {
+                double const point = points[std::size_t(i)];
+                BorderPattern const &pattern = values.GetType().template GetPattern<BorderPattern>(
+                    {kOfPlace, int(point * Polyline::kLength)},
+                    [&] { return BorderPattern(values.GetType(), {point}); });
+                values.Sum(pattern, [&](std::size_t) { return getResult(getPlace(i)); });
+            }
+            continue;
+        }
+        BorderPattern const &pattern = values.GetType().template GetPattern<BorderPattern>(
+            {tessellation._levels[std::size_t(edge)]},
+            [&] { return BorderPattern(values.GetType(), points); });
         values.Sum(pattern, [&](std::size_t i) { return getResult(getPlace(int(i))); });
     }
 }

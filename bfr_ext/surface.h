@@ -154,11 +154,13 @@ public:
     /// next by the stride of \p resultDesc.
     ///
     /// Two faces that share an edge get the same points there, to the bit, if the edge has the same
-    /// level in both and their control points come from the same mesh: so facets of neighbours can be
-    /// joined by comparing points.  That holds for any threads, orders and levels of the inside; not at
+    /// level, or Polyline, in both and their control points come from the same mesh: so facets of
+    /// neighbours can be joined by comparing points.  Levels and polylines give a place the same point.
+    /// That holds for any threads, orders, trees and levels of the inside; not at
     /// non-manifold edges and vertices, nor for face-varying values on the two sides of a seam.
     ///
-    /// The weights are found when a type of faces is first evaluated so, and kept in the cache.
+    /// The weights are found when a type of faces is first evaluated so, and kept in the cache.  Inside
+    /// of trees the control points are refined cell by cell instead, in double precision.
     void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;
@@ -191,6 +193,9 @@ private:
     void evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[3],
                   PointDescriptor const &resultDesc) const;
+    void evaluateTree(Tessellation const &tessellation, REAL const controlPoints[],
+                      PointDescriptor const &pointDesc, REAL *const results[3],
+                      PointDescriptor const &resultDesc) const;
     void evaluateBorder(Tessellation const &tessellation, REAL const controlPoints[],
                         PointDescriptor const &pointDesc, REAL p[],
                         PointDescriptor const &resultDesc) const;

@@ -54,16 +54,13 @@ private:
                std::max({getSquare(t[0], t[1]), getSquare(t[1], t[2]), getSquare(t[2], t[0])});
     }
 
-    // Whether all that would be left were a straight line.
+    // Whether all that would be left were a straight line, which the ends of the cut lie on.
     bool isRestFlat(std::vector<int> const &polygon, std::size_t ear) const {
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            if (i == ear) {
-                continue;
-            }
-            std::vector<int> rest = polygon;
-            rest.erase(rest.begin() + std::ptrdiff_t(ear));
-            std::size_t const place = i < ear ? i : i - 1;
-            if (getQuality(getCorner(rest, place)) > kLeastQuality) {
+        std::size_t const size = polygon.size();
+        int const start = polygon[(ear + 1) % size];
+        int const end = polygon[(ear + size - 1) % size];
+        for (std::size_t i = 2; i + 1 < size; ++i) {
+            if (getQuality({start, polygon[(ear + i) % size], end}) > kLeastQuality) {
                 return false;
             }
         }
@@ -101,25 +98,49 @@ Tessellation::Tessellation(Parameterization const &parameterization, int numLeve
     initialize(parameterization, numLevels, levels, options);
 }
 
-void Tessellation::initialize(Parameterization const &parameterization, int numLevels,
-                              int const levels[], Options const &options) {
-    int const size = parameterization.GetFaceSize();
+Tessellation::Tessellation(CellTree const &tree, Polyline const edges[], Options options) {
+    std::vector<Polyline> polylines;
+    bool hasAllPoints = true;
+    for (int edge = 0; edge < tree.GetFaceSize(); ++edge) {
+        Polyline own = tree.GetEdgePolyline(edge);
+        hasAllPoints = hasAllPoints && (edges == nullptr || edges[edge].Contains(own));
+        polylines.push_back(edges ? edges[edge] : std::move(own));
+    }
+    if (!setOptions(options) || !hasAllPoints) {
+        return;
+    }
+    _parameterization = Parameterization(tree.GetFaceSize());
+    CellMesh const mesh(tree, polylines.data());
+    _tree = std::make_shared<Tree>(Tree{tree, std::move(polylines), {}});
+    setCells(mesh);
+}
+
+bool Tessellation::setOptions(Options const &options) {
     int const facetSize = options.GetFacetSize();
     int const facetStride = options.GetFacetStride() == 0 ? facetSize : options.GetFacetStride();
     int const coordStride = options.GetCoordStride() == 0 ? 2 : options.GetCoordStride();
+    _firstFacetIndices = {0};
+    if (coordStride < 2 || (facetSize != 0 && facetSize != 3 && facetSize != 4) ||
+        facetStride < facetSize) {
+        return false;
+    }
+    _facetSize = facetSize;
+    _facetStride = facetSize == 0 ? 0 : facetStride;
+    _coordStride = coordStride;
+    return true;
+}
+
+void Tessellation::initialize(Parameterization const &parameterization, int numLevels,
+                              int const levels[], Options const &options) {
+    int const size = parameterization.GetFaceSize();
     bool const areLevelsValid = (numLevels == 1 || numLevels == size || numLevels == size + 1) &&
                                 std::all_of(levels, levels + numLevels, [](int level) {
                                     return 0 <= level && level <= kLastLevel;
                                 });
-    _firstFacetIndices = {0};
-    if (!parameterization.IsValid() || !areLevelsValid || coordStride < 2 ||
-        (facetSize != 0 && facetSize != 3 && facetSize != 4) || facetStride < facetSize) {
+    if (!setOptions(options) || !parameterization.IsValid() || !areLevelsValid) {
         return;
     }
     _parameterization = parameterization;
-    _facetSize = facetSize;
-    _facetStride = facetSize == 0 ? 0 : facetStride;
-    _coordStride = coordStride;
     if (numLevels == 1) {
         _levels.assign(std::size_t(size) + 1, levels[0]);
     } else {
@@ -127,8 +148,14 @@ void Tessellation::initialize(Parameterization const &parameterization, int numL
         _levels.push_back(numLevels > size ? levels[size]
                                            : *std::max_element(levels, levels + size));
     }
+    std::vector<Polyline> edges;
+    std::for_each(_levels.begin(), _levels.end() - 1,
+                  [&](int level) { edges.emplace_back(level); });
+    setCells(CellMesh(CellTree(size, _levels.data(), _levels.back()), edges.data()));
+}
 
-    CellMesh const mesh(size, {_levels.begin(), _levels.end() - 1}, _levels.back());
+// Returns the places of the mesh's vertices.
+std::vector<int> Tessellation::addPlaces(CellMesh const &mesh) {
     std::vector<CellMesh::Vertex> const &verts = mesh.GetVertices();
     std::vector<int> places(verts.size(), kInvalid);
     std::vector<int> order;
@@ -136,7 +163,7 @@ void Tessellation::initialize(Parameterization const &parameterization, int numL
         places[std::size_t(vert)] = int(order.size());
         order.push_back(vert);
     };
-    for (int edge = 0; edge < size; ++edge) {
+    for (int edge = 0; edge < GetFaceSize(); ++edge) {
         std::vector<int> const edgeVerts = mesh.GetEdgeVertices(edge);
         _firstEdgeCoords.push_back(int(order.size()));
         std::for_each(edgeVerts.begin(), edgeVerts.end() - 1, addVertex);
@@ -147,7 +174,7 @@ void Tessellation::initialize(Parameterization const &parameterization, int numL
             addVertex(int(vert));
         }
     }
-    FarExt::internal::BasePolygon const polygon(size);
+    FarExt::internal::BasePolygon const polygon(GetFaceSize());
     _coords.resize(2 * order.size());
     for (std::size_t place = 0; place < order.size(); ++place) {
         CellMesh::Vertex const &vert = verts[std::size_t(order[place])];
@@ -155,27 +182,42 @@ void Tessellation::initialize(Parameterization const &parameterization, int numL
         double const end = std::ldexp(double(vert.b), -CellMesh::kBits);
         polygon.Write(vert.sector, {start, end}, &_coords[2 * place]);
         _places.push_back({vert.sector, start, end});
+        if (_tree && vert.cell >= 0) {
+            _tree->corners.push_back({vert.cell, vert.corner, int(place)});
+        }
     }
+    if (_tree) {
+        std::sort(_tree->corners.begin(), _tree->corners.end(),
+                  [](CellCorner const &a, CellCorner const &b) {
+                      return a.cell != b.cell ? a.cell < b.cell : a.corner < b.corner;
+                  });
+    }
+    return places;
+}
 
-    auto const addFacet = [&](int const *facet, int numVerts) {
+void Tessellation::setCells(CellMesh const &mesh) {
+    std::vector<int> const places = addPlaces(mesh);
+    auto const addFacet = [&](int const *facet, int numVerts, int level) {
         _facetIndices.insert(_facetIndices.end(), facet, facet + numVerts);
         _firstFacetIndices.push_back(int(_facetIndices.size()));
+        _facetLevels.push_back(level);
     };
     Triangulator const triangulator(_coords);
     std::vector<std::array<int, 3>> triangles;
-    for (std::vector<int> &facet : mesh.GetPolygons(facetSize == 0)) {
+    for (CellMesh::Polygon &polygon : mesh.GetPolygons(_facetSize == 0)) {
+        std::vector<int> &facet = polygon.verts;
         for (int &vert : facet) {
             vert = places[std::size_t(vert)];
         }
         int const numVerts = int(facet.size());
-        if (facetSize == 0 || (facetSize == 4 && numVerts == 4)) {
-            addFacet(facet.data(), numVerts);
+        if (_facetSize == 0 || (_facetSize == 4 && numVerts == 4)) {
+            addFacet(facet.data(), numVerts, polygon.level);
             continue;
         }
         triangles.clear();
         triangulator.Add(std::move(facet), triangles);
         for (std::array<int, 3> const &triangle : triangles) {
-            addFacet(triangle.data(), 3);
+            addFacet(triangle.data(), 3, polygon.level);
         }
     }
 }
@@ -186,14 +228,19 @@ int Tessellation::GetLevels(int levels[]) const {
 }
 
 bool Tessellation::IsUniform() const {
-    return std::all_of(_levels.begin(), _levels.end(),
-                       [&](int level) { return level == _levels[0]; });
+    return !_levels.empty() && std::all_of(_levels.begin(), _levels.end(),
+                                           [&](int level) { return level == _levels[0]; });
 }
 
 int Tessellation::GetFacetSizes(int sizes[]) const {
     for (std::size_t i = 0; i + 1 < _firstFacetIndices.size(); ++i) {
         sizes[i] = _firstFacetIndices[i + 1] - _firstFacetIndices[i];
     }
+    return GetNumFacets();
+}
+
+int Tessellation::GetFacetLevels(int levels[]) const {
+    std::copy(_facetLevels.begin(), _facetLevels.end(), levels);
     return GetNumFacets();
 }
 

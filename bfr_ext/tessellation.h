@@ -2,15 +2,18 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_TESSELLATION_H
 #define OPENSUBDIVHEX_BFR_EXT_TESSELLATION_H
 
+#include "cellTree.h"
 #include "parameterization.h"
 
+#include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
+class CellMesh;
 struct PatchPlan;
-}
+} // namespace internal
 
 /// \brief A base face cut into facets, as Bfr::Tessellation: places in its parameter plane, at which a
 /// Surface is evaluated, and the facets between them.
@@ -21,16 +24,16 @@ struct PatchPlan;
 /// which has the points of the one before, too.
 ///
 /// Cells are refined to the level of the inside, but for those whose refinement would give an edge of
-/// the face more points than its level has; and where a cell meets smaller ones, or an edge of a finer
-/// level, it has their points in its own sides.  So neighbours fit whatever their levels are, as long
-/// as both take the same level for the edge that they share: there are no gaps, and no more facets
-/// than the levels ask for.
+/// the face more points than its level has; or a CellTree says for each cell whether it is refined.
+/// Where a cell meets smaller ones, or an edge of a finer level, it has their points in its own sides.
+/// So neighbours fit whatever their levels and trees are, as long as both take the same level, or
+/// Polyline, for the edge that they share: there are no gaps, and no more facets than are asked for.
 ///
 /// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API Tessellation {
 public:
     /// The last level, of the inside and of edges.
-    static constexpr int kLastLevel = 12;
+    static constexpr int kLastLevel = CellTree::kLastLevel;
 
     /// \brief How facets and arrays are to be, as in Bfr.
     class Options {
@@ -82,6 +85,18 @@ public:
     Tessellation(Parameterization const &parameterization, int numLevels, int const levels[],
                  Options options = Options());
 
+    /// \brief The cells of a tree, beside neighbours with trees of their own.
+    ///
+    /// It is invalid, too, where a polyline lacks a point that the tree has there.
+    ///
+    /// \param tree     of which it keeps a copy
+    /// \param edges    what the edges are, tree.GetFaceSize() polylines in the direction of the face:
+    ///                 those of the tree (CellTree::GetEdgePolyline()), merged with the neighbour's
+    ///                 (Polyline::Merge()); null: those of the tree
+    /// \param options  how facets and arrays are to be
+    explicit Tessellation(CellTree const &tree, Polyline const edges[] = nullptr,
+                          Options options = Options());
+
     /// Whether the arguments were as they have to be.
     bool IsValid() const { return _parameterization.IsValid(); }
 
@@ -90,9 +105,9 @@ public:
     /// Vertices of the face.
     int GetFaceSize() const { return _parameterization.GetFaceSize(); }
     /// Writes the levels of the edges and of the inside.
-    /// \return  how many they are: GetFaceSize() + 1
+    /// \return  how many they are: GetFaceSize() + 1, or 0 of a tree
     int GetLevels(int levels[]) const;
-    /// Whether all of them are the same.
+    /// Whether all of them are the same; not of a tree.
     bool IsUniform() const;
 
     /// @name Coordinates
@@ -160,6 +175,9 @@ public:
     int GetFacetSizes(int sizes[]) const;
     /// Sum of the sizes of all facets: what GetFacets() writes of polygons.
     int GetNumFacetVertices() const { return int(_facetIndices.size()); }
+    /// Writes the levels of the cells that the facets are, or lie in.
+    /// \return  GetNumFacets()
+    int GetFacetLevels(int levels[]) const;
     /// Writes which coordinates the facets have: one facet every GetFacetStride() indices, polygons
     /// one behind the other.
     /// \return  GetNumFacets()
@@ -187,8 +205,24 @@ private:
         double end;
     };
 
+    // A place that is a corner of a cell.
+    struct CellCorner {
+        int cell;
+        int corner;
+        int place;
+    };
+    // What the tessellation of a tree has besides.
+    struct Tree {
+        CellTree cells;
+        std::vector<Polyline> edges;
+        std::vector<CellCorner> corners; // of all places that are corners, ascending by cell
+    };
+
     void initialize(Parameterization const &parameterization, int numLevels, int const levels[],
                     Options const &options);
+    bool setOptions(Options const &options);
+    void setCells(internal::CellMesh const &mesh);
+    std::vector<int> addPlaces(internal::CellMesh const &mesh);
     template <typename FUNCTION>
     void transform(int facetTuples[], FUNCTION function) const;
 
@@ -205,12 +239,14 @@ private:
     int _facetSize = 3;
     int _facetStride = 3;
     int _coordStride = 2;
-    std::vector<int> _levels;            // of edges, then of the inside
+    std::vector<int> _levels;            // of edges, then of the inside; none of a tree
+    std::shared_ptr<Tree> _tree;         // null of levels
     std::vector<double> _coords;         // two of each place
     std::vector<SectorCoords> _places;   // the same, exactly
     std::vector<int> _firstEdgeCoords;   // by edge, the place of its first vertex; then their end
     std::vector<int> _firstFacetIndices; // by facet; then their end
     std::vector<int> _facetIndices;      // of all facets
+    std::vector<int> _facetLevels;       // by facet
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -33,58 +33,52 @@ int CellMesh::find(int sector, Place const &place) const {
     return found == _numbers.end() ? -1 : found->second;
 }
 
-int CellMesh::add(int sector, Place const &place) {
+void CellMesh::add(int sector, Place const &place, int cell, int corner) {
     std::array<std::int64_t, 3> const key = getKey(_faceSize, sector, place);
-    auto const [found, isNew] = _numbers.emplace(key, int(_verts.size()));
-    if (isNew) {
-        _verts.push_back({int(key[0]), key[1], key[2]});
+    if (_numbers.emplace(key, int(_verts.size())).second) {
+        _verts.push_back({int(key[0]), key[1], key[2], cell, corner});
     }
-    return found->second;
 }
 
-CellMesh::CellMesh(int faceSize, std::vector<int> const &edgeLevels, int level)
-    : _faceSize(faceSize) {
-    for (int sector = 0; sector < faceSize; ++sector) {
-        add(sector, {kOne, 0});
+CellMesh::CellMesh(CellTree const &tree, Polyline const edges[]) : _faceSize(tree.GetFaceSize()) {
+    for (int sector = 0; sector < _faceSize; ++sector) {
+        add(sector, {kOne, 0}, 0, sector);
     }
     // Level by level, so that vertices of coarser ones come first.
-    std::vector<Cell> cells = {{true, 0, 0, kOne, {}}};
+    std::vector<Cell> cells = {{0, 0, true, 0, kOne, {}}};
     while (!cells.empty()) {
         std::vector<Cell> children;
         for (Cell const &cell : cells) {
-            if (cell.depth < level && isRefinable(cell, edgeLevels)) {
-                refine(cell, children);
+            if (tree.IsRefined(cell.number)) {
+                refine(cell, tree.GetFirstChild(cell.number), children);
             } else {
                 _leaves.push_back(cell);
             }
         }
         cells = std::move(children);
     }
-    for (int edge = 0; edge < faceSize; ++edge) {
-        addLine(edge, {kOne, 0}, {0, kOne}, false, 0, edgeLevels[std::size_t(edge)]);
+    for (int edge = 0; edge < _faceSize; ++edge) {
+        for (Polyline::Place const place : edges[edge].GetPlaces()) {
+            std::int64_t const end = kOne / Polyline::kLength * place;
+            add(edge, {kOne - end, end}, -1, 0);
+        }
     }
 }
 
-// A step divides the long edges of half cells, and no others.
-bool CellMesh::isRefinable(Cell const &cell, std::vector<int> const &edgeLevels) const {
-    bool const isOnEdge = !cell.isWhole && cell.corners[0][0] + cell.corners[0][1] == kOne &&
-                          cell.corners[1][0] + cell.corners[1][1] == kOne;
-    return !isOnEdge || cell.depth < edgeLevels[std::size_t(cell.sector)];
-}
-
-void CellMesh::refine(Cell const &cell, std::vector<Cell> &children) {
+void CellMesh::refine(Cell const &cell, int firstChild, std::vector<Cell> &children) {
     auto const getMiddle = [](Place const &p, Place const &q) {
         return Place{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
     };
     if (cell.isWhole) {
         std::int64_t const half = cell.scale / 2;
         for (int sector = 0; sector < _faceSize; ++sector) {
-            add(sector, {half, 0});
+            add(sector, {half, 0}, firstChild, sector);
         }
-        children.push_back({true, cell.depth + 1, 0, half, {}});
+        children.push_back({firstChild, cell.level + 1, true, 0, half, {}});
         for (int sector = 0; sector < _faceSize; ++sector) {
-            children.push_back({false,
-                                cell.depth + 1,
+            children.push_back({firstChild + 1 + sector,
+                                cell.level + 1,
+                                false,
                                 sector,
                                 0,
                                 {{{cell.scale, 0}, {0, cell.scale}, {0, half}, {half, 0}}}});
@@ -95,38 +89,18 @@ void CellMesh::refine(Cell const &cell, std::vector<Cell> &children) {
     std::array<Place, 4> inner;
     for (std::size_t i = 0; i < 4; ++i) {
         inner[i] = getMiddle(cell.corners[i], middle);
-        add(cell.sector, inner[i]);
+        add(cell.sector, inner[i], firstChild, int(i));
     }
-    children.push_back({false, cell.depth + 1, cell.sector, 0, inner});
+    children.push_back({firstChild, cell.level + 1, false, cell.sector, 0, inner});
     for (std::size_t i = 1; i < 4; ++i) {
         std::size_t const next = (i + 1) % 4;
-        children.push_back({false,
-                            cell.depth + 1,
+        children.push_back({firstChild + int(i),
+                            cell.level + 1,
+                            false,
                             cell.sector,
                             0,
                             {{cell.corners[i], cell.corners[next], inner[next], inner[i]}}});
     }
-}
-
-// Adds the vertices that an edge from start to end has at a level, where it is an edge, or a long one,
-// at depth.
-void CellMesh::addLine(int sector, Place const &start, Place const &end, bool isLong, int depth,
-                       int level) {
-    if (depth >= level) {
-        return;
-    }
-    if (!isLong) {
-        addLine(sector, start, end, true, depth + 1, level);
-        return;
-    }
-    Place const quarter = {(end[0] - start[0]) / 4, (end[1] - start[1]) / 4};
-    Place const first = {start[0] + quarter[0], start[1] + quarter[1]};
-    Place const second = {end[0] - quarter[0], end[1] - quarter[1]};
-    add(sector, first);
-    add(sector, second);
-    addLine(sector, start, first, false, depth + 1, level);
-    addLine(sector, first, second, true, depth + 1, level);
-    addLine(sector, second, end, false, depth + 1, level);
 }
 
 // Appends what lies inside of a side, from its start to its end.
@@ -170,15 +144,15 @@ std::vector<int> CellMesh::GetEdgeVertices(int edge) const {
     return result;
 }
 
-std::vector<std::vector<int>> CellMesh::GetPolygons(bool isMerged) const {
-    std::vector<std::vector<int>> polygons;
+std::vector<CellMesh::Polygon> CellMesh::GetPolygons(bool isMerged) const {
+    std::vector<Polygon> polygons;
     // By the ends of its long edge, the half cell of which the other half has not come yet.
     std::map<std::array<int, 2>, std::size_t> halves;
     for (Cell const &cell : _leaves) {
         std::vector<int> polygon;
         if (cell.isWhole) {
             appendSides(cell, 0, _faceSize, polygon);
-            polygons.push_back(std::move(polygon));
+            polygons.push_back({std::move(polygon), cell.level});
             continue;
         }
         appendSides(cell, 0, 4, polygon);
@@ -188,13 +162,13 @@ std::vector<std::vector<int>> CellMesh::GetPolygons(bool isMerged) const {
             auto const other = halves.find({end, start});
             if (other != halves.end()) {
                 // The other runs from end to start, where now all of this one comes between.
-                std::vector<int> &hexagon = polygons[other->second];
+                std::vector<int> &hexagon = polygons[other->second].verts;
                 hexagon.insert(hexagon.begin() + 1, polygon.begin() + 2, polygon.end());
                 continue;
             }
             halves[{start, end}] = polygons.size();
         }
-        polygons.push_back(std::move(polygon));
+        polygons.push_back({std::move(polygon), cell.level});
     }
     return polygons;
 }

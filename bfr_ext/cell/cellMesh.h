@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_MESH_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_MESH_H
 
+#include "bfr_ext/cellTree.h"
+
 #include <array>
 #include <cstdint>
 #include <unordered_map>
@@ -9,7 +11,7 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief A base face cut into cells that are not refined further, in its parameter plane.
+/// \brief A base face cut into the cells of a tree that are not refined further, in its parameter plane.
 ///
 /// All lines are straight there: half cells are trapezoids, and what an edge becomes lies on it.  So a
 /// place is enough to know a vertex by, and cells that meet smaller ones find their vertices on their
@@ -18,32 +20,41 @@ class CellMesh {
 public:
     /// A vertex: its sector and the coordinates a and b there, in units of 2^-kBits.  On the line from
     /// the centre to a corner it is in the sector that begins there.
+    /// The cell is the first one that it was a corner of, or -1 where it is that of a neighbour alone.
     struct Vertex {
         int sector;
         std::int64_t a;
         std::int64_t b;
+        int cell;
+        int corner;
     };
     static constexpr int kBits = 40;
 
-    /// \param edgeLevels  by edge of the face; all levels as Tessellation says
-    CellMesh(int faceSize, std::vector<int> const &edgeLevels, int level);
+    /// \param edges  by edge of the face, in its direction; with all points that the tree has there
+    CellMesh(CellTree const &tree, Polyline const edges[]);
 
     /// Vertices of coarser levels come first.
     std::vector<Vertex> const &GetVertices() const { return _verts; }
     /// The vertices of an edge of the face, from its first corner to its second.
     std::vector<int> GetEdgeVertices(int edge) const;
 
-    /// \brief The cells, counter-clockwise, with the vertices that others have on their sides.
+    /// A cell, or two halves of a hexagon: vertices, counter-clockwise, and the level.
+    struct Polygon {
+        std::vector<int> verts;
+        int level;
+    };
+    /// \brief The cells, with the vertices that others have on their sides.
     ///
     /// \param isMerged  whether two halves of one hexagon that meet in nothing but its diagonal's ends
     ///                  make one polygon
-    std::vector<std::vector<int>> GetPolygons(bool isMerged) const;
+    std::vector<Polygon> GetPolygons(bool isMerged) const;
 
 private:
     using Place = std::array<std::int64_t, 2>;
     struct Cell {
+        int number;
+        int level;
         bool isWhole;
-        int depth;
         int sector;                   // of half cells
         std::int64_t scale;           // of whole ones: how far their corners are from the centre
         std::array<Place, 4> corners; // of half cells, in their sector
@@ -54,11 +65,8 @@ private:
 
     static std::array<std::int64_t, 3> getKey(int faceSize, int sector, Place const &place);
     int find(int sector, Place const &place) const;
-    int add(int sector, Place const &place);
-    bool isRefinable(Cell const &cell, std::vector<int> const &edgeLevels) const;
-    void refine(Cell const &cell, std::vector<Cell> &children);
-    void addLine(int sector, Place const &start, Place const &end, bool isLong, int depth,
-                 int level);
+    void add(int sector, Place const &place, int cell, int corner);
+    void refine(Cell const &cell, int firstChild, std::vector<Cell> &children);
     void appendSide(int sector, Place const &start, Place const &end, bool isLong,
                     std::vector<int> &verts) const;
     void appendSides(Cell const &cell, int first, int count, std::vector<int> &polygon) const;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_BOUNDS_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_BOUNDS_H
+
+#include "cellValues.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief What holds for the surface in all cells of a type, wherever their points lie.
+///
+/// **Weights.**  A place of a cell is a sum of the points, with weights that are not negative and add up
+/// to 1.  A step makes points of a child of them with such weights, too, and so do some steps: a place
+/// in the cell is a sum of the points of the cell two steps on that has it.  So no weight of a place is
+/// larger than the largest that these points have.
+///
+/// **Derivatives**, where all cells that a step makes are of the same type again and it keeps linear
+/// functions: with FaceMask::Smooth and Cosine, in a regular lattice.  Let x be the places of the points
+/// in a plane, and A the linear function that is nearest to points P, with the rest r = P - A(x).  The
+/// cells k steps on have the rest N r, where N is a matrix for each of them, and their A has another
+/// slope by H r.  Let g and h be the largest sums of absolute values in rows of these matrices.  Lengths
+/// shrink by 2 in a step, so that the slope of A changes by at most h, h (2^k g), h (2^k g)^2 ... times
+/// the largest rest, as far as one goes.  Where 2^k g < 1, the sum is h / (1 - 2^k g).  It bounds what
+/// the derivatives of the surface differ by from the slope, since the surface differs from A by no more
+/// than the largest rest, and that falls by g, faster than lengths do.
+class CellBounds {
+public:
+    explicit CellBounds(CellType const &type);
+
+    /// Those of a type, which are found once.
+    static CellBounds const &Find(CellType const &type);
+
+    /// The bounds of a number of all places of the cell, from that of each point.
+    struct Range {
+        double min;
+        double max;
+    };
+    Range GetRange(std::vector<double> const &numbers) const;
+
+    /// Whether derivatives are bounded.
+    bool HasSlopes() const { return !_slopes[0].empty(); }
+    /// The slopes of the nearest linear function, along the long edge and from it into the cell, and by
+    /// how much derivatives in any direction may differ from it.  \p values: of points, 3 numbers each.
+    struct Slopes {
+        std::array<double, 3> along;
+        std::array<double, 3> across;
+        double tolerance;
+    };
+    Slopes GetSlopes(std::vector<double> const &values) const;
+
+private:
+    std::vector<double> _weights;   // by point
+    std::vector<Pair> _places;      // of points, where derivatives are bounded
+    std::vector<double> _slopes[2]; // of A, as sums of points
+    Pair _center = {};              // the mean of the places
+    double _slopeChange = 0;        // over the largest rest
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

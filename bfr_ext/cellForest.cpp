@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cellForest.h"
+
+#include "far_ext/vtr/hierarchy.h"
+
+#include <map>
+
+namespace OpenSubdivHex::BfrExt {
+
+using FarExt::internal::Level;
+
+CellForest::CellForest(FarExt::TopologyRefiner const &refiner) : _refiner(refiner) {
+    FarExt::TopologyLevel const &base = refiner.GetLevel(0);
+    for (Index face = 0; face < base.GetNumFaces(); ++face) {
+        _trees.emplace_back(base.GetFaceVertices(face).size());
+    }
+    _polylines.resize(std::size_t(base.GetNumEdges()));
+    _firstPoints.assign(_polylines.size() + 1, base.GetNumVertices());
+}
+
+// Whether the edge runs against the face.
+bool CellForest::isReversed(Index face, int local) const {
+    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
+    Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
+    return level.edgeFaces[edge][0] != face || level.edgeFaceLocals[edge][0] != local;
+}
+
+void CellForest::MatchEdges() {
+    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
+    for (Polyline &polyline : _polylines) {
+        polyline = Polyline();
+    }
+    for (Index face = 0; face < GetNumFaces(); ++face) {
+        for (int local = 0; local < level.GetFaceSize(face); ++local) {
+            Polyline const own = GetTree(face).GetEdgePolyline(local);
+            Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
+            _polylines[std::size_t(edge)].Merge(isReversed(face, local) ? own.GetReversed() : own);
+        }
+    }
+    // The edges of a line run along one curve, from either end.
+    struct Line {
+        Index start;
+        Polyline polyline;
+    };
+    std::map<Index, Line> lines;
+    auto const forEachLineEdge = [&](auto const &function) {
+        for (FarExt::internal::LineEdge const &lineEdge : level.lineEdges) {
+            Index const start = level.edgeVerts[lineEdge.edge][0];
+            Line &line = lines.emplace(lineEdge.line, Line{start, {}}).first->second;
+            function(_polylines[std::size_t(lineEdge.edge)], line.polyline, line.start != start);
+        }
+    };
+    forEachLineEdge([](Polyline const &edge, Polyline &line, bool isReversed) {
+        line.Merge(isReversed ? edge.GetReversed() : edge);
+    });
+    forEachLineEdge([](Polyline &edge, Polyline const &line, bool isReversed) {
+        edge = isReversed ? line.GetReversed() : line;
+    });
+    for (std::size_t edge = 0; edge < _polylines.size(); ++edge) {
+        _firstPoints[edge + 1] = _firstPoints[edge] + _polylines[edge].GetNumPoints();
+    }
+}
+
+Tessellation CellForest::GetTessellation(Index face, Tessellation::Options options) const {
+    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
+    std::vector<Polyline> edges;
+    for (int local = 0; local < level.GetFaceSize(face); ++local) {
+        Polyline const &polyline =
+            GetPolyline(level.faceEdges[level.faceFirstCorner[face] + local]);
+        edges.push_back(isReversed(face, local) ? polyline.GetReversed() : polyline);
+    }
+    return Tessellation(GetTree(face), edges.data(), options);
+}
+
+int CellForest::GetBoundaryPoints(Index face, int points[]) const {
+    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
+    int numPoints = 0;
+    for (int local = 0; local < level.GetFaceSize(face); ++local) {
+        Index const corner = level.faceFirstCorner[face] + local;
+        Index const edge = level.faceEdges[corner];
+        points[numPoints++] = level.faceVerts[corner];
+        int const numInner = GetPolyline(edge).GetNumPoints();
+        bool const isBackwards = isReversed(face, local);
+        for (int i = 0; i < numInner; ++i) {
+            points[numPoints++] = GetFirstEdgePoint(edge) + (isBackwards ? numInner - 1 - i : i);
+        }
+    }
+    return numPoints;
+}
+
+} // namespace OpenSubdivHex::BfrExt

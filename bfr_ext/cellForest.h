@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_FOREST_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_FOREST_H
+
+#include "tessellation.h"
+
+#include "far_ext/topologyRefiner.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt {
+
+/// \brief A tree of cells for each face of a base mesh, and the polylines that its edges become: the
+/// tessellation of a mesh, without gaps.
+///
+/// The trees come first, in any order, then MatchEdges(), and then tessellations of any faces.  After
+/// that a face needs nothing of its neighbours.
+///
+/// Points that faces share are numbered: those of the base vertices first, as these, then the inner
+/// points of edge 0 in the direction of the edge, those of edge 1, and so on.  Both sides of an edge that
+/// is not manifold, and so has come apart into one for each face, get the same polyline, but points of
+/// their own.
+///
+/// Several threads may read a forest, and SetTree() may be called by several for different faces.
+/// Arguments are not checked; std::bad_alloc passes through.
+class OPENSUBDIVHEX_API CellForest {
+public:
+    /// A face or an edge of the base mesh.
+    using Index = Far::Index;
+
+    /// No face is refined.  Of the refiner, to which it refers, it needs level 0.
+    explicit CellForest(FarExt::TopologyRefiner const &refiner);
+
+    /// Faces of the base mesh.
+    int GetNumFaces() const { return int(_trees.size()); }
+    /// Sets the tree of a face, which has the vertices of that.
+    void SetTree(Index face, CellTree tree) { _trees[std::size_t(face)] = std::move(tree); }
+    /// The tree of a face.
+    CellTree const &GetTree(Index face) const { return _trees[std::size_t(face)]; }
+
+    /// \brief Finds the polylines of all edges, each with the points that the trees of its faces have
+    /// there, after a tree was set.
+    void MatchEdges();
+    /// The polyline of an edge, in its own direction.
+    Polyline const &GetPolyline(Index edge) const { return _polylines[std::size_t(edge)]; }
+    /// The tessellation of a face.
+    Tessellation GetTessellation(Index face,
+                                 Tessellation::Options options = Tessellation::Options()) const;
+
+    /// Points that faces share, or might share: base vertices and the inner points of edges.
+    int GetNumBoundaryPoints() const { return _firstPoints.back(); }
+    /// The first inner point of an edge; those of GetPolyline() follow one another.
+    int GetFirstEdgePoint(Index edge) const { return _firstPoints[std::size_t(edge)]; }
+    /// \brief Writes the numbers of the points on the boundary of a face, in the order of its
+    /// tessellation's coordinates: for Tessellation::TransformFacetCoordIndices().
+    /// \return  how many they are
+    int GetBoundaryPoints(Index face, int points[]) const;
+
+private:
+    bool isReversed(Index face, int local) const;
+
+    FarExt::TopologyRefiner const &_refiner;
+    std::vector<CellTree> _trees;
+    std::vector<Polyline> _polylines;
+    std::vector<int> _firstPoints; // by edge; then their end
+};
+
+} // namespace OpenSubdivHex::BfrExt
+
+#endif

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_TREE_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_TREE_H
+
+#include "polyline.h"
+
+#include <cstddef>
+
+namespace OpenSubdivHex::BfrExt {
+
+/// \brief How far the parts of a base face are refined: a tree of cells, any of which may be refined.
+///
+/// The *cells* of level 0 is the base face itself.  A refinement step makes of it its F-face, which is
+/// the same kind of cell, and on its side of each edge one half of a hexagon.  Of such a *half cell*,
+/// which has a long edge and three others, it makes the same half of the hexagon's F-face and half
+/// cells at the three edges.  What the cells that are not refined any further cover is the base face,
+/// without gaps and overlaps: any tree is a tessellation (Tessellation), and needs no balance.
+///
+/// Corners of half cells are counter-clockwise from the start of the long edge, which is side 0.
+///
+/// Cells have numbers: 0 is the face, and others are numbered as they are made, children of one cell
+/// one behind the other.
+///
+/// Arguments are not checked.  Several threads may read one tree; std::bad_alloc passes through.
+class OPENSUBDIVHEX_API CellTree {
+public:
+    /// The last level that cells can have.
+    static constexpr int kLastLevel = Polyline::kLastLevel;
+
+    /// A face of \p faceSize vertices, 3 at least, that is not refined.
+    explicit CellTree(int faceSize);
+    /// Cells of one level, 0 ... kLastLevel, everywhere.
+    CellTree(int faceSize, int level);
+    /// \brief Cells of one level, but for those whose refinement would give an edge of the face more
+    /// points than it has with cells of another level.
+    ///
+    /// \param faceSize    vertices of the face
+    /// \param edgeLevels  by edge, edge i being from vertex i to the next
+    /// \param level       of the inside
+    CellTree(int faceSize, int const edgeLevels[], int level);
+
+    /// Vertices of the face.
+    int GetFaceSize() const { return _faceSize; }
+    /// All cells, with those that are refined.
+    int GetNumCells() const { return int(_cells.size()); }
+    /// Those that are not refined.
+    int GetNumLeaves() const { return _numLeaves; }
+    /// The highest level that a cell has.
+    int GetMaxLevel() const;
+
+    /// Whether a cell is the face, or its F-face at a later level, and not half a hexagon.
+    bool IsWhole(int cell) const { return getCell(cell).sector < 0; }
+    /// The level of a cell.
+    int GetLevel(int cell) const { return getCell(cell).level; }
+    /// The edge of the face that a half cell is in the sector of, which is the triangle with the
+    /// centre; -1 of a whole cell.
+    int GetSector(int cell) const { return getCell(cell).sector; }
+    /// The side of a half cell that lies on the edge of its sector: 0, 1 or 3, or -1 if it is not there.
+    int GetBorderSide(int cell) const { return getCell(cell).borderSide; }
+
+    /// Whether a cell has children.
+    bool IsRefined(int cell) const { return getCell(cell).firstChild > 0; }
+    /// How many children a cell has, or would have: 4 of half cells, GetFaceSize() + 1 of whole ones.
+    int GetNumChildren(int cell) const { return IsWhole(cell) ? _faceSize + 1 : 4; }
+    /// The first of them, 0 if it has none.  It is the F-face, or half of it; then come those at the
+    /// edges, from edge 0 of whole cells and side 1 of half cells on.
+    int GetFirstChild(int cell) const { return getCell(cell).firstChild; }
+    /// \brief Refines a cell.
+    /// \return  its first child, also if it is refined already; 0 if it is of the last level
+    int Refine(int cell);
+
+    /// \brief The polyline that the cells make of an edge of the face, in the direction of the face.
+    ///
+    /// Of a neighbour the other direction is the same edge's: Polyline::GetReversed().
+    Polyline GetEdgePolyline(int edge) const;
+
+private:
+    struct Cell {
+        int firstChild;
+        int sector;
+        short level;
+        short borderSide;
+    };
+
+    Cell const &getCell(int cell) const { return _cells[std::size_t(cell)]; }
+    void addPoints(int cell, int start, int end, std::vector<Polyline::Place> &places) const;
+
+    int _faceSize;
+    int _numLeaves = 1;
+    std::vector<Cell> _cells;
+};
+
+} // namespace OpenSubdivHex::BfrExt
+
+#endif

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_POLYLINE_H
+#define OPENSUBDIVHEX_BFR_EXT_POLYLINE_H
+
+#include "far_ext/export.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt {
+
+/// \brief What an edge of a base face has become where the cells beside it are refined: its inner
+/// points, by the places that they have on the edge.
+///
+/// A polyline begins as one segment.  Refinement cuts segments at a quarter and at three quarters of
+/// their length, and these again: so polylines are trees, and of any two of the same edge there is one
+/// that has the points of both and no others.  Two faces that share an edge fit together, however their
+/// own cells are refined, as soon as both take that polyline.
+///
+/// Places are all that there is to know of a polyline, and they may be sent from one process to another.
+///
+/// Objects are values: several threads may read one.  std::bad_alloc passes through.
+class OPENSUBDIVHEX_API Polyline {
+public:
+    /// The last level that cells and edges can have.
+    static constexpr int kLastLevel = 12;
+    /// A place: how far a point is from the start of the edge, which is 0, with its end at kLength.
+    using Place = std::uint16_t;
+    /// The place of the end.
+    static constexpr int kLength = 1 << kLastLevel;
+
+    /// One segment.
+    Polyline() = default;
+    /// That of an edge with cells of level 0 ... kLastLevel all along it: 1, 1, 3, 5, 11, 21, 43 ...
+    /// segments.
+    explicit Polyline(int level);
+    /// \brief That with the given places.
+    ///
+    /// \param places    ascending, without the ends
+    /// \param polyline  is not changed if the places are not those of a polyline
+    /// \return          whether they are
+    static bool FromPlaces(std::vector<Place> const &places, Polyline *polyline);
+
+    /// Inner points.
+    int GetNumPoints() const { return int(_places.size()); }
+    /// GetNumPoints() + 1.
+    int GetNumSegments() const { return GetNumPoints() + 1; }
+    /// The places of all inner points, ascending.
+    std::vector<Place> const &GetPlaces() const { return _places; }
+    /// Where inner point \p point is on the edge, from 0 at the start to 1 at the end.
+    double GetParameter(int point) const {
+        return double(_places[std::size_t(point)]) / double(kLength);
+    }
+
+    /// The same from the end of the edge to its start.
+    Polyline GetReversed() const;
+    /// Takes the points of another polyline of the same edge and direction, too.
+    void Merge(Polyline const &other);
+    /// Whether all points of \p other are points of this one.
+    bool Contains(Polyline const &other) const;
+
+    /// Whether the points are the same.
+    friend bool operator==(Polyline const &a, Polyline const &b) { return a._places == b._places; }
+    /// Whether they are not.
+    friend bool operator!=(Polyline const &a, Polyline const &b) { return !(a == b); }
+
+private:
+    friend class CellTree;
+
+    std::vector<Place> _places;
+};
+
+} // namespace OpenSubdivHex::BfrExt
+
+#endif

@@ -1,0 +1,521 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Trees of cells, against books that are kept of every line, and their tessellations of whole meshes.
+#include "surfaceFixture.h"
+
+#include "bfr_ext/cellForest.h"
+#include "regression/far_ext/referenceMatch.h"
+#include "regression/reference/cellReference.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <random>
+#include <set>
+
+namespace OpenSubdivHex::Regression {
+
+using BfrExt::CellForest;
+using BfrExt::CellTree;
+using BfrExt::Polyline;
+using BfrExt::Surface;
+using BfrExt::Tessellation;
+
+namespace {
+
+/// A tree in which cells up to a level are refined by chance.
+CellTree makeRandomTree(int faceSize, std::mt19937 &random) {
+    CellTree tree(faceSize);
+    int const lastLevel = int(random() % 7);
+    unsigned const chance = 25 + random() % 35;
+    for (int cell = 0; cell < tree.GetNumCells() && tree.GetNumCells() < 400; ++cell) {
+        if (tree.GetLevel(cell) < lastLevel && random() % 100 < chance + (cell == 0 ? 30 : 0)) {
+            tree.Refine(cell);
+        }
+    }
+    return tree;
+}
+
+CellForest makeRandomForest(FarExt::TopologyRefiner const &refiner, unsigned seed) {
+    std::mt19937 random(seed);
+    CellForest forest(refiner);
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        forest.SetTree(face,
+                       makeRandomTree(refiner.GetLevel(0).GetFaceVertices(face).size(), random));
+    }
+    forest.MatchEdges();
+    return forest;
+}
+
+Tessellation::Options getPolygonOptions(int facetSize) {
+    return Tessellation::Options().SetFacetSize(facetSize);
+}
+
+/// The facets of a tessellation, as places in it.
+std::vector<std::vector<int>> getFacets(Tessellation const &tessellation) {
+    std::vector<int> sizes(std::size_t(tessellation.GetNumFacets()));
+    tessellation.GetFacetSizes(sizes.data());
+    int const stride = tessellation.GetFacetStride();
+    std::vector<int> indices(stride == 0 ? std::size_t(tessellation.GetNumFacetVertices())
+                                         : sizes.size() * std::size_t(stride));
+    tessellation.GetFacets(indices.data());
+    std::vector<std::vector<int>> result;
+    auto index = indices.begin();
+    for (int const size : sizes) {
+        result.emplace_back(index, index + size);
+        index += stride == 0 ? size : stride;
+    }
+    return result;
+}
+
+/// All facets of a forest, whose vertices are numbers of points.
+struct ForestMesh {
+    ForestMesh(CellForest const &forest, std::vector<bool> const &hasFace, int facetSize) {
+        int numPoints = forest.GetNumBoundaryPoints();
+        for (int face = 0; face < forest.GetNumFaces(); ++face) {
+            tessellations.push_back(forest.GetTessellation(face, getPolygonOptions(facetSize)));
+            Tessellation const &tessellation = tessellations.back();
+            EXPECT_TRUE(tessellation.IsValid());
+            std::vector<int> numbers(std::size_t(tessellation.GetNumCoords()));
+            EXPECT_EQ(forest.GetBoundaryPoints(face, numbers.data()),
+                      tessellation.GetNumBoundaryCoords());
+            for (std::size_t i = std::size_t(tessellation.GetNumBoundaryCoords());
+                 i < numbers.size(); ++i) {
+                numbers[i] = numPoints++;
+            }
+            points.push_back(numbers);
+            for (std::vector<int> &facet : getFacets(tessellation)) {
+                if (!hasFace[std::size_t(face)]) {
+                    continue;
+                }
+                for (std::size_t i = 0; i < facet.size(); ++i) {
+                    ++sides[{numbers[std::size_t(facet[i])],
+                             numbers[std::size_t(facet[(i + 1) % facet.size()])]}];
+                }
+                ++numFacets;
+            }
+        }
+        for (auto const &side : sides) {
+            used.insert(side.first.first);
+        }
+    }
+
+    /// V - E + F.
+    int GetEuler() const {
+        std::size_t numEdges = 0;
+        for (auto const &[side, count] : sides) {
+            numEdges += side.first < side.second || sides.count({side.second, side.first}) == 0;
+        }
+        return int(used.size()) - int(numEdges) + numFacets;
+    }
+
+    std::vector<Tessellation> tessellations;
+    std::vector<std::vector<int>> points; ///< by face and place
+    std::map<std::pair<int, int>, int> sides;
+    std::set<int> used;
+    int numFacets = 0;
+};
+
+/// How many random forests a shape gets: for small ones some hundred trees.
+unsigned getNumRounds(int numFaces) { return unsigned(std::max(2, 200 / std::max(1, numFaces))); }
+
+} // namespace
+
+TEST(Polyline, LevelsAndPlaces) {
+    constexpr int kNumSegments[] = {1, 1, 3, 5, 11, 21, 43, 85, 171, 341, 683, 1365, 2731};
+    for (int level = 0; level <= Polyline::kLastLevel; ++level) {
+        Polyline const polyline(level);
+        EXPECT_EQ(polyline.GetNumSegments(), kNumSegments[level]);
+        EXPECT_EQ(polyline.GetReversed(), polyline);
+        Polyline copy;
+        ASSERT_TRUE(Polyline::FromPlaces(polyline.GetPlaces(), &copy));
+        EXPECT_EQ(copy, polyline);
+        if (level > 0) {
+            EXPECT_TRUE(polyline.Contains(Polyline(level - 1)));
+        }
+    }
+    EXPECT_EQ(Polyline(2).GetPlaces(), (std::vector<Polyline::Place>{1024, 3072}));
+    EXPECT_EQ(Polyline(2).GetParameter(1), 0.75);
+
+    Polyline start;
+    Polyline end;
+    ASSERT_TRUE(Polyline::FromPlaces({256, 768, 1024, 3072}, &start));
+    ASSERT_TRUE(Polyline::FromPlaces({1024, 1536, 2560, 3072}, &end));
+    EXPECT_EQ(start.GetReversed().GetPlaces(),
+              (std::vector<Polyline::Place>{1024, 3072, 3328, 3840}));
+    Polyline both = start;
+    both.Merge(end);
+    EXPECT_EQ(both.GetPlaces(), (std::vector<Polyline::Place>{256, 768, 1024, 1536, 2560, 3072}));
+    EXPECT_TRUE(both.Contains(start) && both.Contains(end));
+    EXPECT_FALSE(start.Contains(both));
+    for (std::vector<Polyline::Place> const &places :
+         std::vector<std::vector<Polyline::Place>>{{1024},
+                                                   {3072},
+                                                   {2048},
+                                                   {256, 768},
+                                                   {1024, 1024, 3072},
+                                                   {3072, 1024},
+                                                   {0, 1024, 3072},
+                                                   {1024, 3072, 4096},
+                                                   {1024, 1500, 2560, 3072},
+                                                   {1024, 2048, 3072}}) {
+        EXPECT_FALSE(Polyline::FromPlaces(places, &both));
+    }
+    EXPECT_EQ(both.GetNumPoints(), 6);
+}
+
+TEST(CellTree, RefinesWhatItIsAskedTo) {
+    CellTree tree(5);
+    EXPECT_EQ(tree.GetNumLeaves(), 1);
+    ASSERT_EQ(tree.Refine(0), 1);
+    EXPECT_EQ(tree.Refine(0), 1);
+    EXPECT_EQ(tree.GetNumCells(), 7);
+    EXPECT_TRUE(tree.IsWhole(1));
+    EXPECT_EQ(tree.GetSector(4), 2);
+    EXPECT_EQ(tree.GetBorderSide(4), 0);
+    int const half = tree.Refine(4);
+    EXPECT_EQ(tree.GetNumLeaves(), 9);
+    EXPECT_EQ(tree.GetBorderSide(half), 0);
+    EXPECT_EQ(tree.GetBorderSide(half + 1), 3);
+    EXPECT_EQ(tree.GetBorderSide(half + 2), -1);
+    EXPECT_EQ(tree.GetBorderSide(half + 3), 1);
+    EXPECT_EQ(tree.GetEdgePolyline(2), Polyline(2));
+    EXPECT_EQ(tree.GetEdgePolyline(1), Polyline());
+    // At the start of the edge, two levels on.
+    int const start = tree.Refine(half + 3);
+    EXPECT_EQ(tree.GetEdgePolyline(2), Polyline(2));
+    tree.Refine(start + 1);
+    EXPECT_EQ(tree.GetEdgePolyline(2).GetPlaces(),
+              (std::vector<Polyline::Place>{256, 768, 1024, 3072}));
+    EXPECT_EQ(tree.GetMaxLevel(), 4);
+    for (int level = 0; level < 6; ++level) {
+        EXPECT_EQ(CellTree(3, level).GetEdgePolyline(1), Polyline(level));
+        EXPECT_EQ(CellTree(3, level).GetMaxLevel(), level);
+    }
+    CellTree deep(3);
+    int cell = 0;
+    for (int level = 0; level < CellTree::kLastLevel; ++level) {
+        cell = deep.Refine(cell);
+    }
+    EXPECT_EQ(deep.GetLevel(cell), CellTree::kLastLevel);
+    EXPECT_EQ(deep.Refine(cell), 0);
+}
+
+TEST(CellTree, TessellationsNeedAllPointsOfTheTree) {
+    CellTree const tree(4, 3);
+    std::vector<Polyline> edges(4, Polyline(3));
+    EXPECT_TRUE(Tessellation(tree, edges.data()).IsValid());
+    EXPECT_TRUE(Tessellation(tree).IsValid());
+    edges[2] = Polyline(2);
+    EXPECT_FALSE(Tessellation(tree, edges.data()).IsValid());
+    EXPECT_FALSE(Tessellation(tree, nullptr, getPolygonOptions(5)).IsValid());
+    EXPECT_EQ(Tessellation(tree, edges.data()).GetNumFacets(), 0);
+    edges[2] = Polyline(4);
+    Tessellation const finer(tree, edges.data());
+    EXPECT_EQ(finer.GetNumEdgeCoords(2), 10);
+    EXPECT_EQ(finer.GetLevels(nullptr), 0);
+    EXPECT_FALSE(finer.IsUniform());
+    std::vector<int> levels(std::size_t(finer.GetNumFacets()));
+    EXPECT_EQ(finer.GetFacetLevels(levels.data()), finer.GetNumFacets());
+    EXPECT_EQ(std::set<int>(levels.begin(), levels.end()), std::set<int>{3});
+}
+
+namespace {
+
+/// Refines the pieces of the reference as the cells of a tree.
+void refineAlike(CellTree const &tree, int cell, CellReference &reference, int piece) {
+    if (tree.IsRefined(cell)) {
+        int const first = reference.Refine(piece);
+        for (int i = 0; i < tree.GetNumChildren(cell); ++i) {
+            refineAlike(tree, tree.GetFirstChild(cell) + i, reference, first + i);
+        }
+    }
+}
+
+using PlacePolygon = std::vector<std::pair<long, long>>;
+
+/// From the least place on.
+PlacePolygon turn(PlacePolygon polygon) {
+    std::rotate(polygon.begin(), std::min_element(polygon.begin(), polygon.end()), polygon.end());
+    return polygon;
+}
+
+std::pair<long, long> roundPlace(double u, double v) {
+    return {std::lround(u * 1e9), std::lround(v * 1e9)};
+}
+
+void expectReference(Shape const &shape, unsigned seed) {
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);
+    CellForest const forest = makeRandomForest(*refiner, seed);
+    ReferenceMesh const base =
+        MakeReferenceMesh(shape.positions, shape.faceSizes, shape.faceVertices);
+    CellReference reference(base, shape.faceVertices);
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        refineAlike(forest.GetTree(face), 0, reference, face);
+    }
+    std::vector<std::multiset<PlacePolygon>> expected(std::size_t(forest.GetNumFaces()));
+    for (CellReference::Polygon const &polygon : reference.GetPolygons()) {
+        PlacePolygon places;
+        for (auto const &place : polygon.places) {
+            places.push_back(roundPlace(place[0], place[1]));
+        }
+        expected[std::size_t(polygon.baseFace)].insert(turn(places));
+    }
+    ForestMesh const mesh(forest, std::vector<bool>(shape.faceSizes.size(), true), 0);
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        Tessellation const &tessellation = mesh.tessellations[std::size_t(face)];
+        std::vector<double> coords(2 * std::size_t(tessellation.GetNumCoords()));
+        tessellation.GetCoords(coords.data());
+        std::multiset<PlacePolygon> polygons;
+        for (std::vector<int> const &facet : getFacets(tessellation)) {
+            PlacePolygon places;
+            for (int const place : facet) {
+                places.push_back(
+                    roundPlace(coords[2 * std::size_t(place)], coords[2 * std::size_t(place) + 1]));
+            }
+            polygons.insert(turn(places));
+        }
+        ASSERT_EQ(polygons, expected[std::size_t(face)]) << "face " << face;
+    }
+    // OpenMesh takes manifold polygons alone.
+    ReferenceMesh const cells = reference.MakeMesh();
+    ASSERT_EQ(mesh.numFacets, int(cells.n_faces()));
+    ASSERT_EQ(mesh.used.size(),
+              cells.n_vertices() - std::size_t(std::count_if(
+                                       cells.vertices_begin(), cells.vertices_end(),
+                                       [&](auto vertex) { return cells.is_isolated(vertex); })));
+    std::size_t numSides = 0;
+    for (auto const half : cells.halfedges()) {
+        numSides += !half.is_boundary();
+    }
+    ASSERT_EQ(mesh.sides.size(), numSides);
+    ASSERT_EQ(mesh.GetEuler(), int(mesh.used.size()) - int(cells.n_edges()) + int(cells.n_faces()));
+}
+
+} // namespace
+
+TEST(CellForest, PolygonsAreThoseOfTheReference) {
+    for (Shape const &shape : GetManifoldShapes()) {
+        SCOPED_TRACE(shape.name);
+        if (shape.GetNumFaces() > 700) {
+            continue;
+        }
+        for (unsigned seed = 0; seed < getNumRounds(shape.GetNumFaces()); ++seed) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed);
+            ASSERT_NO_FATAL_FAILURE(expectReference(shape, seed));
+        }
+    }
+}
+
+namespace {
+
+/// What random forests of a shape were found to be, for the log.
+struct ForestCounts {
+    void Report() const {
+        std::cout << turned[0] << " of " << facets[0] << " polygons and " << turned[1] << " of "
+                  << facets[1] << " triangles are turned over in space\n";
+    }
+
+    long facets[2] = {0, 0}; ///< polygons, triangles
+    long turned[2] = {0, 0}; ///< in space
+};
+
+Vector3 getAreaVector(std::vector<int> const &facet, std::vector<double> const &points) {
+    Vector3 sum{};
+    auto const get = [&](int place) {
+        double const *const p = &points[3 * std::size_t(place)];
+        return Vector3{p[0], p[1], p[2]};
+    };
+    for (std::size_t i = 1; i + 1 < facet.size(); ++i) {
+        Vector3 const area = Cross(Subtract(get(facet[i]), get(facet[0])),
+                                   Subtract(get(facet[i + 1]), get(facet[0])));
+        for (std::size_t k = 0; k < 3; ++k) {
+            sum[k] += area[k] / 2;
+        }
+    }
+    return sum;
+}
+
+/// Facets that turn away from the surface at their first vertex.
+int countTurned(Tessellation const &tessellation, std::vector<double> const &p,
+                std::vector<double> const &du, std::vector<double> const &dv) {
+    int count = 0;
+    for (std::vector<int> const &facet : getFacets(tessellation)) {
+        Vector3 normal{};
+        for (int const place : facet) {
+            auto const i = 3 * std::size_t(place);
+            Vector3 const n = Cross({du[i], du[i + 1], du[i + 2]}, {dv[i], dv[i + 1], dv[i + 2]});
+            double const length = GetLength(n);
+            for (std::size_t k = 0; k < 3 && length > 0; ++k) {
+                normal[k] += n[k] / length;
+            }
+        }
+        Vector3 const area = getAreaVector(facet, p);
+        count += area[0] * normal[0] + area[1] * normal[1] + area[2] * normal[2] < 0;
+    }
+    return count;
+}
+
+/// In the parameter plane facets are counter-clockwise and cover the face.
+void expectPlaneTiling(Tessellation const &tessellation) {
+    std::vector<double> coords(2 * std::size_t(tessellation.GetNumCoords()));
+    tessellation.GetCoords(coords.data());
+    auto const getArea = [&](std::vector<int> const &polygon) {
+        double sum = 0;
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            std::size_t const p = 2 * std::size_t(polygon[i]);
+            std::size_t const q = 2 * std::size_t(polygon[(i + 1) % polygon.size()]);
+            sum += coords[p] * coords[q + 1] - coords[q] * coords[p + 1];
+        }
+        return sum / 2;
+    };
+    double area = 0;
+    for (std::vector<int> const &facet : getFacets(tessellation)) {
+        ASSERT_GT(getArea(facet), 1e-12);
+        area += getArea(facet);
+    }
+    std::vector<int> boundary(std::size_t(tessellation.GetNumBoundaryCoords()));
+    for (std::size_t i = 0; i < boundary.size(); ++i) {
+        boundary[i] = int(i);
+    }
+    ASSERT_NEAR(area, getArea(boundary), 1e-9);
+}
+
+void expectSound(Shape const &shape, ReferenceMask mask,
+                 Sdc::Options::VtxBoundaryInterpolation boundary, unsigned numRounds,
+                 ForestCounts &counts) {
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(boundary);
+    auto const refiner = CreateRefiner(shape, mask, 0, options);
+    FarExt::TopologyLevel const &base = refiner->GetLevel(0);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    std::vector<bool> hasFace;
+    for (int face = 0; face < base.GetNumFaces(); ++face) {
+        hasFace.push_back(surfaces[face].IsValid());
+    }
+    bool hasVertexTwice = false; // in a face
+    for (int face = 0; face < base.GetNumFaces(); ++face) {
+        auto const verts = base.GetFaceVertices(face);
+        hasVertexTwice = hasVertexTwice || std::set<int>(verts.begin(), verts.end()).size() <
+                                               std::size_t(verts.size());
+    }
+    // Where edges come apart, they part further points the more they have.
+    bool hasPartedEdges = false;
+    for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
+        hasPartedEdges = hasPartedEdges || base.IsEdgeNonManifold(edge);
+    }
+    for (unsigned seed = 0; seed < numRounds; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        CellForest const forest = makeRandomForest(*refiner, seed + 1000);
+        ForestMesh const mesh(forest, hasFace, seed % 2 == 0 ? 0 : 3);
+        // The base mesh itself is the least tessellation.
+        CellForest plain(*refiner);
+        plain.MatchEdges();
+        ForestMesh const baseMesh(plain, hasFace, 0);
+        if (!hasPartedEdges) {
+            ASSERT_EQ(mesh.GetEuler(), baseMesh.GetEuler());
+        }
+        // Sides are open only along those of the base that are.
+        std::set<int> openPoints;
+        for (auto const &[side, count] : mesh.sides) {
+            bool const isShared =
+                side.first < base.GetNumVertices() && side.second < base.GetNumVertices();
+            ASSERT_TRUE(count == 1 || isShared || hasVertexTwice);
+            if (mesh.sides.count({side.second, side.first}) == 0) {
+                ASSERT_LT(side.first, forest.GetNumBoundaryPoints());
+                ASSERT_LT(side.second, forest.GetNumBoundaryPoints());
+                openPoints.insert({side.first, side.second});
+            }
+        }
+        for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
+            int numFaces = 0;
+            for (int const face : base.GetEdgeFaces(edge)) {
+                numFaces += hasFace[std::size_t(face)];
+            }
+            for (int i = 0; i < forest.GetPolyline(edge).GetNumPoints(); ++i) {
+                ASSERT_EQ(openPoints.count(forest.GetFirstEdgePoint(edge) + i), numFaces == 1);
+            }
+        }
+
+        std::map<int, Vector3> shared;
+        for (int face = 0; face < base.GetNumFaces(); ++face) {
+            if (!hasFace[std::size_t(face)]) {
+                continue;
+            }
+            Tessellation const &tessellation = mesh.tessellations[std::size_t(face)];
+            ASSERT_NO_FATAL_FAILURE(expectPlaneTiling(tessellation));
+            Surface<double> const &surface = surfaces[face];
+            std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+            surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+            auto const numPlaces = std::size_t(tessellation.GetNumCoords());
+            std::vector<double> p(3 * numPlaces), du(p), dv(p), alone(p), coords(2 * numPlaces);
+            surface.Evaluate(tessellation, control.data(), 3, p.data(), du.data(), dv.data(), 3);
+            surface.Evaluate(tessellation, control.data(), 3, alone.data(), 3);
+            ASSERT_EQ(p, alone);
+            tessellation.GetCoords(coords.data());
+            for (std::size_t i = 0; i < numPlaces; ++i) {
+                bool const isOnBoundary = i < std::size_t(tessellation.GetNumBoundaryCoords());
+                // Single places are slow, and each is looked at in some of the rounds.
+                if ((i + seed) % 16 == 0) {
+                    SurfacePoint const expected = surfaces.Evaluate(face, &coords[2 * i]);
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        ASSERT_NEAR(p[3 * i + k], expected.p[k], 1e-11);
+                        if (isOnBoundary) {
+                            ASSERT_EQ(p[3 * i + k], expected.p[k]);
+                        }
+                    }
+                }
+                if (isOnBoundary) {
+                    Vector3 const point = {p[3 * i], p[3 * i + 1], p[3 * i + 2]};
+                    int const number = mesh.points[std::size_t(face)][i];
+                    auto const [found, isNew] = shared.emplace(number, point);
+                    bool const isNonManifold =
+                        number < base.GetNumVertices() && base.IsVertexNonManifold(number);
+                    ASSERT_TRUE(isNew || isNonManifold || found->second == point)
+                        << "point " << number;
+                }
+            }
+            counts.facets[seed % 2] += tessellation.GetNumFacets();
+            counts.turned[seed % 2] += countTurned(tessellation, p, du, dv);
+        }
+    }
+}
+
+} // namespace
+
+TEST(CellForest, RandomTreesAreClosedAndShareTheirPointsToTheBit) {
+    ForestCounts counts;
+    for (Shape const &shape : GetManifoldShapes()) {
+        if (shape.GetNumFaces() > 700) {
+            continue;
+        }
+        SCOPED_TRACE(shape.name);
+        ASSERT_NO_FATAL_FAILURE(expectSound(shape, ReferenceMask::Smooth,
+                                            Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
+                                            getNumRounds(shape.GetNumFaces()), counts));
+    }
+    counts.Report();
+    EXPECT_LT(double(counts.turned[0]), 0.01 * double(counts.facets[0]));
+}
+
+TEST(CellForest, TagsAndFlawsStayClosed) {
+    ForestCounts counts;
+    for (Shape const &shape : GetFeatureShapes()) {
+        if (shape.GetNumFaces() > 700) {
+            continue;
+        }
+        SCOPED_TRACE(shape.name);
+        ASSERT_NO_FATAL_FAILURE(
+            expectSound(shape, ReferenceMask::Average, Sdc::Options::VTX_BOUNDARY_NONE, 1, counts));
+        ASSERT_NO_FATAL_FAILURE(expectSound(shape, ReferenceMask::Smooth,
+                                            Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER, 2, counts));
+    }
+    counts.Report();
+}
+
+} // namespace OpenSubdivHex::Regression
