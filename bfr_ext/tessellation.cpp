@@ -102,9 +102,11 @@ Tessellation::Tessellation(CellTree const &tree, Polyline const edges[], Options
     std::vector<Polyline> polylines;
     bool hasAllPoints = true;
     for (int edge = 0; edge < tree.GetFaceSize(); ++edge) {
-        Polyline own = tree.GetEdgePolyline(edge);
-        hasAllPoints = hasAllPoints && (edges == nullptr || edges[edge].Contains(own));
-        polylines.push_back(edges ? edges[edge] : std::move(own));
+        polylines.push_back(tree.GetEdgePolyline(edge));
+        if (edges) {
+            hasAllPoints = hasAllPoints && edges[edge].Contains(polylines.back());
+            polylines.back() = edges[edge];
+        }
     }
     if (!setOptions(options) || !hasAllPoints) {
         return;

@@ -394,9 +394,9 @@ void expectSound(Shape const &shape, ReferenceMask mask,
     auto const refiner = CreateRefiner(shape, mask, 0, options);
     FarExt::TopologyLevel const &base = refiner->GetLevel(0);
     SurfaceSet<double> const surfaces(*refiner, shape.positions);
-    std::vector<bool> hasFace;
+    std::vector<bool> hasFace(std::size_t(base.GetNumFaces()));
     for (int face = 0; face < base.GetNumFaces(); ++face) {
-        hasFace.push_back(surfaces[face].IsValid());
+        hasFace[std::size_t(face)] = surfaces[face].IsValid();
     }
     bool hasVertexTwice = false; // in a face
     for (int face = 0; face < base.GetNumFaces(); ++face) {

@@ -77,51 +77,51 @@ CellReference::Side CellReference::getPart(Side const &side, int part) const {
     return {side.line->parts[side.isReversed ? 2 - part : part], side.isReversed};
 }
 
-int CellReference::Refine(int number) {
-    Piece const piece = _pieces[std::size_t(number)];
+int CellReference::Refine(int piece) {
+    Piece const outer = _pieces[std::size_t(piece)];
     auto const reverse = [](Side const &side) { return Side{side.line, !side.isReversed}; };
-    std::size_t const size = piece.sides.size();
-    Piece inner = {piece.baseFace, piece.isWhole, false, {}, {}};
+    std::size_t const size = outer.sides.size();
+    Piece inner = {outer.baseFace, outer.isWhole, false, {}, {}};
     // Lines from the corners of the piece to those of the inner one.
     std::vector<Side> spokes;
     std::size_t firstNew = 0;
-    if (piece.isWhole) {
+    if (outer.isWhole) {
         std::array<double, 2> center{};
-        for (auto const &corner : piece.corners) {
+        for (auto const &corner : outer.corners) {
             center = {center[0] + corner[0] / double(size), center[1] + corner[1] / double(size)};
         }
-        for (auto const &corner : piece.corners) {
+        for (auto const &corner : outer.corners) {
             inner.corners.push_back(mix(corner, center, 0.5));
         }
     } else {
         // Amid line 0, as its parts are.
-        divide(*piece.sides[0].line);
-        std::array<double, 2> const middle = mix(piece.corners[0], piece.corners[1], 0.5);
-        for (auto const &corner : piece.corners) {
+        divide(*outer.sides[0].line);
+        std::array<double, 2> const middle = mix(outer.corners[0], outer.corners[1], 0.5);
+        for (auto const &corner : outer.corners) {
             inner.corners.push_back(mix(corner, middle, 0.5));
         }
-        spokes = {getPart(piece.sides[0], 0), reverse(getPart(piece.sides[0], 2))};
-        inner.sides = {getPart(piece.sides[0], 1)};
+        spokes = {getPart(outer.sides[0], 0), reverse(getPart(outer.sides[0], 2))};
+        inner.sides = {getPart(outer.sides[0], 1)};
         firstNew = 2;
     }
     for (std::size_t i = firstNew; i < size; ++i) {
-        spokes.push_back(addLine(getStart(piece.sides[i]), _numVertices++));
+        spokes.push_back(addLine(getStart(outer.sides[i]), _numVertices++));
     }
     auto const getInner = [&](std::size_t i) { return getStart(reverse(spokes[i % size])); };
     for (std::size_t i = inner.sides.size(); i < size; ++i) {
         inner.sides.push_back(addLine(getInner(i), getInner(i + 1)));
     }
     int const first = int(_pieces.size());
-    _pieces[std::size_t(number)].isRefined = true;
+    _pieces[std::size_t(piece)].isRefined = true;
     _pieces.push_back(inner);
-    for (std::size_t i = piece.isWhole ? 0 : 1; i < size; ++i) {
+    for (std::size_t i = outer.isWhole ? 0 : 1; i < size; ++i) {
         std::size_t const next = (i + 1) % size;
         _pieces.push_back(
-            {piece.baseFace,
+            {outer.baseFace,
              false,
              false,
-             {piece.sides[i], spokes[next], reverse(inner.sides[i]), reverse(spokes[i])},
-             {piece.corners[i], piece.corners[next], inner.corners[next], inner.corners[i]}});
+             {outer.sides[i], spokes[next], reverse(inner.sides[i]), reverse(spokes[i])},
+             {outer.corners[i], outer.corners[next], inner.corners[next], inner.corners[i]}});
     }
     return first;
 }
