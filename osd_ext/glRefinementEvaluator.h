@@ -12,9 +12,21 @@
 
 #include <cstdint>
 #include <memory>
-#include <utility>
 
 namespace OpenSubdivHex::OsdExt {
+
+namespace internal {
+class DeviceEvaluator;
+}
+
+/// \brief What Osd::GLVertexBuffer and the like bind.
+struct GLBinding {
+    /// The name of the buffer.
+    template <class BUFFER>
+    static auto Bind(BUFFER &buffer) -> decltype(unsigned(buffer.BindVBO())) {
+        return buffer.BindVBO();
+    }
+};
 
 /// \brief Evaluates refined levels on a device by compute shaders of OpenGL 4.3, without a stencil
 /// table: RefinementEvaluator for buffers of OpenGL.  Programs link OpenSubdivHex::osd_ext_gl, which
@@ -33,7 +45,7 @@ namespace OpenSubdivHex::OsdExt {
 ///
 /// **Context.** A context of OpenGL 4.3 or later must be current in all functions, always the same or
 /// one that shares its objects.  Afterwards no program is current, and nothing is bound to
-/// GL_ARRAY_BUFFER and to GL_SHADER_STORAGE_BUFFER and its first four indices.  Who reads the result
+/// GL_SHADER_STORAGE_BUFFER and its first seven indices.  Who reads the result
 /// by other means than shader storage buffers calls glMemoryBarrier() before, as behind
 /// Osd::GLComputeEvaluator.
 ///
@@ -41,16 +53,17 @@ namespace OpenSubdivHex::OsdExt {
 /// on, computed in 32 bits without sign.  Nothing else is written.  Source and destination may be
 /// one buffer, as long as no float is both read and written.
 ///
-/// **Results.** The sums of RefinementEvaluator in another order: they differ by rounding, a few units
-/// in the last place of the largest control value for each level.  Values whose sums are too large
+/// **Buffers.** In place of names, all functions take buffers whose function BindVBO() returns them,
+/// such as Osd::GLVertexBuffer: see BufferEvaluator.
+///
+/// **Results.** The sums of RefinementEvaluator, for nearly all vertices in the same order, each
+/// product and sum rounded by itself: on every device the same bits.  Values whose sums are too large
 /// for a float are not scaled as there.
 ///
-/// **Lifetime.** The evaluator keeps what it needs of the refiner.
-class OPENSUBDIVHEX_API GLRefinementEvaluator {
-    /// So that the name of a buffer is not taken for one.
-    template <class BUFFER>
-    using IfBuffer = decltype(std::declval<BUFFER &>().BindVBO());
-
+/// **Lifetime.** The evaluator keeps what it needs of the refiner, but for the limits: the first frame
+/// of the limit of a level needs the refiner as it was.
+class OPENSUBDIVHEX_API GLRefinementEvaluator
+    : public BufferEvaluator<GLRefinementEvaluator, GLBinding> {
 public:
     /// What is evaluated.
     using Options = RefinementEvaluator::Options;
@@ -84,6 +97,10 @@ public:
     /// Bytes that lie on the device, but for the levels below the one that was asked for.
     std::int64_t GetNumDeviceBytes() const;
 
+    using BufferEvaluator::Evaluate;
+    using BufferEvaluator::EvaluateAllLevels;
+    using BufferEvaluator::EvaluateLimit;
+
     /// \brief Writes the values of one level to elements [0, GetNumElements(level)) of \p dst.
     ///
     /// The programs for a length are compiled when it first comes; the levels below are kept in
@@ -108,37 +125,42 @@ public:
     bool EvaluateAllLevels(unsigned src, Osd::BufferDescriptor const &srcDesc, unsigned dst,
                            Osd::BufferDescriptor const &dstDesc, FarExt::Status *status = nullptr);
 
-    /// @name With buffers
-    /// Whose function BindVBO() returns a name, such as Osd::GLVertexBuffer.
+    /// @name The limit surface
+    /// Of the vertices of a level, as RefinementEvaluator::EvaluateLimit: points, and first derivatives
+    /// on side 0, whose cross product is the normal.
+    ///
+    /// Six vertices at a time come in closed form from a hexagon of a level before, of which the device
+    /// has 5 bytes for each of them; those near irregular vertices and faces of level 0 and near
+    /// features are sums over their neighbourhoods, which are listed.  The first frame of a level
+    /// finds the masks on the processor, and refers to the refiner that was given.
+    ///
+    /// \param src          the name of a buffer of control values
+    /// \param dst,du,dv    names of buffers, for elements [0, GetNumElements(level)) each
+    /// \param srcDesc,dstDesc,duDesc,dvDesc  of the same length
+    /// \param level        0 ... GetMaxLevel(), with full topology
+    /// \param status       says what was wrong; may be null
+    ///
+    /// \return  false, with nothing written, as Evaluate; besides with InvalidArgument for other
+    ///          modes than INTERPOLATE_VERTEX or if the refiner refined or unrefined in the meantime,
+    ///          and as FarExt::LimitStencilTableFactory fails
     /// @{
 
-    /// Evaluate() from and to buffers.
-    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
-    bool Evaluate(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
-                  DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc, int level,
-                  FarExt::Status *status = nullptr) {
-        return Evaluate(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, level, status);
-    }
-    /// EvaluateAllLevels() from and to buffers.
-    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
-    bool EvaluateAllLevels(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
-                           DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc,
-                           FarExt::Status *status = nullptr) {
-        return EvaluateAllLevels(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, status);
-    }
+    /// The points alone.
+    bool EvaluateLimit(unsigned src, Osd::BufferDescriptor const &srcDesc, unsigned dst,
+                       Osd::BufferDescriptor const &dstDesc, int level,
+                       FarExt::Status *status = nullptr);
+    /// The points and their derivatives.
+    bool EvaluateLimit(unsigned src, Osd::BufferDescriptor const &srcDesc, unsigned dst,
+                       Osd::BufferDescriptor const &dstDesc, unsigned du,
+                       Osd::BufferDescriptor const &duDesc, unsigned dv,
+                       Osd::BufferDescriptor const &dvDesc, int level,
+                       FarExt::Status *status = nullptr);
     /// @}
 
 private:
-    class Impl;
+    explicit GLRefinementEvaluator(std::unique_ptr<internal::DeviceEvaluator> evaluator);
 
-    explicit GLRefinementEvaluator(std::unique_ptr<Impl> impl);
-
-    template <class BUFFER>
-    static unsigned bind(BUFFER *buffer) {
-        return buffer ? buffer->BindVBO() : 0;
-    }
-
-    std::unique_ptr<Impl> _impl;
+    std::unique_ptr<internal::DeviceEvaluator> _evaluator;
 };
 
 } // namespace OpenSubdivHex::OsdExt

@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_EVALUATOR_H
 #define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_EVALUATOR_H
 
+#include "bufferEvaluator.h"
+
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefiner.h"
 
@@ -9,7 +11,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex {
@@ -37,6 +38,9 @@ namespace OsdExt {
 /// **Elements.** Element j of a buffer is the \c length floats from <tt>offset + j * stride</tt>
 /// on, computed in 64 bits.  Nothing else is read or written, not even beside them.
 ///
+/// **Buffers.** In place of floats, all functions take buffers whose function BindCpuBuffer() returns
+/// them, such as Osd::CpuVertexBuffer: see BufferEvaluator.
+///
 /// **Aliasing.** Source and destination may be one buffer, as long as no float is both read and
 /// written: the destination may lie behind the source, or beside it in each stride.
 ///
@@ -50,11 +54,8 @@ namespace OsdExt {
 ///
 /// **Lifetime.** The evaluator refers to the refiner, and is valid until that refines again or is
 /// destroyed.
-class OPENSUBDIVHEX_API RefinementEvaluator {
-    /// So that a pointer to floats is not taken for one to a buffer.
-    template <class BUFFER>
-    using IfBuffer = decltype(std::declval<BUFFER &>().BindCpuBuffer());
-
+class OPENSUBDIVHEX_API RefinementEvaluator
+    : public BufferEvaluator<RefinementEvaluator, CpuBinding> {
 public:
     /// \brief What is evaluated, spelled as in FarExt::StencilTableFactory.
     struct Options {
@@ -90,6 +91,10 @@ public:
     int GetNumElements(int level) const;
     /// Elements of levels 1 ... GetMaxLevel() together.
     std::int64_t GetNumElementsAllLevels() const;
+
+    using BufferEvaluator::Evaluate;
+    using BufferEvaluator::EvaluateAllLevels;
+    using BufferEvaluator::EvaluateLimit;
 
     /// \brief Writes the values of one level to elements [0, GetNumElements(level)) of \p dst.
     ///
@@ -145,44 +150,6 @@ public:
                        FarExt::Status *status = nullptr);
     /// @}
 
-    /// @name With buffers
-    /// Whose function BindCpuBuffer() returns a float pointer, such as Osd::CpuVertexBuffer.  A
-    /// buffer that is null fails as a null pointer does.
-    /// @{
-
-    /// Evaluate() from and to buffers.
-    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
-    bool Evaluate(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
-                  DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc, int level,
-                  FarExt::Status *status = nullptr) {
-        return Evaluate(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, level, status);
-    }
-    /// EvaluateAllLevels() from and to buffers.
-    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
-    bool EvaluateAllLevels(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
-                           DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc,
-                           FarExt::Status *status = nullptr) {
-        return EvaluateAllLevels(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, status);
-    }
-    /// EvaluateLimit() from and to buffers.
-    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
-    bool EvaluateLimit(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
-                       DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc, int level,
-                       FarExt::Status *status = nullptr) {
-        return EvaluateLimit(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, level, status);
-    }
-    /// The same with derivatives.
-    template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
-    bool EvaluateLimit(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
-                       DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc,
-                       DST_BUFFER *duBuffer, Osd::BufferDescriptor const &duDesc,
-                       DST_BUFFER *dvBuffer, Osd::BufferDescriptor const &dvDesc, int level,
-                       FarExt::Status *status = nullptr) {
-        return EvaluateLimit(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, bind(duBuffer),
-                             duDesc, bind(dvBuffer), dvDesc, level, status);
-    }
-    /// @}
-
 private:
     class Impl;
 
@@ -197,11 +164,6 @@ private:
     };
     bool evaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
                        std::vector<Output> const &outputs, int level, FarExt::Status *status);
-
-    template <class BUFFER>
-    static float *bind(BUFFER *buffer) {
-        return buffer ? buffer->BindCpuBuffer() : nullptr;
-    }
 
     std::unique_ptr<Impl> _impl;
 };

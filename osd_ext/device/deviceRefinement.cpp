@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deviceRefinement.h"
 
+#include "osd_ext/refinement/preparedRefinement.h"
+
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/runs.h"
 #include "far_ext/vtr/truncationMask.h"
@@ -21,23 +23,37 @@ namespace {
 
 constexpr int kRunValence = 3;
 
-// Runs of fewer faces or vertices are listed: each run is work of its own for the device.
+// Runs of fewer faces or vertices are listed where there are many of them: each run is work of its own
+// for the device.
 constexpr Index kMinRun = 256;
-// Faces of more sides are listed: of those in runs a kernel holds all vertices at once.
-constexpr int kMaxRunFaceSize = 12;
+constexpr std::size_t kFewRuns = 8;
+
+// In which order the F-vertices of a vertex with three faces are added, which is that of
+// RefinementEvaluator.
+enum class SumOrder {
+    InTurn,  // first those of the first corners
+    LastTwo, // those of the last two corners first: of an F-vertex of the level before
+    FirstTwo // those of the first two corners first: of one of the level before that
+};
 
 // Components [begin, end) that are alike.
 struct Range {
     Index begin;
     Index end;
     int size; // of faces; of vertices, the number of faces
+    SumOrder order = SumOrder::InTurn;
 };
 
 // Adds one component, or some.
 void append(std::vector<Range> &ranges, Range const &range, Index mayNotJoinAt) {
     FarExt::internal::AppendRun(ranges, range, [=](Range const &a, Range const &b) {
-        return a.size == b.size && b.begin != mayNotJoinAt;
+        return a.size == b.size && a.order == b.order && b.begin != mayNotJoinAt;
     });
+}
+
+// Whether one of some ranges is evaluated as a run.
+bool isRun(Range const &range, std::vector<Range> const &ranges) {
+    return range.end - range.begin >= kMinRun || ranges.size() <= kFewRuns;
 }
 
 // Prepares one refinement, in two passes: the first finds what is in runs, and so the number of
@@ -52,6 +68,20 @@ public:
         FarExt::VertexVertexMask const plain = mask.GetPlainVertexMask(kRunValence);
         _result.vertexWeight = float(plain.vertexWeight);
         _result.averagesFaces = plain.faceWeight != 0;
+        if (_before && _level.isHexagonal) {
+            _firstNewVertex = _before->GetCornerChildVertex(0);
+            _result.firstConsecutiveVertex = std::uint32_t(_firstNewVertex);
+            _result.numConsecutiveCorners =
+                std::uint32_t(_level.faceFirstCorner[std::size_t(_level.numFFaces)]);
+            Level const &levelBefore = *_before->parent;
+            bool const hasSharpBoundaries =
+                levelBefore.numSharpBoundariesA + levelBefore.numSharpBoundariesB > 0;
+            _firstOlderVertex = levelBefore.isHexagonal && !hasSharpBoundaries
+                                    ? levelBefore.numVVertices
+                                    : _firstNewVertex;
+        } else {
+            _firstNewVertex = _firstOlderVertex = _level.numVertices;
+        }
     }
 
     void Plan() {
@@ -59,6 +89,8 @@ public:
             planTruncation();
             return;
         }
+        _result.firstListedVertex = takeIndices(std::size_t(_level.numCorners) -
+                                                std::size_t(_result.numConsecutiveCorners));
         planFaces();
         planVertices();
     }
@@ -76,6 +108,7 @@ private:
     void listFace(Index face);
     void listIrregularCorners(Range const &run);
     std::uint32_t takeIndicesOf(Index face);
+    void listPlainVertex(Index vert);
     void listVertex(Index vert);
     void fill(std::int32_t *indices) const;
 
@@ -89,17 +122,31 @@ private:
         _weights.insert(_weights.end(), weights, weights + count);
         return std::uint32_t(first);
     }
-    // The weights of corner 0 of plain faces, twice in a row.
-    std::uint32_t getPlainWeights(int size) {
-        if (_plainWeights.size() <= std::size_t(size)) {
-            _plainWeights.resize(std::size_t(size) + 1, kNone);
+    // Position of the weights of plain faces of a size, which make() adds.
+    template <typename MAKE>
+    std::uint32_t find(std::vector<std::uint32_t> &positions, int size, MAKE make) {
+        if (positions.size() <= std::size_t(size)) {
+            positions.resize(std::size_t(size) + 1, kNone);
         }
-        std::uint32_t &first = _plainWeights[std::size_t(size)];
+        std::uint32_t &first = positions[std::size_t(size)];
         if (first == kNone) {
-            first = addWeights(_mask.GetPlainFaceWeights(size), size);
-            addWeights(_mask.GetPlainFaceWeights(size), size);
+            first = make();
         }
         return first;
+    }
+    // The weights of corner 0 of plain faces, twice in a row.
+    std::uint32_t getPlainWeights(int size) {
+        return find(_plainWeights, size, [&] {
+            std::uint32_t const first = addWeights(_mask.GetPlainFaceWeights(size), size);
+            addWeights(_mask.GetPlainFaceWeights(size), size);
+            return first;
+        });
+    }
+    SumOrder getSumOrder(Index vert) const {
+        if (vert >= _firstNewVertex) {
+            return SumOrder::LastTwo;
+        }
+        return vert >= _firstOlderVertex ? SumOrder::FirstTwo : SumOrder::InTurn;
     }
 
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -110,9 +157,13 @@ private:
     Level const &_level;
     std::size_t _numIndices;
     std::vector<float> &_weights;
-    std::vector<std::uint32_t> _plainWeights; // by size
-    std::vector<Index> _listedFaces;
-    std::vector<std::uint32_t> _firstIndices; // of those
+    Index _firstNewVertex;                     // F-vertices of the level before ...
+    Index _firstOlderVertex;                   // ... and of the level before that
+    std::vector<std::uint32_t> _plainWeights;  // by size, twice in a row
+    std::vector<std::uint32_t> _plainMasks;    // by size, four each
+    std::vector<std::uint32_t> _vertexWeights; // of plain vertices, by their number of faces
+    std::vector<Index> _listedFaces;           // F-faces
+    std::vector<std::uint32_t> _firstIndices;  // of those
     std::vector<Index> _truncationSources;
     DeviceRefinement _result;
     std::vector<double> _scratch;
@@ -120,7 +171,7 @@ private:
 
 void Maker::planFaces() {
     // Vertices of F-faces follow one another.
-    Index const numFFaces = _before && _level.isHexagonal ? _level.numFFaces : 0;
+    Index const numFFaces = _result.numConsecutiveCorners > 0 ? _level.numFFaces : 0;
     std::vector<Range> ranges;
     ForEachRun(
         0, _level.numFaces, _mask.FindSharpFaces(),
@@ -131,7 +182,7 @@ void Maker::planFaces() {
         },
         [&](Index face, Index) { listFace(face); });
     for (Range const &range : ranges) {
-        if (range.end - range.begin >= kMinRun && range.size <= kMaxRunFaceSize) {
+        if (isRun(range, ranges)) {
             addRun(range);
         } else {
             for (Index face = range.begin; face < range.end; ++face) {
@@ -142,15 +193,17 @@ void Maker::planFaces() {
 }
 
 void Maker::addRun(Range const &range) {
-    Index const firstCorner = _level.faceFirstCorner[std::size_t(range.begin)];
-    Index const endCorner = _level.faceFirstCorner[std::size_t(range.end)];
-    bool const areConsecutive = _before && _level.isHexagonal && range.end <= _level.numFFaces;
-    std::uint32_t const first = areConsecutive
-                                    ? std::uint32_t(_before->GetCornerChildVertex(firstCorner))
-                                    : takeIndices(std::size_t(endCorner - firstCorner));
+    PlainFaceMask const mask = MakePlainFaceMask(_mask.GetPlainFaceWeights(range.size), range.size);
+    bool const isWeighted = !mask.weights.empty();
+    std::uint32_t const firstWeight =
+        isWeighted ? getPlainWeights(range.size) : find(_plainMasks, range.size, [&] {
+            auto const first = std::uint32_t(_weights.size());
+            _weights.insert(_weights.end(), {mask.all, mask.self, mask.neighbor, mask.opposite});
+            return first;
+        });
     _result.faceRuns.push_back({range.size, std::uint32_t(range.end - range.begin),
-                                std::uint32_t(firstCorner), areConsecutive, first,
-                                getPlainWeights(range.size)});
+                                std::uint32_t(_level.faceFirstCorner[std::size_t(range.begin)]),
+                                isWeighted, firstWeight});
     listIrregularCorners(range);
 }
 
@@ -159,23 +212,29 @@ void Maker::listIrregularCorners(Range const &run) {
     Index const firstCorner = _level.faceFirstCorner[std::size_t(run.begin)];
     Index const endCorner = _level.faceFirstCorner[std::size_t(run.end)];
     Index endOfFace = firstCorner;
+    Index face = 0;
     std::uint32_t firstIndex = 0;
     for (FarExt::internal::IrregularCorner const &irregular :
          _mask.GetIrregularCorners(firstCorner, endCorner)) {
         Index const corner = irregular.corner;
         if (corner >= endOfFace) {
-            Index const face = _level.FindFaceOfCorner(corner);
+            face = _level.FindFaceOfCorner(corner);
             endOfFace = _level.faceFirstCorner[std::size_t(face) + 1];
             firstIndex = takeIndicesOf(face);
         }
-        double const *const weights = _mask.GetFaceVertexWeights(
-            _listedFaces.back(), corner - (endOfFace - run.size), _scratch);
+        double const *const weights =
+            _mask.GetFaceVertexWeights(face, corner - (endOfFace - run.size), _scratch);
         _result.corners.push_back({std::uint32_t(corner), std::uint32_t(run.size), firstIndex,
                                    addWeights(weights, run.size)});
     }
 }
 
+// Position of the vertices of a face.
 std::uint32_t Maker::takeIndicesOf(Index face) {
+    auto const firstCorner = std::uint32_t(_level.faceFirstCorner[std::size_t(face)]);
+    if (firstCorner >= _result.numConsecutiveCorners) {
+        return _result.firstListedVertex + (firstCorner - _result.numConsecutiveCorners);
+    }
     _listedFaces.push_back(face);
     _firstIndices.push_back(takeIndices(std::size_t(_level.GetFaceSize(face))));
     return _firstIndices.back();
@@ -210,22 +269,38 @@ void Maker::planVertices() {
         0, _level.numVertices, _mask.FindFeatureVertices(),
         [&](Index begin, Index end, Index) {
             for (Index vert = begin; vert < end; ++vert) {
-                append(ranges, {vert, vert + 1, _level.GetNumVertexFaces(vert)}, -1);
+                append(ranges, {vert, vert + 1, _level.GetNumVertexFaces(vert), getSumOrder(vert)},
+                       -1);
             }
         },
         [&](Index vert, Index) { listVertex(vert); });
     for (Range const &range : ranges) {
         auto const count = std::uint32_t(range.end - range.begin);
-        if (range.size == kRunValence && range.end - range.begin >= kMinRun) {
+        if (range.size == kRunValence && isRun(range, ranges)) {
             std::uint32_t const firstIndex =
                 _result.averagesFaces ? takeIndices(std::size_t(count) * kRunValence) : 0;
-            _result.vertexRuns.push_back({count, std::uint32_t(range.begin), firstIndex});
+            _result.vertexRuns.push_back(
+                {count, std::uint32_t(range.begin), firstIndex, range.order == SumOrder::InTurn});
         } else {
             for (Index vert = range.begin; vert < range.end; ++vert) {
-                listVertex(vert);
+                if (_result.averagesFaces) {
+                    listPlainVertex(vert);
+                } else {
+                    listVertex(vert);
+                }
             }
         }
     }
+}
+
+void Maker::listPlainVertex(Index vert) {
+    int const numFaces = _level.GetNumVertexFaces(vert);
+    std::uint32_t const firstWeight = find(_vertexWeights, numFaces, [&] {
+        double const weight = _mask.GetPlainVertexMask(numFaces).vertexWeight;
+        return addWeights(&weight, 1);
+    });
+    _result.vertices.push_back({std::uint32_t(vert), 0, std::uint32_t(numFaces),
+                                takeIndices(std::size_t(numFaces)), firstWeight});
 }
 
 void Maker::listVertex(Index vert) {
@@ -261,32 +336,36 @@ void Maker::fill(std::int32_t *indices) const {
         std::copy(_truncationSources.begin(), _truncationSources.end(), indices);
         return;
     }
-    for (DeviceFaceRun const &run : _result.faceRuns) {
-        if (!run.areConsecutive) {
-            Index const *const verts = _level.faceVerts.data() + run.firstCorner;
-            ParallelFor(Index(run.count), [&](Index i) {
-                std::size_t const place = std::size_t(i) * std::size_t(run.size);
-                std::copy_n(verts + place, run.size, indices + run.first + place);
-            });
-        }
-    }
+    std::copy(_level.faceVerts.begin() + _result.numConsecutiveCorners, _level.faceVerts.end(),
+              indices + _result.firstListedVertex);
     for (std::size_t i = 0; i < _listedFaces.size(); ++i) {
         Far::ConstIndexArray const verts = _level.GetFaceVertices(_listedFaces[i]);
         std::copy(verts.begin(), verts.end(), indices + _firstIndices[i]);
     }
     for (DeviceVertexRun const &run : _result.vertexRuns) {
         if (_result.averagesFaces) {
+            // What is added in the order of the first two is turned by one, so that all but those
+            // that are added in turn have the last two first.
+            Index const turn =
+                getSumOrder(Index(run.firstVertex)) == SumOrder::FirstTwo ? kRunValence - 1 : 0;
             Index const first = _level.vertFirstFace[std::size_t(run.firstVertex)];
-            ParallelFor(Index(run.count) * kRunValence, [&](Index k) {
-                indices[run.firstIndex + std::size_t(k)] = _level.GetVertexCorner(first + k);
+            ParallelFor(Index(run.count), [&](Index i) {
+                std::int32_t *const corners =
+                    indices + run.firstIndex + std::size_t(i) * kRunValence;
+                for (Index k = 0; k < kRunValence; ++k) {
+                    corners[k] =
+                        _level.GetVertexCorner(first + i * kRunValence + (k + turn) % kRunValence);
+                }
             });
         }
     }
     for (DeviceVertex const &vertex : _result.vertices) {
         Index const vert = _refinement.GetVVertexParent(Index(vertex.child));
-        RefinementMask::VertexMask const mask = _mask.GetVertexMask(vert);
-        std::int32_t *next =
-            std::copy_n(mask.sources, mask.numSources, indices + vertex.firstIndex);
+        std::int32_t *next = indices + vertex.firstIndex;
+        if (vertex.numSources > 0) {
+            RefinementMask::VertexMask const mask = _mask.GetVertexMask(vert);
+            next = std::copy_n(mask.sources, mask.numSources, next);
+        }
         Index const firstFace = _level.vertFirstFace[std::size_t(vert)];
         for (std::uint32_t i = 0; i < vertex.numCorners; ++i) {
             *next++ = _level.GetVertexCorner(firstFace + Index(i));

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_REFINEMENT_H
 #define OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_REFINEMENT_H
 
+#include "far_ext/export.h"
 #include "far_ext/vtr/refinement.h"
 #include "far_ext/vtr/refinementMask.h"
 
@@ -21,12 +22,10 @@ struct DeviceFaceRun {
     int size;
     std::uint32_t count;
     std::uint32_t firstCorner;
-    /// Whether the vertices of the faces follow one another, from \c first on, as those of F-faces do;
-    /// else they are indices, from position \c first on.
-    bool areConsecutive;
-    std::uint32_t first;
-    /// Position of the weights of corner 0, which stand twice in a row, so that every rotation of
-    /// them is contiguous.
+    /// Whether each vertex has a weight of its own: those of corner 0 stand twice in a row, so that
+    /// every rotation of them is contiguous.  Else there are \c all, \c self, \c neighbor and
+    /// \c opposite of a PlainFaceMask.
+    bool isWeighted;
     std::uint32_t firstWeight;
 };
 
@@ -36,6 +35,7 @@ struct DeviceVertexRun {
     std::uint32_t count;
     std::uint32_t firstVertex;
     std::uint32_t firstIndex;
+    bool addsInTurn; ///< the F-vertices of the corners; else the last two first
 };
 
 /// \brief Any corner: its F-vertex is the sum of weights[firstWeight + j] indices[firstIndex + j],
@@ -48,7 +48,8 @@ struct DeviceCorner {
 };
 
 /// \brief Any V-vertex: from its first index on it has sources, each with a weight, and then corners,
-/// whose F-vertices are summed up and multiplied by the weight behind those.
+/// whose F-vertices are summed up and multiplied by the weight behind those.  A vertex without sources
+/// is plain: with the sum of its F-vertices, it is multiplied by the only weight.
 struct DeviceVertex {
     std::uint32_t child;
     std::uint32_t numSources;
@@ -66,6 +67,14 @@ struct DeviceVertex {
 struct DeviceRefinement {
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
 
+    /// @name The vertices of the parent's faces, by corner
+    /// Those of F-faces follow one another; the others are indices.
+    /// @{
+    std::uint32_t numConsecutiveCorners = 0;
+    std::uint32_t firstConsecutiveVertex = 0;
+    std::uint32_t firstListedVertex = 0; ///< position in indices
+    /// @}
+
     std::vector<DeviceFaceRun> faceRuns;
     std::vector<DeviceCorner> corners; ///< some of them in runs: these come behind those
     std::vector<DeviceVertexRun> vertexRuns;
@@ -79,7 +88,7 @@ struct DeviceRefinement {
 /// \param masks  by refinement
 ///
 /// \return  empty where there are more than 2^32 indices or weights
-std::vector<DeviceRefinement>
+OPENSUBDIVHEX_API std::vector<DeviceRefinement>
 MakeDeviceRefinements(std::vector<FarExt::internal::Refinement const *> const &refinements,
                       std::vector<FarExt::internal::RefinementMask> const &masks,
                       DeviceArrays &arrays);

@@ -36,26 +36,6 @@ constexpr Index kVertexBatch = 256;
 using Group = int;
 constexpr Group kBetween = -1; ///< of vertices whose faces are in several tiles
 
-PlainFaceMask makePlainFaceMask(double const *weights, int size) {
-    PlainFaceMask mask;
-    bool const hasOpposite = size == kMaxUnrolledSize;
-    bool isOrdinary = weights[1] == weights[size - 1];
-    for (int j = 2; j <= size - 2; ++j) {
-        isOrdinary &= weights[j] == weights[2] || (hasOpposite && j == size / 2);
-    }
-    if (!isOrdinary) {
-        mask.weights.assign(weights, weights + size);
-        mask.weights.insert(mask.weights.end(), weights, weights + size);
-        return mask;
-    }
-    double const all = weights[size > kMinPlainSize ? 2 : 1];
-    mask.self = float(weights[0] - all);
-    mask.neighbor = float(weights[1] - all);
-    mask.opposite = hasOpposite ? float(weights[size / 2] - all) : 0;
-    mask.all = float(all);
-    return mask;
-}
-
 // Sorts items into groups, in the order in which they stand: number i is in group groupOf[i].
 template <class ITEM>
 Groups<ITEM> makeGroups(std::vector<ITEM> const &items, std::vector<Group> const &groupOf,
@@ -452,7 +432,7 @@ PlainMasks makePlainMasks(RefinementMask const &mask, Level const &parent) {
     masks.averagesFaces = mask.GetPlainVertexMask(1).faceWeight != 0;
     for (Index const size : parent.faceSizes) {
         masks.faces.resize(std::size_t(size) + 1);
-        masks.faces[std::size_t(size)] = makePlainFaceMask(mask.GetPlainFaceWeights(size), size);
+        masks.faces[std::size_t(size)] = MakePlainFaceMask(mask.GetPlainFaceWeights(size), size);
     }
     return masks;
 }
@@ -486,6 +466,26 @@ void listVertices(Refinement const &refinement, FarExt::Interpolation interpolat
 }
 
 } // namespace
+
+PlainFaceMask MakePlainFaceMask(double const *weights, int size) {
+    PlainFaceMask mask;
+    bool const hasOpposite = size == kMaxUnrolledSize;
+    bool isOrdinary = weights[1] == weights[size - 1];
+    for (int j = 2; j <= size - 2; ++j) {
+        isOrdinary &= weights[j] == weights[2] || (hasOpposite && j == size / 2);
+    }
+    if (!isOrdinary) {
+        mask.weights.assign(weights, weights + size);
+        mask.weights.insert(mask.weights.end(), weights, weights + size);
+        return mask;
+    }
+    double const all = weights[size > kMinPlainSize ? 2 : 1];
+    mask.self = float(weights[0] - all);
+    mask.neighbor = float(weights[1] - all);
+    mask.opposite = hasOpposite ? float(weights[size / 2] - all) : 0;
+    mask.all = float(all);
+    return mask;
+}
 
 int GetNumTiles(Level const &lastParent) {
     Index const numCorners = lastParent.numCorners;

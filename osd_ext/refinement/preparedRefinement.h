@@ -26,6 +26,9 @@ struct PlainFaceMask {
     std::vector<float> weights;
 };
 
+/// The mask of faces of \p size sides whose corner 0 has \p weights.
+PlainFaceMask MakePlainFaceMask(double const *weights, int size);
+
 /// \brief The masks that the plain faces and vertices of a level share.
 struct PlainMasks {
     std::vector<PlainFaceMask> faces;   ///< by size; sizes that do not occur are not filled

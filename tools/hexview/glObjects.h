@@ -2,12 +2,12 @@
 #ifndef OPENSUBDIVHEX_TOOLS_HEXVIEW_GL_OBJECTS_H
 #define OPENSUBDIVHEX_TOOLS_HEXVIEW_GL_OBJECTS_H
 
+#include "osd_ext/gl/glObjects.h"
+
 #include <epoxy/gl.h>
 
 #include <cstdint>
 #include <stdexcept>
-#include <string>
-#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::Tools {
@@ -54,43 +54,14 @@ private:
     std::size_t _size = 0;
 };
 
-/// \brief A program of OpenGL, deleted with this.
-class GlProgram {
+/// \brief A program of OpenGL that throws std::runtime_error where its compiler takes it not.
+class ViewProgram : public OsdExt::internal::GlProgram {
 public:
-    struct Shader {
-        GLenum type;
-        char const *source;
-    };
-
-    /// Throws std::runtime_error with what the compiler says.
-    explicit GlProgram(std::vector<Shader> const &shaders) : _name(glCreateProgram()) {
-        for (Shader const &shader : shaders) {
-            GLuint const name = glCreateShader(shader.type);
-            glShaderSource(name, 1, &shader.source, nullptr);
-            glCompileShader(name);
-            glAttachShader(_name, name);
-            glDeleteShader(name);
-        }
-        glLinkProgram(_name);
-        GLint isLinked = GL_FALSE;
-        glGetProgramiv(_name, GL_LINK_STATUS, &isLinked);
-        if (isLinked != GL_TRUE) {
-            char log[2000] = "";
-            glGetProgramInfoLog(_name, sizeof log, nullptr, log);
-            glDeleteProgram(_name);
-            throw std::runtime_error(std::string("OpenGL takes no shader of this program: ") + log);
+    explicit ViewProgram(std::vector<Shader> const &shaders) : GlProgram(shaders) {
+        if (!GetError().empty()) {
+            throw std::runtime_error(GetError());
         }
     }
-    GlProgram(GlProgram const &) = delete;
-    GlProgram &operator=(GlProgram const &) = delete;
-    ~GlProgram() { glDeleteProgram(_name); }
-
-    void Use() const { glUseProgram(_name); }
-    /// The place of a uniform.
-    GLint operator[](char const *uniform) const { return glGetUniformLocation(_name, uniform); }
-
-private:
-    GLuint _name;
 };
 
 } // namespace OpenSubdivHex::Tools

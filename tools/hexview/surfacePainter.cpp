@@ -62,12 +62,12 @@ glm::mat4 OrbitCamera::GetProjection(float aspect) const {
 }
 
 SurfacePainter::SurfacePainter()
-    : _surfaceProgram(
-          {{GL_VERTEX_SHADER, kSurfaceVertexShader}, {GL_FRAGMENT_SHADER, kSurfaceFragmentShader}}),
+    : _surfaceProgram({{GL_VERTEX_SHADER, {kSurfaceVertexShader}},
+                       {GL_FRAGMENT_SHADER, {kSurfaceFragmentShader}}}),
       _edgeProgram(
-          {{GL_VERTEX_SHADER, kEdgeVertexShader}, {GL_FRAGMENT_SHADER, kEdgeFragmentShader}}),
-      _controlProgram({{GL_VERTEX_SHADER, kControlVertexShader},
-                       {GL_FRAGMENT_SHADER, kControlFragmentShader}}) {
+          {{GL_VERTEX_SHADER, {kEdgeVertexShader}}, {GL_FRAGMENT_SHADER, {kEdgeFragmentShader}}}),
+      _controlProgram({{GL_VERTEX_SHADER, {kControlVertexShader}},
+                       {GL_FRAGMENT_SHADER, {kControlFragmentShader}}}) {
     glGenVertexArrays(1, &_vertexArray);
 }
 

@@ -56,9 +56,9 @@ private:
     GLuint _vertexArray = 0; // without attributes
     GlArray _controlPoints;
     GlArray _controlEnds;
-    GlProgram _surfaceProgram;
-    GlProgram _edgeProgram;
-    GlProgram _controlProgram;
+    ViewProgram _surfaceProgram;
+    ViewProgram _edgeProgram;
+    ViewProgram _controlProgram;
 };
 
 } // namespace OpenSubdivHex::Tools

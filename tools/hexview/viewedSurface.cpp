@@ -89,7 +89,7 @@ std::vector<float> evaluateCoords(FarExt::TopologyRefiner const &refiner, Mesh c
 
 ViewedSurface::ViewedSurface(Mesh mesh)
     : _mesh(std::move(mesh)), _controlPoints(_mesh.positions),
-      _normalProgram({{GL_COMPUTE_SHADER, kNormalShader}}) {
+      _normalProgram({{GL_COMPUTE_SHADER, {kNormalShader}}}) {
     int const *vert = _mesh.faceVertices.data();
     for (int const size : _mesh.faceSizes) {
         for (int i = 0; i < size; ++i) {
@@ -125,11 +125,14 @@ void ViewedSurface::Refine(SurfaceSettings const &settings) {
             fail(status);
         }
     } else if (settings.evaluator == ViewEvaluator::OpenGl) {
-        if (settings.isLimit) {
-            throw std::runtime_error("limit points are made by the CPU and by tables alone");
-        }
         glEvaluator = OsdExt::GLRefinementEvaluator::Create(*refiner, &status);
-        if (!glEvaluator) {
+        GlArray control;
+        GlArray points;
+        control.Assign(_controlPoints);
+        points.Resize(std::size_t(kLength * level.GetNumVertices()));
+        if (!glEvaluator ||
+            (settings.isLimit && !glEvaluator->EvaluateLimit(&control, kPacked, &points, kPacked,
+                                                             settings.level, &status))) {
             fail(status);
         }
     } else {
@@ -245,7 +248,10 @@ void ViewedSurface::Evaluate() {
         _points.Assign(points);
     } else {
         _controlArray.Assign(_controlPoints);
-        if (_glEvaluator) {
+        if (_glEvaluator && _settings.isLimit) {
+            _glEvaluator->EvaluateLimit(&_controlArray, kPacked, &_points, kPacked,
+                                        _settings.level);
+        } else if (_glEvaluator) {
             _glEvaluator->Evaluate(&_controlArray, kPacked, &_points, kPacked, _settings.level);
         } else {
             OsdExt::EvalStencilsInRanges(*_tableEvaluator, &_controlArray, kPacked, &_points,

@@ -91,7 +91,7 @@ private:
     GlArray _coords;       // u and v by corner
     GlArray _baseFaces;    // by triangle
     GlArray _edgeSides;    // two for each edge that is drawn
-    GlProgram _normalProgram;
+    ViewProgram _normalProgram;
     double _milliseconds = 0;
 };
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+namespace {
+
+template <typename T>
+T *getAddress(DeviceBufferName buffer) {
+    return reinterpret_cast<T *>(std::uintptr_t(buffer));
+}
+
+} // namespace
+
+DeviceArguments DeviceTask::GetArguments() const {
+    DeviceArguments arguments;
+    static_cast<DeviceParameters &>(arguments) = parameters;
+    arguments.sources = getAddress<float const>(sources);
+    arguments.results = getAddress<float>(results);
+    arguments.indices = getAddress<std::uint32_t const>(indices);
+    arguments.weights = getAddress<float const>(weights);
+    arguments.duResults = getAddress<float>(duResults);
+    arguments.dvResults = getAddress<float>(dvResults);
+    arguments.listedVertices = getAddress<std::uint32_t const>(listedVertices);
+    return arguments;
+}
+
+Device::~Device() = default;
+
+void DeviceBuffer::Resize(std::int64_t numBytes) {
+    // A buffer without a byte would be none.
+    numBytes = std::max(numBytes, std::int64_t(sizeof(float)));
+    if (numBytes <= _numBytes) {
+        return;
+    }
+    if (_name != 0) {
+        _device.Free(_name);
+        _name = 0;
+        _numBytes = 0;
+    }
+    _name = _device.Allocate(numBytes);
+    _numBytes = numBytes;
+}
+
+} // namespace OpenSubdivHex::OsdExt::internal

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_H
+#define OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_H
+
+#include "deviceKernels.h"
+
+#include "far_ext/export.h"
+#include "far_ext/status.h"
+
+#include <cstdint>
+#include <string>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+/// What a device calls a buffer: a name of OpenGL, or an address.
+using DeviceBufferName = std::uint64_t;
+
+/// \brief A kernel to be run on \c count things.
+struct OPENSUBDIVHEX_API DeviceTask {
+    /// RegularLimit has an invocation for each float of a face.
+    static std::uint32_t GetNumInvocations(DeviceKernel kernel, int length, std::uint32_t count) {
+        return kernel == DeviceKernel::RegularLimit ? count * std::uint32_t(length) : count;
+    }
+
+    DeviceKernel kernel;
+    int length;       ///< floats of an element
+    int faceSize = 0; ///< for DeviceKernel::FaceRun
+    DeviceBufferName sources = 0;
+    DeviceBufferName results = 0;
+    DeviceBufferName indices = 0;
+    DeviceBufferName weights = 0;
+    DeviceBufferName duResults = 0;
+    DeviceBufferName dvResults = 0;
+    DeviceBufferName listedVertices = 0;
+    std::uint32_t count = 0;
+    DeviceParameters parameters{}; ///< but for the count of invocations
+
+    /// All that a kernel is told, where names of buffers are addresses.
+    DeviceArguments GetArguments() const;
+};
+
+/// \brief What DeviceEvaluator asks of OpenGL, of CUDA, or of whatever else runs kernels.
+///
+/// Memory that is not there throws std::bad_alloc.
+class OPENSUBDIVHEX_API Device {
+public:
+    Device() = default;
+    Device(Device const &) = delete;
+    Device &operator=(Device const &) = delete;
+    virtual ~Device();
+
+    /// Whether anything can be run at all.
+    virtual FarExt::Status CheckContext() const = 0;
+
+    /// Gives a buffer of \p numBytes, 1 or more, whose content is not known.
+    virtual DeviceBufferName Allocate(std::int64_t numBytes) = 0;
+    virtual void Free(DeviceBufferName buffer) = 0;
+    /// Copies \p numBytes of \p data to a buffer, from \p firstByte on.
+    virtual void Write(DeviceBufferName buffer, std::int64_t firstByte, void const *data,
+                       std::int64_t numBytes) = 0;
+
+    /// \brief Whether a user's buffer is one, and has \p numFloats or more.
+    ///
+    /// \param what  names it in the message
+    virtual FarExt::Status CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
+                                       std::string const &what) const = 0;
+
+    /// Makes a kernel ready to be run.
+    virtual FarExt::Status Prepare(DeviceKernel kernel, int length, int faceSize) = 0;
+    /// Runs a kernel that is ready, behind all before it that wrote what Wait() stood behind.
+    virtual void Run(DeviceTask const &task) = 0;
+    /// What runs afterwards sees what was written before.
+    virtual void Wait() = 0;
+    /// Ends a frame: leaves the device as others expect it.
+    virtual FarExt::Status EndFrame() = 0;
+};
+
+/// \brief A buffer of a device, freed with this.
+class OPENSUBDIVHEX_API DeviceBuffer {
+public:
+    explicit DeviceBuffer(Device &device) : _device(device) {}
+    DeviceBuffer(DeviceBuffer const &) = delete;
+    DeviceBuffer &operator=(DeviceBuffer const &) = delete;
+    ~DeviceBuffer() {
+        if (_name != 0) {
+            _device.Free(_name);
+        }
+    }
+
+    DeviceBufferName GetName() const { return _name; }
+    std::int64_t GetNumBytes() const { return _numBytes; }
+
+    /// Has that size, or a larger one; the content is lost where it grows.
+    void Resize(std::int64_t numBytes);
+
+    template <typename ARRAY>
+    void Write(std::int64_t firstByte, ARRAY const &array) {
+        if (array.size() > 0) {
+            _device.Write(_name, firstByte, array.data(),
+                          std::int64_t(array.size()) * std::int64_t(sizeof(*array.data())));
+        }
+    }
+
+private:
+    Device &_device;
+    DeviceBufferName _name = 0;
+    std::int64_t _numBytes = 0;
+};
+
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif

@@ -1,0 +1,443 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deviceEvaluator.h"
+
+#include "far_ext/vtr/hierarchy.h"
+#include "osd_ext/refinement/evaluationChecks.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+using FarExt::Status;
+using FarExt::StatusCode;
+using FarExt::internal::FVarChannel;
+using FarExt::internal::MeshLevels;
+using FarExt::internal::Refinement;
+using FarExt::internal::RefinementMask;
+using Osd::BufferDescriptor;
+
+namespace {
+
+constexpr auto kWord = std::int64_t(sizeof(std::uint32_t));
+constexpr std::int64_t kMaxWords = std::int64_t(1) << 32;
+
+template <class RECORD>
+constexpr auto kWordsOf = std::int64_t(sizeof(RECORD)) / kWord;
+
+Status tooMany() {
+    return FarExt::internal::Failure(
+        StatusCode::TooLarge, "the refinements have more indices or weights than 32 bits reach");
+}
+
+bool isUnrolled(DeviceFaceRun const &run) {
+    return !run.isWeighted && kMinUnrolledFace <= run.size && run.size <= kMaxUnrolledFace;
+}
+
+} // namespace
+
+DeviceEvaluator::DeviceEvaluator(std::unique_ptr<Device> device,
+                                 FarExt::TopologyRefiner const &refiner)
+    : _device(std::move(device)), _refiner(refiner), _numRefinements(refiner.GetNumRefinements()),
+      _indices(*_device), _weights(*_device), _controlValues(*_device), _evenLevel(*_device),
+      _oddLevel(*_device) {}
+
+Status DeviceEvaluator::Prepare(Options options) {
+    Status status = CheckOptions(_refiner, options);
+    if (status.IsOk()) {
+        status = _device->CheckContext();
+    }
+    if (!status.IsOk()) {
+        return status;
+    }
+    bool const isFaceVarying = options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING;
+    _isOfVertices = options.interpolationMode == FarExt::INTERPOLATE_VERTEX;
+    MeshLevels const &mesh =
+        _refiner.GetHierarchy().GetMesh(isFaceVarying ? options.fvarChannel : -1);
+    std::vector<Refinement const *> refinements;
+    std::vector<RefinementMask> masks;
+    for (int level = 0; level <= _refiner.GetMaxLevel(); ++level) {
+        FarExt::internal::Level const &ofMesh = mesh.levels[std::size_t(level)];
+        _numElements.push_back(ofMesh.numVertices);
+        if (level < _refiner.GetMaxLevel()) {
+            refinements.push_back(&mesh.refinements[std::size_t(level)]);
+            masks.emplace_back(ofMesh, _refiner.GetHexSchemeOptions(),
+                               GetInterpolation(_refiner, options));
+        }
+    }
+    DeviceArrays arrays;
+    _refinements = MakeDeviceRefinements(refinements, masks, arrays);
+    if (_refinements.size() < refinements.size()) {
+        return tooMany();
+    }
+    std::vector<std::int32_t> values;
+    if (isFaceVarying) {
+        FVarChannel const &channel =
+            _refiner.GetHierarchy().channels[std::size_t(options.fvarChannel)];
+        _numElements[0] = channel.numValues;
+        if (channel.numValues != mesh.levels[0].numVertices) {
+            _numValueVertices = mesh.levels[0].numVertices;
+            values.assign(channel.valuesOfVertices.begin(), channel.valuesOfVertices.end());
+        }
+    }
+    for (DeviceRefinement const &refinement : _refinements) {
+        for (DeviceFaceRun const &run : refinement.faceRuns) {
+            if (isUnrolled(run)) {
+                _faceSizes.push_back(run.size);
+            }
+        }
+    }
+    std::sort(_faceSizes.begin(), _faceSizes.end());
+    _faceSizes.erase(std::unique(_faceSizes.begin(), _faceSizes.end()), _faceSizes.end());
+
+    auto next = std::int64_t(arrays.indices.size());
+    auto const take = [&](std::int64_t count) {
+        auto const first = std::uint32_t(next);
+        next += count;
+        return first;
+    };
+    for (DeviceRefinement const &refinement : _refinements) {
+        std::uint32_t const corners =
+            take(kWordsOf<DeviceCorner> * std::int64_t(refinement.corners.size()));
+        _places.push_back(
+            {corners, take(kWordsOf<DeviceVertex> * std::int64_t(refinement.vertices.size()))});
+    }
+    _firstValue = take(std::int64_t(values.size()));
+    if (next > kMaxWords) {
+        return tooMany();
+    }
+    _indices.Resize(next * kWord);
+    _indices.Write(0, arrays.indices);
+    for (std::size_t i = 0; i < _refinements.size(); ++i) {
+        _indices.Write(_places[i].corners * kWord, _refinements[i].corners);
+        _indices.Write(_places[i].vertices * kWord, _refinements[i].vertices);
+    }
+    _indices.Write(_firstValue * kWord, values);
+    _weights.Resize(std::int64_t(arrays.weights.size()) * kWord);
+    _weights.Write(0, arrays.weights);
+    return _device->EndFrame();
+}
+
+std::int64_t DeviceEvaluator::GetNumElementsAllLevels() const {
+    return std::accumulate(_numElements.begin() + 1, _numElements.end(), std::int64_t(0));
+}
+
+std::int64_t DeviceEvaluator::GetNumDeviceBytes() const {
+    std::int64_t result = _indices.GetNumBytes() + _weights.GetNumBytes();
+    for (auto const &limit : _limits) {
+        result += limit ? limit->indices.GetNumBytes() + limit->weights.GetNumBytes() : 0;
+    }
+    return result;
+}
+
+Status DeviceEvaluator::check(Values const &src, std::vector<Values> const &outputs, int level,
+                              std::int64_t numWritten) const {
+    Status status = CheckLevel(level, GetMaxLevel());
+    auto const checkBuffer = [&](Values const &values, std::int64_t count,
+                                 std::string const &what) {
+        if (status.IsOk() && count > 0) {
+            std::int64_t const end = values.desc.offset +
+                                     (count - 1) * std::int64_t(values.desc.stride) +
+                                     values.desc.length;
+            status = _device->CheckBuffer(values.buffer, end, what);
+        }
+    };
+    for (Values const &output : outputs) {
+        if (status.IsOk()) {
+            status = CheckDescriptors(src.desc, output.desc);
+        }
+    }
+    checkBuffer(src, numWritten > 0 ? GetNumElements(0) : 0, "source");
+    char const *const names[] = {"destination", "destination of du", "destination of dv"};
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        checkBuffer(outputs[i], numWritten, names[i]);
+    }
+    return status;
+}
+
+// Those that a level may need.
+Status DeviceEvaluator::prepareKernels(int length) {
+    Status status;
+    for (DeviceKernel const kernel :
+         {DeviceKernel::Copy, DeviceKernel::AnyFaceRun, DeviceKernel::WeightedFaceRun,
+          DeviceKernel::Corners, DeviceKernel::VertexRun, DeviceKernel::Vertices}) {
+        if (status.IsOk()) {
+            status = _device->Prepare(kernel, length, 0);
+        }
+    }
+    for (int const faceSize : _faceSizes) {
+        if (status.IsOk()) {
+            status = _device->Prepare(DeviceKernel::FaceRun, length, faceSize);
+        }
+    }
+    return status;
+}
+
+DeviceTask DeviceEvaluator::makeTask(DeviceKernel kernel, int length, Elements const &src,
+                                     Elements const &dst) const {
+    DeviceTask task{kernel, length};
+    task.sources = src.buffer;
+    task.results = dst.buffer;
+    task.indices = _indices.GetName();
+    task.weights = _weights.GetName();
+    task.listedVertices = _indices.GetName();
+    task.parameters.sourceOffset = std::uint64_t(src.offset);
+    task.parameters.sourceStride = std::uint64_t(src.stride);
+    task.parameters.resultOffset = std::uint64_t(dst.offset);
+    task.parameters.resultStride = std::uint64_t(dst.stride);
+    return task;
+}
+
+void DeviceEvaluator::run(DeviceTask &task, std::uint32_t count) {
+    task.count = count;
+    if (count > 0) {
+        _device->Run(task);
+    }
+}
+
+// The control values by vertex of the mesh of level 0.
+auto DeviceEvaluator::toVertices(Elements const &src, int length) -> Elements {
+    if (_numValueVertices == 0) {
+        return src;
+    }
+    _controlValues.Resize(std::int64_t(_numValueVertices) * length * kWord);
+    Elements const result = {_controlValues.GetName(), 0, length};
+    DeviceTask task = makeTask(DeviceKernel::Copy, length, src, result);
+    task.parameters.hasIndices = 1;
+    task.parameters.firstIndex = _firstValue;
+    run(task, std::uint32_t(_numValueVertices));
+    _device->Wait();
+    return result;
+}
+
+auto DeviceEvaluator::getScratch(int level, int length) -> Elements {
+    return {(level % 2 == 0 ? _evenLevel : _oddLevel).GetName(), 0, length};
+}
+
+// For levels 1 ... last, which grow: the last two have room for those before.
+void DeviceEvaluator::resizeScratch(int length, int last) {
+    for (int level = std::max(1, last - 1); level <= last; ++level) {
+        (level % 2 == 0 ? _evenLevel : _oddLevel)
+            .Resize(std::int64_t(GetNumElements(level)) * length * kWord);
+    }
+}
+
+void DeviceEvaluator::refine(std::size_t number, Elements const &src, Elements const &dst,
+                             int length) {
+    DeviceRefinement const &refinement = _refinements[number];
+    auto const makeTaskOf = [&](DeviceKernel kernel) {
+        DeviceTask task = makeTask(kernel, length, src, dst);
+        task.parameters.firstFVertex = std::uint32_t(refinement.numVVertices);
+        task.parameters.numConsecutiveCorners = refinement.numConsecutiveCorners;
+        task.parameters.firstConsecutiveVertex = refinement.firstConsecutiveVertex;
+        task.parameters.firstListedVertex = refinement.firstListedVertex;
+        return task;
+    };
+    for (DeviceFaceRun const &faceRun : refinement.faceRuns) {
+        DeviceTask task = makeTaskOf(isUnrolled(faceRun)  ? DeviceKernel::FaceRun
+                                     : faceRun.isWeighted ? DeviceKernel::WeightedFaceRun
+                                                          : DeviceKernel::AnyFaceRun);
+        task.faceSize = isUnrolled(faceRun) ? faceRun.size : 0;
+        task.parameters.faceSize = std::uint32_t(faceRun.size);
+        task.parameters.firstCorner = faceRun.firstCorner;
+        task.parameters.firstWeight = faceRun.firstWeight;
+        run(task, faceRun.count);
+    }
+    if (!refinement.corners.empty()) {
+        // Some corners are made again behind the runs that they are in.
+        _device->Wait();
+        DeviceTask task = makeTaskOf(DeviceKernel::Corners);
+        task.parameters.firstIndex = _places[number].corners;
+        run(task, std::uint32_t(refinement.corners.size()));
+    }
+    _device->Wait();
+    for (DeviceVertexRun const &vertexRun : refinement.vertexRuns) {
+        DeviceTask task = makeTaskOf(DeviceKernel::VertexRun);
+        task.parameters.firstIndex = vertexRun.firstIndex;
+        task.parameters.firstVertex = vertexRun.firstVertex;
+        task.parameters.addsInTurn = vertexRun.addsInTurn ? 1 : 0;
+        task.parameters.vertexWeight = refinement.vertexWeight;
+        task.parameters.averagesFaces = refinement.averagesFaces ? 1 : 0;
+        run(task, vertexRun.count);
+    }
+    DeviceTask task = makeTaskOf(DeviceKernel::Vertices);
+    task.parameters.firstIndex = _places[number].vertices;
+    run(task, std::uint32_t(refinement.vertices.size()));
+    _device->Wait();
+}
+
+Status DeviceEvaluator::Evaluate(Values const &src, Values const &dst, int level) {
+    bool const isLevel = level >= 0 && level <= GetMaxLevel();
+    std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
+    int const length = src.desc.length;
+    Status status = check(src, {dst}, level, numWritten);
+    if (status.IsOk()) {
+        status = prepareKernels(length);
+    }
+    if (!status.IsOk() || numWritten == 0) {
+        return status;
+    }
+    Elements values = {src.buffer, src.desc.offset, src.desc.stride};
+    Elements const result = {dst.buffer, dst.desc.offset, dst.desc.stride};
+    if (level == 0) {
+        DeviceTask task = makeTask(DeviceKernel::Copy, length, values, result);
+        run(task, std::uint32_t(numWritten));
+        _device->Wait();
+        return _device->EndFrame();
+    }
+    resizeScratch(length, level - 1);
+    values = toVertices(values, length);
+    for (int made = 1; made <= level; ++made) {
+        Elements const next = made == level ? result : getScratch(made, length);
+        refine(std::size_t(made) - 1, values, next, length);
+        values = next;
+    }
+    return _device->EndFrame();
+}
+
+Status DeviceEvaluator::EvaluateAllLevels(Values const &src, Values const &dst) {
+    std::int64_t const numWritten = GetNumElementsAllLevels();
+    int const length = src.desc.length;
+    Status status = check(src, {dst}, GetMaxLevel(), numWritten);
+    if (status.IsOk()) {
+        status = prepareKernels(length);
+    }
+    if (!status.IsOk() || numWritten == 0) {
+        return status;
+    }
+    Elements values = toVertices({src.buffer, src.desc.offset, src.desc.stride}, length);
+    Elements next = {dst.buffer, dst.desc.offset, dst.desc.stride};
+    for (int made = 1; made <= GetMaxLevel(); ++made) {
+        refine(std::size_t(made) - 1, values, next, length);
+        values = next;
+        next.offset += GetNumElements(made) * next.stride;
+    }
+    return _device->EndFrame();
+}
+
+// Finds the masks of a level, unless it has, and loads them.
+Status DeviceEvaluator::prepareLimit(int level, int length) {
+    Status status = _device->Prepare(DeviceKernel::RegularLimit, length, 0);
+    if (status.IsOk()) {
+        status = _device->Prepare(DeviceKernel::VertexLimit, length, 0);
+    }
+    _limits.resize(_numElements.size());
+    std::unique_ptr<Limit> &limit = _limits[std::size_t(level)];
+    if (!status.IsOk() || limit) {
+        return status;
+    }
+    if (_refiner.GetNumRefinements() != _numRefinements) {
+        return FarExt::internal::Failure(
+            StatusCode::InvalidArgument,
+            "the refiner has refined again since the evaluator was made");
+    }
+    FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();
+    status = FarExt::internal::CheckLimitLevel(hierarchy, _refiner.GetHexSchemeOptions(), level);
+    if (!status.IsOk()) {
+        return status;
+    }
+    FarExt::internal::LimitRows rows(hierarchy.mesh.levels[std::size_t(level)],
+                                     _refiner.GetSchemeOptions(), _refiner.GetHexSchemeOptions());
+    DeviceLimit prepared;
+    status = MakeDeviceLimit(hierarchy.mesh, _refiner.GetHexSchemeOptions(), rows, prepared);
+    if (!status.IsOk()) {
+        return status;
+    }
+    auto result = std::make_unique<Limit>(*_device);
+    std::int64_t const firstVertex =
+        kWordsOf<DeviceRegularFace> * std::int64_t(prepared.faces.size());
+    std::int64_t const firstSource =
+        firstVertex + kWordsOf<DeviceLimitVertex> * std::int64_t(prepared.vertices.size());
+    for (DeviceLimitVertex &vertex : prepared.vertices) {
+        vertex.firstIndex += std::uint32_t(firstSource);
+    }
+    result->numVertices = std::uint32_t(prepared.vertices.size());
+    result->firstVertex = std::uint32_t(firstVertex);
+    result->levels = std::move(prepared.levels);
+    result->indices.Resize((firstSource + std::int64_t(prepared.sources.size())) * kWord);
+    result->indices.Write(0, prepared.faces);
+    result->indices.Write(firstVertex * kWord, prepared.vertices);
+    result->indices.Write(firstSource * kWord, prepared.sources);
+    result->weights.Resize(std::int64_t(prepared.weights.size()) * kWord);
+    result->weights.Write(0, prepared.weights);
+    limit = std::move(result);
+    return status;
+}
+
+Status DeviceEvaluator::EvaluateLimit(Values const &src, std::vector<Values> const &outputs,
+                                      int level) {
+    bool const isLevel = level >= 0 && level <= GetMaxLevel();
+    std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
+    int const length = src.desc.length;
+    Status status = check(src, outputs, level, numWritten);
+    if (status.IsOk() && !_isOfVertices) {
+        status = FarExt::internal::Failure(StatusCode::InvalidArgument,
+                                           "there is a limit for INTERPOLATE_VERTEX alone");
+    }
+    if (status.IsOk()) {
+        status = prepareKernels(length);
+    }
+    if (status.IsOk()) {
+        status = prepareLimit(level, length);
+    }
+    if (!status.IsOk() || numWritten == 0) {
+        return status;
+    }
+    std::vector<Elements> elements;
+    for (Values const &output : outputs) {
+        elements.push_back({output.buffer, output.desc.offset, output.desc.stride});
+    }
+    evaluateLimit({src.buffer, src.desc.offset, src.desc.stride}, elements, length, level);
+    return _device->EndFrame();
+}
+
+// Level by level, and of each the limits that its regular faces make.
+void DeviceEvaluator::evaluateLimit(Elements const &src, std::vector<Elements> const &outputs,
+                                    int length, int level) {
+    Limit const &limit = *_limits[std::size_t(level)];
+    int const last = limit.numVertices > 0 ? level : level - 1;
+    resizeScratch(length, last);
+    Elements values = src;
+    for (int made = 1; made <= level; ++made) {
+        DeviceLimit::RegularLevel const &regular = limit.levels[std::size_t(made) - 1];
+        DeviceRefinement const &refinement = _refinements[std::size_t(made) - 1];
+        DeviceTask task = makeTask(DeviceKernel::RegularLimit, length, values, outputs[0]);
+        task.parameters.firstIndex = regular.firstFace * kWordsOf<DeviceRegularFace>;
+        task.parameters.firstWeight = regular.firstWeight;
+        task.parameters.firstFVertex = std::uint32_t(refinement.numVVertices);
+        task.parameters.numConsecutiveCorners = refinement.numConsecutiveCorners;
+        task.parameters.firstConsecutiveVertex = refinement.firstConsecutiveVertex;
+        task.parameters.firstListedVertex = refinement.firstListedVertex;
+        runLimit(task, limit, outputs, regular.count);
+        if (made <= last) {
+            Elements const next = getScratch(made, length);
+            refine(std::size_t(made) - 1, values, next, length);
+            values = next;
+        }
+    }
+    DeviceTask task = makeTask(DeviceKernel::VertexLimit, length, values, outputs[0]);
+    task.parameters.firstIndex = limit.firstVertex;
+    runLimit(task, limit, outputs, limit.numVertices);
+    _device->Wait();
+}
+
+void DeviceEvaluator::runLimit(DeviceTask &task, Limit const &limit,
+                               std::vector<Elements> const &outputs, std::uint32_t count) {
+    task.indices = limit.indices.GetName();
+    task.weights = limit.weights.GetName();
+    if (outputs.size() > 1) {
+        task.parameters.hasDerivatives = 1;
+        task.duResults = outputs[1].buffer;
+        task.dvResults = outputs[2].buffer;
+        task.parameters.duOffset = std::uint64_t(outputs[1].offset);
+        task.parameters.duStride = std::uint64_t(outputs[1].stride);
+        task.parameters.dvOffset = std::uint64_t(outputs[2].offset);
+        task.parameters.dvStride = std::uint64_t(outputs[2].stride);
+    }
+    run(task, count);
+}
+
+} // namespace OpenSubdivHex::OsdExt::internal

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_EVALUATOR_H
+#define OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_EVALUATOR_H
+
+#include "device.h"
+#include "deviceLimit.h"
+#include "deviceRefinement.h"
+
+#include "osd_ext/refinementEvaluator.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+/// \brief What the evaluators of all devices do: RefinementEvaluator with the kernels of a Device.
+///
+/// On the device there are one array of indices and one of weights for all refinements, two for each
+/// level whose limit was asked for, and levels below the one asked for.
+class OPENSUBDIVHEX_API DeviceEvaluator {
+public:
+    using Options = RefinementEvaluator::Options;
+
+    /// \brief A buffer and the descriptor of its elements.
+    struct Values {
+        DeviceBufferName buffer;
+        Osd::BufferDescriptor desc;
+    };
+
+    DeviceEvaluator(std::unique_ptr<Device> device, FarExt::TopologyRefiner const &refiner);
+
+    /// Loads what the device needs for all levels.
+    FarExt::Status Prepare(Options options);
+
+    Device &GetDevice() const { return *_device; }
+    int GetMaxLevel() const { return int(_numElements.size()) - 1; }
+    int GetNumElements(int level) const { return _numElements[std::size_t(level)]; }
+    std::int64_t GetNumElementsAllLevels() const;
+    std::int64_t GetNumDeviceBytes() const;
+
+    /// @name As in RefinementEvaluator
+    /// @{
+    FarExt::Status Evaluate(Values const &src, Values const &dst, int level);
+    FarExt::Status EvaluateAllLevels(Values const &src, Values const &dst);
+    /// \param outputs  the points, or with du and dv behind them
+    FarExt::Status EvaluateLimit(Values const &src, std::vector<Values> const &outputs, int level);
+    /// @}
+
+private:
+    // Where the listed corners and vertices of a refinement are among the indices.
+    struct Places {
+        std::uint32_t corners;
+        std::uint32_t vertices;
+    };
+    struct Elements {
+        DeviceBufferName buffer;
+        std::int64_t offset;
+        std::int64_t stride;
+    };
+    // The limit of a level, and its arrays: faces, vertices and sources in one.
+    struct Limit {
+        explicit Limit(Device &device) : indices(device), weights(device) {}
+
+        std::vector<DeviceLimit::RegularLevel> levels; // places of faces are those of indices
+        std::uint32_t numVertices = 0;
+        std::uint32_t firstVertex = 0; // in indices
+        DeviceBuffer indices;
+        DeviceBuffer weights;
+    };
+
+    FarExt::Status check(Values const &src, std::vector<Values> const &outputs, int level,
+                         std::int64_t numWritten) const;
+    FarExt::Status prepareKernels(int length);
+    FarExt::Status prepareLimit(int level, int length);
+    DeviceTask makeTask(DeviceKernel kernel, int length, Elements const &src,
+                        Elements const &dst) const;
+    void run(DeviceTask &task, std::uint32_t count);
+    Elements toVertices(Elements const &src, int length);
+    Elements getScratch(int level, int length);
+    void resizeScratch(int length, int last);
+    void refine(std::size_t number, Elements const &src, Elements const &dst, int length);
+    void evaluateLimit(Elements const &src, std::vector<Elements> const &outputs, int length,
+                       int level);
+    void runLimit(DeviceTask &task, Limit const &limit, std::vector<Elements> const &outputs,
+                  std::uint32_t count);
+
+    std::unique_ptr<Device> const _device;
+    FarExt::TopologyRefiner const &_refiner; // for limits
+    int const _numRefinements;               // of it, when this was made
+    bool _isOfVertices = true;               // not of face-varying values, nor varying
+
+    std::vector<int> _numElements;              // by level
+    std::vector<DeviceRefinement> _refinements; // by level of the parent
+    std::vector<Places> _places;
+    std::vector<int> _faceSizes; // of unrolled runs
+    DeviceBuffer _indices;
+    DeviceBuffer _weights;
+    // Of a face-varying channel some of whose values several vertices of its value mesh share: the
+    // value of each is an index, from here on.
+    int _numValueVertices = 0;
+    std::uint32_t _firstValue = 0;
+    DeviceBuffer _controlValues; // by vertex of that value mesh
+    DeviceBuffer _evenLevel;     // levels below the one asked for; that one, too, for its limit
+    DeviceBuffer _oddLevel;
+    std::vector<std::unique_ptr<Limit>> _limits; // by level; null: not yet asked
+};
+
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What kernels are told besides their arrays: PARAMETER(type, name).  See kernels.inl.
+
+PARAMETER(uint, count) // of invocations
+
+// Floats of the arrays: where element 0 begins, and from one to the next.
+PARAMETER(PLACE, sourceOffset)
+PARAMETER(PLACE, sourceStride)
+PARAMETER(PLACE, resultOffset)
+PARAMETER(PLACE, resultStride)
+PARAMETER(PLACE, duOffset)
+PARAMETER(PLACE, duStride)
+PARAMETER(PLACE, dvOffset)
+PARAMETER(PLACE, dvStride)
+
+PARAMETER(uint, firstFVertex) // element of the results, behind the V-vertices
+
+// The vertices of the corners of the parent's faces: those of its F-faces follow one another, the
+// others are listed.
+PARAMETER(uint, numConsecutiveCorners)
+PARAMETER(uint, firstConsecutiveVertex)
+PARAMETER(PLACE, firstListedVertex) // position in listedVertices
+
+PARAMETER(PLACE, firstIndex)  // position in indices of what a kernel lists
+PARAMETER(PLACE, firstWeight) // position in weights
+PARAMETER(uint, firstCorner)  // of a run of faces
+PARAMETER(uint, faceSize)     // of its faces
+PARAMETER(uint, firstVertex)  // of a run of vertices
+PARAMETER(float, vertexWeight)
+PARAMETER(uint, hasIndices) // copies elements that are listed, else those that follow one another
+PARAMETER(uint, averagesFaces) // else V-vertices stay
+PARAMETER(uint, addsInTurn)    // the three F-vertices of a vertex; else the last two first
+PARAMETER(uint, hasDerivatives)

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "glDevice.h"
+
+#include "kernelText.h"
+
+#include <iterator>
+#include <new>
+#include <string>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+using FarExt::Status;
+using FarExt::StatusCode;
+
+namespace {
+
+constexpr int kMinVersion = 43;
+constexpr std::uint32_t kGroup = 64; // invocations
+// Groups of a dispatch in one dimension, which every driver takes.
+constexpr std::uint32_t kMaxGroups = 65535;
+// Places in a buffer are numbers of 32 bits in shaders.
+constexpr std::int64_t kMaxPlaces = std::int64_t(1) << 32;
+
+// In the order of DeviceKernel.
+constexpr char const *kNames[] = {
+    "copyElement",       "makeFVerticesOfRun", "makeFVerticesOfFace", "makeFVerticesByWeights",
+    "makeListedFVertex", "makeVVertexOfRun",   "makeListedVVertex",   "makeRegularLimit",
+    "makeListedLimit"};
+
+// What stands before the kernels, behind LENGTH and SIZE: see kernels.inl.
+constexpr char const *kHead = R"(
+layout(local_size_x = 64) in;
+#define PLACE uint
+#define READ_ARRAY(number, block, type, name) \
+    layout(std430, binding = number) readonly buffer block { type name[]; };
+#define ARRAY(number, block, type, name) \
+    layout(std430, binding = number) buffer block { type name[]; };
+#define PARAMETER(type, name) uniform type name;
+#define FUNCTION
+#define REFERENCE(type) inout type
+#define PRECISE precise
+)";
+constexpr char const *kMain = R"(
+void main() {
+    uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u +
+             gl_LocalInvocationID.x;
+    if (i < count) {
+        KERNEL(i);
+    }
+}
+)";
+
+std::string str(std::int64_t number) { return std::to_string(number); }
+
+void set(GLint place, float value) { glUniform1f(place, value); }
+void set(GLint place, std::uint32_t value) { glUniform1ui(place, value); }
+// Places that are used fit, since CheckBuffer() has seen the last one.
+void set(GLint place, std::uint64_t value) { glUniform1ui(place, GLuint(value)); }
+
+} // namespace
+
+Status GlDevice::CheckContext() const {
+    if (epoxy_gl_version() < kMinVersion || !epoxy_is_desktop_gl()) {
+        return FarExt::internal::Failure(StatusCode::Unsupported,
+                                         "there is no current context of OpenGL 4.3");
+    }
+    return Status();
+}
+
+DeviceBufferName GlDevice::Allocate(std::int64_t numBytes) {
+    GLuint name = 0;
+    GLint64 numAllocated = 0;
+    glGenBuffers(1, &name);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
+    glBufferData(GL_SHADER_STORAGE_BUFFER, GLsizeiptr(numBytes), nullptr, GL_DYNAMIC_COPY);
+    glGetBufferParameteri64v(GL_SHADER_STORAGE_BUFFER, GL_BUFFER_SIZE, &numAllocated);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+    if (numAllocated != numBytes) {
+        glDeleteBuffers(1, &name);
+        throw std::bad_alloc();
+    }
+    return name;
+}
+
+void GlDevice::Free(DeviceBufferName buffer) {
+    auto const name = GLuint(buffer);
+    glDeleteBuffers(1, &name);
+}
+
+void GlDevice::Write(DeviceBufferName buffer, std::int64_t firstByte, void const *data,
+                     std::int64_t numBytes) {
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(buffer));
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, GLintptr(firstByte), GLsizeiptr(numBytes), data);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+}
+
+Status GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
+                             std::string const &what) const {
+    auto const fail = [](StatusCode code, std::string const &message) {
+        return FarExt::internal::Failure(code, message);
+    };
+    if (!glIsBuffer(GLuint(buffer))) {
+        return fail(StatusCode::InvalidArgument,
+                    "the " + what + " " + str(std::int64_t(buffer)) + " is no buffer");
+    }
+    GLint64 numBytes = 0;
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(buffer));
+    glGetBufferParameteri64v(GL_SHADER_STORAGE_BUFFER, GL_BUFFER_SIZE, &numBytes);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+    std::int64_t const numNeeded = numFloats * std::int64_t(sizeof(float));
+    if (numBytes < numNeeded) {
+        return fail(StatusCode::InvalidArgument, "the " + what + " has " + str(numBytes) +
+                                                     " bytes, but its last element ends at byte " +
+                                                     str(numNeeded));
+    }
+    if (numFloats > kMaxPlaces) {
+        return fail(StatusCode::TooLarge, "the last element of the " + what + " ends at float " +
+                                              str(numFloats) + ", beyond what 32 bits reach");
+    }
+    return Status();
+}
+
+Status GlDevice::Prepare(DeviceKernel kernel, int length, int faceSize) {
+    Kernel &prepared = _kernels[{kernel, length, faceSize}];
+    if (prepared.program) {
+        return Status();
+    }
+    char const *const name = kNames[int(kernel)];
+    std::string const definitions =
+        "#version 430\n#define LENGTH " + str(length) + "\n#define SIZE " +
+        str(faceSize == 0 ? kMinUnrolledFace : faceSize) + "\n#define KERNEL " + name + "\n";
+    std::vector<char const *> texts = {definitions.c_str(), kHead};
+    texts.insert(texts.end(), std::begin(kKernelTexts), std::end(kKernelTexts));
+    texts.push_back(kMain);
+    auto program =
+        std::make_unique<GlProgram>(std::vector<GlProgram::Shader>{{GL_COMPUTE_SHADER, texts}});
+    if (!program->GetError().empty()) {
+        return FarExt::internal::Failure(StatusCode::Unsupported, "kernel " + std::string(name) +
+                                                                      " of length " + str(length) +
+                                                                      ": " + program->GetError());
+    }
+    prepared.program = std::move(program);
+#define PLACE Place
+#define PARAMETER(type, name) prepared.uniforms.push_back((*prepared.program)[#name]);
+#include "osd_ext/device/kernelParameters.inl"
+#undef PARAMETER
+#undef PLACE
+    return Status();
+}
+
+void GlDevice::Run(DeviceTask const &task) {
+    Kernel const &kernel = _kernels.at({task.kernel, task.length, task.faceSize});
+    DeviceParameters parameters = task.parameters;
+    parameters.count = DeviceTask::GetNumInvocations(task.kernel, task.length, task.count);
+    kernel.program->Use();
+    GLint const *uniform = kernel.uniforms.data();
+#define PLACE Place
+#define PARAMETER(type, name) set(*uniform++, parameters.name);
+#include "osd_ext/device/kernelParameters.inl"
+#undef PARAMETER
+#undef PLACE
+    DeviceBufferName const buffers[] = {task.sources,       task.results,   task.indices,
+                                        task.weights,       task.duResults, task.dvResults,
+                                        task.listedVertices};
+    for (GLuint binding = 0; binding < std::size(buffers); ++binding) {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, GLuint(buffers[binding]));
+    }
+    std::uint32_t const numGroups = parameters.count / kGroup + (parameters.count % kGroup != 0);
+    std::uint32_t const numRows = numGroups / kMaxGroups + (numGroups % kMaxGroups != 0);
+    glDispatchCompute(numGroups / numRows + (numGroups % numRows != 0), numRows, 1);
+}
+
+void GlDevice::Wait() { glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT); }
+
+// Binds nothing, as if nothing had been.
+Status GlDevice::EndFrame() {
+    glUseProgram(0);
+    constexpr GLuint kNumBindings = 7;
+    for (GLuint binding = 0; binding < kNumBindings; ++binding) {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
+    }
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+    return Status();
+}
+
+} // namespace OpenSubdivHex::OsdExt::internal

@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What evaluators of all devices do, against RefinementEvaluator.  Each has a program of its own that
+// instantiates these tests.
+#ifndef OPENSUBDIVHEX_REGRESSION_DEVICE_DEVICE_EVALUATOR_TEST_H
+#define OPENSUBDIVHEX_REGRESSION_DEVICE_DEVICE_EVALUATOR_TEST_H
+
+#include "far_ext/topologyRefinerFactory.h"
+#include "osd_ext/refinementEvaluator.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+/// Of values up to 1 in size.
+constexpr float kUnit = 0x1p-23f;
+constexpr float kBlank = 9;
+
+/// Floats up to 1 in size.
+inline std::vector<float> MakeValues(int count, int stride) {
+    std::vector<float> values;
+    for (std::int64_t i = 0; i < std::int64_t(count) * stride; ++i) {
+        values.push_back(float(i * 7919 % 1009) / 505 - 1);
+    }
+    return values;
+}
+
+inline std::unique_ptr<FarExt::TopologyRefiner>
+MakeRefiner(Shape const &shape, int level, Sdc::Options::VtxBoundaryInterpolation boundary,
+            FarExt::HexSchemeOptions schemeOptions = {}, bool fullTopologyInLastLevel = false) {
+    Sdc::Options sdcOptions;
+    sdcOptions.SetVtxBoundaryInterpolation(boundary);
+    FarExt::TopologyRefinerFactory::Options options;
+    options.schemeOptions = schemeOptions;
+    ShapeDescriptor const descriptor(shape);
+    FarExt::Status status;
+    auto refiner =
+        FarExt::TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status);
+    FarExt::TopologyRefiner::UniformOptions uniform(level);
+    uniform.fullTopologyInLastLevel = fullTopologyInLastLevel;
+    if (!refiner || !refiner->RefineUniform(uniform, &status)) {
+        throw std::runtime_error(shape.name + ": " + status.GetMessage());
+    }
+    return refiner;
+}
+
+inline std::vector<Shape> GetShapesAndFeatureShapes() {
+    std::vector<Shape> shapes = GetShapes();
+    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
+    return shapes;
+}
+
+/// \tparam KIND  has
+///  - Evaluator and Buffer, which this binds,
+///  - GetMissing(): empty, or why there is none; and IsNeeded(): whether that is a failure,
+///  - MakeBuffer(values, stride) and Read(buffer, numFloats).
+template <class KIND>
+class DeviceEvaluator : public testing::Test {
+protected:
+    using Descriptor = Osd::BufferDescriptor;
+    using Evaluator = typename KIND::Evaluator;
+    using Buffer = std::unique_ptr<typename KIND::Buffer>;
+    using Options = OsdExt::RefinementEvaluator::Options;
+
+    void SetUp() override {
+        if (std::string const missing = kind.GetMissing(); !missing.empty()) {
+            ASSERT_FALSE(kind.IsNeeded()) << missing;
+            GTEST_SKIP() << missing;
+        }
+    }
+
+    Buffer makeBlank(std::size_t numFloats, int stride) {
+        return kind.MakeBuffer(std::vector<float>(numFloats, kBlank), stride);
+    }
+
+    /// Whether floats that the processor and the device made differ by rounding alone.
+    void expectFloats(Buffer &buffer, std::vector<float> const &expected, float numUnits) {
+        std::vector<float> const values = kind.Read(*buffer, expected.size());
+        ASSERT_EQ(values.size(), expected.size());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            float const difference = std::abs(values[i] - expected[i]) / kUnit;
+            ASSERT_LE(difference, numUnits)
+                << "units, float " << i << ": " << values[i] << " instead of " << expected[i];
+            largest = std::max(largest, difference);
+        }
+    }
+
+    /// All levels together and each alone.
+    void expectEqual(FarExt::TopologyRefiner const &refiner, Options options, int length) {
+        SCOPED_TRACE(testing::Message() << "mode " << options.interpolationMode << ", channel "
+                                        << options.fvarChannel << ", length " << length);
+        FarExt::Status status;
+        auto const expected = OsdExt::RefinementEvaluator::Create(refiner, options);
+        auto const evaluator = Evaluator::Create(refiner, options, &status);
+        ASSERT_TRUE(evaluator) << status.GetMessage();
+        ASSERT_EQ(evaluator->GetMaxLevel(), expected->GetMaxLevel());
+        ASSERT_EQ(evaluator->GetNumElementsAllLevels(), expected->GetNumElementsAllLevels());
+        Descriptor const desc(0, length, length);
+        std::vector<float> const src = MakeValues(expected->GetNumElements(0), length);
+        Buffer const srcBuffer = kind.MakeBuffer(src, length);
+        std::vector<float> dst(std::size_t(expected->GetNumElementsAllLevels() * length));
+        ASSERT_TRUE(expected->EvaluateAllLevels(src.data(), desc, dst.data(), desc));
+        Buffer dstBuffer = makeBlank(dst.size(), length);
+        ASSERT_TRUE(
+            evaluator->EvaluateAllLevels(srcBuffer.get(), desc, dstBuffer.get(), desc, &status))
+            << status.GetMessage();
+        ASSERT_NO_FATAL_FAILURE(expectFloats(dstBuffer, dst, kNumUnits));
+        for (int level = 0; level <= expected->GetMaxLevel(); ++level) {
+            SCOPED_TRACE(testing::Message() << "level " << level);
+            dst.assign(std::size_t(expected->GetNumElements(level) * length), 0);
+            ASSERT_EQ(evaluator->GetNumElements(level), expected->GetNumElements(level));
+            ASSERT_TRUE(expected->Evaluate(src.data(), desc, dst.data(), desc, level));
+            dstBuffer = makeBlank(dst.size(), length);
+            ASSERT_TRUE(evaluator->Evaluate(srcBuffer.get(), desc, dstBuffer.get(), desc, level));
+            ASSERT_NO_FATAL_FAILURE(expectFloats(dstBuffer, dst, kNumUnits));
+        }
+    }
+
+    /// The limit of a level: points alone, and with derivatives.
+    void expectEqualLimit(FarExt::TopologyRefiner const &refiner, int level, int length) {
+        SCOPED_TRACE(testing::Message() << "level " << level << ", length " << length);
+        FarExt::Status status;
+        auto const expected = OsdExt::RefinementEvaluator::Create(refiner);
+        auto const evaluator = Evaluator::Create(refiner, {}, &status);
+        ASSERT_TRUE(evaluator) << status.GetMessage();
+        std::vector<float> const src = MakeValues(expected->GetNumElements(0), length);
+        Buffer const srcBuffer = kind.MakeBuffer(src, length);
+        Descriptor const desc(0, length, length);
+        auto const size = std::size_t(expected->GetNumElements(level) * length);
+        std::vector<float> points(size);
+        std::vector<float> du(size);
+        std::vector<float> dv(size);
+        bool const isThere =
+            expected->EvaluateLimit(src.data(), desc, points.data(), desc, du.data(), desc,
+                                    dv.data(), desc, level, &status);
+        Buffer pointBuffer = makeBlank(size, length);
+        Buffer duBuffer = makeBlank(size, length);
+        Buffer dvBuffer = makeBlank(size, length);
+        FarExt::Status deviceStatus;
+        ASSERT_EQ(evaluator->EvaluateLimit(srcBuffer.get(), desc, pointBuffer.get(), desc,
+                                           duBuffer.get(), desc, dvBuffer.get(), desc, level,
+                                           &deviceStatus),
+                  isThere)
+            << deviceStatus.GetMessage();
+        if (!isThere) {
+            EXPECT_EQ(deviceStatus.GetMessage(), status.GetMessage());
+            return;
+        }
+        // Derivatives are differences of near values, scaled up at each level.
+        float const numUnitsOfDerivatives = float(kNumUnits) + float(level);
+        ASSERT_NO_FATAL_FAILURE(expectFloats(pointBuffer, points, kNumUnits));
+        ASSERT_NO_FATAL_FAILURE(expectFloats(duBuffer, du, numUnitsOfDerivatives));
+        ASSERT_NO_FATAL_FAILURE(expectFloats(dvBuffer, dv, numUnitsOfDerivatives));
+        ASSERT_TRUE(expected->EvaluateLimit(src.data(), desc, points.data(), desc, level));
+        pointBuffer = makeBlank(size, length);
+        ASSERT_TRUE(
+            evaluator->EvaluateLimit(srcBuffer.get(), desc, pointBuffer.get(), desc, level));
+        ASSERT_NO_FATAL_FAILURE(expectFloats(pointBuffer, points, kNumUnits));
+    }
+
+    /// In the last places of 1, over three levels.
+    static constexpr int kNumUnits = 4;
+
+    KIND kind;
+    float largest = 0; ///< units
+};
+
+TYPED_TEST_SUITE_P(DeviceEvaluator);
+
+TYPED_TEST_P(DeviceEvaluator, GivesTheValuesOfTheCpu) {
+    for (Shape const &shape : GetShapesAndFeatureShapes()) {
+        for (auto boundary :
+             {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
+            auto const refiner = MakeRefiner(shape, shape.GetNumFaces() > 100 ? 1 : 3, boundary);
+            ASSERT_NO_FATAL_FAILURE(this->expectEqual(*refiner, {}, 3));
+            for (int channel = 0; channel < refiner->GetNumFVarChannels(); ++channel) {
+                ASSERT_NO_FATAL_FAILURE(
+                    this->expectEqual(*refiner, {FarExt::INTERPOLATE_FACE_VARYING, channel}, 2));
+            }
+        }
+    }
+    this->RecordProperty("largestDifferenceInUnits", std::to_string(this->largest));
+}
+
+TYPED_TEST_P(DeviceEvaluator, GivesTheLimitOfTheCpu) {
+    for (Shape const &shape : GetShapesAndFeatureShapes()) {
+        if (shape.GetNumFaces() > 100) {
+            continue;
+        }
+        for (auto mask :
+             {FarExt::FaceMask::Average, FarExt::FaceMask::Cosine, FarExt::FaceMask::Smooth}) {
+            for (auto boundary :
+                 {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+                SCOPED_TRACE(testing::Message()
+                             << shape.name << ", mask " << int(mask) << ", boundary " << boundary);
+                FarExt::HexSchemeOptions schemeOptions;
+                schemeOptions.faceMask = mask;
+                bool const isSmooth = mask == FarExt::FaceMask::Smooth;
+                auto const refiner =
+                    MakeRefiner(shape, isSmooth ? 3 : 2, boundary, schemeOptions, true);
+                ASSERT_NO_FATAL_FAILURE(
+                    this->expectEqualLimit(*refiner, refiner->GetMaxLevel(), 3));
+            }
+        }
+    }
+    this->RecordProperty("largestDifferenceInUnits", std::to_string(this->largest));
+}
+
+// Regular faces of several levels, vertices that are listed, and every length.
+TYPED_TEST_P(DeviceEvaluator, GivesTheLimitOfEveryLevelAndLength) {
+    for (char const *name : {"torus", "cubeOfCharts"}) {
+        SCOPED_TRACE(name);
+        bool const hasCharts = std::string("cubeOfCharts") == name;
+        FarExt::HexSchemeOptions schemeOptions;
+        schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+        auto const refiner = MakeRefiner(hasCharts ? GetFeatureShape(name) : GetShape(name), 4,
+                                         Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions, true);
+        for (int level = 0; level <= 4; ++level) {
+            ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, level, 3));
+        }
+        for (int length : {1, 2, 4, 7}) {
+            ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, 3, length));
+        }
+    }
+}
+
+TYPED_TEST_P(DeviceEvaluator, RefusesLimitsAsTheCpu) {
+    Osd::BufferDescriptor const desc(0, 3, 3);
+    auto const buffer = this->makeBlank(3 * 1000, 3);
+    auto const expectRefused = [&](FarExt::TopologyRefiner &refiner,
+                                   OsdExt::RefinementEvaluator::Options options, int level,
+                                   std::string const &message) {
+        auto const evaluator = TypeParam::Evaluator::Create(refiner, options);
+        FarExt::Status status;
+        EXPECT_FALSE(
+            evaluator->EvaluateLimit(buffer.get(), desc, buffer.get(), desc, level, &status));
+        EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
+        EXPECT_EQ(status.GetMessage(), message);
+    };
+    auto const refiner = MakeRefiner(GetShape("cube"), 2, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    expectRefused(*refiner, {}, 3, "level 3 is not between 0 and 2");
+    expectRefused(*refiner, {FarExt::INTERPOLATE_VARYING, 0}, 1,
+                  "there is a limit for INTERPOLATE_VERTEX alone");
+    expectRefused(*refiner, {}, 2,
+                  "level 2 has no full topology: see UniformOptions::fullTopologyInLastLevel");
+    EXPECT_EQ(this->kind.Read(*buffer, 3000), std::vector<float>(3000, kBlank));
+}
+
+TYPED_TEST_P(DeviceEvaluator, TakesEveryLengthMaskSchemeAndMode) {
+    for (char const *name : {"cubeOfCharts", "cube"}) {
+        for (auto type : {FarExt::SchemeType::Hexagonal, FarExt::SchemeType::DooSabin,
+                          FarExt::SchemeType::TriHex}) {
+            bool const isHexagonal = type == FarExt::SchemeType::Hexagonal;
+            bool const hasCharts = std::string("cubeOfCharts") == name;
+            if (hasCharts != isHexagonal) {
+                continue; // the others have no rules for charts
+            }
+            for (auto mask :
+                 {FarExt::FaceMask::Average, FarExt::FaceMask::Cosine, FarExt::FaceMask::Smooth}) {
+                FarExt::HexSchemeOptions schemeOptions;
+                schemeOptions.schemeType = type;
+                schemeOptions.faceMask = mask;
+                if (mask == FarExt::FaceMask::Smooth && isHexagonal) {
+                    schemeOptions.firstStep = FarExt::FirstStep::Truncate;
+                }
+                auto const refiner =
+                    MakeRefiner(hasCharts ? GetFeatureShape(name) : GetShape(name), 3,
+                                Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions);
+                for (int length : {1, 4, 7}) {
+                    ASSERT_NO_FATAL_FAILURE(this->expectEqual(*refiner, {}, length));
+                }
+                ASSERT_NO_FATAL_FAILURE(
+                    this->expectEqual(*refiner, {FarExt::INTERPOLATE_VARYING, 0}, 3));
+                for (int channel = 0; channel < refiner->GetNumFVarChannels(); ++channel) {
+                    ASSERT_NO_FATAL_FAILURE(this->expectEqual(
+                        *refiner, {FarExt::INTERPOLATE_FACE_VARYING, channel}, 2));
+                }
+            }
+        }
+    }
+}
+
+TYPED_TEST_P(DeviceEvaluator, TakesEveryFirstStep) {
+    for (auto firstStep : {FarExt::FirstStep::TriHex, FarExt::FirstStep::Truncate}) {
+        FarExt::HexSchemeOptions schemeOptions;
+        schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+        schemeOptions.firstStep = firstStep;
+        auto const refiner = MakeRefiner(GetShape("torus"), 3, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
+                                         schemeOptions, true);
+        ASSERT_NO_FATAL_FAILURE(this->expectEqual(*refiner, {}, 3));
+        ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, 3, 3));
+    }
+}
+
+// Runs of faces of 3, 5, 7 and more sides, each with weights of its own and not.
+TYPED_TEST_P(DeviceEvaluator, TakesRunsOfEveryFaceSize) {
+    for (int const size : {3, 5, 7, 13}) {
+        constexpr int kNumFaces = 300;
+        Shape shape;
+        shape.name = "polygons of " + std::to_string(size) + " sides";
+        for (int face = 0; face < kNumFaces; ++face) {
+            shape.faceSizes.push_back(size);
+            for (int i = 0; i < size; ++i) {
+                shape.faceVertices.push_back(face * size + i);
+            }
+        }
+        shape.positions.resize(std::size_t(3 * size * kNumFaces));
+        for (auto mask : {FarExt::FaceMask::Average, FarExt::FaceMask::Cosine}) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", mask " << int(mask));
+            FarExt::HexSchemeOptions schemeOptions;
+            schemeOptions.faceMask = mask;
+            auto const refiner =
+                MakeRefiner(shape, 2, Sdc::Options::VTX_BOUNDARY_NONE, schemeOptions);
+            ASSERT_NO_FATAL_FAILURE(this->expectEqual(*refiner, {}, 3));
+        }
+    }
+}
+
+// Long runs of faces and vertices, and what an evaluator keeps of them.
+TYPED_TEST_P(DeviceEvaluator, KeepsFewBytesOfLargeLevels) {
+    auto const refiner =
+        MakeRefiner(GetShape("torus"), 5, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, {}, true);
+    ASSERT_NO_FATAL_FAILURE(this->expectEqual(*refiner, {}, 3));
+    auto const evaluator = TypeParam::Evaluator::Create(*refiner, {});
+    std::int64_t const numBytes = evaluator->GetNumDeviceBytes();
+    EXPECT_LE(numBytes, 8 * evaluator->GetNumElements(5));
+    Osd::BufferDescriptor const desc(0, 1, 1);
+    auto const src = this->makeBlank(std::size_t(evaluator->GetNumElements(0)), 1);
+    auto const dst = this->makeBlank(std::size_t(evaluator->GetNumElements(5)), 1);
+    ASSERT_TRUE(evaluator->EvaluateLimit(src.get(), desc, dst.get(), desc, 5));
+    EXPECT_LE(evaluator->GetNumDeviceBytes() - numBytes, 28 * evaluator->GetNumElements(5));
+}
+
+// Where numbering alone tells where vertices are, sums are in the order of the processor's.
+TYPED_TEST_P(DeviceEvaluator, GivesMostBitsOfTheCpu) {
+    for (auto mask : {FarExt::FaceMask::Average, FarExt::FaceMask::Smooth}) {
+        FarExt::HexSchemeOptions schemeOptions;
+        schemeOptions.faceMask = mask;
+        auto const refiner =
+            MakeRefiner(GetShape("torus"), 5, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions);
+        auto const expected = OsdExt::RefinementEvaluator::Create(*refiner);
+        auto const evaluator = TypeParam::Evaluator::Create(*refiner, {});
+        Osd::BufferDescriptor const desc(0, 3, 3);
+        std::vector<float> const src = MakeValues(expected->GetNumElements(0), 3);
+        auto const srcBuffer = this->kind.MakeBuffer(src, 3);
+        for (int level = 1; level <= 5; ++level) {
+            std::vector<float> dst(std::size_t(expected->GetNumElements(level)) * 3);
+            ASSERT_TRUE(expected->Evaluate(src.data(), desc, dst.data(), desc, level));
+            auto const dstBuffer = this->makeBlank(dst.size(), 3);
+            ASSERT_TRUE(evaluator->Evaluate(srcBuffer.get(), desc, dstBuffer.get(), desc, level));
+            std::vector<float> const values = this->kind.Read(*dstBuffer, dst.size());
+            std::ptrdiff_t const numOthers = std::inner_product(
+                values.begin(), values.end(), dst.begin(), std::ptrdiff_t(0), std::plus<>(),
+                [](float a, float b) { return std::ptrdiff_t(a != b); });
+            EXPECT_LE(numOthers, std::ptrdiff_t(dst.size() / 7)) << "level " << level;
+        }
+    }
+}
+
+// The results behind the control values, in one buffer whose vertices have more floats, which stay.
+TYPED_TEST_P(DeviceEvaluator, IsEvaluatedInPlace) {
+    constexpr int kLength = 3;
+    constexpr int kStride = 5;
+    auto const refiner =
+        MakeRefiner(GetShape("cube"), 3, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, {}, true);
+    auto const expected = OsdExt::RefinementEvaluator::Create(*refiner);
+    auto const evaluator = TypeParam::Evaluator::Create(*refiner, {});
+    int const numControl = expected->GetNumElements(0);
+    int const numPoints = expected->GetNumElements(3);
+    Osd::BufferDescriptor const srcDesc(1, kLength, kStride);
+    Osd::BufferDescriptor const dstDesc(numControl * kStride + 1, kLength, kStride);
+    Osd::BufferDescriptor const duDesc((numControl + numPoints) * kStride + 1, kLength, kStride);
+    Osd::BufferDescriptor const dvDesc((numControl + 2 * numPoints) * kStride, kLength, kStride);
+    std::vector<float> values = MakeValues(numControl + 3 * numPoints, kStride);
+    auto buffer = this->kind.MakeBuffer(values, kStride);
+    ASSERT_TRUE(expected->EvaluateAllLevels(values.data(), srcDesc, values.data(), dstDesc));
+    ASSERT_TRUE(evaluator->EvaluateAllLevels(buffer.get(), srcDesc, buffer.get(), dstDesc));
+    this->expectFloats(buffer, values, this->kNumUnits);
+    EXPECT_TRUE(
+        evaluator->Evaluate(buffer.get(), srcDesc, buffer.get(), dstDesc, 2)); // the first ones
+    EXPECT_TRUE(expected->Evaluate(values.data(), srcDesc, values.data(), dstDesc, 2));
+    this->expectFloats(buffer, values, this->kNumUnits);
+    EXPECT_TRUE(evaluator->EvaluateLimit(buffer.get(), srcDesc, buffer.get(), dstDesc, buffer.get(),
+                                         duDesc, buffer.get(), dvDesc, 3));
+    EXPECT_TRUE(expected->EvaluateLimit(values.data(), srcDesc, values.data(), dstDesc,
+                                        values.data(), duDesc, values.data(), dvDesc, 3));
+    this->expectFloats(buffer, values, float(this->kNumUnits << 4));
+}
+
+REGISTER_TYPED_TEST_SUITE_P(DeviceEvaluator, GivesTheValuesOfTheCpu, GivesTheLimitOfTheCpu,
+                            GivesTheLimitOfEveryLevelAndLength, RefusesLimitsAsTheCpu,
+                            TakesEveryLengthMaskSchemeAndMode, TakesEveryFirstStep,
+                            TakesRunsOfEveryFaceSize, KeepsFewBytesOfLargeLevels,
+                            GivesMostBitsOfTheCpu, IsEvaluatedInPlace);
+
+} // namespace OpenSubdivHex::Regression
+
+#endif

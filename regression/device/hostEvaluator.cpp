@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hostEvaluator.h"
+
+#include <cstring>
+#include <string>
+
+namespace OpenSubdivHex::Regression {
+
+using namespace OsdExt::internal;
+using FarExt::Status;
+using FarExt::internal::Report;
+using Osd::BufferDescriptor;
+
+namespace {
+
+DeviceBufferName getName(void const *buffer) {
+    return DeviceBufferName(reinterpret_cast<std::uintptr_t>(buffer));
+}
+char *getBytes(DeviceBufferName buffer) { return reinterpret_cast<char *>(std::uintptr_t(buffer)); }
+
+class HostDevice : public Device {
+public:
+    Status CheckContext() const override { return Status(); }
+    DeviceBufferName Allocate(std::int64_t numBytes) override {
+        return getName(new char[std::size_t(numBytes)]);
+    }
+    void Free(DeviceBufferName buffer) override { delete[] getBytes(buffer); }
+    void Write(DeviceBufferName buffer, std::int64_t firstByte, void const *data,
+               std::int64_t numBytes) override {
+        std::memcpy(getBytes(buffer) + firstByte, data, std::size_t(numBytes));
+    }
+    Status CheckBuffer(DeviceBufferName buffer, std::int64_t /*numFloats*/,
+                       std::string const &what) const override {
+        return buffer != 0 ? Status()
+                           : FarExt::internal::Failure(FarExt::StatusCode::InvalidArgument,
+                                                       "the " + what + " is null");
+    }
+    Status Prepare(DeviceKernel, int, int) override { return Status(); }
+    void Run(DeviceTask const &task) override {
+        RunInParts(task.kernel, task.length, task.faceSize, task.GetArguments(),
+                   [&](auto compiled, DeviceArguments const &arguments) {
+                       using Compiled = decltype(compiled);
+                       typename Compiled::Kernels kernels;
+                       static_cast<DeviceArguments &>(kernels) = arguments;
+                       kernels.count = DeviceTask::GetNumInvocations(Compiled::kKernel,
+                                                                     Compiled::kLength, task.count);
+                       for (std::uint32_t i = 0; i < kernels.count; ++i) {
+                           RunKernel<Compiled::kKernel>(kernels, i);
+                       }
+                   });
+    }
+    void Wait() override {}
+    Status EndFrame() override { return Status(); }
+};
+
+} // namespace
+
+HostEvaluator::HostEvaluator(FarExt::TopologyRefiner const &refiner)
+    : _evaluator(std::make_unique<HostDevice>(), refiner) {}
+
+std::unique_ptr<HostEvaluator> HostEvaluator::Create(FarExt::TopologyRefiner const &refiner,
+                                                     Options options, Status *status) {
+    std::unique_ptr<HostEvaluator> result(new HostEvaluator(refiner));
+    return Report(result->_evaluator.Prepare(options), status) ? std::move(result) : nullptr;
+}
+
+bool HostEvaluator::Evaluate(float const *src, BufferDescriptor const &srcDesc, float *dst,
+                             BufferDescriptor const &dstDesc, int level, Status *status) {
+    return Report(_evaluator.Evaluate({getName(src), srcDesc}, {getName(dst), dstDesc}, level),
+                  status);
+}
+
+bool HostEvaluator::EvaluateAllLevels(float const *src, BufferDescriptor const &srcDesc, float *dst,
+                                      BufferDescriptor const &dstDesc, Status *status) {
+    return Report(_evaluator.EvaluateAllLevels({getName(src), srcDesc}, {getName(dst), dstDesc}),
+                  status);
+}
+
+bool HostEvaluator::EvaluateLimit(float const *src, BufferDescriptor const &srcDesc, float *dst,
+                                  BufferDescriptor const &dstDesc, int level, Status *status) {
+    return Report(
+        _evaluator.EvaluateLimit({getName(src), srcDesc}, {{getName(dst), dstDesc}}, level),
+        status);
+}
+
+bool HostEvaluator::EvaluateLimit(float const *src, BufferDescriptor const &srcDesc, float *dst,
+                                  BufferDescriptor const &dstDesc, float *du,
+                                  BufferDescriptor const &duDesc, float *dv,
+                                  BufferDescriptor const &dvDesc, int level, Status *status) {
+    return Report(_evaluator.EvaluateLimit(
+                      {getName(src), srcDesc},
+                      {{getName(dst), dstDesc}, {getName(du), duDesc}, {getName(dv), dvDesc}},
+                      level),
+                  status);
+}
+
+} // namespace OpenSubdivHex::Regression

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_DEVICE_HOST_EVALUATOR_H
+#define OPENSUBDIVHEX_REGRESSION_DEVICE_HOST_EVALUATOR_H
+
+#include "osd_ext/device/deviceEvaluator.h"
+
+#include <cstdint>
+#include <memory>
+
+namespace OpenSubdivHex::Regression {
+
+/// \brief A processor as a device: the evaluator of devices with the kernels that C++ compiles, one
+/// invocation after the other.
+class HostEvaluator : public OsdExt::BufferEvaluator<HostEvaluator, OsdExt::CpuBinding> {
+public:
+    using Options = OsdExt::RefinementEvaluator::Options;
+
+    static std::unique_ptr<HostEvaluator> Create(FarExt::TopologyRefiner const &refiner,
+                                                 Options options = Options(),
+                                                 FarExt::Status *status = nullptr);
+
+    int GetMaxLevel() const { return _evaluator.GetMaxLevel(); }
+    int GetNumElements(int level) const { return _evaluator.GetNumElements(level); }
+    std::int64_t GetNumElementsAllLevels() const { return _evaluator.GetNumElementsAllLevels(); }
+    std::int64_t GetNumDeviceBytes() const { return _evaluator.GetNumDeviceBytes(); }
+
+    using BufferEvaluator::Evaluate;
+    using BufferEvaluator::EvaluateAllLevels;
+    using BufferEvaluator::EvaluateLimit;
+
+    bool Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                  Osd::BufferDescriptor const &dstDesc, int level,
+                  FarExt::Status *status = nullptr);
+    bool EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                           Osd::BufferDescriptor const &dstDesc, FarExt::Status *status = nullptr);
+    bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                       Osd::BufferDescriptor const &dstDesc, int level,
+                       FarExt::Status *status = nullptr);
+    bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
+                       Osd::BufferDescriptor const &dstDesc, float *du,
+                       Osd::BufferDescriptor const &duDesc, float *dv,
+                       Osd::BufferDescriptor const &dvDesc, int level,
+                       FarExt::Status *status = nullptr);
+
+private:
+    explicit HostEvaluator(FarExt::TopologyRefiner const &refiner);
+
+    OsdExt::internal::DeviceEvaluator _evaluator;
+};
+
+} // namespace OpenSubdivHex::Regression
+
+#endif
