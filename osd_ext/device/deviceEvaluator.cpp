@@ -18,7 +18,6 @@ using FarExt::internal::FVarChannel;
 using FarExt::internal::MeshLevels;
 using FarExt::internal::Refinement;
 using FarExt::internal::RefinementMask;
-using Osd::BufferDescriptor;
 
 namespace {
 
@@ -386,10 +385,10 @@ Status DeviceEvaluator::EvaluateLimit(Values const &src, std::vector<Values> con
     if (!status.IsOk() || numWritten == 0) {
         return status;
     }
-    std::vector<Elements> elements;
-    for (Values const &output : outputs) {
-        elements.push_back({output.buffer, output.desc.offset, output.desc.stride});
-    }
+    std::vector<Elements> elements(outputs.size());
+    std::transform(outputs.begin(), outputs.end(), elements.begin(), [](Values const &output) {
+        return Elements{output.buffer, output.desc.offset, output.desc.stride};
+    });
     evaluateLimit({src.buffer, src.desc.offset, src.desc.stride}, elements, length, level);
     return _device->EndFrame();
 }

@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_KERNELS_H
 
 #include <cstdint>
+#include <initializer_list>
 
 // What stands before each function of the kernels: nvcc compiles them for its devices.
 #if defined(__CUDACC__)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "glDevice.h"
 
-#include "kernelText.h"
+#include "osd_ext/gl/kernelText.h"
 
 #include <iterator>
 #include <new>

@@ -62,7 +62,16 @@ inline std::vector<Shape> GetShapesAndFeatureShapes() {
     return shapes;
 }
 
+/// Names tests after what runs the kernels.
+struct KindName {
+    template <class KIND>
+    static std::string GetName(int) {
+        return KIND::kName;
+    }
+};
+
 /// \tparam KIND  has
+///  - kName,
 ///  - Evaluator and Buffer, which this binds,
 ///  - GetMissing(): empty, or why there is none; and IsNeeded(): whether that is a failure,
 ///  - MakeBuffer(values, stride) and Read(buffer, numFloats).

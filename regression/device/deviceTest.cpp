@@ -20,6 +20,7 @@ private:
 };
 
 struct Host {
+    static constexpr char const *kName = "Kernels";
     using Evaluator = HostEvaluator;
     using Buffer = HostBuffer;
 
@@ -33,6 +34,6 @@ struct Host {
 
 } // namespace
 
-INSTANTIATE_TYPED_TEST_SUITE_P(Host, DeviceEvaluator, Host);
+INSTANTIATE_TYPED_TEST_SUITE_P(Host, DeviceEvaluator, Host, KindName);
 
 } // namespace OpenSubdivHex::Regression

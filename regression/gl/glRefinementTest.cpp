@@ -22,6 +22,7 @@ namespace {
 
 /// A context of OpenGL, current while this lives.
 struct OpenGl {
+    static constexpr char const *kName = "Compute";
     using Evaluator = GLRefinementEvaluator;
     using Buffer = Osd::GLVertexBuffer;
 
@@ -63,7 +64,7 @@ protected:
 
 } // namespace
 
-INSTANTIATE_TYPED_TEST_SUITE_P(OpenGl, DeviceEvaluator, OpenGl);
+INSTANTIATE_TYPED_TEST_SUITE_P(OpenGl, DeviceEvaluator, OpenGl, KindName);
 
 // The kernels give the same numbers wherever they run: so testing them on the processor tests them
 // for devices that are not there.
