@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "polygonIndices.h"
 
+#include "drawing/vertexSeparator.h"
+
 #include "far_ext/baseFaceMap.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
@@ -253,7 +255,16 @@ PolygonIndices CreatePolygonIndices(TopologyLevel const &level, DrawOptions cons
     if (!FarExt::internal::Report(checkOptions(level, options), status)) {
         return {};
     }
-    return Cutter(level, options).Run();
+    PolygonIndices result = Cutter(level, options).Run();
+    if (options.separateVertices) {
+        Index const numVertices =
+            options.splitVertices ? options.sides->GetNumSides() : level.GetNumVertices();
+        internal::VertexSeparator separator(numVertices, options.vertexOffset, result);
+        if (!FarExt::internal::Report(separator.Run(), status)) {
+            return {};
+        }
+    }
+    return result;
 }
 
 } // namespace OpenSubdivHex::OsdExt

@@ -41,11 +41,33 @@ struct DrawOptions {
     /// sides->GetVertex() has the vertex of each.  A limit stencil table with generateFurtherSides
     /// has them in that order.
     bool splitVertices = false;
+    /// Whether vertices are those of DrawnFaces::drawnVertices, each with one value of each of
+    /// \p fvarChannels and one of \p sides: for what has one index for each corner, such as the buffers
+    /// of graphics libraries, and PLY files.
+    bool separateVertices = false;
     /// Whether DrawnFaces::baseCoords are made; cuts as cutBaseFaces does.
     bool generateBaseCoords = false;
 
     /// Whether holes are drawn.  Else a hexagon with one half in a hole is drawn as the other half.
     bool drawHoles = false;
+};
+
+/// \brief The vertices that corners share where all that these have is to be the same: a vertex at a seam
+/// or a crease is several.
+///
+/// The first are the vertices that corners have without DrawOptions::separateVertices, in their order:
+/// what was evaluated for these stays where it is.  Each has what its first corner has.  Behind them
+/// are those that other corners need, in the order in which corners come to them.
+struct DrawnVertices {
+    /// How many there are.
+    int GetNumVertices() const { return int(vertices.size()); }
+
+    /// The vertices of the level, or sides (DrawOptions::splitVertices), without the offset.
+    std::vector<int> vertices;
+    /// For each channel of DrawOptions::fvarChannels the values; 0 where no drawn face has the vertex.
+    std::vector<std::vector<int>> fvarValues;
+    /// The sides, as DrawnFaces::sides; the first one where no drawn face has the vertex.
+    std::vector<int> sides;
 };
 
 /// \brief Index buffers of drawn faces, without their sizes: by corner, one face after the other, and
@@ -54,7 +76,8 @@ struct DrawnFaces {
     /// @name By corner
     /// @{
 
-    /// The vertices of the level, or sides (DrawOptions::splitVertices), plus the offset.
+    /// The vertices of the level, or sides (DrawOptions::splitVertices), or those of drawnVertices
+    /// (DrawOptions::separateVertices), plus the offset.
     std::vector<int> vertices;
     /// For each channel of DrawOptions::fvarChannels its values.
     std::vector<std::vector<int>> fvarValues;
@@ -74,6 +97,9 @@ struct DrawnFaces {
     /// The label of that.  Empty without labels.
     std::vector<int> labels;
     /// @}
+
+    /// What the vertices are.  Empty without DrawOptions::separateVertices.
+    DrawnVertices drawnVertices;
 };
 
 /// \brief The faces of a level as polygons.
@@ -92,7 +118,8 @@ struct PolygonIndices : DrawnFaces {
 ///
 /// \return  no polygons on failure: InvalidArgument (a channel that the level does not have, labels
 ///          that are not one for each face of level 0, sides of another level, splitVertices without
-///          sides) or Unsupported (generateBaseCoords behind other than hexagonal steps)
+///          sides), Unsupported (generateBaseCoords behind other than hexagonal steps) or TooLarge
+///          (separateVertices of more corners, or to more vertices, than 32-bit indices reach)
 OPENSUBDIVHEX_API PolygonIndices CreatePolygonIndices(FarExt::TopologyLevel const &level,
                                                       DrawOptions const &options = DrawOptions(),
                                                       FarExt::Status *status = nullptr);

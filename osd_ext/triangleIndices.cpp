@@ -62,6 +62,7 @@ public:
                 }
             });
         });
+        _result.drawnVertices = _polygons.drawnVertices;
         return std::move(_result);
     }
 

@@ -378,8 +378,8 @@ class DrawArguments {
 public:
     DrawArguments(int vertexOffset, bool cutBaseFaces, py::object const &labels,
                   py::object const &cutCreases, std::vector<int> const &fvarChannels,
-                  LimitSides const *sides, bool splitVertices, bool generateBaseCoords,
-                  bool drawHoles) {
+                  LimitSides const *sides, bool splitVertices, bool separateVertices,
+                  bool generateBaseCoords, bool drawHoles) {
         _options.vertexOffset = vertexOffset;
         _options.cutBaseFaces = cutBaseFaces;
         if (!labels.is_none()) {
@@ -390,9 +390,12 @@ public:
         _options.fvarChannels = fvarChannels;
         _options.sides = sides;
         _options.splitVertices = splitVertices;
+        _options.separateVertices = separateVertices;
         _options.generateBaseCoords = generateBaseCoords;
         _options.drawHoles = drawHoles;
     }
+
+    bool IsSeparate() const { return _options.separateVertices; }
 
     /// Calls create(level, options, &status).
     template <typename CREATE>
@@ -412,8 +415,8 @@ private:
 };
 
 /// What drawn faces have by corner and by face; corners have the shape (corners,), or
-/// (faces, \p width) of faces that have as many.
-py::dict describeFaces(OsdExt::DrawnFaces &&faces, py::ssize_t width) {
+/// (faces, \p width) of faces that have as many; and the separate vertices, where there are such.
+py::dict describeFaces(OsdExt::DrawnFaces &&faces, py::ssize_t width, bool isSeparate) {
     auto const byCorner = [width](auto &&values, py::ssize_t numbers) -> py::object {
         using T = std::decay_t<decltype(values[0])>;
         std::vector<py::ssize_t> shape = {py::ssize_t(values.size()) / numbers};
@@ -445,6 +448,20 @@ py::dict describeFaces(OsdExt::DrawnFaces &&faces, py::ssize_t width) {
     if (hasLabels) {
         result["labels"] = TakeOver(std::move(faces.labels));
     }
+    OsdExt::DrawnVertices &drawn = faces.drawnVertices;
+    if (isSeparate) {
+        py::dict vertices;
+        vertices["vertices"] = TakeOver(std::move(drawn.vertices));
+        py::list ofChannels;
+        for (std::vector<int> &values : drawn.fvarValues) {
+            ofChannels.append(TakeOver(std::move(values)));
+        }
+        vertices["fvar_values"] = ofChannels;
+        if (hasSides) {
+            vertices["sides"] = TakeOver(std::move(drawn.sides));
+        }
+        result["drawn_vertices"] = vertices;
+    }
     return result;
 }
 
@@ -455,7 +472,7 @@ py::dict createPolygonIndices(Level const &level, DrawArguments const &arguments
             return OsdExt::CreatePolygonIndices(topology, options, status);
         });
     std::vector<int> sizes = std::move(polygons.sizes);
-    py::dict result = describeFaces(std::move(polygons), 1);
+    py::dict result = describeFaces(std::move(polygons), 1, arguments.IsSeparate());
     result["sizes"] = TakeOver(std::move(sizes));
     return result;
 }
@@ -467,7 +484,7 @@ py::dict createTriangleIndices(Level const &level, DrawArguments const &argument
                                               return OsdExt::CreateTriangleIndices(topology,
                                                                                    options, status);
                                           }),
-                         3);
+                         3, arguments.IsSeparate());
 }
 
 /// Binds a function of a level and all DrawOptions.
@@ -478,17 +495,18 @@ void defineDrawing(py::module_ &module, char const *name, std::string const &doc
         name,
         [create](Level const &level, int vertexOffset, bool cutBaseFaces, py::object const &labels,
                  py::object const &cutCreases, std::vector<int> const &fvarChannels,
-                 LimitSides const *sides, bool splitVertices, bool generateBaseCoords,
-                 bool drawHoles) {
+                 LimitSides const *sides, bool splitVertices, bool separateVertices,
+                 bool generateBaseCoords, bool drawHoles) {
             return create(level, DrawArguments(vertexOffset, cutBaseFaces, labels, cutCreases,
-                                               fvarChannels, sides, splitVertices,
+                                               fvarChannels, sides, splitVertices, separateVertices,
                                                generateBaseCoords, drawHoles));
         },
         docstring.c_str(), py::arg("level"), py::kw_only(), py::arg("vertex_offset") = 0,
         py::arg("cut_base_faces") = true, py::arg("labels") = py::none(),
         py::arg("cut_creases") = "all", py::arg("fvar_channels") = py::tuple(),
         py::arg("sides") = py::none(), py::arg("split_vertices") = false,
-        py::arg("generate_base_coords") = false, py::arg("draw_holes") = false);
+        py::arg("separate_vertices") = false, py::arg("generate_base_coords") = false,
+        py::arg("draw_holes") = false);
 }
 
 void bindDrawing(py::module_ &module) {
@@ -496,8 +514,8 @@ void bindDrawing(py::module_ &module) {
         module, "create_polygon_indices",
         "create_polygon_indices(level, *, vertex_offset=0, cut_base_faces=True, labels=None,\n"
         "                       cut_creases='all', fvar_channels=(), sides=None,\n"
-        "                       split_vertices=False, generate_base_coords=False,\n"
-        "                       draw_holes=False)\n\n"
+        "                       split_vertices=False, separate_vertices=False,\n"
+        "                       generate_base_coords=False, draw_holes=False)\n\n"
         "The polygons that draw a level: its faces, with hexagons cut in halves where asked.\n\n"
         "Args:\n"
         "    vertex_offset: added to every vertex\n"
@@ -508,20 +526,26 @@ void bindDrawing(py::module_ &module) {
         "    fvar_channels: whose seams cut\n"
         "    sides: the LimitSides of the level, for normals; None for none\n"
         "    split_vertices: whether vertices are those of sides\n"
+        "    separate_vertices: whether each vertex is to have one value of each channel and one\n"
+        "        side\n"
         "    generate_base_coords: whether places in base faces are made; cuts these\n"
         "    draw_holes: whether holes are drawn\n\n"
         "Returns a dict.  By corner, int32 of the shape (corners,): 'vertices', 'sides' with\n"
         "sides, and 'fvar_values', a list with an array for each channel; 'base_coords', float32\n"
         "of the shape (corners, 2).  By polygon, int32 of the shape (polygons,): 'sizes', "
         "'faces',\n"
-        "'base_faces', and 'labels' with labels.  Raises StatusError.",
+        "'base_faces', and 'labels' with labels.  With separate_vertices, 'drawn_vertices' is a\n"
+        "dict with what these are, int32 of the shape (drawn vertices,): 'vertices',\n"
+        "'fvar_values' and 'sides' as by corner.  The first are the others' vertices in their "
+        "order.\n"
+        "Raises StatusError.",
         &createPolygonIndices);
     defineDrawing(
         module, "create_triangle_indices",
         "create_triangle_indices(level, *, vertex_offset=0, cut_base_faces=True, labels=None,\n"
         "                        cut_creases='all', fvar_channels=(), sides=None,\n"
-        "                        split_vertices=False, generate_base_coords=False,\n"
-        "                        draw_holes=False)\n\n"
+        "                        split_vertices=False, separate_vertices=False,\n"
+        "                        generate_base_coords=False, draw_holes=False)\n\n"
         "The same as triangles: a dict without 'sizes', whose arrays by corner have the shape\n"
         "(triangles, 3), 'base_coords' (triangles, 3, 2).",
         &createTriangleIndices);

@@ -105,8 +105,8 @@ std::vector<Pair> findPlaces(FarExt::internal::CellPatch const &cell) {
             }
             std::size_t const face = std::size_t(other) / kSize;
             Pair const &start = places[std::size_t(patch.faceVerts[corner])];
-            Pair const &end = places[std::size_t(
-                patch.faceVerts[kSize * faces[i] + (local + 1) % kSize])];
+            Pair const &end =
+                places[std::size_t(patch.faceVerts[kSize * faces[i] + (local + 1) % kSize])];
             Pair const &own = centers[faces[i]];
             place(face, std::size_t(other) % kSize, end, start,
                   {start[0] + end[0] - own[0], start[1] + end[1] - own[1]});
@@ -191,34 +191,33 @@ CellBounds::CellBounds(CellType const &type) {
     }
     double largestRest = 0;
     double largestChange = 0;
-    forDescendants(
-        type, makeIdentity(size), kStepsOfRests, path,
-        [&](Matrix const &rows, std::vector<std::size_t> const &children) {
-            // What the child's linear function is, in terms of the first points.
-            std::vector<double> mean(size);
-            std::vector<double> childSlopes[2] = {mean, mean};
-            for (std::size_t k = 0; k < size; ++k) {
-                for (std::size_t i = 0; i < size; ++i) {
-                    mean[i] += rows[k][i] / double(size);
-                    childSlopes[0][i] += slopes[0][k] * rows[k][i];
-                    childSlopes[1][i] += slopes[1][k] * rows[k][i];
-                }
-            }
-            for (std::size_t k = 0; k < size; ++k) {
-                std::vector<double> rest(size);
-                for (std::size_t i = 0; i < size; ++i) {
-                    rest[i] = rows[k][i] - mean[i] -
-                              (_places[k][0] - _center[0]) * childSlopes[0][i] -
-                              (_places[k][1] - _center[1]) * childSlopes[1][i];
-                }
-                largestRest = std::max(largestRest, sumAbsolute(rest));
-            }
-            // Coordinates are turned and 2^k times as large.
-            double const scale = std::ldexp(1.0, int(children.size()));
-            largestChange = std::max(
-                largestChange,
-                scale * std::hypot(sumAbsolute(childSlopes[0]), sumAbsolute(childSlopes[1])));
-        });
+    forDescendants(type, makeIdentity(size), kStepsOfRests, path,
+                   [&](Matrix const &rows, std::vector<std::size_t> const &children) {
+                       // What the child's linear function is, in terms of the first points.
+                       std::vector<double> mean(size);
+                       std::vector<double> childSlopes[2] = {mean, mean};
+                       for (std::size_t k = 0; k < size; ++k) {
+                           for (std::size_t i = 0; i < size; ++i) {
+                               mean[i] += rows[k][i] / double(size);
+                               childSlopes[0][i] += slopes[0][k] * rows[k][i];
+                               childSlopes[1][i] += slopes[1][k] * rows[k][i];
+                           }
+                       }
+                       for (std::size_t k = 0; k < size; ++k) {
+                           std::vector<double> rest(size);
+                           for (std::size_t i = 0; i < size; ++i) {
+                               rest[i] = rows[k][i] - mean[i] -
+                                         (_places[k][0] - _center[0]) * childSlopes[0][i] -
+                                         (_places[k][1] - _center[1]) * childSlopes[1][i];
+                           }
+                           largestRest = std::max(largestRest, sumAbsolute(rest));
+                       }
+                       // Coordinates are turned and 2^k times as large.
+                       double const scale = std::ldexp(1.0, int(children.size()));
+                       largestChange =
+                           std::max(largestChange, scale * std::hypot(sumAbsolute(childSlopes[0]),
+                                                                      sumAbsolute(childSlopes[1])));
+                   });
     double const growth = std::ldexp(largestRest, kStepsOfRests);
     if (growth < 1) {
         _slopes[0] = std::move(slopes[0]);

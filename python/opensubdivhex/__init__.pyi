@@ -632,6 +632,7 @@ def create_polygon_indices(
     fvar_channels: Sequence[int] = (),
     sides: LimitSides | None = None,
     split_vertices: bool = False,
+    separate_vertices: bool = False,
     generate_base_coords: bool = False,
     draw_holes: bool = False,
 ) -> dict[str, Any]: ...
@@ -645,6 +646,7 @@ def create_triangle_indices(
     fvar_channels: Sequence[int] = (),
     sides: LimitSides | None = None,
     split_vertices: bool = False,
+    separate_vertices: bool = False,
     generate_base_coords: bool = False,
     draw_holes: bool = False,
 ) -> dict[str, Any]: ...

@@ -326,6 +326,24 @@ def test_polygons_have_values_sides_and_places():
     np.testing.assert_array_equal(split["vertices"], split["sides"])
 
 
+def test_separate_vertices_have_one_value_and_side():
+    refiner = make_box_refiner(2, fvar_channels=[np.arange(24)])
+    level, sides = refiner.get_level(2), osh.LimitSides(refiner.get_level(2))
+    options = {"fvar_channels": [0], "sides": sides}
+    whole = osh.create_polygon_indices(level, **options)
+    assert "drawn_vertices" not in whole
+    for create, values in ((osh.create_polygon_indices, whole),
+                           (osh.create_triangle_indices,
+                            osh.create_triangle_indices(level, **options))):
+        faces = create(level, separate_vertices=True, vertex_offset=7, **options)
+        drawn, corners = faces["drawn_vertices"], faces["vertices"] - 7
+        # Two vertices inside each edge of the box are there twice, its corners three times.
+        assert drawn["vertices"].shape == (level.num_vertices + 12 * 2 + 8 * 2,)
+        np.testing.assert_array_equal(drawn["vertices"][corners], values["vertices"])
+        np.testing.assert_array_equal(drawn["sides"][corners], values["sides"])
+        np.testing.assert_array_equal(drawn["fvar_values"][0][corners], values["fvar_values"][0])
+
+
 def test_holes_are_left_out():
     refiner = refine(CUBE_FACES, 1, holes=[1])
     level = refiner.get_level(1)

@@ -186,7 +186,9 @@ std::vector<Step> const &getSteps() {
          }},
         {"triangles", true,
          [](Subject const &, TopologyRefiner &refiner) {
-             OsdExt::CreateTriangleIndices(refiner.GetLevel(refiner.GetMaxLevel()));
+             OsdExt::DrawOptions options;
+             options.separateVertices = true;
+             OsdExt::CreateTriangleIndices(refiner.GetLevel(refiner.GetMaxLevel()), options);
          }},
         {"validation", true,
          [](Subject const &, TopologyRefiner &refiner) { refiner.GetLevel(1).Validate(); }},

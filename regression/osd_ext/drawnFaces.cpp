@@ -2,6 +2,8 @@
 #include "drawnFaces.h"
 
 #include <cmath>
+#include <map>
+#include <vector>
 
 namespace OpenSubdivHex::Regression {
 
@@ -73,6 +75,54 @@ void addPolygon(TopologyLevel const &level, DrawOptions const &options, int face
     }
 }
 
+// Makes separate vertices of polygons without: what a corner has is looked up among all that the
+// corners before have.
+void separateVertices(TopologyLevel const &level, DrawOptions const &options,
+                      PolygonIndices *polygons) {
+    OsdExt::DrawnVertices &drawn = polygons->drawnVertices;
+    int const numVertices =
+        options.splitVertices ? options.sides->GetNumSides() : level.GetNumVertices();
+    drawn.fvarValues.resize(options.fvarChannels.size());
+    auto const add = [&](int vert, int side, std::vector<int> const &values) {
+        drawn.vertices.push_back(vert);
+        if (options.sides) {
+            drawn.sides.push_back(side);
+        }
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            drawn.fvarValues[k].push_back(values[k]);
+        }
+    };
+    for (int vert = 0; vert < numVertices; ++vert) {
+        add(vert, vert, std::vector<int>(options.fvarChannels.size()));
+    }
+    std::map<int, std::map<std::vector<int>, int>> numbers; // by vertex and what a corner has
+    for (std::size_t corner = 0; corner < polygons->vertices.size(); ++corner) {
+        int const vert = polygons->vertices[corner] - options.vertexOffset;
+        int const side = options.sides ? polygons->sides[corner] : -1;
+        std::vector<int> values;
+        for (std::vector<int> const &ofChannel : polygons->fvarValues) {
+            values.push_back(ofChannel[corner]);
+        }
+        std::vector<int> all = values;
+        all.push_back(side);
+        std::map<std::vector<int>, int> &ofVertex = numbers[vert];
+        bool const isFirst = ofVertex.empty();
+        int const number =
+            ofVertex.try_emplace(all, isFirst ? vert : int(drawn.vertices.size())).first->second;
+        if (number == int(drawn.vertices.size())) {
+            add(vert, side, values);
+        } else if (isFirst) {
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                drawn.fvarValues[k][std::size_t(vert)] = values[k];
+            }
+            if (options.sides) {
+                drawn.sides[std::size_t(vert)] = side;
+            }
+        }
+        polygons->vertices[corner] = options.vertexOffset + number;
+    }
+}
+
 PolygonIndices findPolygons(TopologyLevel const &level, DrawOptions const &options) {
     PolygonIndices polygons;
     polygons.fvarValues.resize(options.fvarChannels.size());
@@ -92,7 +142,14 @@ PolygonIndices findPolygons(TopologyLevel const &level, DrawOptions const &optio
             }
         }
     }
+    if (options.separateVertices) {
+        separateVertices(level, options, &polygons);
+    }
     return polygons;
+}
+
+bool isEqual(OsdExt::DrawnVertices const &a, OsdExt::DrawnVertices const &b) {
+    return a.vertices == b.vertices && a.fvarValues == b.fvarValues && a.sides == b.sides;
 }
 
 // The corners of a triangle, as places in its polygon: the n corners of a regular one, whose area the
@@ -194,7 +251,13 @@ std::string FindDrawingError(TopologyLevel const &level, DrawOptions const &opti
     if (polygons.baseCoords != expected.baseCoords) {
         return "other places in base faces";
     }
+    if (!isEqual(polygons.drawnVertices, expected.drawnVertices)) {
+        return "other separate vertices";
+    }
     OsdExt::TriangleIndices const triangles = OsdExt::CreateTriangleIndices(level, options);
+    if (!isEqual(triangles.drawnVertices, expected.drawnVertices)) {
+        return "other separate vertices of triangles";
+    }
     return hasRepeatedVertex(polygons) ? "" : findTriangleError(polygons, triangles);
 }
 

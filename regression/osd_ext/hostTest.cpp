@@ -20,6 +20,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <thread>
 
 #if defined(__unix__) || defined(__APPLE__)
@@ -102,7 +103,11 @@ private:
             Far::ConstIndexArray const faceVerts = level.GetFaceVertices(face);
             verts.insert(verts.end(), faceVerts.begin(), faceVerts.end());
         }
-        indices.push_back(OsdExt::CreateTriangleIndices(level).vertices);
+        OsdExt::DrawOptions options;
+        options.fvarChannels.resize(std::size_t(level.GetNumFVarChannels()));
+        std::iota(options.fvarChannels.begin(), options.fvarChannels.end(), 0);
+        options.separateVertices = true;
+        indices.push_back(OsdExt::CreateTriangleIndices(level, options).vertices);
     }
 
     void addTables(FarExt::TopologyRefiner const &refiner) {

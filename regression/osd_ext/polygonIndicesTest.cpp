@@ -44,9 +44,9 @@ TEST(PolygonIndices, AllOptionsOfAllShapes) {
         Sdc::Options sdcOptions;
         sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
         auto const refiner = refine(shape, GetTestLevel(shape, 3, 4000), sdcOptions);
-        std::vector<int> labels;
+        std::vector<int> labels(shape.faceSizes.size());
         for (int face = 0; face < shape.GetNumFaces(); ++face) {
-            labels.push_back(face * face % 3);
+            labels[std::size_t(face)] = face * face % 3;
         }
         for (int depth = 0; depth <= refiner->GetMaxLevel(); ++depth) {
             TopologyLevel const &level = refiner->GetLevel(depth);
@@ -63,6 +63,7 @@ TEST(PolygonIndices, AllOptionsOfAllShapes) {
                 options.splitVertices = options.sides && (bits & 16) != 0;
                 options.generateBaseCoords = (bits & 32) != 0;
                 options.drawHoles = (bits & 64) != 0;
+                options.separateVertices = bits % 3 == 1;
                 options.vertexOffset = bits;
                 for (int channel = refiner->GetNumFVarChannels() - 1; channel >= 0; --channel) {
                     if ((bits >> channel & 1) != 0) {
@@ -184,6 +185,59 @@ TEST(PolygonIndices, SplitVerticesAreThoseOfSides) {
     PolygonIndices const whole = OsdExt::CreatePolygonIndices(level, options);
     for (std::size_t i = 0; i < polygons.vertices.size(); ++i) {
         ASSERT_EQ(sides.GetVertex(polygons.vertices[i]), whole.vertices[i]);
+    }
+}
+
+// A box whose edges are all creases and seams: each base face has vertices of its own, in all that a
+// renderer draws by one index for each corner.
+TEST(PolygonIndices, SeparateVerticesAreThoseOfBaseFaces) {
+    Shape cube = GetShape("cube");
+    FVarChannel channel;
+    channel.valueIndices.resize(std::size_t(cube.GetNumCorners()));
+    std::iota(channel.valueIndices.begin(), channel.valueIndices.end(), 0);
+    channel.values.resize(2 * channel.valueIndices.size());
+    cube.fvarChannels = {channel};
+    for (int corner = 0; corner < cube.GetNumCorners(); ++corner) {
+        int const v = cube.faceVertices[std::size_t(corner)];
+        int const w = cube.faceVertices[std::size_t(corner % 4 < 3 ? corner + 1 : corner - 3)];
+        if (v < w) {
+            cube.creaseVertexPairs.insert(cube.creaseVertexPairs.end(), {v, w});
+            cube.creaseSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
+        }
+    }
+    auto const refiner = refine(cube, 3);
+    TopologyLevel const &level = refiner->GetLevel(3);
+    FarExt::LimitSides const sides(level);
+    // Seams alone, creases alone, both, and both where vertices are split by sides.
+    for (int kind = 0; kind < 4; ++kind) {
+        SCOPED_TRACE(kind);
+        DrawOptions options;
+        options.separateVertices = true;
+        options.sides = kind == 0 ? nullptr : &sides;
+        options.splitVertices = kind == 3;
+        if (kind != 1) {
+            options.fvarChannels = {0};
+        }
+        PolygonIndices const polygons = OsdExt::CreatePolygonIndices(level, options);
+        OsdExt::DrawnVertices const &drawn = polygons.drawnVertices;
+        // The four vertices inside each of 12 edges are there twice, the corners three times.
+        EXPECT_EQ(drawn.GetNumVertices(), level.GetNumVertices() + 12 * 4 + 8 * 2);
+        std::vector<int> baseFaces(drawn.vertices.size(), -1);
+        std::size_t corner = 0;
+        for (int i = 0; i < polygons.GetNumPolygons(); ++i) {
+            for (int k = 0; k < polygons.sizes[std::size_t(i)]; ++k, ++corner) {
+                auto const vert = std::size_t(polygons.vertices[corner]);
+                int const baseFace = polygons.baseFaces[std::size_t(i)];
+                ASSERT_TRUE(baseFaces[vert] < 0 || baseFaces[vert] == baseFace);
+                baseFaces[vert] = baseFace;
+                if (kind != 1) {
+                    ASSERT_EQ(drawn.fvarValues[0][vert], polygons.fvarValues[0][corner]);
+                }
+                if (kind != 0) {
+                    ASSERT_EQ(drawn.sides[vert], polygons.sides[corner]);
+                }
+            }
+        }
     }
 }
 

@@ -142,7 +142,10 @@ TEST(Shared, RefinerIsValidatedAndDrawn) {
     auto const refiner = createRefiner(GetFeatureShape("cubeOfCharts"), 3);
     expectSameOnThreads([&] {
         std::vector<int> result = {refiner->GetLevel(2).Validate()};
-        auto const triangles = OsdExt::CreateTriangleIndices(refiner->GetLevel(3));
+        OsdExt::DrawOptions options;
+        options.fvarChannels = {0};
+        options.separateVertices = true;
+        auto const triangles = OsdExt::CreateTriangleIndices(refiner->GetLevel(3), options);
         result.insert(result.end(), triangles.vertices.begin(), triangles.vertices.end());
         return result;
     });

@@ -5,6 +5,7 @@
 #include "programFixture.h"
 #include "tools/mesh/point.h"
 
+#include <array>
 #include <set>
 
 namespace OpenSubdivHex::Tools {
@@ -228,6 +229,59 @@ TEST_F(HexrefineChannel, OtherFormatsSayWhatTheyLeaveOut) {
         << result.out;
     EXPECT_EQ(Json::parse(getContent(getPath("stats")))["fvarChannels"].dump(),
               R"([{"name":"uv","width":2,"values":[14,38]}])");
+}
+
+// A file with one record for each vertex has at each corner what an OBJ file has there, and no more
+// vertices than that takes.
+TEST_F(HexrefineChannel, SeparatesVertices) {
+    std::string const cross = makeCross("t crease 2/1/0 0 1 10\nt crease 2/1/0 1 3 10\n"
+                                        "t crease 2/1/0 3 2 10\nt crease 2/1/0 2 0 10\n");
+    Mesh const mesh = refine("\"" + cross + "\" -l 3 --limit");
+    ASSERT_EQ(mesh.channels.size(), 2u);
+    using Corner = std::array<float, 8>; // position, s and t, normal
+    std::vector<Corner> expected;
+    std::set<std::array<int, 3>> vertices;
+    for (std::size_t i = 0; i < mesh.faceVertices.size(); ++i) {
+        Corner corner{};
+        std::array<int, 3> const found = {mesh.faceVertices[i], mesh.channels[0].faceValues[i],
+                                          mesh.channels[1].faceValues[i]};
+        auto const copy = [](std::vector<float> const &from, int index, int width, float *to) {
+            std::copy_n(from.begin() + std::ptrdiff_t(index) * width, width, to);
+        };
+        copy(mesh.positions, found[0], 3, corner.data());
+        copy(mesh.channels[0].values, found[1], 2, corner.data() + 3);
+        copy(mesh.channels[1].values, found[2], 3, corner.data() + 5);
+        expected.push_back(corner);
+        vertices.insert(found);
+    }
+    for (char const *name : {"out.ply", "out.off"}) {
+        SCOPED_TRACE(name);
+        Result const result =
+            run("\"" + cross + "\" -l 3 --limit --separate-vertices -o " + getPath(name));
+        ASSERT_EQ(result.status, 0) << result.error;
+        EXPECT_EQ(result.out.find("not written"), std::string::npos) << result.out;
+        Mesh const separate = ReadMesh(getPath(name));
+        EXPECT_EQ(separate.GetNumVertices(), int(vertices.size()));
+        EXPECT_GT(separate.GetNumVertices(), mesh.GetNumVertices());
+        EXPECT_EQ(separate.faceSizes, mesh.faceSizes);
+        ASSERT_EQ(separate.faceVertices.size(), expected.size());
+        char const *const names[] = {"s", "t", "nx", "ny", "nz"};
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            auto const vert = std::size_t(separate.faceVertices[i]);
+            Corner corner{};
+            std::copy_n(separate.positions.begin() + std::ptrdiff_t(3 * vert), 3, corner.begin());
+            for (std::size_t k = 0; k < std::size(names); ++k) {
+                VertexProperty const *const property =
+                    FindProperty(separate.vertexProperties, names[k]);
+                ASSERT_TRUE(property) << names[k];
+                corner[3 + k] = property->values[vert];
+            }
+            ASSERT_EQ(corner, expected[i]) << "corner " << i;
+        }
+    }
+    std::string const cause = "is for an --output that is a .ply or .off file";
+    expectBadUsage("\"" + cross + "\" --separate-vertices -o " + getPath("out.obj"), cause);
+    expectBadUsage("\"" + cross + "\" --separate-vertices", cause);
 }
 
 } // namespace OpenSubdivHex::Tools

@@ -64,6 +64,7 @@ struct Arguments {
     std::string pngColors;
     std::string stats;
     bool isLimit = false;
+    bool isSeparate = false;
     bool printsTags = false;
     bool isQuiet = false;
 };
@@ -210,6 +211,10 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                  "Push the vertices to the limit surface and write its normals: to both sides of "
                  "sharp creases in .obj files, their mean at each vertex in .ply and .off files; "
                  "colours and other numbers of vertices stay as they are");
+    app.add_flag("--separate-vertices", arguments->isSeparate,
+                 "Write a vertex of .ply and .off files once for each of its texture coordinates "
+                 "and normals, at seams and, with --limit, at sharp creases; the first of each lie "
+                 "where they are without this");
     app.add_option("--threads", arguments->numThreads,
                    "Number of threads, 1 to 1024; the result does not depend on it")
         ->check([](std::string const &word) {
@@ -263,6 +268,11 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         std::string const simdError = simd ? checkSimdLevel(simd) : "";
         if (!arguments->simd && !simdError.empty()) {
             throw CLI::ValidationError("OPENSUBDIVHEX_SIMD", simdError);
+        }
+        if (arguments->isSeparate &&
+            (arguments->output.empty() || FindMeshFormat(arguments->output) == MeshFormat::Obj)) {
+            throw CLI::ValidationError("--separate-vertices",
+                                       "is for an --output that is a .ply or .off file");
         }
         if (arguments->isLimit && arguments->evaluator == "primvar") {
             throw CLI::ValidationError("--limit", "needs a stencil table, not --evaluator primvar");
@@ -388,20 +398,25 @@ std::vector<float> evaluateLimit(Arguments const &arguments, FarExt::TopologyRef
     return normals;
 }
 
-constexpr std::string_view kNormalNames[] = {"nx", "ny", "nz"};
-
 bool isNormal(VertexProperty const &property) {
-    return std::find(std::begin(kNormalNames), std::end(kNormalNames), property.name) !=
-           std::end(kNormalNames);
+    bool result = false;
+    for (int k = 0; k < 3; ++k) {
+        result = result || property.name == GetPropertyName(FVarKind::Normal, k);
+    }
+    return result;
 }
 
 /// The faces of the last level and, where the file takes them, the normals on each side; else their
 /// mean at each vertex.
 void copyFacesWithNormals(Arguments const &arguments, FarExt::TopologyLevel const &level,
                           FarExt::LimitSides const &sides, std::vector<float> normals, Mesh *mesh) {
-    if (FindMeshFormat(arguments.output) == MeshFormat::Obj) {
+    if (arguments.isSeparate || FindMeshFormat(arguments.output) == MeshFormat::Obj) {
         mesh->channels.push_back({FVarKind::Normal, 3, std::move(normals), {}});
-        CopyFaces(level, sides, mesh);
+        if (arguments.isSeparate) {
+            CopySeparateFaces(level, &sides, mesh);
+        } else {
+            CopyFaces(level, sides, mesh);
+        }
         return;
     }
     CopyFaces(level, mesh);
@@ -412,9 +427,9 @@ void copyFacesWithNormals(Arguments const &arguments, FarExt::TopologyLevel cons
         }
     }
     Normalize(&means);
-    for (std::size_t k = 0; k < 3; ++k) {
-        VertexProperty property{std::string(kNormalNames[k]), NumberType::Float, {}};
-        for (std::size_t i = k; i < means.size(); i += 3) {
+    for (int k = 0; k < 3; ++k) {
+        VertexProperty property{GetPropertyName(FVarKind::Normal, k), NumberType::Float, {}};
+        for (std::size_t i = std::size_t(k); i < means.size(); i += 3) {
             property.values.push_back(means[i]);
         }
         mesh->vertexProperties.push_back(std::move(property));
@@ -492,7 +507,14 @@ void removeWhatIsNotWritten(Arguments const &arguments, Mesh *mesh, Statistics *
     for (FVarChannel const &channel : mesh->channels) {
         statistics->channelsLeftOut.push_back(GetName(channel.kind));
     }
+    std::vector<FVarChannel> separated; // which will be properties of vertices
+    if (arguments.isSeparate) {
+        separated.swap(mesh->channels);
+    }
     statistics->notWritten = RemoveWhatIsNotHeld(arguments.output, mesh);
+    if (arguments.isSeparate) {
+        mesh->channels = std::move(separated);
+    }
     if (!mesh->channels.empty()) {
         statistics->channelsLeftOut.clear(); // a format holds all or none
     }
@@ -605,6 +627,8 @@ void run(Arguments const &arguments) {
             milliseconds.write = measure(progress, "writing", [&] {
                 if (sides) {
                     copyFacesWithNormals(arguments, lastLevel, *sides, std::move(normals), &mesh);
+                } else if (arguments.isSeparate) {
+                    CopySeparateFaces(lastLevel, nullptr, &mesh);
                 } else {
                     CopyFaces(lastLevel, &mesh);
                 }

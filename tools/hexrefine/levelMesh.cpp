@@ -76,24 +76,64 @@ void sortFacesByLabel(Mesh *mesh) {
     mesh->baseFaces = std::move(baseFaces);
 }
 
+/// Those of vertices with \p width numbers each, in the order \p verts.
+std::vector<float> gather(std::vector<float> const &from, std::size_t width,
+                          std::vector<int> const &verts) {
+    std::vector<float> result;
+    result.reserve(width * verts.size());
+    for (int vert : verts) {
+        auto const first = from.begin() + std::ptrdiff_t(width * std::size_t(vert));
+        result.insert(result.end(), first, first + std::ptrdiff_t(width));
+    }
+    return result;
+}
+
+/// Makes what vertices have that of \p drawn, and with it properties of the values of channels.
+void separateVertices(OsdExt::DrawnVertices const &drawn, bool hasSides, Mesh *mesh) {
+    mesh->positions = gather(mesh->positions, 3, drawn.vertices);
+    for (VertexProperty &property : mesh->vertexProperties) {
+        property.values = gather(property.values, 1, drawn.vertices);
+    }
+    for (std::size_t i = 0; i < mesh->channels.size(); ++i) {
+        FVarChannel const &channel = mesh->channels[i];
+        bool const isOfSides = hasSides && i + 1 == mesh->channels.size();
+        std::vector<int> const &values = isOfSides ? drawn.sides : drawn.fvarValues[i];
+        for (int k = 0; k < channel.width; ++k) {
+            VertexProperty property{GetPropertyName(channel.kind, k), NumberType::Float, {}};
+            property.values.reserve(values.size());
+            for (int value : values) {
+                property.values.push_back(
+                    channel.values[std::size_t(value * std::int64_t(channel.width) + k)]);
+            }
+            mesh->vertexProperties.push_back(std::move(property));
+        }
+    }
+    mesh->channels.clear();
+}
+
 /// \p sides is null where no channel has their values.
-void copyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sides, Mesh *mesh) {
+void copyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sides, bool isSeparate,
+               Mesh *mesh) {
     std::vector<int> const classes = FindFaceClasses(*mesh);
     OsdExt::DrawOptions options;
     options.cutBaseFaces = false;
     options.labels = OpenSubdiv::Far::ConstIndexArray(classes.data(), int(classes.size()));
     options.cutCreases = OsdExt::CreaseCuts::None;
     options.sides = sides;
+    options.separateVertices = isSeparate;
     options.fvarChannels.resize(mesh->channels.size() - (sides ? 1 : 0));
     std::iota(options.fvarChannels.begin(), options.fvarChannels.end(), 0);
     OsdExt::PolygonIndices polygons = OsdExt::CreatePolygonIndices(level, options);
     mesh->faceSizes = std::move(polygons.sizes);
     mesh->faceVertices = std::move(polygons.vertices);
     mesh->baseFaces = classes.empty() ? std::vector<int>() : std::move(polygons.baseFaces);
-    for (std::size_t i = 0; i < polygons.fvarValues.size(); ++i) {
+    if (isSeparate) {
+        separateVertices(polygons.drawnVertices, sides != nullptr, mesh);
+    }
+    for (std::size_t i = 0; i < polygons.fvarValues.size() && !isSeparate; ++i) {
         mesh->channels[i].faceValues = std::move(polygons.fvarValues[i]);
     }
-    if (sides) {
+    if (sides && !isSeparate) {
         mesh->channels.back().faceValues = std::move(polygons.sides);
     }
     // Faces that are not refined stay in the order of the file.
@@ -104,10 +144,17 @@ void copyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sid
 
 } // namespace
 
-void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh) { copyFaces(level, nullptr, mesh); }
+void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh) {
+    copyFaces(level, nullptr, false, mesh);
+}
 
 void CopyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const &sides, Mesh *mesh) {
-    copyFaces(level, &sides, mesh);
+    copyFaces(level, &sides, false, mesh);
+}
+
+void CopySeparateFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sides,
+                       Mesh *mesh) {
+    copyFaces(level, sides, true, mesh);
 }
 
 } // namespace OpenSubdivHex::Tools
