@@ -16,6 +16,33 @@ namespace {
 
 using Vector = std::vector<double>;
 
+// Appends a number in as many bytes as it takes, small ones, of either sign, in one.
+void addNumber(int number, std::string &key) {
+    auto rest = (std::uint32_t(number) << 1) ^ std::uint32_t(number < 0 ? -1 : 0);
+    for (; rest >= 0x80; rest >>= 7) {
+        key.push_back(char(rest | 0x80));
+    }
+    key.push_back(char(rest));
+}
+
+// There are many types: they take no more memory than they have to.
+void trim(PatchRefinement &step) {
+    step.firsts.shrink_to_fit();
+    step.verts.shrink_to_fit();
+    step.weights.shrink_to_fit();
+}
+
+void trim(CellPatch &cell) {
+    cell.patch.signature = {};
+    cell.patch.sources.shrink_to_fit();
+    cell.patch.faceSizes.shrink_to_fit();
+    cell.patch.faceVerts.shrink_to_fit();
+    cell.patch.otherCorners.shrink_to_fit();
+    cell.patch.edgeSharpness.shrink_to_fit();
+    cell.patch.diagonalSharpness.shrink_to_fit();
+    cell.patch.vertSharpness.shrink_to_fit();
+}
+
 double dot(Vector const &a, Vector const &b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -57,6 +84,7 @@ std::vector<CellType::Child> const &CellType::GetChildren() const {
         std::vector<Child> children;
         for (CellChild &child :
              RefineCell(_cell, _rules.sdcOptions, _rules.schemeOptions, _rules.interpolation)) {
+            trim(child.step);
             children.push_back(
                 {&_types.Find(std::move(child.cell), _rules), std::move(child.step)});
         }
@@ -86,7 +114,9 @@ std::vector<Vector> const &CellType::GetCornerPoints() const {
                 _rules, [&](LimitMaskFinder &finder) { return FindCornerLimits(_cell, finder); });
             for (CornerLimit &limit : limits) {
                 points.push_back(std::move(limit.weights));
-                tangents.push_back(std::move(limit.tangents));
+                if (_cell.kind == CellKind::Whole || _cell.kind == CellKind::Half) {
+                    tangents.push_back(std::move(limit.tangents));
+                }
             }
         }
         _points = std::move(points);
@@ -181,6 +211,7 @@ CellType::Border const &CellType::GetBorder(BaseCellTurns const &turns) const {
         bool const isReversed =
             border.size() < turns.isReversed.size() && turns.isReversed[border.size()];
         std::vector<int> points = item.patch.sources;
+        points.shrink_to_fit();
         border.push_back({&_types.Find(std::move(item), _rules), std::move(points), isReversed});
     }
     return _borders.emplace(std::move(key), std::move(border)).first->second;
@@ -199,26 +230,25 @@ std::vector<CellType::Corner> const &CellType::GetCorners() const {
 }
 
 CellTypes::Key CellTypes::getKey(CellRules const &rules) {
-    return {int(rules.sdcOptions.GetVtxBoundaryInterpolation()),
-            int(rules.sdcOptions.GetCreasingMethod()), int(rules.schemeOptions.faceMask),
-            int(rules.interpolation)};
-}
-
-std::size_t CellTypes::Hash::operator()(Key const &key) const {
-    std::uint64_t hash = key.size();
-    for (int const number : key) {
-        hash = (hash ^ std::uint32_t(number)) * 0x9e3779b97f4a7c15;
-        hash ^= hash >> 29;
+    Key key;
+    for (int const number : {int(rules.sdcOptions.GetVtxBoundaryInterpolation()),
+                             int(rules.sdcOptions.GetCreasingMethod()),
+                             int(rules.schemeOptions.faceMask), int(rules.interpolation)}) {
+        addNumber(number, key);
     }
-    return std::size_t(hash);
+    return key;
 }
 
 CellType const &CellTypes::Find(CellPatch &&cell, CellRules const &rules) {
     Key key = getKey(rules);
-    key.insert(key.end(), cell.locals.begin(), cell.locals.end());
-    key.push_back(-1 - int(cell.kind));
-    key.insert(key.end(), cell.patch.signature.begin(), cell.patch.signature.end());
-    cell.patch.signature = {};
+    auto const addAll = [&](std::vector<int> const &numbers) {
+        for (int const number : numbers) {
+            addNumber(number, key);
+        }
+    };
+    addAll(cell.locals);
+    addNumber(-1 - int(cell.kind), key);
+    addAll(cell.patch.signature);
     {
         std::shared_lock<std::shared_mutex> const lock(_mutex);
         auto const found = _types.find(key);
@@ -226,6 +256,8 @@ CellType const &CellTypes::Find(CellPatch &&cell, CellRules const &rules) {
             return *found->second;
         }
     }
+    key.shrink_to_fit();
+    trim(cell);
     auto type = std::make_unique<CellType>(*this, std::move(cell), rules);
     std::lock_guard<std::shared_mutex> const lock(_mutex);
     return *_types.emplace(std::move(key), std::move(type)).first->second;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -124,8 +125,10 @@ public:
     template <typename FUNCTION>
     auto UseMasks(CellRules const &rules, FUNCTION function) {
         std::lock_guard<std::mutex> const lock(_masksMutex);
+        // Types keep what they get: a finder need not remember more than a mesh's usual cells.
+        constexpr int kMaxUses = 512;
         std::unique_ptr<FarExt::internal::LimitMaskFinder> &finder = _masks[getKey(rules)];
-        if (!finder) {
+        if (!finder || ++_numMaskUses % kMaxUses == 0) {
             finder = std::make_unique<FarExt::internal::LimitMaskFinder>(rules.sdcOptions,
                                                                          rules.schemeOptions);
         }
@@ -134,17 +137,16 @@ public:
     std::size_t GetSize() const;
 
 private:
-    using Key = std::vector<int>;
-    struct Hash {
-        std::size_t operator()(Key const &key) const;
-    };
+    // Numbers of one byte mostly.
+    using Key = std::string;
 
     static Key getKey(CellRules const &rules);
 
     mutable std::shared_mutex _mutex;
-    std::unordered_map<Key, std::unique_ptr<CellType>, Hash> _types;
+    std::unordered_map<Key, std::unique_ptr<CellType>> _types;
     std::mutex _masksMutex;
-    std::unordered_map<Key, std::unique_ptr<FarExt::internal::LimitMaskFinder>, Hash> _masks;
+    int _numMaskUses = 0;
+    std::unordered_map<Key, std::unique_ptr<FarExt::internal::LimitMaskFinder>> _masks;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal
