@@ -9,6 +9,8 @@
 
 namespace OpenSubdivHex::BfrExt {
 
+class PatchNumbering;
+
 /// \brief How fine the patches of a stream are: a level of refinement for the inside of each base face
 /// and one for each edge of the base mesh, 0 ... Tessellation::kLastLevel.
 ///
@@ -76,7 +78,7 @@ public:
     /// \brief Facets and memory.
     class Options {
     public:
-        /// Triangles, and 16 megabytes.
+        /// Triangles, and 4 megabytes.
         Options() = default;
 
         /// Sets what facets are like; strides of coordinates are of no matter.
@@ -100,7 +102,7 @@ public:
 
     private:
         Tessellation::Options _tessellationOptions;
-        std::size_t _maxMemory = std::size_t(16) << 20;
+        std::size_t _maxMemory = std::size_t(4) << 20;
     };
 
     /// A stream of surfaces for vertex data, with the default options.
@@ -144,6 +146,7 @@ public:
     Options const &GetOptions() const { return _options; }
 
 private:
+    friend class PatchNumbering;
     class Worker;
 
     FarExt::Status check(Index beginFace, Index endFace) const;

@@ -121,6 +121,9 @@ std::vector<Vector> const &CellType::GetCornerPoints() const {
         }
         _points = std::move(points);
         _tangents = std::move(tangents);
+        if (IsVertex()) {
+            _cell.patch = {};
+        }
     });
     return _points;
 }

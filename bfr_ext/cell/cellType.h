@@ -45,12 +45,13 @@ public:
     };
 
     CellType(CellTypes &types, FarExt::internal::CellPatch cell, CellRules const &rules)
-        : _types(types), _cell(std::move(cell)), _rules(rules) {}
+        : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
+          _rules(rules) {}
 
     bool IsWhole() const { return _cell.kind == FarExt::internal::CellKind::Whole; }
     bool IsVertex() const { return _cell.kind == FarExt::internal::CellKind::Vertex; }
     int GetNumCorners() const { return _cell.GetNumCorners(); }
-    int GetNumPoints() const { return int(_cell.patch.sources.size()); }
+    int GetNumPoints() const { return _numPoints; }
 
     /// Whether the surface has bounded curvature where the lattice is regular.
     bool HasBoundedCurvature() const {
@@ -101,7 +102,8 @@ private:
     void findDerivatives(std::size_t corner, std::vector<double> (&result)[2]) const;
 
     CellTypes &_types;
-    FarExt::internal::CellPatch const _cell;
+    mutable FarExt::internal::CellPatch _cell; // of vertices, without a patch once it is not needed
+    int const _numPoints;
     CellRules const _rules;
     mutable std::once_flag _onceChildren;
     mutable std::vector<Child> _children;

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Streams of patches, against surfaces evaluated one by one.
+#include "streamFixture.h"
 #include "surfaceFixture.h"
 
-#include "bfr_ext/patchStream.h"
-#include "far_ext/threads.h"
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <map>
 #include <mutex>
-#include <random>
 #include <stdexcept>
 
 namespace OpenSubdivHex::Regression {
@@ -27,35 +24,6 @@ using BfrExt::Tessellation;
 using FarExt::StatusCode;
 
 namespace {
-
-/// Restores the number of threads.
-struct Threads {
-    explicit Threads(int count) { FarExt::SetNumThreads(count); }
-    ~Threads() { FarExt::SetNumThreads(0); }
-    Threads(Threads const &) = delete;
-    Threads &operator=(Threads const &) = delete;
-};
-
-/// A level for each face and edge of a mesh.
-struct RandomLevels {
-    RandomLevels(FarExt::TopologyLevel const &base, int numLevels, unsigned seed) {
-        std::mt19937 random(seed);
-        for (int face = 0; face < base.GetNumFaces(); ++face) {
-            faces.push_back(int(random() % unsigned(numLevels)));
-        }
-        for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
-            edges.push_back(int(random() % unsigned(numLevels)));
-        }
-    }
-
-    PatchLevels Get() const {
-        return PatchLevels([this](int face) { return faces[std::size_t(face)]; },
-                           [this](int edge) { return edges[std::size_t(edge)]; });
-    }
-
-    std::vector<int> faces;
-    std::vector<int> edges;
-};
 
 /// What a stream hands out, by face.
 template <typename REAL>
@@ -93,7 +61,7 @@ void expectSurfaces(Shape const &shape, ReferenceMask mask, int numLevels, doubl
     auto const factory = SurfaceFactory::Create(*refiner);
     FarExt::TopologyLevel const &base = refiner->GetLevel(0);
     std::vector<REAL> const positions(shape.positions.begin(), shape.positions.end());
-    RandomLevels const levels(base, numLevels, 5);
+    RandomPatchLevels const levels(base, numLevels, 5);
     PatchStream<REAL> const stream(*factory, levels.Get());
     Collection<REAL> collection;
     ASSERT_TRUE(stream.Run(positions.data(), 3, collection.GetSink()));
@@ -142,11 +110,11 @@ TEST(PatchStreamTest, HandsOutWhatSurfacesAre) {
 TEST(PatchStreamTest, PatchesDoNotDependOnThreadsMemoryAndShares) {
     Shape const &shape = GetFeatureShape("mixedSharpnessQuads");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly());
-    RandomLevels const levels(refiner->GetLevel(0), 7, 3);
+    RandomPatchLevels const levels(refiner->GetLevel(0), 7, 3);
     std::vector<float> const positions(shape.positions.begin(), shape.positions.end());
     std::map<int, std::vector<float>> expected;
     for (int const numThreads : {1, 2, 3}) {
-        Threads const threads(numThreads);
+        ThreadsScope const threads(numThreads);
         for (std::size_t const memory :
              {std::size_t(0), std::size_t(1) << 16, std::size_t(1) << 28}) {
             for (int const numShares : {1, 4}) {
@@ -246,7 +214,7 @@ TEST(PatchStreamTest, EndsWhenTheSinkSaysSo) {
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly());
     auto const factory = SurfaceFactory::Create(*refiner);
     PatchStream<double> const stream(*factory, PatchLevels(1));
-    Threads const threads(1);
+    ThreadsScope const threads(1);
     int numPatches = 0;
     FarExt::Status status(StatusCode::TooLarge, FarExt::ComponentType::None, 0, "");
     EXPECT_FALSE(stream.Run(
