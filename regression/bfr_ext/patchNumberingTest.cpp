@@ -52,12 +52,12 @@ struct Joined {
         ThreadsScope const threads(1);
         EXPECT_TRUE(
             stream.Run(shape.positions.data(), 3, [&](PatchStream<double>::Patch const &patch) {
-                add(patch);
+                Add(patch);
                 return true;
             }));
     }
 
-    void add(PatchStream<double>::Patch const &patch) {
+    void Add(PatchStream<double>::Patch const &patch) {
         Tessellation const &tessellation = patch.tessellation;
         std::vector<Number> numbers(std::size_t(tessellation.GetNumCoords()));
         numbering->GetPoints(patch.face, tessellation, numbers.data());
@@ -248,7 +248,7 @@ TEST(PlySinkTest, AnyThreadsAndSharesWriteEveryByteOnce) {
     }
 }
 
-// A face of level 0 between edges of level 8 has 340 sides.
+// A face of level 0 between edges of level 8 has 684 sides.
 TEST(PlySinkTest, FacetsMayHaveManyCorners) {
     Shape const &shape = GetShape("cube");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
@@ -264,7 +264,7 @@ TEST(PlySinkTest, FacetsMayHaveManyCorners) {
     ASSERT_TRUE(stream.Run(shape.positions.data(), 3, *sink));
     EXPECT_NE(file.bytes.find("property list int int"), std::string::npos);
     EXPECT_EQ(file.bytes.size(), sink->GetFileSize());
-    std::size_t place = file.bytes.size() - 6 * (4 * 171 + 1) * 4;
+    std::size_t place = file.bytes.size() - std::size_t(6 * (4 * 171 + 1) * 4);
     EXPECT_EQ(take<std::int32_t>(file.bytes, place), 4 * 171);
 }
 
