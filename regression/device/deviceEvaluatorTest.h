@@ -5,6 +5,8 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_DEVICE_DEVICE_EVALUATOR_TEST_H
 #define OPENSUBDIVHEX_REGRESSION_DEVICE_DEVICE_EVALUATOR_TEST_H
 
+#include "hostEvaluator.h"
+
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/refinementEvaluator.h"
 #include "regression/shapes/featureShapes.h"
@@ -103,6 +105,15 @@ protected:
             ASSERT_LE(difference, numUnits)
                 << "units, float " << i << ": " << values[i] << " instead of " << expected[i];
             largest = std::max(largest, difference);
+        }
+    }
+
+    /// Whether the buffer has the floats, bit for bit; a zero may have another sign.
+    void expectBits(Buffer const &buffer, std::vector<float> const &expected) {
+        std::vector<float> const values = kind.Read(*buffer, expected.size());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            ASSERT_TRUE(values[i] == expected[i])
+                << "float " << i << ": " << values[i] << " instead of " << expected[i];
         }
     }
 
@@ -409,11 +420,50 @@ TYPED_TEST_P(DeviceEvaluator, IsEvaluatedInPlace) {
     this->expectFloats(buffer, values, float(this->kNumUnits << 4));
 }
 
+// The kernels give the same numbers wherever they run: so testing them on the processor tests them
+// for devices that are not there.
+TYPED_TEST_P(DeviceEvaluator, GivesTheBitsOfTheKernelsOnTheProcessor) {
+    constexpr int kLength = 3;
+    Osd::BufferDescriptor const desc(0, kLength, kLength);
+    for (Shape const &shape : GetShapesAndFeatureShapes()) {
+        if (shape.GetNumFaces() > 100) {
+            continue;
+        }
+        SCOPED_TRACE(shape.name);
+        FarExt::HexSchemeOptions schemeOptions;
+        schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+        auto const refiner =
+            MakeRefiner(shape, 3, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER, schemeOptions, true);
+        auto const evaluator = TypeParam::Evaluator::Create(*refiner, {});
+        auto const host = HostEvaluator::Create(*refiner);
+        std::vector<float> const src = MakeValues(host->GetNumElements(0), kLength);
+        auto const srcBuffer = this->kind.MakeBuffer(src, kLength);
+        std::vector<float> points(std::size_t(host->GetNumElements(3)) * kLength);
+        std::vector<float> du(points.size());
+        std::vector<float> dv(points.size());
+        auto const pointBuffer = this->makeBlank(points.size(), kLength);
+        auto const duBuffer = this->makeBlank(points.size(), kLength);
+        auto const dvBuffer = this->makeBlank(points.size(), kLength);
+        ASSERT_TRUE(host->Evaluate(src.data(), desc, points.data(), desc, 3));
+        ASSERT_TRUE(evaluator->Evaluate(srcBuffer.get(), desc, pointBuffer.get(), desc, 3));
+        ASSERT_NO_FATAL_FAILURE(this->expectBits(pointBuffer, points));
+        if (host->EvaluateLimit(src.data(), desc, points.data(), desc, du.data(), desc, dv.data(),
+                                desc, 3)) {
+            ASSERT_TRUE(evaluator->EvaluateLimit(srcBuffer.get(), desc, pointBuffer.get(), desc,
+                                                 duBuffer.get(), desc, dvBuffer.get(), desc, 3));
+            ASSERT_NO_FATAL_FAILURE(this->expectBits(pointBuffer, points));
+            ASSERT_NO_FATAL_FAILURE(this->expectBits(duBuffer, du));
+            ASSERT_NO_FATAL_FAILURE(this->expectBits(dvBuffer, dv));
+        }
+    }
+}
+
 REGISTER_TYPED_TEST_SUITE_P(DeviceEvaluator, GivesTheValuesOfTheCpu, GivesTheLimitOfTheCpu,
                             GivesTheLimitOfEveryLevelAndLength, RefusesLimitsAsTheCpu,
                             TakesEveryLengthMaskSchemeAndMode, TakesEveryFirstStep,
                             TakesRunsOfEveryFaceSize, KeepsFewBytesOfLargeLevels,
-                            GivesMostBitsOfTheCpu, IsEvaluatedInPlace);
+                            GivesMostBitsOfTheCpu, IsEvaluatedInPlace,
+                            GivesTheBitsOfTheKernelsOnTheProcessor);
 
 } // namespace OpenSubdivHex::Regression
 

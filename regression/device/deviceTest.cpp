@@ -4,6 +4,10 @@
 #include "deviceEvaluatorTest.h"
 #include "hostEvaluator.h"
 
+#include "far_ext/stencilTableFactory.h"
+#include "osd_ext/cpuEvaluator.h"
+#include "osd_ext/cuda/stencilSum.h"
+
 namespace OpenSubdivHex::Regression {
 
 namespace {
@@ -35,5 +39,48 @@ struct Host {
 } // namespace
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Host, DeviceEvaluator, Host, KindName);
+
+// What the threads of CudaEvaluator sum up, one after the other.
+TEST(StencilLanes, SumUpStencils) {
+    constexpr int kLength = 3;
+    constexpr int kLanes = OsdExt::internal::kStencilLanes;
+    auto const refiner =
+        MakeRefiner(GetFeatureShape("cubeOfCharts"), 3, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    auto const table = FarExt::StencilTableFactory::Create(*refiner);
+    std::vector<float> const src = MakeValues(table->GetNumControlVertices(), kLength);
+    std::vector<float> expected(std::size_t(table->GetNumStencils() * kLength));
+    std::vector<float> dst(expected.size());
+    Osd::BufferDescriptor const desc(0, kLength, kLength);
+    OsdExt::CpuEvaluator::EvalStencils(src.data(), desc, expected.data(), desc,
+                                       table->GetSizes().data(), table->GetOffsets().data(),
+                                       table->GetControlIndices().data(),
+                                       table->GetWeights().data(), 0, table->GetNumStencils());
+    OsdExt::internal::StencilArguments const arguments = {src.data(),
+                                                          kLength,
+                                                          dst.data(),
+                                                          kLength,
+                                                          table->GetSizes().data(),
+                                                          table->GetOffsets().data(),
+                                                          table->GetControlIndices().data(),
+                                                          table->GetWeights().data(),
+                                                          0,
+                                                          table->GetNumStencils(),
+                                                          kLength};
+    for (int stencil = 0; stencil < table->GetNumStencils(); ++stencil) {
+        OsdExt::internal::StencilSum<kLength> sums[kLanes];
+        for (int lane = 0; lane < kLanes; ++lane) {
+            sums[lane] = OsdExt::internal::SumLane<kLength, kLanes>(arguments, stencil, lane);
+        }
+        for (int apart = kLanes / 2; apart > 0; apart /= 2) {
+            for (int lane = 0; lane < apart; ++lane) {
+                sums[lane].Add(sums[lane + apart]);
+            }
+        }
+        OsdExt::internal::StoreSum(arguments, stencil, sums[0]);
+    }
+    for (std::size_t i = 0; i < dst.size(); ++i) {
+        ASSERT_NEAR(dst[i], expected[i], 4 * kUnit) << "float " << i;
+    }
+}
 
 } // namespace OpenSubdivHex::Regression

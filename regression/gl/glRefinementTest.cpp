@@ -6,12 +6,10 @@
 
 #include "osd_ext/glRefinementEvaluator.h"
 #include "regression/device/deviceEvaluatorTest.h"
-#include "regression/device/hostEvaluator.h"
 
 #include <opensubdiv/osd/glVertexBuffer.h>
 
 #include <cstdlib>
-#include <cstring>
 
 namespace OpenSubdivHex::Regression {
 
@@ -49,60 +47,11 @@ struct OpenGl {
     GlContext context;
 };
 
-class GlRefinement : public DeviceEvaluator<OpenGl> {
-protected:
-    /// Whether the buffer has the floats, bit for bit.
-    void expectBits(Buffer const &buffer, std::vector<float> const &expected) const {
-        std::vector<float> const values = kind.Read(*buffer, expected.size());
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            // A zero may have another sign.
-            ASSERT_TRUE(values[i] == expected[i])
-                << "float " << i << ": " << values[i] << " instead of " << expected[i];
-        }
-    }
-};
+class GlRefinement : public DeviceEvaluator<OpenGl> {};
 
 } // namespace
 
 INSTANTIATE_TYPED_TEST_SUITE_P(OpenGl, DeviceEvaluator, OpenGl, KindName);
-
-// The kernels give the same numbers wherever they run: so testing them on the processor tests them
-// for devices that are not there.
-TEST_F(GlRefinement, GivesTheBitsOfTheKernelsOnTheProcessor) {
-    constexpr int kLength = 3;
-    Descriptor const desc(0, kLength, kLength);
-    for (Shape const &shape : GetShapesAndFeatureShapes()) {
-        if (shape.GetNumFaces() > 100) {
-            continue;
-        }
-        SCOPED_TRACE(shape.name);
-        FarExt::HexSchemeOptions schemeOptions;
-        schemeOptions.faceMask = FarExt::FaceMask::Smooth;
-        auto const refiner =
-            MakeRefiner(shape, 3, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER, schemeOptions, true);
-        auto const evaluator = GLRefinementEvaluator::Create(*refiner);
-        auto const host = HostEvaluator::Create(*refiner);
-        std::vector<float> const src = MakeValues(host->GetNumElements(0), kLength);
-        Buffer const srcBuffer = kind.MakeBuffer(src, kLength);
-        std::vector<float> points(std::size_t(host->GetNumElements(3)) * kLength);
-        std::vector<float> du(points.size());
-        std::vector<float> dv(points.size());
-        Buffer const pointBuffer = makeBlank(points.size(), kLength);
-        Buffer const duBuffer = makeBlank(points.size(), kLength);
-        Buffer const dvBuffer = makeBlank(points.size(), kLength);
-        ASSERT_TRUE(host->Evaluate(src.data(), desc, points.data(), desc, 3));
-        ASSERT_TRUE(evaluator->Evaluate(srcBuffer.get(), desc, pointBuffer.get(), desc, 3));
-        ASSERT_NO_FATAL_FAILURE(expectBits(pointBuffer, points));
-        if (host->EvaluateLimit(src.data(), desc, points.data(), desc, du.data(), desc, dv.data(),
-                                desc, 3)) {
-            ASSERT_TRUE(evaluator->EvaluateLimit(srcBuffer.get(), desc, pointBuffer.get(), desc,
-                                                 duBuffer.get(), desc, dvBuffer.get(), desc, 3));
-            ASSERT_NO_FATAL_FAILURE(expectBits(pointBuffer, points));
-            ASSERT_NO_FATAL_FAILURE(expectBits(duBuffer, du));
-            ASSERT_NO_FATAL_FAILURE(expectBits(dvBuffer, dv));
-        }
-    }
-}
 
 // More elements than one dimension of groups has invocations.
 TEST_F(GlRefinement, DispatchesMoreThanOneRowOfGroups) {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_CUDA_CUDA_ERRORS_H
+#define OPENSUBDIVHEX_OSD_EXT_CUDA_CUDA_ERRORS_H
+
+#include "far_ext/status.h"
+
+#include <cuda_runtime_api.h>
+
+#include <new>
+#include <stdexcept>
+#include <string>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+/// What an error of CUDA is to users.
+inline FarExt::Status GetCudaStatus(cudaError_t error) {
+    if (error == cudaSuccess) {
+        return FarExt::Status();
+    }
+    return FarExt::internal::Failure(FarExt::StatusCode::Unsupported,
+                                     std::string("CUDA: ") + cudaGetErrorString(error));
+}
+
+/// Throws std::bad_alloc where there is no memory, and std::runtime_error at any other error.
+inline void ThrowCudaError(cudaError_t error) {
+    if (error == cudaErrorMemoryAllocation) {
+        cudaGetLastError(); // so that later calls do not find it
+        throw std::bad_alloc();
+    }
+    if (error != cudaSuccess) {
+        throw std::runtime_error(GetCudaStatus(error).GetMessage());
+    }
+}
+
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_CUDA_STREAM_H
+#define OPENSUBDIVHEX_OSD_EXT_CUDA_STREAM_H
+
+// What the runtime of CUDA calls so, too.
+struct CUstream_st;
+
+namespace OpenSubdivHex::OsdExt {
+
+/// cudaStream_t, for headers that need no CUDA; null is the default stream.
+using CudaStream = CUstream_st *;
+
+} // namespace OpenSubdivHex::OsdExt
+
+#endif
