@@ -141,7 +141,7 @@ void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local,
             std::memcpy(bytes + sizeof irregular.numFaces, &irregular.weight,
                         sizeof irregular.weight);
             result.key.push_back(char((irregular.corner - first - local + size) % size));
-            result.key.push_back(irregular.kind);
+            result.key.push_back(char(irregular.kind));
             result.key.append(bytes, sizeof bytes);
             ++numAdded;
         }

@@ -37,11 +37,28 @@ void copyShort(T const *src, int size, T *dst) {
 
 constexpr Index kAhead = 8; // V-vertices
 
-// The F-vertices of a plain face: rows of the face's circulant mask times its vertices' rows.
-template <int SIZE, typename REAL>
-void multiplyPlain(double const *mask, REAL const *const *parents, int width, REAL *const *rows) {
+// The weights of a plain face: all rows are the first, turned.
+template <int SIZE>
+struct PlainWeights {
+    explicit PlainWeights(double const *mask) { std::copy_n(mask, SIZE, weights); }
+    double operator()(int, int j) const { return weights[j]; }
+
     double weights[SIZE];
-    std::copy_n(mask, SIZE, weights);
+};
+
+// Those of a face with a row for each corner.
+template <int SIZE>
+struct OwnWeights {
+    double operator()(int i, int j) const { return weights[i][(i + j) % SIZE]; }
+
+    double weights[SIZE][SIZE];
+};
+
+// The F-vertices of a face: its rows of weights times the rows of its vertices.  The weight of the
+// vertex j places behind that of corner i is weights(i, j).
+template <int SIZE, class WEIGHTS, typename REAL>
+void multiplyFace(WEIGHTS const &weights, REAL const *const *parents, int width,
+                  REAL *const *rows) {
     forEachVector(width, [&](int begin) {
     // Clang warns where it cannot make vectors of the loop, which is short.
 #if defined(_OPENMP) && !defined(__clang__)
@@ -53,9 +70,9 @@ void multiplyPlain(double const *mask, REAL const *const *parents, int width, RE
                 values[j] = double(parents[j][k]);
             }
             for (int i = 0; i < SIZE; ++i) {
-                double sum = weights[0] * values[i];
+                double sum = weights(i, 0) * values[i];
                 for (int j = 1; j < SIZE; ++j) {
-                    sum += weights[j] * values[(i + j) % SIZE];
+                    sum += weights(i, j) * values[(i + j) % SIZE];
                 }
                 rows[i][k] = REAL(sum);
             }
@@ -165,18 +182,28 @@ void StencilMultiplier<REAL>::multiply(Index face, Scratch &scratch) const {
     int const width = _supports.OfFaces()[face].size();
     REAL const *const *const parents = scratch.parents.data();
     REAL *const *const rows = scratch.rows.data();
-    if (width >= kVector && _rows.IsFacePlain(face)) {
+    constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
+    bool const isPlain = _rows.IsFacePlain(face);
+    if (width >= kVector && isPlain) {
         double const *const mask = _rows.GetPlainFaceWeights(size);
         switch (size) {
         case 3:
-            return multiplyPlain<3>(mask, parents, width, rows);
+            return multiplyFace<3>(PlainWeights<3>(mask), parents, width, rows);
         case 4:
-            return multiplyPlain<4>(mask, parents, width, rows);
+            return multiplyFace<4>(PlainWeights<4>(mask), parents, width, rows);
         case 5:
-            return multiplyPlain<5>(mask, parents, width, rows);
-        case 6:
-            return multiplyPlain<6>(mask, parents, width, rows);
+            return multiplyFace<5>(PlainWeights<5>(mask), parents, width, rows);
+        case kHexagon:
+            return multiplyFace<kHexagon>(PlainWeights<kHexagon>(mask), parents, width, rows);
         }
+    }
+    if (width >= kVector && !isPlain && size == kHexagon) {
+        OwnWeights<kHexagon> weights;
+        for (int i = 0; i < kHexagon; ++i) {
+            std::copy_n(_rows.GetFaceVertexWeights(face, i, scratch.mask), kHexagon,
+                        weights.weights[i]);
+        }
+        return multiplyFace<kHexagon>(weights, parents, width, rows);
     }
     scratch.sums.resize(width);
     double *const sums = scratch.sums.data();

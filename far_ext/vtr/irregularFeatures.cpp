@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "irregularFeatures.h"
 
+#include "parallel.h"
+
 #include <opensubdiv/sdc/crease.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -22,62 +26,196 @@ bool isWholeEFace(Level const &level, Index face) {
            level.GetFaceSize(face) == kHexagon;
 }
 
+// What an E-face has of its own, as bits: an irregular vertex where a side of its edge starts, or a quad
+// across the edge that such a side shares with its F-face.
+using Mark = unsigned char;
+constexpr Mark kVertexA = 1;
+constexpr Mark kVertexB = 2;
+constexpr Mark kQuadA = 4;
+constexpr Mark kQuadB = 8;
+struct Side {
+    EFaceSide places;
+    Mark vertex;
+    Mark quad;
+};
+constexpr Side kSides[] = {{kEFaceSideA, kVertexA, kQuadA}, {kEFaceSideB, kVertexB, kQuadB}};
+
+// Calls add(side, local, kind) for the irregular corners of a face, in any order.
+template <typename ADD>
+void forEachCorner(Mark mark, ADD const &add) {
+    for (Side const &side : kSides) {
+        int const atQuad = side.places.fFaceEdge;
+        if (mark & side.quad) {
+            add(side, atQuad, IrregularCorner::kAlongQuad);
+            add(side, atQuad + 1, IrregularCorner::kBehindQuad);
+        }
+    }
+    for (Side const &side : kSides) {
+        int const local = side.places.startVertex;
+        if (mark & side.vertex) {
+            add(side, local, IrregularCorner::kAtVertex);
+            // Beside a quad, its masks are taken, and not those of a vertex.
+            if (!(mark & (side.vertex == kVertexA ? kQuadB : kQuadA))) {
+                add(side, local + 1, IrregularCorner::kBehindVertex);
+            }
+            if (!(mark & side.quad)) {
+                add(side, local + kHexagon - 1, IrregularCorner::kBeforeVertex);
+            }
+        }
+    }
+}
+
+// Finds the irregular vertices and corners of a level: first what the masks at each vertex weigh,
+// then which faces are concerned, and last their corners, in the order of the faces.
+class IrregularFinder {
+public:
+    explicit IrregularFinder(Level &level)
+        : _level(level), _endVert(std::min(level.numVertsOfAnyValence, level.numVVertices)) {}
+
+    void Find() {
+        findVertices();
+        _marks.resize(std::size_t(_level.numFaces - _level.numVFaces - _level.numFFaces));
+        markFacesOfVertices();
+        double weights[kHexagon];
+        if (ComputeQuadNeighborMask(_level.numHexagonalSteps, weights)) {
+            markFacesBesideQuads();
+        }
+        findCorners();
+    }
+
+private:
+    void findVertices();
+    float findWeight(Index vert) const;
+    void markFacesOfVertices();
+    void markFacesBesideQuads();
+    Mark &markOf(Index face) { return _marks[std::size_t(face - _level.numFFaces)]; }
+    template <typename FUNCTION>
+    void forEachMarked(Index begin, Index end, FUNCTION const &function) const;
+    void findCorners();
+    IrregularCorner *writeCorners(Index face, Mark mark, IrregularCorner *next) const;
+
+    Level &_level;
+    Index const _endVert; // of those that may be irregular
+    Buffer<float> _weights;
+    std::vector<Mark> _marks; // by E-face
+};
+
 // The share of the masks of a vertex inside the mesh all of whose faces are E-faces of six sides;
 // 0 of others.
-float findWeight(Level const &level, Index vert) {
-    float sharpness = level.GetVertexSharpness(vert);
-    for (Index k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1]; ++k) {
-        Index const face = level.vertFaces[k];
-        Index const corner = level.GetVertexCorner(k);
-        Index const edge = level.faceEdges[corner];
-        Index const before = level.faceEdges[level.GetPrevCorner(face, corner)];
-        if (!isWholeEFace(level, face) || level.IsBoundary(edge) || level.IsBoundary(before)) {
+float IrregularFinder::findWeight(Index vert) const {
+    if (_level.GetNumVertexFaces(vert) < kMinIrregularFaces) {
+        return 0;
+    }
+    float sharpness = _level.GetVertexSharpness(vert);
+    for (Index k = _level.vertFirstFace[vert]; k < _level.vertFirstFace[vert + 1]; ++k) {
+        Index const face = _level.vertFaces[k];
+        Index const corner = _level.GetVertexCorner(k);
+        Index const edge = _level.faceEdges[corner];
+        Index const before = _level.faceEdges[_level.GetPrevCorner(face, corner)];
+        if (!isWholeEFace(_level, face) || _level.IsBoundary(edge) || _level.IsBoundary(before)) {
             return 0;
         }
         sharpness =
-            std::max({sharpness, level.GetDiagonalSharpness(face), level.GetEdgeSharpness(edge)});
+            std::max({sharpness, _level.GetDiagonalSharpness(face), _level.GetEdgeSharpness(edge)});
     }
-    return level.IsNonManifold(vert) ? 0 : smoothPart(sharpness);
+    return _level.IsNonManifold(vert) ? 0 : smoothPart(sharpness);
 }
 
-void addVertex(Index vert, Level &level) {
-    float const weight = findWeight(level, vert);
-    if (weight == 0) {
-        return;
-    }
-    level.irregularVerts.push_back({vert, weight});
-    Index const numFaces = level.GetNumVertexFaces(vert);
-    for (Index k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1]; ++k) {
-        Index const face = level.vertFaces[k];
-        Index const corner = level.GetVertexCorner(k);
-        level.irregularCorners.insert(
-            level.irregularCorners.end(),
-            {{corner, numFaces, weight, IrregularCorner::kAtVertex},
-             {level.GetNextCorner(face, corner), numFaces, weight, IrregularCorner::kBehindVertex},
-             {level.GetPrevCorner(face, corner), numFaces, weight,
-              IrregularCorner::kBeforeVertex}});
+void IrregularFinder::findVertices() {
+    _weights.Resize(std::size_t(_endVert));
+    ParallelFor(_endVert, [&](Index vert) { _weights[std::size_t(vert)] = findWeight(vert); });
+    for (Index vert = 0; vert < _endVert; ++vert) {
+        if (float const weight = _weights[std::size_t(vert)]; weight > 0) {
+            _level.irregularVerts.push_back({vert, weight});
+        }
     }
 }
 
-// The E-faces around an F-face of four sides.
-void addQuad(Index quad, Level &level) {
-    for (Index corner = level.faceFirstCorner[quad]; corner < level.faceFirstCorner[quad + 1];
-         ++corner) {
-        Index const edge = level.faceEdges[corner];
-        int const otherSide = level.edgeFaces[edge][0] == quad ? 1 : 0;
-        Index const face = level.edgeFaces[edge][otherSide];
-        if (face < 0 || !isWholeEFace(level, face)) {
+// What was made of vertices stands in E-faces where their sides start.
+void IrregularFinder::markFacesOfVertices() {
+    for (IrregularVertex const &irregular : _level.irregularVerts) {
+        Index const end = _level.vertFirstFace[irregular.vert + 1];
+        for (Index k = _level.vertFirstFace[irregular.vert]; k < end; ++k) {
+            bool const isSideA = _level.vertFaceLocals[k] == kEFaceSideA.startVertex;
+            markOf(_level.vertFaces[k]) |= isSideA ? kVertexA : kVertexB;
+        }
+    }
+}
+
+void IrregularFinder::markFacesBesideQuads() {
+    for (Index quad = 0; quad < _level.numFFaces; ++quad) {
+        if (_level.GetFaceSize(quad) != kQuad || _level.IsHalfFace(quad)) {
             continue;
         }
-        float const weight = smoothPart(level.GetDiagonalSharpness(face));
-        if (weight > 0) {
-            Index const start = level.GetSideCorner(edge, otherSide);
-            level.irregularCorners.insert(
-                level.irregularCorners.end(),
-                {{start, 0, weight, IrregularCorner::kAlongQuad},
-                 {level.GetNextCorner(face, start), 0, weight, IrregularCorner::kBehindQuad}});
+        Index const first = _level.faceFirstCorner[quad];
+        for (Index corner = first; corner < first + kQuad; ++corner) {
+            Index const edge = _level.faceEdges[corner];
+            int const other = _level.edgeFaces[edge][0] == quad ? 1 : 0;
+            Index const face = _level.edgeFaces[edge][other];
+            if (isWholeEFace(_level, face) && smoothPart(_level.GetDiagonalSharpness(face)) > 0) {
+                bool const isSideA = _level.edgeFaceLocals[edge][other] == kEFaceSideA.fFaceEdge;
+                markOf(face) |= isSideA ? kQuadA : kQuadB;
+            }
         }
     }
+}
+
+// Calls function(face, mark) for the marked ones of E-faces [begin, end).
+template <typename FUNCTION>
+void IrregularFinder::forEachMarked(Index begin, Index end, FUNCTION const &function) const {
+    // A word of marks at a time, most of which are 0.
+    for (Index i = begin; i < end;) {
+        std::uint64_t word = 0;
+        auto const numMarks = std::min<Index>(end - i, sizeof word);
+        std::memcpy(&word, _marks.data() + i, std::size_t(numMarks));
+        for (Index k = i; word != 0 && k < i + numMarks; ++k) {
+            if (Mark const mark = _marks[std::size_t(k)]) {
+                function(_level.numFFaces + k, mark);
+            }
+        }
+        i += numMarks;
+    }
+}
+
+void IrregularFinder::findCorners() {
+    auto const count = Index(_marks.size());
+    std::vector<std::size_t> const firsts =
+        ParallelSums<std::size_t>(count, [&](Index begin, Index end) {
+            std::size_t size = 0;
+            forEachMarked(begin, end, [&size](Index, Mark mark) {
+                forEachCorner(mark, [&size](Side const &, int, IrregularCorner::Kind) { ++size; });
+            });
+            return size;
+        });
+    _level.irregularCorners.resize(firsts.back());
+    ParallelForRange(count, [&](Index begin, Index end) {
+        IrregularCorner *next = _level.irregularCorners.data() + firsts[begin / kParallelRange];
+        forEachMarked(begin, end,
+                      [&](Index face, Mark mark) { next = writeCorners(face, mark, next); });
+    });
+}
+
+// Ascending.  Returns the end of what it writes.
+IrregularCorner *IrregularFinder::writeCorners(Index face, Mark mark, IrregularCorner *next) const {
+    Index const first = _level.faceFirstCorner[face];
+    float const besideQuad = smoothPart(_level.GetDiagonalSharpness(face));
+    IrregularCorner found[kHexagon];
+    unsigned places = 0;
+    forEachCorner(mark, [&](Side const &side, int local, IrregularCorner::Kind kind) {
+        local %= kHexagon;
+        bool const isAtQuad =
+            kind == IrregularCorner::kAlongQuad || kind == IrregularCorner::kBehindQuad;
+        Index const vert = _level.faceVerts[first + side.places.startVertex];
+        found[local] = {first + local, isAtQuad ? 0 : _level.GetNumVertexFaces(vert),
+                        isAtQuad ? besideQuad : _weights[std::size_t(vert)], kind};
+        places |= 1U << local;
+    });
+    for (int local = 0; local < kHexagon; ++local) {
+        if (places >> local & 1) {
+            *next++ = found[local];
+        }
+    }
+    return next;
 }
 
 } // namespace
@@ -85,33 +223,9 @@ void addQuad(Index quad, Level &level) {
 void FindIrregularFeatures(FaceMask faceMask, Level &level) {
     level.irregularVerts.clear();
     level.irregularCorners.clear();
-    if (faceMask != FaceMask::Smooth || level.numHexagonalSteps == 0 || !level.hasFullTopology) {
-        return;
+    if (faceMask == FaceMask::Smooth && level.numHexagonalSteps > 0 && level.hasFullTopology) {
+        IrregularFinder(level).Find();
     }
-    // Quads come first: beside one, its masks are taken, and not those of a vertex.
-    double weights[kHexagon];
-    if (ComputeQuadNeighborMask(level.numHexagonalSteps, weights)) {
-        for (Index face = 0; face < level.numFFaces; ++face) {
-            if (level.GetFaceSize(face) == kQuad && !level.IsHalfFace(face)) {
-                addQuad(face, level);
-            }
-        }
-    }
-    Index const end = std::min(level.numVertsOfAnyValence, level.numVVertices);
-    for (Index vert = 0; vert < end; ++vert) {
-        if (level.GetNumVertexFaces(vert) >= kMinIrregularFaces) {
-            addVertex(vert, level);
-        }
-    }
-    std::vector<IrregularCorner> &corners = level.irregularCorners;
-    std::stable_sort(
-        corners.begin(), corners.end(),
-        [](IrregularCorner const &a, IrregularCorner const &b) { return a.corner < b.corner; });
-    corners.erase(std::unique(corners.begin(), corners.end(),
-                              [](IrregularCorner const &a, IrregularCorner const &b) {
-                                  return a.corner == b.corner;
-                              }),
-                  corners.end());
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -57,12 +57,12 @@ struct IrregularVertex {
 /// quad is beside it.
 struct IrregularCorner {
     /// What is irregular, seen from the corner.
-    enum Kind : char {
-        kAtVertex,     ///< its vertex
-        kBehindVertex, ///< the vertex before it in the face
-        kBeforeVertex, ///< the vertex behind it in the face
-        kAlongQuad,    ///< the face across the edge from it
-        kBehindQuad    ///< the face across the edge to it
+    enum Kind : Far::Index { // without padding in the corner, whose bytes are compared
+        kAtVertex,           ///< its vertex
+        kBehindVertex,       ///< the vertex before it in the face
+        kBeforeVertex,       ///< the vertex behind it in the face
+        kAlongQuad,          ///< the face across the edge from it
+        kBehindQuad          ///< the face across the edge to it
     };
     Far::Index corner;
     Far::Index numFaces; ///< of the irregular vertex; 0 beside a quad
@@ -128,6 +128,14 @@ struct Level {
     /// The face that a corner is in.
     Index FindFaceOfCorner(Index corner) const {
         Index const *const first = faceFirstCorner.begin();
+        if (isHexagonal && corner >= numFFaceCorners) {
+            // E-faces have six corners, but for those at boundaries, which come last.
+            Index const face =
+                numFFaces + (corner - numFFaceCorners) / HexIndexing::kNumEFaceCorners;
+            if (corner < first[face + 1]) {
+                return face;
+            }
+        }
         return Index(std::upper_bound(first, faceFirstCorner.end(), corner) - first) - 1;
     }
     /// The corners before and after a corner of a face.

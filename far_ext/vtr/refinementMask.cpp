@@ -4,6 +4,7 @@
 #include "indexSet.h"
 
 #include <algorithm>
+#include <map>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -32,12 +33,11 @@ RefinementMask::RefinementMask(Level const &parent, HexSchemeOptions schemeOptio
         std::copy_n(mask.begin(), size, mask.begin() + size);
     }
 
-    constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
     constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
     ComputeHalfFaceVertexMask(_faceMask, interpolation, &_halfFaceWeights[0][0]);
     // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
     // V and W are the ends of the diagonal, Q and P the two vertices between them.
-    std::fill_n(&_diagonalWeights[0][0], kHexagon * kHexagon, 0.0);
+    std::fill_n(&_diagonalWeights[0][0], kHexagonSize * kHexagonSize, 0.0);
     for (auto const &half : kHexagonHalves) {
         for (int i = 0; i < kTrapezoid; ++i) {
             for (int j = 0; j < kTrapezoid; ++j) {
@@ -50,35 +50,102 @@ RefinementMask::RefinementMask(Level const &parent, HexSchemeOptions schemeOptio
     }
 }
 
+// The masks first, then the faces, from corner to corner.
 void RefinementMask::findIrregularMasks() {
-    _areIrregular.assign(std::size_t(_level.numFaces), false);
+    Index last = 0; // most are of the same size
     for (IrregularCorner const &irregular : _level.irregularCorners) {
-        _areIrregular[_level.FindFaceOfCorner(irregular.corner)] = true;
         if (irregular.numFaces == 0) {
-            ComputeQuadNeighborMask(_level.numHexagonalSteps, _quadNeighborWeights);
-            continue;
+            _hasQuads = true;
+        } else if (irregular.numFaces != last) {
+            last = irregular.numFaces;
+            auto const place = findMask(last);
+            if (place == _irregularMasks.end() || place->first != last) {
+                _irregularMasks.insert(
+                    place, {last, ComputeIrregularVertexMask(last, _level.numHexagonalSteps)});
+            }
         }
-        auto const place =
-            std::lower_bound(_irregularMasks.begin(), _irregularMasks.end(), irregular.numFaces,
-                             [](auto const &mask, Index size) { return mask.first < size; });
-        if (place == _irregularMasks.end() || place->first != irregular.numFaces) {
-            _irregularMasks.insert(
-                place, {irregular.numFaces,
-                        ComputeIrregularVertexMask(irregular.numFaces, _level.numHexagonalSteps)});
+    }
+    if (_hasQuads) {
+        ComputeQuadNeighborMask(_level.numHexagonalSteps, _quadNeighborWeights);
+    }
+    findIrregularTypes();
+}
+
+// Faces that follow one another are mostly of one type.
+void RefinementMask::findIrregularTypes() {
+    _irregularTypes.assign(std::size_t(_level.numFaces), kPlainType);
+    std::map<CornersOfType, int> types;
+    IrregularCornersOfFace last = {};
+    IrregularCorner const *const end =
+        _level.irregularCorners.data() + _level.irregularCorners.size();
+    for (IrregularCorner const *next = _level.irregularCorners.data(); next < end;) {
+        Index const face = _level.FindFaceOfCorner(next->corner);
+        Index const firstCorner = _level.faceFirstCorner[face];
+        IrregularCornersOfFace corners = {firstCorner, next, next + 1, last.type};
+        while (corners.end < end && corners.end->corner < firstCorner + kHexagonSize) {
+            ++corners.end;
+        }
+        next = corners.end;
+        if (!areAlike(corners, last)) {
+            CornersOfType const key = getKey(corners);
+            corners.type = types.try_emplace(key, int(_irregularWeights.size())).first->second;
+            if (corners.type == int(_irregularWeights.size())) {
+                addIrregularType(key);
+            }
+        }
+        last = corners;
+        _irregularTypes[std::size_t(face)] = last.type;
+        _irregularFaces.push_back({face, last.type});
+    }
+}
+
+bool RefinementMask::areAlike(IrregularCornersOfFace const &a, IrregularCornersOfFace const &b) {
+    return std::equal(
+        a.begin, a.end, b.begin, b.end, [&](IrregularCorner const &x, IrregularCorner const &y) {
+            return x.corner - a.firstCorner == y.corner - b.firstCorner &&
+                   x.numFaces == y.numFaces && x.weight == y.weight && x.kind == y.kind;
+        });
+}
+
+auto RefinementMask::getKey(IrregularCornersOfFace const &face) -> CornersOfType {
+    CornersOfType result;
+    result.fill({-1, 0, IrregularCorner::kAtVertex});
+    for (IrregularCorner const *corner = face.begin; corner < face.end; ++corner) {
+        result[std::size_t(corner->corner - face.firstCorner)] = {corner->numFaces, corner->weight,
+                                                                  corner->kind};
+    }
+    return result;
+}
+
+void RefinementMask::addIrregularType(CornersOfType const &corners) {
+    IrregularFaceWeights &type = _irregularWeights.emplace_back();
+    for (int i = 0; i < kHexagonSize; ++i) {
+        double *const weights = type.weights[i];
+        std::copy_n(smoothWeights(kHexagonSize, i), kHexagonSize, weights);
+        auto const [numFaces, weight, kind] = corners[std::size_t(i)];
+        type.areIrregular[i] = numFaces >= 0;
+        if (type.areIrregular[i]) {
+            addIrregularWeights({0, numFaces, weight, kind}, i, weights);
         }
     }
 }
 
-IrregularVertexMask const &RefinementMask::getIrregularMask(Index numFaces) const {
+auto RefinementMask::findMask(Index numFaces) const -> IrregularMasks::const_iterator {
     return std::lower_bound(_irregularMasks.begin(), _irregularMasks.end(), numFaces,
-                            [](auto const &mask, Index size) { return mask.first < size; })
-        ->second;
+                            [](auto const &mask, Index size) { return mask.first < size; });
+}
+
+IrregularVertexMask const &RefinementMask::getIrregularMask(Index numFaces) const {
+    return findMask(numFaces)->second;
 }
 
 double const *RefinementMask::GetFaceVertexWeights(Index face, int corner,
                                                    std::vector<double> &scratch) const {
-    return IsFacePlain(face) ? smoothWeights(_level.GetFaceSize(face), corner)
-                             : featureWeights(face, corner, scratch);
+    if (_hasSharpFaces && isSharp(face)) {
+        return sharpWeights(face, corner, scratch);
+    }
+    return IsIrregular(face) ? _irregularWeights[std::size_t(getType(face))].weights[corner]
+                             : smoothWeights(_level.GetFaceSize(face), corner);
 }
 
 bool RefinementMask::isSharp(Index face) const {
@@ -93,8 +160,8 @@ bool RefinementMask::isSharp(Index face) const {
                 .empty();
 }
 
-double const *RefinementMask::featureWeights(Index face, int corner,
-                                             std::vector<double> &scratch) const {
+double const *RefinementMask::sharpWeights(Index face, int corner,
+                                           std::vector<double> &scratch) const {
     int const size = _level.GetFaceSize(face);
     if (_level.IsHalfFace(face)) {
         return _halfFaceWeights[corner];
@@ -104,11 +171,13 @@ double const *RefinementMask::featureWeights(Index face, int corner,
         return smooth;
     }
     scratch.assign(smooth, smooth + size);
-    if (_hasSharpFaces) {
-        addSharpWeights(face, corner, scratch);
-    }
+    addSharpWeights(face, corner, scratch);
     if (_hasIrregular) {
-        addIrregularWeights(face, corner, scratch);
+        Index const levelCorner = _level.faceFirstCorner[face] + corner;
+        for (IrregularCorner const &irregular :
+             _level.GetIrregularCorners(levelCorner, levelCorner + 1)) {
+            addIrregularWeights(irregular, corner, scratch.data());
+        }
     }
     return scratch.data();
 }
@@ -129,24 +198,19 @@ void RefinementMask::addSharpWeights(Index face, int corner, std::vector<double>
     }
 }
 
-void RefinementMask::addIrregularWeights(Index face, int corner,
-                                         std::vector<double> &weights) const {
-    constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
-    Index const levelCorner = _level.faceFirstCorner[face] + corner;
-    for (IrregularCorner const &irregular :
-         _level.GetIrregularCorners(levelCorner, levelCorner + 1)) {
-        double const *mask = _quadNeighborWeights;
-        if (irregular.numFaces > 0) {
-            IrregularVertexMask const &masks = getIrregularMask(irregular.numFaces);
-            mask = irregular.kind == IrregularCorner::kAtVertex ? masks.atVertex : masks.atNeighbor;
-        }
-        bool const isBackwards = irregular.kind == IrregularCorner::kBeforeVertex ||
-                                 irregular.kind == IrregularCorner::kBehindQuad;
-        for (int j = 0; j < kHexagon; ++j) {
-            int const place = (corner + (isBackwards ? kHexagon - j : j)) % kHexagon;
-            double &weight = weights[std::size_t(place)];
-            weight += irregular.weight * (mask[j] - weight);
-        }
+// The corner is number \p corner of its face, whose weights these are so far.
+void RefinementMask::addIrregularWeights(IrregularCorner const &irregular, int corner,
+                                         double *weights) const {
+    double const *mask = _quadNeighborWeights;
+    if (irregular.numFaces > 0) {
+        IrregularVertexMask const &masks = getIrregularMask(irregular.numFaces);
+        mask = irregular.kind == IrregularCorner::kAtVertex ? masks.atVertex : masks.atNeighbor;
+    }
+    bool const isBackwards = irregular.kind == IrregularCorner::kBeforeVertex ||
+                             irregular.kind == IrregularCorner::kBehindQuad;
+    for (int j = 0; j < kHexagonSize; ++j) {
+        int const place = (corner + (isBackwards ? kHexagonSize - j : j)) % kHexagonSize;
+        weights[place] += irregular.weight * (mask[j] - weights[place]);
     }
 }
 
@@ -199,18 +263,30 @@ std::vector<Far::Index> RefinementMask::FindSharpFaces() const {
 }
 
 std::vector<Far::Index> RefinementMask::FindFeatureVertices() const {
+    return findVertices([](IrregularVertex const &) { return true; });
+}
+
+std::vector<Far::Index> RefinementMask::FindWeightedVertices() const {
+    return findVertices([](IrregularVertex const &irregular) { return irregular.weight != 1; });
+}
+
+// The sharp vertices, and the irregular ones that satisfy isWanted(irregular).
+template <typename IS_WANTED>
+std::vector<Far::Index> RefinementMask::findVertices(IS_WANTED isWanted) const {
     std::vector<Index> verts;
-    if (_interpolation == Interpolation::Vertex) {
+    if (_hasSharpVertices) {
         for (SharpVertex const &sharp : _level.sharpVerts) {
             verts.push_back(sharp.vert);
         }
     }
-    if (_hasIrregular) {
-        for (IrregularVertex const &irregular : _level.irregularVerts) {
+    auto const numSharp = std::ptrdiff_t(verts.size());
+    for (IrregularVertex const &irregular : GetIrregularVertices()) {
+        if (isWanted(irregular)) {
             verts.push_back(irregular.vert);
         }
-        SortUnique(verts);
     }
+    std::inplace_merge(verts.begin(), verts.begin() + numSharp, verts.end());
+    verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
     return verts;
 }
 

@@ -6,6 +6,9 @@
 
 #include "far_ext/hexSchemeOptions.h"
 
+#include <array>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -56,14 +59,40 @@ public:
                                    : ComputeVertexVertexMask(_interpolation, numFaces);
     }
     bool IsFacePlain(Index face) const {
-        return !(_hasSharpFaces && isSharp(face)) && !(_hasIrregular && _areIrregular[face]);
+        return !IsIrregular(face) && !(_hasSharpFaces && isSharp(face));
     }
     /// All vertices that are not plain, and perhaps some that are; ascending.
     std::vector<Index> FindFeatureVertices() const;
+    /// The same but for those that have the mask of an irregular vertex and nothing else.
+    std::vector<Index> FindWeightedVertices() const;
     /// Faces whose corners may all have weights of their own, since something is sharp there;
     /// ascending.  Besides these only the irregular corners have.
     std::vector<Index> FindSharpFaces() const;
-    /// Those from \p begin to \p end - 1.
+    /// Faces with irregular corners, ascending, each with its type.
+    struct IrregularFace {
+        Index face;
+        int type;
+    };
+    std::vector<IrregularFace> const &GetIrregularFaces() const { return _irregularFaces; }
+    bool IsIrregular(Index face) const { return _hasIrregular && getType(face) != kPlainType; }
+    /// What the faces of a type have in common where nothing is sharp: the weights of all corners, a
+    /// row for each.
+    struct IrregularFaceWeights {
+        double weights[HexIndexing::kNumEFaceCorners][HexIndexing::kNumEFaceCorners];
+        bool
+            areIrregular[HexIndexing::kNumEFaceCorners]; ///< the corners; others have plain weights
+    };
+    std::vector<IrregularFaceWeights> const &GetIrregularTypes() const { return _irregularWeights; }
+    /// Ascending.
+    OpenSubdiv::Vtr::ConstArray<IrregularVertex> GetIrregularVertices() const {
+        std::size_t const size = _hasIrregular ? _level.irregularVerts.size() : 0;
+        return {_level.irregularVerts.data(), int(size)};
+    }
+    /// The mask of irregular vertices without anything sharp, by their number of faces, ascending.
+    std::vector<std::pair<Index, IrregularVertexMask>> const &GetIrregularMasks() const {
+        return _irregularMasks;
+    }
+    /// The irregular corners from \p begin to \p end - 1.
     OpenSubdiv::Vtr::ConstArray<IrregularCorner> GetIrregularCorners(Index begin, Index end) const {
         return _hasIrregular ? _level.GetIrregularCorners(begin, end)
                              : OpenSubdiv::Vtr::ConstArray<IrregularCorner>();
@@ -83,10 +112,31 @@ private:
     static VertexMask sharpMask(SharpVertex const &sharp);
     VertexMask irregularMask(IrregularVertex const &irregular, VertexMask mask) const;
     bool isSharp(Index face) const;
-    double const *featureWeights(Index face, int corner, std::vector<double> &scratch) const;
+    double const *sharpWeights(Index face, int corner, std::vector<double> &scratch) const;
     void addSharpWeights(Index face, int corner, std::vector<double> &weights) const;
-    void addIrregularWeights(Index face, int corner, std::vector<double> &weights) const;
+    void addIrregularWeights(IrregularCorner const &irregular, int corner, double *weights) const;
+
+    /// The irregular corners of a hexagon, by place: the rest of IrregularCorner; -1 faces at others.
+    using CornersOfType =
+        std::array<std::tuple<Index, float, IrregularCorner::Kind>, HexIndexing::kNumEFaceCorners>;
+    static constexpr int kHexagonSize = HexIndexing::kNumEFaceCorners;
+    static constexpr int kPlainType = -1;
+    using IrregularMasks = std::vector<std::pair<Index, IrregularVertexMask>>;
+    struct IrregularCornersOfFace {
+        Index firstCorner;
+        IrregularCorner const *begin;
+        IrregularCorner const *end;
+        int type;
+    };
     void findIrregularMasks();
+    void findIrregularTypes();
+    static bool areAlike(IrregularCornersOfFace const &a, IrregularCornersOfFace const &b);
+    static CornersOfType getKey(IrregularCornersOfFace const &face);
+    template <typename IS_WANTED>
+    std::vector<Index> findVertices(IS_WANTED isWanted) const;
+    void addIrregularType(CornersOfType const &corners);
+    int getType(Index face) const { return _irregularTypes[std::size_t(face)]; }
+    IrregularMasks::const_iterator findMask(Index numFaces) const;
     IrregularVertexMask const &getIrregularMask(Index numFaces) const;
 
     Level const &_level;
@@ -99,9 +149,12 @@ private:
     VertexVertexMask _plainVertexMasks[kNumKept]; ///< by number of faces
     std::vector<std::vector<double>> _faceMasks;  ///< by face size
 
-    std::vector<bool> _areIrregular;                                    ///< by face
-    std::vector<std::pair<Index, IrregularVertexMask>> _irregularMasks; ///< by number of faces
+    IrregularMasks _irregularMasks; ///< by number of faces
+    bool _hasQuads = false;         ///< with masks beside them
     double _quadNeighborWeights[HexIndexing::kNumEFaceCorners];
+    std::vector<int> _irregularTypes; ///< by face; empty without irregular ones
+    std::vector<IrregularFace> _irregularFaces;
+    std::vector<IrregularFaceWeights> _irregularWeights; ///< by type
 
     // One row of weights per corner of a half face and of a hexagon with a sharp diagonal.
     double _halfFaceWeights[HexIndexing::kNumBoundaryEFaceCorners]

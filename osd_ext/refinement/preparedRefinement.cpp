@@ -13,6 +13,7 @@ namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
 using FarExt::internal::ForEachRun;
+using FarExt::internal::IrregularVertex;
 using FarExt::internal::Level;
 using FarExt::internal::ParallelFor;
 using FarExt::internal::Refinement;
@@ -91,19 +92,66 @@ private:
     int _size = 0; // of the faces of the last run
 };
 
+// Lists irregular faces of runs, from first to last.
+class IrregularLister {
+public:
+    // faces: all of the level, ascending
+    IrregularLister(std::vector<RefinementMask::IrregularFace> const &faces,
+                    std::vector<IrregularRun> &runs)
+        : _next(faces.begin()), _end(faces.end()), _runs(runs) {}
+
+    void Add(Index begin, Index end) {
+        while (_next != _end && _next->face < begin) {
+            ++_next;
+        }
+        std::size_t const numBefore = _runs.size();
+        for (; _next != _end && _next->face < end; ++_next) {
+            bool const goesOn = _runs.size() > numBefore && _runs.back().end == _next->face &&
+                                _runs.back().mask == _next->type;
+            if (goesOn) {
+                ++_runs.back().end;
+            } else {
+                _runs.push_back({_next->face, _next->face + 1, _next->type});
+            }
+        }
+    }
+
+private:
+    std::vector<RefinementMask::IrregularFace>::const_iterator _next;
+    std::vector<RefinementMask::IrregularFace>::const_iterator const _end;
+    std::vector<IrregularRun> &_runs;
+};
+
+// The runs of all groups, which know their irregular faces.
+Groups<FaceRun> addIrregular(Groups<IndexRun> const &runs,
+                             std::vector<IrregularRun> const &irregular) {
+    Groups<FaceRun> result;
+    result.firsts = runs.firsts;
+    result.items.Resize(runs.items.size());
+    std::transform(
+        runs.items.begin(), runs.items.end(), result.items.data(), [&](IndexRun const &run) {
+            auto const first =
+                std::lower_bound(irregular.begin(), irregular.end(), run.begin,
+                                 [](IrregularRun const &a, Index face) { return a.begin < face; });
+            return FaceRun{run.begin, run.end, Index(first - irregular.begin())};
+        });
+    return result;
+}
+
 // Makes runs of the vertices of a group that follow one another.
 class VertexRunMaker {
 public:
     explicit VertexRunMaker(Level const &level) : _firstFaces(level.vertFirstFace.data()) {}
 
-    void Add(Index begin, Index end, Group group) {
+    void Add(Index begin, Index end, bool areIrregular, Group group) {
         if (begin == end) {
             return;
         }
-        if (!_runs.empty() && _runs.back().end == begin && _groupOf.back() == group) {
+        if (!_runs.empty() && _runs.back().end == begin &&
+            _runs.back().areIrregular == areIrregular && _groupOf.back() == group) {
             _runs.back().end = end;
         } else {
-            _runs.push_back({begin, end, _numCorners});
+            _runs.push_back({begin, end, _numCorners, areIrregular});
             _groupOf.push_back(group);
         }
         _numCorners += std::size_t(_firstFaces[end] - _firstFaces[begin]);
@@ -157,6 +205,7 @@ std::vector<Index> findWeightedFaces(RefinementMask const &mask, Level const &pa
     return faces;
 }
 
+// Irregular ones with nothing of their own but that are left to runs.
 std::vector<Index> findWeightedVertices(RefinementMask const &mask, Refinement const &refinement) {
     Level const &parent = *refinement.parent;
     if (!refinement.vVertexParents.empty()) {
@@ -166,7 +215,7 @@ std::vector<Index> findWeightedVertices(RefinementMask const &mask, Refinement c
     }
     std::vector<Index> verts;
     if (refinement.child->numVVertices > 0) {
-        verts = mask.FindFeatureVertices();
+        verts = mask.FindWeightedVertices();
         verts.push_back(parent.numVertices - 1);
         if (parent.numCorners > 0) {
             verts.push_back(parent.faceVerts[parent.numCorners - 1]);
@@ -174,37 +223,6 @@ std::vector<Index> findWeightedVertices(RefinementMask const &mask, Refinement c
         SortUnique(verts);
     }
     return verts;
-}
-
-// Groups the irregular corners of plain faces, and makes their weights.  Few faces have any: runs of
-// plain faces stay whole.
-void makeCorners(RefinementMask const &mask, Level const &parent,
-                 std::vector<Index> const &weightedFaces, std::vector<Group> const &groupOfTile,
-                 TileMap const &tileMap, PreparedRefinement &prepared) {
-    std::vector<WeightedCorner> corners;
-    std::vector<Group> groupOfCorners;
-    std::vector<double> scratch;
-    auto const irregulars = mask.GetIrregularCorners(0, parent.numCorners);
-    auto irregular = irregulars.begin();
-    for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
-        Index const end = parent.faceFirstCorner[std::size_t(run.end)];
-        for (; irregular != irregulars.end() && irregular->corner < end; ++irregular) {
-            Index const face = parent.FindFaceOfCorner(irregular->corner);
-            if (std::binary_search(weightedFaces.begin(), weightedFaces.end(), face)) {
-                continue;
-            }
-            Index const first = parent.faceFirstCorner[std::size_t(face)];
-            Far::ConstIndexArray const verts = parent.GetFaceVertices(face);
-            corners.push_back(
-                {irregular->corner, verts.size(), verts.begin(), prepared.faceWeights.size()});
-            groupOfCorners.push_back(groupOfTile[run.tile]);
-            double const *const weights =
-                mask.GetFaceVertexWeights(face, irregular->corner - first, scratch);
-            prepared.faceWeights.insert(prepared.faceWeights.end(), weights,
-                                        weights + verts.size());
-        }
-    }
-    prepared.weightedCorners = makeGroups(corners, groupOfCorners, prepared.numTiles);
 }
 
 // Groups all faces of the level, and makes the weights of those that need their own.
@@ -227,16 +245,20 @@ void makeFaces(RefinementMask const &mask, Level const &parent,
         }
     };
     FaceRunMaker plain(parent);
+    IrregularLister irregular(mask.GetIrregularFaces(), prepared.irregularFaces);
     for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
         Group const group = groupOfTile[run.tile];
         ForEachRun(
             run.begin, run.end, indices,
-            [&](Index begin, Index end, Index) { plain.Add(begin, end, run.size, group); },
+            [&](Index begin, Index end, Index) {
+                plain.Add(begin, end, run.size, group);
+                irregular.Add(begin, end);
+            },
             [&](Index face, Index) { addWeighted(face, group); });
     }
     prepared.weightedFaces = makeGroups(weighted, groupOfWeighted, prepared.numTiles);
-    prepared.plainFaces = plain.Take(prepared.numTiles);
-    makeCorners(mask, parent, indices, groupOfTile, tileMap, prepared);
+    prepared.irregularFaces.push_back({parent.numFaces, parent.numFaces, -1});
+    prepared.plainFaces = addIrregular(plain.Take(prepared.numTiles), prepared.irregularFaces);
 }
 
 WeightedVertex makeWeightedVertex(RefinementMask const &mask, Refinement const &refinement,
@@ -264,7 +286,8 @@ public:
           _groupOfTile(groupOfTile), _prepared(prepared),
           _arePlain(refinement.child->numVVertices == _parent.numVertices),
           _weightedVerts(findWeightedVertices(mask, refinement)),
-          _nextWeighted(_weightedVerts.begin()), _batches(prepared.numTiles), _plain(_parent) {
+          _nextWeighted(_weightedVerts.begin()), _irregularVerts(mask.GetIrregularVertices()),
+          _nextIrregular(_irregularVerts.begin()), _batches(prepared.numTiles), _runs(_parent) {
         if (_arePlain && prepared.masks.averagesFaces && _parent.isHexagonal) {
             _levelOfNewVertices = prepared.before;
             if (prepared.before->isHexagonal && prepared.before->numSharpBoundariesA == 0 &&
@@ -329,7 +352,7 @@ public:
         int const numGroups = _batches.GetNumGroups();
         _prepared.newVertexFaces = _newVertexFaces.Take(numGroups);
         _prepared.olderVertexFaces = _olderVertexFaces.Take(numGroups);
-        _prepared.plainVertices = _plain.Take(numGroups);
+        _prepared.vertexRuns = _runs.Take(numGroups);
         _prepared.weightedVertices = makeGroups(_weighted, _groupOfWeighted, numGroups);
     }
 
@@ -366,29 +389,41 @@ private:
             add(begin, end, group);
         }
     }
-    void addPlain(Index begin, Index end, Group group) {
-        if (_arePlain) {
-            addToGroups(begin, end, 1, group, [&](Index first, Index last, Group groupOfPart) {
-                _plain.Add(first, last, groupOfPart);
+    // Vertices without weights of their own.
+    void addRuns(Index begin, Index end, Group group) {
+        if (!_arePlain) {
+            return;
+        }
+        while (begin < end) {
+            while (_nextIrregular != _irregularVerts.end() && _nextIrregular->vert < begin) {
+                ++_nextIrregular;
+            }
+            Index const next =
+                _nextIrregular == _irregularVerts.end() ? end : std::min(_nextIrregular->vert, end);
+            bool const areIrregular = next == begin;
+            Index const runEnd = areIrregular ? begin + 1 : next;
+            addToGroups(begin, runEnd, 1, group, [&](Index first, Index last, Group groupOfPart) {
+                _runs.Add(first, last, areIrregular, groupOfPart);
             });
+            begin = runEnd;
         }
     }
     void add(Index begin, Index end, Group group) {
         for (; _nextWeighted != _weightedVerts.end() && *_nextWeighted < end; ++_nextWeighted) {
             Index const vert = *_nextWeighted;
-            addPlain(begin, vert, group);
+            addRuns(begin, vert, group);
             addToGroups(vert, vert + 1, 1, group, [&](Index, Index, Group groupOfVertex) {
                 _weighted.push_back(makeWeightedVertex(_mask, _refinement, vert));
                 _groupOfWeighted.push_back(groupOfVertex);
             });
             begin = vert + 1;
         }
-        addPlain(begin, end, group);
+        addRuns(begin, end, group);
     }
     void listCorners() {
-        _prepared.vertCorners.Resize(_plain.GetNumCorners());
-        ParallelFor(Index(_plain.GetRuns().size()), [&](Index i) {
-            VertexRun const &run = _plain.GetRuns()[std::size_t(i)];
+        _prepared.vertCorners.Resize(_runs.GetNumCorners());
+        ParallelFor(Index(_runs.GetRuns().size()), [&](Index i) {
+            VertexRun const &run = _runs.GetRuns()[std::size_t(i)];
             Index const first = _parent.vertFirstFace[std::size_t(run.begin)];
             Index const last = _parent.vertFirstFace[std::size_t(run.end)];
             for (Index k = first; k < last; ++k) {
@@ -408,14 +443,52 @@ private:
     std::vector<Index>::const_iterator _nextWeighted;
     std::vector<WeightedVertex> _weighted;
     std::vector<Group> _groupOfWeighted;
+    OpenSubdiv::Vtr::ConstArray<IrregularVertex> const _irregularVerts;
+    IrregularVertex const *_nextIrregular;
     BatchMaker _batches;
-    VertexRunMaker _plain;
+    VertexRunMaker _runs;
     FaceRunMaker _newVertexFaces;
     FaceRunMaker _olderVertexFaces;
     // Null where their vertices have no kernel of their own.
     Level const *_levelOfNewVertices = nullptr;
     Level const *_levelOfOlderVertices = nullptr;
 };
+
+// Rows that are as those of plain hexagons are left to their mask, where it has no opposite weight.
+IrregularFaceMask makeIrregularMask(RefinementMask::IrregularFaceWeights const &type,
+                                    PlainFaceMask const &plain) {
+    constexpr int kSize = IrregularFaceMask::kSize;
+    IrregularFaceMask mask;
+    for (int i = 0; i < kSize; ++i) {
+        bool const isPlain = !type.areIrregular[i] && plain.opposite == 0;
+        mask.places[i] = isPlain ? IrregularFaceMask::kPlain : 0;
+        for (int j = 0; j < kSize; ++j) {
+            double const weight = type.weights[i][(i + j) % kSize];
+            mask.rows[i][j] = Spread(float(weight));
+            // What weighs nothing has no part in the sign of a zero either.
+            mask.places[i] |= unsigned(!isPlain && weight != 0) << j;
+        }
+    }
+    mask.pattern = 0;
+    while (
+        mask.pattern < IrregularFaceMask::kNumPatterns &&
+        !std::equal(mask.places, mask.places + kSize, IrregularFaceMask::kPatterns[mask.pattern])) {
+        ++mask.pattern;
+    }
+    return mask;
+}
+
+void addIrregularMasks(RefinementMask const &mask, PlainMasks &masks) {
+    for (RefinementMask::IrregularFaceWeights const &type : mask.GetIrregularTypes()) {
+        masks.irregularFaces.push_back(
+            makeIrregularMask(type, masks.faces[IrregularFaceMask::kSize]));
+    }
+    for (auto const &[numFaces, irregular] : mask.GetIrregularMasks()) {
+        masks.irregularVertices.resize(std::size_t(numFaces) + 1);
+        masks.irregularVertices.back() = {float(irregular.vertex.vertexWeight),
+                                          float(irregular.vertex.faceWeight)};
+    }
+}
 
 PlainMasks makePlainMasks(RefinementMask const &mask, Level const &parent) {
     PlainMasks masks;
@@ -434,6 +507,7 @@ PlainMasks makePlainMasks(RefinementMask const &mask, Level const &parent) {
         masks.faces.resize(std::size_t(size) + 1);
         masks.faces[std::size_t(size)] = MakePlainFaceMask(mask.GetPlainFaceWeights(size), size);
     }
+    addIrregularMasks(mask, masks);
     return masks;
 }
 
@@ -446,7 +520,7 @@ void listVertices(Refinement const &refinement, FarExt::Interpolation interpolat
     FarExt::internal::TruncationMask::Sources sources;
     prepared.parent = refinement.parent;
     prepared.numTiles = numVertices / kTile + 1;
-    prepared.plainVertices.firsts.assign(std::size_t(prepared.numTiles) + 1, 0);
+    prepared.vertexRuns.firsts.assign(std::size_t(prepared.numTiles) + 1, 0);
     Groups<ListedVertex> &groups = prepared.listedVertices;
     groups.firsts.clear();
     groups.items.Resize(std::size_t(numVertices));
@@ -482,7 +556,8 @@ PlainFaceMask MakePlainFaceMask(double const *weights, int size) {
     double const all = weights[size > kMinPlainSize ? 2 : 1];
     mask.self = float(weights[0] - all);
     mask.neighbor = float(weights[1] - all);
-    mask.opposite = hasOpposite ? float(weights[size / 2] - all) : 0;
+    // Of two that are the same but for rounding, none is there for the kernel.
+    mask.opposite = hasOpposite ? float(weights[size / 2]) - float(all) : 0;
     mask.all = float(all);
     return mask;
 }

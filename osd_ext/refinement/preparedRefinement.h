@@ -5,6 +5,7 @@
 #include "tileMap.h"
 
 #include "far_ext/vtr/refinementMask.h"
+#include "osd_ext/simd/quad.h"
 
 #include <cstddef>
 #include <vector>
@@ -29,11 +30,51 @@ struct PlainFaceMask {
 /// The mask of faces of \p size sides whose corner 0 has \p weights.
 PlainFaceMask MakePlainFaceMask(double const *weights, int size);
 
-/// \brief The masks that the plain faces and vertices of a level share.
+/// \brief The weights of an irregular face, a hexagon: a row for each corner.
+struct IrregularFaceMask {
+    static constexpr int kSize = 6;
+
+    /// From the corner on, each four times; but for corners with the mask of plain faces.
+    Quad rows[kSize][kSize];
+    /// Bit j: of row i, the weight of the vertex j places behind the corner; or kPlain.
+    unsigned places[kSize];
+    static constexpr unsigned kPlain = 0x40;
+    /// Which of kPatterns the places are; kNumPatterns if none.
+    int pattern;
+
+    /// At a vertex with four or five faces, and with more.
+    static constexpr unsigned kAtFour = 0b110111;
+    static constexpr unsigned kAtSix = 0b100011;
+    /// Behind and before a vertex.
+    static constexpr unsigned kBehind = 0b110011;
+    static constexpr unsigned kBefore = 0b100111;
+    static constexpr unsigned kAll = 0b111111;
+    static constexpr int kNumPatterns = 7;
+    /// The places of nearly all irregular faces, for which there are kernels.
+    static constexpr unsigned kPatterns[kNumPatterns][kSize] = {
+        {kAtFour, kBehind, kPlain, kPlain, kPlain, kBefore},
+        {kAtSix, kBehind, kPlain, kPlain, kPlain, kBefore},
+        {kAll, 0b011011, 0b101101, kAll, 0b011011, 0b101101},
+        {kAtFour, 0b010011, kPlain, kPlain, kPlain, 0b100101},
+        {kPlain, kAll, kAll, kPlain, kPlain, kPlain},
+        {kPlain, kPlain, kPlain, kPlain, kAll, kAll},
+        {kAtSix, kBehind, kBefore, kAtSix, kBehind, kBefore}};
+};
+
+/// \brief V' = vertex V + faces (sum of P), by number of faces.
+struct IrregularVertexWeights {
+    float vertex;
+    float faces;
+};
+
+/// \brief The masks that the plain faces and vertices of a level share, and the irregular ones.
 struct PlainMasks {
     std::vector<PlainFaceMask> faces;   ///< by size; sizes that do not occur are not filled
     std::vector<float> verticesInverse; ///< by number of faces: V' = inverse (V + sum of P)
     bool averagesFaces = true;          ///< else V' = V
+
+    std::vector<IrregularFaceMask> irregularFaces;         ///< by type
+    std::vector<IrregularVertexWeights> irregularVertices; ///< by number of faces
 };
 
 /// \brief A face with weights of its own: a row for each corner.
@@ -44,12 +85,19 @@ struct WeightedFace {
     std::size_t firstWeight; ///< position in faceWeights
 };
 
-/// \brief A corner with weights of its own, in a face that is plain else: its F-vertex is made again.
-struct WeightedCorner {
-    Far::Index corner;
-    int size; ///< of the face
-    Far::Index const *verts;
-    std::size_t firstWeight; ///< position in faceWeights
+/// \brief Irregular faces [begin, end), hexagons of one type.
+struct IrregularRun {
+    Far::Index begin;
+    Far::Index end;
+    int mask; ///< position in PlainMasks::irregularFaces
+};
+
+/// \brief Plain faces [begin, end), of which some are irregular.
+struct FaceRun {
+    Far::Index begin;
+    Far::Index end;
+    Far::Index
+        firstIrregular; ///< position in irregularFaces of the first, or of one behind the run
 };
 
 /// \brief A vertex that a truncation makes, with sources of its own.
@@ -87,11 +135,12 @@ struct IndexRun {
     Far::Index end;
 };
 
-/// \brief A run of vertices, and where their corners begin in vertCorners.
+/// \brief A run of vertices, all plain or all irregular, and where their corners begin in vertCorners.
 struct VertexRun {
     Far::Index begin;
     Far::Index end;
     std::size_t firstCorner;
+    bool areIrregular;
 };
 
 /// \brief A refinement prepared for evaluation: all that making the points of its child takes.
@@ -118,10 +167,11 @@ struct PreparedRefinement {
     int numTiles = 0;
 
     // Of the parent, by tile.  The faces of a run are of one size, and all F-faces or none.
-    Groups<IndexRun> plainFaces;
+    Groups<FaceRun> plainFaces;
     Groups<WeightedFace> weightedFaces;
-    Groups<WeightedCorner> weightedCorners;
     std::vector<float> faceWeights;
+    /// In the runs of plain faces, ascending; behind all, one that is in no run.
+    std::vector<IrregularRun> irregularFaces;
 
     // Of a truncation, all vertices that it makes, in tiles of some each.
     Groups<ListedVertex> listedVertices;
@@ -137,11 +187,11 @@ struct PreparedRefinement {
     FarExt::internal::Buffer<Far::Index> startCorners;
 
     // The other vertices of the parent, by group.
-    Groups<VertexRun> plainVertices;
+    Groups<VertexRun> vertexRuns;
     Groups<WeightedVertex> weightedVertices;
     FarExt::internal::Buffer<Far::Index> vertCorners; ///< of each vertex of a run, in each face
 
-    int GetNumVertexGroups() const { return plainVertices.GetNumGroups(); }
+    int GetNumVertexGroups() const { return vertexRuns.GetNumGroups(); }
 };
 
 /// The first faces of a level, which the hexagonal refinement made of faces and whose vertices follow

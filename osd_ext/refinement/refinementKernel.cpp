@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "refinementKernel.h"
 
+#include "irregularFaceKernel.h"
+
 #include "far_ext/indexing.h"
 #include "far_ext/vtr/parallel.h"
-#include "osd_ext/simd/quad.h"
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <functional>
 
 namespace OpenSubdivHex::OsdExt::internal {
@@ -21,10 +21,7 @@ using FarExt::internal::Level;
 
 namespace {
 
-constexpr int kMinPlainSize = 3;
 constexpr int kFVertexFaces = 3; // around an F-vertex
-
-constexpr int kQuadPair = 8;
 
 // Asks for memory that is read or written soon, one line in each turn of a loop over it: benchmark
 // table-free, large meshes, 1.1 times as fast with it.
@@ -38,97 +35,11 @@ inline void prefetchAhead([[maybe_unused]] T const *place) {
 #endif
 }
 
-// Eight floats.
-struct QuadPair {
-    Quad first;
-    Quad second;
-};
-inline QuadPair operator+(QuadPair const &a, QuadPair const &b) {
-    return {a.first + b.first, a.second + b.second};
-}
-inline QuadPair operator*(Quad const &a, QuadPair const &b) { return {a * b.first, a * b.second}; }
-
-// Reads WIDTH floats, 1 to 8, and not one more.
-template <int WIDTH>
-inline auto loadExactly(float const *src) {
-    if constexpr (WIDTH > kQuad) {
-        return QuadPair{LoadFloats<kQuad>(src), LoadFloats<WIDTH - kQuad>(src + kQuad)};
-    } else {
-        return LoadFloats<WIDTH>(src);
-    }
-}
-template <int WIDTH>
-inline void storeExactly(float *dst, Quad const &quad) {
-    StoreFloats<WIDTH>(dst, quad);
-}
-template <int WIDTH>
-inline void storeExactly(float *dst, QuadPair const &pair) {
-    StoreFloats<kQuad>(dst, pair.first);
-    StoreFloats<WIDTH - kQuad>(dst + kQuad, pair.second);
-}
-
-// Whether one float more may be read than is used, while another thread may be writing it.  It is what
-// ThreadSanitizer looks for.
-#if defined(__SANITIZE_THREAD__)
-constexpr bool kReadsMore = false;
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-constexpr bool kReadsMore = false;
-#else
-constexpr bool kReadsMore = true;
-#endif
-#else
-constexpr bool kReadsMore = true;
-#endif
-
-// How elements of WIDTH floats are read and written.  A quad of three packed floats takes in the
-// first of the next element.
-template <int WIDTH, bool IS_PACKED>
-struct Access {
-    static constexpr int kReach = kReadsMore && IS_PACKED && WIDTH == 3 ? kQuad : WIDTH;
-
-    template <class FLOAT>
-    static FLOAT *At(Elements<FLOAT> const &elements, std::ptrdiff_t i) {
-        return elements.data + i * (IS_PACKED ? WIDTH : elements.stride);
-    }
-    static auto LoadExactly(Elements<float const> const &src, std::ptrdiff_t i) {
-        return loadExactly<WIDTH>(At(src, i));
-    }
-    static auto Load(Elements<float const> const &src, std::ptrdiff_t i) {
-        return loadExactly<kReach>(At(src, i));
-    }
-    template <class QUADS>
-    static void StoreExactly(Elements<float> const &dst, std::ptrdiff_t i, QUADS const &quads) {
-        storeExactly<WIDTH>(At(dst, i), quads);
-    }
-    // The next element must be stored afterwards.
-    template <class QUADS>
-    static void Store(Elements<float> const &dst, std::ptrdiff_t i, QUADS const &quads) {
-        storeExactly<kReach>(At(dst, i), quads);
-    }
-};
-
-Elements<float const> asConst(Elements<float> const &elements) {
-    return {elements.data, elements.stride};
-}
-
 // The vertices of F-faces, which follow one another.
 struct ConsecutiveVertices {
     Index operator[](int i) const { return first + i; }
 
     Index first;
-};
-
-// The weights of a plain face, in registers.
-struct PlainFaceQuads {
-    explicit PlainFaceQuads(PlainFaceMask const &mask)
-        : self(Spread(mask.self)), neighbor(Spread(mask.neighbor)), opposite(Spread(mask.opposite)),
-          all(Spread(mask.all)) {}
-
-    Quad self;
-    Quad neighbor;
-    Quad opposite;
-    Quad all;
 };
 
 // A plain face of 3 to 6 sides.
@@ -145,13 +56,7 @@ inline void refineUnrolledFace(PlainFaceQuads const &mask, Elements<float const>
     }
     auto const all = mask.all * sum;
     for (int i = 0; i < SIZE; ++i) {
-        auto point = all + mask.self * v[i];
-        if (SIZE > kMinPlainSize) {
-            point = point + mask.neighbor * (v[(i + SIZE - 1) % SIZE] + v[(i + 1) % SIZE]);
-        }
-        if (HAS_OPPOSITE) {
-            point = point + mask.opposite * v[(i + SIZE / 2) % SIZE];
-        }
+        auto const point = sumPlainRow<SIZE, HAS_OPPOSITE>(mask, all, v, i);
         if (i + 1 < SIZE) {
             ACCESS::Store(dst, corner + i, point);
         } else {
@@ -208,32 +113,50 @@ void refineWeightedFace(float const *weights, std::ptrdiff_t rowStride,
 
 // Plain faces of 3 to 6 sides.
 template <class ACCESS, int SIZE, bool HAS_OPPOSITE>
-void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMask, IndexRun run) {
+void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMask,
+                         FaceRun const &run) {
     PlainFaceQuads const mask(faceMask);
     Elements<float const> const src = task.src;
     Elements<float> const dst = task.FVertices();
     Level const &parent = *task.refinement->parent;
     Index corner = parent.faceFirstCorner[std::size_t(run.begin)];
-    Index const end = parent.faceFirstCorner[std::size_t(run.end)];
     if (run.begin < GetNumFFaces(parent)) {
+        Index const end = parent.faceFirstCorner[std::size_t(run.end)];
         HexIndexing const indexing = task.refinement->before->ChildIndexing();
         for (; corner < end; corner += SIZE) {
             prefetchAhead(ACCESS::At(dst, corner));
             refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(
                 mask, src, ConsecutiveVertices{indexing.GetCornerChildVertex(corner)}, dst, corner);
         }
-    } else {
-        Index const *verts = parent.faceVerts.data() + corner;
-        for (; corner < end; corner += SIZE, verts += SIZE) {
+        return;
+    }
+    Index const *verts = parent.faceVerts.data() + corner;
+    IrregularRun const *irregular = task.refinement->irregularFaces.data() + run.firstIrregular;
+    for (Index face = run.begin;;) {
+        Index const end = std::min(run.end, irregular->begin);
+        for (; face < end; ++face, corner += SIZE, verts += SIZE) {
             prefetchAhead(verts);
             prefetchAhead(ACCESS::At(dst, corner));
             refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(mask, src, verts, dst, corner);
+        }
+        if (face == run.end) {
+            break;
+        }
+        if constexpr (SIZE == IrregularFaceMask::kSize) {
+            Index const numFaces = irregular->end - face;
+            refineIrregularFaces<ACCESS>(
+                task.refinement->masks.irregularFaces[std::size_t(irregular->mask)], mask, src,
+                verts, numFaces, dst, corner);
+            corner += SIZE * numFaces;
+            verts += std::ptrdiff_t(SIZE) * numFaces;
+            face = irregular->end;
+            ++irregular;
         }
     }
 }
 
 template <class ACCESS>
-void refinePlainFaces(RefinementTask const &task, IndexRun run) {
+void refinePlainFaces(RefinementTask const &task, FaceRun const &run) {
     Level const &parent = *task.refinement->parent;
     Index const *const firstCorner = parent.faceFirstCorner.data() + run.begin;
     int const size = firstCorner[1] - firstCorner[0];
@@ -369,7 +292,7 @@ void refineOlderVertices(RefinementTask const &task, IndexRun run) {
 }
 
 template <class ACCESS>
-void refinePlainVertices(RefinementTask const &task, VertexRun const &run) {
+void refineVertexRun(RefinementTask const &task, VertexRun const &run) {
     if (!task.refinement->masks.averagesFaces) {
         for (Index vert = run.begin; vert < run.end; ++vert) {
             ACCESS::StoreExactly(task.dst, vert, ACCESS::LoadExactly(task.src, vert));
@@ -378,10 +301,24 @@ void refinePlainVertices(RefinementTask const &task, VertexRun const &run) {
     }
     Elements<float const> const fVertices = asConst(task.FVertices());
     float const *const inverses = task.refinement->masks.verticesInverse.data();
+    IrregularVertexWeights const *const irregulars =
+        task.refinement->masks.irregularVertices.data();
     Index const *const firstFaces = task.refinement->parent->vertFirstFace.data();
     Index const *corners = task.refinement->vertCorners.data() + run.firstCorner;
     for (Index vert = run.begin; vert < run.end; ++vert) {
         int const numFaces = firstFaces[vert + 1] - firstFaces[vert];
+        if (run.areIrregular) {
+            IrregularVertexWeights const weights = irregulars[numFaces];
+            auto sum = ACCESS::Load(fVertices, corners[0]);
+            for (int i = 1; i < numFaces; ++i) {
+                sum = sum + ACCESS::Load(fVertices, corners[i]);
+            }
+            ACCESS::StoreExactly(task.dst, vert,
+                                 Spread(weights.vertex) * ACCESS::Load(task.src, vert) +
+                                     Spread(weights.faces) * sum);
+            corners += numFaces;
+            continue;
+        }
         auto sum = ACCESS::Load(task.src, vert);
         if (numFaces == kFVertexFaces) {
             sum = sum + ACCESS::Load(fVertices, corners[0]);
@@ -431,7 +368,7 @@ bool areHexagons(Level const &level, IndexRun run) {
 
 template <class ACCESS>
 struct FaceKernel {
-    static void Run(RefinementTask const &task, IndexRun const *begin, IndexRun const *end) {
+    static void Run(RefinementTask const &task, FaceRun const *begin, FaceRun const *end) {
         for (; begin < end; ++begin) {
             refinePlainFaces<ACCESS>(task, *begin);
         }
@@ -442,14 +379,6 @@ struct FaceKernel {
             refineWeightedFace<ACCESS>(task.refinement->faceWeights.data() + begin->firstWeight,
                                        begin->size, task.src, begin->verts, begin->size,
                                        task.FVertices(), begin->corner);
-        }
-    }
-    static void Run(RefinementTask const &task, WeightedCorner const *begin,
-                    WeightedCorner const *end) {
-        for (; begin < end; ++begin) {
-            refineWeightedCorner<ACCESS>(task.refinement->faceWeights.data() + begin->firstWeight,
-                                         task.src, begin->verts, begin->size, task.FVertices(),
-                                         begin->corner);
         }
     }
 };
@@ -472,7 +401,7 @@ template <class ACCESS>
 struct VertexKernel {
     static void Run(RefinementTask const &task, VertexRun const *begin, VertexRun const *end) {
         for (; begin < end; ++begin) {
-            refinePlainVertices<ACCESS>(task, *begin);
+            refineVertexRun<ACCESS>(task, *begin);
         }
     }
     static void Run(RefinementTask const &task, WeightedVertex const *begin,
@@ -583,7 +512,7 @@ void refineVertices(RefinementTask const &task, int length, int group) {
     PreparedRefinement const &refinement = *task.refinement;
     runKernel<NewVertexKernel>(task, length, refinement.newVertexFaces, group);
     runKernel<OlderVertexKernel>(task, length, refinement.olderVertexFaces, group);
-    runKernel<VertexKernel>(task, length, refinement.plainVertices, group);
+    runKernel<VertexKernel>(task, length, refinement.vertexRuns, group);
     runKernel<VertexKernel>(task, length, refinement.weightedVertices, group);
 }
 
@@ -607,7 +536,6 @@ void RefineElements(std::vector<RefinementTask> const &tasks, int length) {
             runKernel<ListedVertexKernel>(task, length, refinement.listedVertices, tile);
             runKernel<FaceKernel>(task, length, refinement.plainFaces, tile);
             runKernel<FaceKernel>(task, length, refinement.weightedFaces, tile);
-            runKernel<FaceKernel>(task, length, refinement.weightedCorners, tile);
             refineVertices(task, length, tile);
         });
         // Their F-vertices are in several tiles, which are done by now.

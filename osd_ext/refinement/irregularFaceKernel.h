@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_IRREGULAR_FACE_KERNEL_H
+#define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_IRREGULAR_FACE_KERNEL_H
+
+#include "elementAccess.h"
+
+#include <type_traits>
+#include <utility>
+
+namespace OpenSubdivHex::OsdExt::internal {
+namespace {
+
+constexpr int kMinPlainSize = 3;
+
+// The weights of a plain face, in registers.
+struct PlainFaceQuads {
+    explicit PlainFaceQuads(PlainFaceMask const &mask)
+        : self(Spread(mask.self)), neighbor(Spread(mask.neighbor)), opposite(Spread(mask.opposite)),
+          all(Spread(mask.all)) {}
+
+    Quad self;
+    Quad neighbor;
+    Quad opposite;
+    Quad all;
+};
+
+// The F-vertex of corner i of a plain face with points v.
+template <int SIZE, bool HAS_OPPOSITE, class VALUE>
+OPENSUBDIVHEX_INLINE VALUE sumPlainRow(PlainFaceQuads const &mask, VALUE const &all, VALUE const *v,
+                                       int i) {
+    VALUE point = all + mask.self * v[i];
+    if (SIZE > kMinPlainSize) {
+        point = point + mask.neighbor * (v[(i + SIZE - 1) % SIZE] + v[(i + 1) % SIZE]);
+    }
+    if (HAS_OPPOSITE) {
+        point = point + mask.opposite * v[(i + SIZE / 2) % SIZE];
+    }
+    return point;
+}
+
+// The points of an irregular face, and the masks that its corners have.
+template <class VALUE>
+struct IrregularFace {
+    IrregularFaceMask const &mask;
+    PlainFaceQuads const &plain;
+    VALUE const *v;
+    VALUE all; ///< the plain part that all corners share
+};
+
+// Adds the points at one place behind corner I, if it is one of PLACES.
+template <unsigned PLACES, int I, int J, class VALUE>
+OPENSUBDIVHEX_INLINE void addPlace(IrregularFace<VALUE> const &face, VALUE &point) {
+    if constexpr ((PLACES >> J & 1) != 0) {
+        point = point + face.mask.rows[I][J] * face.v[(I + J) % IrregularFaceMask::kSize];
+    }
+}
+
+// The F-vertex of corner I, the row of which has weights for PLACES.
+template <unsigned PLACES, int I, class VALUE>
+OPENSUBDIVHEX_INLINE VALUE sumRow(IrregularFace<VALUE> const &face) {
+    if constexpr (PLACES == IrregularFaceMask::kPlain) {
+        return sumPlainRow<IrregularFaceMask::kSize, false>(face.plain, face.all, face.v, I);
+    } else {
+        VALUE point = face.mask.rows[I][0] * face.v[I];
+        addPlace<PLACES, I, 1>(face, point);
+        addPlace<PLACES, I, 2>(face, point);
+        addPlace<PLACES, I, 3>(face, point);
+        addPlace<PLACES, I, 4>(face, point);
+        addPlace<PLACES, I, 5>(face, point);
+        return point;
+    }
+}
+
+// The same where PLACES are not known.
+template <int I, class VALUE>
+VALUE sumAnyRow(IrregularFace<VALUE> const &face) {
+    unsigned const places = face.mask.places[I];
+    if (places == IrregularFaceMask::kPlain) {
+        return sumPlainRow<IrregularFaceMask::kSize, false>(face.plain, face.all, face.v, I);
+    }
+    int j = 0;
+    while ((places >> j & 1) == 0) {
+        ++j;
+    }
+    auto const term = [&] {
+        return face.mask.rows[I][j] * face.v[(I + j) % IrregularFaceMask::kSize];
+    };
+    VALUE point = term();
+    for (++j; j < IrregularFaceMask::kSize; ++j) {
+        if (places >> j & 1) {
+            point = point + term();
+        }
+    }
+    return point;
+}
+
+// The F-vertex of corner I of a face of one of the patterns, or of none.
+template <int PATTERN, int I, class VALUE>
+OPENSUBDIVHEX_INLINE VALUE sumIrregularRow(IrregularFace<VALUE> const &face) {
+    if constexpr (PATTERN < IrregularFaceMask::kNumPatterns) {
+        return sumRow<IrregularFaceMask::kPatterns[PATTERN][I], I>(face);
+    } else {
+        return sumAnyRow<I>(face);
+    }
+}
+
+// The faces of a run, whose vertices and first corner these are.
+template <class ACCESS, int PATTERN, int... I>
+void refineFacesOfPattern(IrregularFaceMask const &mask, PlainFaceQuads const &plain,
+                          Elements<float const> const src, Far::Index const *verts,
+                          Far::Index numFaces, Elements<float> const dst, Far::Index corner,
+                          std::integer_sequence<int, I...>) {
+    constexpr int kSize = sizeof...(I);
+    for (Far::Index i = 0; i < numFaces; ++i, verts += kSize, corner += kSize) {
+        decltype(ACCESS::Load(src, 0)) const v[] = {ACCESS::Load(src, verts[I])...};
+        IrregularFace<std::remove_const_t<std::remove_reference_t<decltype(v[0])>>> const face = {
+            mask, plain, v, plain.all * (v[0] + v[1] + v[2] + v[3] + v[4] + v[5])};
+        auto const refine = [&](auto local) {
+            if constexpr (local + 1 < kSize) {
+                ACCESS::Store(dst, corner + local, sumIrregularRow<PATTERN, local>(face));
+            } else {
+                ACCESS::StoreExactly(dst, corner + local, sumIrregularRow<PATTERN, local>(face));
+            }
+        };
+        (refine(std::integral_constant<int, I>()), ...);
+    }
+}
+
+template <class ACCESS>
+void refineIrregularFaces(IrregularFaceMask const &mask, PlainFaceQuads const &plain,
+                          Elements<float const> const &src, Far::Index const *verts,
+                          Far::Index numFaces, Elements<float> const &dst, Far::Index corner) {
+    auto const refine = [&](auto pattern) {
+        refineFacesOfPattern<ACCESS, pattern>(
+            mask, plain, src, verts, numFaces, dst, corner,
+            std::make_integer_sequence<int, IrregularFaceMask::kSize>());
+    };
+    switch (mask.pattern) {
+    case 0:
+        return refine(std::integral_constant<int, 0>());
+    case 1:
+        return refine(std::integral_constant<int, 1>());
+    case 2:
+        return refine(std::integral_constant<int, 2>());
+    case 3:
+        return refine(std::integral_constant<int, 3>());
+    case 4:
+        return refine(std::integral_constant<int, 4>());
+    case 5:
+        return refine(std::integral_constant<int, 5>());
+    case 6:
+        return refine(std::integral_constant<int, 6>());
+    default:
+        return refine(std::integral_constant<int, IrregularFaceMask::kNumPatterns>());
+    }
+}
+
+} // namespace
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif
