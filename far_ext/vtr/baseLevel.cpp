@@ -89,25 +89,28 @@ private:
 // added, too.
 template <typename PLACES>
 Index VertexBuilder<PLACES>::addFaces(Index vert, Index start, Position &position) const {
+    Position next = position; // which nothing that is written can be
     Index corner = start;
     for (;;) {
         Index const face = _places.GetFace(corner);
         Index const edge = _faceEdges[corner];
-        _vertFaces[position.face] = face;
-        _vertFaceLocals[position.face++] = LocalIndex(corner - _places.GetFirst(face));
-        _vertEdges[position.edge] = edge;
-        _vertEdgeLocals[position.edge++] = LocalIndex(_edgeVerts[edge][0] != vert);
+        _vertFaces[next.face] = face;
+        _vertFaceLocals[next.face++] = LocalIndex(corner - _places.GetFirst(face));
+        _vertEdges[next.edge] = edge;
+        _vertEdgeLocals[next.edge++] = LocalIndex(_edgeVerts[edge][0] != vert);
         Index const prev = _places.GetPrev(face, corner);
         corner = _mates[prev];
         if (corner == start) {
-            return corner;
+            break;
         }
         if (!IsCorner(corner)) {
-            _vertEdges[position.edge] = _faceEdges[prev];
-            _vertEdgeLocals[position.edge++] = 1;
-            return corner;
+            _vertEdges[next.edge] = _faceEdges[prev];
+            _vertEdgeLocals[next.edge++] = 1;
+            break;
         }
     }
+    position = next;
+    return corner;
 }
 
 // The first corner of an open fan that has a corner; of a closed one the same corner.

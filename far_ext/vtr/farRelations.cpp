@@ -2,9 +2,11 @@
 #include "farRelations.h"
 
 #include "baseLevel.h"
+#include "corners.h"
 #include "parallel.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -14,110 +16,174 @@ using Far::ConstIndexArray;
 using Far::Index;
 using Far::LocalIndex;
 
+// Copies the relations of a level of Far, looking at each.
+template <typename PLACES>
 class RelationCopier {
 public:
-    RelationCopier(Far::TopologyRefiner const &base, BoundaryKind boundary, Level &level)
-        : _base(base.getLevel(0)), _boundary(boundary), _level(level) {}
+    RelationCopier(Far::TopologyRefiner const &base, BoundaryKind boundary, PLACES places,
+                   Level &level)
+        : _base(base.getLevel(0)), _boundary(boundary), _places(places), _level(level) {}
 
     bool Copy();
 
 private:
+    bool isSide(Index edge, int side, Index face, LocalIndex local, Index const *verts) const;
     bool copyEdge(Index edge) const;
     bool copyVertex(Index vert) const;
+    template <bool IS_CLOSED, typename NUM_FACES>
+    bool copyFaces(Index vert, NUM_FACES numFaces) const;
+    template <typename COPY>
+    bool copyAll(Index count, COPY copy);
 
     OpenSubdiv::Vtr::internal::Level const &_base;
     BoundaryKind _boundary;
+    PLACES _places;
     Level &_level;
-    // The arrays at hand, since they are read again and again.
-    Index const *const _firstCorner = _level.faceFirstCorner.data();
-    Index const *const _faceVerts = _level.faceVerts.data();
+    // What copyAll() finds in the levels once, since it is asked for again and again.
+    Index _numFaces = 0;
+    Index const *_faceVerts = nullptr;
     Index const *_faceEdges = nullptr;
-    IndexPair const *_edgeVerts = nullptr;
+    IndexPair *_edgeVerts = nullptr;
+    IndexPair *_edgeFaces = nullptr;
+    LocalIndexPair *_edgeFaceLocals = nullptr;
+    Index const *_vertFirstFace = nullptr;
+    Index const *_vertFirstEdge = nullptr;
+    Index *_vertFaces = nullptr;
+    LocalIndex *_vertFaceLocals = nullptr;
+    Index *_vertEdges = nullptr;
+    LocalIndex *_vertEdgeLocals = nullptr;
 };
 
+// Whether side \p side of an edge is where this says that it is.
+template <typename PLACES>
+inline bool RelationCopier<PLACES>::isSide(Index edge, int side, Index face, LocalIndex local,
+                                           Index const *verts) const {
+    if (unsigned(face) >= unsigned(_numFaces)) {
+        return false;
+    }
+    Index const corner = _places.GetFirst(face) + local;
+    if (corner >= _places.GetFirst(face + 1)) {
+        return false;
+    }
+    Index const next = _places.GetNext(face, corner);
+    return ((_faceEdges[corner] ^ edge) | (_faceVerts[corner] ^ verts[side]) |
+            (_faceVerts[next] ^ verts[1 - side])) == 0;
+}
+
 // The sides of an edge: the first runs from its first vertex to the second, the other back.
-bool RelationCopier::copyEdge(Index edge) const {
+template <typename PLACES>
+bool RelationCopier<PLACES>::copyEdge(Index edge) const {
     Index const *const verts = _base.getEdgeVertices(edge).begin();
     ConstIndexArray const faces = _base.getEdgeFaces(edge);
     LocalIndex const *const locals = _base.getEdgeFaceLocalIndices(edge).begin();
-    int const numFaces = faces.size();
-    bool isRight = 1 <= numFaces && numFaces <= 2 && verts[0] != verts[1];
-    for (int side = 0; side < numFaces && isRight; ++side) {
-        Index const face = faces[side];
-        if (unsigned(face) >= unsigned(_level.numFaces)) {
-            return false;
-        }
-        Index const corner = _firstCorner[face] + locals[side];
-        Index const end = _firstCorner[face + 1];
-        if (corner >= end) {
-            return false;
-        }
-        Index const next = corner + 1 == end ? _firstCorner[face] : corner + 1;
-        isRight = _faceEdges[corner] == edge && _faceVerts[corner] == verts[side] &&
-                  _faceVerts[next] == verts[1 - side];
-    }
-    if (!isRight) {
+    bool const isBoundary = faces.size() == 1;
+    if ((!isBoundary && faces.size() != 2) || verts[0] == verts[1] ||
+        !isSide(edge, 0, faces[0], locals[0], verts) ||
+        !(isBoundary || (faces[0] != faces[1] && isSide(edge, 1, faces[1], locals[1], verts)))) {
         return false;
     }
-    bool const isBoundary = numFaces == 1;
-    _level.edgeVerts[edge] = {verts[0], verts[1]};
-    _level.edgeFaces[edge] = {faces[0], isBoundary ? _boundary : faces[1]};
-    _level.edgeFaceLocals[edge] = {locals[0], isBoundary ? LocalIndex(0) : locals[1]};
-    return isBoundary || faces[0] != faces[1];
+    _edgeVerts[edge] = {verts[0], verts[1]};
+    _edgeFaces[edge] = {faces[0], isBoundary ? _boundary : faces[1]};
+    _edgeFaceLocals[edge] = {locals[0], isBoundary ? LocalIndex(0) : locals[1]};
+    return true;
 }
 
 // One fan that begins at a boundary or, all around, with its lowest face.  All edges of faces are
 // known to be right.
-bool RelationCopier::copyVertex(Index vert) const {
-    ConstIndexArray const faces = _base.getVertexFaces(vert);
-    LocalIndex const *const locals = _base.getVertexFaceLocalIndices(vert).begin();
-    ConstIndexArray const edges = _base.getVertexEdges(vert);
-    Index const firstFace = _level.vertFirstFace[vert];
-    Index const firstEdge = _level.vertFirstEdge[vert];
-    int const numFaces = faces.size();
-    int const numEdges = edges.size();
-    if (numFaces != _level.vertFirstFace[vert + 1] - firstFace ||
-        numEdges != _level.vertFirstEdge[vert + 1] - firstEdge) {
+template <typename PLACES>
+bool RelationCopier<PLACES>::copyVertex(Index vert) const {
+    Index const firstFace = _vertFirstFace[vert];
+    Index const firstEdge = _vertFirstEdge[vert];
+    Index const numFaces = _vertFirstFace[vert + 1] - firstFace;
+    Index const numEdges = _vertFirstEdge[vert + 1] - firstEdge;
+    if (_base.getNumVertexFaces(vert) != numFaces || _base.getNumVertexEdges(vert) != numEdges) {
         return false;
     }
-    bool const isClosed = numEdges == numFaces;
-    Index *const vertFaces = _level.vertFaces.data() + firstFace;
-    LocalIndex *const vertFaceLocals = _level.vertFaceLocals.data() + firstFace;
-    Index *const vertEdges = _level.vertEdges.data() + firstEdge;
-    LocalIndex *const vertEdgeLocals = _level.vertEdgeLocals.data() + firstEdge;
-    for (int i = 0; i < numFaces; ++i) {
-        Index const face = faces[i];
-        if (unsigned(face) >= unsigned(_level.numFaces)) {
-            return false;
-        }
-        Index const first = _firstCorner[face];
-        Index const corner = first + locals[i];
-        Index const end = _firstCorner[face + 1];
-        if (corner >= end) {
-            return false;
-        }
-        Index const prev = (corner == first ? end : corner) - 1;
-        Index const edge = _faceEdges[corner];
-        if (_faceVerts[corner] != vert || edge != edges[i] ||
-            _faceEdges[prev] != edges[i + 1 < numEdges ? i + 1 : 0] ||
-            (isClosed && i > 0 && face <= faces[0])) {
-            return false;
-        }
-        vertFaces[i] = face;
-        vertFaceLocals[i] = locals[i];
-        vertEdges[i] = edge;
-        vertEdgeLocals[i] = LocalIndex(_edgeVerts[edge][0] != vert);
+    if (numEdges != numFaces) {
+        return numEdges == numFaces + 1 && copyFaces<false>(vert, numFaces);
     }
-    if (isClosed) {
-        return true;
+    switch (numFaces) {
+    case 3:
+        return copyFaces<true>(vert, std::integral_constant<int, 3>());
+    case 4:
+        return copyFaces<true>(vert, std::integral_constant<int, 4>());
+    case 5:
+        return copyFaces<true>(vert, std::integral_constant<int, 5>());
+    case 6:
+        return copyFaces<true>(vert, std::integral_constant<int, 6>());
+    default:
+        return copyFaces<true>(vert, numFaces);
     }
-    Index const lastEdge = edges[numEdges - 1];
-    vertEdges[numEdges - 1] = lastEdge;
-    vertEdgeLocals[numEdges - 1] = 1;
-    return numEdges == numFaces + 1 && _level.IsBoundary(edges[0]) && _level.IsBoundary(lastEdge);
 }
 
-bool RelationCopier::Copy() {
+// Usual numbers of faces are constants to the compiler, as in MateFinder.
+template <typename PLACES>
+template <bool IS_CLOSED, typename NUM_FACES>
+inline bool RelationCopier<PLACES>::copyFaces(Index vert, NUM_FACES numFaces) const {
+    Index const *const faces = _base.getVertexFaces(vert).begin();
+    LocalIndex const *const locals = _base.getVertexFaceLocalIndices(vert).begin();
+    Index const *const edges = _base.getVertexEdges(vert).begin();
+    Index const firstFace = _vertFirstFace[vert];
+    Index const firstEdge = _vertFirstEdge[vert];
+    Index wrong = 0; // where any bit is set
+    for (int i = 0; i < numFaces; ++i) {
+        Index const face = faces[i];
+        if (unsigned(face) >= unsigned(_numFaces)) {
+            return false;
+        }
+        Index const corner = _places.GetFirst(face) + locals[i];
+        if (corner >= _places.GetFirst(face + 1)) {
+            return false;
+        }
+        Index const prev = _places.GetPrev(face, corner);
+        Index const edge = _faceEdges[corner];
+        int const behind = IS_CLOSED && i + 1 == numFaces ? 0 : i + 1;
+        wrong |= (_faceVerts[corner] ^ vert) | (edge ^ edges[i]) |
+                 (_faceEdges[prev] ^ edges[behind]) | Index(IS_CLOSED && i > 0 && face <= faces[0]);
+        _vertFaces[firstFace + i] = face;
+        _vertFaceLocals[firstFace + i] = locals[i];
+        _vertEdges[firstEdge + i] = edge;
+        _vertEdgeLocals[firstEdge + i] = LocalIndex(_edgeVerts[edge][0] != vert);
+    }
+    if (IS_CLOSED || wrong != 0) {
+        return wrong == 0;
+    }
+    Index const last = edges[numFaces];
+    _vertEdges[firstEdge + numFaces] = last;
+    _vertEdgeLocals[firstEdge + numFaces] = 1;
+    return _level.IsBoundary(edges[0]) && _level.IsBoundary(last);
+}
+
+// Whether copy(copier, i) is well for all.
+template <typename PLACES>
+template <typename COPY>
+bool RelationCopier<PLACES>::copyAll(Index count, COPY copy) {
+    _numFaces = _level.numFaces;
+    _faceVerts = _level.faceVerts.data();
+    _faceEdges = _level.faceEdges.data();
+    _edgeVerts = _level.edgeVerts.data();
+    _edgeFaces = _level.edgeFaces.data();
+    _edgeFaceLocals = _level.edgeFaceLocals.data();
+    _vertFirstFace = _level.vertFirstFace.data();
+    _vertFirstEdge = _level.vertFirstEdge.data();
+    _vertFaces = _level.vertFaces.data();
+    _vertFaceLocals = _level.vertFaceLocals.data();
+    _vertEdges = _level.vertEdges.data();
+    _vertEdgeLocals = _level.vertEdgeLocals.data();
+    return ParallelSums<Index>(count, [&](Index begin, Index end) {
+               // The compiler must expect that what is written is a member of
+               // this, but not of a copy.
+               RelationCopier const copier = *this;
+               Index numWrong = 0;
+               for (Index i = begin; i < end; ++i) {
+                   numWrong += !copy(copier, i);
+               }
+               return numWrong;
+           }).back() == 0;
+}
+
+template <typename PLACES>
+bool RelationCopier<PLACES>::Copy() {
     Index const numEdges = _base.getNumEdges();
     // Every corner is one side of one edge, and at one vertex, if there are so many of both.
     std::vector<std::int64_t> const numSides =
@@ -134,12 +200,12 @@ bool RelationCopier::Copy() {
     ResizeEdges(std::size_t(numEdges), _level);
     _level.vertFirstFace.Resize(std::size_t(_level.numVertices) + 1);
     ParallelForRange(_level.numFaces, [this](Index begin, Index end) {
-        std::copy_n(_base.getFaceEdges(begin).begin(), _firstCorner[end] - _firstCorner[begin],
-                    _level.faceEdges.data() + _firstCorner[begin]);
+        Index const first = _level.faceFirstCorner[begin];
+        std::copy_n(_base.getFaceEdges(begin).begin(), _level.faceFirstCorner[end] - first,
+                    _level.faceEdges.data() + first);
     });
-    _faceEdges = _level.faceEdges.data();
-    _edgeVerts = _level.edgeVerts.data();
-    if (!ParallelSelect(numEdges, [this](Index edge) { return !copyEdge(edge); }).empty()) {
+    if (!copyAll(numEdges,
+                 [](RelationCopier const &copier, Index edge) { return copier.copyEdge(edge); })) {
         return false;
     }
     _level.boundaryEdges.Assign(
@@ -148,16 +214,19 @@ bool RelationCopier::Copy() {
         _level.vertFirstFace[vert] = _base.getOffsetOfVertexFaces(vert);
     });
     _level.vertFirstFace[_level.numVertices] = _level.numCorners;
-    FindFaceSizes(_level);
     BeginVertices(_level);
-    return ParallelSelect(_level.numVertices, [this](Index vert) { return !copyVertex(vert); })
-        .empty();
+    return copyAll(_level.numVertices, [](RelationCopier const &copier, Index vert) {
+        return copier.copyVertex(vert);
+    });
 }
 
 } // namespace
 
 bool CopyRelations(Far::TopologyRefiner const &base, BoundaryKind boundary, Level &level) {
-    return RelationCopier(base, boundary, level).Copy();
+    FindFaceSizes(level);
+    return WithPlaces(level, Corners(), [&](auto const &places) {
+        return RelationCopier(base, boundary, places, level).Copy();
+    });
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

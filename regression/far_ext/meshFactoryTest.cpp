@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <type_traits>
 
 namespace OpenSubdivHex::Regression {
 
@@ -314,6 +315,43 @@ TEST(HandMadeRefiner, FacesMayBeginElsewhereAroundAVertex) {
     auto const refiner = FarExt::TopologyRefinerFactory::Create(*base);
     ASSERT_TRUE(refiner);
     EXPECT_EQ(FindBaseDifference(*refiner, *expected), "");
+}
+
+// One number of all relations is wrong: what is around vertices is found anew, and edges that are not
+// what their faces say are refused.
+TEST(HandMadeRefiner, NothingWrongIsCopied) {
+    for (char const *name : {"cube", "quadGrid", "mixedPatch", "octahedron"}) {
+        SCOPED_TRACE(name);
+        auto const base = CreateFarRefiner(GetShape(name));
+        auto const expected = FarExt::TopologyRefinerFactory::Create(*base);
+        auto &level = getLevel(*base);
+        auto const expectNotCopied = [&](auto array, int numValues, bool isOfVertex) {
+            for (auto &number : array) {
+                auto const right = number;
+                number = std::decay_t<decltype(number)>((number + 1) % numValues);
+                auto const refiner = FarExt::TopologyRefinerFactory::Create(*base);
+                number = right;
+                ASSERT_TRUE(refiner || !isOfVertex);
+                ASSERT_EQ(refiner ? FindBaseDifference(*refiner, *expected) : "", "");
+            }
+        };
+        for (int vert = 0; vert < level.getNumVertices(); ++vert) {
+            SCOPED_TRACE("vertex " + std::to_string(vert));
+            expectNotCopied(level.getVertexFaces(vert), level.getNumFaces(), true);
+            expectNotCopied(level.getVertexFaceLocalIndices(vert), 3, true);
+            expectNotCopied(level.getVertexEdges(vert), level.getNumEdges(), true);
+        }
+        for (int edge = 0; edge < level.getNumEdges(); ++edge) {
+            SCOPED_TRACE("edge " + std::to_string(edge));
+            expectNotCopied(level.getEdgeVertices(edge), level.getNumVertices(), false);
+            expectNotCopied(level.getEdgeFaces(edge), level.getNumFaces(), false);
+            expectNotCopied(level.getEdgeFaceLocalIndices(edge), 3, false);
+        }
+        for (int face = 0; face < level.getNumFaces(); ++face) {
+            SCOPED_TRACE("face " + std::to_string(face));
+            expectNotCopied(level.getFaceEdges(face), level.getNumEdges(), false);
+        }
+    }
 }
 
 TEST(HandMadeRefiner, EdgesThatAreNoneOfTheirFacesAreNamed) {
