@@ -14,7 +14,8 @@ CellForest::CellForest(FarExt::TopologyRefiner const &refiner) : _refiner(refine
     for (Index face = 0; face < base.GetNumFaces(); ++face) {
         _trees.emplace_back(base.GetFaceVertices(face).size());
     }
-    _polylines.resize(std::size_t(base.GetNumEdges()));
+    _edges.resize(std::size_t(base.GetNumEdges()));
+    _polylines = _edges;
     _firstPoints.assign(_polylines.size() + 1, base.GetNumVertices());
 }
 
@@ -27,9 +28,7 @@ bool CellForest::isReversed(Index face, int local) const {
 
 void CellForest::MatchEdges() {
     Level const &level = _refiner.GetHierarchy().mesh.levels[0];
-    for (Polyline &polyline : _polylines) {
-        polyline = Polyline();
-    }
+    _polylines = _edges;
     for (Index face = 0; face < GetNumFaces(); ++face) {
         for (int local = 0; local < level.GetFaceSize(face); ++local) {
             Polyline const own = GetTree(face).GetEdgePolyline(local);

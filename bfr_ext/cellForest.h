@@ -38,8 +38,10 @@ public:
     /// The tree of a face.
     CellTree const &GetTree(Index face) const { return _trees[std::size_t(face)]; }
 
+    /// Sets points that an edge is to have besides those of its faces' cells, in its own direction.
+    void SetEdge(Index edge, Polyline polyline) { _edges[std::size_t(edge)] = std::move(polyline); }
     /// \brief Finds the polylines of all edges, each with the points that the trees of its faces have
-    /// there, after a tree was set.
+    /// there, after a tree or an edge was set.
     void MatchEdges();
     /// The polyline of an edge, in its own direction.
     Polyline const &GetPolyline(Index edge) const { return _polylines[std::size_t(edge)]; }
@@ -61,8 +63,9 @@ private:
 
     FarExt::TopologyRefiner const &_refiner;
     std::vector<CellTree> _trees;
-    std::vector<Polyline> _polylines;
-    std::vector<int> _firstPoints; // by edge; then their end
+    std::vector<Polyline> _edges;     // what was set
+    std::vector<Polyline> _polylines; // the same with the points of faces
+    std::vector<int> _firstPoints;    // by edge; then their end
 };
 
 } // namespace OpenSubdivHex::BfrExt

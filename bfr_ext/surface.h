@@ -184,6 +184,7 @@ public:
 
 private:
     friend class SurfaceFactory;
+    friend class View;
     template <typename>
     friend class PatchStream;
 

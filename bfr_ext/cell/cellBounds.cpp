@@ -14,7 +14,7 @@ using Matrix = std::vector<std::vector<double>>; // by row
 
 // Steps that weights and rests are looked at behind.
 constexpr int kStepsOfWeights = 2;
-constexpr int kStepsOfRests = 3;
+constexpr int kStepsOfRests = 5;
 
 // A half cell as it is in the regular lattice: coordinates that steps turn and make larger by 2.
 Pair toLattice(Pair const &p) { return {p[0], p[1] * std::sqrt(0.75)}; }
@@ -90,8 +90,7 @@ std::vector<Pair> findPlaces(FarExt::internal::CellPatch const &cell) {
         centers[face] = center;
         isDone[face] = true;
     };
-    // Corner 0 of the cell is followed by half 0's other side, and corner 1 by that of half 1: either
-    // way the corners 1, 2 and 3 of the cell follow one another.
+    // Corners 1, 2 and 3 of a half cell follow one another in the hexagon.
     Pair const center = toLattice({0.5, 0});
     place(0, std::size_t(cell.locals[1]), toLattice(HalfCell::kCorners[1]),
           toLattice(HalfCell::kCorners[2]), center);
@@ -143,6 +142,12 @@ double sumAbsolute(std::vector<double> const &row) {
                            [](double sum, double a) { return sum + std::abs(a); });
 }
 
+void takeLargest(std::vector<double> const &row, std::vector<double> &largest) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        largest[i] = std::max(largest[i], std::abs(row[i]));
+    }
+}
+
 } // namespace
 
 CellBounds const &CellBounds::Find(CellType const &type) {
@@ -191,6 +196,8 @@ CellBounds::CellBounds(CellType const &type) {
     }
     double largestRest = 0;
     double largestChange = 0;
+    std::vector<double> rests(size);
+    std::vector<double> changes(size);
     forDescendants(type, makeIdentity(size), kStepsOfRests, path,
                    [&](Matrix const &rows, std::vector<std::size_t> const &children) {
                        // What the child's linear function is, in terms of the first points.
@@ -211,6 +218,7 @@ CellBounds::CellBounds(CellType const &type) {
                                          (_places[k][1] - _center[1]) * childSlopes[1][i];
                            }
                            largestRest = std::max(largestRest, sumAbsolute(rest));
+                           takeLargest(rest, rests);
                        }
                        // Coordinates are turned and 2^k times as large.
                        double const scale = std::ldexp(1.0, int(children.size()));
@@ -222,7 +230,11 @@ CellBounds::CellBounds(CellType const &type) {
     if (growth < 1) {
         _slopes[0] = std::move(slopes[0]);
         _slopes[1] = std::move(slopes[1]);
-        _slopeChange = largestChange / (1 - growth);
+        double const further = std::ldexp(largestChange / (1 - growth), kStepsOfRests);
+        _slopeChanges = std::move(changes);
+        for (std::size_t i = 0; i < size; ++i) {
+            _slopeChanges[i] += further * rests[i];
+        }
     }
 }
 
@@ -257,7 +269,6 @@ CellBounds::Slopes CellBounds::GetSlopes(std::vector<double> const &values) cons
             result.across[k] += _slopes[1][i] * value;
         }
     }
-    double largest = 0;
     for (std::size_t i = 0; i < size; ++i) {
         double square = 0;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -266,9 +277,8 @@ CellBounds::Slopes CellBounds::GetSlopes(std::vector<double> const &values) cons
                                 (_places[i][1] - _center[1]) * result.across[k];
             square += rest * rest;
         }
-        largest = std::max(largest, square);
+        result.tolerance += _slopeChanges[i] * std::sqrt(square);
     }
-    result.tolerance = _slopeChange * std::sqrt(largest);
     return result;
 }
 

@@ -19,11 +19,13 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// functions: with FaceMask::Smooth and Cosine, in a regular lattice.  Let x be the places of the points
 /// in a plane, and A the linear function that is nearest to points P, with the rest r = P - A(x).  The
 /// cells k steps on have the rest N r, where N is a matrix for each of them, and their A has another
-/// slope by H r.  Let g and h be the largest sums of absolute values in rows of these matrices.  Lengths
-/// shrink by 2 in a step, so that the slope of A changes by at most h, h (2^k g), h (2^k g)^2 ... times
-/// the largest rest, as far as one goes.  Where 2^k g < 1, the sum is h / (1 - 2^k g).  It bounds what
-/// the derivatives of the surface differ by from the slope, since the surface differs from A by no more
-/// than the largest rest, and that falls by g, faster than lengths do.
+/// slope by H r.  Let n and h be, by point, the largest absolute values in all rows of these matrices,
+/// and g and s the largest sums of absolute values in a row of N and of H.  Lengths shrink by 2 in a
+/// step: k steps on the slope differs by h |r| at most, and then by s (2^k n |r|), s (2^k n |r|) (2^k g)
+/// and so on for each k further steps, as far as one goes.  Where 2^k g < 1, all of it is at most
+/// h |r| + s 2^k n |r| / (1 - 2^k g).  That bounds what the derivatives of the surface differ by from the
+/// slope: the surface differs from A by no more than the largest rest, and rests fall faster than
+/// lengths do, so that slopes tend to the derivatives.
 class CellBounds {
 public:
     explicit CellBounds(CellType const &type);
@@ -50,11 +52,11 @@ public:
     Slopes GetSlopes(std::vector<double> const &values) const;
 
 private:
-    std::vector<double> _weights;   // by point
-    std::vector<Pair> _places;      // of points, where derivatives are bounded
-    std::vector<double> _slopes[2]; // of A, as sums of points
-    Pair _center = {};              // the mean of the places
-    double _slopeChange = 0;        // over the largest rest
+    std::vector<double> _weights;      // by point
+    std::vector<Pair> _places;         // of points, where derivatives are bounded
+    std::vector<double> _slopes[2];    // of A, as sums of points
+    Pair _center = {};                 // the mean of the places
+    std::vector<double> _slopeChanges; // by point: how much slopes may change by, over its rest
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

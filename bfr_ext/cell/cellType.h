@@ -48,6 +48,7 @@ public:
         : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
           _rules(rules) {}
 
+    FarExt::internal::CellPatch const &GetCell() const { return _cell; }
     bool IsWhole() const { return _cell.kind == FarExt::internal::CellKind::Whole; }
     bool IsVertex() const { return _cell.kind == FarExt::internal::CellKind::Vertex; }
     int GetNumCorners() const { return _cell.GetNumCorners(); }

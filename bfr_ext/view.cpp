@@ -1,0 +1,491 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view.h"
+
+#include "cell/cellBounds.h"
+#include "cell/surfaceTurns.h"
+
+#include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace OpenSubdivHex::BfrExt {
+
+namespace internal {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+
+Vector subtract(Vector const &a, Vector const &b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Vector scale(Vector const &a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
+double dot(Vector const &a, Vector const &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double getLength(Vector const &a) { return std::sqrt(dot(a, a)); }
+Vector cross(Vector const &a, Vector const &b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Vector get(double const *p) { return {p[0], p[1], p[2]}; }
+
+} // namespace
+
+/// The pyramid that a camera sees.
+class ViewGeometry {
+public:
+    /// Whether the camera has a picture.
+    bool Set(Camera const &camera) {
+        constexpr double kHalfTurn = 180;
+        constexpr double kPi = 3.14159265358979323846;
+        _eye = get(camera.eye);
+        Vector const toTarget = subtract(get(camera.target), _eye);
+        Vector const right = cross(toTarget, get(camera.up));
+        double const distance = getLength(toTarget);
+        double const sine = getLength(right) / (distance * getLength(get(camera.up)));
+        if (!(camera.fieldOfView > 0) || !(camera.fieldOfView < kHalfTurn) || camera.width < 1 ||
+            camera.height < 1 || !std::isfinite(distance) || !(distance > 0) || !(sine > 1e-9)) {
+            return false;
+        }
+        _forward = scale(toTarget, 1 / distance);
+        Vector const rightAxis = scale(right, 1 / getLength(right));
+        Vector const upAxis = cross(rightAxis, _forward);
+        double const top = std::tan(camera.fieldOfView / 2 * kPi / kHalfTurn);
+        double const side = top * camera.width / camera.height;
+        // A point at depth 1 is outside from side or top on.
+        for (std::size_t i = 0; i < 2; ++i) {
+            Vector const &axis = i == 0 ? rightAxis : upAxis;
+            double const slope = i == 0 ? side : top;
+            _planes[2 * i] = subtract(axis, scale(_forward, slope));
+            _planes[2 * i + 1] = subtract(scale(axis, -1), scale(_forward, slope));
+        }
+        _pixelsAtDepth1 = camera.height / (2 * top);
+        _largestSecant = std::sqrt(1 + top * top + side * side);
+        return std::isfinite(_pixelsAtDepth1) && std::isfinite(_largestSecant);
+    }
+
+    Vector const &GetEye() const { return _eye; }
+
+    /// Whether the hull of some points is outside of the picture, or behind the eye.
+    bool IsOutside(std::vector<double> const &points) const {
+        auto const isBeyond = [&](Vector const &outwards) {
+            for (std::size_t i = 0; i < points.size(); i += 3) {
+                if (!(dot(outwards, subtract(get(&points[i]), _eye)) > 0)) {
+                    return false;
+                }
+            }
+            return true;
+        };
+        return std::any_of(std::begin(_planes), std::end(_planes), isBeyond) ||
+               isBeyond(scale(_forward, -1));
+    }
+
+    /// \brief How many pixels long a line of length 1 in the hull of some points is at most.
+    ///
+    /// A piece of it at depth z, and by an angle with the secant s away from the axis, has s/z times the
+    /// pixels that it would have at depth 1.  Or, at distance r = s z, s^2/r times these.
+    double GetPixelsPerUnit(std::vector<double> const &points) const {
+        double leastDepth = std::numeric_limits<double>::infinity();
+        double largestSecant = 1;
+        Vector least = {leastDepth, leastDepth, leastDepth};
+        Vector largest = scale(least, -1);
+        for (std::size_t i = 0; i < points.size(); i += 3) {
+            Vector const toPoint = subtract(get(&points[i]), _eye);
+            double const depth = dot(_forward, toPoint);
+            leastDepth = std::min(leastDepth, depth);
+            largestSecant = std::max(largestSecant, getLength(toPoint) / depth);
+            for (std::size_t k = 0; k < 3; ++k) {
+                least[k] = std::min(least[k], toPoint[k]);
+                largest[k] = std::max(largest[k], toPoint[k]);
+            }
+        }
+        Vector nearest;
+        for (std::size_t k = 0; k < 3; ++k) {
+            nearest[k] = std::max({least[k], -largest[k], 0.0});
+        }
+        double const byDistance = _largestSecant * _largestSecant / getLength(nearest);
+        double const byDepth = leastDepth > 0 ? std::min(largestSecant, _largestSecant) / leastDepth
+                                              : std::numeric_limits<double>::infinity();
+        return _pixelsAtDepth1 * std::min(byDepth, byDistance);
+    }
+
+private:
+    Vector _eye = {};
+    Vector _forward = {};
+    std::array<Vector, 4> _planes = {}; // through the eye and the sides of the picture, outwards
+    double _pixelsAtDepth1 = 0;
+    double _largestSecant = 1; // of the angles between the axis and what is in the picture
+};
+
+namespace {
+
+/// Refines one face.
+class TreeMaker {
+public:
+    TreeMaker(ViewGeometry const &geometry, View::Options const &options, CellTree const *previous,
+              CellTree &tree, std::vector<CellVisibility> *visibility)
+        : _geometry(geometry), _options(options), _previous(previous), _tree(tree),
+          _visibility(visibility) {}
+
+    void Make(CellType const &type, std::vector<double> const &controlPoints) {
+        _cells.resize(std::size_t(CellTree::kLastLevel) + 1);
+        CellValues base;
+        base.SetBase(type, controlPoints.data(), 3);
+        visit(base, 0, _previous ? 0 : -1);
+    }
+
+private:
+    void visit(CellValues const &values, int cell, int previousCell) {
+        CellVisibility const found = find(values);
+        if (_visibility) {
+            _visibility->resize(std::size_t(_tree.GetNumCells()));
+            (*_visibility)[std::size_t(cell)] = found;
+        }
+        if (found != CellVisibility::Visible || values.GetLevel() >= _options.GetMaxLevel()) {
+            return;
+        }
+        std::size_t const numChildren = values.GetType().GetChildren().size();
+        std::vector<CellValues> &children = _cells[std::size_t(values.GetLevel())];
+        children.resize(numChildren);
+        for (std::size_t i = 0; i < numChildren; ++i) {
+            children[i].SetChild(values, int(i));
+        }
+        bool const wasRefined = previousCell >= 0 && _previous->IsRefined(previousCell);
+        if (!isToRefine(values, children, wasRefined ? _options.GetHysteresis() : 1)) {
+            return;
+        }
+        int const first = _tree.Refine(cell);
+        for (std::size_t i = 0; i < numChildren; ++i) {
+            visit(children[i], first + int(i),
+                  wasRefined ? _previous->GetFirstChild(previousCell) + int(i) : -1);
+        }
+    }
+
+    CellVisibility find(CellValues const &values) const {
+        if (!_options.IsCulling()) {
+            return CellVisibility::Visible;
+        }
+        if (_geometry.IsOutside(values.GetValues())) {
+            return CellVisibility::Outside;
+        }
+        return isBackFacing(values) ? CellVisibility::BackFacing : CellVisibility::Visible;
+    }
+
+    // With a and b the slopes, and t what derivatives may differ from them by, Du x Dv differs from
+    // n = a x b by at most e = t (|a| + |b|) + t^2.  With c the mean of the points and r how far they are
+    // from it, (Du x Dv) . (eye - p) is at most n . (eye - c) - n . (p - c) + e (|eye - c| + r).
+    bool isBackFacing(CellValues const &values) const {
+        CellBounds const &bounds = CellBounds::Find(values.GetType());
+        if (!bounds.HasSlopes()) {
+            return false;
+        }
+        std::vector<double> const &points = values.GetValues();
+        CellBounds::Slopes const slopes = bounds.GetSlopes(points);
+        Vector const normal = cross(slopes.along, slopes.across);
+        double const tolerance =
+            slopes.tolerance * (getLength(slopes.along) + getLength(slopes.across)) +
+            slopes.tolerance * slopes.tolerance;
+        Vector center = {};
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            center[i % 3] += 3 * points[i] / double(points.size());
+        }
+        double radius = 0;
+        double depth = 0;
+        for (std::size_t i = 0; i < points.size(); i += 3) {
+            Vector const d = subtract(get(&points[i]), center);
+            radius = std::max(radius, getLength(d));
+            depth = std::max(depth, -dot(normal, d));
+        }
+        Vector const toEye = subtract(_geometry.GetEye(), center);
+        return dot(normal, toEye) + depth + tolerance * (getLength(toEye) + radius) < 0;
+    }
+
+    bool isToRefine(CellValues const &values, std::vector<CellValues> const &children,
+                    double fraction) const {
+        auto const numCorners = std::size_t(values.GetType().GetNumCorners());
+        std::vector<double> corners(3 * numCorners);
+        for (std::size_t i = 0; i < numCorners; ++i) {
+            values.EvaluateCorner(int(i), &corners[3 * i]);
+        }
+        double const pixels = _geometry.GetPixelsPerUnit(values.GetValues());
+        if (_options.GetEdgeLength() > 0) {
+            for (std::size_t i = 0; i < numCorners; ++i) {
+                Vector const side =
+                    subtract(get(&corners[3 * ((i + 1) % numCorners)]), get(&corners[3 * i]));
+                if (getLength(side) * pixels > fraction * _options.GetEdgeLength()) {
+                    return true;
+                }
+            }
+        }
+        return _options.GetFlatness() > 0 &&
+               getHeights(corners, children) * pixels > fraction * _options.GetFlatness();
+    }
+
+    // The range of the children's heights over the plane of the corners.
+    double getHeights(std::vector<double> const &corners,
+                      std::vector<CellValues> const &children) const {
+        Vector area = {};
+        Vector const origin = get(corners.data());
+        for (std::size_t i = 3; i + 3 < corners.size(); i += 3) {
+            Vector const part =
+                cross(subtract(get(&corners[i]), origin), subtract(get(&corners[i + 3]), origin));
+            area = subtract(area, scale(part, -1));
+        }
+        double const length = getLength(area);
+        Vector const normal = length > 0 ? scale(area, 1 / length) : Vector{0, 0, 1};
+        double least = std::numeric_limits<double>::infinity();
+        double largest = -least;
+        std::vector<double> heights;
+        for (CellValues const &child : children) {
+            std::vector<double> const &points = child.GetValues();
+            heights.clear();
+            for (std::size_t i = 0; i < points.size(); i += 3) {
+                heights.push_back(dot(normal, subtract(get(&points[i]), origin)));
+            }
+            CellBounds::Range const range = CellBounds::Find(child.GetType()).GetRange(heights);
+            least = std::min(least, range.min);
+            largest = std::max(largest, range.max);
+        }
+        return largest - least;
+    }
+
+    ViewGeometry const &_geometry;
+    View::Options const &_options;
+    CellTree const *const _previous;
+    CellTree &_tree;
+    std::vector<CellVisibility> *const _visibility;
+    std::vector<std::vector<CellValues>>
+        _cells; // by level: the children of the cell that is looked at
+};
+
+/// Refines an edge, whose points depend on its curve alone.
+class EdgeMaker {
+public:
+    EdgeMaker(ViewGeometry const &geometry, View::Options const &options)
+        : _geometry(geometry), _options(options) {}
+
+    /// Adds what lies inside of the edge, from start to end.
+    void Make(CellValues const &values, int start, int end,
+              std::vector<Polyline::Place> &places) const {
+        std::vector<CellType::Child> const &children = values.GetType().GetChildren();
+        std::vector<CellValues> parts(children.size());
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            parts[i].SetChild(values, int(i));
+        }
+        if (parts.size() == 1) {
+            if (values.GetLevel() + 1 < _options.GetMaxLevel()) {
+                Make(parts[0], start, end, places); // the long edge that it becomes
+            }
+            return;
+        }
+        if (values.GetLevel() >= _options.GetMaxLevel() || !isToDivide(values, parts)) {
+            return;
+        }
+        int const first = start + (end - start) / 4;
+        int const second = end - (end - start) / 4;
+        Make(parts[0], start, first, places);
+        places.push_back(Polyline::Place(first));
+        Make(parts[1], first, second, places);
+        places.push_back(Polyline::Place(second));
+        // It runs from the end.
+        std::size_t const begin = places.size();
+        Make(parts[2], 0, end - second, places);
+        std::reverse(places.begin() + std::ptrdiff_t(begin), places.end());
+        std::for_each(places.begin() + std::ptrdiff_t(begin), places.end(),
+                      [&](Polyline::Place &place) { place = Polyline::Place(end - place); });
+    }
+
+private:
+    // How far a point is from a line is no more than the mean of what others are whose mean it is.
+    bool isToDivide(CellValues const &values, std::vector<CellValues> const &parts) const {
+        double ends[6];
+        values.EvaluateCorner(0, ends);
+        values.EvaluateCorner(1, ends + 3);
+        Vector const origin = get(ends);
+        Vector const along = subtract(get(ends + 3), origin);
+        double const length = getLength(along);
+        double const pixels = _geometry.GetPixelsPerUnit(values.GetValues());
+        double largest = 0;
+        std::vector<double> distances;
+        for (CellValues const &part : parts) {
+            std::vector<double> const &points = part.GetValues();
+            distances.clear();
+            for (std::size_t i = 0; i < points.size(); i += 3) {
+                Vector const d = subtract(get(&points[i]), origin);
+                distances.push_back(length > 0 ? getLength(cross(along, d)) / length
+                                               : getLength(d));
+            }
+            largest = std::max(largest, CellBounds::Find(part.GetType()).GetRange(distances).max);
+        }
+        return (_options.GetFlatness() > 0 && largest * pixels > _options.GetFlatness()) ||
+               (_options.GetEdgeLength() > 0 && length * pixels > _options.GetEdgeLength());
+    }
+
+    ViewGeometry const &_geometry;
+    View::Options const &_options;
+};
+
+} // namespace
+
+} // namespace internal
+
+namespace {
+
+// The first three numbers of some points.
+template <typename REAL>
+std::vector<double> gather(REAL const *points, std::ptrdiff_t stride, std::size_t numPoints) {
+    std::vector<double> result;
+    result.reserve(3 * numPoints);
+    for (std::size_t i = 0; i < numPoints; ++i, points += stride) {
+        result.insert(result.end(), points, points + 3);
+    }
+    return result;
+}
+
+} // namespace
+
+View::View(Camera const &camera, Options options) : _camera(camera), _options(options) {
+    auto const isNumber = [](double number) { return std::isfinite(number) && number >= 0; };
+    auto geometry = std::make_shared<internal::ViewGeometry>();
+    bool const hasAim = options.GetFlatness() > 0 || options.GetEdgeLength() > 0;
+    if (geometry->Set(camera) && hasAim && isNumber(options.GetFlatness()) &&
+        isNumber(options.GetEdgeLength()) && isNumber(options.GetHysteresis()) &&
+        options.GetHysteresis() <= 1 && options.GetMaxLevel() >= 0 &&
+        options.GetMaxLevel() <= CellTree::kLastLevel) {
+        _geometry = std::move(geometry);
+    }
+}
+
+template <typename REAL>
+CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[],
+                        typename Surface<REAL>::PointDescriptor const &pointDesc,
+                        CellTree const *previous, std::vector<CellVisibility> *visibility) const {
+    CellTree tree(surface.GetFaceSize());
+    if (visibility) {
+        visibility->clear();
+    }
+    internal::TreeMaker maker(*_geometry, _options, previous, tree, visibility);
+    maker.Make(*surface._type,
+               gather(controlPoints, pointDesc.stride, std::size_t(surface.GetNumControlPoints())));
+    if (visibility) {
+        visibility->resize(std::size_t(tree.GetNumCells()));
+    }
+    return tree;
+}
+
+template <typename REAL>
+Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
+                        typename Surface<REAL>::PointDescriptor const &pointDesc) const {
+    internal::CellType::BorderItem const &item =
+        surface._type->GetBorder(surface._turns->turns)[std::size_t(edge)];
+    std::vector<double> points;
+    for (int const point : item.points) {
+        REAL const *const from = controlPoints + std::ptrdiff_t(point) * pointDesc.stride;
+        points.insert(points.end(), from, from + 3);
+    }
+    internal::CellValues values;
+    values.SetBase(*item.type, points.data(), 3);
+    std::vector<Polyline::Place> places;
+    internal::EdgeMaker(*_geometry, _options).Make(values, 0, Polyline::kLength, places);
+    Polyline polyline;
+    Polyline::FromPlaces(places, &polyline);
+    return item.isReversed ? polyline.GetReversed() : polyline;
+}
+
+template <typename REAL>
+int View::FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
+                     typename Surface<REAL>::PointDescriptor const &pointDesc, int levels[]) const {
+    CellTree const tree = MakeTree(surface, controlPoints, pointDesc);
+    int const size = surface.GetFaceSize();
+    std::fill(levels, levels + size, 0);
+    for (int cell = 1; cell < tree.GetNumCells(); ++cell) {
+        if (tree.GetBorderSide(cell) >= 0) {
+            int &level = levels[tree.GetSector(cell)];
+            level = std::max(level, tree.GetLevel(cell));
+        }
+    }
+    levels[size] = tree.GetMaxLevel();
+    return size + 1;
+}
+
+template <typename REAL>
+CellForest View::MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],
+                            typename Surface<REAL>::PointDescriptor const &pointDesc,
+                            CellForest const *previous, Counts *counts) const {
+    using FarExt::internal::Level;
+    FarExt::TopologyLevel const base = factory.GetMesh().GetLevel(0);
+    Level const &level = factory.GetMesh().GetHierarchy().mesh.levels[0];
+    CellForest forest(factory.GetMesh());
+    std::vector<std::vector<CellVisibility>> visibility(std::size_t(forest.GetNumFaces()));
+    struct State {
+        Surface<REAL> surface;
+        std::vector<REAL> points;
+    };
+    constexpr Index kFacesOfRange = 16;
+    FarExt::internal::ParallelForRange(
+        forest.GetNumFaces(), [] { return State(); },
+        [&](State &state, Index begin, Index end) {
+            auto &[surface, points] = state;
+            for (Index face = begin; face < end; ++face) {
+                if (!factory.InitVertexSurface(face, &surface)) {
+                    continue;
+                }
+                points.resize(3 * std::size_t(surface.GetNumControlPoints()));
+                surface.GatherControlPoints(meshPoints, {3, pointDesc.stride}, points.data(), 3);
+                CellTree const *const last = previous ? &previous->GetTree(face) : nullptr;
+                forest.SetTree(face, MakeTree(surface, points.data(), 3, last,
+                                              &visibility[std::size_t(face)]));
+                for (int local = 0; local < surface.GetFaceSize(); ++local) {
+                    Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
+                    bool const isFirst =
+                        level.edgeFaces[edge][0] == face && level.edgeFaceLocals[edge][0] == local;
+                    if (isFirst && base.IsEdgeInfSharp(edge)) {
+                        forest.SetEdge(edge, MakeEdge(surface, local, points.data(), 3));
+                    }
+                }
+            }
+        },
+        kFacesOfRange);
+    forest.MatchEdges();
+    if (counts) {
+        *counts = Counts();
+        counts->cellsByLevel.assign(std::size_t(_options.GetMaxLevel()) + 1, 0);
+        for (Index face = 0; face < forest.GetNumFaces(); ++face) {
+            CellTree const &tree = forest.GetTree(face);
+            std::vector<CellVisibility> const &found = visibility[std::size_t(face)];
+            for (std::size_t cell = 0; cell < found.size(); ++cell) {
+                if (!tree.IsRefined(int(cell))) {
+                    ++counts->cellsByLevel[std::size_t(tree.GetLevel(int(cell)))];
+                    counts->outside += found[cell] == CellVisibility::Outside;
+                    counts->backFacing += found[cell] == CellVisibility::BackFacing;
+                }
+            }
+        }
+    }
+    return forest;
+}
+
+template CellTree View::MakeTree(Surface<float> const &, float const[],
+                                 Surface<float>::PointDescriptor const &, CellTree const *,
+                                 std::vector<CellVisibility> *) const;
+template CellTree View::MakeTree(Surface<double> const &, double const[],
+                                 Surface<double>::PointDescriptor const &, CellTree const *,
+                                 std::vector<CellVisibility> *) const;
+template Polyline View::MakeEdge(Surface<float> const &, int, float const[],
+                                 Surface<float>::PointDescriptor const &) const;
+template Polyline View::MakeEdge(Surface<double> const &, int, double const[],
+                                 Surface<double>::PointDescriptor const &) const;
+template int View::FindLevels(Surface<float> const &, float const[],
+                              Surface<float>::PointDescriptor const &, int[]) const;
+template int View::FindLevels(Surface<double> const &, double const[],
+                              Surface<double>::PointDescriptor const &, int[]) const;
+template CellForest View::MakeForest(SurfaceFactory const &, float const[],
+                                     Surface<float>::PointDescriptor const &, CellForest const *,
+                                     Counts *) const;
+template CellForest View::MakeForest(SurfaceFactory const &, double const[],
+                                     Surface<double>::PointDescriptor const &, CellForest const *,
+                                     Counts *) const;
+
+} // namespace OpenSubdivHex::BfrExt

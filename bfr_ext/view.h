@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_VIEW_H
+#define OPENSUBDIVHEX_BFR_EXT_VIEW_H
+
+#include "cellForest.h"
+#include "surfaceFactory.h"
+
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt {
+
+namespace internal {
+class ViewGeometry;
+} // namespace internal
+
+/// \brief A pinhole camera, as glTF and USD have it: what is in the picture, and how large.
+struct Camera {
+    double eye[3] = {0, 0, 1};    ///< where it is
+    double target[3] = {0, 0, 0}; ///< what is in the middle of the picture
+    double up[3] = {0, 1, 0};     ///< a direction that is upright in the picture
+    double fieldOfView = 40;      ///< degrees, of the height of the picture; between 0 and 180
+    int width = 1280;             ///< pixels
+    int height = 720;             ///< pixels
+};
+
+/// What is known of a cell in a view.
+enum class CellVisibility : unsigned char {
+    Visible,    ///< or perhaps so
+    Outside,    ///< of the picture, all of it
+    BackFacing, ///< all of it
+};
+
+/// \brief How far base faces are refined to look smooth in a view: trees of cells.
+///
+/// **Flatness.**  A cell is refined until its facets are closer to the surface than some pixels.  The
+/// bound is a true one.  Points of a child's surface are sums of its control points, with weights that
+/// are not negative, add up to 1, and have a largest value each, known for its type: so their heights
+/// over a plane are between the least and the largest sum with such weights.  The plane is that of the
+/// cell's corners, and the range of heights of all children, in which the corners and all points on the
+/// sides of the cell are, too, is taken for the distance between surface and facets.  It is seen at the
+/// least depth, and furthest from the axis, that the control points have in the picture.  Sharp edges
+/// and boundaries, whose curve may bend in the plane of a cell, get points of their own (MakeEdge()).
+///
+/// **Lengths.**  A cell can be refined, too, until its sides are shorter than some pixels.
+///
+/// **Culling** leaves cells as they are which are not seen, and is never wrong: meshes stay closed, and
+/// what is culled is coarse.  A cell is outside of the picture if all its control points are on the
+/// outer side of one of the planes through its sides, or behind the eye: so is their hull, and with it
+/// the surface.  A cell faces away if (Du x Dv) . (eye - p) < 0 for all its points p.  That is shown
+/// where the lattice is regular and derivatives are bounded by the second differences of control
+/// points, with FaceMask::Smooth and Cosine; a cell at a base vertex or base face that is no hexagon, at
+/// a feature, and with FaceMask::Average any cell, counts as visible.
+///
+/// **Animation.**  Given the tree of the last frame, a cell that is refined there stays refined until the
+/// error is below a fraction of what is allowed, so that nothing flickers.
+///
+/// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
+class OPENSUBDIVHEX_API View {
+public:
+    /// A face of the base mesh.
+    using Index = Far::Index;
+
+    /// \brief What is to be reached, and what is left out.
+    class Options {
+    public:
+        /// Flat to half a pixel, all faces, up to level 8.
+        Options()
+            : _flatness(0.5), _edgeLength(0), _maxLevel(8), _isCulling(false), _hysteresis(0.5) {}
+
+        /// Sets how many pixels facets may be from the surface; 0: any number.
+        Options &SetFlatness(double pixels) {
+            _flatness = pixels;
+            return *this;
+        }
+        /// That number.
+        double GetFlatness() const { return _flatness; }
+        /// Sets how many pixels long sides of cells may be; 0: any number.
+        Options &SetEdgeLength(double pixels) {
+            _edgeLength = pixels;
+            return *this;
+        }
+        /// That number.
+        double GetEdgeLength() const { return _edgeLength; }
+        /// Sets the last level that is made, 0 ... CellTree::kLastLevel.
+        Options &SetMaxLevel(int level) {
+            _maxLevel = level;
+            return *this;
+        }
+        /// That level.
+        int GetMaxLevel() const { return _maxLevel; }
+        /// Sets whether what is not seen is left coarse.
+        Options &SetCulling(bool isCulling) {
+            _isCulling = isCulling;
+            return *this;
+        }
+        /// Whether it is.
+        bool IsCulling() const { return _isCulling; }
+        /// Sets the fraction of both numbers of pixels above which cells stay refined, 0 ... 1.
+        Options &SetHysteresis(double fraction) {
+            _hysteresis = fraction;
+            return *this;
+        }
+        /// That fraction.
+        double GetHysteresis() const { return _hysteresis; }
+
+    private:
+        double _flatness;
+        double _edgeLength;
+        int _maxLevel;
+        bool _isCulling;
+        double _hysteresis;
+    };
+
+    /// \brief What a camera sees.
+    ///
+    /// The view is invalid if eye and target are one place, or what is up lies in the direction between
+    /// them; if a number is not finite, or an angle, resolution or option is not in its range; and if
+    /// both numbers of pixels are 0.
+    ///
+    /// \param camera   where it is, and its picture
+    /// \param options  what is to be reached
+    explicit View(Camera const &camera, Options options = Options());
+
+    /// Whether the arguments were as they have to be.
+    bool IsValid() const { return _geometry != nullptr; }
+    /// The camera.
+    Camera const &GetCamera() const { return _camera; }
+    /// The options.
+    Options const &GetOptions() const { return _options; }
+
+    /// \brief Makes the tree of a face.
+    ///
+    /// \param surface       a valid surface of positions
+    /// \param controlPoints  its control points, of 3 numbers each
+    /// \param pointDesc      how they lie; the first 3 numbers of each are read
+    /// \param previous       the tree of the last frame, or null
+    /// \param visibility     null, or gets what is known of each cell; those below cells that are not
+    ///                       seen have no numbers
+    template <typename REAL>
+    CellTree MakeTree(Surface<REAL> const &surface, REAL const controlPoints[],
+                      typename Surface<REAL>::PointDescriptor const &pointDesc,
+                      CellTree const *previous = nullptr,
+                      std::vector<CellVisibility> *visibility = nullptr) const;
+
+    /// \brief Makes the polyline of a sharp edge or boundary, which is as close to the curve as facets
+    /// are to the surface, and the same from both sides.
+    ///
+    /// \param edge  of the face, from vertex \p edge to the next, as the polyline; other arguments are
+    ///              those of MakeTree()
+    template <typename REAL>
+    Polyline MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
+                      typename Surface<REAL>::PointDescriptor const &pointDesc) const;
+
+    /// \brief Writes one level for each edge and one for the inside of a face, as Tessellation takes:
+    /// the highest that MakeTree() has there.
+    ///
+    /// Faces that share an edge have to take the larger level of both.
+    /// \return  how many they are
+    template <typename REAL>
+    int FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
+                   typename Surface<REAL>::PointDescriptor const &pointDesc, int levels[]) const;
+
+    /// \brief What was found of the faces of a mesh.
+    struct Counts {
+        std::vector<long> cellsByLevel; ///< those that are not refined
+        long outside = 0;               ///< of these
+        long backFacing = 0;            ///< of these
+    };
+    /// \brief Makes the trees of all faces that have a surface, and the polylines of all edges, in
+    /// parallel.
+    ///
+    /// \param factory     of the mesh, whose refiner the forest refers to
+    /// \param meshPoints  the positions of its vertices
+    /// \param pointDesc   how they lie; the first 3 numbers of each are read
+    /// \param previous    the forest of the last frame, of the same mesh, or null
+    /// \param counts      null, or gets what was found
+    template <typename REAL>
+    CellForest MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],
+                          typename Surface<REAL>::PointDescriptor const &pointDesc,
+                          CellForest const *previous = nullptr, Counts *counts = nullptr) const;
+
+private:
+    Camera _camera;
+    Options _options;
+    std::shared_ptr<internal::ViewGeometry const> _geometry; // null of an invalid one
+};
+
+} // namespace OpenSubdivHex::BfrExt
+
+#endif

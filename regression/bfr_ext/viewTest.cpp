@@ -1,0 +1,494 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Trees of cells made for a view: how far facets are from the surface, and what is left out.
+#include "surfaceFixture.h"
+
+#include "bfr_ext/cell/cellValues.h"
+#include "bfr_ext/surfaceFactory.h"
+#include "bfr_ext/view.h"
+#include "far_ext/executor.h"
+#include "far_ext/limit/cellPatch.h"
+#include "far_ext/vtr/hierarchy.h"
+#include "regression/far_ext/referenceMatch.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <random>
+
+namespace OpenSubdivHex::Regression {
+
+using BfrExt::Camera;
+using BfrExt::CellForest;
+using BfrExt::CellTree;
+using BfrExt::CellVisibility;
+using BfrExt::Polyline;
+using BfrExt::Surface;
+using BfrExt::View;
+using BfrExt::internal::CellValues;
+
+namespace {
+
+/// The same cells as those of a surface, made apart from it.
+struct BaseCells {
+    BaseCells(FarExt::TopologyRefiner const &refiner, std::vector<double> const &meshPoints)
+        : _refiner(refiner), _meshPoints(meshPoints) {}
+
+    CellValues Make(int face) {
+        FarExt::internal::CellPatch cell;
+        GatherBaseCell(_refiner.GetHierarchy().mesh.levels[0], face, cell);
+        std::vector<double> points;
+        for (Far::Index const vert : cell.patch.sources) {
+            double const *const p = &_meshPoints[3 * std::size_t(vert)];
+            points.insert(points.end(), p, p + 3);
+        }
+        CellValues values;
+        values.SetBase(_types.Find(std::move(cell),
+                                   {_refiner.GetSchemeOptions(), _refiner.GetHexSchemeOptions(),
+                                    FarExt::Interpolation::Vertex}),
+                       points.data(), 3);
+        return values;
+    }
+
+private:
+    FarExt::TopologyRefiner const &_refiner;
+    std::vector<double> const &_meshPoints;
+    BfrExt::internal::CellTypes _types;
+};
+
+Vector3 add(Vector3 const &a, Vector3 const &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+double dot(Vector3 const &a, Vector3 const &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vector3 toVector(double const *p) { return {p[0], p[1], p[2]}; }
+
+/// A camera's picture, by its definition.
+struct Picture {
+    explicit Picture(Camera const &camera) : _camera(camera), _eye(toVector(camera.eye)) {
+        _forward = Normalize(Subtract(toVector(camera.target), _eye));
+        _right = Normalize(Cross(_forward, toVector(camera.up)));
+        _up = Cross(_right, _forward);
+    }
+
+    /// Pixels to the right of the middle and above it; infinite behind the eye.
+    std::array<double, 2> Project(Vector3 const &p) const {
+        Vector3 const d = Subtract(p, _eye);
+        double const depth = dot(d, _forward);
+        double const pixels = _camera.height / 2.0 / std::tan(_camera.fieldOfView * M_PI / 360);
+        double const infinite = std::numeric_limits<double>::infinity();
+        return depth > 0 ? std::array<double, 2>{pixels * dot(d, _right) / depth,
+                                                 pixels * dot(d, _up) / depth}
+                         : std::array<double, 2>{infinite, infinite};
+    }
+    bool HasPoint(Vector3 const &p) const {
+        std::array<double, 2> const at = Project(p);
+        return std::abs(at[0]) < _camera.width / 2.0 && std::abs(at[1]) < _camera.height / 2.0;
+    }
+    double GetDistance(Vector3 const &p, Vector3 const &q) const {
+        std::array<double, 2> const a = Project(p);
+        std::array<double, 2> const b = Project(q);
+        return std::hypot(a[0] - b[0], a[1] - b[1]);
+    }
+
+private:
+    Camera _camera;
+    Vector3 _eye;
+    Vector3 _forward = {};
+    Vector3 _right = {};
+    Vector3 _up = {};
+};
+
+/// Cameras around a shape that look at it, and some within it.
+Camera makeRandomCamera(std::vector<double> const &positions, std::mt19937 &random) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    Vector3 least = toVector(positions.data());
+    Vector3 largest = least;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        least[i % 3] = std::min(least[i % 3], positions[i]);
+        largest[i % 3] = std::max(largest[i % 3], positions[i]);
+    }
+    double const size = GetDistance(least, largest);
+    double const distance = size * (0.2 + 1.2 * std::abs(uniform(random)));
+    Vector3 const direction = Normalize({uniform(random), uniform(random), uniform(random)});
+    Camera camera;
+    for (std::size_t k = 0; k < 3; ++k) {
+        camera.target[k] = (least[k] + largest[k]) / 2 + 0.2 * size * uniform(random);
+        camera.eye[k] = camera.target[k] + distance * direction[k];
+        camera.up[k] = uniform(random);
+    }
+    camera.fieldOfView = 45 + 30 * uniform(random);
+    camera.width = 320;
+    camera.height = 200;
+    return camera;
+}
+
+std::unique_ptr<FarExt::TopologyRefiner> makeRefiner(Shape const &shape,
+                                                     ReferenceMask mask = ReferenceMask::Smooth) {
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    return CreateRefiner(shape, mask, 0, options);
+}
+
+/// Calls function(cell, values) for all cells of a tree that are not refined.
+template <typename FUNCTION>
+void forLeaves(CellTree const &tree, int cell, CellValues const &values, FUNCTION const &function) {
+    if (!tree.IsRefined(cell)) {
+        function(cell, values);
+        return;
+    }
+    for (int i = 0; i < tree.GetNumChildren(cell); ++i) {
+        CellValues child;
+        child.SetChild(values, i);
+        forLeaves(tree, tree.GetFirstChild(cell) + i, child, function);
+    }
+}
+
+/// Calls function(values) for all cells some steps on.
+template <typename FUNCTION>
+void forDescendants(CellValues const &values, int numSteps, FUNCTION const &function) {
+    if (numSteps == 0) {
+        function(values);
+        return;
+    }
+    for (std::size_t i = 0; i < values.GetType().GetChildren().size(); ++i) {
+        CellValues child;
+        child.SetChild(values, int(i));
+        forDescendants(child, numSteps - 1, function);
+    }
+}
+
+std::vector<Vector3> getCorners(CellValues const &values) {
+    std::vector<Vector3> corners(std::size_t(values.GetType().GetNumCorners()));
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        values.EvaluateCorner(int(i), corners[i].data());
+    }
+    return corners;
+}
+
+/// The plane of the corners: a point, and the normal.
+std::array<Vector3, 2> getPlane(std::vector<Vector3> const &corners) {
+    Vector3 area = {};
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+        area = add(area,
+                   Cross(Subtract(corners[i], corners[0]), Subtract(corners[i + 1], corners[0])));
+    }
+    return {corners[0], Normalize(area)};
+}
+
+std::vector<Shape> getShapes() {
+    std::vector<Shape> shapes;
+    for (char const *const name : {"cube", "icosahedron", "torus", "mixedPatch", "prism7"}) {
+        for (Shape const &shape : GetManifoldShapes()) {
+            if (shape.name == name) {
+                shapes.push_back(shape);
+            }
+        }
+    }
+    for (char const *const name : {"mixedSharpnessQuads", "creasedBall", "cornersTriangles"}) {
+        shapes.push_back(GetFeatureShape(name));
+    }
+    return shapes;
+}
+
+} // namespace
+
+TEST(View, IsInvalidForWrongArguments) {
+    auto const isValid = [](auto change) {
+        Camera camera;
+        View::Options options;
+        change(camera, options);
+        return View(camera, options).IsValid();
+    };
+    double const nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(isValid([](Camera &, View::Options &) {}));
+    EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.eye[2] = 0; }));
+    EXPECT_FALSE(isValid([&](Camera &camera, View::Options &) { camera.eye[2] = nan; }));
+    EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.eye[2] = INFINITY; }));
+    EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.up[1] = 0; }));
+    EXPECT_FALSE(isValid([](Camera &camera, View::Options &) {
+        camera.up[1] = 0;
+        camera.up[2] = 3;
+    }));
+    EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.fieldOfView = 180; }));
+    EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.fieldOfView = 0; }));
+    EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.width = 0; }));
+    EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.height = -5; }));
+    EXPECT_FALSE(isValid([](Camera &, View::Options &options) { options.SetFlatness(0); }));
+    EXPECT_FALSE(isValid([&](Camera &, View::Options &options) { options.SetFlatness(nan); }));
+    EXPECT_FALSE(isValid([](Camera &, View::Options &options) { options.SetEdgeLength(-1); }));
+    EXPECT_FALSE(isValid([](Camera &, View::Options &options) { options.SetMaxLevel(13); }));
+    EXPECT_FALSE(isValid([](Camera &, View::Options &options) { options.SetMaxLevel(-1); }));
+    EXPECT_FALSE(isValid([](Camera &, View::Options &options) { options.SetHysteresis(1.5); }));
+    EXPECT_TRUE(
+        isValid([](Camera &, View::Options &options) { options.SetFlatness(0).SetEdgeLength(3); }));
+}
+
+TEST(View, FacetsAreCloseToTheSurfaceInThePicture) {
+    constexpr int kMaxLevel = 6;
+    constexpr double kPixels = 1;
+    std::mt19937 random(3);
+    for (Shape const &shape : getShapes()) {
+        SCOPED_TRACE(shape.name);
+        for (auto const mask : {ReferenceMask::Smooth, ReferenceMask::Average}) {
+            auto const refiner = makeRefiner(shape, mask);
+            BaseCells cells(*refiner, shape.positions);
+            SurfaceSet<double> const surfaces(*refiner, shape.positions);
+            Camera const camera = makeRandomCamera(shape.positions, random);
+            Picture const picture(camera);
+            View const view(camera, View::Options().SetFlatness(kPixels).SetMaxLevel(kMaxLevel));
+            for (int face = 0; face < refiner->GetLevel(0).GetNumFaces(); ++face) {
+                Surface<double> const &surface = surfaces[face];
+                std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+                surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+                CellTree const tree = view.MakeTree(surface, control.data(), 3);
+                forLeaves(tree, 0, cells.Make(face), [&](int cell, CellValues const &values) {
+                    if (tree.GetLevel(cell) == kMaxLevel) {
+                        return;
+                    }
+                    std::array<Vector3, 2> const plane = getPlane(getCorners(values));
+                    forDescendants(values, 2, [&](CellValues const &part) {
+                        for (Vector3 const &p : getCorners(part)) {
+                            double const height = dot(plane[1], Subtract(p, plane[0]));
+                            Vector3 const foot = Subtract(p, Scale(plane[1], height));
+                            if (picture.HasPoint(p)) {
+                                ASSERT_LE(picture.GetDistance(p, foot), kPixels)
+                                    << "face " << face << ", cell " << cell;
+                            }
+                        }
+                    });
+                });
+            }
+        }
+    }
+}
+
+TEST(View, SidesAreAsShortAsIsAskedFor) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = makeRefiner(shape);
+    BaseCells cells(*refiner, shape.positions);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    std::mt19937 random(8);
+    Camera const camera = makeRandomCamera(shape.positions, random);
+    Picture const picture(camera);
+    View const view(camera, View::Options().SetFlatness(0).SetEdgeLength(20).SetMaxLevel(9));
+    for (int face = 0; face < 6; ++face) {
+        Surface<double> const &surface = surfaces[face];
+        std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+        surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+        CellTree const tree = view.MakeTree(surface, control.data(), 3);
+        ASSERT_LT(tree.GetMaxLevel(), 9);
+        forLeaves(tree, 0, cells.Make(face), [&](int, CellValues const &values) {
+            std::vector<Vector3> const corners = getCorners(values);
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                Vector3 const &end = corners[(i + 1) % corners.size()];
+                if (picture.HasPoint(corners[i]) && picture.HasPoint(end)) {
+                    ASSERT_LE(picture.GetDistance(corners[i], end), 20);
+                }
+            }
+        });
+        std::vector<int> levels(5);
+        ASSERT_EQ(view.FindLevels(surface, control.data(), 3, levels.data()), 5);
+        EXPECT_EQ(levels[4], tree.GetMaxLevel());
+        for (int edge = 0; edge < 4; ++edge) {
+            EXPECT_TRUE(Polyline(levels[std::size_t(edge)]).Contains(tree.GetEdgePolyline(edge)));
+            EXPECT_FALSE(
+                levels[std::size_t(edge)] > 2 &&
+                Polyline(levels[std::size_t(edge)] - 2).Contains(tree.GetEdgePolyline(edge)));
+        }
+    }
+}
+
+// A border that bends in the plane of flat cells.
+TEST(View, SharpEdgesAreCloseToTheirCurves) {
+    Shape shape = GetFeatureShape("mixedSharpnessQuads");
+    for (std::size_t i = 2; i < shape.positions.size(); i += 3) {
+        shape.positions[i] = 0;
+    }
+    auto const refiner = makeRefiner(shape);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    FarExt::TopologyLevel const &base = refiner->GetLevel(0);
+    Camera camera;
+    camera.eye[2] = 30;
+    camera.fieldOfView = 30;
+    Picture const picture(camera);
+    View const view(camera, View::Options().SetFlatness(0.5).SetMaxLevel(10));
+    CellForest const forest = view.MakeForest<double>(*factory, shape.positions.data(), 3);
+    int numPoints = 0;
+    for (int face = 0; face < base.GetNumFaces(); ++face) {
+        auto const tessellation = forest.GetTessellation(face);
+        ASSERT_TRUE(tessellation.IsValid());
+        auto const edges = base.GetFaceEdges(face);
+        for (int local = 0; local < edges.size(); ++local) {
+            if (!base.IsEdgeInfSharp(edges[local])) {
+                continue;
+            }
+            int const numInner = tessellation.GetNumEdgeCoords(local);
+            std::vector<double> coords(2 * std::size_t(numInner + 2));
+            tessellation.GetVertexCoord(local, coords.data());
+            tessellation.GetEdgeCoords(local, coords.data() + 2);
+            tessellation.GetVertexCoord((local + 1) % edges.size(),
+                                        coords.data() + 2 * (numInner + 1));
+            numPoints += numInner;
+            for (int i = 0; i <= numInner; ++i) {
+                auto const evaluate = [&](double t) {
+                    double const *const uv = &coords[2 * std::size_t(i)];
+                    double const place[2] = {uv[0] + t * (uv[2] - uv[0]),
+                                             uv[1] + t * (uv[3] - uv[1])};
+                    return surfaces.Evaluate(face, place).p;
+                };
+                Vector3 const start = evaluate(0);
+                Vector3 const along = Normalize(Subtract(evaluate(1), start));
+                for (int k = 1; k < 8; ++k) {
+                    Vector3 const p = evaluate(k / 8.0);
+                    Vector3 const d = Subtract(p, start);
+                    ASSERT_LE(picture.GetDistance(p, add(start, Scale(along, dot(along, d)))), 0.5);
+                }
+            }
+        }
+    }
+    EXPECT_GT(numPoints, 20);
+}
+
+TEST(View, NothingThatIsSeenIsCulled) {
+    std::mt19937 random(5);
+    long numOutside = 0;
+    long numBackFacing = 0;
+    long numSeen = 0;
+    for (Shape const &shape : getShapes()) {
+        SCOPED_TRACE(shape.name);
+        auto const refiner = makeRefiner(shape);
+        BaseCells cells(*refiner, shape.positions);
+        SurfaceSet<double> const surfaces(*refiner, shape.positions);
+        for (int round = 0; round < 13; ++round) {
+            Camera const camera = makeRandomCamera(shape.positions, random);
+            Picture const picture(camera);
+            View const view(camera,
+                            View::Options().SetFlatness(0.5).SetMaxLevel(5).SetCulling(true));
+            for (int face = 0; face < refiner->GetLevel(0).GetNumFaces(); ++face) {
+                Surface<double> const &surface = surfaces[face];
+                std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+                surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+                std::vector<CellVisibility> visibility;
+                CellTree const tree =
+                    view.MakeTree(surface, control.data(), 3, nullptr, &visibility);
+                ASSERT_EQ(int(visibility.size()), tree.GetNumCells());
+                forLeaves(tree, 0, cells.Make(face), [&](int cell, CellValues const &values) {
+                    CellVisibility const found = visibility[std::size_t(cell)];
+                    numSeen += found == CellVisibility::Visible;
+                    numOutside += found == CellVisibility::Outside;
+                    numBackFacing += found == CellVisibility::BackFacing;
+                    if (found == CellVisibility::Visible) {
+                        return;
+                    }
+                    forDescendants(values, 2, [&](CellValues const &part) {
+                        for (int i = 0; i < part.GetType().GetNumCorners(); ++i) {
+                            SurfacePoint point;
+                            part.EvaluateCorner(i, point.p.data());
+                            part.EvaluateCorner(i, point.du.data(), point.dv.data());
+                            Vector3 const toEye = Subtract(toVector(camera.eye), point.p);
+                            ASSERT_FALSE(dot(Cross(point.du, point.dv), toEye) > 0 &&
+                                         picture.HasPoint(point.p))
+                                << "face " << face << ", cell " << cell;
+                        }
+                    });
+                });
+            }
+        }
+    }
+    std::cout << numSeen << " cells are not culled, " << numOutside << " outside, " << numBackFacing
+              << " facing away\n";
+    EXPECT_GT(numOutside, 1000);
+    EXPECT_GT(numBackFacing, 100);
+}
+
+TEST(View, WhatWasRefinedStaysSo) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = makeRefiner(shape);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    std::mt19937 random(12);
+    Camera const camera = makeRandomCamera(shape.positions, random);
+    auto const make = [&](double pixels, CellForest const *previous) {
+        View const view(camera, View::Options().SetFlatness(pixels).SetHysteresis(0.5));
+        return view.MakeForest<double>(*factory, shape.positions.data(), 3, previous);
+    };
+    auto const getNumLeaves = [](CellForest const &forest) {
+        int sum = 0;
+        for (int face = 0; face < forest.GetNumFaces(); ++face) {
+            sum += forest.GetTree(face).GetNumLeaves();
+        }
+        return sum;
+    };
+    CellForest const fine = make(0.5, nullptr);
+    CellForest const coarse = make(1, nullptr);
+    CellForest const kept = make(1, &fine);
+    CellForest const dropped = make(2.5, &fine);
+    EXPECT_LT(getNumLeaves(coarse), getNumLeaves(fine));
+    EXPECT_EQ(getNumLeaves(kept), getNumLeaves(fine));
+    EXPECT_LT(getNumLeaves(dropped), getNumLeaves(fine));
+    EXPECT_GT(getNumLeaves(dropped), getNumLeaves(make(2.5, nullptr)));
+}
+
+TEST(View, ForestsAreTheSameForAnyThreadsAndTypes) {
+    Shape const &shape = GetFeatureShape("mixedSharpnessQuads");
+    auto const refiner = makeRefiner(shape);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    std::vector<float> const positions(shape.positions.begin(), shape.positions.end());
+    std::vector<double> const rounded(positions.begin(), positions.end());
+    std::mt19937 random(21);
+    Camera const camera = makeRandomCamera(shape.positions, random);
+    View const view(camera, View::Options().SetFlatness(0.5));
+    View::Counts counts;
+    CellForest const forest =
+        view.MakeForest<double>(*factory, rounded.data(), 3, nullptr, &counts);
+    FarExt::ExecutorScope const alone(nullptr, 1);
+    CellForest const other = view.MakeForest<float>(*factory, positions.data(), 3);
+    long numLeaves = 0;
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        CellTree const &tree = forest.GetTree(face);
+        ASSERT_EQ(tree.GetNumCells(), other.GetTree(face).GetNumCells());
+        for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
+            ASSERT_EQ(tree.GetFirstChild(cell), other.GetTree(face).GetFirstChild(cell));
+        }
+        numLeaves += refiner->GetLevel(0).IsFaceHole(face) ? 0 : tree.GetNumLeaves();
+    }
+    long sum = 0;
+    for (long const count : counts.cellsByLevel) {
+        sum += count;
+    }
+    EXPECT_EQ(sum, numLeaves);
+}
+
+// Uniform refinement needs the level that the most difficult cell has, everywhere.
+TEST(View, TakesFarFewerPolygonsThanUniformLevels) {
+    for (Shape const &shape : GetManifoldShapes()) {
+        if (shape.name != "suzanne") {
+            continue;
+        }
+        auto const refiner = makeRefiner(shape);
+        auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+        Camera camera;
+        camera.eye[0] = 1.5;
+        camera.eye[1] = 1.2;
+        camera.eye[2] = 4;
+        View const view(camera, View::Options().SetFlatness(0.25));
+        CellForest const forest = view.MakeForest<double>(*factory, shape.positions.data(), 3);
+        double numPolygons = 0;
+        int maxLevel = 0;
+        for (int face = 0; face < forest.GetNumFaces(); ++face) {
+            auto const options = BfrExt::Tessellation::Options().SetFacetSize(0);
+            numPolygons += forest.GetTessellation(face, options).GetNumFacets();
+            maxLevel = std::max(maxLevel, forest.GetTree(face).GetMaxLevel());
+        }
+        // F' = F + E and E' = 4 E, but for borders.
+        double const numEdges = refiner->GetLevel(0).GetNumEdges();
+        double const numUniform = forest.GetNumFaces() + numEdges * (std::pow(4, maxLevel) - 1) / 3;
+        std::cout << numPolygons << " polygons, " << numUniform << " at level " << maxLevel << "\n";
+        EXPECT_LT(6 * numPolygons, numUniform);
+    }
+}
+
+} // namespace OpenSubdivHex::Regression
