@@ -331,7 +331,7 @@ TEST(View, SharpEdgesAreCloseToTheirCurves) {
             tessellation.GetVertexCoord(local, coords.data());
             tessellation.GetEdgeCoords(local, coords.data() + 2);
             tessellation.GetVertexCoord((local + 1) % edges.size(),
-                                        coords.data() + 2 * (numInner + 1));
+                                        &coords[2 * std::size_t(numInner + 1)]);
             numPoints += numInner;
             for (int i = 0; i <= numInner; ++i) {
                 auto const evaluate = [&](double t) {
