@@ -278,7 +278,10 @@ void expectEstimate(TopologyRefiner const &refiner, double tolerance,
     ASSERT_EQ(size.numStencils, table->GetNumStencils());
     if (!options.factorizeIntermediateLevels) {
         ASSERT_GE(size.numWeights, numWeights);
-        ASSERT_LE(double(size.numWeights), 1.25 * double(numWeights));
+        // Faces that share more than edges are few, from level 2 on.
+        if (refiner.GetMaxLevel() >= 2) {
+            ASSERT_LE(double(size.numWeights), 1.25 * double(numWeights));
+        }
     } else {
         ASSERT_NEAR(double(size.numWeights), double(numWeights), tolerance * double(numWeights));
     }

@@ -204,13 +204,14 @@ TEST(Shapes, FacesAndValencesAreAsNamed) {
 }
 
 TEST(Shapes, TestLevelKeepsToItsLimit) {
+    constexpr double divisor = OPENSUBDIVHEX_TEST_DIVISOR;
     // Cube: 24 corners, times 4 a level.
-    EXPECT_EQ(GetTestLevel(GetShape("cube"), 3, 1536), 3);
-    EXPECT_EQ(GetTestLevel(GetShape("cube"), 3, 1535), 2);
+    EXPECT_EQ(GetTestLevel(GetShape("cube"), 3, 1536 * divisor), 3);
+    EXPECT_EQ(GetTestLevel(GetShape("cube"), 3, 1535 * divisor), 2);
     EXPECT_EQ(GetTestLevel(GetShape("cube"), 2, 1e9), 2);
     // Triangle: 3 corners and 3 boundary edges: 3, 15, 63.
-    EXPECT_EQ(GetTestLevel(GetShape("polygon3"), 3, 63), 2);
-    EXPECT_EQ(GetTestLevel(GetShape("polygon3"), 3, 62), 1);
+    EXPECT_EQ(GetTestLevel(GetShape("polygon3"), 3, 63 * divisor), 2);
+    EXPECT_EQ(GetTestLevel(GetShape("polygon3"), 3, 62 * divisor), 1);
 }
 
 TEST(Shapes, RealMeshes) {
