@@ -4,6 +4,7 @@
 #include "drawing/vertexSeparator.h"
 
 #include "far_ext/baseFaceMap.h"
+#include "far_ext/vtr/buffer.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
 
@@ -50,18 +51,16 @@ public:
         decideCuts();
         auto const places = ParallelSums<Place>(_level.GetNumFaces(), [&](Index begin, Index end) {
             Place sum;
-            forEachPart(begin, end, [&](Index face, int half) {
-                sum += {1, half < 0 ? std::size_t(_mesh.GetFaceSize(face)) : kNumHalfCorners};
-            });
+            forEachRun(begin, end, [&](FaceRun const &run) { sum += getSize(run); });
             return sum;
         });
         resize(places.back());
         ParallelForRange(_level.GetNumFaces(), [&](Index begin, Index end) {
             Place place = places[std::size_t(begin / FarExt::internal::kParallelRange)];
-            forEachPart(begin, end, [&](Index face, int half) {
-                _result.sizes[place.polygon] = half < 0 ? _mesh.GetFaceSize(face) : kNumHalfCorners;
-                write(face, half, place);
-                place += {1, std::size_t(_result.sizes[place.polygon])};
+            forEachRun(begin, end, [&](FaceRun const &run) {
+                writePolygons(run, place);
+                writeCorners(run, place);
+                place += getSize(run);
             });
         });
         return std::move(_result);
@@ -105,80 +104,136 @@ private:
         return _options.labels.empty() ? 0 : _options.labels[baseFace];
     }
 
-    // Calls function(face, half) for the drawn parts of faces [begin, end), with -1 for a whole face.
+    // Whole faces that follow one another; or, where half is not negative, that half of one face.
+    struct FaceRun {
+        Index begin;
+        Index end;
+        int half;
+    };
+
+    Place getSize(FaceRun const &run) const {
+        if (run.half >= 0) {
+            return {1, kNumHalfCorners};
+        }
+        return {std::size_t(run.end - run.begin),
+                std::size_t(_mesh.faceFirstCorner[run.end] - _mesh.faceFirstCorner[run.begin])};
+    }
+
+    // Calls function(run) for what is drawn of faces [begin, end).
     template <typename FUNCTION>
-    void forEachPart(Index begin, Index end, FUNCTION function) const {
+    void forEachRun(Index begin, Index end, FUNCTION function) const {
         auto const &splitFaces = _map.GetSplitFaces();
         auto split = std::lower_bound(
             splitFaces.begin(), splitFaces.end(), begin,
             [](BaseFaceMap::SplitFace const &other, Index face) { return other.face < face; });
-        for (Index face = begin; face < end; ++face) {
-            unsigned parts = kWhole;
-            if (split != splitFaces.end() && split->face == face) {
-                parts = _parts[std::size_t(split - splitFaces.begin())];
-                ++split;
-            } else if (unsigned const holes = _options.drawHoles ? 0 : _mesh.GetHoles(face)) {
-                // V-faces count to their first base face, and are holes when all of theirs are: so a
-                // hexagon beside one may be half a hole in one base face, too.
-                parts = kBothHalves & ~holes;
-            }
+        bool const hasHoles = !_options.drawHoles && !_mesh.faceHoles.empty();
+        Index next = begin; // the first face that no run has
+        auto const addParts = [&](Index face, unsigned parts) {
             if (parts == kWhole) {
-                function(face, -1);
-                continue;
+                return;
+            }
+            if (next < face) {
+                function(FaceRun{next, face, -1});
             }
             for (int half = 0; half < 2; ++half) {
                 if ((parts >> half & 1u) != 0) {
-                    function(face, half);
+                    function(FaceRun{face, face + 1, half});
                 }
             }
+            next = face + 1;
+        };
+        for (Index face = begin; face < end;) {
+            if (split != splitFaces.end() && split->face == face) {
+                addParts(face++, _parts[std::size_t(split - splitFaces.begin())]);
+                ++split;
+            } else if (hasHoles) {
+                // V-faces count to their first base face, and are holes when all of theirs are: so a
+                // hexagon beside one may be half a hole in one base face, too.
+                unsigned const holes = _mesh.GetHoles(face);
+                addParts(face++, holes != 0 ? kBothHalves & ~holes : unsigned(kWhole));
+            } else {
+                face = split != splitFaces.end() ? std::min(split->face, end) : end;
+            }
+        }
+        if (next < end) {
+            function(FaceRun{next, end, -1});
         }
     }
 
     void resize(Place const &size) {
-        _result.sizes.resize(size.polygon);
-        _result.vertices.resize(size.corner);
+        auto const resizeIf = [](bool isWanted, auto &array, std::size_t count) {
+            if (isWanted && count > 0) {
+                FarExt::internal::ResizeLarge(array, count);
+            }
+        };
+        resizeIf(true, _result.sizes, size.polygon);
+        resizeIf(true, _result.vertices, size.corner);
         _result.fvarValues.resize(_options.fvarChannels.size());
         for (std::vector<int> &values : _result.fvarValues) {
-            values.resize(size.corner);
+            resizeIf(true, values, size.corner);
         }
-        _result.sides.resize(_options.sides ? size.corner : 0);
-        _result.baseCoords.resize(_options.generateBaseCoords ? 2 * size.corner : 0);
-        _result.faces.resize(size.polygon);
-        _result.baseFaces.resize(size.polygon);
-        _result.labels.resize(_options.labels.empty() ? 0 : size.polygon);
+        resizeIf(_options.sides, _result.sides, size.corner);
+        resizeIf(_options.generateBaseCoords, _result.baseCoords, 2 * size.corner);
+        resizeIf(true, _result.faces, size.polygon);
+        resizeIf(true, _result.baseFaces, size.polygon);
+        resizeIf(!_options.labels.empty(), _result.labels, size.polygon);
     }
 
-    void write(Index face, int half, Place const &place) {
-        Index const baseFace = _map.GetBaseFace(face, std::max(half, 0));
-        _result.faces[place.polygon] = face;
-        _result.baseFaces[place.polygon] = baseFace;
-        if (!_options.labels.empty()) {
-            _result.labels[place.polygon] = _options.labels[baseFace];
-        }
-        int const size = _result.sizes[place.polygon];
-        if (_options.sides) {
-            for (int i = 0; i < size; ++i) {
-                int const local = half < 0 ? i : FarExt::kHexagonHalves[half][i];
-                _result.sides[place.corner + std::size_t(i)] =
-                    _options.sides->FindSide(_level, face, local, std::max(half, 0));
+    void writePolygons(FaceRun const &run, Place const &place) {
+        int const half = std::max(run.half, 0);
+        std::size_t polygon = place.polygon;
+        for (Index face = run.begin; face < run.end; ++face, ++polygon) {
+            Index const baseFace = _map.GetBaseFace(face, half);
+            _result.sizes[polygon] = run.half < 0 ? _mesh.GetFaceSize(face) : kNumHalfCorners;
+            _result.faces[polygon] = face;
+            _result.baseFaces[polygon] = baseFace;
+            if (!_options.labels.empty()) {
+                _result.labels[polygon] = _options.labels[baseFace];
             }
         }
+    }
+
+    void writeCorners(FaceRun const &run, Place const &place) {
         int *const vertices = _result.vertices.data() + place.corner;
-        if (_options.splitVertices) {
-            std::copy_n(_result.sides.data() + place.corner, size, vertices);
-        } else {
-            copyPart(_mesh.GetFaceVertices(face), half, vertices);
+        if (!_options.splitVertices) {
+            Index const first = _mesh.faceFirstCorner[run.begin];
+            copyPart({_mesh.faceVerts.data() + first, _mesh.faceFirstCorner[run.end] - first},
+                     run.half, vertices);
+            addOffset(vertices, getSize(run).corner);
         }
-        for (int i = 0; i < size; ++i) {
+        if (_options.sides || !_options.fvarChannels.empty() || _options.generateBaseCoords) {
+            std::size_t corner = place.corner;
+            for (Index face = run.begin; face < run.end; ++face) {
+                int const size = run.half < 0 ? _mesh.GetFaceSize(face) : kNumHalfCorners;
+                writeFurther(face, run.half, size, corner);
+                corner += std::size_t(size);
+            }
+        }
+        if (_options.splitVertices) {
+            std::copy_n(_result.sides.data() + place.corner, getSize(run).corner, vertices);
+            addOffset(vertices, getSize(run).corner);
+        }
+    }
+
+    void addOffset(int *vertices, std::size_t count) const {
+        for (std::size_t i = 0; i < count && _options.vertexOffset != 0; ++i) {
             vertices[i] += _options.vertexOffset;
         }
+    }
+
+    // What corners have beside vertices.
+    void writeFurther(Index face, int half, int size, std::size_t corner) {
+        for (int i = 0; i < size && _options.sides; ++i) {
+            int const local = half < 0 ? i : FarExt::kHexagonHalves[half][i];
+            _result.sides[corner + std::size_t(i)] =
+                _options.sides->FindSide(_level, face, local, std::max(half, 0));
+        }
         for (std::size_t i = 0; i < _options.fvarChannels.size(); ++i) {
-            copyValues(face, half, _options.fvarChannels[i],
-                       _result.fvarValues[i].data() + place.corner);
+            copyValues(face, half, _options.fvarChannels[i], _result.fvarValues[i].data() + corner);
         }
         if (_options.generateBaseCoords) {
             _level.GetFaceBaseCoords(face, std::max(half, 0),
-                                     _result.baseCoords.data() + 2 * place.corner);
+                                     _result.baseCoords.data() + 2 * corner);
         }
     }
 

@@ -22,7 +22,7 @@ OPENSUBDIVHEX_API void FreeArray(void *memory);
 
 /// Has the system put pages behind memory that was not written yet, in parallel and huge ones where
 /// it offers them.  Whoever writes it first need not wait for them then.  Content is kept.
-void PrepareArray(void *memory, std::size_t bytes);
+OPENSUBDIVHEX_API void PrepareArray(void *memory, std::size_t bytes);
 
 /// Whether there are pages behind memory already: false for new memory of a large array, which gets
 /// cleared pages when it is first written.  A guess by a page in the middle; true where the system
