@@ -92,4 +92,15 @@ bool CudaRefinementEvaluator::EvaluateLimit(float const *src, BufferDescriptor c
                   status);
 }
 
+std::int64_t CudaRefinementEvaluator::GetNumTriangles(int level) const {
+    return _evaluator->GetNumTriangles(level);
+}
+
+bool CudaRefinementEvaluator::MakeTriangleIndices(unsigned *dst, int level, int vertexOffset,
+                                                  Status *status) {
+    return Report(_evaluator->MakeTriangleIndices(
+                      DeviceBufferName(reinterpret_cast<std::uintptr_t>(dst)), level, vertexOffset),
+                  status);
+}
+
 } // namespace OpenSubdivHex::OsdExt

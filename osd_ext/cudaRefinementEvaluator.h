@@ -147,6 +147,29 @@ public:
                        FarExt::Status *status = nullptr);
     /// @}
 
+    /// @name Triangles
+    /// Of a level whose faces are all drawn whole: those of CreateTriangleIndices() with cutBaseFaces
+    /// false, CreaseCuts::None and drawHoles, in its order.  They are made on the device, those of
+    /// F-faces from the numbering alone, those of other faces from their vertices, which the first call
+    /// for a level loads; it refers to the refiner that was given.
+    /// @{
+
+    /// How many a level has.
+    std::int64_t GetNumTriangles(int level) const;
+    /// \brief Writes three vertices for each, unsigned integers of 32 bits.
+    ///
+    /// \param dst           an address on the device
+    /// \param level         0 ... GetMaxLevel()
+    /// \param vertexOffset  added to every vertex
+    /// \param status        says what was wrong; may be null
+    ///
+    /// \return  false, with nothing written, with InvalidArgument for a level or a buffer as in
+    ///          Evaluate(), for INTERPOLATE_FACE_VARYING, or if the refiner refined or unrefined in the
+    ///          meantime; and else as Evaluate
+    bool MakeTriangleIndices(unsigned *dst, int level, int vertexOffset = 0,
+                             FarExt::Status *status = nullptr);
+    /// @}
+
 private:
     CudaRefinementEvaluator(std::unique_ptr<internal::DeviceEvaluator> evaluator,
                             internal::CudaDevice &device);

@@ -70,4 +70,13 @@ bool GLRefinementEvaluator::EvaluateLimit(unsigned src, BufferDescriptor const &
                   status);
 }
 
+std::int64_t GLRefinementEvaluator::GetNumTriangles(int level) const {
+    return _evaluator->GetNumTriangles(level);
+}
+
+bool GLRefinementEvaluator::MakeTriangleIndices(unsigned dst, int level, int vertexOffset,
+                                                Status *status) {
+    return Report(_evaluator->MakeTriangleIndices(dst, level, vertexOffset), status);
+}
+
 } // namespace OpenSubdivHex::OsdExt

@@ -114,7 +114,8 @@ public:
     ///             descriptors differ or are less than 1, a stride is less than the length, an
     ///             offset is negative, or a buffer is 0 or ends before its last element,
     ///           - StatusCode::Unsupported if the compiler takes no shader,
-    ///           - StatusCode::TooLarge if the last element ends behind 2^32 floats
+    ///           - StatusCode::TooLarge if the last element ends behind 2^31 bytes, or what the driver
+    ///             promises beyond (GL_MAX_SHADER_STORAGE_BLOCK_SIZE), 2^32 floats at most
     bool Evaluate(unsigned src, Osd::BufferDescriptor const &srcDesc, unsigned dst,
                   Osd::BufferDescriptor const &dstDesc, int level,
                   FarExt::Status *status = nullptr);
@@ -155,6 +156,29 @@ public:
                        Osd::BufferDescriptor const &duDesc, unsigned dv,
                        Osd::BufferDescriptor const &dvDesc, int level,
                        FarExt::Status *status = nullptr);
+    /// @}
+
+    /// @name Triangles
+    /// Of a level whose faces are all drawn whole: those of CreateTriangleIndices() with cutBaseFaces
+    /// false, CreaseCuts::None and drawHoles, in its order.  They are made on the device, those of
+    /// F-faces from the numbering alone, those of other faces from their vertices, which the first call
+    /// for a level loads; it refers to the refiner that was given.
+    /// @{
+
+    /// How many a level has.
+    std::int64_t GetNumTriangles(int level) const;
+    /// \brief Writes three vertices for each, unsigned integers of 32 bits.
+    ///
+    /// \param dst           the name of a buffer
+    /// \param level         0 ... GetMaxLevel()
+    /// \param vertexOffset  added to every vertex
+    /// \param status        says what was wrong; may be null
+    ///
+    /// \return  false, with nothing written, with InvalidArgument for a level or a buffer as in
+    ///          Evaluate(), for INTERPOLATE_FACE_VARYING, or if the refiner refined or unrefined in the
+    ///          meantime; and else as Evaluate
+    bool MakeTriangleIndices(unsigned dst, int level, int vertexOffset = 0,
+                             FarExt::Status *status = nullptr);
     /// @}
 
 private:

@@ -25,6 +25,7 @@ DeviceArguments DeviceTask::GetArguments() const {
     arguments.duResults = getAddress<float>(duResults);
     arguments.dvResults = getAddress<float>(dvResults);
     arguments.listedVertices = getAddress<std::uint32_t const>(listedVertices);
+    arguments.triangles = getAddress<std::uint32_t>(triangles);
     return arguments;
 }
 

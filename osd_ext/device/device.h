@@ -32,6 +32,7 @@ struct OPENSUBDIVHEX_API DeviceTask {
     DeviceBufferName duResults = 0;
     DeviceBufferName dvResults = 0;
     DeviceBufferName listedVertices = 0;
+    DeviceBufferName triangles = 0;
     std::uint32_t count = 0;
     DeviceParameters parameters{}; ///< but for the count of invocations
 

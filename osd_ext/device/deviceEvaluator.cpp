@@ -53,6 +53,7 @@ Status DeviceEvaluator::Prepare(Options options) {
         return status;
     }
     bool const isFaceVarying = options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING;
+    _isFaceVarying = isFaceVarying;
     _isOfVertices = options.interpolationMode == FarExt::INTERPOLATE_VERTEX;
     MeshLevels const &mesh =
         _refiner.GetHierarchy().GetMesh(isFaceVarying ? options.fvarChannel : -1);
@@ -61,6 +62,8 @@ Status DeviceEvaluator::Prepare(Options options) {
     for (int level = 0; level <= _refiner.GetMaxLevel(); ++level) {
         FarExt::internal::Level const &ofMesh = mesh.levels[std::size_t(level)];
         _numElements.push_back(ofMesh.numVertices);
+        _numTriangles.push_back(std::int64_t(ofMesh.numCorners) -
+                                2 * std::int64_t(ofMesh.numFaces));
         if (level < _refiner.GetMaxLevel()) {
             refinements.push_back(&mesh.refinements[std::size_t(level)]);
             masks.emplace_back(ofMesh, _refiner.GetHexSchemeOptions(),
@@ -126,6 +129,9 @@ std::int64_t DeviceEvaluator::GetNumElementsAllLevels() const {
 
 std::int64_t DeviceEvaluator::GetNumDeviceBytes() const {
     std::int64_t result = _indices.GetNumBytes() + _weights.GetNumBytes();
+    for (auto const &faces : _faces) {
+        result += faces ? faces->indices.GetNumBytes() : 0;
+    }
     for (auto const &limit : _limits) {
         result += limit ? limit->indices.GetNumBytes() + limit->weights.GetNumBytes() : 0;
     }
@@ -317,6 +323,15 @@ Status DeviceEvaluator::EvaluateAllLevels(Values const &src, Values const &dst) 
     return _device->EndFrame();
 }
 
+// What is prepared late needs the refiner as it was.
+Status DeviceEvaluator::checkRefiner() const {
+    return _refiner.GetNumRefinements() == _numRefinements
+               ? Status()
+               : FarExt::internal::Failure(
+                     StatusCode::InvalidArgument,
+                     "the refiner has refined again since the evaluator was made");
+}
+
 // Finds the masks of a level, unless it has, and loads them.
 Status DeviceEvaluator::prepareLimit(int level, int length) {
     Status status = _device->Prepare(DeviceKernel::RegularLimit, length, 0);
@@ -328,10 +343,9 @@ Status DeviceEvaluator::prepareLimit(int level, int length) {
     if (!status.IsOk() || limit) {
         return status;
     }
-    if (_refiner.GetNumRefinements() != _numRefinements) {
-        return FarExt::internal::Failure(
-            StatusCode::InvalidArgument,
-            "the refiner has refined again since the evaluator was made");
+    status = checkRefiner();
+    if (!status.IsOk()) {
+        return status;
     }
     FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();
     status = FarExt::internal::CheckLimitLevel(hierarchy, _refiner.GetHexSchemeOptions(), level);
@@ -437,6 +451,87 @@ void DeviceEvaluator::runLimit(DeviceTask &task, Limit const &limit,
         task.parameters.dvStride = std::uint64_t(outputs[2].stride);
     }
     run(task, count);
+}
+
+// Loads the faces of a level, unless it has.
+Status DeviceEvaluator::prepareFaces(int level) {
+    Status status = _device->Prepare(DeviceKernel::Triangles, 1, 0);
+    _faces.resize(_numElements.size());
+    if (!status.IsOk() || _faces[std::size_t(level)]) {
+        return status;
+    }
+    status = checkRefiner();
+    if (!status.IsOk()) {
+        return status;
+    }
+    MeshLevels const &mesh = _refiner.GetHierarchy().mesh;
+    FarExt::internal::Level const &ofMesh = mesh.levels[std::size_t(level)];
+    auto faces = std::make_unique<Faces>(*_device);
+    if (level > 0 && ofMesh.isHexagonal) {
+        faces->numConsecutiveCorners =
+            std::uint32_t(ofMesh.faceFirstCorner[std::size_t(ofMesh.numFFaces)]);
+        faces->firstConsecutiveVertex =
+            std::uint32_t(mesh.refinements[std::size_t(level) - 1].GetCornerChildVertex(0));
+    }
+    constexpr std::size_t kFewRuns = 8;
+    for (Far::Index face = 0; face < ofMesh.numFaces && faces->runs.size() <= kFewRuns; ++face) {
+        auto const size = std::uint32_t(ofMesh.GetFaceSize(face));
+        if (faces->runs.empty() || faces->runs.back().size != size) {
+            faces->runs.push_back({std::uint32_t(face), 0,
+                                   std::uint32_t(ofMesh.faceFirstCorner[std::size_t(face)]), size});
+        }
+        ++faces->runs.back().count;
+    }
+    std::vector<Far::Index> indices;
+    if (faces->runs.size() > kFewRuns) {
+        faces->runs.clear();
+        indices.assign(ofMesh.faceFirstCorner.begin(), ofMesh.faceFirstCorner.end());
+    }
+    faces->firstListedVertex = std::uint32_t(indices.size());
+    indices.insert(indices.end(), ofMesh.faceVerts.begin() + faces->numConsecutiveCorners,
+                   ofMesh.faceVerts.end());
+    faces->indices.Resize(std::int64_t(indices.size()) * kWord);
+    faces->indices.Write(0, indices);
+    _faces[std::size_t(level)] = std::move(faces);
+    return status;
+}
+
+Status DeviceEvaluator::MakeTriangleIndices(DeviceBufferName dst, int level, int vertexOffset) {
+    Status status = CheckLevel(level, GetMaxLevel());
+    if (status.IsOk() && _isFaceVarying) {
+        status = FarExt::internal::Failure(StatusCode::InvalidArgument,
+                                           "there are no triangles of face-varying values");
+    }
+    if (status.IsOk() && GetNumTriangles(level) > 0) {
+        status = _device->CheckBuffer(dst, 3 * GetNumTriangles(level), "destination");
+    }
+    if (status.IsOk()) {
+        status = prepareFaces(level);
+    }
+    if (!status.IsOk()) {
+        return status;
+    }
+    Faces const &faces = *_faces[std::size_t(level)];
+    DeviceTask task = makeTask(DeviceKernel::Triangles, 1, {0, 0, 1}, {0, 0, 1});
+    task.indices = faces.indices.GetName();
+    task.listedVertices = faces.indices.GetName();
+    task.triangles = dst;
+    task.parameters.numConsecutiveCorners = faces.numConsecutiveCorners;
+    task.parameters.firstConsecutiveVertex = faces.firstConsecutiveVertex;
+    task.parameters.firstListedVertex = faces.firstListedVertex;
+    task.parameters.vertexOffset = std::uint32_t(vertexOffset);
+    for (Faces::Run const &faceRun : faces.runs) {
+        task.parameters.firstFace = faceRun.firstFace;
+        task.parameters.firstCorner = faceRun.firstCorner;
+        task.parameters.faceSize = faceRun.size;
+        run(task, faceRun.count);
+    }
+    if (faces.runs.empty()) {
+        task.parameters.hasIndices = 1;
+        run(task, faces.firstListedVertex > 0 ? faces.firstListedVertex - 1 : 0);
+    }
+    _device->Wait();
+    return _device->EndFrame();
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -47,6 +47,14 @@ public:
     FarExt::Status EvaluateLimit(Values const &src, std::vector<Values> const &outputs, int level);
     /// @}
 
+    /// Of a level whose faces are all drawn whole.
+    std::int64_t GetNumTriangles(int level) const { return _numTriangles[std::size_t(level)]; }
+    /// \brief Writes the triangles of a level, three vertices each, as CreateTriangleIndices orders
+    /// them.
+    ///
+    /// \param dst  a buffer of unsigned integers of 32 bits
+    FarExt::Status MakeTriangleIndices(DeviceBufferName dst, int level, int vertexOffset);
+
 private:
     // Where the listed corners and vertices of a refinement are among the indices.
     struct Places {
@@ -69,10 +77,30 @@ private:
         DeviceBuffer weights;
     };
 
+    // The faces of a level: the vertices of those that are no F-faces, and, where these are not in a few
+    // runs, the first corners of all.
+    struct Faces {
+        explicit Faces(Device &device) : indices(device) {}
+
+        struct Run {
+            std::uint32_t firstFace;
+            std::uint32_t count;
+            std::uint32_t firstCorner;
+            std::uint32_t size;
+        };
+        std::vector<Run> runs;
+        std::uint32_t numConsecutiveCorners = 0;
+        std::uint32_t firstConsecutiveVertex = 0;
+        std::uint32_t firstListedVertex = 0; // in indices, behind the first corners
+        DeviceBuffer indices;
+    };
+
     FarExt::Status check(Values const &src, std::vector<Values> const &outputs, int level,
                          std::int64_t numWritten) const;
     FarExt::Status prepareKernels(int length);
     FarExt::Status prepareLimit(int level, int length);
+    FarExt::Status prepareFaces(int level);
+    FarExt::Status checkRefiner() const;
     DeviceTask makeTask(DeviceKernel kernel, int length, Elements const &src,
                         Elements const &dst) const;
     void run(DeviceTask &task, std::uint32_t count);
@@ -89,6 +117,7 @@ private:
     FarExt::TopologyRefiner const &_refiner; // for limits
     int const _numRefinements;               // of it, when this was made
     bool _isOfVertices = true;               // not of face-varying values, nor varying
+    bool _isFaceVarying = false;
 
     std::vector<int> _numElements;              // by level
     std::vector<DeviceRefinement> _refinements; // by level of the parent
@@ -104,6 +133,8 @@ private:
     DeviceBuffer _evenLevel;     // levels below the one asked for; that one, too, for its limit
     DeviceBuffer _oddLevel;
     std::vector<std::unique_ptr<Limit>> _limits; // by level; null: not yet asked
+    std::vector<std::unique_ptr<Faces>> _faces;  // likewise
+    std::vector<std::int64_t> _numTriangles;     // by level
 };
 
 } // namespace OpenSubdivHex::OsdExt::internal

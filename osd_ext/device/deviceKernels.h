@@ -35,6 +35,7 @@ struct DeviceArguments : DeviceParameters {
     float *duResults = nullptr;
     float *dvResults = nullptr;
     uint const *listedVertices = nullptr;
+    uint *triangles = nullptr;
 };
 
 /// \brief The kernels, for elements of LENGTH floats and runs of faces with SIZE vertices.
@@ -66,7 +67,8 @@ enum class DeviceKernel {
     VertexRun,
     Vertices,
     RegularLimit,
-    VertexLimit
+    VertexLimit,
+    Triangles
 };
 
 /// Runs invocation \p i of a kernel.
@@ -89,8 +91,10 @@ OPENSUBDIVHEX_KERNEL_FUNCTION void RunKernel(DeviceKernels<LENGTH, SIZE> &kernel
         kernels.makeListedVVertex(i);
     } else if constexpr (KERNEL == DeviceKernel::RegularLimit) {
         kernels.makeRegularLimit(i);
-    } else {
+    } else if constexpr (KERNEL == DeviceKernel::VertexLimit) {
         kernels.makeListedLimit(i);
+    } else {
+        kernels.makeTriangles(i);
     }
 }
 
@@ -138,6 +142,8 @@ void RunCompiled(DeviceKernel kernel, int length, int faceSize, RUN const &run) 
         return run(CompiledKernel<DeviceKernel::RegularLimit, LENGTH, 3>());
     case DeviceKernel::VertexLimit:
         return run(CompiledKernel<DeviceKernel::VertexLimit, LENGTH, 3>());
+    case DeviceKernel::Triangles:
+        return run(CompiledKernel<DeviceKernel::Triangles, 1, 3>());
     }
 }
 

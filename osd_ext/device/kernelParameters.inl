@@ -25,10 +25,13 @@ PARAMETER(PLACE, firstListedVertex) // position in listedVertices
 PARAMETER(PLACE, firstIndex)  // position in indices of what a kernel lists
 PARAMETER(PLACE, firstWeight) // position in weights
 PARAMETER(uint, firstCorner)  // of a run of faces
+PARAMETER(uint, firstFace)    // of one that is cut into triangles
+PARAMETER(uint, vertexOffset) // added to the vertices of triangles
 PARAMETER(uint, faceSize)     // of its faces
 PARAMETER(uint, firstVertex)  // of a run of vertices
 PARAMETER(float, vertexWeight)
-PARAMETER(uint, hasIndices) // copies elements that are listed, else those that follow one another
+// Elements that are copied are listed, and the first corners of faces; else they follow one another.
+PARAMETER(uint, hasIndices)
 PARAMETER(uint, averagesFaces) // else V-vertices stay
 PARAMETER(uint, addsInTurn)    // the three F-vertices of a vertex; else the last two first
 PARAMETER(uint, hasDerivatives)

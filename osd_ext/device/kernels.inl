@@ -23,6 +23,7 @@ READ_ARRAY(3, Weights, float, weights)
 ARRAY(4, DuResults, float, duResults)
 ARRAY(5, DvResults, float, dvResults)
 READ_ARRAY(6, ListedVertices, uint, listedVertices)
+ARRAY(7, Triangles, uint, triangles)
 
 struct Element {
     float x[LENGTH];
@@ -224,4 +225,34 @@ FUNCTION void makeListedVVertex(uint i) {
         addTo(e, weights[first + PLACE(numSources)], sum);
     }
     store(child, e);
+}
+
+FUNCTION void storeTriangle(PLACE place, uint a, uint b, uint c) {
+    triangles[place] = uint(vertexOffset) + getVertexOfCorner(a);
+    triangles[place + PLACE(1)] = uint(vertexOffset) + getVertexOfCorner(b);
+    triangles[place + PLACE(2)] = uint(vertexOffset) + getVertexOfCorner(c);
+}
+
+// The triangles of a face, which zigzag across it as those of CreateTriangleIndices.  Faces before have
+// two triangles fewer than corners, each.
+FUNCTION void makeTriangles(uint i) {
+    uint corner = firstCorner + i * faceSize;
+    uint size = faceSize;
+    if (hasIndices != 0u) {
+        corner = indices[firstIndex + PLACE(i)];
+        size = indices[firstIndex + PLACE(i + 1u)] - corner;
+    }
+    PLACE place = resultOffset + PLACE(3) * PLACE(corner - 2u * (firstFace + i));
+    uint low = corner;
+    uint high = corner + size - 1u;
+    while (high - low >= 2u) {
+        storeTriangle(place, low, low + 1u, high);
+        place = place + PLACE(3);
+        low = low + 1u;
+        if (high - low >= 2u) {
+            storeTriangle(place, low, high - 1u, high);
+            place = place + PLACE(3);
+            high = high - 1u;
+        }
+    }
 }

@@ -3,6 +3,7 @@
 
 #include "osd_ext/gl/kernelText.h"
 
+#include <algorithm>
 #include <iterator>
 #include <new>
 #include <string>
@@ -20,12 +21,14 @@ constexpr std::uint32_t kGroup = 64; // invocations
 constexpr std::uint32_t kMaxGroups = 65535;
 // Places in a buffer are numbers of 32 bits in shaders.
 constexpr std::int64_t kMaxPlaces = std::int64_t(1) << 32;
+// Bytes of a buffer that shaders reach on all drivers known, whatever these promise; some crash beyond.
+constexpr std::int64_t kMaxBytes = std::int64_t(1) << 31;
 
 // In the order of DeviceKernel.
 constexpr char const *kNames[] = {
     "copyElement",       "makeFVerticesOfRun", "makeFVerticesOfFace", "makeFVerticesByWeights",
     "makeListedFVertex", "makeVVertexOfRun",   "makeListedVVertex",   "makeRegularLimit",
-    "makeListedLimit"};
+    "makeListedLimit",   "makeTriangles"};
 
 // What stands before the kernels, behind LENGTH and SIZE: see kernels.inl.
 constexpr char const *kHead = R"(
@@ -113,9 +116,14 @@ Status GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
                                                      " bytes, but its last element ends at byte " +
                                                      str(numNeeded));
     }
-    if (numFloats > kMaxPlaces) {
-        return fail(StatusCode::TooLarge, "the last element of the " + what + " ends at float " +
-                                              str(numFloats) + ", beyond what 32 bits reach");
+    GLint64 maxBytes = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &maxBytes);
+    maxBytes =
+        std::min(std::max<GLint64>(maxBytes, kMaxBytes), kMaxPlaces * GLint64(sizeof(float)));
+    if (numNeeded > maxBytes) {
+        return fail(StatusCode::TooLarge,
+                    "the last element of the " + what + " ends at byte " + str(numNeeded) +
+                        ", beyond what this driver reaches: " + str(maxBytes));
     }
     return Status();
 }
@@ -159,9 +167,9 @@ void GlDevice::Run(DeviceTask const &task) {
 #include "osd_ext/device/kernelParameters.inl"
 #undef PARAMETER
 #undef PLACE
-    DeviceBufferName const buffers[] = {task.sources,       task.results,   task.indices,
-                                        task.weights,       task.duResults, task.dvResults,
-                                        task.listedVertices};
+    DeviceBufferName const buffers[] = {task.sources,        task.results,   task.indices,
+                                        task.weights,        task.duResults, task.dvResults,
+                                        task.listedVertices, task.triangles};
     for (GLuint binding = 0; binding < std::size(buffers); ++binding) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, GLuint(buffers[binding]));
     }
@@ -175,7 +183,7 @@ void GlDevice::Wait() { glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT); }
 // Binds nothing, as if nothing had been.
 Status GlDevice::EndFrame() {
     glUseProgram(0);
-    constexpr GLuint kNumBindings = 7;
+    constexpr GLuint kNumBindings = 8;
     for (GLuint binding = 0; binding < kNumBindings; ++binding) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
     }

@@ -47,6 +47,9 @@ struct Cuda {
         values.resize(numFloats);
         return values;
     }
+    static unsigned *GetIntegers(Buffer &buffer) {
+        return reinterpret_cast<unsigned *>(buffer.BindCudaBuffer());
+    }
 };
 
 class CudaTable : public DeviceEvaluator<Cuda> {};

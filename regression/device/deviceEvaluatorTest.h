@@ -9,6 +9,7 @@
 
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/refinementEvaluator.h"
+#include "osd_ext/triangleIndices.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <numeric>
@@ -76,7 +78,8 @@ struct KindName {
 ///  - kName,
 ///  - Evaluator and Buffer, which this binds,
 ///  - GetMissing(): empty, or why there is none; and IsNeeded(): whether that is a failure,
-///  - MakeBuffer(values, stride) and Read(buffer, numFloats).
+///  - MakeBuffer(values, stride) and Read(buffer, numFloats),
+///  - GetIntegers(buffer): where triangles are written.
 template <class KIND>
 class DeviceEvaluator : public testing::Test {
 protected:
@@ -458,12 +461,45 @@ TYPED_TEST_P(DeviceEvaluator, GivesTheBitsOfTheKernelsOnTheProcessor) {
     }
 }
 
+TYPED_TEST_P(DeviceEvaluator, MakesTheTrianglesOfTheCpu) {
+    OsdExt::DrawOptions options;
+    options.cutBaseFaces = false;
+    options.cutCreases = OsdExt::CreaseCuts::None;
+    options.drawHoles = true;
+    options.vertexOffset = 5;
+    for (Shape const &shape : GetShapesAndFeatureShapes()) {
+        if (shape.GetNumFaces() > 100) {
+            continue;
+        }
+        for (auto boundary :
+             {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+            auto const refiner = MakeRefiner(shape, 3, boundary);
+            auto const evaluator = TypeParam::Evaluator::Create(*refiner, {});
+            for (int level = 0; level <= 3; ++level) {
+                SCOPED_TRACE(testing::Message() << shape.name << ", level " << level);
+                auto const expected =
+                    OsdExt::CreateTriangleIndices(refiner->GetLevel(level), options);
+                ASSERT_EQ(evaluator->GetNumTriangles(level), expected.GetNumTriangles());
+                auto const buffer = this->makeBlank(expected.vertices.size(), 1);
+                FarExt::Status status;
+                ASSERT_TRUE(evaluator->MakeTriangleIndices(this->kind.GetIntegers(*buffer), level,
+                                                           options.vertexOffset, &status))
+                    << status.GetMessage();
+                std::vector<float> const bits = this->kind.Read(*buffer, expected.vertices.size());
+                std::vector<int> triangles(bits.size());
+                std::memcpy(triangles.data(), bits.data(), bits.size() * sizeof(int));
+                ASSERT_EQ(triangles, expected.vertices);
+            }
+        }
+    }
+}
+
 REGISTER_TYPED_TEST_SUITE_P(DeviceEvaluator, GivesTheValuesOfTheCpu, GivesTheLimitOfTheCpu,
                             GivesTheLimitOfEveryLevelAndLength, RefusesLimitsAsTheCpu,
                             TakesEveryLengthMaskSchemeAndMode, TakesEveryFirstStep,
                             TakesRunsOfEveryFaceSize, KeepsFewBytesOfLargeLevels,
                             GivesMostBitsOfTheCpu, IsEvaluatedInPlace,
-                            GivesTheBitsOfTheKernelsOnTheProcessor);
+                            GivesTheBitsOfTheKernelsOnTheProcessor, MakesTheTrianglesOfTheCpu);
 
 } // namespace OpenSubdivHex::Regression
 

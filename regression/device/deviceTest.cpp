@@ -8,6 +8,8 @@
 #include "osd_ext/cpuEvaluator.h"
 #include "osd_ext/cuda/stencilSum.h"
 
+#include <new>
+
 namespace OpenSubdivHex::Regression {
 
 namespace {
@@ -34,11 +36,49 @@ struct Host {
         return std::make_unique<Buffer>(values);
     }
     static std::vector<float> Read(Buffer &buffer, std::size_t) { return buffer.Get(); }
+    static unsigned *GetIntegers(Buffer &buffer) {
+        return reinterpret_cast<unsigned *>(buffer.BindCpuBuffer());
+    }
 };
 
 } // namespace
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Host, DeviceEvaluator, Host, KindName);
+
+// Places in arrays have 64 bits, as in CUDA: elements far apart, in 2.3 GB few pages of which are touched.
+TEST(LargeBuffers, AreWrittenBeyondTwoGigabytes) {
+    auto const refiner =
+        MakeRefiner(GetShape("cube"), 2, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, {}, true);
+    auto const evaluator = HostEvaluator::Create(*refiner);
+    constexpr int kLength = 3;
+    constexpr int kStride = 4500000;
+    int const numElements = evaluator->GetNumElements(2);
+    std::size_t const numFloats = std::size_t(numElements) * kStride;
+    ASSERT_GT(numFloats * sizeof(float), std::size_t(1) << 31);
+    std::unique_ptr<float[]> const far(new (std::nothrow) float[numFloats]);
+    if (!far) {
+        GTEST_SKIP() << "there is no memory";
+    }
+    Osd::BufferDescriptor const desc(0, kLength, kLength);
+    Osd::BufferDescriptor const farDesc(0, kLength, kStride);
+    std::vector<float> const src = MakeValues(evaluator->GetNumElements(0), kLength);
+    std::vector<float> near(std::size_t(numElements) * kLength);
+    auto const expectSame = [&] {
+        for (int i = 0; i < numElements; ++i) {
+            for (int k = 0; k < kLength; ++k) {
+                ASSERT_EQ(far[std::size_t(i) * kStride + std::size_t(k)],
+                          near[std::size_t(i * kLength + k)])
+                    << "element " << i;
+            }
+        }
+    };
+    ASSERT_TRUE(evaluator->Evaluate(src.data(), desc, near.data(), desc, 2));
+    ASSERT_TRUE(evaluator->Evaluate(src.data(), desc, far.get(), farDesc, 2));
+    ASSERT_NO_FATAL_FAILURE(expectSame());
+    ASSERT_TRUE(evaluator->EvaluateLimit(src.data(), desc, near.data(), desc, 2));
+    ASSERT_TRUE(evaluator->EvaluateLimit(src.data(), desc, far.get(), farDesc, 2));
+    expectSame();
+}
 
 // What the threads of CudaEvaluator sum up, one after the other.
 TEST(StencilLanes, SumUpStencils) {

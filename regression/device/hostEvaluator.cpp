@@ -94,4 +94,9 @@ bool HostEvaluator::EvaluateLimit(float const *src, BufferDescriptor const &srcD
                   status);
 }
 
+bool HostEvaluator::MakeTriangleIndices(unsigned *dst, int level, int vertexOffset,
+                                        Status *status) {
+    return Report(_evaluator.MakeTriangleIndices(getName(dst), level, vertexOffset), status);
+}
+
 } // namespace OpenSubdivHex::Regression

@@ -42,6 +42,10 @@ public:
                        Osd::BufferDescriptor const &dvDesc, int level,
                        FarExt::Status *status = nullptr);
 
+    std::int64_t GetNumTriangles(int level) const { return _evaluator.GetNumTriangles(level); }
+    bool MakeTriangleIndices(unsigned *dst, int level, int vertexOffset = 0,
+                             FarExt::Status *status = nullptr);
+
 private:
     explicit HostEvaluator(FarExt::TopologyRefiner const &refiner);
 

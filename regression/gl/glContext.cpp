@@ -58,13 +58,32 @@ GlContext::~GlContext() {
     eglTerminate(_display);
 }
 
-std::vector<float> GlContext::Read(GLuint buffer, std::size_t numFloats) const {
+std::vector<float> GlContext::Read(GLuint buffer, std::size_t numFloats,
+                                   std::int64_t firstFloat) const {
     std::vector<float> values(numFloats);
     getFunction<PFNGLMEMORYBARRIERPROC>("glMemoryBarrier")(GL_BUFFER_UPDATE_BARRIER_BIT);
     getFunction<PFNGLBINDBUFFERPROC>("glBindBuffer")(GL_COPY_READ_BUFFER, buffer);
     getFunction<PFNGLGETBUFFERSUBDATAPROC>("glGetBufferSubData")(
-        GL_COPY_READ_BUFFER, 0, GLsizeiptr(numFloats * sizeof(float)), values.data());
+        GL_COPY_READ_BUFFER, GLintptr(firstFloat) * GLintptr(sizeof(float)),
+        GLsizeiptr(numFloats * sizeof(float)), values.data());
     return values;
+}
+
+GLuint GlContext::MakeBuffer(std::int64_t numBytes) const {
+    GLuint buffer = 0;
+    getFunction<PFNGLGENBUFFERSPROC>("glGenBuffers")(1, &buffer);
+    getFunction<PFNGLBINDBUFFERPROC>("glBindBuffer")(GL_COPY_READ_BUFFER, buffer);
+    getFunction<PFNGLBUFFERDATAPROC>("glBufferData")(GL_COPY_READ_BUFFER, GLsizeiptr(numBytes),
+                                                     nullptr, GL_DYNAMIC_COPY);
+    if (GetGlError() != GL_NO_ERROR) {
+        DeleteBuffer(buffer);
+        return 0;
+    }
+    return buffer;
+}
+
+void GlContext::DeleteBuffer(GLuint buffer) const {
+    getFunction<PFNGLDELETEBUFFERSPROC>("glDeleteBuffers")(1, &buffer);
 }
 
 std::string GlContext::GetRenderer() const {

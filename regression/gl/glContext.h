@@ -6,6 +6,7 @@
 #include <GL/gl.h>
 #include <GL/glext.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,12 @@ public:
     std::string GetRenderer() const;
 
     /// The floats of a buffer of OpenGL, once all that was called before is done.
-    std::vector<float> Read(GLuint buffer, std::size_t numFloats) const;
+    std::vector<float> Read(GLuint buffer, std::size_t numFloats,
+                            std::int64_t firstFloat = 0) const;
+
+    /// A buffer of any size; 0 where the driver has none.
+    GLuint MakeBuffer(std::int64_t numBytes) const;
+    void DeleteBuffer(GLuint buffer) const;
 
     /// The first error since the last call; GL_NO_ERROR is 0.
     GLenum GetGlError() const;

@@ -43,6 +43,7 @@ struct OpenGl {
     std::vector<float> Read(Buffer &buffer, std::size_t numFloats) const {
         return context.Read(buffer.BindVBO(), numFloats);
     }
+    static unsigned GetIntegers(Buffer &buffer) { return buffer.BindVBO(); }
 
     GlContext context;
 };
@@ -69,6 +70,45 @@ TEST_F(GlRefinement, DispatchesMoreThanOneRowOfGroups) {
     Descriptor const desc(0, 1, 1);
     ASSERT_TRUE(evaluator->Evaluate(srcBuffer.get(), desc, dstBuffer.get(), desc, 0));
     expectBits(dstBuffer, src);
+}
+
+// Elements far apart, in a buffer of more than 2^31 bytes, few pages of which are touched: drivers that do
+// not reach so far are not asked to.
+TEST_F(GlRefinement, WritesBeyondTwoGigabytesOrRefuses) {
+    auto const refiner = MakeRefiner(GetShape("cube"), 2, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    auto const evaluator = GLRefinementEvaluator::Create(*refiner);
+    auto const expected = RefinementEvaluator::Create(*refiner);
+    constexpr int kLength = 3;
+    constexpr int kStride = 4500000;
+    int const numElements = evaluator->GetNumElements(2);
+    std::int64_t const numBytes = std::int64_t(numElements) * kStride * std::int64_t(sizeof(float));
+    ASSERT_GT(numBytes, std::int64_t(1) << 31);
+    GLuint const dst = kind.context.MakeBuffer(numBytes);
+    if (dst == 0) {
+        GTEST_SKIP() << "this driver has no buffer of " << numBytes << " bytes";
+    }
+    Descriptor const desc(0, kLength, kLength);
+    std::vector<float> const src = MakeValues(evaluator->GetNumElements(0), kLength);
+    std::vector<float> values(std::size_t(numElements) * kLength);
+    ASSERT_TRUE(expected->Evaluate(src.data(), desc, values.data(), desc, 2));
+    Buffer const srcBuffer = kind.MakeBuffer(src, kLength);
+    FarExt::Status status;
+    if (evaluator->Evaluate(srcBuffer->BindVBO(), desc, dst, Descriptor(0, kLength, kStride), 2,
+                            &status)) {
+        for (int i = 0; i < numElements; ++i) {
+            std::vector<float> const element =
+                kind.context.Read(dst, kLength, std::int64_t(i) * kStride);
+            for (int k = 0; k < kLength; ++k) {
+                ASSERT_NEAR(element[std::size_t(k)], values[std::size_t(i * kLength + k)],
+                            kNumUnits * kUnit)
+                    << "element " << i;
+            }
+        }
+    } else {
+        EXPECT_EQ(status.GetCode(), FarExt::StatusCode::TooLarge);
+        EXPECT_NE(status.GetMessage().find("beyond what this driver reaches"), std::string::npos);
+    }
+    kind.context.DeleteBuffer(dst);
 }
 
 TEST(GlRefinementWithoutContext, IsUnsupported) {
