@@ -48,7 +48,7 @@ void addProducts(REAL const (&factors)[NUM_SUMS][NUM_ROWS], REAL const *const (&
 template <typename REAL>
 void LimitMultiplier<REAL>::Clear() {
     _firstTerms.clear();
-    _terms.clear();
+    _numTerms = 0;
     _sources.clear();
     beginRound(_numberOfSource, _round);
 }
@@ -56,10 +56,12 @@ void LimitMultiplier<REAL>::Clear() {
 template <typename REAL>
 void LimitMultiplier<REAL>::AddRow(LimitRow const &row, Index firstSource) {
     auto const rowBit = RowBits(1u << _firstTerms.size());
-    std::size_t const first = _terms.size();
-    _firstTerms.push_back(int(first));
-    _terms.resize(first + std::size_t(row.size));
-    Term *term = _terms.data() + first;
+    _firstTerms.push_back(_numTerms);
+    auto const numTerms = std::size_t(_numTerms) + std::size_t(row.size);
+    if (_terms.size() < numTerms) {
+        _terms.resize(2 * numTerms);
+    }
+    Term *term = _terms.data() + _numTerms;
     for (int i = 0; i < row.size; ++i) {
         bool const isUsed = _hasDerivatives ? !row.IsNothing(i) : row.weights[i] != 0;
         if (!isUsed) {
@@ -74,7 +76,7 @@ void LimitMultiplier<REAL>::AddRow(LimitRow const &row, Index firstSource) {
         _sources[std::size_t(number.value)].rows |= rowBit;
         *term++ = {number.value, {REAL(row.weights[i]), REAL(row.du[i]), REAL(row.dv[i])}};
     }
-    _terms.resize(std::size_t(term - _terms.data()));
+    _numTerms = int(term - _terms.data());
 }
 
 template <typename REAL>
@@ -168,6 +170,9 @@ void LimitMultiplier<REAL>::makeDense(Columns const &columns) {
     for (int k = 0; k < first.size; ++k) {
         _reference[getColumn(first.indices[k])] = getWeights(_sources.front())[k];
     }
+    _negative.resize(numColumns);
+    std::transform(_reference.begin(), _reference.end(), _negative.begin(),
+                   [](double weight) { return REAL(-weight); });
     auto const stride = std::size_t(roundUp(columns.size));
     _dense.resize(_sources.size() * stride);
     REAL *dense = _dense.data();
@@ -179,8 +184,7 @@ void LimitMultiplier<REAL>::makeDense(Columns const &columns) {
                 dense[k] = REAL(weights[k] - _reference[k]);
             }
         } else {
-            std::transform(_reference.begin(), _reference.end(), dense,
-                           [](double weight) { return REAL(-weight); });
+            std::copy(_negative.begin(), _negative.end(), dense);
             for (int k = 0; k < list.size; ++k) {
                 std::size_t const column = getColumn(list.indices[k]);
                 dense[column] = REAL(weights[k] - _reference[column]);

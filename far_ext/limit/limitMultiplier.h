@@ -133,8 +133,7 @@ private:
     };
 
     Term const *getTerms(int row) const {
-        return _terms.data() +
-               (row < GetNumRows() ? std::size_t(_firstTerms[std::size_t(row)]) : _terms.size());
+        return _terms.data() + (row < GetNumRows() ? _firstTerms[std::size_t(row)] : _numTerms);
     }
     List getList(Source const &source) const;
     void findLists();
@@ -149,7 +148,8 @@ private:
     bool const _hasDerivatives;
 
     std::vector<int> _firstTerms; // by row
-    std::vector<Term> _terms;     // of all rows in turn
+    std::vector<Term> _terms;     // of all rows in turn, and room for more
+    int _numTerms = 0;
     std::vector<Source> _sources;
     std::vector<Entry> _numberOfSource; // among the sources of the rows
     unsigned _round = 0;
@@ -162,6 +162,7 @@ private:
     unsigned _columnRound = 0;
 
     std::vector<double> _reference; // weights of the first source by column
+    std::vector<REAL> _negative;    // the differences of nothing to it
     std::vector<REAL> _dense;       // differences of all sources to it, one after the other
     std::vector<REAL> _sums;        // of a row by column: points, then derivatives
 };

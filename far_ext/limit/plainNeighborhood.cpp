@@ -108,7 +108,10 @@ bool PlainNeighborhoodGatherer::addFace(Index face, int local, PlainNeighborhood
     Index const first = _level.faceFirstCorner[face];
     int const size = _level.GetFaceSize(face);
     _faces.push_back(face);
-    result.key.push_back(char(size));
+    std::size_t const keySize = result.key.size();
+    result.key.resize(keySize + 1 + std::size_t(size));
+    char *key = result.key.data() + keySize;
+    *key++ = char(size);
     FaceCorner const corners = {_level.faceVerts.data() + first, size, local};
     for (int i = 0; i < size; ++i) {
         Index const vert = corners.GetVertex(i);
@@ -117,7 +120,7 @@ bool PlainNeighborhoodGatherer::addFace(Index face, int local, PlainNeighborhood
         if (number == next) {
             result.sources.push_back(vert);
         }
-        result.key.push_back(char(number));
+        *key++ = char(number);
     }
     addIrregularCorners(face, local, result);
     return size < kEndOfBytes && result.sources.size() < kEndOfBytes;
