@@ -3,6 +3,8 @@
 
 #include "smoothness.h"
 
+#include <opensubdiv/sdc/crease.h>
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -117,20 +119,48 @@ double MeasureSphereUnevenness(PolygonMesh const &mesh) {
     return MeasureUnevenness(mesh, vertices, std::vector<int>(vertices.size(), 0));
 }
 
-double MeasureTorusUnevenness(PolygonMesh const &mesh, int numU) {
+namespace {
+
+/// Within the parallels of one sector, of those whose angle around the tube, in turns, isWanted.
+template <typename IS_WANTED>
+double measureSector(PolygonMesh const &mesh, int numU, IS_WANTED isWanted) {
     std::vector<int> vertices;
     std::vector<int> groups;
     for (int vertex = 0; vertex < mesh.GetNumVertices(); ++vertex) {
         Vector3d const &position = mesh.positions[vertex];
         double const around = std::atan2(position.y(), position.x());
-        if (around >= 0 && around < 2 * kPi / numU) {
-            double const out = std::hypot(position.x(), position.y()) - kTorusRadius;
-            double const angle = std::atan2(position.z(), out) / (2 * kPi);
+        double const out = std::hypot(position.x(), position.y()) - kTorusRadius;
+        double const angle = std::atan2(position.z(), out) / (2 * kPi);
+        if (around >= 0 && around < 2 * kPi / numU && isWanted(angle)) {
             vertices.push_back(vertex);
             groups.push_back(int(std::floor(angle * kNumParallels)));
         }
     }
     return MeasureUnevenness(mesh, vertices, groups);
+}
+
+} // namespace
+
+double MeasureTorusUnevenness(PolygonMesh const &mesh, int numU) {
+    return measureSector(mesh, numU, [](double) { return true; });
+}
+
+std::vector<double> MeasureTorusStrips(PolygonMesh const &mesh, int numU, double line,
+                                       double rowWidth, int numStrips) {
+    constexpr double kMargin = 0.125;
+    double const kept = (2 + std::cos(2 * kPi / numU)) / 3; // of the radius, at vertices
+    double const radius = kTorusRadius + kTubeRadius * std::cos(2 * kPi * line);
+    line = std::atan2(kTubeRadius * std::sin(2 * kPi * line), kept * radius - kTorusRadius) /
+           (2 * kPi);
+    std::vector<double> result;
+    for (int strip = 0; strip < numStrips; ++strip) {
+        result.push_back(measureSector(mesh, numU, [&](double angle) {
+            double const turns = angle - line;
+            double const rows = (turns - std::round(turns)) / rowWidth;
+            return rows >= std::max(double(strip), kMargin) && rows < strip + 1;
+        }));
+    }
+    return result;
 }
 
 Shape MakeTorus(int numU, int numV, bool isTriangles) {
@@ -157,6 +187,30 @@ Shape MakeTorus(int numU, int numV, bool isTriangles) {
                 addFace({corners[0], corners[1], corners[2], corners[3]}, shape);
             }
         }
+    }
+    return shape;
+}
+
+Shape MakeCreasedTorus(int numU, int numV, bool isTriangles) {
+    Shape shape = MakeTorus(numU, numV, isTriangles);
+    for (int i = 0; i < numU; ++i) {
+        shape.creaseVertexPairs.insert(shape.creaseVertexPairs.end(),
+                                       {i * numV, (i + 1) % numU * numV});
+        shape.creaseSharpness.push_back(OpenSubdiv::Sdc::Crease::SHARPNESS_INFINITE);
+    }
+    return shape;
+}
+
+Shape MakeOpenTorus(int numU, int numV, bool isTriangles) {
+    Shape shape = MakeTorus(numU, numV, isTriangles);
+    int const facesPerQuad = isTriangles ? 2 : 1;
+    int const size = isTriangles ? 3 : 4;
+    for (int i = numU - 1; i >= 0; --i) {
+        auto const first = std::ptrdiff_t(i) * numV * facesPerQuad;
+        shape.faceSizes.erase(shape.faceSizes.begin() + first,
+                              shape.faceSizes.begin() + first + facesPerQuad);
+        shape.faceVertices.erase(shape.faceVertices.begin() + first * size,
+                                 shape.faceVertices.begin() + (first + facesPerQuad) * size);
     }
     return shape;
 }

@@ -24,6 +24,18 @@ double MeasureSphereUnevenness(PolygonMesh const &mesh);
 /// that look alike, in groups of the same angle around the tube, 128 to a turn.
 double MeasureTorusUnevenness(PolygonMesh const &mesh, int numU);
 
+/// \brief The same beside a sharp line that runs around the axis: for each of some strips that follow
+/// one another, each as wide as a row of faces of the control mesh.
+///
+/// The first strip begins at an eighth of a row from the line, so that curvature is not estimated
+/// across it.
+///
+/// \param line      the angle of the line's vertices around the tube, in turns; the line itself is a
+///                  cubic spline over them, nearer to the axis
+/// \param rowWidth  of a row, in turns; negative where strips follow one another backwards
+std::vector<double> MeasureTorusStrips(PolygonMesh const &mesh, int numU, double line,
+                                       double rowWidth, int numStrips);
+
 /// The radii of MakeTorus.
 inline constexpr double kTorusRadius = 3;
 inline constexpr double kTubeRadius = 1;
@@ -31,6 +43,12 @@ inline constexpr double kTubeRadius = 1;
 /// \brief A torus of numU x numV quads, or of twice as many triangles, \p numU around the axis, its
 /// vertices at equal angles.
 Shape MakeTorus(int numU, int numV, bool isTriangles);
+
+/// The same with an infinitely sharp crease around the axis, along the outermost line.
+Shape MakeCreasedTorus(int numU, int numV, bool isTriangles);
+
+/// The same without the row of faces above the outermost line, which is a border then.
+Shape MakeOpenTorus(int numU, int numV, bool isTriangles);
 
 /// The regular tetrahedron, octahedron and icosahedron: triangles, 3, 4 and 5 at a vertex.
 std::vector<Shape> MakeTrianglePlatonics();

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <vector>
+
 namespace OpenSubdivHex::Regression {
 
 namespace {
@@ -23,6 +26,31 @@ double measureTorus(int numU, int numV, bool isTriangles, AnyScheme const &schem
 
 double measureSphere(Shape const &shape, AnyScheme const &scheme) {
     return MeasureSphereUnevenness(RefineSurface(shape, scheme, kLevel).back().mesh);
+}
+
+/// By row of faces from the line on: beside a crease along the outermost line, and beside the border
+/// of a torus without the row above that.
+struct Strips {
+    std::vector<double> crease;
+    std::vector<double> border;
+};
+
+Strips measureStrips(int numU, int numV, bool isTriangles, AnyScheme const &scheme) {
+    double const rowWidth = 1.0 / numV;
+    auto const measure = [&](Shape const &shape, auto boundary, double line) {
+        Sdc::Options options;
+        options.SetVtxBoundaryInterpolation(boundary);
+        auto const levels = RefineSurface(shape, scheme, kLevel, MeshCenter(), options);
+        return MeasureTorusStrips(levels.back().mesh, numU, line, rowWidth, 2);
+    };
+    Shape const open = MakeOpenTorus(numU, numV, isTriangles);
+    Strips result;
+    result.crease =
+        measure(MakeCreasedTorus(numU, numV, isTriangles), Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, 0);
+    result.border = measure(open, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, rowWidth);
+    // Its border has no corner.
+    EXPECT_EQ(measure(open, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER, rowWidth), result.border);
+    return result;
 }
 
 } // namespace
@@ -100,6 +128,54 @@ TEST(Evenness, TrianglesTruncatedFirst) {
         EXPECT_LT(measureSphere(shapes[i], truncate), bounds[i]);
     }
     EXPECT_LT(measureSphere(MakeSphereHull(60, 200), truncate), 0.08);
+}
+
+// Beside creases and borders: by row of faces, the first two from the line.
+TEST(Evenness, QuadsBesideLines) {
+    struct Row {
+        int numU;
+        int numV;
+        std::array<double, 2> crease;
+        std::array<double, 2> border;
+    };
+    for (Row const &row : {Row{14, 8, {0.0712, 0.0472}, {0.0780, 0.1117}},
+                           Row{20, 10, {0.0583, 0.0432}, {0.0594, 0.0803}},
+                           Row{9, 6, {0.0952, 0.0640}, {0.1644, 0.2286}}}) {
+        SCOPED_TRACE(row.numU);
+        HexSchemeOptions const smooth{FaceMask::Smooth};
+        Strips const strips = measureStrips(row.numU, row.numV, false, smooth);
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_LT(row.crease[i], 0.1);
+            EXPECT_NEAR(strips.crease[i], row.crease[i], kDigits);
+            EXPECT_NEAR(strips.border[i], row.border[i], kDigits);
+        }
+        Strips const catmark = measureStrips(row.numU, row.numV, false, Sdc::SCHEME_CATMARK);
+        EXPECT_LT(catmark.crease[0], 0.03);
+        EXPECT_LT(catmark.border[0], 0.035);
+    }
+}
+
+// The first row deviates, where inner points are drawn in from two sides and those of the line from
+// one; from the second on it is calm.
+TEST(Evenness, TruncatedTrianglesBesideLines) {
+    AnyScheme const truncate = HexSchemeOptions{FaceMask::Smooth, FarExt::SchemeType::Hexagonal,
+                                                FarExt::FirstStep::Truncate};
+    struct Row {
+        int numU;
+        int numV;
+        std::array<double, 2> crease;
+        std::array<double, 2> border;
+    };
+    for (Row const &row :
+         {Row{14, 8, {0.26, 0.03}, {0.21, 0.04}}, Row{20, 10, {0.23, 0.02}, {0.21, 0.02}},
+          Row{9, 6, {0.35, 0.05}, {0.20, 0.09}}}) {
+        SCOPED_TRACE(row.numU);
+        Strips const strips = measureStrips(row.numU, row.numV, true, truncate);
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_LT(strips.crease[i], row.crease[i]);
+            EXPECT_LT(strips.border[i], row.border[i]);
+        }
+    }
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -86,10 +86,10 @@ std::vector<SurfaceLevel> makeLevels(REFINER const &refiner, Shape const &shape,
 }
 
 std::vector<SurfaceLevel> refine(Shape const &shape, FarExt::HexSchemeOptions const &options,
-                                 int maxLevel, MeshCenter center) {
+                                 int maxLevel, MeshCenter center, Sdc::Options sdcOptions) {
     FarExt::Status status;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(),
-                                                                Sdc::Options(), {options}, &status);
+                                                                sdcOptions, {options}, &status);
     FarExt::TopologyRefiner::UniformOptions uniformOptions(maxLevel);
     uniformOptions.fullTopologyInLastLevel = true;
     if (!refiner || !refiner->RefineUniform(uniformOptions, &status)) {
@@ -99,14 +99,14 @@ std::vector<SurfaceLevel> refine(Shape const &shape, FarExt::HexSchemeOptions co
 }
 
 std::vector<SurfaceLevel> refine(Shape const &shape, Sdc::SchemeType scheme, int maxLevel,
-                                 MeshCenter center) {
+                                 MeshCenter center, Sdc::Options sdcOptions) {
     if (scheme == Sdc::SCHEME_LOOP && center.kind == CenterKind::Face) {
         throw std::runtime_error(shape.name + ": a face makes no vertex");
     }
     using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
     ShapeDescriptor const descriptor(shape);
     std::unique_ptr<Far::TopologyRefiner> const refiner(
-        Factory::Create(descriptor.Get(), Factory::Options(scheme, Sdc::Options())));
+        Factory::Create(descriptor.Get(), Factory::Options(scheme, sdcOptions)));
     if (!refiner) {
         throw std::runtime_error(shape.name + ": refused by Far");
     }
@@ -119,9 +119,9 @@ std::vector<SurfaceLevel> refine(Shape const &shape, Sdc::SchemeType scheme, int
 } // namespace
 
 std::vector<SurfaceLevel> RefineSurface(Shape const &shape, AnyScheme const &scheme, int maxLevel,
-                                        MeshCenter center) {
-    return std::visit([&](auto const &one) { return refine(shape, one, maxLevel, center); },
-                      scheme);
+                                        MeshCenter center, Sdc::Options sdcOptions) {
+    return std::visit(
+        [&](auto const &one) { return refine(shape, one, maxLevel, center, sdcOptions); }, scheme);
 }
 
 std::vector<SurfaceLevel> MakeSurfaceLevels(FarExt::TopologyRefiner const &refiner,

@@ -7,6 +7,7 @@
 #include "far_ext/topologyRefiner.h"
 #include "regression/shapes/shapes.h"
 
+#include <opensubdiv/sdc/options.h>
 #include <opensubdiv/sdc/types.h>
 
 #include <Eigen/Core>
@@ -48,7 +49,8 @@ struct SurfaceLevel {
 /// \throws std::runtime_error  for a shape that the scheme does not take, as Loop other faces than
 ///         triangles, and for a face as center in Loop
 std::vector<SurfaceLevel> RefineSurface(Shape const &shape, AnyScheme const &scheme, int maxLevel,
-                                        MeshCenter center = MeshCenter());
+                                        MeshCenter center = MeshCenter(),
+                                        OpenSubdiv::Sdc::Options sdcOptions = {});
 
 /// The same of a refiner of that shape which has been refined, in full, in another way.
 std::vector<SurfaceLevel> MakeSurfaceLevels(FarExt::TopologyRefiner const &refiner,
