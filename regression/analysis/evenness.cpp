@@ -152,13 +152,13 @@ std::vector<double> MeasureTorusStrips(PolygonMesh const &mesh, int numU, double
     double const radius = kTorusRadius + kTubeRadius * std::cos(2 * kPi * line);
     line = std::atan2(kTubeRadius * std::sin(2 * kPi * line), kept * radius - kTorusRadius) /
            (2 * kPi);
-    std::vector<double> result;
+    std::vector<double> result(std::size_t(numStrips), 0.0);
     for (int strip = 0; strip < numStrips; ++strip) {
-        result.push_back(measureSector(mesh, numU, [&](double angle) {
+        result[std::size_t(strip)] = measureSector(mesh, numU, [&](double angle) {
             double const turns = angle - line;
             double const rows = (turns - std::round(turns)) / rowWidth;
             return rows >= std::max(double(strip), kMargin) && rows < strip + 1;
-        }));
+        });
     }
     return result;
 }

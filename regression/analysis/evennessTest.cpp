@@ -97,6 +97,21 @@ TEST(Evenness, ToriOfQuads) {
     }
 }
 
+// What the masks around irregular vertices and beside quads are for.
+TEST(Evenness, OneMaskForAllHexagons) {
+    Shape const torus = MakeTorus(14, 8, false);
+    double const uneven = MeasureTorusUnevenness(RefineWithOneMask(torus, kLevel).back().mesh, 14);
+    EXPECT_GT(uneven, 2 * measureTorus(14, 8, false, HexSchemeOptions{FaceMask::Smooth}));
+    // Where nothing is irregular, it is Smooth.
+    Shape const dodecahedron = GetShape("dodecahedron");
+    PolygonMesh const expected =
+        RefineSurface(dodecahedron, HexSchemeOptions{FaceMask::Smooth}, 3).back().mesh;
+    PolygonMesh const mesh = RefineWithOneMask(dodecahedron, 3).back().mesh;
+    for (int vertex = 0; vertex < mesh.GetNumVertices(); ++vertex) {
+        EXPECT_LT((mesh.positions[vertex] - expected.positions[vertex]).norm(), 1e-12);
+    }
+}
+
 // Control meshes of triangles: six faces at nearly every vertex, where Loop is regular.
 TEST(Evenness, Triangles) {
     AnyScheme const smooth = HexSchemeOptions{FaceMask::Smooth};

@@ -5,6 +5,8 @@
 
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/topologyRefinerFactory.h"
+#include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/refinementMask.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/far/primvarRefiner.h>
@@ -85,18 +87,67 @@ std::vector<SurfaceLevel> makeLevels(REFINER const &refiner, Shape const &shape,
     return levels;
 }
 
-std::vector<SurfaceLevel> refine(Shape const &shape, FarExt::HexSchemeOptions const &options,
-                                 int maxLevel, MeshCenter center, Sdc::Options sdcOptions) {
+std::unique_ptr<FarExt::TopologyRefiner> createRefined(Shape const &shape,
+                                                       FarExt::HexSchemeOptions const &options,
+                                                       int maxLevel, Sdc::Options sdcOptions) {
     FarExt::Status status;
-    auto const refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(),
-                                                                sdcOptions, {options}, &status);
+    auto refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(), sdcOptions,
+                                                          {options}, &status);
     FarExt::TopologyRefiner::UniformOptions uniformOptions(maxLevel);
     uniformOptions.fullTopologyInLastLevel = true;
     if (!refiner || !refiner->RefineUniform(uniformOptions, &status)) {
         throw std::runtime_error(shape.name + ": " + status.GetMessage());
     }
-    return MakeSurfaceLevels(*refiner, shape, center);
+    return refiner;
 }
+
+std::vector<SurfaceLevel> refine(Shape const &shape, FarExt::HexSchemeOptions const &options,
+                                 int maxLevel, MeshCenter center, Sdc::Options sdcOptions) {
+    return MakeSurfaceLevels(*createRefined(shape, options, maxLevel, sdcOptions), shape, center);
+}
+
+/// Refines by FaceMask::Smooth in levels that another mask made, and which know nothing irregular.
+class OneMaskRefiner {
+public:
+    explicit OneMaskRefiner(FarExt::TopologyRefiner const &refiner)
+        : _levels(refiner.GetHierarchy().mesh) {}
+
+    void Interpolate(int depth, std::vector<Position> const &src,
+                     std::vector<Position> &dst) const {
+        auto const &parent = _levels.levels[std::size_t(depth) - 1];
+        auto const &refinement = _levels.refinements[std::size_t(depth) - 1];
+        FarExt::internal::RefinementMask const mask(parent, {FarExt::FaceMask::Smooth},
+                                                    FarExt::Interpolation::Vertex);
+        std::vector<double> scratch;
+        for (int face = 0; face < parent.numFaces; ++face) {
+            Far::ConstIndexArray const verts = parent.GetFaceVertices(face);
+            int const first = parent.faceFirstCorner[std::size_t(face)];
+            for (int i = 0; i < verts.size(); ++i) {
+                double const *const weights = mask.GetFaceVertexWeights(face, i, scratch);
+                Position &point = dst[refinement.GetCornerChildVertex(first + i)];
+                point.Clear();
+                for (int j = 0; j < verts.size(); ++j) {
+                    point.AddWithWeight(src[verts[j]], weights[j]);
+                }
+            }
+        }
+        for (int vert = 0; vert < parent.numVertices; ++vert) {
+            auto const weights = mask.GetVertexMask(vert);
+            Position &point = dst[refinement.GetVertexChildVertex(vert)];
+            point.Clear();
+            for (int i = 0; i < weights.numSources; ++i) {
+                point.AddWithWeight(src[weights.sources[i]], weights.weights[i]);
+            }
+            for (int k = parent.vertFirstFace[vert]; k < parent.vertFirstFace[vert + 1]; ++k) {
+                point.AddWithWeight(dst[refinement.GetCornerChildVertex(parent.GetVertexCorner(k))],
+                                    weights.faceWeight);
+            }
+        }
+    }
+
+private:
+    FarExt::internal::MeshLevels const &_levels;
+};
 
 std::vector<SurfaceLevel> refine(Shape const &shape, Sdc::SchemeType scheme, int maxLevel,
                                  MeshCenter center, Sdc::Options sdcOptions) {
@@ -122,6 +173,12 @@ std::vector<SurfaceLevel> RefineSurface(Shape const &shape, AnyScheme const &sch
                                         MeshCenter center, Sdc::Options sdcOptions) {
     return std::visit(
         [&](auto const &one) { return refine(shape, one, maxLevel, center, sdcOptions); }, scheme);
+}
+
+std::vector<SurfaceLevel> RefineWithOneMask(Shape const &shape, int maxLevel,
+                                            Sdc::Options sdcOptions) {
+    auto const refiner = createRefined(shape, {FarExt::FaceMask::Cosine}, maxLevel, sdcOptions);
+    return makeLevels<OneMaskRefiner>(*refiner, shape, MeshCenter());
 }
 
 std::vector<SurfaceLevel> MakeSurfaceLevels(FarExt::TopologyRefiner const &refiner,

@@ -50,8 +50,8 @@ std::string makePage(Settings const &settings) {
           Section{"factors", AddFactorSection}, Section{"counts", AddCountSection},
           Section{"eigenvalues", AddEigenvalueSection}, Section{"smoothness", AddSmoothnessSection},
           Section{"irregular vertices", AddTipSection}, Section{"evenness", AddEvennessSection},
-          Section{"masks", AddMaskSection}, Section{"running time", AddTimingSection},
-          Section{"stage 3", AddCoplanarSection}}) {
+          Section{"models", AddModelSection}, Section{"masks", AddMaskSection},
+          Section{"running time", AddTimingSection}, Section{"stage 3", AddCoplanarSection}}) {
         auto const start = std::chrono::steady_clock::now();
         add(&page, settings);
         std::chrono::duration<double> const seconds = std::chrono::steady_clock::now() - start;

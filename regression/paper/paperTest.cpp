@@ -69,15 +69,16 @@ TEST_F(Paper, PageIsComplete) {
     EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
     EXPECT_EQ(page.substr(page.size() - 8), "</html>\n");
 
-    for (std::string const id : {"claims", "solid", "meshes", "factors", "counts", "eigenvalues",
-                                 "smoothness", "tips", "evenness", "masks", "timing", "stage3"}) {
+    for (std::string const id :
+         {"claims", "solid", "meshes", "factors", "counts", "eigenvalues", "smoothness", "tips",
+          "evenness", "models", "masks", "timing", "stage3"}) {
         EXPECT_EQ(count(page, "<section id=\"" + id + "\">"), 1) << id;
         EXPECT_EQ(count(page, "href=\"#" + id + "\""), 1) << id;
     }
     EXPECT_EQ(count(page, "<section"), count(page, "</section>"));
-    EXPECT_EQ(count(page, "<figcaption>"), 13);
+    EXPECT_EQ(count(page, "<figcaption>"), 15);
 
-    // Pictures: 2 x 3 levels, 2 x 4 meshes, 3 tips, 3 x 3 even shapes, 3 x 3 masks, 3 boxes, each a
+    // Pictures: 2 x 3 levels, 2 x 4 meshes, 3 tips, 3 x 3 even shapes, 2 x 4 models, 3 x 3 masks, 3 boxes, each a
     // PNG of its size.
     int numPictures = 0;
     for (std::size_t at = page.find("<img"); at != std::string::npos; at = page.find("<img")) {
@@ -97,7 +98,7 @@ TEST_F(Paper, PageIsComplete) {
         page.erase(at, element.size());
         ++numPictures;
     }
-    EXPECT_EQ(numPictures, 6 + 8 + 3 + 9 + 9 + 3);
+    EXPECT_EQ(numPictures, 6 + 8 + 3 + 9 + 8 + 9 + 3);
 
     // Drawings: two lattices, three maps and 2 + 2 + 4 + 6 + 2 plots.
     EXPECT_EQ(count(page, "<svg"), 2 + 3 + 16);

@@ -18,6 +18,7 @@ void AddEigenvalueSection(Page *page, Settings const &settings); ///< section 6
 void AddSmoothnessSection(Page *page, Settings const &settings); ///< normals and curvature
 void AddTipSection(Page *page, Settings const &settings);        ///< at irregular vertices
 void AddEvennessSection(Page *page, Settings const &settings);   ///< of curvature
+void AddModelSection(Page *page, Settings const &settings);      ///< whole models
 void AddMaskSection(Page *page, Settings const &settings);       ///< reflection lines
 void AddTimingSection(Page *page, Settings const &settings);     ///< running time
 void AddCoplanarSection(Page *page, Settings const &settings);   ///< stage 3
