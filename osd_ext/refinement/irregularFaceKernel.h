@@ -47,26 +47,43 @@ struct IrregularFace {
     VALUE all; ///< the plain part that all corners share
 };
 
-// Adds the points at one place behind corner I, if it is one of PLACES.
-template <unsigned PLACES, int I, int J, class VALUE>
-OPENSUBDIVHEX_INLINE void addPlace(IrregularFace<VALUE> const &face, VALUE &point) {
-    if constexpr ((PLACES >> J & 1) != 0) {
-        point = point + face.mask.rows[I][J] * face.v[(I + J) % IrregularFaceMask::kSize];
+// How far vertex number vert of a hexagon is behind corner number corner.
+constexpr int getPlace(int vert, int corner) {
+    return (vert - corner + IrregularFaceMask::kSize) % IrregularFaceMask::kSize;
+}
+
+// The first vertex that a row with weights for places has one for.
+constexpr int findFirstVertex(unsigned places, int corner) {
+    int vert = 0;
+    while ((places >> getPlace(vert, corner) & 1) == 0) {
+        ++vert;
+    }
+    return vert;
+}
+
+// Adds the point of a vertex behind the first, if the row of corner I has a weight for it.
+template <unsigned PLACES, int I, int VERT, class VALUE>
+OPENSUBDIVHEX_INLINE void addVertex(IrregularFace<VALUE> const &face, VALUE &point) {
+    constexpr int kPlace = getPlace(VERT, I);
+    if constexpr (VERT > findFirstVertex(PLACES, I) && (PLACES >> kPlace & 1) != 0) {
+        point = point + face.mask.rows[I][kPlace] * face.v[VERT];
     }
 }
 
-// The F-vertex of corner I, the row of which has weights for PLACES.
+// The F-vertex of corner I, the row of which has weights for PLACES: a sum in the order of the
+// vertices, as that of faces with weights of their own.
 template <unsigned PLACES, int I, class VALUE>
 OPENSUBDIVHEX_INLINE VALUE sumRow(IrregularFace<VALUE> const &face) {
     if constexpr (PLACES == IrregularFaceMask::kPlain) {
         return sumPlainRow<IrregularFaceMask::kSize, false>(face.plain, face.all, face.v, I);
     } else {
-        VALUE point = face.mask.rows[I][0] * face.v[I];
-        addPlace<PLACES, I, 1>(face, point);
-        addPlace<PLACES, I, 2>(face, point);
-        addPlace<PLACES, I, 3>(face, point);
-        addPlace<PLACES, I, 4>(face, point);
-        addPlace<PLACES, I, 5>(face, point);
+        constexpr int kFirst = findFirstVertex(PLACES, I);
+        VALUE point = face.mask.rows[I][getPlace(kFirst, I)] * face.v[kFirst];
+        addVertex<PLACES, I, 1>(face, point);
+        addVertex<PLACES, I, 2>(face, point);
+        addVertex<PLACES, I, 3>(face, point);
+        addVertex<PLACES, I, 4>(face, point);
+        addVertex<PLACES, I, 5>(face, point);
         return point;
     }
 }
@@ -78,16 +95,11 @@ VALUE sumAnyRow(IrregularFace<VALUE> const &face) {
     if (places == IrregularFaceMask::kPlain) {
         return sumPlainRow<IrregularFaceMask::kSize, false>(face.plain, face.all, face.v, I);
     }
-    int j = 0;
-    while ((places >> j & 1) == 0) {
-        ++j;
-    }
-    auto const term = [&] {
-        return face.mask.rows[I][j] * face.v[(I + j) % IrregularFaceMask::kSize];
-    };
+    int vert = findFirstVertex(places, I);
+    auto const term = [&] { return face.mask.rows[I][getPlace(vert, I)] * face.v[vert]; };
     VALUE point = term();
-    for (++j; j < IrregularFaceMask::kSize; ++j) {
-        if (places >> j & 1) {
+    for (++vert; vert < IrregularFaceMask::kSize; ++vert) {
+        if (places >> getPlace(vert, I) & 1) {
             point = point + term();
         }
     }

@@ -367,25 +367,29 @@ TYPED_TEST_P(DeviceEvaluator, KeepsFewBytesOfLargeLevels) {
     EXPECT_LE(evaluator->GetNumDeviceBytes() - numBytes, 28 * evaluator->GetNumElements(5));
 }
 
-// Where numbering alone tells where vertices are, sums are in the order of the processor's; around
-// irregular vertices Smooth's are not.
+// Where numbering alone tells where vertices are, sums are in the order of the processor's.
 TYPED_TEST_P(DeviceEvaluator, GivesMostBitsOfTheCpu) {
-    auto const refiner = MakeRefiner(GetShape("torus"), 5, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    auto const expected = OsdExt::RefinementEvaluator::Create(*refiner);
-    auto const evaluator = TypeParam::Evaluator::Create(*refiner, {});
-    Osd::BufferDescriptor const desc(0, 3, 3);
-    std::vector<float> const src = MakeValues(expected->GetNumElements(0), 3);
-    auto const srcBuffer = this->kind.MakeBuffer(src, 3);
-    for (int level = 1; level <= 5; ++level) {
-        std::vector<float> dst(std::size_t(expected->GetNumElements(level)) * 3);
-        ASSERT_TRUE(expected->Evaluate(src.data(), desc, dst.data(), desc, level));
-        auto const dstBuffer = this->makeBlank(dst.size(), 3);
-        ASSERT_TRUE(evaluator->Evaluate(srcBuffer.get(), desc, dstBuffer.get(), desc, level));
-        std::vector<float> const values = this->kind.Read(*dstBuffer, dst.size());
-        std::ptrdiff_t const numOthers = std::inner_product(
-            values.begin(), values.end(), dst.begin(), std::ptrdiff_t(0), std::plus<>(),
-            [](float a, float b) { return std::ptrdiff_t(a != b); });
-        EXPECT_LE(numOthers, std::ptrdiff_t(dst.size() / 7)) << "level " << level;
+    for (auto mask : {FarExt::FaceMask::Average, FarExt::FaceMask::Smooth}) {
+        FarExt::HexSchemeOptions schemeOptions;
+        schemeOptions.faceMask = mask;
+        auto const refiner =
+            MakeRefiner(GetShape("torus"), 5, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions);
+        auto const expected = OsdExt::RefinementEvaluator::Create(*refiner);
+        auto const evaluator = TypeParam::Evaluator::Create(*refiner, {});
+        Osd::BufferDescriptor const desc(0, 3, 3);
+        std::vector<float> const src = MakeValues(expected->GetNumElements(0), 3);
+        auto const srcBuffer = this->kind.MakeBuffer(src, 3);
+        for (int level = 1; level <= 5; ++level) {
+            std::vector<float> dst(std::size_t(expected->GetNumElements(level)) * 3);
+            ASSERT_TRUE(expected->Evaluate(src.data(), desc, dst.data(), desc, level));
+            auto const dstBuffer = this->makeBlank(dst.size(), 3);
+            ASSERT_TRUE(evaluator->Evaluate(srcBuffer.get(), desc, dstBuffer.get(), desc, level));
+            std::vector<float> const values = this->kind.Read(*dstBuffer, dst.size());
+            std::ptrdiff_t const numOthers = std::inner_product(
+                values.begin(), values.end(), dst.begin(), std::ptrdiff_t(0), std::plus<>(),
+                [](float a, float b) { return std::ptrdiff_t(a != b); });
+            EXPECT_LE(numOthers, std::ptrdiff_t(dst.size() / 7)) << "level " << level;
+        }
     }
 }
 
