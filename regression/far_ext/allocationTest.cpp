@@ -35,6 +35,11 @@ void *allocate(std::size_t size) {
 
 void *operator new(std::size_t size) { return allocate(size); }
 void *operator new[](std::size_t size) { return allocate(size); }
+// Who asks for memory in this way does without it: these do not fail.
+void *operator new(std::size_t size, std::nothrow_t const &) noexcept { return std::malloc(size); }
+void *operator new[](std::size_t size, std::nothrow_t const &) noexcept {
+    return std::malloc(size);
+}
 void operator delete(void *memory) noexcept { std::free(memory); }
 void operator delete[](void *memory) noexcept { std::free(memory); }
 void operator delete(void *memory, std::size_t) noexcept { std::free(memory); }
