@@ -51,13 +51,6 @@ private:
     }
 };
 
-namespace {
-
-// Faces that a worker takes at a time: enough for leaves of one type to come together, and few where
-// the mesh has few.
-constexpr Far::Index kMaxRange = 128;
-constexpr Far::Index kNumRangesWanted = 64;
-
 /// \brief The plans that have been asked for; they are forgotten when they have come to take too much
 /// memory.  Any number of threads may use it.
 class PatchPlans {
@@ -65,24 +58,21 @@ public:
     PatchPlans(Tessellation::Options const &options, std::size_t maxMemory)
         : _options(options), _maxMemory(maxMemory) {}
 
+    /// Threads that want a plan wait for it, since it takes memory to make one.
     std::shared_ptr<PatchPlan const> Find(std::vector<int> const &levels) {
-        {
-            std::lock_guard<std::mutex> const lock(_mutex);
-            auto const found = _plans.find(levels);
-            if (found != _plans.end()) {
-                return found->second;
-            }
+        std::lock_guard<std::mutex> const lock(_mutex);
+        auto const found = _plans.find(levels);
+        if (found != _plans.end()) {
+            return found->second;
         }
         auto plan = std::make_shared<PatchPlan const>(levels, _options);
         std::size_t const size = plan->GetSize();
-        std::lock_guard<std::mutex> const lock(_mutex);
         if (_memory + size > _maxMemory) {
             _plans.clear();
             _memory = 0;
         }
-        auto const [found, isNew] = _plans.emplace(levels, std::move(plan));
-        _memory += isNew ? size : 0;
-        return found->second;
+        _memory += size;
+        return _plans.emplace(levels, std::move(plan)).first->second;
     }
 
 private:
@@ -93,8 +83,16 @@ private:
     std::map<std::vector<int>, std::shared_ptr<PatchPlan const>> _plans;
 };
 
-} // namespace
 } // namespace internal
+
+namespace {
+
+// Faces that a worker takes at a time: enough for leaves of one type to come together, and few where
+// the mesh has few.
+constexpr Far::Index kMaxRange = 128;
+constexpr Far::Index kNumRangesWanted = 64;
+
+} // namespace
 
 /// \brief Makes the patches of some faces, and hands them out when they take as much memory as they
 /// may.
@@ -190,6 +188,13 @@ private:
     std::size_t _memory = 0;
 };
 
+template <typename REAL>
+PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, PatchLevels levels,
+                               Options const &options)
+    : _factory(factory), _levels(std::move(levels)), _options(options),
+      _plans(std::make_shared<internal::PatchPlans>(options.GetTessellationOptions(),
+                                                    getHalfMemory())) {}
+
 // The levels of the edges, then that of the inside.
 template <typename REAL>
 void PatchStream<REAL>::getLevels(Index face, std::vector<int> &levels) const {
@@ -263,10 +268,7 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
-    // Half of the memory for plans, half for the points of all threads.
-    std::size_t const halfMemory = _options.GetMaxMemory() / 2;
-    internal::PatchPlans plans(_options.GetTessellationOptions(), halfMemory);
-    std::size_t const workerMemory = halfMemory / std::size_t(FarExt::GetNumThreads());
+    std::size_t const workerMemory = getHalfMemory() / std::size_t(FarExt::GetNumThreads());
     std::atomic<bool> isEnded(false);
     std::mutex mutex;
     auto const run = [&](std::unique_ptr<Worker> &worker, Index begin, Index end) {
@@ -284,10 +286,10 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
     FarExt::internal::ParallelForRange(
         numFaces,
         [&] {
-            return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, plans, sink,
+            return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, *_plans, sink,
                                             workerMemory);
         },
-        run, std::min(std::max(numFaces / internal::kNumRangesWanted, 1), internal::kMaxRange));
+        run, std::min(std::max(numFaces / kNumRangesWanted, 1), kMaxRange));
     FarExt::internal::Report(result, status);
     return !isEnded;
 }

@@ -6,10 +6,15 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 
 namespace OpenSubdivHex::BfrExt {
 
 class PatchNumbering;
+
+namespace internal {
+class PatchPlans;
+}
 
 /// \brief How fine the patches of a stream are: a level of refinement for the inside of each base face
 /// and one for each edge of the base mesh, 0 ... Tessellation::kLastLevel.
@@ -112,8 +117,7 @@ public:
     PatchStream(SurfaceFactory const &factory, PatchLevels levels)
         : PatchStream(factory, std::move(levels), Options()) {}
     /// The same with options.
-    PatchStream(SurfaceFactory const &factory, PatchLevels levels, Options const &options)
-        : _factory(factory), _levels(std::move(levels)), _options(options) {}
+    PatchStream(SurfaceFactory const &factory, PatchLevels levels, Options const &options);
 
     /// \brief Hands the patches of all faces to a sink.
     ///
@@ -152,9 +156,13 @@ private:
     FarExt::Status check(Index beginFace, Index endFace) const;
     void getLevels(Index face, std::vector<int> &levels) const;
 
+    // Half of the memory is for plans, half for the points of all threads.
+    std::size_t getHalfMemory() const { return _options.GetMaxMemory() / 2; }
+
     SurfaceFactory const &_factory;
     PatchLevels const _levels;
     Options const _options;
+    std::shared_ptr<internal::PatchPlans> _plans;
 };
 
 extern template class PatchStream<float>;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_TOOLS_PATCH_SCENE_H
+#define OPENSUBDIVHEX_TOOLS_PATCH_SCENE_H
+
+#include "bfr_ext/patchStream.h"
+#include "vec3.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::Tools {
+
+/// \brief The surface of a mesh for rays, in Embree's hands, of which only those parts are there that
+/// rays have come near to.
+///
+/// Of each base face there is a box.  Its patch is made when a ray first hits the box; and when all
+/// patches take more memory than they may, those are forgotten that no ray has needed for the longest
+/// time.  What rays hit does not depend on that: a patch that is made again is the same, bit for bit.
+///
+/// Rays may be traced by several threads at once.
+class PatchScene {
+public:
+    /// \brief Makes the boxes.
+    ///
+    /// \param stream     makes the patches, of triangles; it must live as long
+    /// \param positions  x y z of each vertex of the base mesh; they must live as long
+    /// \param maxMemory  bytes that Embree has for patches; the one that is needed is always there.
+    ///                   Throws std::runtime_error when Embree does not start or a face has no surface
+    PatchScene(BfrExt::PatchStream<float> const &stream, std::vector<float> const &positions,
+               std::size_t maxMemory);
+    ~PatchScene();
+
+    PatchScene(PatchScene const &) = delete;
+    PatchScene &operator=(PatchScene const &) = delete;
+
+    /// Where a ray hits first.
+    struct Hit {
+        Vec3 point;
+        Vec3 normal; ///< of the triangle, of length 1
+        int face;    ///< the base face
+    };
+
+    /// Whether the ray hits something.  Throws what making a patch throws.
+    bool Intersect(Vec3 origin, Vec3 direction, Hit *hit) const;
+    /// Whether it hits something nearer than \p distance.
+    bool IsOccluded(Vec3 origin, Vec3 direction, float distance) const;
+
+    /// What has happened so far.
+    struct Statistics {
+        std::int64_t numMade;      ///< patches, each as often as it was made
+        std::int64_t numForgotten; ///< of these
+        std::int64_t numFaces;     ///< whose patches were made at all
+        std::int64_t numTriangles; ///< of all that were made
+        std::size_t peakMemory;    ///< of Embree, in bytes, all that it has included
+    };
+    Statistics GetStatistics() const;
+
+private:
+    class Patches;
+
+    std::unique_ptr<Patches> _patches;
+};
+
+} // namespace OpenSubdivHex::Tools
+
+#endif

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# Draws MESH twice with PROGRAM: with all patches kept, and with hardly any.  The picture is the same.
+function(draw memory result)
+  set(file ${FOLDER}/stream${memory}.png)
+  file(REMOVE ${file})
+  execute_process(COMMAND ${PROGRAM} ${MESH} --output ${file} --width 40 --height 30 --samples 1
+      --facet-pixels 0.3 --memory ${memory}
+    OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE status)
+  message("${memory} megabytes: ${output}")
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "exit status ${status}")
+  endif()
+  string(REGEX MATCH "([0-9]+) of ([0-9]+) faces were needed, ([0-9]+) patches made, ([0-9]+) forgotten"
+    line "${output}")
+  if(NOT line OR NOT CMAKE_MATCH_1 GREATER 0)
+    message(FATAL_ERROR "nothing was made")
+  endif()
+  set(made ${CMAKE_MATCH_3} PARENT_SCOPE)
+  set(forgotten ${CMAKE_MATCH_4} PARENT_SCOPE)
+  file(SHA256 ${file} hash)
+  set(${result} ${hash} PARENT_SCOPE)
+endfunction()
+
+draw(1000 all)
+set(madeOnce ${made})
+if(NOT forgotten EQUAL 0)
+  message(FATAL_ERROR "there was memory for all")
+endif()
+draw(12 few)
+if(NOT forgotten GREATER 0 OR NOT made GREATER madeOnce)
+  message(FATAL_ERROR "nothing was forgotten")
+endif()
+if(NOT all STREQUAL few)
+  message(FATAL_ERROR "the pictures differ")
+endif()
