@@ -67,6 +67,14 @@ std::vector<Row> const &GetRows() {
                           "own limit table", 1, 3});
         result.push_back({"surface-points", "tessellated surfaces, per point, 1 thread",
                           "Bfr::Surface::Evaluate", 8, 15});
+        result.push_back({"surface-stencils", "tessellated surfaces, per point, 1 thread",
+                          "Bfr::Surface, one face's stencils kept", 4, 8});
+        result.push_back({"stream-1", "streamed surfaces, per point, 1 thread",
+                          "Bfr::Surface::Evaluate", 8, 15});
+        result.push_back({"stream-stencils", "streamed surfaces, per point, 1 thread",
+                          "Bfr::Surface, one face's stencils kept", 4, 8});
+        result.push_back(
+            {"stream-2", "streamed surfaces, per point, 2 threads", "own, 1 thread", 1.85, 1.95});
         result.push_back({"surface-derivatives",
                           "tessellated surfaces with derivatives, per point, 1 thread",
                           "Bfr::Surface::Evaluate", 8, 15});

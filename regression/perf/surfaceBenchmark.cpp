@@ -6,7 +6,7 @@
 #include "makers.h"
 #include "suite.h"
 
-#include "bfr_ext/surfaceFactory.h"
+#include "bfr_ext/patchStream.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
@@ -14,6 +14,7 @@
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace OpenSubdivHex::Regression {
@@ -107,13 +108,62 @@ double evaluatePeer(PeerSurfaces const &peer, int numPlaces, bool hasDerivatives
     return double(peer.surfaces.size()) * numSteps * numSteps;
 }
 
+/// The same with the stencils of one face, which all faces have where the mesh is regular.
+double evaluateStencils(PeerSurfaces const &peer, std::vector<float> const &stencils,
+                        Workspace &workspace) {
+    auto const numPoints = std::size_t(peer.surfaces[0].GetNumControlPoints());
+    for (PeerSurface const &surface : peer.surfaces) {
+        float *const gathered = workspace.gathered.data();
+        surface.GatherControlPoints(workspace.positions.data(), 3, gathered, 3);
+        float *p = workspace.results[0].data();
+        for (std::size_t first = 0; first < stencils.size(); first += numPoints, p += 3) {
+            surface.ApplyStencil(&stencils[first], gathered, 3, p);
+        }
+    }
+    return double(peer.surfaces.size()) * double(stencils.size() / numPoints);
+}
+
+/// Those of about so many places.
+std::vector<float> makeStencils(PeerSurfaces const &peer, int numPlaces) {
+    PeerSurface const &surface = peer.surfaces[0];
+    auto const numPoints = std::size_t(surface.GetNumControlPoints());
+    float const width = surface.GetFaceSize() == 4 ? 1.0F : 0.5F;
+    int const numSteps = int(std::lround(std::sqrt(double(numPlaces))));
+    std::vector<float> stencils(numPoints * std::size_t(numSteps * numSteps));
+    for (int i = 0; i < numSteps * numSteps; ++i) {
+        float const uv[2] = {width * (float(i % numSteps) + 0.5F) / float(numSteps),
+                             width * (float(i / numSteps) + 0.5F) / float(numSteps)};
+        surface.EvaluateStencil(uv, &stencils[numPoints * std::size_t(i)]);
+    }
+    for (PeerSurface const &other : peer.surfaces) {
+        Require(other.GetNumControlPoints() == surface.GetNumControlPoints(), "irregular faces");
+    }
+    return stencils;
+}
+
+/// Streams all faces to a sink that looks at one number of each.
+double evaluateStream(BfrExt::PatchStream<float> const &stream, Workspace &workspace) {
+    std::atomic<long> numPoints(0);
+    std::atomic<bool> isFinite(true);
+    bool const isDone = stream.Run(workspace.positions.data(), 3, [&](auto const &patch) {
+        numPoints += patch.tessellation.GetNumCoords();
+        if (!std::isfinite(patch.points[0])) {
+            isFinite = false;
+        }
+        return true;
+    });
+    Require(isDone && isFinite, "no stream");
+    return double(numPoints);
+}
+
 /// \param evaluate  gives the number of points that it makes
 template <typename EVALUATE>
 Contestant makePointContestant(std::string const &name, std::shared_ptr<Workspace> const &workspace,
-                               EVALUATE evaluate) {
+                               EVALUATE evaluate, int numThreads = 1) {
     auto const count = std::make_shared<double>(0);
     Contestant contestant;
     contestant.name = name;
+    contestant.numThreads = numThreads;
     contestant.work = [=] { *count = evaluate(); };
     contestant.validate = [=] {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -158,7 +208,24 @@ Contest makePointContest(BenchMesh const &mesh) {
             return evaluatePeer(*peer, numPlaces, hasDerivatives, *workspace);
         }));
     }
-    contest.pairings = {{"surface-points", 0, {1}}, {"surface-derivatives", 2, {3}}};
+    auto const stream =
+        std::make_shared<BfrExt::PatchStream<float>>(*own->factory, BfrExt::PatchLevels(kLevel));
+    for (int const numThreads : {1, 2}) {
+        contest.contestants.push_back(makePointContestant(
+            "BfrExt::PatchStream", workspace,
+            [=] {
+                static_cast<void>(own); // whose factory the stream has
+                return evaluateStream(*stream, *workspace);
+            },
+            numThreads));
+    }
+    auto const stencils = std::make_shared<std::vector<float>>(makeStencils(*peer, numPlaces));
+    contest.contestants.push_back(
+        makePointContestant("Bfr::Surface, stencils kept", workspace,
+                            [=] { return evaluateStencils(*peer, *stencils, *workspace); }));
+    contest.pairings = {{"surface-points", 0, {1}},      {"surface-stencils", 0, {6}},
+                        {"surface-derivatives", 2, {3}}, {"stream-1", 4, {1}},
+                        {"stream-stencils", 4, {6}},     {"stream-2", 5, {4}}};
     return contest;
 }
 

@@ -34,7 +34,7 @@ namespace {
 constexpr float kPi = 3.14159265F;
 constexpr Vec3 kSurfaceColor{0.62F, 0.25F, 0.12F};
 constexpr Vec3 kGroundColor{0.55F, 0.55F, 0.55F};
-constexpr Vec3 kSunLight{2.0F, 1.9F, 1.7F};
+constexpr Vec3 kSunLight{1.7F, 1.6F, 1.45F};
 constexpr float kSunSize = 0.06F; // radius by distance
 constexpr int kNumBounces = 3;    // of light that reaches the camera
 constexpr float kStart = 1e-4F;   // of rays, from what they leave
