@@ -5,6 +5,7 @@
 #include "cell/surfaceTurns.h"
 
 #include "far_ext/limit/limitRows.h"
+#include "far_ext/limit/plainCell.h"
 
 #include <algorithm>
 #include <string>
@@ -18,6 +19,7 @@ using FarExt::StatusCode;
 using FarExt::internal::CellPatch;
 using FarExt::internal::FVarChannel;
 using FarExt::internal::Level;
+using FarExt::internal::VertexMark;
 
 namespace {
 
@@ -36,7 +38,12 @@ bool isAtFreeBoundary(Level const &level, Far::Index vert) {
 SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options)
     : _refiner(refiner), _options(options),
       _types(options.GetExternalCache() ? options.GetExternalCache()->_types
-                                        : std::make_shared<internal::CellTypes>()) {}
+                                        : std::make_shared<internal::CellTypes>()) {
+    FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
+    for (int channel = -1; channel < refiner.GetNumFVarChannels(); ++channel) {
+        _marks.push_back(FarExt::internal::MarkFeatures(hierarchy.GetMesh(channel).levels[0]));
+    }
+}
 
 SurfaceFactory::~SurfaceFactory() = default;
 
@@ -81,6 +88,32 @@ Parameterization SurfaceFactory::GetFaceParameterization(Index face) const {
     return Parameterization(_refiner.GetHierarchy().mesh.levels[0].GetFaceSize(face));
 }
 
+// Plain faces, which are most, are known by a short key; of each, the type is found from the patch once.
+internal::CellType const &SurfaceFactory::findType(Level const &level,
+                                                   std::vector<VertexMark> const &marks, Index face,
+                                                   internal::CellRules const &rules,
+                                                   std::vector<Index> &points) const {
+    // What it has taken of memory is kept for the next face.
+    static thread_local FarExt::internal::PlainCellGatherer gatherer;
+    static thread_local FarExt::internal::PlainCell plain;
+    bool const isPlain = gatherer.Gather(level, marks, face, plain);
+    if (isPlain) {
+        internal::CellTypes::AddRules(rules, plain.key);
+        if (internal::CellType const *const type = _types->FindPlain(plain.key)) {
+            points = plain.sources;
+            return *type;
+        }
+    }
+    CellPatch cell;
+    GatherBaseCell(level, face, cell);
+    points = cell.patch.sources;
+    internal::CellType const &type = _types->Find(std::move(cell), rules);
+    if (isPlain) {
+        _types->AddPlain(plain.key, type);
+    }
+    return type;
+}
+
 template <typename REAL>
 bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
                           Surface<REAL> *surface, Status *status) const {
@@ -95,9 +128,12 @@ bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
     Level const &level = hierarchy.GetMesh(channel).levels[0];
     Index const levelFace = values ? values->levels[0].valueFaces[face] : face;
 
-    CellPatch cell;
-    GatherBaseCell(level, levelFace, cell);
-    std::vector<Index> controlPoints = cell.patch.sources;
+    std::vector<Index> controlPoints;
+    internal::CellType const &type =
+        findType(level, _marks[std::size_t(channel + 1)], levelFace,
+                 {_refiner.GetSchemeOptions(),
+                  FarExt::internal::GetStepsToLimit(_refiner.GetHexSchemeOptions()), interpolation},
+                 controlPoints);
     if (values) {
         for (Index &point : controlPoints) {
             point = values->valuesOfVertices[point];
@@ -107,10 +143,6 @@ bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
     bool const hasManyFaces = std::any_of(verts.begin(), verts.end(), [&](Index vert) {
         return level.GetNumVertexFaces(vert) >= kManyFaces;
     });
-    internal::CellType const &type = _types->Find(
-        std::move(cell),
-        {_refiner.GetSchemeOptions(),
-         FarExt::internal::GetStepsToLimit(_refiner.GetHexSchemeOptions()), interpolation});
     if (hasManyFaces && !type.HasCorners()) {
         result = Status(StatusCode::Unsupported, ComponentType::Face, face,
                         "the limit of face " + std::to_string(face) +

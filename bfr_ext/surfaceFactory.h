@@ -8,8 +8,17 @@
 #include "far_ext/topologyRefiner.h"
 
 #include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+enum class VertexMark : unsigned char;
+}
 
 namespace OpenSubdivHex::BfrExt {
+
+namespace internal {
+struct CellRules;
+}
 
 /// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
 ///
@@ -118,6 +127,10 @@ private:
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
 
     FarExt::Status checkFace(Index face) const;
+    internal::CellType const &findType(FarExt::internal::Level const &level,
+                                       std::vector<FarExt::internal::VertexMark> const &marks,
+                                       Index face, internal::CellRules const &rules,
+                                       std::vector<Index> &points) const;
     template <typename REAL>
     bool init(Index face, FarExt::Interpolation interpolation, int channel, Surface<REAL> *surface,
               FarExt::Status *status) const;
@@ -125,6 +138,8 @@ private:
     FarExt::TopologyRefiner const &_refiner;
     Options const _options;
     std::shared_ptr<internal::CellTypes> _types;
+    // Of the vertices of the mesh, and of the value mesh of each channel; empty where all are plain.
+    std::vector<std::vector<FarExt::internal::VertexMark>> _marks;
 };
 
 } // namespace OpenSubdivHex::BfrExt

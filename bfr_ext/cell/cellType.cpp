@@ -266,6 +266,17 @@ CellType const &CellTypes::Find(CellPatch &&cell, CellRules const &rules) {
     return *_types.emplace(std::move(key), std::move(type)).first->second;
 }
 
+CellType const *CellTypes::FindPlain(std::string const &key) const {
+    std::shared_lock<std::shared_mutex> const lock(_mutex);
+    auto const found = _plainTypes.find(key);
+    return found == _plainTypes.end() ? nullptr : found->second;
+}
+
+void CellTypes::AddPlain(std::string const &key, CellType const &type) {
+    std::lock_guard<std::shared_mutex> const lock(_mutex);
+    _plainTypes.emplace(key, &type);
+}
+
 std::size_t CellTypes::GetSize() const {
     std::shared_lock<std::shared_mutex> const lock(_mutex);
     return _types.size();

@@ -124,6 +124,14 @@ class CellTypes {
 public:
     /// The type of a cell, which belongs to these types.
     CellType const &Find(FarExt::internal::CellPatch &&cell, CellRules const &rules);
+    /// \brief The type of a plain cell of a base face, where AddPlain() has told of it; else null.
+    ///
+    /// \param key  of the cell, with AddRules()
+    CellType const *FindPlain(std::string const &key) const;
+    /// Tells of it.
+    void AddPlain(std::string const &key, CellType const &type);
+    /// Appends to the key of a plain cell what the rules are.
+    static void AddRules(CellRules const &rules, std::string &key) { key += getKey(rules); }
     /// Calls function(finder), which no other thread uses then, for the limit masks of \p rules.
     template <typename FUNCTION>
     auto UseMasks(CellRules const &rules, FUNCTION function) {
@@ -147,6 +155,7 @@ private:
 
     mutable std::shared_mutex _mutex;
     std::unordered_map<Key, std::unique_ptr<CellType>> _types;
+    std::unordered_map<Key, CellType const *> _plainTypes;
     std::mutex _masksMutex;
     int _numMaskUses = 0;
     std::unordered_map<Key, std::unique_ptr<FarExt::internal::LimitMaskFinder>> _masks;

@@ -65,7 +65,7 @@ private:
 /// Marks the vertices of a level: Feature are those that are on a boundary or not manifold, sharp, on
 /// sharp edges, or in faces that have features; Irregular others in faces with irregular corners.
 /// Empty where all are plain.
-std::vector<VertexMark> MarkFeatures(Level const &level);
+OPENSUBDIVHEX_API std::vector<VertexMark> MarkFeatures(Level const &level);
 
 } // namespace OpenSubdivHex::FarExt::internal
 
