@@ -130,7 +130,7 @@ bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
 
     std::vector<Index> controlPoints;
     internal::CellType const &type =
-        findType(level, _marks[std::size_t(channel + 1)], levelFace,
+        findType(level, _marks.begin()[channel + 1], levelFace,
                  {_refiner.GetSchemeOptions(),
                   FarExt::internal::GetStepsToLimit(_refiner.GetHexSchemeOptions()), interpolation},
                  controlPoints);

@@ -120,7 +120,7 @@ double evaluateStencils(PeerSurfaces const &peer, std::vector<float> const &sten
             surface.ApplyStencil(&stencils[first], gathered, 3, p);
         }
     }
-    return double(peer.surfaces.size()) * double(stencils.size() / numPoints);
+    return double(peer.surfaces.size()) * double(stencils.size()) / double(numPoints);
 }
 
 /// Those of about so many places.
