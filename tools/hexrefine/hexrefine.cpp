@@ -4,6 +4,7 @@
 //
 // Mesh file -> Far::TopologyDescriptor -> FarExt::TopologyRefiner -> OsdExt::RefinementEvaluator,
 // or Far::StencilTable and an evaluator -> mesh file.
+#include "adaptive.h"
 #include "creaseAngle.h"
 #include "evaluation.h"
 #include "far_ext/threads.h"
@@ -11,6 +12,7 @@
 #include "far_ext/version.h"
 #include "levelMesh.h"
 #include "libraryPaths.h"
+#include "normals.h"
 #include "osd_ext/simdLevel.h"
 #include "picture.h"
 #include "pictureColors.h"
@@ -65,6 +67,7 @@ struct Arguments {
     std::string stats;
     bool isLimit = false;
     bool isSeparate = false;
+    AdaptiveArguments adaptive;
     bool printsTags = false;
     bool isQuiet = false;
 };
@@ -215,6 +218,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                  "Write a vertex of .ply and .off files once for each of its texture coordinates "
                  "and normals, at seams and, with --limit, at sharp creases; the first of each lie "
                  "where they are without this");
+    AddAdaptiveOptions(app, &arguments->adaptive);
     app.add_option("--threads", arguments->numThreads,
                    "Number of threads, 1 to 1024; the result does not depend on it")
         ->check([](std::string const &word) {
@@ -241,9 +245,11 @@ void addOptions(CLI::App &app, Arguments *arguments) {
             return std::string(HasRenderer() ? "" : "this program was built without Embree");
         })
         ->type_name("FILE");
-    app.add_option("--png-colors", arguments->pngColors,
-                   "What has a colour of its own in the picture: each face of INPUT with what is "
-                   "refined from it, or all faces of a material, group or object of an .obj file")
+    app.add_option(
+           "--png-colors", arguments->pngColors,
+           "What has a colour of its own in the picture: each face of INPUT with what is "
+           "refined from it, all faces of a material, group or object of an .obj file, or the "
+           "levels of --adaptive")
         ->check(CLI::IsMember(kPictureColors))
         ->needs("--png");
     app.add_option("--stats", arguments->stats, "File for statistics as JSON; - is standard output")
@@ -251,7 +257,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
     app.add_flag("--tags", arguments->printsTags,
                  "Print creases, corners, holes, rules and channels, as lines for an .obj file");
     app.add_flag("--quiet", arguments->isQuiet, "Print no summary and show no progress");
-    app.callback([arguments] {
+    app.callback([arguments, &app] {
         checkFiles(*arguments);
         if (arguments->printsTags && arguments->stats == "-") {
             throw CLI::ValidationError("--tags", "standard output is taken by --stats -");
@@ -273,6 +279,10 @@ void addOptions(CLI::App &app, Arguments *arguments) {
             (arguments->output.empty() || FindMeshFormat(arguments->output) == MeshFormat::Obj)) {
             throw CLI::ValidationError("--separate-vertices",
                                        "is for an --output that is a .ply or .off file");
+        }
+        CheckAdaptiveOptions(app, arguments->adaptive);
+        if (arguments->pngColors == kLevelColors && !arguments->adaptive.isAdaptive) {
+            throw CLI::ValidationError("--png-colors", "levels are those of --adaptive");
         }
         if (arguments->isLimit && arguments->evaluator == "primvar") {
             throw CLI::ValidationError("--limit", "needs a stencil table, not --evaluator primvar");
@@ -398,14 +408,6 @@ std::vector<float> evaluateLimit(Arguments const &arguments, FarExt::TopologyRef
     return normals;
 }
 
-bool isNormal(VertexProperty const &property) {
-    bool result = false;
-    for (int k = 0; k < 3; ++k) {
-        result = result || property.name == GetPropertyName(FVarKind::Normal, k);
-    }
-    return result;
-}
-
 /// The faces of the last level and, where the file takes them, the normals on each side; else their
 /// mean at each vertex.
 void copyFacesWithNormals(Arguments const &arguments, FarExt::TopologyLevel const &level,
@@ -433,27 +435,6 @@ void copyFacesWithNormals(Arguments const &arguments, FarExt::TopologyLevel cons
             property.values.push_back(means[i]);
         }
         mesh->vertexProperties.push_back(std::move(property));
-    }
-}
-
-/// Makes the normals that vertices have as properties 1 long.
-void normalizeProperties(Mesh *mesh) {
-    std::vector<VertexProperty *> normal;
-    for (VertexProperty &property : mesh->vertexProperties) {
-        if (isNormal(property) && !IsInteger(property.type)) {
-            normal.push_back(&property);
-        }
-    }
-    if (normal.size() < 3) {
-        return;
-    }
-    std::vector<float> vectors(mesh->positions.size());
-    for (std::size_t i = 0; i < vectors.size(); ++i) {
-        vectors[i] = normal[i % 3]->values[i / 3];
-    }
-    Normalize(&vectors);
-    for (std::size_t i = 0; i < vectors.size(); ++i) {
-        normal[i % 3]->values[i / 3] = vectors[i];
     }
 }
 
@@ -491,12 +472,7 @@ void evaluate(Arguments const &arguments, FarExt::TopologyRefiner const &refiner
             EvaluateStencils(*table, arguments.evaluator, primvar);
         });
     }
-    for (FVarChannel &channel : mesh->channels) {
-        if (channel.kind == FVarKind::Normal) {
-            Normalize(&channel.values);
-        }
-    }
-    normalizeProperties(mesh);
+    NormalizeNormals(mesh);
 }
 
 /// Removes from \p mesh what will not be written.
@@ -533,7 +509,7 @@ void removeNormals(Arguments const &arguments, Mesh *mesh, Statistics *statistic
         }
     }
     std::vector<VertexProperty> &properties = mesh->vertexProperties;
-    auto const end = std::remove_if(properties.begin(), properties.end(), isNormal);
+    auto const end = std::remove_if(properties.begin(), properties.end(), IsNormal);
     if (end != properties.end()) {
         properties.erase(end, properties.end());
         statistics->notRead.emplace_back("normals, those of --limit replace them");
@@ -603,32 +579,59 @@ void run(Arguments const &arguments) {
                 kFVarInterpolationNames[sdcOptions.GetFVarLinearInterpolation()];
         });
 
-        milliseconds.refine =
-            measure(progress, "refining", [&] { refine(arguments, mesh, refiner.get()); });
+        bool const isAdaptive = arguments.adaptive.isAdaptive;
+        int const lastDepth = isAdaptive ? 0 : arguments.level;
+        milliseconds.refine = measure(progress, "refining", [&] {
+            if (!isAdaptive) {
+                refine(arguments, mesh, refiner.get());
+            }
+        });
         statistics.levels = CountLevels(*refiner);
         statistics.creases = mesh.tags.GetNumCreases();
         statistics.corners = mesh.tags.GetNumCorners();
         statistics.holes = CountHoles(*refiner);
         statistics.channels = CountChannels(*refiner, mesh);
 
-        if (arguments.level > 0) {
+        AdaptiveCells cells;
+        if (isAdaptive) {
+            milliseconds.evaluate = measure(progress, "evaluating", [&] {
+                cells = RefineAdaptively(arguments.adaptive, *refiner, arguments.input, &mesh);
+                statistics.adaptive = cells.statistics;
+            });
+            NormalizeNormals(&mesh);
+        } else if (arguments.level > 0) {
             evaluate(arguments, *refiner, &mesh, progress, &statistics);
         }
-        FarExt::TopologyLevel const &lastLevel = refiner->GetLevel(arguments.level);
+        FarExt::TopologyLevel const &lastLevel = refiner->GetLevel(lastDepth);
         std::optional<FarExt::LimitSides> sides;
         std::vector<float> normals;
         if (arguments.isLimit) {
             sides.emplace(lastLevel);
             normals = evaluateLimit(arguments, *refiner, *sides, &mesh, progress, &statistics);
         }
-        CheckFinite(mesh, arguments.input, "level " + std::to_string(arguments.level) + ": ");
+        CheckFinite(mesh, arguments.input, "level " + std::to_string(lastDepth) + ": ");
 
+        if (!arguments.png.empty()) {
+            milliseconds.render = measure(progress, "rendering", [&] {
+                if (isAdaptive) {
+                    WriteCellPicture(
+                        mesh, cells.camera,
+                        FindCellRegions(arguments.pngColors, regions, mesh, cells.faceLevels),
+                        arguments.png);
+                    return;
+                }
+                WritePicture(refiner->GetLevel(arguments.level), mesh.positions, regions,
+                             arguments.png);
+            });
+        }
         if (!arguments.output.empty()) {
             milliseconds.write = measure(progress, "writing", [&] {
                 if (sides) {
                     copyFacesWithNormals(arguments, lastLevel, *sides, std::move(normals), &mesh);
                 } else if (arguments.isSeparate) {
                     CopySeparateFaces(lastLevel, nullptr, &mesh);
+                } else if (isAdaptive) {
+                    SortFacesByLabel(&mesh);
                 } else {
                     CopyFaces(lastLevel, &mesh);
                 }
@@ -636,12 +639,6 @@ void run(Arguments const &arguments) {
                     throw FileError(arguments.input, "all faces are holes, none is left to write");
                 }
                 WriteMesh(mesh, arguments.output);
-            });
-        }
-        if (!arguments.png.empty()) {
-            milliseconds.render = measure(progress, "rendering", [&] {
-                WritePicture(refiner->GetLevel(arguments.level), mesh.positions, regions,
-                             arguments.png);
             });
         }
     }

@@ -66,6 +66,7 @@ TEST_F(Hexrefine, PrintsStatisticsAsPromised) {
                                               "fvarChannelsLeftOut",
                                               "firstStep",
                                               "coplanar",
+                                              "adaptive",
                                               "vertexProperties",
                                               "faceProperties",
                                               "objects",

@@ -41,9 +41,12 @@ std::vector<int> permute(std::vector<int> const &from, std::vector<std::size_t> 
     return result;
 }
 
-/// \brief Puts the faces in the order of their labels, those with the same in the order in which
-/// they are, so that a file has its objects, groups and materials one after the other.
-void sortFacesByLabel(Mesh *mesh) {
+} // namespace
+
+void SortFacesByLabel(Mesh *mesh) {
+    if (mesh->faceLabels.empty()) {
+        return;
+    }
     std::size_t const numFaces = mesh->faceSizes.size();
     std::vector<std::size_t> firstCorners(numFaces + 1); // of faces
     std::vector<std::size_t> places(mesh->labels.size() + 1);
@@ -75,6 +78,8 @@ void sortFacesByLabel(Mesh *mesh) {
     mesh->faceSizes = std::move(sizes);
     mesh->baseFaces = std::move(baseFaces);
 }
+
+namespace {
 
 /// Those of vertices with \p width numbers each, in the order \p verts.
 std::vector<float> gather(std::vector<float> const &from, std::size_t width,
@@ -137,8 +142,8 @@ void copyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sid
         mesh->channels.back().faceValues = std::move(polygons.sides);
     }
     // Faces that are not refined stay in the order of the file.
-    if (!mesh->faceLabels.empty() && level.GetDepth() > 0) {
-        sortFacesByLabel(mesh);
+    if (level.GetDepth() > 0) {
+        SortFacesByLabel(mesh);
     }
 }
 

@@ -39,6 +39,11 @@ void CopyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const &sid
 void CopySeparateFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sides,
                        Mesh *mesh);
 
+/// \brief Puts the faces of \p mesh in the order of their labels, those with the same in the order in
+/// which they are, so that a file has its objects, groups and materials one after the other.  Without
+/// labels they stay as they are.
+void SortFacesByLabel(Mesh *mesh);
+
 } // namespace OpenSubdivHex::Tools
 
 #endif

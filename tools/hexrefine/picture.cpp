@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture.h"
 
+#include "far_ext/topologyRefinerFactory.h"
 #include "tools/mesh/fileError.h"
+#include "tools/mesh/topologyDescriptor.h"
 
 #ifdef HEXREFINE_HAS_RENDERER
 #include "tools/render/pngFile.h"
@@ -31,12 +33,50 @@ void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> positio
     WritePng(Render(scene, camera, options, kWidth, kHeight), path);
 }
 
+void WriteCellPicture(Mesh const &mesh, AdaptiveCamera const &camera,
+                      std::vector<int> const &regions, std::string const &path) {
+    Mesh faces;
+    faces.faceSizes = mesh.faceSizes;
+    faces.faceVertices = mesh.faceVertices;
+    faces.positions = mesh.positions;
+    // Eye and target are scaled with the mesh.
+    faces.positions.insert(faces.positions.end(), camera.eye, camera.eye + 3);
+    faces.positions.insert(faces.positions.end(), camera.target, camera.target + 3);
+    ScaleToUnitSize(&faces.positions);
+    Vec3 const eye = GetVec3(faces.positions.data(), mesh.GetNumVertices());
+    Vec3 const target = GetVec3(faces.positions.data(), mesh.GetNumVertices() + 1);
+    faces.positions.resize(mesh.positions.size());
+
+    FarExt::Status status;
+    auto const refiner =
+        FarExt::TopologyRefinerFactory::Create(DescribeTopology(faces), {}, {}, &status);
+    if (!refiner) {
+        throw FileError(path, "cannot be made: " + status.GetMessage());
+    }
+    Surface surface(refiner->GetLevel(0), !regions.empty());
+    surface.SetPositions(faces.positions.data());
+    Scene scene;
+    scene.Build(&surface, {}, 0);
+    RenderOptions options;
+    options.hasRegions = !regions.empty();
+    options.hasWireframe = options.hasRegions;
+    options.lineWidth = 1;
+    options.regions = regions;
+    Camera const view(eye, target, camera.fieldOfView, float(camera.width) / float(camera.height));
+    WritePng(Render(scene, view, options, camera.width, camera.height), path);
+}
+
 #else
 
 bool HasRenderer() { return false; }
 
 void WritePicture(FarExt::TopologyLevel const &, std::vector<float>, std::vector<int> const &,
                   std::string const &path) {
+    throw FileError(path, "cannot be made: this program was built without Embree and libpng");
+}
+
+void WriteCellPicture(Mesh const &, AdaptiveCamera const &, std::vector<int> const &,
+                      std::string const &path) {
     throw FileError(path, "cannot be made: this program was built without Embree and libpng");
 }
 

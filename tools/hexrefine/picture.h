@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_TOOLS_PICTURE_H
 #define OPENSUBDIVHEX_TOOLS_PICTURE_H
 
+#include "adaptive.h"
 #include "far_ext/topologyLevel.h"
 
 #include <string>
@@ -21,6 +22,16 @@ bool HasRenderer();
 /// Throws FileError.
 void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> positions,
                   std::vector<int> const &regions, std::string const &path);
+
+/// \brief Ray traces cells as their camera sees them.
+///
+/// \param mesh     their faces
+/// \param regions  a number for each face, the same for those that get one colour; then faces have
+///                 their edges drawn, too.  Empty: all have the colour of clay
+///
+/// Throws FileError.
+void WriteCellPicture(Mesh const &mesh, AdaptiveCamera const &camera,
+                      std::vector<int> const &regions, std::string const &path);
 
 } // namespace OpenSubdivHex::Tools
 

@@ -9,9 +9,10 @@
 namespace OpenSubdivHex::Tools {
 
 std::vector<int> FindRegions(std::string const &colors, Mesh const &mesh, std::string const &path) {
-    std::vector<int> regions(colors.empty() ? 0 : std::size_t(mesh.GetNumFaces()));
+    std::vector<int> regions(
+        colors.empty() || colors == kLevelColors ? 0 : std::size_t(mesh.GetNumFaces()));
     std::iota(regions.begin(), regions.end(), 0);
-    if (colors.empty() || colors == kPictureColors[0]) {
+    if (regions.empty() || colors == kPictureColors[0]) {
         return regions;
     }
     std::string FaceLabel::*const name = colors == "materials" ? &FaceLabel::material
@@ -29,6 +30,18 @@ std::vector<int> FindRegions(std::string const &colors, Mesh const &mesh, std::s
         throw FileError(path, "has no " + colors + " to colour");
     }
     return regions;
+}
+
+std::vector<int> FindCellRegions(std::string const &colors, std::vector<int> const &regions,
+                                 Mesh const &mesh, std::vector<int> const &faceLevels) {
+    if (colors == kLevelColors) {
+        return faceLevels;
+    }
+    std::vector<int> result;
+    for (int face = 0; !regions.empty() && face < mesh.GetNumFaces(); ++face) {
+        result.push_back(regions[std::size_t(mesh.GetBaseFace(face))]);
+    }
+    return result;
 }
 
 } // namespace OpenSubdivHex::Tools

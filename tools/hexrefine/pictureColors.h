@@ -11,7 +11,9 @@ namespace OpenSubdivHex::Tools {
 
 /// What may have a colour of its own in a picture, as users call it.
 inline std::vector<std::string> const kPictureColors = {"base-faces", "materials", "groups",
-                                                        "objects"};
+                                                        "objects", "levels"};
+/// That which cells of --adaptive alone have.
+inline char const *const kLevelColors = "levels";
 
 /// \brief A number for each face of a control mesh, the same for those that get one colour.
 ///
@@ -20,6 +22,13 @@ inline std::vector<std::string> const kPictureColors = {"base-faces", "materials
 ///
 /// Throws FileError where no face has such a thing.
 std::vector<int> FindRegions(std::string const &colors, Mesh const &mesh, std::string const &path);
+
+/// \brief The same for each of the faces that \p mesh has now.
+///
+/// \param regions     of FindRegions()
+/// \param faceLevels  by face; taken for kLevelColors
+std::vector<int> FindCellRegions(std::string const &colors, std::vector<int> const &regions,
+                                 Mesh const &mesh, std::vector<int> const &faceLevels);
 
 } // namespace OpenSubdivHex::Tools
 

@@ -158,6 +158,17 @@ std::string FormatJson(Statistics const &statistics) {
         coplanar = {{"tolerance", statistics.coplanar->tolerance},
                     {"openGaps", statistics.coplanar->hasOpenGaps}};
     }
+    Json adaptive;
+    if (statistics.adaptive) {
+        AdaptiveStatistics const &cells = *statistics.adaptive;
+        adaptive = {{"facesByLevel", cells.facesByLevel},
+                    {"faces", cells.faces},
+                    {"points", cells.points},
+                    {"culled", {{"outside", cells.outside}, {"backFacing", cells.backFacing}}},
+                    {"types", cells.types},
+                    {"hits", cells.hits},
+                    {"bytes", cells.bytes}};
+    }
     auto const &milliseconds = statistics.milliseconds;
     AttributeStatistics const &attributes = statistics.attributes;
     Json const json = {{"scheme", statistics.scheme},
@@ -186,6 +197,7 @@ std::string FormatJson(Statistics const &statistics) {
                        {"fvarChannelsLeftOut", statistics.channelsLeftOut},
                        {"firstStep", statistics.firstStep},
                        {"coplanar", coplanar},
+                       {"adaptive", adaptive},
                        {"vertexProperties", makeJson(attributes.vertexProperties)},
                        {"faceProperties", makeJson(attributes.faceProperties)},
                        {"objects", attributes.objects},
@@ -286,6 +298,20 @@ std::string formatAttributes(Statistics const &statistics) {
     return lines;
 }
 
+std::string formatAdaptive(AdaptiveStatistics const &cells) {
+    std::string text =
+        format("cells %11lld                         %7lld  by level",
+               static_cast<long long>(cells.points), static_cast<long long>(cells.faces));
+    for (std::size_t level = 0; level < cells.facesByLevel.size(); ++level) {
+        text += format(" %d:%lld", int(level), static_cast<long long>(cells.facesByLevel[level]));
+    }
+    text += format("\nculled: %lld cells outside of the picture, %lld facing away\n",
+                   static_cast<long long>(cells.outside), static_cast<long long>(cells.backFacing));
+    return text + format("%lld types of base faces, %lld hits, %lld bytes\n",
+                         static_cast<long long>(cells.types), static_cast<long long>(cells.hits),
+                         static_cast<long long>(cells.bytes));
+}
+
 } // namespace
 
 std::string FormatSummary(Statistics const &statistics) {
@@ -301,6 +327,9 @@ std::string FormatSummary(Statistics const &statistics) {
             summary += format(" %d:%d", size, numFaces);
         }
         summary += "\n";
+    }
+    if (statistics.adaptive) {
+        summary += formatAdaptive(*statistics.adaptive);
     }
     summary += "\n" + formatTags(statistics) + formatAttributes(statistics);
     if (statistics.stencils > 0) {

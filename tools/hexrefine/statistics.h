@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_TOOLS_STATISTICS_H
 #define OPENSUBDIVHEX_TOOLS_STATISTICS_H
 
+#include "adaptive.h"
 #include "far_ext/topologyRefiner.h"
 #include "tools/mesh/mesh.h"
 
@@ -88,6 +89,7 @@ struct Statistics {
     std::vector<std::string> notRead;         ///< what else the input has
     std::vector<std::string> notWritten;      ///< what the output's format has no place for
     std::string outputFormat;                 ///< its extension
+    std::optional<AdaptiveStatistics> adaptive;
 };
 
 std::vector<LevelStatistics> CountLevels(FarExt::TopologyRefiner const &refiner);

@@ -24,6 +24,12 @@ public:
     /// \param aspect  width of the picture by its height
     Camera(View view, std::vector<float> const &points, float aspect);
 
+    /// \brief A camera at \p eye with \p target in the middle of the picture.
+    ///
+    /// \param fieldOfView  degrees, of the height of the picture
+    /// \param aspect       width of the picture by its height
+    Camera(Vec3 eye, Vec3 target, float fieldOfView, float aspect);
+
     /// Turns the camera around the vertical axis through \p center.
     void Orbit(float degrees, Vec3 center);
 

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// hexrefine --adaptive.
+#include "programFixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace OpenSubdivHex::Tools {
+
+namespace {
+
+class HexrefineAdaptive : public Hexrefine {
+protected:
+    Mesh refine(std::string const &input, std::string const &arguments,
+                std::string const &output) const {
+        Result const result =
+            run("\"" + input + "\" --adaptive --quiet " + arguments + " -o " + getPath(output));
+        EXPECT_EQ(result.status, 0) << result.error;
+        return ReadMesh(getPath(output));
+    }
+
+    /// A strip of two quads of two materials, with texture coordinates that have a seam between them.
+    std::string makeStrip(std::string const &more = "") const {
+        return makeFile("strip.obj",
+                        "v 0 0 0\nv 1 0 0\nv 2 0 1\nv 0 1 0\nv 1 1 0\nv 2 1 1\n"
+                        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 5 5\nvt 6 5\nvt 6 6\nvt 5 6\n"
+                        "usemtl blue\nf 1/1 2/2 5/3 4/4\n"
+                        "usemtl red\nf 2/5 3/6 6/7 5/8\n" +
+                            more);
+    }
+};
+
+} // namespace
+
+TEST_F(HexrefineAdaptive, MakesClosedMeshesInEachFormat) {
+    std::string const cube = makeCubeFile();
+    std::size_t numFaces = 0;
+    for (char const *const output : {"out.obj", "out.off", "out.ply"}) {
+        Mesh const mesh = refine(cube, "--mask smooth", output);
+        ASSERT_NO_FATAL_FAILURE(expectClosed(mesh));
+        EXPECT_GT(mesh.GetNumFaces(), 100);
+        EXPECT_TRUE(numFaces == 0 || numFaces == mesh.faceSizes.size());
+        numFaces = mesh.faceSizes.size();
+    }
+    Mesh const coarse = refine(cube, "--pixel-error 20", "coarse.obj");
+    EXPECT_LT(coarse.GetNumFaces(), int(numFaces) / 4);
+    ASSERT_NO_FATAL_FAILURE(expectClosed(coarse));
+    EXPECT_EQ(refine(cube, "--max-level 0", "base.obj").GetNumFaces(), 6);
+    EXPECT_LT(refine(cube, "--resolution 100x100", "small.obj").GetNumFaces(), int(numFaces));
+}
+
+// What is near is fine; what is outside of the picture can be left as it is.
+TEST_F(HexrefineAdaptive, CameraDecidesWhatIsFine) {
+    std::string const cube = makeCubeFile();
+    std::string const camera = "--mask smooth --fov 20 --camera 2.4,0.2,0.4,1,0.2,0.4 ";
+    Mesh const all = refine(cube, camera, "all.obj");
+    auto const count = [](Mesh const &mesh, float side) {
+        int result = 0;
+        for (std::size_t i = 0; i < mesh.positions.size(); i += 3) {
+            result += mesh.positions[i] * side > 0.2F;
+        }
+        return result;
+    };
+    EXPECT_GT(count(all, 1), 3 * count(all, -1));
+    Mesh const culled = refine(cube, camera + "--cull", "culled.obj");
+    EXPECT_LT(culled.GetNumFaces(), all.GetNumFaces());
+    ASSERT_NO_FATAL_FAILURE(expectClosed(culled));
+}
+
+TEST_F(HexrefineAdaptive, KeepsMaterialsAndSeams) {
+    std::string const strip = makeStrip();
+    Mesh const mesh = refine(strip, "--boundary edge-and-corner --mask smooth", "out.obj");
+    ASSERT_EQ(mesh.labels.size(), 2u);
+    EXPECT_EQ(mesh.labels[0].material, "blue");
+    ASSERT_EQ(mesh.channels.size(), 1u);
+    FVarChannel const &uv = mesh.channels[0];
+    std::size_t corner = 0;
+    std::set<int> blue;
+    std::set<int> red;
+    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+        bool const isBlue =
+            mesh.labels[std::size_t(mesh.faceLabels[std::size_t(face)])].material == "blue";
+        for (int i = 0; i < mesh.faceSizes[std::size_t(face)]; ++i, ++corner) {
+            int const value = uv.faceValues[corner];
+            float const u = uv.values[2 * std::size_t(value)];
+            EXPECT_TRUE(isBlue ? -1e-5F <= u && u <= 1.00001F : 4.99999F <= u && u <= 6.00001F);
+            (isBlue ? blue : red).insert(mesh.faceVertices[corner]);
+        }
+    }
+    std::vector<int> both;
+    std::set_intersection(blue.begin(), blue.end(), red.begin(), red.end(),
+                          std::back_inserter(both));
+    // The seam has the same vertices on both sides, with values of their own.
+    EXPECT_GT(both.size(), 2u);
+    EXPECT_EQ(uv.GetNumValues(), mesh.GetNumVertices() + int(both.size()));
+    Result const result =
+        run("\"" + strip + "\" --adaptive --boundary edge-and-corner -o " + getPath("out.off"));
+    EXPECT_NE(result.out.find("materials"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("channel uv"), std::string::npos) << result.out;
+}
+
+TEST_F(HexrefineAdaptive, StatisticsTellWhatWasMade) {
+    Result const result = run(makeCubeFile() +
+                              " --adaptive --cull --mask smooth --quiet --camera "
+                              "0.6,0.6,0.6,0,0,0 --fov 30 --stats - -o " +
+                              getPath("out.ply"));
+    ASSERT_EQ(result.status, 0) << result.error;
+    Json const json = Json::parse(result.out)["adaptive"];
+    Mesh const mesh = ReadMesh(getPath("out.ply"));
+    EXPECT_EQ(json["faces"], mesh.GetNumFaces());
+    EXPECT_EQ(json["points"], mesh.GetNumVertices());
+    int sum = 0;
+    for (Json const &count : json["facesByLevel"]) {
+        sum += int(count);
+    }
+    EXPECT_EQ(sum, mesh.GetNumFaces());
+    EXPECT_EQ(json["types"], 1);
+    EXPECT_EQ(json["hits"], 5);
+    EXPECT_GT(json["culled"]["outside"], 0);
+    EXPECT_EQ(json["bytes"],
+              12 * mesh.GetNumVertices() + 4 * mesh.GetNumFaces() + 4 * mesh.faceVertices.size());
+    Result const uniform = run(makeCubeFile() + " --stats - --quiet");
+    EXPECT_TRUE(Json::parse(uniform.out)["adaptive"].is_null());
+    Result const summary = run(makeCubeFile() + " --adaptive");
+    EXPECT_NE(summary.out.find("by level"), std::string::npos) << summary.out;
+}
+
+TEST_F(HexrefineAdaptive, BadArgumentsAreNamed) {
+    std::string const cube = makeCubeFile();
+    expectBadUsage(cube + " --camera 0,0,5,0,0,0", "--adaptive");
+    expectBadUsage(cube + " --adaptive --camera 0,0,5,0,0", "--camera");
+    expectBadUsage(cube + " --adaptive --camera 0,0,5,0,0,x", "--camera");
+    expectBadUsage(cube + " --adaptive --fov 180", "--fov");
+    expectBadUsage(cube + " --adaptive --resolution 10", "--resolution");
+    expectBadUsage(cube + " --adaptive --resolution 0x10", "--resolution");
+    expectBadUsage(cube + " --adaptive --pixel-error 0", "--pixel-error");
+    expectBadUsage(cube + " --adaptive --max-level 13", "--max-level");
+    expectBadUsage(cube + " --adaptive -l 3", "--level");
+    expectBadUsage(cube + " --adaptive --limit", "--limit");
+    expectBadUsage(cube + " --png a.png --png-colors levels", "--adaptive");
+    expectFailure(cube + " --adaptive --camera 1,2,3,1,2,3", cube, "camera");
+    expectFailure(cube + " --adaptive --scheme doo-sabin", cube, "--adaptive");
+    std::string const strip = makeStrip();
+    expectFailure(strip + " --adaptive", strip, "VTX_BOUNDARY_NONE");
+    EXPECT_EQ(run(cube + " --adaptive --camera 0,9,0,0,0,0").status, 0);
+}
+
+TEST_F(HexrefineAdaptive, LeavesHolesOut) {
+    std::string const strip = makeStrip("t hole 1/0/0 1\nt interpolateboundary 1/0/0 1\n");
+    Mesh const mesh = refine(strip, "--boundary edge-only", "out.obj");
+    for (FaceLabel const &label : mesh.labels) {
+        EXPECT_EQ(label.material, "blue");
+    }
+    EXPECT_GT(mesh.GetNumFaces(), 1);
+}
+
+} // namespace OpenSubdivHex::Tools
