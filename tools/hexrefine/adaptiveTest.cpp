@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <vector>
 
 namespace OpenSubdivHex::Tools {
 
@@ -147,6 +148,23 @@ TEST_F(HexrefineAdaptive, BadArgumentsAreNamed) {
     expectFailure(strip + " --adaptive", strip, "VTX_BOUNDARY_NONE");
     EXPECT_EQ(run(cube + " --adaptive --camera 0,9,0,0,0,0").status, 0);
 }
+
+#ifdef HEXREFINE_HAS_RENDERER
+TEST_F(HexrefineAdaptive, MakesPicturesOfWhatItsCameraSees) {
+    std::string const path = getPath("cube.png");
+    std::string const arguments =
+        makeCubeFile() + " --adaptive --pixel-error 3 --resolution 120x90 --png " + path;
+    std::vector<std::string> contents;
+    for (char const *const more :
+         {"", " --png-colors levels", " --png-colors base-faces", " --camera 3,1,0,0,0,0"}) {
+        EXPECT_EQ(run(arguments + more).status, 0) << more;
+        contents.push_back(getContent(path));
+        EXPECT_EQ(contents.back().substr(0, 8), "\x89PNG\r\n\x1a\n");
+        EXPECT_EQ(contents.back().substr(16, 8), std::string("\0\0\0\x78\0\0\0\x5a", 8));
+        EXPECT_EQ(std::count(contents.begin(), contents.end(), contents.back()), 1);
+    }
+}
+#endif
 
 TEST_F(HexrefineAdaptive, LeavesHolesOut) {
     std::string const strip = makeStrip("t hole 1/0/0 1\nt interpolateboundary 1/0/0 1\n");
