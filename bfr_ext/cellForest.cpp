@@ -9,7 +9,7 @@ namespace OpenSubdivHex::BfrExt {
 
 using FarExt::internal::Level;
 
-CellForest::CellForest(FarExt::TopologyRefiner const &refiner) : _refiner(refiner) {
+CellForest::CellForest(FarExt::TopologyRefiner const &refiner) : _refiner(&refiner) {
     FarExt::TopologyLevel const &base = refiner.GetLevel(0);
     for (Index face = 0; face < base.GetNumFaces(); ++face) {
         _trees.emplace_back(base.GetFaceVertices(face).size());
@@ -21,13 +21,13 @@ CellForest::CellForest(FarExt::TopologyRefiner const &refiner) : _refiner(refine
 
 // Whether the edge runs against the face.
 bool CellForest::isReversed(Index face, int local) const {
-    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
+    Level const &level = _refiner->GetHierarchy().mesh.levels[0];
     Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
     return level.edgeFaces[edge][0] != face || level.edgeFaceLocals[edge][0] != local;
 }
 
 void CellForest::MatchEdges() {
-    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
+    Level const &level = _refiner->GetHierarchy().mesh.levels[0];
     _polylines = _edges;
     for (Index face = 0; face < GetNumFaces(); ++face) {
         for (int local = 0; local < level.GetFaceSize(face); ++local) {
@@ -61,7 +61,7 @@ void CellForest::MatchEdges() {
 }
 
 Tessellation CellForest::GetTessellation(Index face, Tessellation::Options options) const {
-    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
+    Level const &level = _refiner->GetHierarchy().mesh.levels[0];
     std::vector<Polyline> edges;
     for (int local = 0; local < level.GetFaceSize(face); ++local) {
         Polyline const &polyline =
@@ -72,7 +72,7 @@ Tessellation CellForest::GetTessellation(Index face, Tessellation::Options optio
 }
 
 int CellForest::GetBoundaryPoints(Index face, int points[]) const {
-    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
+    Level const &level = _refiner->GetHierarchy().mesh.levels[0];
     int numPoints = 0;
     for (int local = 0; local < level.GetFaceSize(face); ++local) {
         Index const corner = level.faceFirstCorner[face] + local;

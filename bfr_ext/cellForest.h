@@ -61,7 +61,7 @@ public:
 private:
     bool isReversed(Index face, int local) const;
 
-    FarExt::TopologyRefiner const &_refiner;
+    FarExt::TopologyRefiner const *_refiner;
     std::vector<CellTree> _trees;
     std::vector<Polyline> _edges;     // what was set
     std::vector<Polyline> _polylines; // the same with the points of faces
