@@ -3,14 +3,18 @@
 
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
-#include "far_ext/vtr/parallel.h"
+#include "far_ext/executor.h"
+#include "far_ext/threads.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshText.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
+#include <mutex>
 
 namespace OpenSubdivHex::Tools {
 
@@ -149,16 +153,24 @@ public:
 private:
     template <typename FUNCTION>
     void forFaces(FUNCTION function) const {
-        FarExt::internal::ParallelForRange(
-            _forest.GetNumFaces(), [] { return FarExt::internal::Nothing(); },
-            [&](FarExt::internal::Nothing, int begin, int end) {
-                for (int face = begin; face < end; ++face) {
+        std::atomic<int> next(0);
+        std::mutex mutex;
+        std::exception_ptr exception; // which no worker may let out
+        FarExt::GetExecutor().ParallelFor(FarExt::GetNumThreads(), [&](int) {
+            try {
+                for (int face = next++; face < _forest.GetNumFaces(); face = next++) {
                     if (HasFace(face)) {
                         function(face);
                     }
                 }
-            },
-            16);
+            } catch (...) {
+                std::lock_guard<std::mutex> const lock(mutex);
+                exception = std::current_exception();
+            }
+        });
+        if (exception) {
+            std::rethrow_exception(exception);
+        }
     }
 
     // Those of boundaries that some face has, in the order of the forest, then those inside of faces.
