@@ -111,6 +111,47 @@ Contest makeFrames(BenchMesh const &mesh, GlContext const &context) {
     return contest;
 }
 
+// The last level, and its limit with derivatives; frames keep the refiner, which the first one needs.
+Contest makeLimits(BenchMesh const &mesh) {
+    RefinerPointer const refiner = MakeFullyRefined(mesh);
+    std::shared_ptr<OsdExt::GLRefinementEvaluator> const own =
+        OsdExt::GLRefinementEvaluator::Create(*refiner);
+    Require(own != nullptr, "no evaluator of OpenGL");
+    auto const values = std::make_shared<DeviceValues>(*refiner);
+    int const numVertices = own->GetNumElements(refiner->GetMaxLevel());
+    std::shared_ptr<Osd::GLVertexBuffer> const du(
+        Osd::GLVertexBuffer::Create(kLength, numVertices));
+    std::shared_ptr<Osd::GLVertexBuffer> const dv(
+        Osd::GLVertexBuffer::Create(kLength, numVertices));
+    auto const add = [&](std::string const &name,
+                         std::function<bool(FarExt::Status *)> const &evaluate) {
+        Contestant contestant;
+        contestant.name = name;
+        contestant.work = [=] {
+            FarExt::Status status;
+            bool const isDone = evaluate(&status);
+            Require(isDone, name + ": " + status.GetMessage());
+            finish();
+        };
+        contestant.validate = [=] { return double(numVertices); };
+        return contestant;
+    };
+    Contest contest;
+    contest.contestants = {add("EvaluateLimit",
+                               [=](FarExt::Status *status) {
+                                   return own->EvaluateLimit(values->src.get(), kPacked,
+                                                             values->dst.get(), kPacked, du.get(),
+                                                             kPacked, dv.get(), kPacked,
+                                                             refiner->GetMaxLevel(), status);
+                               }),
+                           add("Evaluate", [=](FarExt::Status *status) {
+                               return own->Evaluate(values->src.get(), kPacked, values->dst.get(),
+                                                    kPacked, refiner->GetMaxLevel(), status);
+                           })};
+    contest.pairings = {{"gl-limit", 0, {1}}};
+    return contest;
+}
+
 /// What a host does before the first frame; \p make gives an object that is kept until release.
 template <typename MAKE>
 Contestant makePreparation(std::string const &name, RefinerPointer const &refiner, MAKE make) {
@@ -146,6 +187,9 @@ void AddDeviceBenchmarks(Suite &suite, GlContext const &context) {
     for (BenchMesh const &mesh : suite.GetMeshes()) {
         suite.AddContest({"OpenGL, all levels, length 3", "vertex", mesh, Memory::Resident},
                          [=, &context] { return makeFrames(mesh, context); });
+        suite.AddContest(
+            {"OpenGL, limit with derivatives, length 3", "vertex", mesh, Memory::Resident},
+            [=] { return makeLimits(mesh); });
         suite.AddContest({"OpenGL, preparation", "vertex", mesh, Memory::Default},
                          [=] { return makePreparations(mesh); });
     }

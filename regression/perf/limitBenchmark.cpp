@@ -19,14 +19,6 @@ namespace {
 
 using LimitTable = std::unique_ptr<Far::LimitStencilTable const>;
 
-std::shared_ptr<FarExt::TopologyRefiner> makeFullyRefined(BenchMesh const &mesh) {
-    std::shared_ptr<FarExt::TopologyRefiner> refiner = MakeBase(mesh);
-    FarExt::TopologyRefiner::UniformOptions options(mesh.level);
-    options.fullTopologyInLastLevel = true;
-    Require(refiner->RefineUniform(options), "not refined");
-    return refiner;
-}
-
 LimitTable makeLimitTable(FarExt::TopologyRefiner const &refiner) {
     FarExt::LimitStencilTableFactory::Options options;
     options.level = refiner.GetMaxLevel();
@@ -81,7 +73,7 @@ Contestant makeLimitContestant(std::string const &name, int numThreads, MAKE mak
 }
 
 Contest makeTableContest(BenchMesh const &mesh) {
-    std::shared_ptr<FarExt::TopologyRefiner> const refiner = makeFullyRefined(mesh);
+    std::shared_ptr<FarExt::TopologyRefiner> const refiner = MakeFullyRefined(mesh);
     std::shared_ptr<Far::TopologyRefiner> const farRefiner = MakeFarBase(mesh);
     farRefiner->RefineAdaptive(Far::TopologyRefiner::AdaptiveOptions(mesh.level));
     int const numPoints = refiner->GetLevel(mesh.level).GetNumVertices();
@@ -143,7 +135,7 @@ Contestant makeFrameContestant(std::string const &name, int numThreads,
 }
 
 Contest makeFrameContest(BenchMesh const &mesh) {
-    std::shared_ptr<FarExt::TopologyRefiner const> const refiner = makeFullyRefined(mesh);
+    std::shared_ptr<FarExt::TopologyRefiner const> const refiner = MakeFullyRefined(mesh);
     auto const table = std::make_shared<LimitTable const>(makeLimitTable(*refiner));
     auto const values = std::make_shared<Values>((*table)->GetNumControlVertices(), 3);
     auto const frame = makeFrame(refiner, table, values->length);

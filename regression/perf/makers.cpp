@@ -37,6 +37,14 @@ std::unique_ptr<FarExt::TopologyRefiner> MakeRefined(BenchMesh const &mesh) {
     return refiner;
 }
 
+std::unique_ptr<FarExt::TopologyRefiner> MakeFullyRefined(BenchMesh const &mesh) {
+    auto refiner = MakeBase(mesh);
+    FarExt::TopologyRefiner::UniformOptions options(mesh.level);
+    options.fullTopologyInLastLevel = true;
+    Require(refiner->RefineUniform(options), "not refined");
+    return refiner;
+}
+
 std::unique_ptr<Far::TopologyRefiner> MakeFarRefined(BenchMesh const &mesh) {
     auto refiner = MakeFarBase(mesh);
     refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(mesh.level));

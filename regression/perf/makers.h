@@ -26,6 +26,8 @@ std::unique_ptr<Far::TopologyRefiner> MakeFarBase(BenchMesh const &mesh);
 /// Refined to the level of the mesh, the last one with face-vertices alone.
 std::unique_ptr<FarExt::TopologyRefiner> MakeRefined(BenchMesh const &mesh);
 std::unique_ptr<Far::TopologyRefiner> MakeFarRefined(BenchMesh const &mesh);
+/// The same with its full topology, for limits.
+std::unique_ptr<FarExt::TopologyRefiner> MakeFullyRefined(BenchMesh const &mesh);
 
 using Table = std::unique_ptr<Far::StencilTable const>;
 

@@ -92,9 +92,20 @@ void runDevice(Suite::Options options, std::string const &command, Paths const &
     }
     Environment environment = describeRun(command);
     environment.emplace_back("OpenGL", context.GetRenderer());
+#ifdef PERF_HAS_CUDA
+    std::string const cuda = GetCudaDevice();
+    environment.emplace_back("CUDA", cuda.empty() ? "no device: not measured" : cuda);
+#else
+    environment.emplace_back("CUDA", "not built: not measured");
+#endif
     options.rows = &GetDeviceRows();
     Suite suite(std::move(options));
     AddDeviceBenchmarks(suite, context);
+#ifdef PERF_HAS_CUDA
+    if (!cuda.empty()) {
+        AddCudaBenchmarks(suite);
+    }
+#endif
     runSuite(suite, environment, paths);
 }
 #else
@@ -117,7 +128,7 @@ int main(int argc, char **argv) {
     bool isOfDevice = false;
     app.add_flag("--device", isOfDevice,
                  "Instead of the processor, measure evaluators of OpenGL, in a context without a "
-                 "window");
+                 "window, and of CUDA where there is a device");
     app.add_flag("--quick", options.isQuick, "Tiny sizes and one turn: to see that all runs");
     app.add_option(
            "--filter", options.filter,

@@ -105,10 +105,19 @@ std::vector<Row> const &GetRows() {
 }
 
 std::vector<Row> const &GetDeviceRows() {
-    static std::vector<Row> const kRows = {{"gl-levels", "OpenGL, all levels, length 3",
-                                            "Osd::GLComputeEvaluator, table of all levels", 3, 5},
-                                           {"gl-preparation", "OpenGL, preparation and upload",
-                                            "making and uploading a table of all levels", 50, 200}};
+    static std::vector<Row> const kRows = {
+        {"gl-levels", "OpenGL, all levels, length 3",
+         "Osd::GLComputeEvaluator, table of all levels", 3, 5},
+        {"gl-limit", "OpenGL, limit with derivatives, length 3", "own, the level alone", 0.4, 0.6},
+        {"gl-preparation", "OpenGL, preparation and upload",
+         "making and uploading a table of all levels", 50, 200},
+        {"cuda-copy", "CUDA, all levels, length 3", "copying as many bytes on the device", 0.5,
+         0.75},
+        {"cuda-table", "CUDA, all levels, length 3", "own kernel, table of all levels", 5, 8},
+        {"cuda-thread", "CUDA, table of all levels, length 3", "one thread for each stencil", 1, 2},
+        {"cuda-limit", "CUDA, limit with derivatives, length 3", "own, the level alone", 0.4, 0.6},
+        {"cuda-preparation", "CUDA, preparation and upload",
+         "making and uploading a table of all levels", 50, 200}};
     return kRows;
 }
 

@@ -87,6 +87,9 @@ void AddGrowthBenchmarks(Suite &suite);
 void AddBusyBenchmarks(Suite &suite);
 /// Those of GetDeviceRows(), in a context of OpenGL that lives as long as the suite.
 void AddDeviceBenchmarks(Suite &suite, GlContext const &context);
+/// The others of these, which need a device of CUDA: its name, empty where there is none.
+std::string GetCudaDevice();
+void AddCudaBenchmarks(Suite &suite);
 /// @}
 
 } // namespace OpenSubdivHex::Regression

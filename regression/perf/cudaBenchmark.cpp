@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// CUDA: all levels without a table, against tables and against copying on the device; the limit; and
+// what lies before the first frame: nanoseconds per vertex.
+#include "makers.h"
+
+#include "far_ext/stencilTableFactory.h"
+#include "osd_ext/cudaEvaluator.h"
+#include "osd_ext/cudaRefinementEvaluator.h"
+#include "osd_ext/cudaVertexBuffer.h"
+#include "osd_ext/refinementEvaluator.h"
+
+#include <cuda_runtime_api.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+
+namespace OpenSubdivHex::Regression {
+namespace {
+
+using OsdExt::CudaEvaluator;
+using OsdExt::CudaRefinementEvaluator;
+using OsdExt::CudaStencilTable;
+using OsdExt::CudaVertexBuffer;
+
+constexpr int kLength = 3;
+Osd::BufferDescriptor const kPacked(0, kLength, kLength);
+
+using RefinerPointer = std::shared_ptr<FarExt::TopologyRefiner const>;
+using BufferPointer = std::shared_ptr<CudaVertexBuffer>;
+
+void finish() { CudaEvaluator::Synchronize(); }
+
+BufferPointer makeBuffer(int numVertices) {
+    return BufferPointer(CudaVertexBuffer::Create(kLength, numVertices));
+}
+
+std::shared_ptr<CudaRefinementEvaluator> makeEvaluator(FarExt::TopologyRefiner const &refiner) {
+    FarExt::Status status;
+    std::shared_ptr<CudaRefinementEvaluator> result =
+        CudaRefinementEvaluator::Create(refiner, &status);
+    Require(result != nullptr, status.GetMessage());
+    return result;
+}
+
+std::shared_ptr<CudaStencilTable> makeCudaTable(FarExt::TopologyRefiner const &refiner) {
+    Table const table = FarExt::StencilTableFactory::Create(refiner, {});
+    return std::shared_ptr<CudaStencilTable>(CudaStencilTable::Create(table.get()));
+}
+
+/// Control values on the device, with those on the processor.
+struct ControlValues {
+    explicit ControlValues(FarExt::TopologyRefiner const &refiner) {
+        int const numControl = refiner.GetLevel(0).GetNumVertices();
+        for (int i = 0; i < numControl * kLength; ++i) {
+            values.push_back(float(i % 1000) / 1000);
+        }
+        buffer = makeBuffer(numControl);
+        buffer->UpdateData(values.data(), 0, numControl);
+    }
+
+    std::vector<float> values;
+    BufferPointer buffer;
+};
+
+Contestant makeFrame(std::string const &name, double movedBytes,
+                     std::function<bool()> const &evaluate, std::function<double()> validate) {
+    Contestant contestant;
+    contestant.name = name;
+    contestant.movedBytes = movedBytes;
+    contestant.work = [=] {
+        Require(evaluate(), name + ": not evaluated");
+        finish();
+    };
+    contestant.validate = std::move(validate);
+    return contestant;
+}
+
+Contest makeFrames(BenchMesh const &mesh) {
+    RefinerPointer const refiner = MakeRefined(mesh);
+    auto const own = makeEvaluator(*refiner);
+    auto const control = std::make_shared<ControlValues>(*refiner);
+    auto const numVertices = int(own->GetNumElementsAllLevels());
+    BufferPointer const dst = makeBuffer(numVertices);
+    auto const table = makeCudaTable(*refiner);
+    double const bytes = double(numVertices) * kLength * sizeof(float);
+    double const ownBytes = 1.25 * bytes + double(own->GetNumDeviceBytes());
+    double const tableBytes =
+        bytes + GetNumBytes(*Table(FarExt::StencilTableFactory::Create(*refiner, {})));
+    // Half of the bytes are read, the others written.
+    auto const numCopied = std::size_t(ownBytes / 2);
+    BufferPointer const copied[] = {makeBuffer(int(numCopied / sizeof(float) / kLength) + 1),
+                                    makeBuffer(int(numCopied / sizeof(float) / kLength) + 1)};
+
+    auto const validate = [=] {
+        auto const evaluator = OsdExt::RefinementEvaluator::Create(*refiner);
+        std::vector<float> expected(std::size_t(numVertices) * kLength);
+        evaluator->EvaluateAllLevels(control->values.data(), kPacked, expected.data(), kPacked);
+        std::vector<float> found(expected.size());
+        dst->GetData(found.data());
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            Require(std::abs(found[i] - expected[i]) < 1e-5f, "CUDA: wrong results");
+        }
+        return double(numVertices);
+    };
+    Contest contest;
+    contest.contestants = {
+        makeFrame(
+            "OsdExt::CudaRefinementEvaluator", ownBytes,
+            [=] {
+                return own->EvaluateAllLevels(control->buffer.get(), kPacked, dst.get(), kPacked);
+            },
+            validate),
+        makeFrame(
+            "OsdExt::CudaEvaluator", tableBytes,
+            [=] {
+                return CudaEvaluator::EvalStencils(control->buffer.get(), kPacked, dst.get(),
+                                                   kPacked, table.get());
+            },
+            validate),
+        makeFrame(
+            "one thread for each stencil", tableBytes,
+            [=] {
+                return CudaEvaluator::EvalStencilsByThread(
+                    control->buffer->BindCudaBuffer(), kPacked, dst->BindCudaBuffer(), kPacked,
+                    static_cast<int const *>(table->GetSizesBuffer()),
+                    static_cast<int const *>(table->GetOffsetsBuffer()),
+                    static_cast<int const *>(table->GetIndicesBuffer()),
+                    static_cast<float const *>(table->GetWeightsBuffer()), 0,
+                    table->GetNumStencils());
+            },
+            validate),
+        makeFrame(
+            "cudaMemcpy on the device", ownBytes,
+            [src = copied[0], to = copied[1], numCopied] {
+                return cudaMemcpyAsync(to->BindCudaBuffer(), src->BindCudaBuffer(), numCopied,
+                                       cudaMemcpyDeviceToDevice, nullptr) == cudaSuccess;
+            },
+            [=] { return double(numVertices); })};
+    contest.pairings = {{"cuda-copy", 0, {3}}, {"cuda-table", 0, {1}}, {"cuda-thread", 1, {2}}};
+    return contest;
+}
+
+// The last level, and its limit with derivatives; frames keep the refiner, which the first one needs.
+Contest makeLimits(BenchMesh const &mesh) {
+    RefinerPointer const refiner = MakeFullyRefined(mesh);
+    auto const own = makeEvaluator(*refiner);
+    auto const control = std::make_shared<ControlValues>(*refiner);
+    int const numVertices = own->GetNumElements(refiner->GetMaxLevel());
+    BufferPointer const dst = makeBuffer(numVertices);
+    BufferPointer const du = makeBuffer(numVertices);
+    BufferPointer const dv = makeBuffer(numVertices);
+    auto const validate = [=] { return double(numVertices); };
+    Contest contest;
+    contest.contestants = {makeFrame(
+                               "EvaluateLimit", 0,
+                               [=] {
+                                   return own->EvaluateLimit(
+                                       control->buffer.get(), kPacked, dst.get(), kPacked, du.get(),
+                                       kPacked, dv.get(), kPacked, refiner->GetMaxLevel());
+                               },
+                               validate),
+                           makeFrame(
+                               "Evaluate", 0,
+                               [=] {
+                                   return own->Evaluate(control->buffer.get(), kPacked, dst.get(),
+                                                        kPacked, refiner->GetMaxLevel());
+                               },
+                               validate)};
+    contest.pairings = {{"cuda-limit", 0, {1}}};
+    return contest;
+}
+
+Contest makePreparations(BenchMesh const &mesh) {
+    RefinerPointer const refiner = MakeRefined(mesh);
+    auto const add = [&](std::string const &name, auto make) {
+        auto const made = std::make_shared<decltype(make())>();
+        Contestant contestant = makeFrame(
+            name, 0,
+            [=] {
+                *made = make();
+                return *made != nullptr;
+            },
+            [=] {
+                return double(refiner->GetNumVerticesTotal() -
+                              refiner->GetLevel(0).GetNumVertices());
+            });
+        contestant.release = [=] { made->reset(); };
+        return contestant;
+    };
+    Contest contest;
+    contest.contestants = {
+        add("OsdExt::CudaRefinementEvaluator", [=] { return makeEvaluator(*refiner); }),
+        add("stencil table", [=] { return makeCudaTable(*refiner); })};
+    contest.pairings = {{"cuda-preparation", 0, {1}}};
+    return contest;
+}
+
+} // namespace
+
+std::string GetCudaDevice() {
+    int numDevices = 0;
+    cudaDeviceProp properties;
+    if (cudaGetDeviceCount(&numDevices) != cudaSuccess || numDevices == 0 ||
+        cudaGetDeviceProperties(&properties, 0) != cudaSuccess) {
+        return {};
+    }
+    return properties.name;
+}
+
+void AddCudaBenchmarks(Suite &suite) {
+    for (BenchMesh const &mesh : suite.GetMeshes()) {
+        suite.AddContest({"CUDA, all levels, length 3", "vertex", mesh, Memory::Resident},
+                         [=] { return makeFrames(mesh); });
+        suite.AddContest(
+            {"CUDA, limit with derivatives, length 3", "vertex", mesh, Memory::Resident},
+            [=] { return makeLimits(mesh); });
+        suite.AddContest({"CUDA, preparation", "vertex", mesh, Memory::Default},
+                         [=] { return makePreparations(mesh); });
+    }
+}
+
+} // namespace OpenSubdivHex::Regression
