@@ -10,7 +10,7 @@ namespace OpenSubdivHex::BfrExt {
 
 /// \brief How far the parts of a base face are refined: a tree of cells, any of which may be refined.
 ///
-/// The *cells* of level 0 is the base face itself.  A refinement step makes of it its F-face, which is
+/// The *cell* of level 0 is the base face itself.  A refinement step makes of it its F-face, which is
 /// the same kind of cell, and on its side of each edge one half of a hexagon.  Of such a *half cell*,
 /// which has a long edge and three others, it makes the same half of the hexagon's F-face and half
 /// cells at the three edges.  What the cells that are not refined any further cover is the base face,

@@ -146,8 +146,10 @@ public:
     /// \brief Makes the polyline of a sharp edge or boundary, which is as close to the curve as facets
     /// are to the surface, and the same from both sides.
     ///
-    /// \param edge  of the face, from vertex \p edge to the next, as the polyline; other arguments are
-    ///              those of MakeTree()
+    /// \param surface        a valid surface of positions
+    /// \param edge           of the face, from vertex \p edge to the next, as the polyline
+    /// \param controlPoints  its control points, of 3 numbers each
+    /// \param pointDesc      how they lie; the first 3 numbers of each are read
     template <typename REAL>
     Polyline MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
                       typename Surface<REAL>::PointDescriptor const &pointDesc) const;
