@@ -87,7 +87,7 @@ Shape makeHull(char const *name, std::vector<Vector3d> const &points) {
 } // namespace
 
 double MeasureUnevenness(PolygonMesh const &mesh, std::vector<int> const &vertices,
-                         std::vector<int> const &groups) {
+                         std::vector<int> const &groups, Curvature curvature) {
     struct Sum {
         double area = 0;
         double curvature = 0;
@@ -98,12 +98,13 @@ double MeasureUnevenness(PolygonMesh const &mesh, std::vector<int> const &vertic
     Sum all;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         auto const [smaller, larger] = EstimateCurvatures(mesh, vertices[i]);
-        double const mean = (smaller + larger) / 2;
+        double const value =
+            curvature == Curvature::Mean ? (smaller + larger) / 2 : smaller * larger;
         double const area = areas[vertices[i]];
         for (Sum *sum : {&sums[groups[i]], &all}) {
             sum->area += area;
-            sum->curvature += area * mean;
-            sum->square += area * mean * mean;
+            sum->curvature += area * value;
+            sum->square += area * value * value;
         }
     }
     double deviation = 0;

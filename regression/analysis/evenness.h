@@ -8,14 +8,16 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// \brief How even the mean curvature of a surface is where it should be the same: the root of the
-/// mean square by which it deviates from its mean, over that mean.  By area.
+enum class Curvature { Mean, Gaussian };
+
+/// \brief How even a curvature of a surface is where it should be the same: the root of the mean
+/// square by which it deviates from its mean, over that mean.  By area.
 ///
 /// \param vertices  those that are looked at
 /// \param groups    by entry of \p vertices: deviations are from the mean of the same group.  The
 ///                  modulus of the mean of all is what they are divided by
 double MeasureUnevenness(PolygonMesh const &mesh, std::vector<int> const &vertices,
-                         std::vector<int> const &groups);
+                         std::vector<int> const &groups, Curvature curvature = Curvature::Mean);
 
 /// Over the whole of \p mesh, as of a sphere.
 double MeasureSphereUnevenness(PolygonMesh const &mesh);

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace OpenSubdivHex::Regression {
@@ -70,6 +72,26 @@ TEST(Evenness, SpheresAndEllipsoids) {
     double const ellipsoid = MeasureSphereUnevenness(mesh);
     EXPECT_GT(ellipsoid, 0.2);
     EXPECT_LT(ellipsoid, 0.5);
+    // Its Gaussian curvature is 4 / s^4 and an element of area s sin(t) dt, at the angle t from the axis,
+    // with s^2 = cos(t)^2 + 4 sin(t)^2.
+    double area = 0;
+    double sum = 0;
+    double square = 0;
+    constexpr int kNumSteps = 1000;
+    for (int i = 0; i < kNumSteps; ++i) {
+        double const t = std::acos(-1.0) * (i + 0.5) / kNumSteps;
+        double const s2 = 1 + 3 * std::sin(t) * std::sin(t);
+        double const part = std::sqrt(s2) * std::sin(t);
+        double const gaussian = 4 / (s2 * s2);
+        area += part;
+        sum += part * gaussian;
+        square += part * gaussian * gaussian;
+    }
+    std::vector<int> vertices(mesh.positions.size());
+    std::iota(vertices.begin(), vertices.end(), 0);
+    EXPECT_NEAR(MeasureUnevenness(mesh, vertices, std::vector<int>(vertices.size(), 0),
+                                  Curvature::Gaussian),
+                std::sqrt(square * area / (sum * sum) - 1), 0.02);
 }
 
 TEST(Evenness, HullOfPointsOnASphere) {

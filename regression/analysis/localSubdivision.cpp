@@ -5,22 +5,29 @@
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
 
+#include <opensubdiv/far/primvarRefiner.h>
+#include <opensubdiv/far/topologyRefinerFactory.h>
+
 #include <algorithm>
 #include <deque>
+#include <memory>
 #include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace OpenSubdivHex::Regression {
 
 namespace {
 
-using FarExt::TopologyLevel;
+namespace Far = OpenSubdiv::Far;
+namespace Sdc = OpenSubdiv::Sdc;
 
 /// Rings of faces that are looked at around the center.
 constexpr int kNumRings = 5;
 
-int getOrder(TopologyLevel const &level, MeshCenter center) {
+template <class LEVEL>
+int getOrder(LEVEL const &level, MeshCenter center) {
     return center.kind == CenterKind::Vertex ? level.GetVertexFaces(center.index).size()
                                              : level.GetFaceVertices(center.index).size();
 }
@@ -33,7 +40,8 @@ struct Walk {
     std::vector<std::vector<int>> faces;  ///< by the numbers of their vertices
 
     /// Two neighbourhoods with the same faces are the same.
-    Walk(TopologyLevel const &level, MeshCenter center, int first) {
+    template <class LEVEL>
+    Walk(LEVEL const &level, MeshCenter center, int first) {
         struct Step {
             int face;
             int corner; // where to begin in it
@@ -79,6 +87,25 @@ struct Walk {
     }
 };
 
+/// A vertex as a combination of others, with the interface that primvar refiners ask for.
+struct Row {
+    using Weights = std::vector<std::pair<int, double>>;
+    void Clear() { weights.clear(); }
+    void AddWithWeight(Row const &other, double weight) {
+        for (auto const &[vertex, part] : other.weights) {
+            auto const found =
+                std::find_if(weights.begin(), weights.end(),
+                             [v = vertex](auto const &one) { return one.first == v; });
+            if (found == weights.end()) {
+                weights.emplace_back(vertex, weight * part);
+            } else {
+                found->second += weight * part;
+            }
+        }
+    }
+    Weights weights;
+};
+
 /// Whether a face of the walk touches the center.
 bool touchesCenter(std::vector<int> const &face, CenterKind kind, int order) {
     int const numCenterVertices = kind == CenterKind::Vertex ? 1 : order;
@@ -87,8 +114,8 @@ bool touchesCenter(std::vector<int> const &face, CenterKind kind, int order) {
 }
 
 /// Steps by which the first place at the child of a center is further around than at the center.
-double findTurn(FarExt::SchemeType scheme, TopologyLevel const &level, MeshCenter center,
-                TopologyLevel const &cLevel, MeshCenter child) {
+double findTurn(FarExt::SchemeType scheme, FarExt::TopologyLevel const &level, MeshCenter center,
+                FarExt::TopologyLevel const &cLevel, MeshCenter child) {
     if (center.kind == CenterKind::Face) {
         // In tri-hex the F-vertex of a corner belongs to the edge that begins there.
         return scheme == FarExt::SchemeType::TriHex ? 0.5 : 0;
@@ -97,6 +124,72 @@ double findTurn(FarExt::SchemeType scheme, TopologyLevel const &level, MeshCente
     int const first = cLevel.GetVertexFaces(child.index)[0];
     int const edge = level.GetVertexEdges(center.index).FindIndex(cLevel.GetFaceParentEdge(first));
     return edge - 0.5;
+}
+
+/// \brief Of a center and its child in the next level.
+///
+/// \param getWeights  by vertex of \p cLevel: vertices of \p level and their weights, as pairs
+template <class LEVEL, typename GET_WEIGHTS>
+LocalSubdivision makeLocalSubdivision(LEVEL const &level, MeshCenter center, LEVEL const &cLevel,
+                                      MeshCenter child, double turn,
+                                      GET_WEIGHTS const &getWeights) {
+    LocalSubdivision result;
+    result.centerKind = center.kind;
+    result.order = getOrder(level, center);
+    result.turn = turn;
+
+    Walk const walk(level, center, 0);
+    Walk const turned(level, center, 1);
+    Walk const cWalk(cLevel, child, 0);
+    if (cWalk.faces != walk.faces || turned.faces != walk.faces) {
+        throw std::runtime_error("the neighbourhood changes from level to level");
+    }
+
+    // The neighbourhood, from those at the center on: all vertices that a child depends on.
+    std::vector<int> places(walk.vertices.size(), -1); // in the neighbourhood, by number
+    std::vector<int> chosen;
+    auto const choose = [&](int number) {
+        if (places[number] < 0) {
+            places[number] = int(chosen.size());
+            chosen.push_back(number);
+        }
+    };
+    for (std::vector<int> const &face : walk.faces) {
+        if (touchesCenter(face, center.kind, result.order)) {
+            std::for_each(face.begin(), face.end(), choose);
+        }
+    }
+    for (std::size_t numDone = 0; numDone < chosen.size();) { // which grows
+        int const number = chosen[numDone++];
+        for (auto const &[vertex, weight] : getWeights(cWalk.vertices[number])) {
+            auto const found = walk.numbers.find(vertex);
+            if (found == walk.numbers.end()) {
+                throw std::runtime_error("the neighbourhood is too large");
+            }
+            choose(found->second);
+        }
+    }
+
+    int const size = int(chosen.size());
+    result.matrix = Eigen::MatrixXd::Zero(size, size);
+    for (int i = 0; i < size; ++i) {
+        for (auto const &[vertex, weight] : getWeights(cWalk.vertices[chosen[i]])) {
+            result.matrix(i, places[walk.numbers.at(vertex)]) = weight;
+        }
+        result.rotation.push_back(places[walk.numbers.at(turned.vertices[chosen[i]])]);
+    }
+    for (std::vector<int> const &face : walk.faces) {
+        std::vector<int> local;
+        for (int number : face) {
+            if (places[number] >= 0) {
+                local.push_back(places[number]);
+            }
+        }
+        if (local.size() == face.size()) {
+            result.faces.push_back(std::move(local));
+        }
+    }
+    return result;
 }
 
 } // namespace
@@ -120,75 +213,63 @@ LocalSubdivision MakeLocalSubdivision(FarExt::HexSchemeOptions const &schemeOpti
     for (int depth = 0; depth < pDepth; ++depth) {
         center = FindChild(center, refiner->GetLevel(depth), refiner->GetLevel(depth + 1));
     }
-    TopologyLevel const &level = refiner->GetLevel(pDepth);
-    TopologyLevel const &cLevel = refiner->GetLevel(pDepth + 1);
-
-    LocalSubdivision result;
-    result.centerKind = center.kind;
-    result.order = getOrder(level, center);
+    FarExt::TopologyLevel const &level = refiner->GetLevel(pDepth);
+    FarExt::TopologyLevel const &cLevel = refiner->GetLevel(pDepth + 1);
     MeshCenter const child = FindChild(center, level, cLevel);
-    result.turn = findTurn(schemeOptions.schemeType, level, center, cLevel, child);
-
-    Walk const walk(level, center, 0);
-    Walk const turned(level, center, 1);
-    Walk const cWalk(cLevel, child, 0);
-    if (cWalk.faces != walk.faces || turned.faces != walk.faces) {
-        throw std::runtime_error("the neighbourhood changes from level to level");
-    }
 
     FarExt::StencilTableFactoryReal<double>::Options tableOptions;
     tableOptions.generateIntermediateLevels = false;
     tableOptions.factorizeIntermediateLevels = false;
     auto const table = FarExt::StencilTableFactoryReal<double>::Create(*refiner, tableOptions);
-
-    // The neighbourhood, from those at the center on: all vertices that a child depends on.
-    std::vector<int> places(walk.vertices.size(), -1); // in the neighbourhood, by number
-    std::vector<int> chosen;
-    auto const choose = [&](int number) {
-        if (places[number] < 0) {
-            places[number] = int(chosen.size());
-            chosen.push_back(number);
+    auto const getWeights = [&](int cVertex) {
+        auto const stencil = table->GetStencil(cVertex);
+        Row::Weights weights;
+        for (int i = 0; i < stencil.GetSize(); ++i) {
+            weights.emplace_back(stencil.GetVertexIndices()[i], stencil.GetWeights()[i]);
         }
+        return weights;
     };
-    for (std::vector<int> const &face : walk.faces) {
-        if (touchesCenter(face, center.kind, result.order)) {
-            std::for_each(face.begin(), face.end(), choose);
-        }
-    }
-    auto const getStencil = [&](int number) { return table->GetStencil(cWalk.vertices[number]); };
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        auto const stencil = getStencil(chosen[i]);
-        for (int k = 0; k < stencil.GetSize(); ++k) {
-            auto const found = walk.numbers.find(stencil.GetVertexIndices()[k]);
-            if (found == walk.numbers.end()) {
-                throw std::runtime_error("the neighbourhood is too large");
-            }
-            choose(found->second);
-        }
-    }
+    return makeLocalSubdivision(level, center, cLevel, child,
+                                findTurn(schemeOptions.schemeType, level, center, cLevel, child),
+                                getWeights);
+}
 
-    int const size = int(chosen.size());
-    result.matrix = Eigen::MatrixXd::Zero(size, size);
-    for (int i = 0; i < size; ++i) {
-        auto const stencil = getStencil(chosen[i]);
-        for (int k = 0; k < stencil.GetSize(); ++k) {
-            int const number = walk.numbers.at(stencil.GetVertexIndices()[k]);
-            result.matrix(i, places[number]) = stencil.GetWeights()[k];
-        }
-        result.rotation.push_back(places[walk.numbers.at(turned.vertices[chosen[i]])]);
+LocalSubdivision MakeLocalSubdivision(Sdc::SchemeType scheme, int order) {
+    constexpr int kParentDepth = 4; // other irregularities are far away by then
+    Shape const shape = MakeBipyramid(order);
+    using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
+    ShapeDescriptor const descriptor(shape);
+    std::unique_ptr<Far::TopologyRefiner> const refiner(
+        Factory::Create(descriptor.Get(), Factory::Options(scheme, Sdc::Options())));
+    if (!refiner) {
+        throw std::runtime_error("a base mesh cannot be refined");
     }
-    for (std::vector<int> const &face : walk.faces) {
-        std::vector<int> local;
-        for (int number : face) {
-            if (places[number] >= 0) {
-                local.push_back(places[number]);
-            }
-        }
-        if (local.size() == face.size()) {
-            result.faces.push_back(std::move(local));
-        }
+    Far::TopologyRefiner::UniformOptions uniformOptions(kParentDepth + 1);
+    uniformOptions.fullTopologyInLastLevel = true;
+    refiner->RefineUniform(uniformOptions);
+
+    MeshCenter center{CenterKind::Vertex, shape.GetNumVertices() - 1};
+    for (int depth = 0; depth < kParentDepth; ++depth) {
+        center = FindChild(center, refiner->GetLevel(depth), refiner->GetLevel(depth + 1));
     }
-    return result;
+    Far::TopologyLevel const &level = refiner->GetLevel(kParentDepth);
+    Far::TopologyLevel const &cLevel = refiner->GetLevel(kParentDepth + 1);
+    MeshCenter const child = FindChild(center, level, cLevel);
+
+    // A step's rows: each vertex of the level is itself, with a weight of 1.
+    std::vector<Row> rows(level.GetNumVertices());
+    for (int vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        rows[vertex].weights = {{vertex, 1.0}};
+    }
+    std::vector<Row> cRows(cLevel.GetNumVertices());
+    Far::PrimvarRefinerReal<double>(*refiner).Interpolate(kParentDepth + 1, rows, cRows);
+    // Face i at the center's child lies in that of the center which its parent is.
+    int const turn =
+        level.GetVertexFaces(center.index)
+            .FindIndex(cLevel.GetFaceParentFace(cLevel.GetVertexFaces(child.index)[0]));
+    return makeLocalSubdivision(
+        level, center, cLevel, child, turn,
+        [&](int cVertex) -> Row::Weights const & { return cRows[cVertex].weights; });
 }
 
 } // namespace OpenSubdivHex::Regression

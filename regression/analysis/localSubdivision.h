@@ -6,6 +6,8 @@
 
 #include "far_ext/hexSchemeOptions.h"
 
+#include <opensubdiv/sdc/types.h>
+
 #include <Eigen/Core>
 
 #include <vector>
@@ -47,6 +49,12 @@ struct LocalSubdivision {
 /// \throws std::runtime_error  if the neighbourhood is not the same at both levels
 LocalSubdivision MakeLocalSubdivision(FarExt::HexSchemeOptions const &schemeOptions,
                                       CenterKind baseKind, int order);
+
+/// \brief The same of one of OpenSubdiv's schemes, Catmull-Clark or Loop, around a vertex, by Far's
+/// primvar refiner.
+///
+/// \param order  3 or more
+LocalSubdivision MakeLocalSubdivision(OpenSubdiv::Sdc::SchemeType scheme, int order);
 
 } // namespace OpenSubdivHex::Regression
 

@@ -22,4 +22,11 @@ MeshCenter FindChild(MeshCenter center, FarExt::TopologyLevel const &level,
     throw std::runtime_error("a vertex makes neither a vertex nor a face");
 }
 
+MeshCenter FindChild(MeshCenter center, OpenSubdiv::Far::TopologyLevel const &level,
+                     OpenSubdiv::Far::TopologyLevel const &) {
+    return {CenterKind::Vertex, center.kind == CenterKind::Vertex
+                                    ? level.GetVertexChildVertex(center.index)
+                                    : level.GetFaceChildVertex(center.index)};
+}
+
 } // namespace OpenSubdivHex::Regression

@@ -4,6 +4,8 @@
 
 #include "far_ext/topologyLevel.h"
 
+#include <opensubdiv/far/topologyLevel.h>
+
 namespace OpenSubdivHex::Regression {
 
 enum class CenterKind { Vertex, Face };
@@ -17,6 +19,10 @@ struct MeshCenter {
 /// What \p center of \p level becomes in the next level, \p cLevel: V-vertex, V-face or F-face.
 MeshCenter FindChild(MeshCenter center, FarExt::TopologyLevel const &level,
                      FarExt::TopologyLevel const &cLevel);
+
+/// The same in a refiner of Far, by Catmull-Clark or, of vertices alone, by Loop: always a vertex.
+MeshCenter FindChild(MeshCenter center, OpenSubdiv::Far::TopologyLevel const &level,
+                     OpenSubdiv::Far::TopologyLevel const &cLevel);
 
 } // namespace OpenSubdivHex::Regression
 

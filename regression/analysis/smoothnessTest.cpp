@@ -28,6 +28,10 @@ double findLastGrowth(std::vector<double> const &curvatures) {
     return curvatures[curvatures.size() - 1] / curvatures[curvatures.size() - 2];
 }
 
+double computeGrowth(LocalSubdivision const &subdivision) {
+    return ComputeSpectrum(subdivision).GetCurvatureGrowth();
+}
+
 /// Curvature at the tip of a bipyramid, level by level.
 std::vector<double> measureTip(int n, AnyScheme const &scheme, int maxLevel) {
     std::vector<double> curvatures;
@@ -143,7 +147,76 @@ TEST(Smoothness, CurvatureGrowsAsForetold) {
     }
 }
 
-// The same over more steps than a mesh can be refined.
+// OpenSubdiv's steps have the eigenvalues and limits that are known in closed form.
+TEST(Smoothness, MatricesOfCatmullClarkAndLoop) {
+    constexpr double kDigits = 1e-9;
+    for (int n : {3, 4, 5, 6, 7, 8, 12, 16, 32}) {
+        SCOPED_TRACE(n);
+        LocalSubdivision const catmark = MakeLocalSubdivision(Sdc::SCHEME_CATMARK, n);
+        ASSERT_EQ(catmark.GetNumVertices(), 2 * n + 1);
+        EXPECT_NEAR(ComputeSpectrum(catmark).subdominant, computeCatmarkEigenvalue(n, 1), kDigits);
+        Eigen::VectorXd const limit = ComputeLimitMask(catmark);
+        EXPECT_NEAR(limit(0), double(n) / (n + 5), kDigits);
+        for (int i = 0; i < n; ++i) {
+            std::vector<int> const &face = catmark.faces[i];
+            EXPECT_NEAR(limit(face[1]), 4.0 / (n * (n + 5)), kDigits);
+            EXPECT_NEAR(limit(face[2]), 1.0 / (n * (n + 5)), kDigits);
+        }
+
+        LocalSubdivision const loop = MakeLocalSubdivision(Sdc::SCHEME_LOOP, n);
+        ASSERT_EQ(loop.GetNumVertices(), n + 1);
+        EXPECT_NEAR(ComputeSpectrum(loop).subdominant, computeLoopEigenvalue(n, 1), kDigits);
+        double const beta = (0.625 - std::pow(computeLoopEigenvalue(n, 1), 2)) / n;
+        EXPECT_NEAR(ComputeLimitMask(loop)(0), 3 / (3 + 8 * n * beta), kDigits);
+        for (LocalSubdivision const *one : {&catmark, &loop}) {
+            EXPECT_TRUE(IsRegular(*one, ComputeCharacteristicMap(*one)));
+        }
+    }
+}
+
+// The factor by which curvature changes from level to level at a vertex of valence n: at most 1 for
+// any n with a truncation first, up to seven without; with Catmull-Clark up to four, with Loop up to
+// six.
+TEST(Smoothness, GrowthBesideCatmullClarkAndLoop) {
+    constexpr double kDigits = 1e-9;
+    HexSchemeOptions const scheme{FaceMask::Smooth};
+    HexSchemeOptions const truncateFirst{FaceMask::Smooth, SchemeType::Hexagonal,
+                                         FirstStep::Truncate};
+    for (int n : {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 16, 24, 32, 64}) {
+        SCOPED_TRACE(n);
+        double const smooth = computeGrowth(MakeLocalSubdivision(scheme, CenterKind::Vertex, n));
+        double const truncated =
+            computeGrowth(MakeLocalSubdivision(truncateFirst, CenterKind::Vertex, n));
+        double const catmark = computeGrowth(MakeLocalSubdivision(Sdc::SCHEME_CATMARK, n));
+        double const loop = computeGrowth(MakeLocalSubdivision(Sdc::SCHEME_LOOP, n));
+        EXPECT_NEAR(truncated, 1, kDigits);
+        if (n <= 7) {
+            EXPECT_NEAR(smooth, 1, kDigits);
+        } else {
+            EXPECT_LT(smooth, 0.9 * std::min(catmark, loop));
+            EXPECT_LT(smooth, 1.3);
+        }
+        if (n <= 4) {
+            EXPECT_LT(catmark, 1 + kDigits);
+        } else {
+            EXPECT_NEAR(catmark,
+                        computeCatmarkEigenvalue(n, 2) /
+                            std::pow(computeCatmarkEigenvalue(n, 1), 2),
+                        kDigits);
+            EXPECT_GT(catmark, 1.12);
+        }
+        if (n <= 6) {
+            EXPECT_NEAR(loop, 1, kDigits);
+        } else {
+            EXPECT_NEAR(loop,
+                        computeLoopEigenvalue(n, 2) / std::pow(computeLoopEigenvalue(n, 1), 2),
+                        kDigits);
+            EXPECT_GT(loop, 1.13);
+        }
+    }
+}
+
+// Curvature over more steps than a mesh can be refined, as foretold.
 TEST(Smoothness, TracedCurvature) {
     for (int order : {3, 5, 6, 8, 12}) {
         SCOPED_TRACE(order);

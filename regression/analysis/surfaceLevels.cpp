@@ -53,17 +53,6 @@ PolygonMesh makeMesh(LEVEL const &level, std::vector<Position> const &positions)
     return mesh;
 }
 
-MeshCenter findChild(MeshCenter center, Far::TopologyLevel const &level,
-                     Far::TopologyLevel const &) {
-    return {CenterKind::Vertex, center.kind == CenterKind::Vertex
-                                    ? level.GetVertexChildVertex(center.index)
-                                    : level.GetFaceChildVertex(center.index)};
-}
-MeshCenter findChild(MeshCenter center, FarExt::TopologyLevel const &level,
-                     FarExt::TopologyLevel const &cLevel) {
-    return FindChild(center, level, cLevel);
-}
-
 template <class PRIMVAR_REFINER, class REFINER>
 std::vector<SurfaceLevel> makeLevels(REFINER const &refiner, Shape const &shape,
                                      MeshCenter center) {
@@ -80,7 +69,7 @@ std::vector<SurfaceLevel> makeLevels(REFINER const &refiner, Shape const &shape,
         primvarRefiner.Interpolate(depth, positions, refined);
         positions = std::move(refined);
         if (center.index >= 0) {
-            center = findChild(center, refiner.GetLevel(depth - 1), level);
+            center = FindChild(center, refiner.GetLevel(depth - 1), level);
         }
         levels.push_back({makeMesh(level, positions), center});
     }
