@@ -7,8 +7,11 @@
 #include "sections.h"
 
 #include "regression/analysis/evenness.h"
+#include "regression/analysis/ripple.h"
+#include "regression/analysis/spectrum.h"
 
 #include <algorithm>
+#include <variant>
 
 namespace OpenSubdivHex::Regression {
 
@@ -27,6 +30,63 @@ struct Contestant {
 std::string measure(double (*unevenness)(PolygonMesh const &), Shape const &shape,
                     AnyScheme const &scheme, int level) {
     return FormatNumber(unevenness(RefineSurface(shape, scheme, level).back().mesh), 3);
+}
+
+std::string measureRipple(Tiling tiling, int valence, AnyScheme const &scheme, int level) {
+    // Two rings where the mesh is fine enough for the inner one.
+    int const numRings = level == kMeasuredLevel ? 2 : 1;
+    std::string result;
+    for (Quadratic quadratic : {Quadratic::Elliptic, Quadratic::Hyperbolic}) {
+        std::vector<double> const rings =
+            MeasureRipple(tiling, valence, scheme, quadratic, numRings, level);
+        result += "; " + FormatNumber(*std::max_element(rings.begin(), rings.end()), 2);
+    }
+    return result;
+}
+
+std::string findGrowth(AnyScheme const &scheme, int valence) {
+    auto const *const options = std::get_if<HexSchemeOptions>(&scheme);
+    LocalSubdivision const subdivision =
+        options ? MakeLocalSubdivision(*options, CenterKind::Vertex, valence)
+                : MakeLocalSubdivision(std::get<Sdc::SchemeType>(scheme), valence);
+    return FormatNumber(ComputeSpectrum(subdivision).GetCurvatureGrowth(), 2);
+}
+
+void addValences(Page *page, int level) {
+    struct Column {
+        char const *name;
+        Tiling tiling;
+        AnyScheme scheme;
+    };
+    std::vector<Column> const columns{
+        {"Smooth, hexagons", Tiling::Hexagons, MakeHexagonal(FaceMask::Smooth)},
+        {"Smooth, quads", Tiling::Quads, MakeHexagonal(FaceMask::Smooth)},
+        {"Catmull-Clark, quads", Tiling::Quads, Sdc::SCHEME_CATMARK},
+        {"Smooth, truncate first, triangles", Tiling::Triangles,
+         MakeTruncateFirst(FaceMask::Smooth)},
+        {"Loop, triangles", Tiling::Triangles, Sdc::SCHEME_LOOP}};
+    Table table{
+        {"faces at the vertex"},
+        {},
+        "Growth of curvature per level at a vertex in a mesh that is regular elsewhere, and "
+        "ripple around it, level " +
+            std::to_string(level) +
+            ": of control points on an elliptic paraboloid the deviation of mean curvature "
+            "from its mean over a ring, and on a hyperbolic one that of Gaussian curvature, "
+            "as a part of that mean.  Rings end at one control edge from the vertex, and "
+            "at a half; the larger of both is shown."};
+    for (Column const &column : columns) {
+        table.header.emplace_back(column.name);
+    }
+    for (int valence : {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 16}) {
+        table.rows.push_back({std::to_string(valence)});
+        for (Column const &column : columns) {
+            table.rows.back().push_back(
+                findGrowth(column.scheme, valence) +
+                measureRipple(column.tiling, valence, column.scheme, level));
+        }
+    }
+    page->AddTable(table);
 }
 
 } // namespace
@@ -71,6 +131,7 @@ void AddEvennessSection(Page *page, Settings const &settings) {
     }
     addRow("hull of 60 points on a sphere", MakeSphereHull(60, 200), true, MeasureSphereUnevenness);
     page->AddTable(table);
+    addValences(page, level);
 
     PictureOptions options;
     options.view = {20, 40, 1.4f};
