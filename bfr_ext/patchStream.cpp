@@ -6,10 +6,13 @@
 #include "far_ext/threads.h"
 #include "far_ext/vtr/parallel.h"
 
+#include <algorithm>
 #include <atomic>
+#include <list>
 #include <map>
 #include <mutex>
 #include <string>
+#include <unordered_set>
 
 namespace OpenSubdivHex::BfrExt {
 
@@ -30,19 +33,35 @@ struct PatchPlan {
 
     /// Memory, in bytes.
     std::size_t GetSize() const {
-        return std::size_t(tessellation.GetNumCoords()) *
-                   (2 * sizeof(double) + sizeof(LeafPlaces::Place)) +
-               std::size_t(tessellation.GetNumFacetVertices() + tessellation.GetNumFacets()) *
-                   sizeof(int) +
-               cells.GetSize();
+        return std::size_t(tessellation.GetNumCoords()) * kBytesOfCoord +
+               std::size_t(tessellation.GetNumFacetVertices()) * sizeof(int) +
+               std::size_t(tessellation.GetNumFacets()) * 2 * sizeof(int) + cells.GetSize();
+    }
+
+    /// \brief About what it takes in memory to make the plan of some levels, with the plan itself.
+    ///
+    /// The cells in which the levels of edges take part are counted as if they had that of the inside.
+    static std::size_t GetSizeOfMaking(std::vector<int> const &levels) {
+        // Bytes for each place, of triangles: of the plan, and of what the tessellation is made of.
+        constexpr std::size_t kBytes = kBytesOfCoord + 8 * sizeof(int) + 2 * sizeof(int) + 160;
+        std::size_t const numCells = (std::size_t(1) << (2 * levels.back())) / 3;
+        std::size_t numPlaces = (levels.size() - 1) * (numCells + 2);
+        for (std::size_t edge = 0; edge + 1 < levels.size(); ++edge) {
+            numPlaces += (std::size_t(1) << levels[edge]) / 3 + 1;
+        }
+        return numPlaces * kBytes;
     }
 
     Tessellation const tessellation;
     CellPlan const cells;
 
 private:
+    // Its place, its u and v, and their numbers in leaves.
+    static constexpr std::size_t kBytesOfCoord = sizeof(LeafPlaces::Place) + 2 * sizeof(double);
+
     static std::vector<LeafPlaces::Place> getInteriorPlaces(Tessellation const &tessellation) {
         std::vector<LeafPlaces::Place> places;
+        places.reserve(std::size_t(tessellation.GetNumInteriorCoords()));
         for (auto place = tessellation._places.begin() + tessellation.GetNumBoundaryCoords();
              place != tessellation._places.end(); ++place) {
             places.push_back({place->sector, {place->start, place->end}});
@@ -51,36 +70,78 @@ private:
     }
 };
 
-/// \brief The plans that have been asked for; they are forgotten when they have come to take too much
-/// memory.  Any number of threads may use it.
+/// \brief The plans that have been asked for.  Where they come to take too much memory, those that nobody
+/// uses are forgotten, beginning with the one that was not asked for longest.  Any number of threads may
+/// use it.
 class PatchPlans {
 public:
     PatchPlans(Tessellation::Options const &options, std::size_t maxMemory)
         : _options(options), _maxMemory(maxMemory) {}
 
+    std::size_t GetMaxMemory() const { return _maxMemory; }
+
+    /// \brief Finds the plan of some levels, or makes it.
+    ///
     /// Threads that want a plan wait for it, since it takes memory to make one.
-    std::shared_ptr<PatchPlan const> Find(std::vector<int> const &levels) {
+    ///
+    /// \param isNeeded  else null comes where it takes too much memory to make the plan beside those that
+    ///                  are in use
+    std::shared_ptr<PatchPlan const> Find(std::vector<int> const &levels, bool isNeeded) {
         std::lock_guard<std::mutex> const lock(_mutex);
-        auto const found = _plans.find(levels);
-        if (found != _plans.end()) {
-            return found->second;
+        auto const found = _places.find(levels);
+        if (found != _places.end()) {
+            _plans.splice(_plans.begin(), _plans, found->second);
+            return _plans.front().plan;
+        }
+        if (!makeRoom(PatchPlan::GetSizeOfMaking(levels)) && !isNeeded) {
+            return nullptr;
         }
         auto plan = std::make_shared<PatchPlan const>(levels, _options);
         std::size_t const size = plan->GetSize();
-        if (_memory + size > _maxMemory) {
-            _plans.clear();
-            _memory = 0;
+        _plans.push_front({levels, std::move(plan), size});
+        try {
+            _places.emplace(levels, _plans.begin());
+        } catch (...) {
+            _plans.pop_front();
+            throw;
         }
         _memory += size;
-        return _plans.emplace(levels, std::move(plan)).first->second;
+        return _plans.front().plan;
+    }
+
+    /// Forgets what is too much.
+    void Trim() {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        makeRoom(0);
     }
 
 private:
+    struct Entry {
+        std::vector<int> levels;
+        std::shared_ptr<PatchPlan const> plan;
+        std::size_t size;
+    };
+
+    // Whether there is room for something then.
+    bool makeRoom(std::size_t size) {
+        for (auto entry = _plans.end(); entry != _plans.begin() && _memory + size > _maxMemory;) {
+            --entry;
+            // It is given away under the lock alone, so that nobody can begin to use it meanwhile.
+            if (entry->plan.use_count() == 1) {
+                _memory -= entry->size;
+                _places.erase(entry->levels);
+                entry = _plans.erase(entry);
+            }
+        }
+        return _memory + size <= _maxMemory;
+    }
+
     Tessellation::Options const _options;
     std::size_t const _maxMemory;
     std::size_t _memory = 0;
     std::mutex _mutex;
-    std::map<std::vector<int>, std::shared_ptr<PatchPlan const>> _plans;
+    std::list<Entry> _plans; // the one that was asked for last comes first
+    std::map<std::vector<int>, std::list<Entry>::iterator> _places;
 };
 
 } // namespace internal
@@ -102,28 +163,25 @@ public:
     Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
            internal::PatchPlans &plans, Sink const &sink, std::size_t maxMemory)
         : _stream(stream), _meshPoints(meshPoints), _meshPointDesc(meshPointDesc), _plans(plans),
-          _sink(sink), _maxMemory(maxMemory), _evaluator(meshPointDesc.size) {}
+          _sink(sink), _maxMemory(maxMemory / 2), _evaluator(meshPointDesc.size, _maxMemory) {}
 
     /// \return  false where the sink ended the stream, or a face has no surface, as status says
-    bool Run(Index beginFace, Index endFace, Status *status) {
-        SurfaceFactory const &factory = _stream._factory;
-        for (Index face = beginFace; face < endFace; ++face) {
-            if (factory.GetMesh().GetLevel(0).IsFaceHole(face)) {
-                continue;
+    bool Run(Index const *begin, Index const *end, Status *status) {
+        for (; begin != end; ++begin) {
+            _stream.getLevels(*begin, _levels);
+            if (!findPlan()) {
+                if (!handOut()) {
+                    return false;
+                }
+                _plan = _plans.Find(_levels, true);
             }
-            _stream.getLevels(face, _levels);
-            if (!_plan || _levels != _planLevels) {
-                _plan = _plans.Find(_levels);
-                _planLevels = _levels;
-            }
-            std::size_t const size = getSize(*_plan);
-            if (_memory > 0 && _memory + size > _maxMemory && !handOut()) {
+            if (!takeRoom(getSize())) {
                 return false;
             }
-            if (!factory.InitVertexSurface(face, &_surface, status)) {
+            if (!_stream._factory.InitVertexSurface(*begin, &_surface, status)) {
                 return false;
             }
-            add(face, size);
+            add(*begin);
         }
         return handOut();
     }
@@ -132,51 +190,78 @@ private:
     struct Pending {
         Index face;
         std::shared_ptr<internal::PatchPlan const> plan;
-        std::vector<REAL> points;
+        std::size_t first; // of the points
     };
 
-    std::size_t getSize(internal::PatchPlan const &plan) const {
-        return std::size_t(plan.tessellation.GetNumCoords()) * std::size_t(_meshPointDesc.size) *
-               sizeof(REAL);
+    // Whether the plan is there, beside those of the patches that wait.
+    bool findPlan() {
+        if (!_plan || _levels != _planLevels) {
+            _plan.reset();
+            _plan = _plans.Find(_levels, false);
+            _planLevels = _levels;
+        }
+        return _plan != nullptr;
     }
 
-    void add(Index face, std::size_t size) {
-        if (_numPending == _pending.size()) {
-            _pending.emplace_back();
+    // How many numbers the points of a patch are.
+    std::size_t getSize() const {
+        return std::size_t(_plan->tessellation.GetNumCoords()) * std::size_t(_meshPointDesc.size);
+    }
+
+    // Makes sure that there is room for so many numbers, having handed out what waits where there is none:
+    // then it is for more, up to what memory there is and for one patch at least.
+    bool takeRoom(std::size_t size) {
+        if (_numNumbers + size <= _numbersSize && _evaluator.GetSize() <= _maxMemory) {
+            return true;
         }
-        Pending &pending = _pending[_numPending++];
-        pending.face = face;
-        pending.plan = _plan;
-        pending.points.resize(size / sizeof(REAL));
-        _memory += size;
+        if (!handOut()) {
+            return false;
+        }
+        std::size_t const maxSize = _maxMemory / sizeof(REAL);
+        std::size_t const newSize =
+            std::max(size, std::min(maxSize, std::max(kFirstSize, 4 * _numbersSize)));
+        if (newSize > _numbersSize) {
+            _numbersSize = 0;
+            _numbers.reset();
+            _numbers.reset(new REAL[newSize]);
+            _numbersSize = newSize;
+        }
+        return true;
+    }
+
+    void add(Index face) {
+        _pending.push_back({face, _plan, _numNumbers});
+        REAL *const points = _numbers.get() + _numNumbers;
+        _numNumbers += getSize();
         auto const pointSize = std::size_t(_meshPointDesc.size);
         _controlPoints.resize(std::size_t(_surface.GetNumControlPoints()) * pointSize);
         PointDescriptor const desc(_meshPointDesc.size);
         _surface.GatherControlPoints(_meshPoints, _meshPointDesc, _controlPoints.data(), desc);
-        _surface.evaluateBorder(_plan->tessellation, _controlPoints.data(), desc,
-                                pending.points.data(), desc);
-        _evaluator.Add(*_surface._type, _plan->cells, _controlPoints.data(), pending.points.data());
+        _surface.evaluateBorder(_plan->tessellation, _controlPoints.data(), desc, points, desc);
+        _evaluator.Add(*_surface._type, _plan->cells, _controlPoints.data(), points);
     }
 
     bool handOut() {
         _evaluator.Finish();
         bool isWanted = true;
-        for (std::size_t i = 0; i < _numPending && isWanted; ++i) {
+        for (std::size_t i = 0; i < _pending.size() && isWanted; ++i) {
             Pending const &pending = _pending[i];
-            isWanted = _sink({pending.face, pending.plan->tessellation, pending.points.data(),
-                              _meshPointDesc.size});
+            isWanted = _sink({pending.face, pending.plan->tessellation,
+                              _numbers.get() + pending.first, _meshPointDesc.size});
         }
-        _numPending = 0;
-        _memory = 0;
+        _pending.clear();
+        _numNumbers = 0;
         return isWanted;
     }
+
+    static constexpr std::size_t kFirstSize = 1 << 12;
 
     PatchStream const &_stream;
     REAL const *const _meshPoints;
     PointDescriptor const _meshPointDesc;
     internal::PatchPlans &_plans;
     Sink const &_sink;
-    std::size_t const _maxMemory;
+    std::size_t const _maxMemory; // of the points, and of the evaluator
     internal::PatchEvaluator<REAL> _evaluator;
     std::vector<int> _levels;
     std::vector<int> _planLevels;
@@ -184,8 +269,10 @@ private:
     Surface<REAL> _surface;
     std::vector<REAL> _controlPoints;
     std::vector<Pending> _pending;
-    std::size_t _numPending = 0;
-    std::size_t _memory = 0;
+    // The points of the patches that wait.
+    std::unique_ptr<REAL[]> _numbers;
+    std::size_t _numbersSize = 0;
+    std::size_t _numNumbers = 0;
 };
 
 template <typename REAL>
@@ -203,6 +290,50 @@ void PatchStream<REAL>::getLevels(Index face, std::vector<int> &levels) const {
         levels.push_back(_levels.GetEdgeLevel(edge));
     }
     levels.push_back(_levels.GetFaceLevel(face));
+}
+
+// Takes the next faces that are no holes.  Where not all of their plans fit in memory, faces with the same
+// levels stand side by side.
+template <typename REAL>
+Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace,
+                                        std::vector<Index> &faces) const {
+    constexpr std::size_t kMinNumFaces = 1024;
+    constexpr std::size_t kShareOfMemory = 8;
+    struct LevelsOfFace {
+        std::size_t hash;
+        Index face;
+    };
+    std::size_t const numFaces =
+        std::max(kMinNumFaces, getHalfMemory() / kShareOfMemory / sizeof(LevelsOfFace));
+    std::vector<LevelsOfFace> order;
+    std::vector<int> levels;
+    std::unordered_set<std::size_t> hashes;
+    std::size_t memory = 0;
+    for (; beginFace < endFace && order.size() < numFaces; ++beginFace) {
+        if (_factory.GetMesh().GetLevel(0).IsFaceHole(beginFace)) {
+            continue;
+        }
+        getLevels(beginFace, levels);
+        std::size_t hash = 0;
+        for (int const level : levels) {
+            hash = (hash ^ std::size_t(level + 1)) * 0x9e3779b97f4a7c15;
+            hash ^= hash >> 29;
+        }
+        order.push_back({hash, beginFace});
+        if (memory <= _plans->GetMaxMemory() && hashes.insert(hash).second) {
+            memory += internal::PatchPlan::GetSizeOfMaking(levels);
+        }
+    }
+    if (memory > _plans->GetMaxMemory()) {
+        std::sort(order.begin(), order.end(), [](LevelsOfFace const &a, LevelsOfFace const &b) {
+            return a.hash != b.hash ? a.hash < b.hash : a.face < b.face;
+        });
+    }
+    faces.clear();
+    for (LevelsOfFace const &levelsOfFace : order) {
+        faces.push_back(levelsOfFace.face);
+    }
+    return beginFace;
 }
 
 template <typename REAL>
@@ -268,12 +399,13 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
+    std::vector<Index> faces;
     std::size_t const workerMemory = getHalfMemory() / std::size_t(FarExt::GetNumThreads());
     std::atomic<bool> isEnded(false);
     std::mutex mutex;
     auto const run = [&](std::unique_ptr<Worker> &worker, Index begin, Index end) {
         Status workerStatus;
-        if (isEnded || worker->Run(beginFace + begin, beginFace + end, &workerStatus)) {
+        if (isEnded || worker->Run(faces.data() + begin, faces.data() + end, &workerStatus)) {
             return;
         }
         isEnded = true;
@@ -283,13 +415,17 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
         }
     };
     Index const numFaces = endFace - beginFace;
-    FarExt::internal::ParallelForRange(
-        numFaces,
-        [&] {
-            return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, *_plans, sink,
-                                            workerMemory);
-        },
-        run, std::min(std::max(numFaces / kNumRangesWanted, 1), kMaxRange));
+    while (beginFace < endFace && !isEnded) {
+        beginFace = takeFaces(beginFace, endFace, faces);
+        FarExt::internal::ParallelForRange(
+            Index(faces.size()),
+            [&] {
+                return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, *_plans, sink,
+                                                workerMemory);
+            },
+            run, std::min(std::max(numFaces / kNumRangesWanted, 1), kMaxRange));
+    }
+    _plans->Trim();
     FarExt::internal::Report(result, status);
     return !isEnded;
 }

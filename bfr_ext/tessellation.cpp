@@ -161,6 +161,7 @@ std::vector<int> Tessellation::addPlaces(CellMesh const &mesh) {
     std::vector<CellMesh::Vertex> const &verts = mesh.GetVertices();
     std::vector<int> places(verts.size(), kInvalid);
     std::vector<int> order;
+    order.reserve(verts.size());
     auto const addVertex = [&](int vert) {
         places[std::size_t(vert)] = int(order.size());
         order.push_back(vert);
@@ -178,6 +179,7 @@ std::vector<int> Tessellation::addPlaces(CellMesh const &mesh) {
     }
     FarExt::internal::BasePolygon const polygon(GetFaceSize());
     _coords.resize(2 * order.size());
+    _places.reserve(order.size());
     for (std::size_t place = 0; place < order.size(); ++place) {
         CellMesh::Vertex const &vert = verts[std::size_t(order[place])];
         double const start = std::ldexp(double(vert.a), -CellMesh::kBits);
@@ -204,24 +206,42 @@ void Tessellation::setCells(CellMesh const &mesh) {
         _firstFacetIndices.push_back(int(_facetIndices.size()));
         _facetLevels.push_back(level);
     };
-    Triangulator const triangulator(_coords);
-    std::vector<std::array<int, 3>> triangles;
-    for (CellMesh::Polygon &polygon : mesh.GetPolygons(_facetSize == 0)) {
-        std::vector<int> &facet = polygon.verts;
-        for (int &vert : facet) {
-            vert = places[std::size_t(vert)];
+    if (_facetSize == 0) {
+        for (CellMesh::Polygon &polygon : mesh.GetMergedPolygons()) {
+            for (int &vert : polygon.verts) {
+                vert = places[std::size_t(vert)];
+            }
+            addFacet(polygon.verts.data(), int(polygon.verts.size()), polygon.level);
         }
-        int const numVerts = int(facet.size());
-        if (_facetSize == 0 || (_facetSize == 4 && numVerts == 4)) {
-            addFacet(facet.data(), numVerts, polygon.level);
-            continue;
-        }
-        triangles.clear();
-        triangulator.Add(std::move(facet), triangles);
-        for (std::array<int, 3> const &triangle : triangles) {
-            addFacet(triangle.data(), 3, polygon.level);
-        }
+    } else {
+        // What Euler says of triangles; quads are fewer.
+        std::size_t const numTriangles =
+            2 * std::size_t(GetNumCoords()) - std::size_t(GetNumBoundaryCoords()) - 2;
+        std::size_t const numFacets = _facetSize == 3 ? numTriangles : numTriangles / 2;
+        _facetIndices.reserve(std::size_t(_facetSize) * numFacets);
+        _firstFacetIndices.reserve(numFacets + 1);
+        _facetLevels.reserve(numFacets);
+        Triangulator const triangulator(_coords);
+        std::vector<std::array<int, 3>> triangles;
+        mesh.ForEachCell([&](CellMesh::Polygon &polygon) {
+            std::vector<int> &facet = polygon.verts;
+            for (int &vert : facet) {
+                vert = places[std::size_t(vert)];
+            }
+            if (_facetSize == 4 && facet.size() == 4) {
+                addFacet(facet.data(), 4, polygon.level);
+                return;
+            }
+            triangles.clear();
+            triangulator.Add(facet, triangles);
+            for (std::array<int, 3> const &triangle : triangles) {
+                addFacet(triangle.data(), 3, polygon.level);
+            }
+        });
     }
+    _facetIndices.shrink_to_fit();
+    _firstFacetIndices.shrink_to_fit();
+    _facetLevels.shrink_to_fit();
 }
 
 int Tessellation::GetLevels(int levels[]) const {

@@ -8,11 +8,11 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
-constexpr std::int64_t kOne = std::int64_t(1) << CellMesh::kBits;
+constexpr std::int32_t kOne = std::int32_t(1) << CellMesh::kBits;
 
 } // namespace
 
-std::size_t CellMesh::Hash::operator()(std::array<std::int64_t, 3> const &key) const {
+std::size_t CellMesh::Hash::operator()(std::array<std::int32_t, 3> const &key) const {
     std::uint64_t hash = std::uint64_t(key[0]);
     for (std::size_t i = 1; i < 3; ++i) {
         hash = (hash ^ std::uint64_t(key[i])) * 0x9e3779b97f4a7c15;
@@ -21,7 +21,7 @@ std::size_t CellMesh::Hash::operator()(std::array<std::int64_t, 3> const &key) c
     return std::size_t(hash);
 }
 
-std::array<std::int64_t, 3> CellMesh::getKey(int faceSize, int sector, Place const &place) {
+std::array<std::int32_t, 3> CellMesh::getKey(int faceSize, int sector, Place const &place) {
     if (place[0] == 0) {
         return {(sector + 1) % faceSize, place[1], 0};
     }
@@ -34,72 +34,97 @@ int CellMesh::find(int sector, Place const &place) const {
 }
 
 void CellMesh::add(int sector, Place const &place, int cell, int corner) {
-    std::array<std::int64_t, 3> const key = getKey(_faceSize, sector, place);
+    std::array<std::int32_t, 3> const key = getKey(_faceSize, sector, place);
     if (_numbers.emplace(key, int(_verts.size())).second) {
         _verts.push_back({int(key[0]), key[1], key[2], cell, corner});
     }
 }
 
-CellMesh::CellMesh(CellTree const &tree, Polyline const edges[]) : _faceSize(tree.GetFaceSize()) {
+CellMesh::CellMesh(CellTree const &tree, Polyline const edges[])
+    : _tree(tree), _faceSize(tree.GetFaceSize()), _maxLevel(tree.GetMaxLevel()) {
+    auto numVerts = std::size_t(tree.GetNumCells()) + std::size_t(_faceSize);
+    for (int edge = 0; edge < _faceSize; ++edge) {
+        numVerts += std::size_t(edges[edge].GetNumPoints());
+    }
+    _verts.reserve(numVerts);
     for (int sector = 0; sector < _faceSize; ++sector) {
         add(sector, {kOne, 0}, 0, sector);
     }
-    // Level by level, so that vertices of coarser ones come first.
-    std::vector<Cell> cells = {{0, 0, true, 0, kOne, {}}};
-    while (!cells.empty()) {
-        std::vector<Cell> children;
-        for (Cell const &cell : cells) {
-            if (tree.IsRefined(cell.number)) {
-                refine(cell, tree.GetFirstChild(cell.number), children);
-            } else {
-                _leaves.push_back(cell);
-            }
+    forEachCellByLevel([&](Cell const &cell) {
+        if (_tree.IsRefined(cell.number)) {
+            addInside(cell);
         }
-        cells = std::move(children);
-    }
+    });
     for (int edge = 0; edge < _faceSize; ++edge) {
         for (Polyline::Place const place : edges[edge].GetPlaces()) {
-            std::int64_t const end = kOne / Polyline::kLength * place;
+            std::int32_t const end = kOne / Polyline::kLength * place;
             add(edge, {kOne - end, end}, -1, 0);
         }
     }
 }
 
-void CellMesh::refine(Cell const &cell, int firstChild, std::vector<Cell> &children) {
-    auto const getMiddle = [](Place const &p, Place const &q) {
-        return Place{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
-    };
-    if (cell.isWhole) {
-        std::int64_t const half = cell.scale / 2;
+// Adds what the child inside of a cell has of vertices.
+void CellMesh::addInside(Cell const &cell) {
+    Cell const child = getChild(cell, 0);
+    if (child.isWhole) {
         for (int sector = 0; sector < _faceSize; ++sector) {
-            add(sector, {half, 0}, firstChild, sector);
-        }
-        children.push_back({firstChild, cell.level + 1, true, 0, half, {}});
-        for (int sector = 0; sector < _faceSize; ++sector) {
-            children.push_back({firstChild + 1 + sector,
-                                cell.level + 1,
-                                false,
-                                sector,
-                                0,
-                                {{{cell.scale, 0}, {0, cell.scale}, {0, half}, {half, 0}}}});
+            add(sector, {child.scale, 0}, child.number, sector);
         }
         return;
     }
-    Place const middle = getMiddle(cell.corners[0], cell.corners[1]);
-    std::array<Place, 4> inner;
     for (std::size_t i = 0; i < 4; ++i) {
-        inner[i] = getMiddle(cell.corners[i], middle);
-        add(cell.sector, inner[i], firstChild, int(i));
+        add(cell.sector, child.corners[i], child.number, int(i));
     }
-    children.push_back({firstChild, cell.level + 1, false, cell.sector, 0, inner});
-    for (std::size_t i = 1; i < 4; ++i) {
-        std::size_t const next = (i + 1) % 4;
-        children.push_back({firstChild + int(i),
-                            cell.level + 1,
-                            false,
-                            cell.sector,
-                            0,
-                            {{cell.corners[i], cell.corners[next], inner[next], inner[i]}}});
+}
+
+CellMesh::Cell CellMesh::getChild(Cell const &parent, int child) const {
+    int const number = _tree.GetFirstChild(parent.number) + child;
+    int const level = parent.level + 1;
+    if (parent.isWhole) {
+        std::int32_t const half = parent.scale / 2;
+        if (child == 0) {
+            return {number, level, true, 0, half, {}};
+        }
+        return {number,    level, false,
+                child - 1, 0,     {{{parent.scale, 0}, {0, parent.scale}, {0, half}, {half, 0}}}};
+    }
+    auto const getMiddle = [](Place const &p, Place const &q) {
+        return Place{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
+    };
+    std::array<Place, 4> const &corners = parent.corners;
+    Place const middle = getMiddle(corners[0], corners[1]);
+    auto const getInner = [&](std::size_t i) { return getMiddle(corners[i], middle); };
+    if (child == 0) {
+        return {number,        level, false,
+                parent.sector, 0,     {{getInner(0), getInner(1), getInner(2), getInner(3)}}};
+    }
+    auto const i = std::size_t(child);
+    std::size_t const next = (i + 1) % 4;
+    return {number,        level, false,
+            parent.sector, 0,     {{corners[i], corners[next], getInner(next), getInner(i)}}};
+}
+
+// Calls function(cell) for all cells in a cell that have a level.
+template <typename FUNCTION>
+void CellMesh::visit(Cell const &cell, int level, FUNCTION const &function) const {
+    if (cell.level == level) {
+        function(cell);
+        return;
+    }
+    if (_tree.IsRefined(cell.number)) {
+        int const numChildren = _tree.GetNumChildren(cell.number);
+        for (int child = 0; child < numChildren; ++child) {
+            visit(getChild(cell, child), level, function);
+        }
+    }
+}
+
+// Level by level, so that vertices of coarser ones come first; they are found anew for each level, since
+// to keep them would take more memory than the vertices do.
+template <typename FUNCTION>
+void CellMesh::forEachCellByLevel(FUNCTION const &function) const {
+    for (int level = 0; level <= _maxLevel; ++level) {
+        visit({0, 0, true, 0, kOne, {}}, level, function);
     }
 }
 
@@ -144,32 +169,50 @@ std::vector<int> CellMesh::GetEdgeVertices(int edge) const {
     return result;
 }
 
-std::vector<CellMesh::Polygon> CellMesh::GetPolygons(bool isMerged) const {
+void CellMesh::setPolygon(Cell const &cell, Polygon &polygon) const {
+    polygon.verts.clear();
+    polygon.level = cell.level;
+    appendSides(cell, 0, cell.isWhole ? _faceSize : 4, polygon.verts);
+}
+
+void CellMesh::ForEachCell(std::function<void(Polygon &)> const &function) const {
+    Polygon polygon;
+    forEachCellByLevel([&](Cell const &cell) {
+        if (!_tree.IsRefined(cell.number)) {
+            setPolygon(cell, polygon);
+            function(polygon);
+        }
+    });
+}
+
+std::vector<CellMesh::Polygon> CellMesh::GetMergedPolygons() const {
     std::vector<Polygon> polygons;
     // By the ends of its long edge, the half cell of which the other half has not come yet.
     std::map<std::array<int, 2>, std::size_t> halves;
-    for (Cell const &cell : _leaves) {
-        std::vector<int> polygon;
-        if (cell.isWhole) {
-            appendSides(cell, 0, _faceSize, polygon);
-            polygons.push_back({std::move(polygon), cell.level});
-            continue;
+    Polygon polygon;
+    forEachCellByLevel([&](Cell const &cell) {
+        if (_tree.IsRefined(cell.number)) {
+            return;
         }
-        appendSides(cell, 0, 4, polygon);
-        int const start = polygon[0];
-        int const end = find(cell.sector, cell.corners[1]);
-        if (isMerged && polygon[1] == end) {
-            auto const other = halves.find({end, start});
-            if (other != halves.end()) {
-                // The other runs from end to start, where now all of this one comes between.
-                std::vector<int> &hexagon = polygons[other->second].verts;
-                hexagon.insert(hexagon.begin() + 1, polygon.begin() + 2, polygon.end());
-                continue;
+        setPolygon(cell, polygon);
+        if (!cell.isWhole) {
+            int const start = polygon.verts[0];
+            int const end = find(cell.sector, cell.corners[1]);
+            if (polygon.verts[1] == end) {
+                auto const other = halves.find({end, start});
+                if (other != halves.end()) {
+                    // The other runs from end to start, where now all of this one comes between.
+                    std::vector<int> &hexagon = polygons[other->second].verts;
+                    hexagon.insert(hexagon.begin() + 1, polygon.verts.begin() + 2,
+                                   polygon.verts.end());
+                    halves.erase(other);
+                    return;
+                }
+                halves[{start, end}] = polygons.size();
             }
-            halves[{start, end}] = polygons.size();
         }
-        polygons.push_back({std::move(polygon), cell.level});
-    }
+        polygons.push_back(polygon);
+    });
     return polygons;
 }
 

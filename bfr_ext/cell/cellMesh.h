@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -23,13 +24,14 @@ public:
     /// The cell is the first one that it was a corner of, or -1 where it is that of a neighbour alone.
     struct Vertex {
         int sector;
-        std::int64_t a;
-        std::int64_t b;
+        std::int32_t a;
+        std::int32_t b;
         int cell;
         int corner;
     };
-    static constexpr int kBits = 40;
+    static constexpr int kBits = Polyline::kLastLevel + 2;
 
+    /// \param tree   must live as long
     /// \param edges  by edge of the face, in its direction; with all points that the tree has there
     CellMesh(CellTree const &tree, Polyline const edges[]);
 
@@ -43,38 +45,45 @@ public:
         std::vector<int> verts;
         int level;
     };
-    /// \brief The cells, with the vertices that others have on their sides.
-    ///
-    /// \param isMerged  whether two halves of one hexagon that meet in nothing but its diagonal's ends
-    ///                  make one polygon
-    std::vector<Polygon> GetPolygons(bool isMerged) const;
+    /// \brief Calls function(polygon) for all cells, with the vertices that others have on their sides.
+    void ForEachCell(std::function<void(Polygon &)> const &function) const;
+    /// \brief The same polygons, where two halves of one hexagon that meet in nothing but its diagonal's
+    /// ends make one.
+    std::vector<Polygon> GetMergedPolygons() const;
 
 private:
-    using Place = std::array<std::int64_t, 2>;
+    using Place = std::array<std::int32_t, 2>;
     struct Cell {
         int number;
         int level;
         bool isWhole;
         int sector;                   // of half cells
-        std::int64_t scale;           // of whole ones: how far their corners are from the centre
+        std::int32_t scale;           // of whole ones: how far their corners are from the centre
         std::array<Place, 4> corners; // of half cells, in their sector
     };
     struct Hash {
-        std::size_t operator()(std::array<std::int64_t, 3> const &key) const;
+        std::size_t operator()(std::array<std::int32_t, 3> const &key) const;
     };
 
-    static std::array<std::int64_t, 3> getKey(int faceSize, int sector, Place const &place);
+    static std::array<std::int32_t, 3> getKey(int faceSize, int sector, Place const &place);
     int find(int sector, Place const &place) const;
     void add(int sector, Place const &place, int cell, int corner);
-    void refine(Cell const &cell, int firstChild, std::vector<Cell> &children);
+    void addInside(Cell const &cell);
+    Cell getChild(Cell const &parent, int child) const;
+    template <typename FUNCTION>
+    void visit(Cell const &cell, int level, FUNCTION const &function) const;
+    template <typename FUNCTION>
+    void forEachCellByLevel(FUNCTION const &function) const;
+    void setPolygon(Cell const &cell, Polygon &polygon) const;
     void appendSide(int sector, Place const &start, Place const &end, bool isLong,
                     std::vector<int> &verts) const;
     void appendSides(Cell const &cell, int first, int count, std::vector<int> &polygon) const;
 
+    CellTree const &_tree;
     int const _faceSize;
+    int const _maxLevel;
     std::vector<Vertex> _verts;
-    std::unordered_map<std::array<std::int64_t, 3>, int, Hash> _numbers;
-    std::vector<Cell> _leaves;
+    std::unordered_map<std::array<std::int32_t, 3>, int, Hash> _numbers;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

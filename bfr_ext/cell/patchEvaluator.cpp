@@ -69,8 +69,9 @@ LeafMatrix<REAL> const &LeafMatrix<REAL>::Get(CellType const &type, LeafPlaces c
 }
 
 template <typename REAL>
-PatchEvaluator<REAL>::PatchEvaluator(int pointSize)
-    : _size(std::size_t(pointSize)), _stride((_size + kPadding - 1) / kPadding * kPadding),
+PatchEvaluator<REAL>::PatchEvaluator(int pointSize, std::size_t maxMemory)
+    : _size(std::size_t(pointSize)), _maxMemory(maxMemory),
+      _stride((_size + kPadding - 1) / kPadding * kPadding),
       _sums(kNumRowsAtOnce * kNumLanes * _size) {}
 
 template <typename REAL>
@@ -117,6 +118,7 @@ void PatchEvaluator<REAL>::addLeaf(CellType const &type, CellPlan::Node const &l
         found->matrix = &LeafMatrix<REAL>::Get(type, *leaf.leaf);
         found->block.resize(found->matrix->numColumns * kNumLanes * _size);
         found->numLanes = 0;
+        _memory += sizeof(Bucket) + found->block.size() * sizeof(REAL);
     }
     Bucket &bucket = *found;
     if (bucket.numLanes == 0) {
@@ -142,6 +144,10 @@ void PatchEvaluator<REAL>::Finish() {
         evaluate(*bucket);
     }
     _waiting.clear();
+    if (_memory > _maxMemory) {
+        _buckets.clear();
+        _memory = 0;
+    }
 }
 
 template <typename REAL>

@@ -31,8 +31,9 @@ class PatchEvaluator {
 public:
     static constexpr std::size_t kNumLanes = 16;
 
-    /// Of points of \p pointSize numbers.
-    explicit PatchEvaluator(int pointSize);
+    /// \param pointSize  numbers of a point
+    /// \param maxMemory  bytes that are kept at most beyond Finish()
+    PatchEvaluator(int pointSize, std::size_t maxMemory);
 
     /// \brief Takes a face, whose points are there after Finish() at the latest.
     ///
@@ -41,6 +42,9 @@ public:
     /// \param result         by place
     void Add(CellType const &type, CellPlan const &plan, REAL const *controlPoints, REAL *result);
     void Finish();
+
+    /// Memory for the points of leaves, in bytes.
+    std::size_t GetSize() const { return _memory; }
 
 private:
     // The leaves of a type that wait for others, side by side.
@@ -72,7 +76,9 @@ private:
     void evaluate(Bucket &bucket);
     void evaluateRows(Bucket const &bucket, std::size_t begin, std::size_t end);
 
-    std::size_t const _size;   // of a point
+    std::size_t const _size; // of a point
+    std::size_t const _maxMemory;
+    std::size_t _memory = 0;
     std::size_t const _stride; // of points in _points, which is padded for whole registers
     std::vector<std::vector<REAL>> _points; // by depth
     std::unordered_map<Key, std::unique_ptr<Bucket>, Hash> _buckets;

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <new>
 
+#include <malloc.h>
+
 // What the linker puts in place of malloc and free, by its option --wrap.
 extern "C" {
 void *__real_malloc(std::size_t size);
@@ -25,6 +27,15 @@ std::atomic<bool> hasFailed{false};
 std::atomic<long> failingNumber{0};
 std::atomic<long> count{0};
 std::atomic<long> numLive{0};
+std::atomic<long> numLiveBytes{0};
+std::atomic<long> numPeakBytes{0};
+
+void countBytes(void *memory) {
+    long const live = numLiveBytes += long(malloc_usable_size(memory));
+    for (long peak = numPeakBytes;
+         live > peak && !numPeakBytes.compare_exchange_weak(peak, live);) {
+    }
+}
 
 bool shallFail() {
     if (!isCounting) {
@@ -49,7 +60,10 @@ void *allocate(std::size_t size, std::size_t alignment) {
     } else if (posix_memalign(&memory, alignment, std::max(size, std::size_t(1))) != 0) {
         memory = nullptr;
     }
-    numLive += memory ? 1 : 0;
+    if (memory) {
+        ++numLive;
+        countBytes(memory);
+    }
     return memory;
 }
 
@@ -62,7 +76,10 @@ void *allocateOrThrow(std::size_t size, std::size_t alignment = alignof(std::max
 }
 
 void release(void *memory) {
-    numLive -= memory ? 1 : 0;
+    if (memory) {
+        --numLive;
+        numLiveBytes -= long(malloc_usable_size(memory));
+    }
     __real_free(memory);
 }
 
@@ -83,6 +100,12 @@ long FailingAllocations::GetCount() const { return count; }
 bool FailingAllocations::HasFailed() const { return hasFailed; }
 
 long CountLiveAllocations() { return numLive; }
+
+long CountLiveBytes() { return numLiveBytes; }
+
+long GetPeakBytes() { return numPeakBytes; }
+
+void ResetPeakBytes() { numPeakBytes = numLiveBytes.load(); }
 
 } // namespace OpenSubdivHex::Regression
 

@@ -30,6 +30,13 @@ public:
 /// How many allocations of the program were not freed yet.
 long CountLiveAllocations();
 
+/// Bytes of the allocations of the program that were not freed yet.
+long CountLiveBytes();
+/// The most that these were since the last call of ResetPeakBytes().
+long GetPeakBytes();
+/// Makes the peak what is live now.
+void ResetPeakBytes();
+
 } // namespace OpenSubdivHex::Regression
 
 #endif

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Streams keep to the memory that they were given.
+#include "failingAllocations.h"
+
+#include "bfr_ext/patchStream.h"
+#include "far_ext/topologyRefinerFactory.h"
+#include "regression/bfr_ext/streamFixture.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+namespace OpenSubdivHex::Regression {
+
+using BfrExt::PatchLevels;
+using BfrExt::PatchStream;
+using BfrExt::SurfaceFactory;
+using BfrExt::Tessellation;
+
+namespace {
+
+struct Usage {
+    long bytes; ///< at a time
+    long numPoints;
+};
+
+/// A shape, of which all types of cells are known before anything is measured.
+class Subject {
+public:
+    explicit Subject(Shape const &shape)
+        : _positions(shape.positions.begin(), shape.positions.end()) {
+        Sdc::Options options;
+        options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        auto const base = CreateFarRefiner(shape, options);
+        _refiner = FarExt::TopologyRefinerFactory::Create(*base, {FarExt::HexSchemeOptions()});
+        _factory = SurfaceFactory::Create(*_refiner);
+    }
+
+    FarExt::TopologyLevel const &GetBase() const { return _refiner->GetLevel(0); }
+
+    /// What a new stream takes.
+    Usage Measure(PatchLevels const &levels, PatchStream<float>::Options const &options) const {
+        std::atomic<long> count(0);
+        auto const run = [&] {
+            PatchStream<float> const stream(*_factory, levels, options);
+            ResetPeakBytes();
+            long const before = CountLiveBytes();
+            EXPECT_TRUE(
+                stream.Run(_positions.data(), 3, [&](PatchStream<float>::Patch const &patch) {
+                    count += patch.tessellation.GetNumCoords();
+                    return true;
+                }));
+            return GetPeakBytes() - before;
+        };
+        run();
+        count = 0;
+        long const bytes = run();
+        return {bytes, count};
+    }
+
+private:
+    std::vector<float> const _positions;
+    std::unique_ptr<FarExt::TopologyRefiner> _refiner;
+    std::unique_ptr<SurfaceFactory> _factory;
+};
+
+} // namespace
+
+TEST(StreamMemoryTest, IsWhatWasAskedFor) {
+    Subject const subject(GetShape("icosahedron"));
+    // So little that not all plans fit, and one with what it takes to make it does.
+    struct Case {
+        int numLevels;
+        std::size_t kilobytes;
+        long minNumPoints;
+    };
+    for (Case const &testCase : {Case{5, 512, 1000}, Case{6, 1024, 5000}, Case{7, 2560, 14000}}) {
+        RandomPatchLevels const levels(subject.GetBase(), testCase.numLevels, 1);
+        for (int const facetSize : {0, 3, 4}) {
+            PatchStream<float>::Options options;
+            options.SetTessellationOptions(Tessellation::Options().SetFacetSize(facetSize));
+            options.SetMaxMemory(testCase.kilobytes << 10);
+            for (int const numThreads : {1, 2}) {
+                ThreadsScope const threads(numThreads);
+                Usage const usage = subject.Measure(levels.Get(), options);
+                EXPECT_GE(usage.numPoints, testCase.minNumPoints);
+                EXPECT_LE(usage.bytes, long(options.GetMaxMemory()))
+                    << testCase.numLevels << " levels, facets of " << facetSize << ", "
+                    << numThreads << " threads";
+            }
+        }
+    }
+}
+
+} // namespace OpenSubdivHex::Regression
