@@ -21,16 +21,15 @@ Pair toLattice(Pair const &p) { return {p[0], p[1] * std::sqrt(0.75)}; }
 Pair fromLattice(Pair const &p) { return {p[0], p[1] / std::sqrt(0.75)}; }
 
 // Rows of the child's points in terms of the first ancestor's, from those of the parent.
-Matrix multiply(FarExt::internal::PatchRefinement const &step, Matrix const &rows) {
-    Matrix result(step.firsts.size() - 1, std::vector<double>(rows[0].size()));
+Matrix multiply(StepMatrix const &step, Matrix const &rows) {
+    Matrix result(step.GetNumRows(), std::vector<double>(rows[0].size()));
     for (std::size_t i = 0; i < result.size(); ++i) {
-        for (int k = step.firsts[i]; k < step.firsts[i + 1]; ++k) {
-            std::vector<double> const &row = rows[std::size_t(step.verts[std::size_t(k)])];
-            double const weight = step.weights[std::size_t(k)];
+        step.ForEachEntry(i, [&](std::size_t point, double weight) {
+            std::vector<double> const &row = rows[point];
             for (std::size_t j = 0; j < row.size(); ++j) {
                 result[i][j] += weight * row[j];
             }
-        }
+        });
     }
     return result;
 }
@@ -120,14 +119,13 @@ std::vector<Pair> findPlaces(FarExt::internal::CellPatch const &cell) {
 bool keepsPlaces(CellType const &type, std::vector<Pair> const &places) {
     constexpr double kTolerance = 1e-9;
     for (std::size_t child = 0; child < 4; ++child) {
-        FarExt::internal::PatchRefinement const &step = type.GetChildren()[child].step;
+        StepMatrix const &step = type.GetChildren()[child].step;
         for (std::size_t i = 0; i < places.size(); ++i) {
             Pair sum = {0, 0};
-            for (int k = step.firsts[i]; k < step.firsts[i + 1]; ++k) {
-                Pair const &place = places[std::size_t(step.verts[std::size_t(k)])];
-                sum[0] += step.weights[std::size_t(k)] * place[0];
-                sum[1] += step.weights[std::size_t(k)] * place[1];
-            }
+            step.ForEachEntry(i, [&](std::size_t point, double weight) {
+                sum[0] += weight * places[point][0];
+                sum[1] += weight * places[point][1];
+            });
             Pair const inChild = toLattice(HalfCell::kChildren[child].Apply(fromLattice(sum)));
             if (!(std::hypot(inChild[0] - places[i][0], inChild[1] - places[i][1]) < kTolerance)) {
                 return false;

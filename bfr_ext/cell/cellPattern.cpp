@@ -32,17 +32,17 @@ namespace {
 
 // Applies a step to LENGTH numbers of each point: writes them number by number.
 template <int LENGTH, typename REAL>
-void applyStep(FarExt::internal::PatchRefinement const &step, std::vector<int> const &points,
-               REAL const *values, std::ptrdiff_t stride, double *result) {
-    std::size_t const numRows = step.firsts.size() - 1;
+void applyStep(StepMatrix const &step, std::vector<int> const &points, REAL const *values,
+               std::ptrdiff_t stride, double *result) {
+    std::size_t const numRows = step.GetNumRows();
     for (std::size_t row = 0; row < numRows; ++row) {
         double sums[LENGTH] = {};
-        for (auto k = std::size_t(step.firsts[row]); k < std::size_t(step.firsts[row + 1]); ++k) {
-            REAL const *const point = values + points[std::size_t(step.verts[k])] * stride;
+        step.ForEachEntry(row, [&](std::size_t parentPoint, double weight) {
+            REAL const *const point = values + points[parentPoint] * stride;
             for (int i = 0; i < LENGTH; ++i) {
-                sums[i] += step.weights[k] * double(point[i]);
+                sums[i] += weight * double(point[i]);
             }
-        }
+        });
         for (int i = 0; i < LENGTH; ++i) {
             result[std::size_t(i) * numRows + row] = sums[i];
         }

@@ -26,14 +26,8 @@ void addNumber(int number, std::string &key) {
 }
 
 // There are many types: they take no more memory than they have to.
-void trim(PatchRefinement &step) {
-    step.firsts.shrink_to_fit();
-    step.verts.shrink_to_fit();
-    step.weights.shrink_to_fit();
-}
-
 void trim(CellPatch &cell) {
-    cell.patch.signature = {};
+    cell.patch.signature = std::vector<int>();
     cell.patch.sources.shrink_to_fit();
     cell.patch.faceSizes.shrink_to_fit();
     cell.patch.faceVerts.shrink_to_fit();
@@ -84,10 +78,10 @@ std::vector<CellType::Child> const &CellType::GetChildren() const {
         std::vector<Child> children;
         for (CellChild &child :
              RefineCell(_cell, _rules.sdcOptions, _rules.schemeOptions, _rules.interpolation)) {
-            trim(child.step);
             children.push_back(
-                {&_types.Find(std::move(child.cell), _rules), std::move(child.step)});
+                {&_types.Find(std::move(child.cell), _rules), StepMatrix(child.step)});
         }
+        children.shrink_to_fit();
         _children = std::move(children);
     });
     return _children;
@@ -132,7 +126,7 @@ std::vector<Vector> const &CellType::GetCornerPoints() const {
 void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) const {
     CellType const *type = this;
     CellMap map = {{{1, 0}, {0, 1}}, {0, 0}};
-    std::vector<PatchRefinement const *> steps;
+    std::vector<StepMatrix const *> steps;
     for (int i = 0; i < numSteps; ++i) {
         auto const c = std::size_t(corner);
         auto const child = type->IsWhole() ? c + 1 : std::size_t(HalfCell::kCornerChildren[c]);

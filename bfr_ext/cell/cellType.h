@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_TYPE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_TYPE_H
 
+#include "stepMatrix.h"
+
 #include "far_ext/limit/cellPatch.h"
 
 #include <map>
@@ -34,7 +36,7 @@ public:
     /// A cell that a step makes.
     struct Child {
         CellType const *type;
-        FarExt::internal::PatchRefinement step; ///< its points in terms of the parent's
+        StepMatrix step; ///< its points in terms of the parent's
     };
 
     /// The surface at a corner, as sums of points: it, and its first derivatives by the coordinates of

@@ -52,8 +52,8 @@ void CellValues::SetChild(CellValues const &parent, int child) {
     _type = link.type;
     _level = parent._level + 1;
     _length = parent._length;
-    FarExt::internal::PatchRefinement const &step = link.step;
-    std::size_t const numVerts = step.firsts.size() - 1;
+    StepMatrix const &step = link.step;
+    std::size_t const numVerts = step.GetNumRows();
     auto const length = std::size_t(_length);
     _values.resize(numVerts * length);
     forComponents(_length, [&](int first, auto count) {
@@ -62,13 +62,12 @@ void CellValues::SetChild(CellValues const &parent, int child) {
         double *to = _values.data() + first;
         for (std::size_t vert = 0; vert < numVerts; ++vert, to += length) {
             double sums[kCount] = {};
-            for (int i = step.firsts[vert]; i < step.firsts[vert + 1]; ++i) {
-                double const weight = step.weights[std::size_t(i)];
-                double const *const point = from + std::size_t(step.verts[std::size_t(i)]) * length;
+            step.ForEachEntry(vert, [&](std::size_t parentPoint, double weight) {
+                double const *const point = from + parentPoint * length;
                 for (int k = 0; k < kCount; ++k) {
                     sums[k] += weight * point[k];
                 }
-            }
+            });
             std::copy(sums, sums + kCount, to);
         }
     });

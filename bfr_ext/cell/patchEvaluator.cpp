@@ -5,8 +5,6 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-using FarExt::internal::PatchRefinement;
-
 namespace {
 
 // Numbers of a padded point that are computed with at once.
@@ -28,18 +26,18 @@ void copyPoint(REAL const *from, std::size_t size, REAL *to) {
 }
 
 template <typename REAL>
-void applyStep(PatchRefinement const &step, REAL const *points, std::size_t stride, REAL *result) {
-    for (std::size_t row = 0; row + 1 < step.firsts.size(); ++row) {
+void applyStep(StepMatrix const &step, REAL const *points, std::size_t stride, REAL *result) {
+    std::size_t const numRows = step.GetNumRows();
+    for (std::size_t row = 0; row < numRows; ++row) {
         for (std::size_t first = 0; first < stride; first += kPadding, result += kPadding) {
             REAL sums[kPadding] = {};
-            for (auto k = std::size_t(step.firsts[row]); k < std::size_t(step.firsts[row + 1]);
-                 ++k) {
-                REAL const *const point = points + std::size_t(step.verts[k]) * stride + first;
-                REAL const weight = REAL(step.weights[k]);
+            step.ForEachEntry(row, [&](std::size_t parentPoint, double doubleWeight) {
+                REAL const *const point = points + parentPoint * stride + first;
+                REAL const weight = REAL(doubleWeight);
                 for (std::size_t i = 0; i < kPadding; ++i) {
                     sums[i] += weight * point[i];
                 }
-            }
+            });
             std::copy(sums, sums + kPadding, result);
         }
     }

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Steps in little memory are those that they are made of, to the bit, whatever their size.
+#include "bfr_ext/cell/stepMatrix.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace OpenSubdivHex::Regression {
+
+using BfrExt::internal::StepMatrix;
+using FarExt::internal::PatchRefinement;
+
+namespace {
+
+PatchRefinement makeStep(int numParentVerts, int numRows, int numWeights) {
+    std::mt19937 random(unsigned(numParentVerts + numWeights));
+    PatchRefinement step;
+    step.numParentVerts = numParentVerts;
+    step.firsts.push_back(0);
+    for (int row = 0; row < numRows; ++row) {
+        // Some rows are empty, and the last point and weight occur.
+        for (int i = 0; i < row % 8; ++i) {
+            step.verts.push_back(numParentVerts - 1 - int(random() % unsigned(numParentVerts)));
+            step.weights.push_back(1.0 / (1 + int(random() % unsigned(numWeights))) - 0.125);
+        }
+        step.firsts.push_back(int(step.verts.size()));
+    }
+    step.verts.back() = numParentVerts - 1;
+    step.weights.back() = -0.0;
+    return step;
+}
+
+} // namespace
+
+TEST(StepMatrixTest, HasTheEntriesOfTheStep) {
+    struct Size {
+        int numParentVerts;
+        int numRows;
+        int numWeights;
+    };
+    for (Size const &size :
+         {Size{40, 40, 12}, Size{256, 80, 20}, Size{257, 80, 20}, Size{50, 400, 1000},
+          Size{65536, 100, 9}, Size{65537, 100, 9}, Size{100, 80000, 1000000}}) {
+        PatchRefinement const step = makeStep(size.numParentVerts, size.numRows, size.numWeights);
+        StepMatrix const matrix(step);
+        ASSERT_EQ(matrix.GetNumRows(), std::size_t(size.numRows));
+        std::size_t k = 0;
+        for (std::size_t row = 0; row < matrix.GetNumRows(); ++row) {
+            ASSERT_EQ(k, std::size_t(step.firsts[row]));
+            matrix.ForEachEntry(row, [&](std::size_t point, double weight) {
+                ASSERT_EQ(point, std::size_t(step.verts[k]));
+                ASSERT_EQ(weight, step.weights[k]);
+                ASSERT_EQ(std::signbit(weight), std::signbit(step.weights[k]));
+                ++k;
+            });
+        }
+        ASSERT_EQ(k, step.verts.size());
+
+        std::vector<double> left;
+        left.reserve(std::size_t(size.numRows));
+        for (int row = 0; row < size.numRows; ++row) {
+            left.push_back(row % 5 - 1.75);
+        }
+        std::vector<double> expected;
+        std::vector<double> result;
+        step.ApplyLeft(left, expected);
+        matrix.ApplyLeft(left, result);
+        ASSERT_EQ(result, expected);
+    }
+}
+
+TEST(StepMatrixTest, MayBeEmpty) {
+    PatchRefinement step;
+    step.firsts.push_back(0);
+    EXPECT_EQ(StepMatrix(step).GetNumRows(), 0U);
+}
+
+} // namespace OpenSubdivHex::Regression
