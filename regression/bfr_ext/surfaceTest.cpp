@@ -233,6 +233,42 @@ TEST_P(SurfaceTest, IsThePlaneOfRegularHexagons) {
     }
 }
 
+// Where there are no derivatives by u and v, their directions are there.
+TEST(AverageSurfaceTest, HasTheDirectionsOfItsPointsAtCornersOfManySides) {
+    constexpr int kSize = 360;
+    Shape const &shape = GetShape("prism360");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0, Sdc::Options());
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    FarExt::TopologyLevel const &base = refiner->GetLevel(0);
+    int face = 0;
+    while (base.GetFaceVertices(face).size() != kSize) {
+        ++face;
+    }
+    BfrExt::Surface<double> surface;
+    ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
+    std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+    surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+    SurfacePoint corner;
+    double const origin[2] = {0, 0};
+    surface.Evaluate(origin, control.data(), 3, corner.p.data(), corner.du.data(),
+                     corner.dv.data());
+    double before = 0;
+    for (int level = 10; level <= 16; level += 2) {
+        double const uv[2] = {std::ldexp(1.0, -level), 0};
+        Vector3 point;
+        surface.Evaluate(uv, control.data(), 3, point.data());
+        Vector3 const difference = Scale(Subtract(point, corner.p), 1 / uv[0]);
+        EXPECT_LE(GetDistance(Normalize(difference), Normalize(corner.du)), std::ldexp(1.0, -level))
+            << "level " << level;
+        double const length = GetLength(difference);
+        if (level > 10) {
+            // A step shrinks what is around a vertex of three faces by .4405, and u by 1/2.
+            EXPECT_NEAR(length / before, std::pow(2 * 0.4405, 2), 1e-3) << "level " << level;
+        }
+        before = length;
+    }
+}
+
 TEST_P(SurfaceTest, HasTheDerivativesOfItsPoints) {
     if (GetParam() == ReferenceMask::Average) {
         return; // has none
