@@ -390,7 +390,7 @@ TEST(SurfaceDataTest, FaceVaryingValuesAreTheirLimits) {
                 level.GetFaceBaseCoords(face, 0, uv.data());
                 for (int i = 0; i < faceValues.size(); ++i) {
                     // Those of the level are as far from their limits as its faces are large.
-                    ASSERT_NEAR(evaluate(surface, base, uv.data() + 2 * i),
+                    ASSERT_NEAR(evaluate(surface, base, uv.data() + 2 * std::ptrdiff_t(i)),
                                 values[std::size_t(faceValues[i])].value,
                                 rule == Sdc::Options::FVAR_LINEAR_ALL ? kTolerance : 1e-2)
                         << "value " << faceValues[i];
