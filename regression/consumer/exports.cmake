@@ -7,7 +7,8 @@
 set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report SortUnique
   RefinementMask TruncationMask LimitRows RegularFaces CheckLimitLevel PrimvarRows PrimvarLimitRows
   FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
-  FindCornerLimits PatchRefinement
+  FindCornerLimits PatchRefinement MarkFeatures PlainCellGatherer
+  Device MakeDeviceLimit MakeDeviceRefinements
   CheckOptions CheckLevel CheckDescriptors GetInterpolation)
 
 execute_process(COMMAND ${nm} --dynamic --defined-only --format=posix ${library}

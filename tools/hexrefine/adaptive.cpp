@@ -88,10 +88,9 @@ BfrExt::View makeView(AdaptiveArguments const &arguments, std::vector<float> con
 /// The tessellations of all faces, with values at their places.
 class Cells {
 public:
-    Cells(FarExt::TopologyRefiner const &refiner, SurfaceFactory const &factory,
-          CellForest const &forest)
-        : _base(refiner.GetLevel(0)), _factory(factory), _forest(forest),
-          _faces(std::size_t(forest.GetNumFaces())), _points(_faces.size()) {
+    Cells(FarExt::TopologyRefiner const &refiner, CellForest const &forest)
+        : _base(refiner.GetLevel(0)), _forest(forest), _faces(std::size_t(forest.GetNumFaces())),
+          _points(_faces.size()) {
         Tessellation::Options const options = Tessellation::Options().SetFacetSize(0);
         forFaces([&](int face) {
             _faces[std::size_t(face)] =
@@ -201,7 +200,6 @@ private:
     }
 
     FarExt::TopologyLevel _base;
-    SurfaceFactory const &_factory;
     CellForest const &_forest;
     std::vector<std::unique_ptr<Tessellation>> _faces; // null of holes
     std::vector<std::vector<int>> _points;
@@ -396,7 +394,7 @@ AdaptiveCells RefineAdaptively(AdaptiveArguments const &arguments,
     statistics.backFacing = counts.backFacing;
     statistics.facesByLevel.assign(std::size_t(arguments.maxLevel) + 1, 0);
 
-    Cells const cells(refiner, *factory, forest);
+    Cells const cells(refiner, forest);
     mesh->positions = cells.EvaluatePoints(
         [&](int face, Surface<float> *faceSurface) {
             factory->InitVertexSurface(face, faceSurface);
