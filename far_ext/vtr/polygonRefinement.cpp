@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "polygonRefinement.h"
 
-#include "baseLevel.h"
+#include "faceWriter.h"
 #include "fvarLevel.h"
-#include "parallel.h"
 
 #include <algorithm>
 #include <utility>
@@ -33,8 +32,6 @@ std::size_t getFirstEnd(Index pEdge) { return 2 * std::size_t(pEdge); }
 constexpr Index kNoEndEdge = Far::INDEX_INVALID;
 constexpr Index kEndEdge = 0;
 constexpr Index kJoinedEnd = -2; // stays; the edge is that of the digon's other end
-
-constexpr Index kNoCorner = -1; // of a side of an edge
 
 } // namespace
 
@@ -312,56 +309,38 @@ void PolygonRefiner::numberEdges() {
 // Fills the faces of a child and, for FULL, the sides of its edges.  All that a component of the
 // parent makes is written for that component alone, to places of its own.
 template <bool FULL>
-class PolygonRefiner::Builder {
+class PolygonRefiner::Builder : public FaceWriter<FULL> {
 public:
     Builder(PolygonRefiner const &refiner, Refinement const &refinement, Level &child)
-        : _refiner(refiner), _refinement(refinement), _p(refiner._parent), _c(child) {}
+        : FaceWriter<FULL>(refiner._parent, refinement, child), _refiner(refiner) {}
 
     void Build() {
-        _c.faceFirstCorner.Resize(std::size_t(_c.numFaces) + 1);
-        _c.faceVerts.Resize(std::size_t(_c.numCorners));
-        if constexpr (FULL) {
-            _edges.Resize(std::size_t(_c.numEdges));
-            ParallelFor(_c.numEdges, [this](Index cEdge) {
-                _edges[std::size_t(cEdge)] = {{kNoCorner, kNoCorner}};
-            });
-        }
         fillFFaces();
         fillEFaces();
         fillVFaces();
-        _c.faceFirstCorner[std::size_t(_c.numFaces)] = _c.numCorners;
         if constexpr (FULL) {
             finishEdges();
         }
     }
 
-    Buffer<EdgeSides> const &GetEdges() const { return _edges; }
-
 private:
-    // Where the next face goes, and its next corner.
-    struct Place {
-        Index face;
-        Index corner;
-    };
-    // Which of the two sides of its edge a face is.  The first side of a spoke runs from its
-    // V-vertex, as in the hexagonal step; that of another edge is in the first of its two faces.
-    enum Side { kFirst = 0, kSecond = 1 };
-    struct EdgeSide {
-        Index edge;
-        Side side;
-    };
+    using Writer = FaceWriter<FULL>;
+    using typename Writer::EdgeSide;
+    using typename Writer::Place;
+    using typename Writer::Side;
+    using Writer::_c;
+    using Writer::_edges;
+    using Writer::_p;
+    using Writer::_refinement;
+    using Writer::addCorner;
+    using Writer::beginFace;
+    using Writer::fVertex;
+    using Writer::kFirst;
+    using Writer::kSecond;
 
-    void beginFace(Place &place) { _c.faceFirstCorner[std::size_t(place.face++)] = place.corner; }
-    // Adds a vertex to the face begun last, and the edge from there to the next one.
-    void addCorner(Place &place, Index vert, EdgeSide edge) {
-        if constexpr (FULL) {
-            _edges[std::size_t(edge.edge)].corners[edge.side] = place.corner;
-        }
-        _c.faceVerts[std::size_t(place.corner++)] = vert;
-    }
-
-    Index fVertex(Index corner) const { return _refinement.GetCornerChildVertex(corner); }
     Index vVertex(Index pVert) const { return _refinement.GetVertexChildVertex(pVert); }
+    // The first side of a spoke runs from its V-vertex, as in the hexagonal step; that of another edge
+    // is in the first of its two faces.
     static EdgeSide fFaceEdge(Index corner, Side side) { return {corner, side}; }
     EdgeSide spoke(Index corner, Side side) const {
         return {FULL ? _refiner._spokes[std::size_t(corner)] : Far::INDEX_INVALID, side};
@@ -385,10 +364,6 @@ private:
     void finishEdges();
 
     PolygonRefiner const &_refiner;
-    Refinement const &_refinement;
-    Level const &_p;
-    Level &_c;
-    Buffer<EdgeSides> _edges;
 };
 
 template <bool FULL>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truncationRefinement.h"
 
-#include "parallel.h"
+#include "faceWriter.h"
 #include "truncationMask.h"
 
 #include <algorithm>
@@ -13,8 +13,6 @@ using Far::Index;
 using Sdc::Crease;
 
 namespace {
-
-constexpr Index kNoCorner = -1; // of a side of an edge
 
 // The corners of the faces of a level by their places around a vertex.
 Index getInCorner(Level const &level, Index k) {
@@ -206,53 +204,37 @@ void TruncationRefiner::relate(Refinement &refinement) const {
 // Fills the faces of a child and, for FULL, the sides of its edges: in this order those across the
 // corners of the F-faces, those along the parent's edges, and the spokes.
 template <bool FULL>
-class TruncationRefiner::Builder {
+class TruncationRefiner::Builder : public FaceWriter<FULL> {
 public:
     Builder(TruncationRefiner const &refiner, Refinement const &refinement, Level &child)
-        : _refiner(refiner), _refinement(refinement), _p(refiner._parent), _c(child) {}
+        : FaceWriter<FULL>(refiner._parent, refinement, child), _refiner(refiner) {}
 
     void Build() {
-        _c.faceFirstCorner.Resize(std::size_t(_c.numFaces) + 1);
-        _c.faceVerts.Resize(std::size_t(_c.numCorners));
         if constexpr (FULL) {
-            _edges.Resize(std::size_t(_c.numEdges));
-            ParallelFor(_c.numEdges, [this](Index cEdge) {
-                _edges[std::size_t(cEdge)] = {{kNoCorner, kNoCorner}};
-            });
             numberSpokes();
         }
         fillFFaces();
         fillVFaces();
-        _c.faceFirstCorner[std::size_t(_c.numFaces)] = _c.numCorners;
         if constexpr (FULL) {
             finishBoundaries();
         }
     }
 
-    Buffer<EdgeSides> const &GetEdges() const { return _edges; }
-
 private:
-    // Where the next face goes, and its next corner.
-    struct Place {
-        Index face;
-        Index corner;
-    };
-    // Which of the two sides of its edge a face is.
-    enum Side { kFirst = 0, kSecond = 1 };
-    struct EdgeSide {
-        Index edge;
-        Side side;
-    };
+    using Writer = FaceWriter<FULL>;
+    using typename Writer::EdgeSide;
+    using typename Writer::Place;
+    using typename Writer::Side;
+    using Writer::_c;
+    using Writer::_edges;
+    using Writer::_p;
+    using Writer::_refinement;
+    using Writer::addCorner;
+    using Writer::beginFace;
+    using Writer::fVertex;
+    using Writer::kFirst;
+    using Writer::kSecond;
 
-    void beginFace(Place &place) { _c.faceFirstCorner[std::size_t(place.face++)] = place.corner; }
-    // Adds a vertex to the face begun last, and the edge from there to the next one.
-    void addCorner(Place &place, Index vert, EdgeSide edge) {
-        if constexpr (FULL) {
-            _edges[std::size_t(edge.edge)].corners[edge.side] = place.corner;
-        }
-        _c.faceVerts[std::size_t(place.corner++)] = vert;
-    }
-    Index fVertex(Index corner) const { return _refinement.GetCornerChildVertex(corner); }
     // The vertex at the far end of the edge that a face begins to run along in a corner.
     Index farVertex(Index corner) const {
         return GetEdgeEndVertex(_refinement, FindEdgeEnd(_p, corner) ^ 1u);
@@ -335,10 +317,6 @@ private:
     }
 
     TruncationRefiner const &_refiner;
-    Refinement const &_refinement;
-    Level const &_p;
-    Level &_c;
-    Buffer<EdgeSides> _edges;
     Buffer<Index> _spokes; // by end of an edge, INDEX_INVALID where there is none
 };
 
