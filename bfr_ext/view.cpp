@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view.h"
 
-#include "cell/cellBounds.h"
+#include "cell/flatness.h"
 #include "cell/surfaceTurns.h"
+#include "cell/vector3.h"
 
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
@@ -16,23 +17,6 @@ namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
 
-namespace {
-
-using Vector = std::array<double, 3>;
-
-Vector subtract(Vector const &a, Vector const &b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vector scale(Vector const &a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-double dot(Vector const &a, Vector const &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-double getLength(Vector const &a) { return std::sqrt(dot(a, a)); }
-Vector cross(Vector const &a, Vector const &b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Vector get(double const *p) { return {p[0], p[1], p[2]}; }
-
-} // namespace
-
 /// The pyramid that a camera sees.
 class ViewGeometry {
 public:
@@ -40,46 +24,46 @@ public:
     bool Set(Camera const &camera) {
         constexpr double kHalfTurn = 180;
         constexpr double kPi = 3.14159265358979323846;
-        _eye = get(camera.eye);
-        Vector const toTarget = subtract(get(camera.target), _eye);
-        Vector const right = cross(toTarget, get(camera.up));
-        double const distance = getLength(toTarget);
-        double const sine = getLength(right) / (distance * getLength(get(camera.up)));
+        _eye = ToVector3(camera.eye);
+        Vector3 const toTarget = Subtract(ToVector3(camera.target), _eye);
+        Vector3 const right = Cross(toTarget, ToVector3(camera.up));
+        double const distance = GetLength(toTarget);
+        double const sine = GetLength(right) / (distance * GetLength(ToVector3(camera.up)));
         if (!(camera.fieldOfView > 0) || !(camera.fieldOfView < kHalfTurn) || camera.width < 1 ||
             camera.height < 1 || !std::isfinite(distance) || !(distance > 0) || !(sine > 1e-9)) {
             return false;
         }
-        _forward = scale(toTarget, 1 / distance);
-        Vector const rightAxis = scale(right, 1 / getLength(right));
-        Vector const upAxis = cross(rightAxis, _forward);
+        _forward = Scale(toTarget, 1 / distance);
+        Vector3 const rightAxis = Scale(right, 1 / GetLength(right));
+        Vector3 const upAxis = Cross(rightAxis, _forward);
         double const top = std::tan(camera.fieldOfView / 2 * kPi / kHalfTurn);
         double const side = top * camera.width / camera.height;
         // A point at depth 1 is outside from side or top on.
         for (std::size_t i = 0; i < 2; ++i) {
-            Vector const &axis = i == 0 ? rightAxis : upAxis;
+            Vector3 const &axis = i == 0 ? rightAxis : upAxis;
             double const slope = i == 0 ? side : top;
-            _planes[2 * i] = subtract(axis, scale(_forward, slope));
-            _planes[2 * i + 1] = subtract(scale(axis, -1), scale(_forward, slope));
+            _planes[2 * i] = Subtract(axis, Scale(_forward, slope));
+            _planes[2 * i + 1] = Subtract(Scale(axis, -1), Scale(_forward, slope));
         }
         _pixelsAtDepth1 = camera.height / (2 * top);
         _largestSecant = std::sqrt(1 + top * top + side * side);
         return std::isfinite(_pixelsAtDepth1) && std::isfinite(_largestSecant);
     }
 
-    Vector const &GetEye() const { return _eye; }
+    Vector3 const &GetEye() const { return _eye; }
 
     /// Whether the hull of some points is outside of the picture, or behind the eye.
     bool IsOutside(std::vector<double> const &points) const {
-        auto const isBeyond = [&](Vector const &outwards) {
+        auto const isBeyond = [&](Vector3 const &outwards) {
             for (std::size_t i = 0; i < points.size(); i += 3) {
-                if (!(dot(outwards, subtract(get(&points[i]), _eye)) > 0)) {
+                if (!(Dot(outwards, Subtract(ToVector3(&points[i]), _eye)) > 0)) {
                     return false;
                 }
             }
             return true;
         };
         return std::any_of(std::begin(_planes), std::end(_planes), isBeyond) ||
-               isBeyond(scale(_forward, -1));
+               isBeyond(Scale(_forward, -1));
     }
 
     /// \brief How many pixels long a line of length 1 in the hull of some points is at most.
@@ -89,32 +73,32 @@ public:
     double GetPixelsPerUnit(std::vector<double> const &points) const {
         double leastDepth = std::numeric_limits<double>::infinity();
         double largestSecant = 1;
-        Vector least = {leastDepth, leastDepth, leastDepth};
-        Vector largest = scale(least, -1);
+        Vector3 least = {leastDepth, leastDepth, leastDepth};
+        Vector3 largest = Scale(least, -1);
         for (std::size_t i = 0; i < points.size(); i += 3) {
-            Vector const toPoint = subtract(get(&points[i]), _eye);
-            double const depth = dot(_forward, toPoint);
+            Vector3 const toPoint = Subtract(ToVector3(&points[i]), _eye);
+            double const depth = Dot(_forward, toPoint);
             leastDepth = std::min(leastDepth, depth);
-            largestSecant = std::max(largestSecant, getLength(toPoint) / depth);
+            largestSecant = std::max(largestSecant, GetLength(toPoint) / depth);
             for (std::size_t k = 0; k < 3; ++k) {
                 least[k] = std::min(least[k], toPoint[k]);
                 largest[k] = std::max(largest[k], toPoint[k]);
             }
         }
-        Vector nearest;
+        Vector3 nearest;
         for (std::size_t k = 0; k < 3; ++k) {
             nearest[k] = std::max({least[k], -largest[k], 0.0});
         }
-        double const byDistance = _largestSecant * _largestSecant / getLength(nearest);
+        double const byDistance = _largestSecant * _largestSecant / GetLength(nearest);
         double const byDepth = leastDepth > 0 ? std::min(largestSecant, _largestSecant) / leastDepth
                                               : std::numeric_limits<double>::infinity();
         return _pixelsAtDepth1 * std::min(byDepth, byDistance);
     }
 
 private:
-    Vector _eye = {};
-    Vector _forward = {};
-    std::array<Vector, 4> _planes = {}; // through the eye and the sides of the picture, outwards
+    Vector3 _eye = {};
+    Vector3 _forward = {};
+    std::array<Vector3, 4> _planes = {}; // through the eye and the sides of the picture, outwards
     double _pixelsAtDepth1 = 0;
     double _largestSecant = 1; // of the angles between the axis and what is in the picture
 };
@@ -183,27 +167,27 @@ private:
         }
         std::vector<double> const &points = values.GetValues();
         CellBounds::Slopes const slopes = bounds.GetSlopes(points);
-        Vector const normal = cross(slopes.along, slopes.across);
+        Vector3 const normal = Cross(slopes.along, slopes.across);
         double const tolerance =
-            slopes.tolerance * (getLength(slopes.along) + getLength(slopes.across)) +
+            slopes.tolerance * (GetLength(slopes.along) + GetLength(slopes.across)) +
             slopes.tolerance * slopes.tolerance;
-        Vector center = {};
+        Vector3 center = {};
         for (std::size_t i = 0; i < points.size(); ++i) {
             center[i % 3] += 3 * points[i] / double(points.size());
         }
         double radius = 0;
         double depth = 0;
         for (std::size_t i = 0; i < points.size(); i += 3) {
-            Vector const d = subtract(get(&points[i]), center);
-            radius = std::max(radius, getLength(d));
-            depth = std::max(depth, -dot(normal, d));
+            Vector3 const d = Subtract(ToVector3(&points[i]), center);
+            radius = std::max(radius, GetLength(d));
+            depth = std::max(depth, -Dot(normal, d));
         }
-        Vector const toEye = subtract(_geometry.GetEye(), center);
-        return dot(normal, toEye) + depth + tolerance * (getLength(toEye) + radius) < 0;
+        Vector3 const toEye = Subtract(_geometry.GetEye(), center);
+        return Dot(normal, toEye) + depth + tolerance * (GetLength(toEye) + radius) < 0;
     }
 
     bool isToRefine(CellValues const &values, std::vector<CellValues> const &children,
-                    double fraction) const {
+                    double fraction) {
         auto const numCorners = std::size_t(values.GetType().GetNumCorners());
         std::vector<double> corners(3 * numCorners);
         for (std::size_t i = 0; i < numCorners; ++i) {
@@ -212,43 +196,15 @@ private:
         double const pixels = _geometry.GetPixelsPerUnit(values.GetValues());
         if (_options.GetEdgeLength() > 0) {
             for (std::size_t i = 0; i < numCorners; ++i) {
-                Vector const side =
-                    subtract(get(&corners[3 * ((i + 1) % numCorners)]), get(&corners[3 * i]));
-                if (getLength(side) * pixels > fraction * _options.GetEdgeLength()) {
+                Vector3 const side = Subtract(ToVector3(&corners[3 * ((i + 1) % numCorners)]),
+                                              ToVector3(&corners[3 * i]));
+                if (GetLength(side) * pixels > fraction * _options.GetEdgeLength()) {
                     return true;
                 }
             }
         }
         return _options.GetFlatness() > 0 &&
-               getHeights(corners, children) * pixels > fraction * _options.GetFlatness();
-    }
-
-    // The range of the children's heights over the plane of the corners.
-    double getHeights(std::vector<double> const &corners,
-                      std::vector<CellValues> const &children) const {
-        Vector area = {};
-        Vector const origin = get(corners.data());
-        for (std::size_t i = 3; i + 3 < corners.size(); i += 3) {
-            Vector const part =
-                cross(subtract(get(&corners[i]), origin), subtract(get(&corners[i + 3]), origin));
-            area = subtract(area, scale(part, -1));
-        }
-        double const length = getLength(area);
-        Vector const normal = length > 0 ? scale(area, 1 / length) : Vector{0, 0, 1};
-        double least = std::numeric_limits<double>::infinity();
-        double largest = -least;
-        std::vector<double> heights;
-        for (CellValues const &child : children) {
-            std::vector<double> const &points = child.GetValues();
-            heights.clear();
-            for (std::size_t i = 0; i < points.size(); i += 3) {
-                heights.push_back(dot(normal, subtract(get(&points[i]), origin)));
-            }
-            CellBounds::Range const range = CellBounds::Find(child.GetType()).GetRange(heights);
-            least = std::min(least, range.min);
-            largest = std::max(largest, range.max);
-        }
-        return largest - least;
+               !_flatness.IsFlat(corners, children, fraction * _options.GetFlatness() / pixels);
     }
 
     ViewGeometry const &_geometry;
@@ -258,6 +214,7 @@ private:
     std::vector<CellVisibility> *const _visibility;
     std::vector<std::vector<CellValues>>
         _cells; // by level: the children of the cell that is looked at
+    Flatness _flatness;
 };
 
 /// Refines an edge, whose points depend on its curve alone.
@@ -298,29 +255,15 @@ public:
     }
 
 private:
-    // How far a point is from a line is no more than the mean of what others are whose mean it is.
     bool isToDivide(CellValues const &values, std::vector<CellValues> const &parts) const {
         double ends[6];
         values.EvaluateCorner(0, ends);
         values.EvaluateCorner(1, ends + 3);
-        Vector const origin = get(ends);
-        Vector const along = subtract(get(ends + 3), origin);
-        double const length = getLength(along);
+        double const length = GetLength(Subtract(ToVector3(ends + 3), ToVector3(ends)));
         double const pixels = _geometry.GetPixelsPerUnit(values.GetValues());
-        double largest = 0;
-        std::vector<double> distances;
-        for (CellValues const &part : parts) {
-            std::vector<double> const &points = part.GetValues();
-            distances.clear();
-            for (std::size_t i = 0; i < points.size(); i += 3) {
-                Vector const d = subtract(get(&points[i]), origin);
-                distances.push_back(length > 0 ? getLength(cross(along, d)) / length
-                                               : getLength(d));
-            }
-            largest = std::max(largest, CellBounds::Find(part.GetType()).GetRange(distances).max);
-        }
-        return (_options.GetFlatness() > 0 && largest * pixels > _options.GetFlatness()) ||
-               (_options.GetEdgeLength() > 0 && length * pixels > _options.GetEdgeLength());
+        return (_options.GetEdgeLength() > 0 && length * pixels > _options.GetEdgeLength()) ||
+               (_options.GetFlatness() > 0 &&
+                !IsStraight(parts, ends, ends + 3, _options.GetFlatness() / pixels));
     }
 
     ViewGeometry const &_geometry;

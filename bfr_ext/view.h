@@ -34,13 +34,15 @@ enum class CellVisibility : unsigned char {
 /// \brief How far base faces are refined to look smooth in a view: trees of cells.
 ///
 /// **Flatness.**  A cell is refined until its facets are closer to the surface than some pixels.  The
-/// bound is a true one.  Points of a child's surface are sums of its control points, with weights that
-/// are not negative, add up to 1, and have a largest value each, known for its type: so their heights
-/// over a plane are between the least and the largest sum with such weights.  The plane is that of the
-/// cell's corners, and the range of heights of all children, in which the corners and all points on the
-/// sides of the cell are, too, is taken for the distance between surface and facets.  It is seen at the
-/// least depth, and furthest from the axis, that the control points have in the picture.  Sharp edges
-/// and boundaries, whose curve may bend in the plane of a cell, get points of their own (MakeEdge()).
+/// bound is a true one.  Points of the surface in a cell are sums of the cell's control points, with
+/// weights that are not negative, add up to 1, and have a largest value each, known for its type: so
+/// their heights over a plane are between the least and the largest sum with such weights.  The plane is
+/// that of the corners of a cell that may be refined, and the cells are those that it would have three
+/// steps on, where such bounds are close.  The range of all these heights, in which the corners and all
+/// points on the sides of the cell are, too, is taken for the distance between surface and facets.  It
+/// is seen at the least depth, and furthest from the axis, that the control points have in the picture.
+/// Sharp edges and boundaries, whose curve may bend in the plane of a cell, get points of their own
+/// (MakeEdge()).
 ///
 /// **Lengths.**  A cell can be refined, too, until its sides are shorter than some pixels.
 ///

@@ -4,6 +4,7 @@
 #include "surfaceFixture.h"
 
 #include "bfr_ext/cell/cellValues.h"
+#include "bfr_ext/cell/flatness.h"
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
 #include "far_ext/executor.h"
@@ -101,15 +102,21 @@ private:
     Vector3 _up = {};
 };
 
-/// Cameras around a shape that look at it, and some within it.
-Camera makeRandomCamera(std::vector<double> const &positions, std::mt19937 &random) {
-    std::uniform_real_distribution<double> uniform(-1, 1);
+/// The least coordinates and the largest.
+std::array<Vector3, 2> getBox(std::vector<double> const &positions) {
     Vector3 least = toVector(positions.data());
     Vector3 largest = least;
     for (std::size_t i = 0; i < positions.size(); ++i) {
         least[i % 3] = std::min(least[i % 3], positions[i]);
         largest[i % 3] = std::max(largest[i % 3], positions[i]);
     }
+    return {least, largest};
+}
+
+/// Cameras around a shape that look at it, and some within it.
+Camera makeRandomCamera(std::vector<double> const &positions, std::mt19937 &random) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    auto const [least, largest] = getBox(positions);
     double const size = GetDistance(least, largest);
     double const distance = size * (0.2 + 1.2 * std::abs(uniform(random)));
     Vector3 const direction = Normalize({uniform(random), uniform(random), uniform(random)});
@@ -367,7 +374,7 @@ TEST(View, NothingThatIsSeenIsCulled) {
             Camera const camera = makeRandomCamera(shape.positions, random);
             Picture const picture(camera);
             View const view(camera,
-                            View::Options().SetFlatness(0.5).SetMaxLevel(5).SetCulling(true));
+                            View::Options().SetFlatness(0.3).SetMaxLevel(5).SetCulling(true));
             for (int face = 0; face < refiner->GetLevel(0).GetNumFaces(); ++face) {
                 Surface<double> const &surface = surfaces[face];
                 std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
@@ -462,33 +469,118 @@ TEST(View, ForestsAreTheSameForAnyThreadsAndTypes) {
     EXPECT_EQ(sum, numLeaves);
 }
 
+/// The surface's heights over the plane of a cell's corners, at the corners of cells some steps on.
+std::array<double, 2> sampleHeights(CellValues const &values, int numSteps) {
+    std::array<Vector3, 2> const plane = getPlane(getCorners(values));
+    std::array<double, 2> range = {0, 0};
+    forDescendants(values, numSteps, [&](CellValues const &part) {
+        for (Vector3 const &p : getCorners(part)) {
+            double const height = dot(plane[1], Subtract(p, plane[0]));
+            range = {std::min(range[0], height), std::max(range[1], height)};
+        }
+    });
+    return range;
+}
+
+// No cell is said to be flatter than its surface is, and what is shown is close to that.
+TEST(View, FlatnessIsABoundAndCloseToTheSurface) {
+    BfrExt::internal::Flatness flatness;
+    std::mt19937 random(31);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<double> ratios;
+    for (Shape shape : getShapes()) {
+        SCOPED_TRACE(shape.name);
+        for (double &number : shape.positions) {
+            number += 0.1 * uniform(random);
+        }
+        for (auto const mask :
+             {ReferenceMask::Smooth, ReferenceMask::Cosine, ReferenceMask::Average}) {
+            auto const refiner = makeRefiner(shape, mask);
+            BaseCells cells(*refiner, shape.positions);
+            int const numFaces = std::min(refiner->GetLevel(0).GetNumFaces(), 4);
+            for (int face = 0; face < numFaces; ++face) {
+                auto const look = [&](CellValues const &values) {
+                    std::array<double, 2> const sampled = sampleHeights(values, 3);
+                    double const size = sampled[1] - sampled[0];
+                    std::vector<CellValues> children(values.GetType().GetChildren().size());
+                    for (std::size_t i = 0; i < children.size(); ++i) {
+                        children[i].SetChild(values, int(i));
+                    }
+                    std::vector<double> corners;
+                    for (Vector3 const &corner : getCorners(values)) {
+                        corners.insert(corners.end(), corner.begin(), corner.end());
+                    }
+                    ASSERT_FALSE(flatness.IsFlat(corners, children, size * (1 - 1e-6)));
+                    double ratio = 1.01;
+                    while (size > 1e-6 && !flatness.IsFlat(corners, children, size * ratio)) {
+                        ratio *= 1.01;
+                        ASSERT_LT(ratio, 16);
+                    }
+                    ratios.push_back(ratio);
+                };
+                CellValues const base = cells.Make(face);
+                look(base);
+                forDescendants(base, 2, look);
+            }
+        }
+    }
+    std::sort(ratios.begin(), ratios.end());
+    std::cout << "the bound is " << ratios[ratios.size() / 2]
+              << " times what is sampled for a half of " << ratios.size() << " cells, "
+              << ratios[ratios.size() * 9 / 10] << " for nine tenths, and " << ratios.back()
+              << " at most\n";
+    EXPECT_LT(ratios[ratios.size() / 2], 1.5);
+    EXPECT_LT(ratios[ratios.size() * 9 / 10], 2.5);
+}
+
 // Uniform refinement needs the level that the most difficult cell has, everywhere.
 TEST(View, TakesFarFewerPolygonsThanUniformLevels) {
-    for (Shape const &shape : GetManifoldShapes()) {
-        if (shape.name != "suzanne") {
-            continue;
-        }
-        auto const refiner = makeRefiner(shape);
-        auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
-        Camera camera;
-        camera.eye[0] = 1.5;
-        camera.eye[1] = 1.2;
-        camera.eye[2] = 4;
-        View const view(camera, View::Options().SetFlatness(0.25));
-        CellForest const forest = view.MakeForest<double>(*factory, shape.positions.data(), 3);
-        double numPolygons = 0;
-        int maxLevel = 0;
-        for (int face = 0; face < forest.GetNumFaces(); ++face) {
-            auto const options = BfrExt::Tessellation::Options().SetFacetSize(0);
-            numPolygons += forest.GetTessellation(face, options).GetNumFacets();
-            maxLevel = std::max(maxLevel, forest.GetTree(face).GetMaxLevel());
-        }
-        // F' = F + E and E' = 4 E, but for borders.
-        double const numEdges = refiner->GetLevel(0).GetNumEdges();
-        double const numUniform = forest.GetNumFaces() + numEdges * (std::pow(4, maxLevel) - 1) / 3;
-        std::cout << numPolygons << " polygons, " << numUniform << " at level " << maxLevel << "\n";
-        EXPECT_LT(6 * numPolygons, numUniform);
+    constexpr double kPixels = 0.25;
+    Shape const &shape = GetShape("suzanne");
+    auto const refiner = makeRefiner(shape);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    Camera camera; // the whole shape, from the front and above
+    std::array<Vector3, 2> const box = getBox(shape.positions);
+    double const size = GetDistance(box[0], box[1]);
+    for (std::size_t k = 0; k < 3; ++k) {
+        camera.target[k] = (box[0][k] + box[1][k]) / 2;
+        camera.eye[k] = camera.target[k] + size * std::array<double, 3>{0.2, 0.5, 1.2}[k];
     }
+    View const view(camera, View::Options().SetFlatness(kPixels));
+    CellForest const forest = view.MakeForest<double>(*factory, shape.positions.data(), 3);
+    double numPolygons = 0;
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        auto const options = BfrExt::Tessellation::Options().SetFacetSize(0);
+        numPolygons += forest.GetTessellation(face, options).GetNumFacets();
+    }
+    // The first level of which no cell is seen to be farther from the surface.
+    BaseCells cells(*refiner, shape.positions);
+    Picture const picture(camera);
+    int uniformLevel = 0;
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        auto const visit = [&](auto const &self, CellValues const &values) -> void {
+            Vector3 const corner = getCorners(values)[0];
+            Vector3 const toEye = Subtract(toVector(camera.eye), corner);
+            Vector3 const across = Normalize(Cross(toEye, {0, 1, 0}));
+            std::array<double, 2> const heights = sampleHeights(values, 2);
+            if (picture.GetDistance(corner, add(corner, Scale(across, heights[1] - heights[0]))) <=
+                kPixels) {
+                return;
+            }
+            uniformLevel = std::max(uniformLevel, values.GetLevel() + 1);
+            for (std::size_t i = 0; i < values.GetType().GetChildren().size(); ++i) {
+                CellValues child;
+                child.SetChild(values, int(i));
+                self(self, child);
+            }
+        };
+        visit(visit, cells.Make(face));
+    }
+    // F' = F + E and E' = 4 E, but for borders.
+    double const numEdges = refiner->GetLevel(0).GetNumEdges();
+    double const numUniform = forest.GetNumFaces() + numEdges * (std::pow(4, uniformLevel) - 1) / 3;
+    std::cout << numPolygons << " polygons, " << numUniform << " at level " << uniformLevel << "\n";
+    EXPECT_LT(10 * numPolygons, numUniform);
 }
 
 } // namespace OpenSubdivHex::Regression
