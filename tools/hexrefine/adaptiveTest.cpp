@@ -56,7 +56,8 @@ TEST_F(HexrefineAdaptive, MakesClosedMeshesInEachFormat) {
 // What is near is fine; what is outside of the picture can be left as it is.
 TEST_F(HexrefineAdaptive, CameraDecidesWhatIsFine) {
     std::string const cube = makeCubeFile();
-    std::string const camera = "--mask smooth --fov 20 --camera 2.4,0.2,0.4,1,0.2,0.4 ";
+    std::string const camera =
+        "--mask smooth --fov 20 --pixel-error 0.25 --camera 2.4,0.2,0.4,1,0.2,0.4 ";
     Mesh const all = refine(cube, camera, "all.obj");
     auto const count = [](Mesh const &mesh, float side) {
         int result = 0;
