@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adaptive.h"
+#include "faceLoop.h"
 
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
-#include "far_ext/executor.h"
-#include "far_ext/threads.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshText.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <mutex>
 
 namespace OpenSubdivHex::Tools {
 
@@ -152,24 +148,11 @@ public:
 private:
     template <typename FUNCTION>
     void forFaces(FUNCTION function) const {
-        std::atomic<int> next(0);
-        std::mutex mutex;
-        std::exception_ptr exception; // which no worker may let out
-        FarExt::GetExecutor().ParallelFor(FarExt::GetNumThreads(), [&](int) {
-            try {
-                for (int face = next++; face < _forest.GetNumFaces(); face = next++) {
-                    if (HasFace(face)) {
-                        function(face);
-                    }
-                }
-            } catch (...) {
-                std::lock_guard<std::mutex> const lock(mutex);
-                exception = std::current_exception();
+        ForEachFace(_forest.GetNumFaces(), [&](int face) {
+            if (HasFace(face)) {
+                function(face);
             }
         });
-        if (exception) {
-            std::rethrow_exception(exception);
-        }
     }
 
     // Those of boundaries that some face has, in the order of the forest, then those inside of faces.

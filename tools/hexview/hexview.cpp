@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // hexview: shows a mesh and its refined levels in a window, or draws a picture of them.
+#include "animation.h"
 #include "offscreen.h"
 #include "surfacePainter.h"
 #include "viewedSurface.h"
@@ -21,8 +22,8 @@ std::vector<std::string> const kSchemeNames = {"hexagonal", "doo-sabin", "tri-he
 std::vector<std::string> const kFirstStepNames = {"none", "tri-hex", "truncate"};
 std::vector<std::string> const kMaskNames = {"average", "cosine", "smooth"};
 std::vector<std::string> const kEvaluatorNames = {"cpu", "opengl", "tables"};
-std::vector<std::string> const kShadingNames = {"smooth",    "facets",     "reflection",
-                                                "curvature", "base-faces", "checker"};
+std::vector<std::string> const kShadingNames = {"smooth",     "facets",  "reflection", "curvature",
+                                                "base-faces", "checker", "levels"};
 
 struct Arguments {
     std::string input;
@@ -34,25 +35,30 @@ struct Arguments {
     bool isLimit = false;
     std::optional<double> creaseAngle;
     std::string evaluator = "cpu";
+    bool isAdaptive = false;
+    CellSettings cells;
     std::string shading = "smooth";
     bool hasNoEdges = false;
     bool hasControlMesh = false;
     float azimuth = OrbitCamera().azimuth;
     float elevation = OrbitCamera().elevation;
+    float distance = OrbitCamera().distance;
     int width = 1200;
     int height = 900;
     std::string png;
+    int numFrames = 0;
 };
 
 void addOptions(CLI::App &app, Arguments *arguments) {
     constexpr int kMaxLevel = 10;
     constexpr int kMaxPixels = 8192;
+    constexpr int kMaxFrames = 64;
     app.add_option("INPUT", arguments->input, "Mesh to show: .obj, .off or .ply")
         ->type_name("FILE")
         ->required();
-    app.add_option("-l,--level", arguments->level, "Number of refinement steps")
-        ->check(CLI::Range(0, kMaxLevel))
-        ->capture_default_str();
+    auto *const level = app.add_option("-l,--level", arguments->level, "Number of refinement steps")
+                            ->check(CLI::Range(0, kMaxLevel))
+                            ->capture_default_str();
     app.add_option("--scheme", arguments->scheme, "Subdivision scheme")
         ->check(CLI::IsMember(kSchemeNames))
         ->capture_default_str();
@@ -67,17 +73,38 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                    "Rule for boundaries, before that of the file")
         ->check(CLI::IsMember(kBoundaryNames))
         ->default_str("the file's, or edge-and-corner");
-    app.add_flag("--limit", arguments->isLimit, "Push the vertices to the limit surface");
+    auto *const limit =
+        app.add_flag("--limit", arguments->isLimit, "Push the vertices to the limit surface");
     app.add_option("--crease-angle", arguments->creaseAngle,
                    "Makes creases of the edges between faces whose normals differ by more than so "
                    "many degrees")
         ->check(CLI::Range(0.0, 180.0))
         ->type_name("DEG");
-    app.add_option("--evaluator", arguments->evaluator,
-                   "Who makes the vertices: the CPU level by level, OpenGL level by level, or "
-                   "OpenSubdiv's evaluator of OpenGL from a stencil table")
-        ->check(CLI::IsMember(kEvaluatorNames))
+    auto *const evaluator =
+        app.add_option("--evaluator", arguments->evaluator,
+                       "Who makes the vertices: the CPU level by level, OpenGL level by level, or "
+                       "OpenSubdiv's evaluator of OpenGL from a stencil table")
+            ->check(CLI::IsMember(kEvaluatorNames))
+            ->capture_default_str();
+    auto *const adaptive = app.add_flag("--adaptive", arguments->isAdaptive,
+                                        "Refine parts of the mesh as far as the view needs them, "
+                                        "with vertices on the limit surface and without gaps")
+                               ->excludes(level)
+                               ->excludes(limit)
+                               ->excludes(evaluator);
+    app.add_option("--pixel-error", arguments->cells.pixelError,
+                   "How many pixels faces may be away from the limit surface")
+        ->check(CLI::Range(1e-3f, 1e3f))
+        ->type_name("PIXELS")
+        ->needs(adaptive)
         ->capture_default_str();
+    app.add_option("--max-level", arguments->cells.maxLevel, "The last level that --adaptive makes")
+        ->check(CLI::Range(0, BfrExt::CellTree::kLastLevel))
+        ->needs(adaptive)
+        ->capture_default_str();
+    app.add_flag("--cull", arguments->cells.isCulling,
+                 "Leave coarse what is outside of the picture or faces away for certain")
+        ->needs(adaptive);
     app.add_option("--shading", arguments->shading, "What the faces show")
         ->check(CLI::IsMember(kShadingNames))
         ->capture_default_str();
@@ -91,19 +118,31 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->check(CLI::Range(-89.0f, 89.0f))
         ->type_name("DEG")
         ->capture_default_str();
+    app.add_option("--distance", arguments->distance,
+                   "How far the eye is: from 1 it sees all, however the mesh turns")
+        ->check(CLI::Range(0.05f, 20.0f))
+        ->capture_default_str();
     app.add_option("--width", arguments->width, "Pixels of the window or the picture")
         ->check(CLI::Range(1, kMaxPixels))
         ->capture_default_str();
     app.add_option("--height", arguments->height, "Pixels of the window or the picture")
         ->check(CLI::Range(1, kMaxPixels))
         ->capture_default_str();
-    app.add_option("--png", arguments->png, "File for a picture, without a window")
-        ->type_name("FILE");
+    auto *const png =
+        app.add_option("--png", arguments->png, "File for a picture, without a window")
+            ->type_name("FILE");
+    app.add_option("--frames", arguments->numFrames,
+                   "Draws so many pictures beside each other, from one end of the animation, which "
+                   "twists the control mesh, to the other")
+        ->check(CLI::Range(1, kMaxFrames))
+        ->needs(png);
     app.set_version_flag("--version", "hexview " OPENSUBDIVHEX_VERSION);
     app.footer(
         "In the window: drag to turn, the wheel to come nearer, drag vertices of the control "
-        "mesh.\nKeys: 0 to 7 level, Tab shading, E edges, C control mesh, A animation, Esc "
-        "end.\nExit status: 0 success, 1 bad input or failed output, 2 bad usage.");
+        "mesh.\nKeys: 0 to 7 level, V adaptive, F freeze its cells, Tab shading, E edges, C "
+        "control "
+        "mesh,\nA animation, Esc end.\nExit status: 0 success, 1 bad input or failed output, 2 bad "
+        "usage.");
 }
 
 SurfaceSettings findSettings(Arguments const &arguments, MeshTags const &tags) {
@@ -120,7 +159,22 @@ SurfaceSettings findSettings(Arguments const &arguments, MeshTags const &tags) {
     settings.isLimit = arguments.isLimit;
     settings.creaseAngle = arguments.creaseAngle;
     settings.evaluator = FindRule<ViewEvaluator>(kEvaluatorNames, arguments.evaluator);
+    settings.isAdaptive = arguments.isAdaptive;
+    settings.cells = arguments.cells;
     return settings;
+}
+
+// The twist of each picture: none of a single one, else from one end of the animation to the other.
+std::vector<float> findTwists(int numFrames) {
+    std::vector<float> twists = {0};
+    if (numFrames > 0) {
+        twists.resize(std::size_t(numFrames));
+    }
+    float const halfTurn = std::acos(-1.0f);
+    for (int i = 0; i < numFrames && numFrames > 1; ++i) {
+        twists[std::size_t(i)] = std::sin(halfTurn * (float(i) / float(numFrames - 1) - 0.5f));
+    }
+    return twists;
 }
 
 void run(Arguments const &arguments) {
@@ -133,6 +187,7 @@ void run(Arguments const &arguments) {
     OrbitCamera camera = OrbitCamera::Around(mesh.positions);
     camera.azimuth = arguments.azimuth;
     camera.elevation = arguments.elevation;
+    camera.distance = arguments.distance;
     if (arguments.png.empty()) {
         ShowWindow(mesh, arguments.input, settings, drawSettings, camera, arguments.width,
                    arguments.height);
@@ -140,14 +195,24 @@ void run(Arguments const &arguments) {
     }
     Offscreen const offscreen(arguments.width, arguments.height);
     ViewedSurface surface(mesh);
+    SurfacePainter painter;
+    std::vector<float> const twists = findTwists(arguments.numFrames);
+    Image image(int(twists.size()) * arguments.width, arguments.height);
     try {
         surface.Refine(settings);
+        for (std::size_t i = 0; i < twists.size(); ++i) {
+            if (twists.size() > 1) {
+                surface.GetControlPoints() = TwistPoints(mesh.positions, camera, twists[i]);
+                surface.Evaluate();
+            }
+            surface.Follow(camera.ForPicture(arguments.width, arguments.height), settings.cells);
+            painter.Draw(surface, camera, drawSettings, arguments.width, arguments.height);
+            PasteImage(offscreen.Read(), int(i) * arguments.width, 0, &image);
+        }
     } catch (std::runtime_error const &error) {
         throw FileError(arguments.input, error.what());
     }
-    SurfacePainter painter;
-    painter.Draw(surface, camera, drawSettings, arguments.width, arguments.height);
-    WritePng(offscreen.Read(), arguments.png);
+    WritePng(image, arguments.png);
 }
 
 } // namespace

@@ -13,7 +13,7 @@ enum ArrayBinding : unsigned {
     kFanArray,
     kCornerSideArray,
     kCoordArray,
-    kBaseFaceArray
+    kFaceArray
 };
 
 /// \brief The normal of each side: the sum of the vector areas that it spans with its neighbours in
@@ -71,13 +71,13 @@ layout(std430, binding = 1) readonly buffer SideVertices { uint sideVertices[]; 
 layout(std430, binding = 2) readonly buffer Normals { vec4 normals[]; };
 layout(std430, binding = 5) readonly buffer CornerSides { uint cornerSides[]; };
 layout(std430, binding = 6) readonly buffer Coords { vec2 coords[]; };
-layout(std430, binding = 7) readonly buffer BaseFaces { uint baseFaces[]; };
+layout(std430, binding = 7) readonly buffer Faces { uvec2 faces[]; };
 uniform mat4 projection;
 out vec3 position;
 out vec3 normal;
 out float curvature;
 out vec2 coord;
-flat out uint baseFace;
+flat out uvec2 face; // base face and level
 
 void main() {
     uint corner = uint(gl_VertexID);
@@ -87,7 +87,7 @@ void main() {
     normal = normals[side].xyz;
     curvature = normals[side].w;
     coord = coords[corner];
-    baseFace = baseFaces[corner / 3u];
+    face = faces[corner / 3u];
     gl_Position = projection * vec4(position, 1.0);
 }
 )";
@@ -97,7 +97,7 @@ in vec3 position;
 in vec3 normal;
 in float curvature;
 in vec2 coord;
-flat in uint baseFace;
+flat in uvec2 face;
 uniform vec3 eye;
 uniform vec3 up;
 uniform float size; // of the mesh
@@ -106,11 +106,18 @@ out vec4 color;
 
 const vec3 kPaint = vec3(0.92, 0.72, 0.46);
 
+vec3 getHue(float hue) {
+    return clamp(abs(fract(hue + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
+}
+
 // Colours that differ, golden ratio apart.
-vec3 getFaceColor(uint face) {
-    float hue = fract(float(face) * 0.618034);
-    vec3 rgb = clamp(abs(fract(hue + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
-    return mix(vec3(0.9), rgb, 0.55);
+vec3 getFaceColor(uint number) {
+    return mix(vec3(0.9), getHue(fract(float(number) * 0.618034)), 0.55);
+}
+
+// From blue over green and yellow to red, a step for each level, and round again.
+vec3 getLevelColor(uint level) {
+    return mix(vec3(0.95), getHue(0.66 - 0.11 * float(level % 7u)), 0.7);
 }
 
 void main() {
@@ -134,10 +141,12 @@ void main() {
         paint = t < 0.0 ? mix(vec3(0.95), vec3(0.10, 0.25, 0.75), -t)
                         : mix(vec3(0.95), vec3(0.80, 0.15, 0.10), t);
     } else if (shading == 4) {
-        paint = getFaceColor(baseFace);
+        paint = getFaceColor(face.x);
     } else if (shading == 5) {
         vec2 squares = floor(coord * 8.0);
         paint = mod(squares.x + squares.y, 2.0) < 0.5 ? vec3(0.92) : vec3(0.25, 0.40, 0.55);
+    } else if (shading == 6) {
+        paint = getLevelColor(face.y);
     }
     vec3 halfway = normalize(light + toEye);
     float gloss = shading == 2 ? 0.0 : 0.25 * pow(max(dot(n, halfway), 0.0), 40.0);

@@ -16,6 +16,11 @@ namespace {
 
 constexpr float kFieldOfView = 35; // degrees, of the height
 
+// Radians, of the height: a picture that is higher than wide sees as much of the width.
+float findFieldOfView(float aspect) {
+    return 2 * std::atan(std::tan(glm::radians(kFieldOfView / 2)) / std::min(aspect, 1.0f));
+}
+
 } // namespace
 
 OrbitCamera OrbitCamera::Around(std::vector<float> const &points) {
@@ -53,12 +58,22 @@ glm::vec3 OrbitCamera::GetUp() const {
 
 glm::mat4 OrbitCamera::GetProjection(float aspect) const {
     float const eyeDistance = glm::length(GetEye() - center);
-    // A picture that is higher than wide sees as much of the width.
-    float const height =
-        2 * std::atan(std::tan(glm::radians(kFieldOfView / 2)) / std::min(aspect, 1.0f));
     float const nearest = std::max(eyeDistance - 2 * size, 0.01f * eyeDistance);
-    return glm::perspective(height, aspect, nearest, eyeDistance + 2 * size) *
+    return glm::perspective(findFieldOfView(aspect), aspect, nearest, eyeDistance + 2 * size) *
            glm::lookAt(GetEye(), center, GetUp());
+}
+
+BfrExt::Camera OrbitCamera::ForPicture(int width, int height) const {
+    BfrExt::Camera camera;
+    for (int k = 0; k < 3; ++k) {
+        camera.eye[k] = double(GetEye()[k]);
+        camera.target[k] = double(center[k]);
+    }
+    camera.fieldOfView =
+        double(glm::degrees(findFieldOfView(float(width) / float(std::max(height, 1)))));
+    camera.width = width;
+    camera.height = height;
+    return camera;
 }
 
 SurfacePainter::SurfacePainter()

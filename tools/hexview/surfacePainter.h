@@ -5,12 +5,14 @@
 #include "glObjects.h"
 #include "viewedSurface.h"
 
+#include "bfr_ext/view.h"
+
 #include <glm/glm.hpp>
 
 namespace OpenSubdivHex::Tools {
 
 /// How faces are drawn; in the numbers of kSurfaceFragmentShader.
-enum class Shading { Smooth, Facets, Reflection, Curvature, BaseFaces, Checker };
+enum class Shading { Smooth, Facets, Reflection, Curvature, BaseFaces, Checker, Levels };
 
 /// What is drawn.
 struct DrawSettings {
@@ -30,6 +32,8 @@ struct OrbitCamera {
     glm::vec3 GetUp() const;
     /// From space to the cube that OpenGL draws.
     glm::mat4 GetProjection(float aspect) const;
+    /// The same camera, for a picture of that many pixels.
+    BfrExt::Camera ForPicture(int width, int height) const;
 
     glm::vec3 center{0};
     float size = 1; ///< radius of what is seen

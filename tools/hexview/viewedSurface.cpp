@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <stdexcept>
 
 namespace OpenSubdivHex::Tools {
@@ -49,7 +50,7 @@ std::unique_ptr<FarExt::TopologyRefiner> makeRefiner(Mesh const &mesh,
     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options, &status);
     FarExt::TopologyRefiner::UniformOptions uniform(settings.level);
     uniform.fullTopologyInLastLevel = true;
-    if (!refiner || !refiner->RefineUniform(uniform, &status)) {
+    if (!refiner || (!settings.isAdaptive && !refiner->RefineUniform(uniform, &status))) {
         fail(status);
     }
     return refiner;
@@ -85,6 +86,60 @@ std::vector<float> evaluateCoords(FarExt::TopologyRefiner const &refiner, Mesh c
     return result;
 }
 
+/// The last level of a refiner.
+DrawnTopology makeTopology(FarExt::TopologyRefiner const &refiner, Mesh const &mesh,
+                           SurfaceSettings const &settings) {
+    FarExt::TopologyLevel const &level = refiner.GetLevel(settings.level);
+    FarExt::LimitSides const sides(level);
+    OsdExt::DrawOptions drawOptions;
+    drawOptions.sides = &sides;
+    drawOptions.splitVertices = true;
+    int const channel = findUvChannel(mesh);
+    if (channel >= 0) {
+        drawOptions.fvarChannels.push_back(channel);
+    } else {
+        drawOptions.generateBaseCoords = settings.scheme.IsHexagonal();
+    }
+    FarExt::Status status;
+    PolygonIndices polygons = OsdExt::CreatePolygonIndices(level, drawOptions, &status);
+    if (!status.IsOk()) {
+        fail(status);
+    }
+    OsdExt::TriangleIndices triangles = OsdExt::CreateTriangleIndices(polygons);
+    DrawnTopology result;
+    result.coords.resize(2 * triangles.vertices.size());
+    if (channel >= 0) {
+        std::vector<float> const values = evaluateCoords(refiner, mesh, channel);
+        auto const width = std::size_t(mesh.channels[std::size_t(channel)].width);
+        for (std::size_t i = 0; i < triangles.vertices.size(); ++i) {
+            std::copy_n(values.begin() +
+                            std::ptrdiff_t(width * std::size_t(triangles.fvarValues[0][i])),
+                        2, result.coords.begin() + std::ptrdiff_t(2 * i));
+        }
+    } else if (!triangles.baseCoords.empty()) {
+        result.coords = std::move(triangles.baseCoords);
+    }
+    for (int side = 0; side < sides.GetNumSides(); ++side) {
+        result.sideVertices.push_back(unsigned(sides.GetVertex(side)));
+    }
+    for (int const face : triangles.baseFaces) {
+        result.triangleFaces.push_back(face);
+        result.triangleFaces.push_back(settings.level);
+    }
+    result.polygonSizes = std::move(polygons.sizes);
+    result.polygonSides = std::move(polygons.vertices);
+    result.triangleSides = std::move(triangles.vertices);
+    return result;
+}
+
+bool areEqual(BfrExt::Camera const &a, BfrExt::Camera const &b) {
+    auto const areSame = [](double const(&x)[3], double const(&y)[3]) {
+        return std::equal(std::begin(x), std::end(x), std::begin(y));
+    };
+    return areSame(a.eye, b.eye) && areSame(a.target, b.target) && areSame(a.up, b.up) &&
+           a.fieldOfView == b.fieldOfView && a.width == b.width && a.height == b.height;
+}
+
 } // namespace
 
 ViewedSurface::ViewedSurface(Mesh mesh)
@@ -100,14 +155,19 @@ ViewedSurface::ViewedSurface(Mesh mesh)
     }
 }
 
-int ViewedSurface::GetNumVertices() const { return int(_points.GetSize()) / kLength; }
-
-int ViewedSurface::GetNumFaces() const {
-    return _refiner->GetLevel(_refiner->GetMaxLevel()).GetNumFaces();
-}
-
 void ViewedSurface::Refine(SurfaceSettings const &settings) {
     auto refiner = makeRefiner(_mesh, settings);
+    if (settings.isAdaptive) {
+        auto cells = std::make_unique<CellView>(_mesh, std::move(refiner), findUvChannel(_mesh));
+        _settings = settings;
+        _refiner.reset();
+        _cpuEvaluator.reset();
+        _glEvaluator.reset();
+        _glTable.reset();
+        _tableEvaluator.reset();
+        _cells = std::move(cells);
+        return;
+    }
     FarExt::TopologyLevel const &level = refiner->GetLevel(settings.level);
     FarExt::Status status;
 
@@ -157,48 +217,35 @@ void ViewedSurface::Refine(SurfaceSettings const &settings) {
             kPacked, kPacked, Osd::BufferDescriptor(), Osd::BufferDescriptor()));
     }
 
-    FarExt::LimitSides const sides(level);
-    OsdExt::DrawOptions drawOptions;
-    drawOptions.sides = &sides;
-    drawOptions.splitVertices = true;
-    int const channel = findUvChannel(_mesh);
-    if (channel >= 0) {
-        drawOptions.fvarChannels.push_back(channel);
-    } else {
-        drawOptions.generateBaseCoords = settings.scheme.IsHexagonal();
-    }
-    PolygonIndices const polygons = OsdExt::CreatePolygonIndices(level, drawOptions, &status);
-    if (!status.IsOk()) {
-        fail(status);
-    }
-    OsdExt::TriangleIndices const triangles = OsdExt::CreateTriangleIndices(polygons);
-    std::vector<float> coords(2 * triangles.vertices.size());
-    if (channel >= 0) {
-        std::vector<float> const values = evaluateCoords(*refiner, _mesh, channel);
-        auto const width = std::size_t(_mesh.channels[std::size_t(channel)].width);
-        for (std::size_t i = 0; i < triangles.vertices.size(); ++i) {
-            std::copy_n(values.begin() +
-                            std::ptrdiff_t(width * std::size_t(triangles.fvarValues[0][i])),
-                        2, coords.begin() + std::ptrdiff_t(2 * i));
-        }
-    } else if (!triangles.baseCoords.empty()) {
-        coords = triangles.baseCoords;
-    }
+    DrawnTopology const drawn = makeTopology(*refiner, _mesh, settings);
+    _settings = settings;
+    _refiner = std::move(refiner);
+    _cpuEvaluator = std::move(cpuEvaluator);
+    _glEvaluator = std::move(glEvaluator);
+    _glTable = std::move(glTable);
+    _tableEvaluator = std::move(tableEvaluator);
+    _cells.reset();
+    _points.Resize(std::size_t(kLength * level.GetNumVertices()));
+    _normals.Resize(4 * drawn.sideVertices.size());
+    setTopology(drawn);
+    Evaluate();
+}
 
+void ViewedSurface::setTopology(DrawnTopology const &drawn) {
     // The neighbours of each side in the polygons around it, and the edges.
-    auto const numSides = std::size_t(sides.GetNumSides());
+    std::size_t const numSides = drawn.sideVertices.size();
     std::vector<unsigned> firstFans(numSides + 1, 0);
-    for (int const side : polygons.vertices) {
+    for (int const side : drawn.polygonSides) {
         ++firstFans[std::size_t(side) + 1];
     }
     for (std::size_t i = 0; i < numSides; ++i) {
         firstFans[i + 1] += firstFans[i];
     }
     std::vector<unsigned> next(firstFans.begin(), firstFans.end() - 1);
-    std::vector<unsigned> fans(2 * polygons.vertices.size());
+    std::vector<unsigned> fans(2 * drawn.polygonSides.size());
     std::vector<unsigned> edges;
-    int const *polygon = polygons.vertices.data();
-    for (int const size : polygons.sizes) {
+    int const *polygon = drawn.polygonSides.data();
+    for (int const size : drawn.polygonSizes) {
         for (int i = 0; i < size; ++i) {
             auto const before = unsigned(polygon[(i + size - 1) % size]);
             auto const behind = unsigned(polygon[(i + 1) % size]);
@@ -210,30 +257,59 @@ void ViewedSurface::Refine(SurfaceSettings const &settings) {
         }
         polygon += size;
     }
-    std::vector<unsigned> sideVertices;
-    for (int side = 0; side < sides.GetNumSides(); ++side) {
-        sideVertices.push_back(unsigned(sides.GetVertex(side)));
-    }
-
-    _settings = settings;
-    _refiner = std::move(refiner);
-    _cpuEvaluator = std::move(cpuEvaluator);
-    _glEvaluator = std::move(glEvaluator);
-    _glTable = std::move(glTable);
-    _tableEvaluator = std::move(tableEvaluator);
-    _points.Resize(std::size_t(kLength * level.GetNumVertices()));
-    _sideVertices.Assign(sideVertices);
-    _normals.Resize(4 * numSides);
+    _numFaces = int(drawn.polygonSizes.size());
+    _sideVertices.Assign(drawn.sideVertices);
     _firstFans.Assign(firstFans);
     _fans.Assign(fans);
-    _cornerSides.Assign(triangles.vertices);
-    _coords.Assign(coords);
-    _baseFaces.Assign(triangles.baseFaces);
+    _cornerSides.Assign(drawn.triangleSides);
+    _coords.Assign(drawn.coords);
+    _faces.Assign(drawn.triangleFaces);
     _edgeSides.Assign(edges);
-    Evaluate();
+}
+
+void ViewedSurface::Follow(BfrExt::Camera const &camera, CellSettings const &settings,
+                           bool isFrozen) {
+    if (!_cells) {
+        return;
+    }
+    bool const isSame = areEqual(camera, _camera) &&
+                        settings.pixelError == _cellSettings.pixelError &&
+                        settings.maxLevel == _cellSettings.maxLevel &&
+                        settings.isCulling == _cellSettings.isCulling;
+    bool const isRefining = !_cells->IsRefined() || (!isFrozen && (!isSame || _hasMoved));
+    if (!isRefining && !_hasMoved) {
+        return;
+    }
+    auto const start = std::chrono::steady_clock::now();
+    if (isRefining) {
+        auto const options = BfrExt::View::Options()
+                                 .SetFlatness(double(settings.pixelError))
+                                 .SetMaxLevel(settings.maxLevel)
+                                 .SetCulling(settings.isCulling);
+        BfrExt::View const view(camera, options);
+        if (!view.IsValid()) {
+            throw std::runtime_error("the camera sees nothing");
+        }
+        _cells->Refine(view, _controlPoints);
+        setTopology(_cells->GetTopology());
+        _camera = camera;
+        _cellSettings = settings;
+    }
+    _cells->Evaluate(_controlPoints);
+    _points.Assign(_cells->GetPoints());
+    _normals.Assign(_cells->GetNormals());
+    makeNormals(true);
+    glFinish();
+    _hasMoved = false;
+    _milliseconds =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 void ViewedSurface::Evaluate() {
+    if (_cells) {
+        _hasMoved = true;
+        return;
+    }
     glFinish();
     auto const start = std::chrono::steady_clock::now();
     if (_cpuEvaluator) {
@@ -258,13 +334,14 @@ void ViewedSurface::Evaluate() {
                                          kPacked, *_glTable);
         }
     }
-    makeNormals();
+    makeNormals(false);
     glFinish();
     _milliseconds =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-void ViewedSurface::makeNormals() const {
+// The normals, unless they are there, and then the mean curvature.
+void ViewedSurface::makeNormals(bool areNormalsThere) const {
     constexpr GLuint kGroup = 64;
     constexpr GLuint kMaxGroups = 65535;
     auto const numSides = GLuint(_sideVertices.GetSize());
@@ -275,9 +352,9 @@ void ViewedSurface::makeNormals() const {
     _fans.Bind(kFanArray);
     _normalProgram.Use();
     glUniform1ui(_normalProgram["count"], numSides);
-    for (bool const areNormalsThere : {false, true}) {
+    for (int pass = areNormalsThere ? 1 : 0; pass < 2; ++pass) {
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-        glUniform1i(_normalProgram["areNormalsThere"], areNormalsThere);
+        glUniform1i(_normalProgram["areNormalsThere"], pass);
         if (numRows > 0) {
             glDispatchCompute((numGroups + numRows - 1) / numRows, numRows, 1);
         }
@@ -291,7 +368,7 @@ void ViewedSurface::Bind() const {
     _normals.Bind(kNormalArray);
     _cornerSides.Bind(kCornerSideArray);
     _coords.Bind(kCoordArray);
-    _baseFaces.Bind(kBaseFaceArray);
+    _faces.Bind(kFaceArray);
 }
 
 void ViewedSurface::BindEdges() const { _edgeSides.Bind(kCornerSideArray); }

@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_TOOLS_HEXVIEW_VIEWED_SURFACE_H
 #define OPENSUBDIVHEX_TOOLS_HEXVIEW_VIEWED_SURFACE_H
 
+#include "cellView.h"
+#include "drawnTopology.h"
 #include "glObjects.h"
 
 #include "far_ext/topologyRefiner.h"
@@ -25,6 +27,13 @@ enum class ViewEvaluator {
     Tables  ///< Osd::GLComputeEvaluator, by a stencil table
 };
 
+/// How far cells are refined: see BfrExt::View.
+struct CellSettings {
+    float pixelError = 0.5;
+    int maxLevel = 8;
+    bool isCulling = false;
+};
+
 /// \brief What the topology of a surface depends on.
 struct SurfaceSettings {
     int level = 2;
@@ -33,9 +42,12 @@ struct SurfaceSettings {
     bool isLimit = false;
     std::optional<double> creaseAngle; ///< degrees
     ViewEvaluator evaluator = ViewEvaluator::Cpu;
+    bool isAdaptive =
+        false;          ///< in place of level, isLimit and evaluator: cells that a camera needs
+    CellSettings cells; ///< for Follow()
 };
 
-/// \brief A mesh with its refined level in buffers of OpenGL.
+/// \brief A mesh with its refined level, or the cells that a camera needs, in buffers of OpenGL.
 ///
 /// Vertices are drawn by side: one that a crease splits for shading has several normals.
 class ViewedSurface {
@@ -52,14 +64,22 @@ public:
     /// The edges of the control mesh, two vertices each.
     std::vector<unsigned> const &GetControlEdges() const { return _controlEdges; }
 
-    /// Makes the vertices of the level and their normals from the control points.
+    /// Makes the vertices of the level and their normals from the control points; cells are left to
+    /// Follow().
     void Evaluate();
+    /// \brief Where there are cells: refines those that a camera needs, unless it is the one of the last
+    /// call and so are the control points; and evaluates them.
+    ///
+    /// \param isFrozen  leaves cells as they are, where there are any
+    void Follow(BfrExt::Camera const &camera, CellSettings const &settings, bool isFrozen = false);
 
-    int GetNumVertices() const;
-    int GetNumFaces() const;
+    /// Null without cells.
+    CellView const *GetCells() const { return _cells.get(); }
+    int GetNumVertices() const { return int(_points.GetSize() / 3); }
+    int GetNumFaces() const { return _numFaces; }
     int GetNumTriangles() const { return int(_cornerSides.GetSize() / 3); }
     int GetNumEdges() const { return int(_edgeSides.GetSize() / 2); }
-    /// Milliseconds of the last Evaluate(), with the normals.
+    /// Milliseconds of the last Evaluate(), with the normals; of cells, with finding them.
     double GetMilliseconds() const { return _milliseconds; }
 
     /// Binds the arrays that the shaders of drawings read.
@@ -68,7 +88,8 @@ public:
     void BindEdges() const;
 
 private:
-    void makeNormals() const;
+    void setTopology(DrawnTopology const &drawn);
+    void makeNormals(bool areNormalsThere) const;
 
     Mesh _mesh;
     std::vector<float> _controlPoints;
@@ -80,6 +101,11 @@ private:
     std::unique_ptr<OsdExt::GLRefinementEvaluator> _glEvaluator;
     std::unique_ptr<OpenSubdiv::Osd::GLStencilTableSSBO> _glTable;
     std::unique_ptr<OpenSubdiv::Osd::GLComputeEvaluator> _tableEvaluator;
+    std::unique_ptr<CellView> _cells;
+    BfrExt::Camera _camera; // that the cells are for
+    CellSettings _cellSettings;
+    bool _hasMoved = false; // control points, since Follow()
+    int _numFaces = 0;
 
     GlArray _controlArray;
     GlArray _points;       // of the level
@@ -89,7 +115,7 @@ private:
     GlArray _fans;         // the sides before and behind in each polygon around
     GlArray _cornerSides;  // of triangles
     GlArray _coords;       // u and v by corner
-    GlArray _baseFaces;    // by triangle
+    GlArray _faces;        // base face and level by triangle
     GlArray _edgeSides;    // two for each edge that is drawn
     ViewProgram _normalProgram;
     double _milliseconds = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "window.h"
 
+#include "animation.h"
+
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -23,9 +25,11 @@ constexpr char const *kFirstSteps[] = {"none", "tri-hex", "truncate"};
 constexpr char const *kMasks[] = {"average", "cosine", "smooth"};
 constexpr char const *kBoundaries[] = {"none", "edge only", "edge and corner"};
 constexpr char const *kEvaluators[] = {"CPU", "OpenGL", "tables"};
-constexpr char const *kShadings[] = {"smooth",    "facets",     "reflection lines",
-                                     "curvature", "base faces", "checker"};
+constexpr char const *kShadings[] = {
+    "smooth", "facets", "reflection lines", "curvature", "base faces", "checker", "levels"};
 constexpr int kMaxLevel = 7;
+constexpr float kMinPixelError = 0.1f;
+constexpr float kMaxPixelError = 50;
 constexpr float kPickRadius = 12; // pixels
 
 /// GLFW and a window of it, with ImGui.
@@ -89,6 +93,9 @@ public:
         : _surface(mesh), _settings(settings), _drawSettings(drawSettings), _camera(camera) {
         _surface.Refine(_settings);
         _refined = _settings;
+        if (_settings.creaseAngle) {
+            _creaseAngle = float(*_settings.creaseAngle);
+        }
     }
 
     void PressKey(int key);
@@ -98,13 +105,16 @@ public:
         if (_isAnimated) {
             animate();
         }
+        follow(width, height);
         _painter.Draw(_surface, _camera, _drawSettings, width, height);
     }
 
 private:
     void showPanel();
     void readMouse(float width, float height);
+    void showCells();
     void refine();
+    void follow(int width, int height);
     void animate();
     int findControlVertex(float x, float y, glm::mat4 const &projection, float width, float height);
     void drag(float x, float y, glm::mat4 const &projection, float width, float height);
@@ -118,6 +128,7 @@ private:
     std::string _error;
     float _creaseAngle = 60;
     bool _isAnimated = false;
+    bool _isFrozen = false; // cells
     bool _isDragging = false;
     double _time = 0;
 };
@@ -134,23 +145,63 @@ void Viewer::refine() {
     }
 }
 
+// Has the cells follow the camera and the control mesh.
+void Viewer::follow(int width, int height) {
+    try {
+        _surface.Follow(_camera.ForPicture(width, height), _settings.cells, _isFrozen);
+    } catch (std::runtime_error const &error) {
+        _error = error.what();
+    }
+}
+
+// What is chosen of cells, and what became of them.
+void Viewer::showCells() {
+    CellSettings &cells = _settings.cells;
+    ImGui::SliderFloat("pixel error", &cells.pixelError, kMinPixelError, kMaxPixelError, "%.2f",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    ImGui::SliderInt("last level", &cells.maxLevel, 0, BfrExt::CellTree::kLastLevel, "%d",
+                     ImGuiSliderFlags_AlwaysClamp);
+    ImGui::Checkbox("cull", &cells.isCulling);
+    ImGui::SameLine();
+    ImGui::Checkbox("freeze", &_isFrozen);
+    if (_surface.GetCells() && _surface.GetCells()->IsRefined()) {
+        CellView::Statistics const &statistics = _surface.GetCells()->GetStatistics();
+        std::vector<long> const &byLevel = statistics.counts.cellsByLevel;
+        for (std::size_t level = 0; level < byLevel.size(); ++level) {
+            if (byLevel[level] > 0) {
+                ImGui::Text("%ld cells of level %d", byLevel[level], int(level));
+            }
+        }
+        ImGui::Text("%ld outside, %ld facing away, left coarse", statistics.counts.outside,
+                    statistics.counts.backFacing);
+        ImGui::Text("%d types of base faces", statistics.numTypes);
+    }
+}
+
 void Viewer::showPanel() {
     ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
     ImGui::Begin("hexview", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::PushItemWidth(150);
-    bool isChanged = ImGui::SliderInt("level", &_settings.level, 0, kMaxLevel);
+    bool isChanged = ImGui::Checkbox("adaptive", &_settings.isAdaptive);
+    if (_settings.isAdaptive) {
+        showCells();
+    } else {
+        isChanged |= ImGui::SliderInt("level", &_settings.level, 0, kMaxLevel, "%d",
+                                      ImGuiSliderFlags_AlwaysClamp);
+        isChanged |= ImGui::Checkbox("limit points", &_settings.isLimit);
+        isChanged |= chooseEnum("evaluator", kEvaluators, &_settings.evaluator);
+    }
+    ImGui::Separator();
     isChanged |= chooseEnum("scheme", kSchemes, &_settings.scheme.schemeType);
     isChanged |= chooseEnum("first step", kFirstSteps, &_settings.scheme.firstStep);
     isChanged |= chooseEnum("mask", kMasks, &_settings.scheme.faceMask);
     isChanged |= chooseEnum("boundary", kBoundaries, &_settings.boundary);
-    isChanged |= ImGui::Checkbox("limit points", &_settings.isLimit);
     bool hasCreases = _settings.creaseAngle.has_value();
     isChanged |= ImGui::Checkbox("creases from angle", &hasCreases);
     if (hasCreases) {
         isChanged |= ImGui::SliderFloat("degrees", &_creaseAngle, 0, 180, "%.0f");
     }
     _settings.creaseAngle = hasCreases ? std::optional<double>(_creaseAngle) : std::nullopt;
-    isChanged |= chooseEnum("evaluator", kEvaluators, &_settings.evaluator);
     if (isChanged) {
         refine();
     }
@@ -177,8 +228,8 @@ void Viewer::showPanel() {
     ImGui::End();
 }
 
-// Digits choose the level; e, c and a are for edges, control mesh and animation, and the tabulator
-// goes through the shadings.
+// Digits choose the level; e, c and a are for edges, control mesh and animation, v for cells that the
+// view needs and f for freezing them, and the tabulator goes through the shadings.
 void Viewer::PressKey(int key) {
     switch (key) {
     case GLFW_KEY_E:
@@ -190,6 +241,13 @@ void Viewer::PressKey(int key) {
     case GLFW_KEY_A:
         _isAnimated = !_isAnimated;
         break;
+    case GLFW_KEY_V:
+        _settings.isAdaptive = !_settings.isAdaptive;
+        refine();
+        break;
+    case GLFW_KEY_F:
+        _isFrozen = !_isFrozen;
+        break;
     case GLFW_KEY_TAB:
         _drawSettings.shading =
             Shading((int(_drawSettings.shading) + 1) % int(std::size(kShadings)));
@@ -197,6 +255,7 @@ void Viewer::PressKey(int key) {
     default:
         if (GLFW_KEY_0 <= key && key <= GLFW_KEY_0 + kMaxLevel) {
             _settings.level = key - GLFW_KEY_0;
+            _settings.isAdaptive = false;
             refine();
         }
     }
@@ -275,17 +334,8 @@ void Viewer::readMouse(float width, float height) {
 // Twists the control mesh around the vertical axis, to and fro.
 void Viewer::animate() {
     _time += double(ImGui::GetIO().DeltaTime);
-    std::vector<float> const &rest = _surface.GetMesh().positions;
-    std::vector<float> &points = _surface.GetControlPoints();
-    points = rest;
-    for (std::size_t i = 0; i + 2 < rest.size(); i += 3) {
-        float const x = rest[i] - _camera.center.x;
-        float const z = rest[i + 2] - _camera.center.z;
-        float const angle =
-            float(std::sin(_time)) * (rest[i + 1] - _camera.center.y) / _camera.size;
-        points[i] = _camera.center.x + x * std::cos(angle) + z * std::sin(angle);
-        points[i + 2] = _camera.center.z - x * std::sin(angle) + z * std::cos(angle);
-    }
+    _surface.GetControlPoints() =
+        TwistPoints(_surface.GetMesh().positions, _camera, float(std::sin(_time)));
     _surface.Evaluate();
 }
 

@@ -3,7 +3,8 @@
 
 usage: viewTest.py pictures|window HEXVIEW MESHES
 
-pictures  draws without a window: every evaluator the same picture, every shading another one
+pictures  draws without a window: every evaluator the same picture, every shading another one, cells
+          that a view needs, frames of the animation
 window    opens a window in Xvfb, presses keys and drags with the mouse, and looks at the screen
 """
 
@@ -32,6 +33,15 @@ def share_of_dark(image):
 
 def share_of_white(image):
     return image.convert("L").histogram()[255] / (image.width * image.height)
+
+
+def hues_of(image, least):
+    """Hues, in 16 steps, of that many pixels that have some colour."""
+    counts = {}
+    for count, (hue, saturation, _) in image.convert("HSV").getcolors(1 << 20):
+        if saturation >= 64:
+            counts[hue // 16] = counts.get(hue // 16, 0) + count
+    return {hue for hue, count in counts.items() if count >= least}
 
 
 def expect(condition, what):
@@ -63,7 +73,7 @@ def test_pictures(program, meshes):
     expect(share_of_different(smooth, pictures[0]) > 1e-3, "limit points are others")
     shadings = {name: draw(program, torus, "-l", "3", "--no-edges", "--shading", name)
                 for name in ("smooth", "facets", "reflection", "curvature", "base-faces",
-                             "checker")}
+                             "checker", "levels")}
     for name, picture in shadings.items():
         for other in shadings:
             expect(name == other or share_of_different(picture, shadings[other], 4) > 0.02,
@@ -71,9 +81,9 @@ def test_pictures(program, meshes):
     expect(share_of_dark(shadings["reflection"]) > 0.1, "there are dark reflection lines")
     cube = draw(program, os.path.join(meshes, "cube.obj"), "-l", "4", "--no-edges", "--shading",
                 "base-faces")
-    hues = {tuple(value // 32 for value in color) for count, color in cube.getcolors(1 << 20)
-            if count > 500 and min(color) < 250}
-    expect(len(hues) >= 3, "three sides of a cube have three colours")
+    expect(len(hues_of(cube, 500)) >= 3, "three sides of a cube have three colours")
+    test_cells(program, meshes)
+    test_frames(program, os.path.join(meshes, "cube.obj"))
     for options, cause in ((["--level", "99"], "99"), (["--mask", "none"], "none")):
         run = subprocess.run([program, torus, *options], capture_output=True, text=True)
         expect(run.returncode == 2 and cause in run.stderr, "bad options are named")
@@ -81,6 +91,56 @@ def test_pictures(program, meshes):
                           "doo-sabin", "--png", "no.png"], capture_output=True, text=True)
     expect(run.returncode == 1 and "limit stencils" in run.stderr and
            not os.path.exists("no.png"), "Doo-Sabin has no limit points")
+
+
+def test_cells(program, meshes):
+    torus = os.path.join(meshes, "torus.obj")
+    lantern = os.path.join(meshes, "lantern.obj")
+    for shading in ("smooth", "checker"):
+        level = draw(program, torus, "-l", "6", "--limit", "--no-edges", "--shading", shading)
+        fine, coarse = (draw(program, torus, "--adaptive", "--no-edges", "--pixel-error", error,
+                             "--shading", shading) for error in ("0.1", "40"))
+        expect(share_of_different(level, fine, 16) < 0.01,
+               "cells that are flat to a part of a pixel look like those of a level")
+        expect(share_of_different(level, coarse, 16) > 0.02, "coarse cells do not")
+    far = draw(program, lantern, "--adaptive", "--no-edges", "--shading", "levels",
+               "--pixel-error", "4")
+    near = draw(program, lantern, "--adaptive", "--no-edges", "--shading", "levels",
+                "--pixel-error", "0.25")
+    expect(len(hues_of(far, 100)) >= 3 and share_of_different(far, near, 16) > 0.05,
+           "cells have colours by their levels, and other levels for other errors")
+    last = draw(program, lantern, "--adaptive", "--no-edges", "--shading", "levels",
+                "--max-level", "0")
+    expect(share_of_different(last, near, 16) > 0.05, "there is a last level")
+    # Each side of a creased cube is even: normals are not shared across creases.
+    facets, smooth = (draw(program, os.path.join(meshes, "cube.obj"), "--adaptive", "--no-edges",
+                           "--crease-angle", "60", "--max-level", "2", "--pixel-error", "0.001",
+                           "--shading", shading) for shading in ("facets", "smooth"))
+    expect(share_of_different(facets, smooth, 16) < 0.01,
+           "the sides of a cube with creases are flat")
+    for options, cause, code in (
+            (["--adaptive", "--level", "2"], "--level", 2),
+            (["--adaptive", "--limit"], "--limit", 2),
+            (["--pixel-error", "1"], "--adaptive", 2),
+            (["--adaptive", "--first-step", "truncate", "--png", "no.png"], "level 0", 1)):
+        run = subprocess.run([program, torus, *options], capture_output=True, text=True)
+        expect(run.returncode == code and cause in run.stderr and not os.path.exists("no.png"),
+               f"{options} is refused")
+
+
+def test_frames(program, cube):
+    # Cells of a frame stay refined in the next one: their edges would be others.
+    for options in (["-l", "3"], ["--adaptive", "--pixel-error", "0.1", "--no-edges"]):
+        strip = draw(program, cube, "--frames", "3", *options)
+        expect(strip.size == (3 * WIDTH, HEIGHT), "pictures are beside each other")
+        first, rest, last = (strip.crop((i * WIDTH, 0, (i + 1) * WIDTH, HEIGHT))
+                             for i in range(3))
+        expect(share_of_different(rest, draw(program, cube, *options)) < 1e-2,
+               "the mesh is at rest in the middle")
+        expect(min(share_of_different(first, rest), share_of_different(first, last),
+                   share_of_different(rest, last)) > 0.01, "it is twisted to and fro")
+    run = subprocess.run([program, cube, "--frames", "3"], capture_output=True, text=True)
+    expect(run.returncode == 2 and "--png" in run.stderr, "frames are of pictures")
 
 
 def read_screen(display):
@@ -130,6 +190,25 @@ class Screen:
         return self.read()
 
 
+def test_window_of_cells(screen):
+    before = screen.read()
+    screen.do("key", "Tab", "Tab", "Tab", "Tab")
+    one = screen.wait(lambda image: share_of_different(image, before) > 0.1 and
+                      len(hues_of(image, 1000)) == 1, "Tab shows the colour of one level")
+    screen.do("key", "v")
+    cells = screen.wait(lambda image: share_of_different(image, one, 16) > 0.1,
+                        "V shows cells of several levels")
+    screen.do("key", "f")
+    screen.do("click", "--repeat", "8", "--delay", "200", "4")
+    screen.wait(lambda image: share_of_white(image) < share_of_white(cells) - 0.05,
+                "the wheel comes nearer")
+    time.sleep(1)
+    frozen = screen.read()
+    screen.do("key", "f")
+    screen.wait(lambda image: share_of_different(image, frozen, 16) > 0.05,
+                "cells follow the camera unless they are frozen")
+
+
 def test_window(program, meshes):
     torus = os.path.join(meshes, "torus.obj")
     with Screen() as screen:
@@ -157,6 +236,7 @@ def test_window(program, meshes):
             screen.wait(lambda image: share_of_different(image, lines) > 0.05,
                         "the mouse turns the mesh")
             screen.do("mouseup", "1")
+            test_window_of_cells(screen)
             screen.do("key", "Escape")
             expect(viewer.wait(TIMEOUT) == 0, "Esc ends the program")
         finally:
