@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchStream.h"
 
-#include "cell/patchEvaluator.h"
+#include "cell/cellPlan.h"
 
 #include "far_ext/threads.h"
 #include "far_ext/vtr/parallel.h"
@@ -22,20 +22,19 @@ using FarExt::StatusCode;
 
 namespace internal {
 
-/// \brief What patches with the same levels have in common: their tessellation, and which cells its
-/// places lie in.
+/// \brief What patches with the same levels have in common: their tessellation, with the cells its places
+/// lie in.
 struct PatchPlan {
     PatchPlan(std::vector<int> const &levels, Tessellation::Options const &options)
         : tessellation(Parameterization(int(levels.size()) - 1), int(levels.size()), levels.data(),
-                       options),
-          cells(tessellation.GetFaceSize(), levels.back(), getInteriorPlaces(tessellation),
-                tessellation.GetNumBoundaryCoords()) {}
+                       options) {}
 
     /// Memory, in bytes.
     std::size_t GetSize() const {
         return std::size_t(tessellation.GetNumCoords()) * kBytesOfCoord +
                std::size_t(tessellation.GetNumFacetVertices()) * sizeof(int) +
-               std::size_t(tessellation.GetNumFacets()) * 2 * sizeof(int) + cells.GetSize();
+               std::size_t(tessellation.GetNumFacets()) * 2 * sizeof(int) +
+               tessellation.getCellPlan().GetSize();
     }
 
     /// \brief About what it takes in memory to make the plan of some levels, with the plan itself.
@@ -53,21 +52,10 @@ struct PatchPlan {
     }
 
     Tessellation const tessellation;
-    CellPlan const cells;
 
 private:
-    // Its place, its u and v, and their numbers in leaves.
+    // Its place, and its u and v.
     static constexpr std::size_t kBytesOfCoord = sizeof(LeafPlaces::Place) + 2 * sizeof(double);
-
-    static std::vector<LeafPlaces::Place> getInteriorPlaces(Tessellation const &tessellation) {
-        std::vector<LeafPlaces::Place> places;
-        places.reserve(std::size_t(tessellation.GetNumInteriorCoords()));
-        for (auto place = tessellation._places.begin() + tessellation.GetNumBoundaryCoords();
-             place != tessellation._places.end(); ++place) {
-            places.push_back({place->sector, {place->start, place->end}});
-        }
-        return places;
-    }
 };
 
 /// \brief The plans that have been asked for.  Where they come to take too much memory, those that nobody
@@ -83,19 +71,14 @@ public:
     /// \brief Finds the plan of some levels, or makes it.
     ///
     /// Threads that want a plan wait for it, since it takes memory to make one.
-    ///
-    /// \param isNeeded  else null comes where it takes too much memory to make the plan beside those that
-    ///                  are in use
-    std::shared_ptr<PatchPlan const> Find(std::vector<int> const &levels, bool isNeeded) {
+    std::shared_ptr<PatchPlan const> Find(std::vector<int> const &levels) {
         std::lock_guard<std::mutex> const lock(_mutex);
         auto const found = _places.find(levels);
         if (found != _places.end()) {
             _plans.splice(_plans.begin(), _plans, found->second);
             return _plans.front().plan;
         }
-        if (!makeRoom(PatchPlan::GetSizeOfMaking(levels)) && !isNeeded) {
-            return nullptr;
-        }
+        makeRoom(PatchPlan::GetSizeOfMaking(levels));
         auto plan = std::make_shared<PatchPlan const>(levels, _options);
         std::size_t const size = plan->GetSize();
         _plans.push_front({levels, std::move(plan), size});
@@ -122,8 +105,8 @@ private:
         std::size_t size;
     };
 
-    // Whether there is room for something then.
-    bool makeRoom(std::size_t size) {
+    // For something of this size, as far as plans are not in use.
+    void makeRoom(std::size_t size) {
         for (auto entry = _plans.end(); entry != _plans.begin() && _memory + size > _maxMemory;) {
             --entry;
             // It is given away under the lock alone, so that nobody can begin to use it meanwhile.
@@ -133,7 +116,6 @@ private:
                 entry = _plans.erase(entry);
             }
         }
-        return _memory + size <= _maxMemory;
     }
 
     Tessellation::Options const _options;
@@ -148,131 +130,66 @@ private:
 
 namespace {
 
-// Faces that a worker takes at a time: enough for leaves of one type to come together, and few where
-// the mesh has few.
+// Faces that a worker takes at a time: few where the mesh has few.
 constexpr Far::Index kMaxRange = 128;
 constexpr Far::Index kNumRangesWanted = 64;
 
 } // namespace
 
-/// \brief Makes the patches of some faces, and hands them out when they take as much memory as they
-/// may.
+/// \brief Makes the patches of some faces one by one, and hands them out.
 template <typename REAL>
 class PatchStream<REAL>::Worker {
 public:
     Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
-           internal::PatchPlans &plans, Sink const &sink, std::size_t maxMemory)
+           internal::PatchPlans &plans, Sink const &sink)
         : _stream(stream), _meshPoints(meshPoints), _meshPointDesc(meshPointDesc), _plans(plans),
-          _sink(sink), _maxMemory(maxMemory / 2), _evaluator(meshPointDesc.size, _maxMemory) {}
+          _sink(sink) {}
 
     /// \return  false where the sink ended the stream, or a face has no surface, as status says
     bool Run(Index const *begin, Index const *end, Status *status) {
         for (; begin != end; ++begin) {
-            _stream.getLevels(*begin, _levels);
-            if (!findPlan()) {
-                if (!handOut()) {
-                    return false;
-                }
-                _plan = _plans.Find(_levels, true);
-            }
-            if (!takeRoom(getSize())) {
-                return false;
-            }
+            findPlan(*begin);
             if (!_stream._factory.InitVertexSurface(*begin, &_surface, status)) {
                 return false;
             }
-            add(*begin);
-        }
-        return handOut();
-    }
-
-private:
-    struct Pending {
-        Index face;
-        std::shared_ptr<internal::PatchPlan const> plan;
-        std::size_t first; // of the points
-    };
-
-    // Whether the plan is there, beside those of the patches that wait.
-    bool findPlan() {
-        if (!_plan || _levels != _planLevels) {
-            _plan.reset();
-            _plan = _plans.Find(_levels, false);
-            _planLevels = _levels;
-        }
-        return _plan != nullptr;
-    }
-
-    // How many numbers the points of a patch are.
-    std::size_t getSize() const {
-        return std::size_t(_plan->tessellation.GetNumCoords()) * std::size_t(_meshPointDesc.size);
-    }
-
-    // Makes sure that there is room for so many numbers, having handed out what waits where there is none:
-    // then it is for more, up to what memory there is and for one patch at least.
-    bool takeRoom(std::size_t size) {
-        if (_numNumbers + size <= _numbersSize && _evaluator.GetSize() <= _maxMemory) {
-            return true;
-        }
-        if (!handOut()) {
-            return false;
-        }
-        std::size_t const maxSize = _maxMemory / sizeof(REAL);
-        std::size_t const newSize =
-            std::max(size, std::min(maxSize, std::max(kFirstSize, 4 * _numbersSize)));
-        if (newSize > _numbersSize) {
-            _numbersSize = 0;
-            _numbers.reset();
-            _numbers.reset(new REAL[newSize]);
-            _numbersSize = newSize;
+            evaluate();
+            if (!_sink({*begin, _plan->tessellation, _points.data(), _meshPointDesc.size})) {
+                return false;
+            }
         }
         return true;
     }
 
-    void add(Index face) {
-        _pending.push_back({face, _plan, _numNumbers});
-        REAL *const points = _numbers.get() + _numNumbers;
-        _numNumbers += getSize();
-        auto const pointSize = std::size_t(_meshPointDesc.size);
-        _controlPoints.resize(std::size_t(_surface.GetNumControlPoints()) * pointSize);
-        PointDescriptor const desc(_meshPointDesc.size);
-        _surface.GatherControlPoints(_meshPoints, _meshPointDesc, _controlPoints.data(), desc);
-        _surface.evaluateBorder(_plan->tessellation, _controlPoints.data(), desc, points, desc);
-        _evaluator.Add(*_surface._type, _plan->cells, _controlPoints.data(), points);
-    }
-
-    bool handOut() {
-        _evaluator.Finish();
-        bool isWanted = true;
-        for (std::size_t i = 0; i < _pending.size() && isWanted; ++i) {
-            Pending const &pending = _pending[i];
-            isWanted = _sink({pending.face, pending.plan->tessellation,
-                              _numbers.get() + pending.first, _meshPointDesc.size});
+private:
+    void findPlan(Index face) {
+        _stream.getLevels(face, _levels);
+        if (!_plan || _levels != _planLevels) {
+            _plan.reset();
+            _plan = _plans.Find(_levels);
+            _planLevels = _levels;
         }
-        _pending.clear();
-        _numNumbers = 0;
-        return isWanted;
     }
 
-    static constexpr std::size_t kFirstSize = 1 << 12;
+    void evaluate() {
+        auto const pointSize = std::size_t(_meshPointDesc.size);
+        PointDescriptor const desc(_meshPointDesc.size);
+        _controlPoints.resize(std::size_t(_surface.GetNumControlPoints()) * pointSize);
+        _surface.GatherControlPoints(_meshPoints, _meshPointDesc, _controlPoints.data(), desc);
+        _points.resize(std::size_t(_plan->tessellation.GetNumCoords()) * pointSize);
+        _surface.Evaluate(_plan->tessellation, _controlPoints.data(), desc, _points.data(), desc);
+    }
 
     PatchStream const &_stream;
     REAL const *const _meshPoints;
     PointDescriptor const _meshPointDesc;
     internal::PatchPlans &_plans;
     Sink const &_sink;
-    std::size_t const _maxMemory; // of the points, and of the evaluator
-    internal::PatchEvaluator<REAL> _evaluator;
     std::vector<int> _levels;
     std::vector<int> _planLevels;
     std::shared_ptr<internal::PatchPlan const> _plan;
     Surface<REAL> _surface;
     std::vector<REAL> _controlPoints;
-    std::vector<Pending> _pending;
-    // The points of the patches that wait.
-    std::unique_ptr<REAL[]> _numbers;
-    std::size_t _numbersSize = 0;
-    std::size_t _numNumbers = 0;
+    std::vector<REAL> _points;
 };
 
 template <typename REAL>
@@ -280,7 +197,7 @@ PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, PatchLevels levels
                                Options const &options)
     : _factory(factory), _levels(std::move(levels)), _options(options),
       _plans(std::make_shared<internal::PatchPlans>(options.GetTessellationOptions(),
-                                                    getHalfMemory())) {}
+                                                    options.GetMaxMemory())) {}
 
 // The levels of the edges, then that of the inside.
 template <typename REAL>
@@ -298,13 +215,13 @@ template <typename REAL>
 Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace,
                                         std::vector<Index> &faces) const {
     constexpr std::size_t kMinNumFaces = 1024;
-    constexpr std::size_t kShareOfMemory = 8;
+    constexpr std::size_t kShareOfMemory = 16;
     struct LevelsOfFace {
         std::size_t hash;
         Index face;
     };
     std::size_t const numFaces =
-        std::max(kMinNumFaces, getHalfMemory() / kShareOfMemory / sizeof(LevelsOfFace));
+        std::max(kMinNumFaces, _options.GetMaxMemory() / kShareOfMemory / sizeof(LevelsOfFace));
     std::vector<LevelsOfFace> order;
     std::vector<int> levels;
     std::unordered_set<std::size_t> hashes;
@@ -400,7 +317,6 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
         return false;
     }
     std::vector<Index> faces;
-    std::size_t const workerMemory = getHalfMemory() / std::size_t(FarExt::GetNumThreads());
     std::atomic<bool> isEnded(false);
     std::mutex mutex;
     auto const run = [&](std::unique_ptr<Worker> &worker, Index begin, Index end) {
@@ -420,8 +336,7 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
         FarExt::internal::ParallelForRange(
             Index(faces.size()),
             [&] {
-                return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, *_plans, sink,
-                                                workerMemory);
+                return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, *_plans, sink);
             },
             run, std::min(std::max(numFaces / kNumRangesWanted, 1), kMaxRange));
     }

@@ -94,13 +94,12 @@ public:
         /// That.
         Tessellation::Options const &GetTessellationOptions() const { return _tessellationOptions; }
 
-        /// \brief Sets how many bytes the points of patches and their tessellations take at a time, over
-        /// all threads, with what it takes to make them.
+        /// \brief Sets how many bytes tessellations take at a time, over all threads, with what it takes to
+        /// make them.
         ///
-        /// Half of it is for tessellations, which patches with the same levels share.  Where not all of
-        /// them fit, those patches come one behind the other, and few tessellations are made twice.
-        /// Each thread has one patch at least, whatever its size: with what it takes to make it, about
-        /// 300 bytes for each of its points.
+        /// Patches with the same levels share one.  Where not all of them fit, those patches come one
+        /// behind the other, and few tessellations are made twice.  Each thread has one patch, whatever
+        /// its size: with what it takes to make it, about 300 bytes for each of its points.
         ///
         /// Besides there is what all faces that look alike have in common, in the cache.
         Options &SetMaxMemory(std::size_t bytes) {
@@ -161,9 +160,6 @@ private:
     FarExt::Status check(Index beginFace, Index endFace) const;
     void getLevels(Index face, std::vector<int> &levels) const;
     Index takeFaces(Index beginFace, Index endFace, std::vector<Index> &faces) const;
-
-    // Half of the memory is for plans, half for the points of all threads.
-    std::size_t getHalfMemory() const { return _options.GetMaxMemory() / 2; }
 
     SurfaceFactory const &_factory;
     PatchLevels const _levels;

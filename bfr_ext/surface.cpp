@@ -3,6 +3,7 @@
 
 #include "cell/cellPattern.h"
 #include "cell/cellValues.h"
+#include "cell/patchEvaluator.h"
 #include "cell/surfaceTurns.h"
 
 #include <algorithm>
@@ -15,8 +16,8 @@ namespace {
 using internal::CellStencil;
 using internal::CellType;
 
-// The key of the stencil of one place of an edge, where levels have their own.
-constexpr int kOfPlace = -1;
+// Matrices of finer levels leave the cache.
+constexpr int kLastLevelOfMatrices = 5;
 
 // A weighted sum of points, in double precision.
 template <typename REAL, typename WEIGHT>
@@ -142,12 +143,11 @@ bool Surface<REAL>::evaluateOnBorder(internal::BasePoint const &point, REAL cons
     if (!point.IsOnBorder()) {
         return false;
     }
-    internal::CellType::Border const &border = _type->GetBorder(_turns->turns);
-    internal::BorderPlace const place = internal::FindBorderPlace(point, border);
-    internal::BorderValues const values(border[place.item], controlPoints, pointDesc.stride,
-                                        pointDesc.size);
-    values.Sum(internal::BorderPattern(values.GetType(), {place.point}),
-               [&](std::size_t) { return p; });
+    internal::BorderPlace const place = internal::FindBorderPlace(*_type, _turns->turns, point);
+    using Evaluator = internal::BorderEvaluator<REAL>;
+    Evaluator(controlPoints, pointDesc.stride, pointDesc.size)
+        .Evaluate(*place.item,
+                  Evaluator::MakeMatrix(Evaluator::GetType(*place.item), {place.point}), p, 0);
     return true;
 }
 
@@ -156,25 +156,44 @@ template <typename REAL>
 void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[3],
                              PointDescriptor const &resultDesc) const {
+    using internal::PatternOf;
+    using internal::PatternTable;
     using Pattern = internal::CellPattern<REAL>;
     if (tessellation._tree) {
         evaluateTree(tessellation, controlPoints, pointDesc, results, resultDesc);
         return;
     }
-    bool const hasDerivatives = results[1] != nullptr;
-    std::vector<int> key = tessellation._levels;
-    key.insert(key.end(), {int(sizeof(REAL)), int(hasDerivatives)});
-    Pattern const &pattern = _type->template GetPattern<Pattern>(std::move(key), [&] {
-        std::vector<internal::BasePoint> places;
-        for (Tessellation::SectorCoords const &place : tessellation._places) {
-            places.push_back(
-                internal::MakeBasePoint(GetFaceSize(), place.sector, {place.start, place.end}));
-        }
-        return Pattern(*_type, places, hasDerivatives);
-    });
-    for (int kind = 0; kind < (hasDerivatives ? 3 : 1); ++kind) {
-        pattern.Evaluate(kind, {controlPoints, pointDesc.size, pointDesc.stride}, results[kind],
-                         resultDesc.stride);
+    int const numBorderPlaces = tessellation.GetNumBoundaryCoords();
+    std::vector<int> const &levels = tessellation._levels;
+    auto const getPattern = [&](PatternOf of) -> Pattern const & {
+        return _type->GetPatterns().template Get<Pattern>(
+            PatternTable::GetKind<REAL>(of), levels.data(), levels.data() + levels.size(), [&] {
+                std::vector<internal::BasePoint> places;
+                for (Tessellation::SectorCoords const &place : tessellation._places) {
+                    places.push_back(internal::MakeBasePoint(GetFaceSize(), place.sector,
+                                                             {place.start, place.end}));
+                }
+                return of == PatternOf::Face ? Pattern(*_type, places, std::size_t(numBorderPlaces))
+                                             : Pattern(*_type, places);
+            });
+    };
+    auto const sumUp = [&](internal::PlaceMatrix<REAL> const &matrix, REAL *result) {
+        internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
+                                       nullptr, result, resultDesc.stride});
+    };
+    // Few types, and few levels, have matrices of the points of a face: others go by cells.
+    if (_type->IsInLattice() && tessellation.IsUniform() && levels[0] <= kLastLevelOfMatrices) {
+        sumUp(getPattern(PatternOf::Face).points,
+              results[0] + std::ptrdiff_t(numBorderPlaces) * resultDesc.stride);
+    } else {
+        internal::PatchEvaluator<REAL>(pointDesc.size)
+            .Evaluate(*_type, tessellation.getCellPlan(), controlPoints, pointDesc.stride,
+                      results[0], resultDesc.stride);
+    }
+    if (results[1]) {
+        Pattern const &pattern = getPattern(PatternOf::FaceDerivatives);
+        sumUp(pattern.derivatives[0], results[1]);
+        sumUp(pattern.derivatives[1], results[2]);
     }
     evaluateBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
 }
@@ -252,49 +271,57 @@ template <typename REAL>
 void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const controlPoints[],
                                    PointDescriptor const &pointDesc, REAL p[],
                                    PointDescriptor const &resultDesc) const {
-    using internal::BorderPattern;
-    using internal::BorderValues;
-    CellType::Border const &border = _type->GetBorder(_turns->turns);
-    auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
+    using internal::PatternOf;
+    using internal::PatternTable;
+    using Evaluator = internal::BorderEvaluator<REAL>;
+    using Matrix = internal::PlaceMatrix<REAL>;
+    Evaluator evaluator(controlPoints, pointDesc.stride, pointDesc.size);
+    auto const evaluate = [&](CellType::BorderItem const &item, PatternOf of, int key,
+                              auto const &makePoints, int place, std::ptrdiff_t stride) {
+        CellType const &type = Evaluator::GetType(item);
+        Matrix const &matrix = type.GetPatterns().template Get<Matrix>(
+            PatternTable::GetKind<REAL>(of), &key, &key + 1,
+            [&] { return Evaluator::MakeMatrix(type, makePoints()); });
+        evaluator.Evaluate(item, matrix, p + std::ptrdiff_t(place) * resultDesc.stride, stride);
+    };
     int const numEdges = GetFaceSize();
     for (int edge = 0; edge < numEdges; ++edge) {
         int const first = tessellation._firstEdgeCoords[std::size_t(edge)];
-        BorderValues const vertex(border[std::size_t(numEdges) + std::size_t(edge)], controlPoints,
-                                  pointDesc.stride, pointDesc.size);
-        vertex.Sum(vertex.GetType().template GetPattern<BorderPattern>(
-                       {}, [&] { return BorderPattern(vertex.GetType(), {0}); }),
-                   [&](std::size_t) { return getResult(first); });
+        evaluate(
+            _type->GetBorderItem(_turns->turns, std::size_t(numEdges) + std::size_t(edge)),
+            PatternOf::Border, 0, [] { return std::vector<double>(1, 0.0); }, first, 0);
 
         int const numPlaces = tessellation.GetNumEdgeCoords(edge);
         if (numPlaces == 0) {
             continue;
         }
-        CellType::BorderItem const &item = border[std::size_t(edge)];
+        CellType::BorderItem const &item = _type->GetBorderItem(_turns->turns, std::size_t(edge));
         auto const getPlace = [&](int i) {
             return first + (item.isReversed ? numPlaces - i : i + 1);
         };
-        BorderValues const values(item, controlPoints, pointDesc.stride, pointDesc.size);
-        std::vector<double> points;
-        for (int i = 0; i < numPlaces; ++i) {
+        auto const getPoint = [&](int i) {
             Tessellation::SectorCoords const &place =
                 tessellation._places[std::size_t(getPlace(i))];
-            points.push_back(item.isReversed ? place.start : place.end);
-        }
+            return item.isReversed ? place.start : place.end;
+        };
         if (tessellation._tree) {
             // Points of polylines are found one by one, since they have few in common.
             for (int i = 0; i < numPlaces; ++i) {
-                double const point = points[std::size_t(i)];
-                BorderPattern const &pattern = values.GetType().template GetPattern<BorderPattern>(
-                    {kOfPlace, int(point * Polyline::kLength)},
-                    [&] { return BorderPattern(values.GetType(), {point}); });
-                values.Sum(pattern, [&](std::size_t) { return getResult(getPlace(i)); });
+                evaluate(
+                    item, PatternOf::BorderPlace, int(getPoint(i) * Polyline::kLength),
+                    [&] { return std::vector<double>(1, getPoint(i)); }, getPlace(i), 0);
             }
             continue;
         }
-        BorderPattern const &pattern = values.GetType().template GetPattern<BorderPattern>(
-            {tessellation._levels[std::size_t(edge)]},
-            [&] { return BorderPattern(values.GetType(), points); });
-        values.Sum(pattern, [&](std::size_t i) { return getResult(getPlace(int(i))); });
+        auto const getPoints = [&] {
+            std::vector<double> points(static_cast<std::size_t>(numPlaces));
+            for (int i = 0; i < numPlaces; ++i) {
+                points[std::size_t(i)] = getPoint(i);
+            }
+            return points;
+        };
+        evaluate(item, PatternOf::Border, tessellation._levels[std::size_t(edge)], getPoints,
+                 getPlace(0), item.isReversed ? -resultDesc.stride : resultDesc.stride);
     }
 }
 

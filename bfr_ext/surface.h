@@ -15,9 +15,6 @@ namespace Far = OpenSubdiv::Far;
 
 namespace BfrExt {
 
-template <typename REAL>
-class PatchStream;
-
 namespace internal {
 class CellType;
 struct SurfaceTurns;
@@ -162,7 +159,8 @@ public:
     /// That holds for any threads, orders, trees and levels of the inside; not at
     /// non-manifold edges and vertices, nor for face-varying values on the two sides of a seam.
     ///
-    /// The weights are found when a type of faces is first evaluated so, and kept in the cache.  Inside
+    /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the
+    /// cache.  Inside
     /// of trees the control points are refined cell by cell instead, in double precision.
     void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
@@ -188,8 +186,6 @@ public:
 private:
     friend class SurfaceFactory;
     friend class View;
-    template <typename>
-    friend class PatchStream;
 
     internal::BasePoint findPoint(REAL const uv[2]) const;
     bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],

@@ -21,7 +21,7 @@ class CellTypes;
 ///
 /// Any number of threads and of factories may share a cache.  It grows with the types that it meets:
 /// some kilobytes for each, and those for each type of cell that evaluation goes through; and with the
-/// tessellations that are evaluated, whose weights are kept for each type of face.  Surfaces
+/// tessellations that are evaluated, whose weights are kept for types of faces or of cells.  Surfaces
 /// keep what they need of it, so that it may go before them.
 class OPENSUBDIVHEX_API SurfaceFactoryCache {
 public:

@@ -2,11 +2,13 @@
 #include "tessellation.h"
 
 #include "cell/cellMesh.h"
+#include "cell/cellPlan.h"
 
 #include "far_ext/vtr/basePolygon.h"
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include <opensubdiv/far/types.h>
 
@@ -154,6 +156,26 @@ void Tessellation::initialize(Parameterization const &parameterization, int numL
     std::for_each(_levels.begin(), _levels.end() - 1,
                   [&](int level) { edges.emplace_back(level); });
     setCells(CellMesh(CellTree(size, _levels.data(), _levels.back()), edges.data()));
+    _cellPlan = std::make_shared<LazyCellPlan>();
+}
+
+struct Tessellation::LazyCellPlan {
+    std::once_flag once;
+    std::unique_ptr<internal::CellPlan const> plan;
+};
+
+internal::CellPlan const &Tessellation::getCellPlan() const {
+    std::call_once(_cellPlan->once, [&] {
+        int const first = GetNumBoundaryCoords();
+        std::vector<internal::LeafPlaces::Place> places;
+        places.reserve(std::size_t(GetNumInteriorCoords()));
+        std::for_each(_places.begin() + first, _places.end(), [&](SectorCoords const &place) {
+            places.push_back({place.sector, {place.start, place.end}});
+        });
+        _cellPlan->plan = std::make_unique<internal::CellPlan const>(GetFaceSize(), _levels.back(),
+                                                                     places, first);
+    });
+    return *_cellPlan->plan;
 }
 
 // Returns the places of the mesh's vertices.

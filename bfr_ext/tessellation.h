@@ -12,6 +12,7 @@ namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
 class CellMesh;
+class CellPlan;
 struct PatchPlan;
 } // namespace internal
 
@@ -218,6 +219,10 @@ private:
         std::vector<CellCorner> corners; // of all places that are corners, ascending by cell
     };
 
+    // Which cells the places inside lie in, made when it is first asked for; of levels.
+    struct LazyCellPlan;
+    internal::CellPlan const &getCellPlan() const;
+
     void initialize(Parameterization const &parameterization, int numLevels, int const levels[],
                     Options const &options);
     bool setOptions(Options const &options);
@@ -239,8 +244,9 @@ private:
     int _facetSize = 3;
     int _facetStride = 3;
     int _coordStride = 2;
-    std::vector<int> _levels;            // of edges, then of the inside; none of a tree
-    std::shared_ptr<Tree> _tree;         // null of levels
+    std::vector<int> _levels;    // of edges, then of the inside; none of a tree
+    std::shared_ptr<Tree> _tree; // null of levels
+    std::shared_ptr<LazyCellPlan> _cellPlan;
     std::vector<double> _coords;         // two of each place
     std::vector<SectorCoords> _places;   // the same, exactly
     std::vector<int> _firstEdgeCoords;   // by edge, the place of its first vertex; then their end

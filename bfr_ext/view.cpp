@@ -322,7 +322,7 @@ template <typename REAL>
 Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
                         typename Surface<REAL>::PointDescriptor const &pointDesc) const {
     internal::CellType::BorderItem const &item =
-        surface._type->GetBorder(surface._turns->turns)[std::size_t(edge)];
+        surface._type->GetBorderItem(surface._turns->turns, std::size_t(edge));
     std::vector<double> points;
     for (int const point : item.points) {
         REAL const *const from = controlPoints + std::ptrdiff_t(point) * pointDesc.stride;

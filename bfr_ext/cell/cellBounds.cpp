@@ -149,7 +149,8 @@ void takeLargest(std::vector<double> const &row, std::vector<double> &largest) {
 } // namespace
 
 CellBounds const &CellBounds::Find(CellType const &type) {
-    return type.GetPattern<CellBounds>({-2}, [&] { return CellBounds(type); });
+    return type.GetPatterns().Get<CellBounds>(PatternTable::GetKind<double>(PatternOf::Bounds),
+                                              nullptr, nullptr, [&] { return CellBounds(type); });
 }
 
 CellBounds::CellBounds(CellType const &type) {

@@ -3,91 +3,66 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_PATTERN_H
 
 #include "cellStencil.h"
-#include "laneKernel.h"
-
-#include <algorithm>
-#include <type_traits>
+#include "placeKernel.h"
 
 namespace OpenSubdivHex::BfrExt::internal {
 
 /// \brief A pattern of places of a base face, as the dense matrices of their stencils.
-///
-/// Rows stand in blocks of kBlock, column by column, so that a block is summed up at once.  Points on
-/// the border are made by BorderPattern.
 template <typename REAL>
-class CellPattern {
-public:
-    static constexpr std::size_t kBlock = 192 / sizeof(REAL);
+struct CellPattern {
+    /// Of the points.
+    ///
+    /// \param numBorderPlaces  the first ones, whose points BorderEvaluator makes
+    CellPattern(CellType const &root, std::vector<BasePoint> const &places,
+                std::size_t numBorderPlaces);
+    /// Of the derivatives of all places.
+    CellPattern(CellType const &root, std::vector<BasePoint> const &places);
 
-    CellPattern(CellType const &root, std::vector<BasePoint> const &places, bool hasDerivatives);
-
-    /// A sum of \p size numbers for each place, the points being \p stride apart.
-    struct Points {
-        REAL const *points;
-        int size;
-        std::ptrdiff_t stride;
-    };
-    /// \param kind  0: the points of all places but for those on the border, which get 0; 1, 2: the
-    ///              derivatives of all
-    void Evaluate(int kind, Points const &points, REAL *results, std::ptrdiff_t resultStride) const;
-
-private:
-    std::size_t _numPlaces;
-    std::size_t _numPoints;
-    std::vector<REAL> _rows[3];
-};
-
-/// \brief The stencils of some places on what an edge of a base face becomes in a step (EdgeValues), in
-/// the direction of the edge; or that of a vertex.
-struct BorderPattern {
-    BorderPattern(CellType const &type, std::vector<double> const &points);
-
-    std::size_t numPlaces;
-    std::vector<double> weights; ///< by point of the type, and then by place
+    PlaceMatrix<REAL> points;
+    PlaceMatrix<REAL> derivatives[2];
 };
 
 /// \brief What a place on the border is summed up with: an item of the border, by edge and then by
 /// vertex, and where on an edge it is.
 struct BorderPlace {
-    std::size_t item;
+    CellType::BorderItem const *item;
     double point;
 };
-BorderPlace FindBorderPlace(BasePoint const &point, CellType::Border const &border);
+BorderPlace FindBorderPlace(CellType const &root, FarExt::internal::BaseCellTurns const &turns,
+                            BasePoint const &point);
 
-/// \brief The points of what lies on the border, of which all faces that share it form the same sums.
+/// \brief Evaluates what lies on the border of a base face, of which all faces that share it form the
+/// same sums.
 ///
-/// Those of a vertex are its own.  Those of an edge are the points of the long edge that it becomes in
-/// the first step: long edges have far fewer types than edges.
-class BorderValues {
+/// Those of a vertex are its own, and so are those of an edge in a regular neighborhood.  Those of
+/// other edges are the sums for the long edge that they become in the first step: long edges have far
+/// fewer types than edges.
+template <typename REAL>
+class BorderEvaluator {
 public:
-    /// Of an edge, or of a vertex.
-    template <typename REAL>
-    BorderValues(CellType::BorderItem const &item, REAL const *points, std::ptrdiff_t stride,
-                 int size);
+    /// \param size  of a point; they are \p stride numbers apart
+    BorderEvaluator(REAL const *points, std::ptrdiff_t stride, int size)
+        : _points(points), _stride(stride), _size(std::size_t(size)) {}
 
-    /// That of the long edge or of the vertex, which patterns are made for.
-    CellType const &GetType() const { return *_type; }
-    /// \brief Writes the points of a pattern.
-    ///
-    /// \param getResult  gives, of a place, where its first number goes
-    template <typename GET_RESULT>
-    void Sum(BorderPattern const &pattern, GET_RESULT getResult) const {
-        std::vector<double> sums(_size * pattern.numPlaces);
-        Multiply({_values.data(), _size, _values.size() / _size, pattern.weights.data(),
-                  pattern.numPlaces, pattern.numPlaces, sums.data(), pattern.numPlaces});
-        for (std::size_t place = 0; place < pattern.numPlaces; ++place) {
-            auto *const result = getResult(place);
-            for (std::size_t k = 0; k < _size; ++k) {
-                result[k] =
-                    std::remove_reference_t<decltype(*result)>(sums[k * pattern.numPlaces + place]);
-            }
-        }
+    /// That of an edge, of the long edge of it or of a vertex: the matrices are of its points.
+    static CellType const &GetType(CellType::BorderItem const &item) {
+        CellType const &type = *item.type;
+        return type.IsVertex() || type.IsInLattice() ? type : *type.GetChildren()[0].type;
     }
+    /// The stencils of some places on it, in its own direction.
+    static PlaceMatrix<REAL> MakeMatrix(CellType const &type, std::vector<double> const &points);
+
+    /// Writes the points at the places of a matrix.
+    void Evaluate(CellType::BorderItem const &item, PlaceMatrix<REAL> const &matrix, REAL *results,
+                  std::ptrdiff_t resultStride);
 
 private:
-    CellType const *_type;
-    std::size_t _size;           // of a point
-    std::vector<double> _values; // by number of a point, and then by point
+    REAL const *const _points;
+    std::ptrdiff_t const _stride;
+    std::size_t const _size;
+    // Of an edge and of its long edge, padded.
+    std::vector<REAL> _edgePoints;
+    std::vector<REAL> _longEdgePoints;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

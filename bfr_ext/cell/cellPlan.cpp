@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellPlan.h"
 
+#include <algorithm>
+
 namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
@@ -28,19 +30,12 @@ LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSt
                     HalfCell::kCorners[3]},
                    numSteps);
     }
-    auto const getGroup = [&](Place const &place) {
-        return _faceSize > 0 ? 0 : findGroup(place.coords);
-    };
-    std::stable_sort(_places.begin(), _places.end(),
-                     [&](Place const &a, Place const &b) { return getGroup(a) < getGroup(b); });
-    std::size_t row = 0;
-    for (std::size_t group = 0; group <= kNumGroups; ++group) {
-        while (row < _places.size() && getGroup(_places[row]) < group) {
-            ++row;
-        }
-        _groupFirsts[group] = row;
+    if (faceSize == 0) {
+        std::stable_sort(_places.begin(), _places.end(), [&](Place const &a, Place const &b) {
+            return findGroup(a.coords) < findGroup(b.coords);
+        });
     }
-    for (row = 0; row < _places.size(); ++row) {
+    for (std::size_t row = 0; row < _places.size(); ++row) {
         _rows[getKey(_places[row])] = row;
     }
 }
@@ -53,10 +48,10 @@ LeafPlaces::Key LeafPlaces::getKey(Place const &place) const {
     return {place.sector, place.coords[0], place.coords[1]};
 }
 
-std::size_t LeafPlaces::findGroup(Pair const &coords) {
+int LeafPlaces::findGroup(Pair const &coords) {
     double const x = coords[0];
     double const h = coords[1];
-    for (std::size_t i = 0; i < 4; ++i) {
+    for (int i = 0; i < 4; ++i) {
         if (coords == HalfCell::kCorners[i]) {
             return 5 + i;
         }
@@ -101,7 +96,7 @@ void LeafPlaces::refineHalf(int sector, std::array<Pair, 4> const &corners, int 
 
 CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, int first)
     : _faceSize(faceSize) {
-    _nodes.push_back({0, true, level, {}, nullptr, {}, 0});
+    _nodes.push_back({0, true, level, {}, nullptr, {}});
     for (std::size_t i = 0; i < places.size(); ++i) {
         LeafPlaces::Place place = places[i];
         std::size_t node = 0;
@@ -114,13 +109,12 @@ CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const
         if (!leaf.isWhole) {
             place.sector = 0;
         }
-        std::size_t const row = leaf.leaf->Find(place);
-        leaf.placesOfRows[row] = first + int(i);
-        std::size_t group = 0;
-        while (leaf.leaf->GetFirst(group + 1) <= row) {
-            ++group;
-        }
-        leaf.groups |= 1U << group;
+        leaf.rows.push_back({int(leaf.leaf->Find(place)), first + int(i)});
+    }
+    for (Node &node : _nodes) {
+        std::sort(node.rows.begin(), node.rows.end(),
+                  [](PlaceOfRow const &a, PlaceOfRow const &b) { return a.row < b.row; });
+        node.rows.shrink_to_fit();
     }
 }
 
@@ -130,7 +124,7 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step) {
             return child;
         }
     }
-    Node child = {step.child, step.isChildWhole, _nodes[node].numSteps - 1, {}, nullptr, {}, 0};
+    Node child = {step.child, step.isChildWhole, _nodes[node].numSteps - 1, {}, nullptr, {}};
     if (child.numSteps <= (child.isWhole ? kNumStepsOfWholes : kNumStepsOfHalves)) {
         int const size = child.isWhole ? _faceSize : 0;
         std::unique_ptr<LeafPlaces const> &leafPlaces = _leafPlaces[{size, child.numSteps}];
@@ -138,7 +132,6 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step) {
             leafPlaces = std::make_unique<LeafPlaces>(size, child.numSteps);
         }
         child.leaf = leafPlaces.get();
-        child.placesOfRows.assign(leafPlaces->GetSize(), -1);
     }
     _nodes[node].children.push_back(_nodes.size());
     _nodes.push_back(std::move(child));
@@ -149,7 +142,7 @@ std::size_t CellPlan::GetSize() const {
     std::size_t size = 0;
     for (Node const &node : _nodes) {
         size += sizeof(Node) + node.children.size() * sizeof(node.children[0]) +
-                node.placesOfRows.size() * sizeof(node.placesOfRows[0]);
+                node.rows.size() * sizeof(node.rows[0]);
     }
     return size;
 }

@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_PLAN_H
 
 #include "cellStencil.h"
+#include "placeKernel.h"
 
 #include <map>
 #include <memory>
@@ -11,14 +12,10 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief The places of the vertices that a cell has some steps on, in groups of which a user may want
-/// some: those inside of it, on each of its sides, and its corners.
-///
-/// A whole cell, which no other shares its sides with, has one group.
+/// \brief The places of the vertices that a cell has some steps on: those inside of it first, then those
+/// on each of its sides, and its corners, since other cells may have these.
 class LeafPlaces {
 public:
-    static constexpr std::size_t kNumGroups = 9;
-
     /// A place in a cell; of no matter in half cells: the sector.
     struct Place {
         int sector;
@@ -32,14 +29,12 @@ public:
     std::size_t GetSize() const { return _places.size(); }
     Place const &operator[](std::size_t row) const { return _places[row]; }
     std::size_t Find(Place const &place) const { return _rows.at(getKey(place)); }
-    /// The first place of a group; of kNumGroups: their end.
-    std::size_t GetFirst(std::size_t group) const { return _groupFirsts[group]; }
 
 private:
     using Key = std::tuple<int, double, double>;
 
     Key getKey(Place const &place) const;
-    static std::size_t findGroup(Pair const &coords);
+    static int findGroup(Pair const &coords);
     void add(Place const &place);
     void refineWhole(double scale, int numSteps);
     void refineHalf(int sector, std::array<Pair, 4> const &corners, int numSteps);
@@ -48,7 +43,6 @@ private:
     int const _numSteps;
     std::vector<Place> _places;
     std::map<Key, std::size_t> _rows;
-    std::size_t _groupFirsts[kNumGroups + 1];
 };
 
 /// \brief Which cells the places inside of a base face lie in: a base face is taken apart step by step
@@ -65,10 +59,9 @@ public:
         bool isWhole;
         int numSteps; ///< that are left
         std::vector<std::size_t> children;
-        /// Of leaves: the places of rows, or -1; and which groups have any, bit by bit.
+        /// Of leaves, with the rows that are of places, ascending.
         LeafPlaces const *leaf;
-        std::vector<int> placesOfRows;
-        unsigned groups;
+        std::vector<PlaceOfRow> rows;
     };
 
     /// \param level   that of the places, at most

@@ -37,6 +37,49 @@ void trim(CellPatch &cell) {
     cell.patch.vertSharpness.shrink_to_fit();
 }
 
+// How many faces of a size meet at a vertex of a lattice; 0 where there is none.
+int getLatticeValence(int faceSize) {
+    return faceSize == 3 ? 6 : faceSize == 4 ? 4 : faceSize == 6 ? 3 : 0;
+}
+
+bool isInLattice(LimitPatch const &patch) {
+    int const faceSize = patch.faceSizes[0];
+    int const valence = getLatticeValence(faceSize);
+    auto const isSame = [&](int size) { return size == faceSize; };
+    auto const isNone = [](auto const &tags) {
+        return std::all_of(tags.begin(), tags.end(), [](float tag) { return tag == 0; });
+    };
+    if (valence == 0 || !std::all_of(patch.faceSizes.begin(), patch.faceSizes.end(), isSame) ||
+        !isNone(patch.edgeSharpness) || !isNone(patch.diagonalSharpness) ||
+        !isNone(patch.vertSharpness) || !patch.nonManifoldVerts.empty() ||
+        !patch.sharpVerts.empty() || !patch.sectorCorners.empty()) {
+        return false;
+    }
+    // Vertices where the patch ends have fewer faces.
+    std::vector<int> numFaces(patch.sources.size());
+    std::vector<bool> isOuter(patch.sources.size());
+    for (std::size_t corner = 0; corner < patch.faceVerts.size(); ++corner) {
+        auto const vert = std::size_t(patch.faceVerts[corner]);
+        ++numFaces[vert];
+        if (patch.otherCorners[corner] < 0) {
+            if (patch.otherCorners[corner] != kFreeBoundary) {
+                return false;
+            }
+            std::size_t const local = corner % std::size_t(faceSize);
+            std::size_t const next =
+                local + 1 == std::size_t(faceSize) ? corner - local : corner + 1;
+            isOuter[vert] = true;
+            isOuter[std::size_t(patch.faceVerts[next])] = true;
+        }
+    }
+    for (std::size_t vert = 0; vert < numFaces.size(); ++vert) {
+        if (isOuter[vert] ? numFaces[vert] >= valence : numFaces[vert] != valence) {
+            return false;
+        }
+    }
+    return true;
+}
+
 double dot(Vector const &a, Vector const &b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -72,6 +115,10 @@ struct Projection {
 };
 
 } // namespace
+
+CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
+    : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
+      _isInLattice(isInLattice(_cell.patch)), _rules(rules) {}
 
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {
@@ -195,23 +242,30 @@ void CellType::findDerivatives(std::size_t corner, Vector (&result)[2]) const {
     }
 }
 
-CellType::Border const &CellType::GetBorder(BaseCellTurns const &turns) const {
-    std::vector<int> key = turns.turns;
-    key.insert(key.end(), turns.isReversed.begin(), turns.isReversed.end());
-    std::lock_guard<std::mutex> const lock(_borderMutex);
-    auto const found = _borders.find(key);
-    if (found != _borders.end()) {
-        return found->second;
-    }
-    Border border;
-    for (CellPatch &item : GatherBorder(_cell, turns)) {
-        bool const isReversed =
-            border.size() < turns.isReversed.size() && turns.isReversed[border.size()];
-        std::vector<int> points = item.patch.sources;
-        points.shrink_to_fit();
-        border.push_back({&_types.Find(std::move(item), _rules), std::move(points), isReversed});
-    }
-    return _borders.emplace(std::move(key), std::move(border)).first->second;
+CellType::BorderItem const &CellType::GetBorderItem(BaseCellTurns const &turns,
+                                                    std::size_t item) const {
+    std::size_t const numEdges = turns.turns.size();
+    auto const get = [&](std::size_t i, auto const &make) -> BorderItem const & {
+        int const turn = i < numEdges ? int(turns.isReversed[i]) : turns.turns[i - numEdges];
+        return _borderItems.Get<BorderItem>(int(i), &turn, &turn + 1, make);
+    };
+    return get(item, [&] {
+        // The others are asked for, too.
+        std::vector<CellPatch> patches = GatherBorder(_cell, turns);
+        std::vector<BorderItem> items;
+        for (std::size_t i = 0; i < patches.size(); ++i) {
+            std::vector<int> points = patches[i].patch.sources;
+            points.shrink_to_fit();
+            items.push_back({&_types.Find(std::move(patches[i]), _rules), std::move(points),
+                             i < numEdges && turns.isReversed[i]});
+        }
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            if (i != item) {
+                get(i, [&] { return items[i]; });
+            }
+        }
+        return items[item];
+    });
 }
 
 std::vector<CellType::Corner> const &CellType::GetCorners() const {

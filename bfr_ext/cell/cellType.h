@@ -2,11 +2,11 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_TYPE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_TYPE_H
 
+#include "patternTable.h"
 #include "stepMatrix.h"
 
 #include "far_ext/limit/cellPatch.h"
 
-#include <map>
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
@@ -46,9 +46,7 @@ public:
         std::vector<double> derivatives[2];
     };
 
-    CellType(CellTypes &types, FarExt::internal::CellPatch cell, CellRules const &rules)
-        : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
-          _rules(rules) {}
+    CellType(CellTypes &types, FarExt::internal::CellPatch cell, CellRules const &rules);
 
     FarExt::internal::CellPatch const &GetCell() const { return _cell; }
     bool IsWhole() const { return _cell.kind == FarExt::internal::CellKind::Whole; }
@@ -56,6 +54,11 @@ public:
     int GetNumCorners() const { return _cell.GetNumCorners(); }
     int GetNumPoints() const { return _numPoints; }
 
+    /// \brief Whether the patch is a piece of a regular lattice of triangles, quads or hexagons, without
+    /// a feature.
+    ///
+    /// There are few such types, which most faces and edges of many meshes are of.
+    bool IsInLattice() const { return _isInLattice; }
     /// Whether the surface has bounded curvature where the lattice is regular.
     bool HasBoundedCurvature() const {
         return _rules.schemeOptions.faceMask != FarExt::FaceMask::Average &&
@@ -80,25 +83,14 @@ public:
         std::vector<int> points;
         bool isReversed; ///< whether the edge runs against the face
     };
-    /// The edges and then the vertices of a base face, which neighbours have the same of.
-    using Border = std::vector<BorderItem>;
-    Border const &GetBorder(FarExt::internal::BaseCellTurns const &turns) const;
+    /// \brief Of a base face, which neighbours have the same of: an edge, or behind these a vertex.
+    ///
+    /// No lock is taken for what was asked for before.
+    BorderItem const &GetBorderItem(FarExt::internal::BaseCellTurns const &turns,
+                                    std::size_t item) const;
 
-    /// \brief What make(), which gives a PATTERN, made when it was first called with a key.
-    template <typename PATTERN, typename MAKE>
-    PATTERN const &GetPattern(std::vector<int> key, MAKE make) const {
-        {
-            std::lock_guard<std::mutex> const lock(_patternMutex);
-            auto const found = _patterns.find(key);
-            if (found != _patterns.end()) {
-                return *static_cast<PATTERN const *>(found->second.get());
-            }
-        }
-        auto pattern = std::make_shared<PATTERN const>(make());
-        std::lock_guard<std::mutex> const lock(_patternMutex);
-        return *static_cast<PATTERN const *>(
-            _patterns.emplace(std::move(key), std::move(pattern)).first->second.get());
-    }
+    /// What has been made of this type.
+    PatternTable &GetPatterns() const { return _patterns; }
 
 private:
     void findDifferences(int corner, int numSteps, std::vector<double> (&result)[2]) const;
@@ -107,6 +99,7 @@ private:
     CellTypes &_types;
     mutable FarExt::internal::CellPatch _cell; // of vertices, without a patch once it is not needed
     int const _numPoints;
+    bool const _isInLattice;
     CellRules const _rules;
     mutable std::once_flag _onceChildren;
     mutable std::vector<Child> _children;
@@ -115,10 +108,8 @@ private:
     mutable std::vector<FarExt::internal::LimitMask::Tangents> _tangents;
     mutable std::once_flag _onceCorners;
     mutable std::vector<Corner> _corners;
-    mutable std::mutex _borderMutex;
-    mutable std::map<std::vector<int>, Border> _borders; // by turns
-    mutable std::mutex _patternMutex;
-    mutable std::map<std::vector<int>, std::shared_ptr<void const>> _patterns;
+    mutable PatternTable _borderItems;
+    mutable PatternTable _patterns;
 };
 
 /// \brief The types that have been met.  Any number of threads may use it.

@@ -4,6 +4,7 @@
 
 #include "far_ext/limit/limitPatch.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,31 @@ public:
             forEachEntry(_shorts, row, function);
         } else {
             forEachEntry(_longs, row, function);
+        }
+    }
+
+    /// \brief Numbers of a point that Apply() computes with at once: points have a multiple of it, the
+    /// last ones being of no matter.
+    static constexpr std::size_t kPadding = 4;
+    static std::size_t GetPaddedSize(std::size_t size) {
+        return (size + kPadding - 1) / kPadding * kPadding;
+    }
+    /// Writes the points of the child from those of the parent, \p paddedSize numbers each.
+    template <typename REAL>
+    void Apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
+        std::size_t const numRows = GetNumRows();
+        for (std::size_t row = 0; row < numRows; ++row) {
+            for (std::size_t first = 0; first < paddedSize; first += kPadding, result += kPadding) {
+                REAL sums[kPadding] = {};
+                ForEachEntry(row, [&](std::size_t parentPoint, double doubleWeight) {
+                    REAL const *const point = points + parentPoint * paddedSize + first;
+                    auto const weight = REAL(doubleWeight);
+                    for (std::size_t i = 0; i < kPadding; ++i) {
+                        sums[i] += weight * point[i];
+                    }
+                });
+                std::copy(sums, sums + kPadding, result);
+            }
         }
     }
 

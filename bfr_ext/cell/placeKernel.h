@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_H
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief The stencils of places as a dense matrix.
+///
+/// Places stand in blocks of kMaxWidth, and of what is left at the end; a block has the weights of its
+/// places side by side, point by point.  Widths are those of whole registers, of any machine's.
+template <typename REAL>
+class PlaceMatrix {
+public:
+    static constexpr std::size_t kLanes = 64 / sizeof(REAL);
+    static constexpr std::size_t kMaxWidth = 3 * kLanes;
+
+    PlaceMatrix() = default;
+    PlaceMatrix(std::size_t numPlaces, std::size_t numPoints)
+        : _numPlaces(numPlaces), _numPoints(numPoints),
+          _weights((numPlaces + kLanes - 1) / kLanes * kLanes * numPoints) {}
+
+    std::size_t GetNumPlaces() const { return _numPlaces; }
+    std::size_t GetNumPoints() const { return _numPoints; }
+
+    void Set(std::size_t place, std::vector<double> const &stencil) {
+        std::size_t const begin = place / kMaxWidth * kMaxWidth;
+        std::size_t const width = GetWidth(begin);
+        REAL *weight = _weights.data() + begin * _numPoints + (place - begin);
+        for (double const value : stencil) {
+            *weight = REAL(value);
+            weight += width;
+        }
+    }
+
+    /// The width of the block that begins with place \p begin.
+    std::size_t GetWidth(std::size_t begin) const {
+        return std::min(kMaxWidth, (_numPlaces - begin + kLanes - 1) / kLanes * kLanes);
+    }
+    /// The weights of that block.
+    REAL const *GetBlock(std::size_t begin) const { return _weights.data() + begin * _numPoints; }
+
+private:
+    std::size_t _numPlaces = 0;
+    std::size_t _numPoints = 0;
+    std::vector<REAL> _weights;
+};
+
+/// Which row of a matrix is that of which place of a face.
+struct PlaceOfRow {
+    int row;
+    int place;
+};
+
+/// \brief Points, and where the weighted sums of them go that a matrix makes.
+///
+/// Each number of the result is a sum of its own, over the points in their order and without fused
+/// products: so it does not depend on what is computed beside it, nor on the machine.
+template <typename REAL>
+struct PlaceSums {
+    REAL const *points;
+    std::ptrdiff_t stride; ///< from one point to the next, in numbers
+    std::size_t size;      ///< of a point
+    int const *indices;    ///< which points the columns of the matrix have, or null: all in turn
+    REAL *results;
+    std::ptrdiff_t resultStride;
+    /// Those that are wanted, ascending by row; or null: all, each where its row says.
+    PlaceOfRow const *rows = nullptr;
+    std::size_t numRows = 0;
+};
+
+/// Forms the sums with the widest registers that the machine has.
+void SumUpPlaces(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
+/// \copydoc SumUpPlaces(PlaceMatrix<float> const &, PlaceSums<float> const &)
+void SumUpPlaces(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+
+/// @name The same with some instructions, which the machine must have
+/// @{
+void SumUpPlacesPortable(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
+void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+void SumUpPlacesAvx2(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
+void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
+void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+/// @}
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

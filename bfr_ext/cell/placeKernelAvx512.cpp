@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "placeKernelTemplate.h"
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums) {
+    sumUpPlaces<64>(matrix, sums);
+}
+
+void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums) {
+    sumUpPlaces<64>(matrix, sums);
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal
