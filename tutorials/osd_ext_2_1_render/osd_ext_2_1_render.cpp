@@ -5,13 +5,13 @@
 //     A renderer with hexagonal subdivision surfaces, on Embree's ray tracing kernels.
 //
 //     What a renderer does at load time is in the constructor of Panel: the refiner, the limit
-//     stencil
-//     table, the buffers and the triangle indices, all made once.  What it does for each frame is
-//     in
-//     Panel::Update: it evaluates the table for the frame's control positions and hands the refined
-//     triangles to the ray tracer.  The rest of this file is about options; the pictures themselves
-//     are made in tutorials/common (scene.h, renderer.h).
+//     stencil table, the buffers and the triangle indices, all made once.  What it does for each frame
+//     is in Panel::Update: it evaluates the table for the frame's control positions and hands the
+//     refined triangles to the ray tracer.  With --adaptive there is no table: for each frame the mesh
+//     is refined as far as its camera needs (cellSurface.h).  The rest of this file is about options;
+//     the pictures themselves are made in tools/render (scene.h, renderer.h).
 //
+#include "cellSurface.h"
 #include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "tools/mesh/fileError.h"
@@ -44,6 +44,8 @@ constexpr char kName[] = "osd_ext_2_1_render";
 // What may differ from one panel of a picture to the next.
 struct PanelSettings {
     int level = 4;
+    bool isAdaptive = false;
+    double pixelError = 0.5;
     FarExt::FaceMask mask = FarExt::FaceMask::Smooth;
     FarExt::FirstStep firstStep = FarExt::FirstStep::None;
     Sdc::Options::VtxBoundaryInterpolation boundary = Sdc::Options::VTX_BOUNDARY_NONE;
@@ -84,6 +86,12 @@ struct Arguments {
 void addPanelOptions(CLI::App &app, PanelSettings *settings) {
     app.add_option("-l,--level", settings->level, "Number of refinement steps")
         ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_flag("--adaptive", settings->isAdaptive,
+                 "Refine parts of the mesh as far as the camera needs them, in place of --level");
+    app.add_option("--pixel-error", settings->pixelError,
+                   "How many pixels the polygons of --adaptive may be away from the surface")
+        ->check(CLI::Range(0.001, 1000.0))
         ->capture_default_str();
     app.add_option("--mask", settings->mask, "Mask of the face points: average, cosine or smooth")
         ->transform(CLI::Transformer(
@@ -257,37 +265,35 @@ public:
         FarExt::Status status;
         _refiner = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), sdcOptions,
                                                           refinerOptions, &status);
-        FarExt::TopologyRefiner::UniformOptions refineOptions(settings.level);
-        refineOptions.fullTopologyInLastLevel = true;
-        if (!_refiner || !_refiner->RefineUniform(refineOptions, &status)) {
+        if (!_refiner) {
             throw FileError(input, status.GetMessage());
-        }
-        FarExt::TopologyLevel const &level = _refiner->GetLevel(settings.level);
-        _surface = std::make_unique<Surface>(level, settings.hasRegions);
-        if (settings.level > 0) {
-            // Points of the limit surface, with a normal for each side of a crease.
-            FarExt::LimitStencilTableFactory::Options tableOptions;
-            tableOptions.level = settings.level;
-            tableOptions.generateFurtherSides = true;
-            _table = FarExt::LimitStencilTableFactory::Create(*_refiner, tableOptions, &status);
-            if (!_table) {
-                throw FileError(input, status.GetMessage());
-            }
-            _controlBuffer.reset(Osd::CpuVertexBuffer::Create(3, mesh.GetNumVertices()));
-            for (auto *buffer : {&_pointBuffer, &_duBuffer, &_dvBuffer}) {
-                buffer->reset(Osd::CpuVertexBuffer::Create(3, _table->GetNumStencils()));
-            }
         }
         auto const [low, high] = findBounds(mesh.positions);
         _rodRadius = 0.005f * Length(high - low);
-        std::printf("level %d: %d vertices, %d triangles, made in %.0f ms\n", settings.level,
-                    level.GetNumVertices(), _surface->GetTriangles().GetNumTriangles(),
-                    getMilliseconds(start));
+        if (settings.isAdaptive) {
+            try {
+                _cells = std::make_unique<CellSurface>(*_refiner);
+            } catch (std::runtime_error const &error) {
+                throw FileError(input, error.what());
+            }
+            std::printf("adaptive: prepared in %.0f ms\n", getMilliseconds(start));
+        } else {
+            refine(mesh, input);
+            std::printf("level %d: %d vertices, %d triangles, made in %.0f ms\n", settings.level,
+                        _refiner->GetLevel(settings.level).GetNumVertices(),
+                        _surface->GetTriangles().GetNumTriangles(), getMilliseconds(start));
+        }
     }
 
-    // Makes the scene of a frame from its control positions.
-    void Update(std::vector<float> const &positions) {
-        if (_table) {
+    // Whether frames differ where the control positions do not.
+    bool DependsOnCamera() const { return _cells != nullptr; }
+
+    // Makes the scene of a frame from its control positions, for a picture of a camera.
+    void Update(std::vector<float> const &positions, Camera const &camera, int height) {
+        if (_cells) {
+            _cells->Update(positions, camera, height, _settings.pixelError);
+            std::printf("adaptive: %d polygons\n", int(_cells->GetBaseFaces().size()));
+        } else if (_table) {
             _controlBuffer->UpdateData(positions.data(), 0, _controlBuffer->GetNumVertices());
             Osd::BufferDescriptor const desc(0, 3, 3);
             Osd::CpuEvaluator::EvalStencils(_controlBuffer.get(), desc, _pointBuffer.get(), desc,
@@ -298,7 +304,8 @@ public:
         } else {
             _surface->SetPositions(positions.data());
         }
-        _scene.Build(_settings.hidesSurface ? nullptr : _surface.get(),
+        Surface const *const surface = _cells ? &_cells->GetSurface() : _surface.get();
+        _scene.Build(_settings.hidesSurface ? nullptr : surface,
                      _settings.hasCage ? findRods(positions) : std::vector<float>(), _rodRadius);
     }
 
@@ -306,6 +313,9 @@ public:
         options.hasWireframe = _settings.hasWireframe;
         options.isTinted = _settings.isTinted;
         options.hasRegions = _settings.hasRegions;
+        if (_cells) {
+            options.regions = _cells->GetBaseFaces();
+        }
         options.look = _settings.isZebra  ? SurfaceLook::Zebra
                        : _settings.isFlat ? SurfaceLook::Flat
                                           : SurfaceLook::Smooth;
@@ -313,6 +323,33 @@ public:
     }
 
 private:
+    // Refines to the level of the settings, with a table of its limit points.
+    void refine(Mesh const &mesh, std::string const &input) {
+        FarExt::Status status;
+        FarExt::TopologyRefiner::UniformOptions refineOptions(_settings.level);
+        refineOptions.fullTopologyInLastLevel = true;
+        if (!_refiner->RefineUniform(refineOptions, &status)) {
+            throw FileError(input, status.GetMessage());
+        }
+        _surface =
+            std::make_unique<Surface>(_refiner->GetLevel(_settings.level), _settings.hasRegions);
+        if (_settings.level == 0) {
+            return;
+        }
+        // Points of the limit surface, with a normal for each side of a crease.
+        FarExt::LimitStencilTableFactory::Options tableOptions;
+        tableOptions.level = _settings.level;
+        tableOptions.generateFurtherSides = true;
+        _table = FarExt::LimitStencilTableFactory::Create(*_refiner, tableOptions, &status);
+        if (!_table) {
+            throw FileError(input, status.GetMessage());
+        }
+        _controlBuffer.reset(Osd::CpuVertexBuffer::Create(3, mesh.GetNumVertices()));
+        for (auto *buffer : {&_pointBuffer, &_duBuffer, &_dvBuffer}) {
+            buffer->reset(Osd::CpuVertexBuffer::Create(3, _table->GetNumStencils()));
+        }
+    }
+
     // Both ends of each edge of the control mesh.
     std::vector<float> findRods(std::vector<float> const &positions) const {
         FarExt::TopologyLevel const &base = _refiner->GetLevel(0);
@@ -334,6 +371,7 @@ private:
     std::unique_ptr<Osd::CpuVertexBuffer> _duBuffer;
     std::unique_ptr<Osd::CpuVertexBuffer> _dvBuffer;
     std::unique_ptr<Surface> _surface;
+    std::unique_ptr<CellSurface> _cells; // in place of the surface, with --adaptive
     float _rodRadius = 0;
     Scene _scene;
 };
@@ -396,12 +434,6 @@ void run(Arguments const &arguments) {
         double renderTime = 0;
         Image picture(arguments.width, arguments.height);
         for (int i = 0; i < arguments.GetNumPanels(); ++i) {
-            if (frame == 0 || !isTurntable) {
-                auto const start = std::chrono::steady_clock::now();
-                panels[i]->Update(getPositions(frame));
-                updateTime += getMilliseconds(start);
-            }
-            auto const start = std::chrono::steady_clock::now();
             // Panels differ by a pixel where they do not divide the picture evenly.
             int const column = i % numColumns;
             int const row = i / numColumns;
@@ -409,6 +441,12 @@ void run(Arguments const &arguments) {
             int const top = row * arguments.height / numRows;
             int const right = (column + 1) * arguments.width / numColumns;
             int const bottom = (row + 1) * arguments.height / numRows;
+            auto start = std::chrono::steady_clock::now();
+            if (frame == 0 || !isTurntable || panels[i]->DependsOnCamera()) {
+                panels[i]->Update(getPositions(frame), camera, bottom - top);
+                updateTime += getMilliseconds(start);
+            }
+            start = std::chrono::steady_clock::now();
             PasteImage(panels[i]->Draw(camera, options, right - left, bottom - top), left, top,
                        &picture);
             renderTime += getMilliseconds(start);

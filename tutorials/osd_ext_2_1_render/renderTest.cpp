@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 namespace OpenSubdivHex::Tools {
 
@@ -204,6 +205,46 @@ TEST_F(Render, Animates) {
     }
 }
 
+// The cube has creases, whose normals differ from side to side.
+TEST_F(Render, AdaptiveIsAsAFineLevel) {
+    for (std::string const mesh : {"cube.obj", "ring.obj"}) {
+        std::string const options = "--size 120x90 --samples 9 --no-ground ";
+        Image const level = draw(mesh, options + "-l 4");
+        Image const adaptive = draw(mesh, options + "--adaptive --pixel-error 0.1");
+        Image const coarse = draw(mesh, options + "--adaptive --pixel-error 4");
+        auto const countOthers = [&](Image const &image) {
+            int count = 0;
+            for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+                count += std::abs(image.pixels[i] - level.pixels[i]) > 12;
+            }
+            return double(count) / double(image.pixels.size());
+        };
+        EXPECT_LT(countOthers(adaptive), 0.01) << mesh;
+        if (mesh != "cube.obj") { // which is flat
+            EXPECT_GT(countOthers(coarse), 2 * countOthers(adaptive));
+        }
+    }
+    EXPECT_NE(draw("ring.obj", "--size 60x45 --adaptive --flat --pixel-error 2").pixels,
+              draw("ring.obj", "--size 60x45 --adaptive --pixel-error 2").pixels);
+    EXPECT_NE(draw("cube.obj", "--size 60x45 --adaptive --regions").pixels,
+              draw("cube.obj", "--size 60x45 --adaptive").pixels);
+}
+
+TEST_F(Render, AdaptiveFollowsTheCamera) {
+    std::string const input = std::string("\"" MESHES_DIR "/ring.obj\" ");
+    ASSERT_EQ(run(input + "--size 60x45 --samples 1 --adaptive --frames 2 --camera 30,20,3 -o \"" +
+                  getPath("out.png") + "\""),
+              0);
+    std::istringstream lines(getContent(getPath("stdout")));
+    std::set<std::string> counts;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.find(" polygons") != std::string::npos) {
+            counts.insert(line);
+        }
+    }
+    EXPECT_EQ(counts.size(), 2u);
+}
+
 TEST_F(Render, TheSizeOfTheMeshDoesNotMatter) {
     std::string const options = "-l 2 --size 60x45 --samples 4 --cage";
     Mesh const mesh = ReadMesh(MESHES_DIR "/ring.obj");
@@ -238,6 +279,8 @@ TEST_F(Render, RefusesBadInput) {
     std::string const unwritable = getPath("none/out.png");
     EXPECT_EQ(run(mesh + "-l 0 --size 8x8 -o \"" + unwritable + "\""), 1);
     EXPECT_NE(getContent(getPath("stderr")).find(unwritable), std::string::npos);
+    EXPECT_EQ(run(std::string("\"" MESHES_DIR "/sail.obj\" --adaptive -o \"") + output + "\""), 1);
+    EXPECT_NE(getContent(getPath("stderr")).find("VTX_BOUNDARY_NONE"), std::string::npos);
     std::filesystem::create_symlink("loop.png", getPath("loop.png"));
     EXPECT_EQ(run(mesh + "-l 0 --size 8x8 -o \"" + getPath("loop.png") + "\""), 1);
     EXPECT_NE(getContent(getPath("stderr")).find("loop.png: cannot be written"), std::string::npos);
@@ -252,6 +295,7 @@ TEST_F(Render, RefusesBadUsage) {
     expectBadUsage("a.obj -o a.png --mask round", "round");
     expectBadUsage("a.obj -o a.png --boundary round", "round");
     expectBadUsage("a.obj -o a.png --level -1", "level");
+    expectBadUsage("a.obj -o a.png --adaptive --pixel-error 0", "pixel-error");
     expectBadUsage("a.obj -o a.png --zebra --flat", "zebra");
     expectBadUsage("a.obj -o a.png --samples 0", "samples");
     expectBadUsage("a.obj -o a.png --camera 1", "camera");

@@ -4,12 +4,14 @@
 //
 //     A path tracer that makes of the surface what its rays come near to, when they do, and forgets it.
 //
-//     What makes a picture is a stream of patches whose sink is Embree (tools/render/patchScene.h): at
+//     What makes a picture is a stream of patches whose sink is Embree (patchScene.h): at
 //     first there is a box for each base face.  When a ray hits a box, the patch in it is made, with a
 //     level for each edge that follows from its size in the picture; and patches that no ray has needed
 //     for long are forgotten when they would take more memory than they may.  Since a patch is the same
 //     bits whenever it is made, the picture does not depend on that.
 //
+#include "patchScene.h"
+
 #include "bfr_ext/patchStream.h"
 #include "far_ext/executor.h"
 #include "far_ext/topologyRefinerFactory.h"
@@ -18,7 +20,6 @@
 #include "tools/mesh/program.h"
 #include "tools/mesh/topologyDescriptor.h"
 #include "tools/render/camera.h"
-#include "tools/render/patchScene.h"
 #include "tools/render/pngFile.h"
 #include "tools/render/unitSize.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef OPENSUBDIVHEX_TOOLS_PATCH_SCENE_H
-#define OPENSUBDIVHEX_TOOLS_PATCH_SCENE_H
+#ifndef OPENSUBDIVHEX_TUTORIALS_PATCH_SCENE_H
+#define OPENSUBDIVHEX_TUTORIALS_PATCH_SCENE_H
 
 #include "bfr_ext/patchStream.h"
-#include "vec3.h"
+#include "tools/render/vec3.h"
 
 #include <cstddef>
 #include <cstdint>
