@@ -4,16 +4,20 @@
 #include "parallel.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <tuple>
 #include <type_traits>
+
+#if defined(__SSE2__) || defined(_M_X64)
+#include <emmintrin.h>
+#endif
 
 namespace OpenSubdivHex::FarExt::internal {
 
 namespace {
 
 using Far::Index;
+using Far::LocalIndex;
 
 std::string str(std::int64_t number) { return std::to_string(number); }
 
@@ -33,43 +37,91 @@ struct NewSide {
     Index corner;
 };
 
-// The place of the one of SIZE keys that equals another key, SIZE or more if there are several, -1 if
-// there is none.  Without branches, which would be guessed wrongly on meshes that are not regular.
+// Keys that are compared with another all at once.
 template <int SIZE>
-int findOne(Index const *keys, Index key) {
-    constexpr int kCount = 1 << 8; // a sum of these tells how many there are, and the place of one
-    static_assert(SIZE < kCount);
-    constexpr auto kPlaces = [] {
-        std::array<int, SIZE> places{};
-        for (int i = 0; i < SIZE; ++i) {
-            places[i] = kCount + i;
+class Keys {
+public:
+    explicit Keys(Index const *keys) {
+#if defined(__SSE2__) || defined(_M_X64)
+        // One by one, since what was just written cannot be read four at a time at once.
+        for (int i = 0; i < kNumFours; ++i, keys += 4) {
+            _fours[i] = _mm_set_epi32(keys[3], keys[2], keys[1], keys[0]);
         }
-        return places;
-    }();
-    int sum = 0;
-    for (int i = 0; i < SIZE; ++i) {
-        sum += keys[i] == key ? kPlaces[i] : 0;
+#else
+        std::copy_n(keys, kCapacity, _keys);
+#endif
     }
-    return std::max(-1, sum - kCount);
+
+    static constexpr int kCapacity = (SIZE + 3) / 4 * 4; // all of them are read
+
+    // A bit for each key that equals another one.
+    unsigned FindEqual(Index key) const {
+#if defined(__SSE2__) || defined(_M_X64)
+        __m128i const wanted = _mm_set1_epi32(key);
+        auto const isEqual = [&](int i) { return _mm_cmpeq_epi32(_fours[i], wanted); };
+        if constexpr (kNumFours == 1) {
+            return unsigned(_mm_movemask_ps(_mm_castsi128_ps(isEqual(0))));
+        } else {
+            unsigned result = 0;
+            for (int i = 0; i < kNumFours; i += 2) {
+                __m128i const eight = _mm_packs_epi32(isEqual(i), isEqual(i + 1));
+                result |= unsigned(_mm_movemask_epi8(_mm_packs_epi16(eight, _mm_setzero_si128())))
+                          << 4 * i;
+            }
+            return result;
+        }
+#else
+        unsigned result = 0;
+        for (int i = 0; i < kCapacity; ++i) {
+            result |= unsigned(_keys[i] == key) << i;
+        }
+        return result;
+#endif
+    }
+
+private:
+#if defined(__SSE2__) || defined(_M_X64)
+    static constexpr int kNumFours = kCapacity / 4;
+    static_assert(kNumFours == 1 || kNumFours % 2 == 0);
+    __m128i _fours[kNumFours];
+#else
+    Index _keys[kCapacity];
+#endif
+};
+
+// The place of the lowest bit of those that are set; there is one.
+inline int findLowestBit(unsigned bits) {
+#if defined(__GNUC__)
+    return __builtin_ctz(bits);
+#else
+    int result = 0;
+    while ((bits >> result & 1) == 0) {
+        ++result;
+    }
+    return result;
+#endif
 }
 
-// Finds the other sides of the edges that begin at corners.
+// Finds the other sides of the edges that begin at corners, and the order of the faces of vertices.
 //
 // Every vertex has all that there is to know of its edges at hand: each of its faces leaves it along
 // one and comes back along another.
 template <typename PLACES>
 class MateFinder {
 public:
-    MateFinder(PLACES places, Level const &level, Corners &corners)
+    MateFinder(PLACES places, Level &level, Corners &corners)
         : _places(places), _level(level), _faceVerts(level.faceVerts.data()), _corners(corners),
-          _mates(corners.mates.data()) {}
+          _ofVerts(corners.ofVerts.data()), _mates(corners.mates.data()),
+          _vertFirstFace(level.vertFirstFace.data()), _vertFaces(level.vertFaces.data()),
+          _vertFaceLocals(level.vertFaceLocals.data()) {}
 
     // All of them; gives the sides of edges that come apart.
     std::vector<NewSide> Find() {
-        std::vector<Index> const others = ParallelSelect(
-            _level.numVertices, [this](Index vert) { return !findMates(vert); },
+        _corners.oddVerts = ParallelSelect(
+            _level.numVertices,
+            [finder = MateFinder(*this)](Index vert) { return !finder.findMates(vert); },
             kShortParallelRange);
-        for (Index vert : others) {
+        for (Index vert : _corners.oddVerts) {
             findMatesOfAny(vert);
         }
         return std::move(_apartSides);
@@ -78,88 +130,118 @@ public:
 private:
     bool findMates(Index vert) const;
     template <int NUM_FACES>
-    bool findMatesOf(Index const *corners) const {
-        return findMatesOfFew<NUM_FACES>(corners, std::integral_constant<int, NUM_FACES>());
+    bool findMatesOf(Index first) const {
+        return findMatesOfFew<NUM_FACES>(first, std::integral_constant<int, NUM_FACES>());
     }
     template <int SIZE, typename NUM_FACES>
-    bool findMatesOfFew(Index const *corners, NUM_FACES numFaces) const;
+    bool findMatesOfFew(Index first, NUM_FACES numFaces) const;
     void findMatesOfAny(Index vert);
     void findMatesOfEdge(HalfEdge const *begin, HalfEdge const *end, Index vert);
+    void setFace(Index place, Index corner) const {
+        Index const face = _places.GetFace(corner);
+        _vertFaces[place] = face;
+        _vertFaceLocals[place] = _places.GetLocal(face, corner);
+    }
 
     PLACES const _places;
     Level const &_level;
     Index const *const _faceVerts;
     Corners &_corners;
+    Index const *const _ofVerts;
     Index *const _mates;
+    Index const *const _vertFirstFace;
+    Index *const _vertFaces;
+    LocalIndex *const _vertFaceLocals;
     std::vector<NewSide> _apartSides;
     std::vector<HalfEdge> _halfEdges; // of the vertex that is looked at
 };
 
-// Finds the mates of the corners of a vertex; false where an edge comes apart, or there are many.
-// Usual numbers of faces are constants to the compiler, which then keeps all in registers (benchmark
-// base level/triangle is 1.1 times as fast).
+// Finds the mates of the corners of a vertex, and the order of its faces; false where an edge comes
+// apart, or there are several fans, or many faces.  Usual numbers of faces are constants to the
+// compiler, which then keeps all in registers (benchmark base level/triangle is 1.1 times as fast).
 template <typename PLACES>
-bool MateFinder<PLACES>::findMates(Index vert) const {
-    Index const *const corners = _corners.ofVerts.data() + _level.vertFirstFace[vert];
-    int const numFaces = _level.GetNumVertexFaces(vert);
+inline bool MateFinder<PLACES>::findMates(Index vert) const {
+    Index const first = _vertFirstFace[vert];
+    int const numFaces = _vertFirstFace[vert + 1] - first;
     switch (numFaces) {
+    case 0:
+        return true;
     case 3:
-        return findMatesOf<3>(corners);
+        return findMatesOf<3>(first);
     case 4:
-        return findMatesOf<4>(corners);
+        return findMatesOf<4>(first);
     case 5:
-        return findMatesOf<5>(corners);
+        return findMatesOf<5>(first);
     case 6:
-        return findMatesOf<6>(corners);
+        return findMatesOf<6>(first);
     case 7:
-        return findMatesOf<7>(corners);
+        return findMatesOf<7>(first);
     case 8:
-        return findMatesOf<8>(corners);
+        return findMatesOf<8>(first);
     default:
-        return numFaces <= 16 && findMatesOfFew<16>(corners, numFaces);
+        return numFaces <= 16 && findMatesOfFew<16>(first, numFaces);
     }
 }
 
 template <typename PLACES>
 template <int SIZE, typename NUM_FACES>
-bool MateFinder<PLACES>::findMatesOfFew(Index const *corners, NUM_FACES numFaces) const {
+inline bool MateFinder<PLACES>::findMatesOfFew(Index first, NUM_FACES numFaces) const {
     // The vertices to which the faces leave, and from which they come back; no vertex behind these.
+    Index corners[SIZE];
     Index outs[SIZE];
-    Index ins[SIZE];
-    Index prevs[SIZE]; // corners
-    for (int i = 0; i < SIZE; ++i) {
+    Index ins[Keys<SIZE>::kCapacity];
+    Index prevs[SIZE + 1]; // corners
+    unsigned odd = 0;
+    Index lastFace = Far::INDEX_INVALID;
+    for (int i = 0; i < numFaces; ++i) {
+        Index const corner = _ofVerts[first + i];
+        Index const face = _places.GetFace(corner);
+        corners[i] = corner;
+        prevs[i] = _places.GetPrev(face, corner);
+        outs[i] = _faceVerts[_places.GetNext(face, corner)];
+        ins[i] = _faceVerts[prevs[i]];
+        odd |= unsigned(face == lastFace); // has the vertex twice
+        lastFace = face;
+    }
+    for (int i = numFaces; i < Keys<SIZE>::kCapacity; ++i) {
         ins[i] = Far::INDEX_INVALID;
     }
-    for (int i = 0; i < numFaces; ++i) {
-        Index const face = _places.GetFace(corners[i]);
-        prevs[i] = _places.GetPrev(face, corners[i]);
-        outs[i] = _faceVerts[_places.GetNext(face, corners[i])];
-        ins[i] = _faceVerts[prevs[i]];
-    }
+    prevs[SIZE] = kNoMate;
+    // The face before each around the vertex, which comes back where that leaves; SIZE for none.
+    Keys<SIZE> const keys(ins);
+    unsigned before[SIZE];
     unsigned matched = 0; // of those that come back
-    int numMatched = 0;
-    bool isOdd = false;
     for (int i = 0; i < numFaces; ++i) {
-        int const place = findOne<SIZE>(ins, outs[i]);
-        isOdd |= place >= SIZE;
-        if (place < 0 || place >= SIZE) {
-            _mates[corners[i]] = kNoMate;
-            continue;
-        }
-        _mates[corners[i]] = prevs[place];
-        isOdd |= _places.GetFace(prevs[place]) == _places.GetFace(corners[i]) ||
-                 (matched >> place & 1) != 0;
-        matched |= 1u << place;
-        ++numMatched;
+        unsigned const matches = keys.FindEqual(outs[i]);
+        odd |= (matches & (matches - 1)) | (matches & (matched | 1u << i));
+        matched |= matches;
+        before[i] = findLowestBit(matches | 1u << SIZE);
+        _mates[corners[i]] = prevs[before[i]];
     }
+    unsigned const all = (1u << numFaces) - 1;
+    unsigned const last = all & ~matched;
     // Where two faces leave along edges without others, these may be one edge; so where they come
     // back.
-    return !isOdd && numMatched >= numFaces - 1;
+    if ((odd | (last & (last - 1))) != 0) {
+        return false;
+    }
+    // From the last face back to the first.
+    unsigned face = last == 0 ? before[0] : findLowestBit(last);
+    unsigned ordered = 0;
+    for (int i = numFaces; i-- > 0 && face != SIZE;) {
+        setFace(first + i, corners[face]);
+        ordered |= 1u << face;
+        face = before[face];
+    }
+    return ordered == all;
 }
 
 template <typename PLACES>
 void MateFinder<PLACES>::findMatesOfAny(Index vert) {
     _halfEdges.clear();
+    for (Index i = _vertFirstFace[vert]; i < _vertFirstFace[vert + 1]; ++i) {
+        setFace(i, _ofVerts[i]);
+    }
     for (Index i = _level.vertFirstFace[vert]; i < _level.vertFirstFace[vert + 1]; ++i) {
         Index const corner = _corners.ofVerts[i];
         Index const face = _places.GetFace(corner);
@@ -380,7 +462,6 @@ Status numberEdges(PLACES const &places, BoundaryKind boundary,
 } // namespace
 
 Status BuildLevelOfFaces(BoundaryKind boundary, Level &level, std::vector<Index> &fanned) {
-    FindFaceSizes(level);
     Corners corners;
     FindCorners(level, corners);
     Status status = WithPlaces(level, corners, [&](auto const &places) {
@@ -388,7 +469,7 @@ Status BuildLevelOfFaces(BoundaryKind boundary, Level &level, std::vector<Index>
         return numberEdges(places, boundary, apartSides, corners, level);
     });
     if (status.IsOk()) {
-        fanned = FinishBaseLevel(corners, level);
+        fanned = FinishOrderedLevel(corners, level);
     }
     return status;
 }

@@ -41,7 +41,8 @@ public:
     VertexBuilder(PLACES places, Corners const &corners, Level &level)
         : _places(places), _level(level), _ofVerts(corners.ofVerts.data()),
           _mates(corners.mates.data()), _faceEdges(level.faceEdges.data()),
-          _edgeVerts(level.edgeVerts.data()), _vertFaces(level.vertFaces.data()),
+          _edgeVerts(level.edgeVerts.data()), _vertFirstFace(level.vertFirstFace.data()),
+          _vertFirstEdge(level.vertFirstEdge.data()), _vertFaces(level.vertFaces.data()),
           _vertFaceLocals(level.vertFaceLocals.data()), _vertEdges(level.vertEdges.data()),
           _vertEdgeLocals(level.vertEdgeLocals.data()) {}
 
@@ -54,6 +55,23 @@ public:
         }
         return fanned;
     }
+    // The same where faces are in order but at some vertices.
+    std::vector<Index> BuildOrdered(std::vector<Index> const &oddVerts) {
+        ParallelForRange(_level.numVertices, [this](Index begin, Index end) {
+            VertexBuilder const builder = *this;
+            for (Index vert = begin; vert < end; ++vert) {
+                builder.addEdges(vert);
+            }
+        });
+        std::vector<Index> fanned;
+        for (Index vert : oddVerts) {
+            if (!fillFan(vert)) {
+                fillFans(vert);
+                fanned.push_back(vert);
+            }
+        }
+        return fanned;
+    }
 
 private:
     /// Where the next face and the next edge of a vertex go.
@@ -62,14 +80,13 @@ private:
         Index edge;
     };
 
+    void addEdges(Index vert) const;
     bool fillFan(Index vert) const;
     void fillFans(Index vert) const;
     Index findStart(Index corner) const;
     Index addFaces(Index vert, Index start, Position &position) const;
 
-    Position getPosition(Index vert) const {
-        return {_level.vertFirstFace[vert], _level.vertFirstEdge[vert]};
-    }
+    Position getPosition(Index vert) const { return {_vertFirstFace[vert], _vertFirstEdge[vert]}; }
 
     PLACES const _places;
     Level const &_level;
@@ -78,6 +95,8 @@ private:
     Index const *const _mates;
     Index const *const _faceEdges;
     IndexPair const *const _edgeVerts;
+    Index const *const _vertFirstFace;
+    Index const *const _vertFirstEdge;
     Index *const _vertFaces;
     LocalIndex *const _vertFaceLocals;
     Index *const _vertEdges;
@@ -95,7 +114,7 @@ Index VertexBuilder<PLACES>::addFaces(Index vert, Index start, Position &positio
         Index const face = _places.GetFace(corner);
         Index const edge = _faceEdges[corner];
         _vertFaces[next.face] = face;
-        _vertFaceLocals[next.face++] = LocalIndex(corner - _places.GetFirst(face));
+        _vertFaceLocals[next.face++] = _places.GetLocal(face, corner);
         _vertEdges[next.edge] = edge;
         _vertEdgeLocals[next.edge++] = LocalIndex(_edgeVerts[edge][0] != vert);
         Index const prev = _places.GetPrev(face, corner);
@@ -129,16 +148,33 @@ Index VertexBuilder<PLACES>::findStart(Index corner) const {
     }
 }
 
+// Adds the edges of a fan whose faces are in order.
+template <typename PLACES>
+inline void VertexBuilder<PLACES>::addEdges(Index vert) const {
+    Index const end = _vertFirstFace[vert + 1];
+    Index next = _vertFirstEdge[vert];
+    Index corner = Far::INDEX_INVALID;
+    for (Index i = _vertFirstFace[vert]; i < end; ++i) {
+        corner = _places.GetFirst(_vertFaces[i]) + _vertFaceLocals[i];
+        _vertEdges[next] = _faceEdges[corner];
+        _vertEdgeLocals[next++] = LocalIndex(_mates[corner] < corner);
+    }
+    if (next < _vertFirstEdge[vert + 1]) {
+        _vertEdges[next] = _faceEdges[_places.GetPrev(_vertFaces[end - 1], corner)];
+        _vertEdgeLocals[next] = 1;
+    }
+}
+
 // Whether all faces of a vertex are one fan.
 template <typename PLACES>
 bool VertexBuilder<PLACES>::fillFan(Index vert) const {
-    Index const begin = _level.vertFirstFace[vert];
-    Index const end = _level.vertFirstFace[vert + 1];
+    Index const begin = _vertFirstFace[vert];
+    Index const end = _vertFirstFace[vert + 1];
     if (begin == end) {
         return true;
     }
     Index start = _ofVerts[begin];
-    bool const isOpen = _level.vertFirstEdge[vert + 1] - _level.vertFirstEdge[vert] > end - begin;
+    bool const isOpen = _vertFirstEdge[vert + 1] - _vertFirstEdge[vert] > end - begin;
     if (isOpen) {
         start = findStart(start);
     }
@@ -240,18 +276,31 @@ std::vector<Index> FinishBaseLevel(Corners const &corners, Level &level) {
     });
 }
 
+std::vector<Index> FinishOrderedLevel(Corners const &corners, Level &level) {
+    BeginVertices(level);
+    return WithPlaces(level, corners, [&](auto const &places) {
+        return VertexBuilder(places, corners, level).BuildOrdered(corners.oddVerts);
+    });
+}
+
 void FindFaceSizes(Level &level) {
     std::vector<std::vector<Index>> sizesOfRanges(
         std::size_t(GetNumParallelRanges(level.numFaces)));
     ParallelForRange(level.numFaces, [&](Index begin, Index end) {
         std::vector<Index> &sizes = sizesOfRanges[std::size_t(begin / kParallelRange)];
-        Index last = 0;
+        Index const *const first = level.faceFirstCorner.data();
+        Index const firstSize = level.GetFaceSize(begin);
+        sizes.push_back(firstSize);
+        Index others = 0; // bits, so that compilers look at several faces at a time
         for (Index face = begin; face < end; ++face) {
+            others |= (first[face + 1] - first[face]) ^ firstSize;
+        }
+        for (Index face = begin; face < end && others != 0; ++face) {
             Index const size = level.GetFaceSize(face);
-            if (size != last && std::find(sizes.begin(), sizes.end(), size) == sizes.end()) {
+            if (size != sizes.back() &&
+                std::find(sizes.begin(), sizes.end(), size) == sizes.end()) {
                 sizes.push_back(size);
             }
-            last = size;
         }
     });
     level.faceSizes.clear();

@@ -26,8 +26,12 @@ std::vector<Far::Index> BuildBaseLevel(OpenSubdiv::Vtr::ConstArray<EdgeSides> ed
 /// with boundaryEdges, and from \p corners.
 std::vector<Far::Index> FinishBaseLevel(Corners const &corners, Level &level);
 
-/// \brief What comes before it: makes room for the relations of vertices, with vertFirstEdge, where
-/// those of faces and edges, with boundaryEdges, and vertFirstFace are there.
+/// The same where vertFaces and vertFaceLocals are there, in order but at corners.oddVerts, and the first
+/// side of each edge is at the lower corner.
+std::vector<Far::Index> FinishOrderedLevel(Corners const &corners, Level &level);
+
+/// \brief What comes before it: finds vertFirstEdge, where the relations of faces and edges, with
+/// boundaryEdges, and vertFirstFace are there, and room for those of vertices.
 void BeginVertices(Level &level);
 
 /// \brief Finds the sizes of the faces of \p level that occur.

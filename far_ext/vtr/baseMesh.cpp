@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <map>
+#include <type_traits>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -48,33 +49,65 @@ void makeTags(Buffer<T> &tags, std::size_t size, T value) {
     }
 }
 
-// Whether the vertices of a face may be out of range, or repeated: no branches, so that compilers
-// compare several at a time.
+// Not 0 if an index may be below 0, or \p count or more.  Compilers look at several at a time.
+unsigned findOutside(Index const *begin, Index const *end, Index count) {
+    unsigned signs = 0;
+    for (Index const *index = begin; index < end; ++index) {
+        signs |= unsigned(*index) | (unsigned(count - 1) - unsigned(*index));
+    }
+    return signs >> 31;
+}
+
+// Not 0 if a face has a vertex twice: no branches.
 template <int SIZE>
-bool isSuspect(Index const *verts, Index numVertices) {
-    bool result = false;
+unsigned findRepeated(Index const *verts) {
+    unsigned result = 0;
     for (int i = 0; i < SIZE; ++i) {
-        result |= unsigned(verts[i]) >= unsigned(numVertices);
         for (int k = 0; k < i; ++k) {
-            result |= verts[k] == verts[i];
+            result |= unsigned(verts[k] == verts[i]);
         }
     }
     return result;
 }
 
-bool isSuspect(Index const *verts, int size, Index numVertices) {
-    switch (size) {
-    case 3:
-        return isSuspect<3>(verts, numVertices);
-    case 4:
-        return isSuspect<4>(verts, numVertices);
-    case 5:
-        return isSuspect<5>(verts, numVertices);
-    case 6:
-        return isSuspect<6>(verts, numVertices);
-    default:
-        return true;
+// The same for faces that follow one another; not 0 for a face of many vertices, too.
+unsigned findRepeated(Level const &level, Index begin, Index end) {
+    Index const *verts = level.faceVerts.data() + level.faceFirstCorner[begin];
+    unsigned result = 0;
+    auto const findInAll = [&](auto size) {
+        for (Index face = begin; face < end; ++face, verts += size) {
+            result |= findRepeated<size>(verts);
+        }
+        return result;
+    };
+    int const size = level.faceSizes.size() == 1 ? level.faceSizes[0] : 0;
+    if (size == 3) {
+        return findInAll(std::integral_constant<int, 3>());
     }
+    if (size == 4) {
+        return findInAll(std::integral_constant<int, 4>());
+    }
+    for (Index face = begin; face < end; ++face) {
+        int const faceSize = level.GetFaceSize(face);
+        switch (faceSize) {
+        case 3:
+            result |= findRepeated<3>(verts);
+            break;
+        case 4:
+            result |= findRepeated<4>(verts);
+            break;
+        case 5:
+            result |= findRepeated<5>(verts);
+            break;
+        case 6:
+            result |= findRepeated<6>(verts);
+            break;
+        default:
+            return 1;
+        }
+        verts += faceSize;
+    }
+    return result;
 }
 
 } // namespace
@@ -90,7 +123,7 @@ Status BaseMesh::CompleteSizes() {
     }
     Index *const sizes = _level->faceFirstCorner.data() + 1;
     std::vector<Index> const wrong = ParallelSelect(_level->numFaces, [&](Index face) {
-        return sizes[face] < 3 || sizes[face] > kMaxFaceSize;
+        return unsigned(sizes[face]) - 3 > unsigned(kMaxFaceSize - 3);
     });
     if (!wrong.empty()) {
         Index const face = wrong[0];
@@ -122,21 +155,32 @@ Status BaseMesh::CompleteSizes() {
             sizes[face] = corner;
         }
     });
+    FindFaceSizes(*_level);
     _level->faceVerts.Resize(std::size_t(_level->numCorners));
     return Status();
 }
 
 Status BaseMesh::CheckFaces() {
     Level const &level = *_level;
+    // Pieces that are small, since all faces of one with something odd are looked at once more.
+    constexpr Index kPiece = 64;
+    Index const numPieces = GetNumParallelRanges(level.numFaces, kPiece);
+    auto const getEnd = [&](Index piece) {
+        return std::min(level.numFaces - kPiece * piece, kPiece) + kPiece * piece;
+    };
     std::vector<Index> const suspects = ParallelSelect(
-        level.numFaces,
-        [&](Index face) {
-            return isSuspect(level.faceVerts.data() + level.faceFirstCorner[face],
-                             level.GetFaceSize(face), level.numVertices);
+        numPieces,
+        [&](Index piece) {
+            Index const begin = kPiece * piece;
+            Index const end = getEnd(piece);
+            Index const *const verts = level.faceVerts.data();
+            return (findOutside(verts + level.faceFirstCorner[begin],
+                                verts + level.faceFirstCorner[end], level.numVertices) |
+                    findRepeated(level, begin, end)) != 0;
         },
-        kShortParallelRange);
+        kShortParallelRange / kPiece);
     std::vector<Index> sorted;
-    for (Index face : suspects) {
+    auto const inspect = [&](Index face) {
         Far::ConstIndexArray const verts = level.GetFaceVertices(face);
         for (Index vert : verts) {
             if (vert < 0 || vert >= level.numVertices) {
@@ -150,6 +194,14 @@ Status BaseMesh::CheckFaces() {
         for (std::size_t i = 1; i < sorted.size(); ++i) {
             if (sorted[i] == sorted[i - 1]) {
                 _repeatedVerts.push_back(sorted[i]);
+            }
+        }
+        return Status();
+    };
+    for (Index piece : suspects) {
+        for (Index face = kPiece * piece; face < getEnd(piece); ++face) {
+            if (Status status = inspect(face); !status.IsOk()) {
+                return status;
             }
         }
     }

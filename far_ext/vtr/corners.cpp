@@ -20,7 +20,7 @@ public:
     CornerSorter(Level &level, Buffer<Index> &ofVerts) : _level(level), _ofVerts(ofVerts) {}
 
     void Sort() {
-        _level.vertFirstFace.Resize(std::size_t(_level.numVertices) + 1);
+        ResizeCorners(_level);
         _ofVerts.Resize(_level.numCorners);
         makePieces();
         forEachPiece([this](Piece &piece) { count(piece); });
@@ -167,12 +167,26 @@ void CornerSorter::place(Piece &piece) {
 
 } // namespace
 
+void ResizeCorners(Level &level) {
+    auto const numCorners = std::size_t(level.numCorners);
+    PlaceArrays(level.cornerMemory, [&](auto const &place) {
+        place(level.vertFirstFace, std::size_t(level.numVertices) + 1);
+        place(level.vertFaces, numCorners);
+        place(level.vertFaceLocals, numCorners);
+        place(level.faceEdges, numCorners);
+    });
+}
+
 void ResizeEdges(std::size_t numEdges, Level &level) {
     level.numEdges = Index(numEdges);
-    level.edgeVerts.Resize(numEdges);
-    level.edgeFaces.Resize(numEdges);
-    level.edgeFaceLocals.Resize(numEdges);
-    level.faceEdges.Resize(std::size_t(level.numCorners));
+    PlaceArrays(level.edgeMemory, [&](auto const &place) {
+        place(level.edgeVerts, numEdges);
+        place(level.edgeFaces, numEdges);
+        place(level.edgeFaceLocals, numEdges);
+        place(level.vertFirstEdge, std::size_t(level.numVertices) + 1);
+        place(level.vertEdges, 2 * numEdges);
+        place(level.vertEdgeLocals, 2 * numEdges);
+    });
 }
 
 void FindCorners(Level &level, Corners &corners) {

@@ -25,6 +25,8 @@ struct Corners {
     Buffer<Far::Index> faces;   ///< by corner; empty where all faces have one size, 3 or 4
     Buffer<Far::Index> ofVerts; ///< those of each vertex, ascending, at the places of vertFirstFace
     Buffer<Far::Index> mates;   ///< by corner, the corner where the edge's other side begins
+    /// Vertices whose faces may have any order, where those of all others have theirs; ascending.
+    std::vector<Far::Index> oddVerts;
 };
 
 /// \brief Where corners are in their faces, all of which have \p SIZE corners, or any number if that
@@ -45,6 +47,9 @@ public:
         }
     }
     Index GetFirst(Index face) const { return SIZE > 0 ? face * SIZE : _firstCorner[face]; }
+    Far::LocalIndex GetLocal(Index face, Index corner) const {
+        return Far::LocalIndex(SIZE == 4 ? corner & 3 : corner - GetFirst(face));
+    }
     /// The corners before and behind one of a face.
     Index GetPrev(Index face, Index corner) const {
         if constexpr (SIZE == 4) {
@@ -95,7 +100,7 @@ public:
     /// place of that.
     void Write(Index edge, Index corner, Index other) const {
         Index const face = _places.GetFace(corner);
-        auto const local = Far::LocalIndex(corner - _places.GetFirst(face));
+        Far::LocalIndex const local = _places.GetLocal(face, corner);
         _edgeVerts[edge] = {_faceVerts[corner], _faceVerts[_places.GetNext(face, corner)]};
         _faceEdges[corner] = edge;
         if (other < 0) {
@@ -104,7 +109,7 @@ public:
         } else {
             Index const otherFace = _places.GetFace(other);
             _edgeFaces[edge] = {face, otherFace};
-            _edgeFaceLocals[edge] = {local, Far::LocalIndex(other - _places.GetFirst(otherFace))};
+            _edgeFaceLocals[edge] = {local, _places.GetLocal(otherFace, other)};
             _faceEdges[other] = edge;
         }
     }
@@ -118,7 +123,10 @@ private:
     Index *const _faceEdges;
 };
 
-/// Makes room for \p numEdges edges.
+/// Makes room for the relations whose sizes are the numbers of corners and vertices, but for faceVerts.
+void ResizeCorners(Level &level);
+
+/// Makes room for \p numEdges edges, those of vertices included.
 void ResizeEdges(std::size_t numEdges, Level &level);
 
 /// \brief Finds vertFirstFace of \p level, and \p corners but for the mates, for which there is room

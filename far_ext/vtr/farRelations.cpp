@@ -197,8 +197,8 @@ bool RelationCopier<PLACES>::Copy() {
     if (numSides.back() != _level.numCorners) {
         return false;
     }
+    ResizeCorners(_level);
     ResizeEdges(std::size_t(numEdges), _level);
-    _level.vertFirstFace.Resize(std::size_t(_level.numVertices) + 1);
     ParallelForRange(_level.numFaces, [this](Index begin, Index end) {
         Index const first = _level.faceFirstCorner[begin];
         std::copy_n(_base.getFaceEdges(begin).begin(), _level.faceFirstCorner[end] - first,
@@ -223,7 +223,6 @@ bool RelationCopier<PLACES>::Copy() {
 } // namespace
 
 bool CopyRelations(Far::TopologyRefiner const &base, BoundaryKind boundary, Level &level) {
-    FindFaceSizes(level);
     return WithPlaces(level, Corners(), [&](auto const &places) {
         return RelationCopier(base, boundary, places, level).Copy();
     });

@@ -314,6 +314,9 @@ struct Level {
     bool hasFullTopology = false;
 
     Buffer<std::byte> memory; ///< of the relations that a hexagonal refinement makes
+    /// Of those that are derived from faces: of corners and vertices, and of edges.
+    Buffer<std::byte> cornerMemory;
+    Buffer<std::byte> edgeMemory;
 
     Buffer<Index> faceFirstCorner; ///< positions in faceVerts and faceEdges
     Buffer<Index> faceVerts;
