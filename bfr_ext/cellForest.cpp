@@ -60,6 +60,23 @@ void CellForest::MatchEdges() {
     }
 }
 
+bool CellForest::IsMatched(Index face) const {
+    Level const &level = _refiner->GetHierarchy().mesh.levels[0];
+    CellTree const &tree = GetTree(face);
+    if (tree.GetFaceSize() != level.GetFaceSize(face)) {
+        return false;
+    }
+    for (int local = 0; local < tree.GetFaceSize(); ++local) {
+        Polyline const own = tree.GetEdgePolyline(local);
+        Polyline const &polyline =
+            GetPolyline(level.faceEdges[level.faceFirstCorner[face] + local]);
+        if (!polyline.Contains(isReversed(face, local) ? own.GetReversed() : own)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 Tessellation CellForest::GetTessellation(Index face, Tessellation::Options options) const {
     Level const &level = _refiner->GetHierarchy().mesh.levels[0];
     std::vector<Polyline> edges;

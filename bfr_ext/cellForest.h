@@ -43,6 +43,9 @@ public:
     /// \brief Finds the polylines of all edges, each with the points that the trees of its faces have
     /// there, after a tree or an edge was set.
     void MatchEdges();
+    /// \brief Whether a face has a tree with as many vertices, and the polylines of its edges have all
+    /// points of that, as they have after MatchEdges(): else its tessellation is invalid.
+    bool IsMatched(Index face) const;
     /// The polyline of an edge, in its own direction.
     Polyline const &GetPolyline(Index edge) const { return _polylines[std::size_t(edge)]; }
     /// The tessellation of a face.

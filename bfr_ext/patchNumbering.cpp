@@ -52,6 +52,10 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
         if (numbering->findOwner(base.GetEdgeFaces(edge)) == Far::INDEX_INVALID) {
             continue;
         }
+        if (stream.GetForest()) {
+            next += stream.GetForest()->GetPolyline(edge).GetNumPoints();
+            continue;
+        }
         auto const level = std::size_t(stream.GetLevels().GetEdgeLevel(edge));
         while (numEdgePoints.size() <= level) {
             int const levels[] = {int(numEdgePoints.size()), 0, 0, 0};
@@ -69,16 +73,23 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
         Number numFacets = 0;
         Number numFacetVertices = 0;
         if (!base.IsFaceHole(face)) {
-            stream.getLevels(face, levels);
-            auto found = counts.find(levels);
-            if (found == counts.end()) {
-                found = counts.emplace(levels, PatchCounts(stream.MakeTessellation(face))).first;
+            auto const add = [&](PatchCounts const &patch) {
+                next += patch.numInteriorPoints;
+                numFacets = patch.numFacets;
+                numFacetVertices = patch.numFacetVertices;
+                numbering->_maxFacetSize = std::max(numbering->_maxFacetSize, patch.maxFacetSize);
+            };
+            if (stream.GetForest()) {
+                add(PatchCounts(stream.MakeTessellation(face)));
+            } else {
+                stream.getLevels(face, levels);
+                auto found = counts.find(levels);
+                if (found == counts.end()) {
+                    found =
+                        counts.emplace(levels, PatchCounts(stream.MakeTessellation(face))).first;
+                }
+                add(found->second);
             }
-            next += found->second.numInteriorPoints;
-            numFacets = found->second.numFacets;
-            numFacetVertices = found->second.numFacetVertices;
-            numbering->_maxFacetSize =
-                std::max(numbering->_maxFacetSize, found->second.maxFacetSize);
         }
         numbering->_firstFacet.push_back(numbering->_firstFacet.back() + numFacets);
         numbering->_firstFacetVertex.push_back(numbering->_firstFacetVertex.back() +

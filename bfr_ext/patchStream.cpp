@@ -11,6 +11,7 @@
 #include <list>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_set>
 
@@ -141,19 +142,22 @@ template <typename REAL>
 class PatchStream<REAL>::Worker {
 public:
     Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
-           internal::PatchPlans &plans, Sink const &sink)
-        : _stream(stream), _meshPoints(meshPoints), _meshPointDesc(meshPointDesc), _plans(plans),
-          _sink(sink) {}
+           std::vector<Values> const &values, Sink const &sink)
+        : _stream(stream), _meshPoints(meshPoints), _meshPointDesc(meshPointDesc), _values(values),
+          _sink(sink), _results(values.size()), _resultStarts(values.size()) {}
 
     /// \return  false where the sink ended the stream, or a face has no surface, as status says
     bool Run(Index const *begin, Index const *end, Status *status) {
         for (; begin != end; ++begin) {
-            findPlan(*begin);
-            if (!_stream._factory.InitVertexSurface(*begin, &_surface, status)) {
+            Tessellation const &tessellation = findTessellation(*begin);
+            if (!evaluatePoints(*begin, tessellation, status) ||
+                !evaluateValues(*begin, tessellation, status)) {
                 return false;
             }
-            evaluate();
-            if (!_sink({*begin, _plan->tessellation, _points.data(), _meshPointDesc.size})) {
+            bool const hasDerivatives = _stream._options.HasDerivatives();
+            if (!_sink({*begin, tessellation, _points.data(), _meshPointDesc.size,
+                        hasDerivatives ? _du.data() : nullptr,
+                        hasDerivatives ? _dv.data() : nullptr, _resultStarts.data()})) {
                 return false;
             }
         }
@@ -161,41 +165,94 @@ public:
     }
 
 private:
-    void findPlan(Index face) {
+    Tessellation const &findTessellation(Index face) {
+        if (_stream._forest) {
+            _tessellation.reset();
+            return _tessellation.emplace(_stream.MakeTessellation(face));
+        }
         _stream.getLevels(face, _levels);
         if (!_plan || _levels != _planLevels) {
             _plan.reset();
-            _plan = _plans.Find(_levels);
+            _plan = _stream._plans->Find(_levels);
             _planLevels = _levels;
         }
+        return _plan->tessellation;
     }
 
-    void evaluate() {
-        auto const pointSize = std::size_t(_meshPointDesc.size);
+    // Gathers the control points of the surface, without gaps.
+    void gather(REAL const *meshPoints, PointDescriptor const &desc) {
+        _controlPoints.resize(std::size_t(_surface.GetNumControlPoints()) * std::size_t(desc.size));
+        _surface.GatherControlPoints(meshPoints, desc, _controlPoints.data(), desc.size);
+    }
+
+    bool evaluatePoints(Index face, Tessellation const &tessellation, Status *status) {
+        if (!_stream._factory.InitVertexSurface(face, &_surface, status)) {
+            return false;
+        }
         PointDescriptor const desc(_meshPointDesc.size);
-        _controlPoints.resize(std::size_t(_surface.GetNumControlPoints()) * pointSize);
-        _surface.GatherControlPoints(_meshPoints, _meshPointDesc, _controlPoints.data(), desc);
-        _points.resize(std::size_t(_plan->tessellation.GetNumCoords()) * pointSize);
-        _surface.Evaluate(_plan->tessellation, _controlPoints.data(), desc, _points.data(), desc);
+        std::size_t const size = std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size);
+        gather(_meshPoints, _meshPointDesc);
+        _points.resize(size);
+        if (_stream._options.HasDerivatives()) {
+            _du.resize(size);
+            _dv.resize(size);
+            _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), _du.data(),
+                              _dv.data(), desc);
+        } else {
+            _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), desc);
+        }
+        return true;
+    }
+
+    bool evaluateValues(Index face, Tessellation const &tessellation, Status *status) {
+        for (std::size_t i = 0; i < _values.size(); ++i) {
+            Values const &values = _values[i];
+            bool const isInit = values.channel == Values::kVarying
+                                    ? _stream._factory.InitVaryingSurface(face, &_surface, status)
+                                    : _stream._factory.InitFaceVaryingSurface(
+                                          face, &_surface, values.channel, status);
+            if (!isInit) {
+                return false;
+            }
+            PointDescriptor const desc(values.desc.size);
+            gather(values.values, values.desc);
+            std::vector<REAL> &result = _results[i];
+            result.resize(std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size));
+            _surface.Evaluate(tessellation, _controlPoints.data(), desc, result.data(), desc);
+            _resultStarts[i] = result.data();
+        }
+        return true;
     }
 
     PatchStream const &_stream;
     REAL const *const _meshPoints;
     PointDescriptor const _meshPointDesc;
-    internal::PatchPlans &_plans;
+    std::vector<Values> const &_values;
     Sink const &_sink;
+    std::optional<Tessellation> _tessellation; // of a tree
     std::vector<int> _levels;
     std::vector<int> _planLevels;
     std::shared_ptr<internal::PatchPlan const> _plan;
     Surface<REAL> _surface;
     std::vector<REAL> _controlPoints;
     std::vector<REAL> _points;
+    std::vector<REAL> _du;
+    std::vector<REAL> _dv;
+    std::vector<std::vector<REAL>> _results; // of values
+    std::vector<REAL const *> _resultStarts;
 };
 
 template <typename REAL>
 PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, PatchLevels levels,
                                Options const &options)
-    : _factory(factory), _levels(std::move(levels)), _options(options),
+    : _factory(factory), _levels(std::move(levels)), _forest(nullptr), _options(options),
+      _plans(std::make_shared<internal::PatchPlans>(options.GetTessellationOptions(),
+                                                    options.GetMaxMemory())) {}
+
+template <typename REAL>
+PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, CellForest const &forest,
+                               Options const &options)
+    : _factory(factory), _levels(0), _forest(&forest), _options(options),
       _plans(std::make_shared<internal::PatchPlans>(options.GetTessellationOptions(),
                                                     options.GetMaxMemory())) {}
 
@@ -230,6 +287,10 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace,
         if (_factory.GetMesh().GetLevel(0).IsFaceHole(beginFace)) {
             continue;
         }
+        if (_forest) { // whose tessellations have nothing in common
+            order.push_back({0, beginFace});
+            continue;
+        }
         getLevels(beginFace, levels);
         std::size_t hash = 0;
         for (int const level : levels) {
@@ -255,6 +316,9 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace,
 
 template <typename REAL>
 Tessellation PatchStream<REAL>::MakeTessellation(Index face) const {
+    if (_forest) {
+        return _forest->GetTessellation(face, _options.GetTessellationOptions());
+    }
     std::vector<int> levels;
     getLevels(face, levels);
     return Tessellation(_factory.GetFaceParameterization(face), int(levels.size()), levels.data(),
@@ -278,6 +342,40 @@ Status PatchStream<REAL>::check(Index beginFace, Index endFace) const {
             "facets of size " + std::to_string(_options.GetTessellationOptions().GetFacetSize()) +
                 " with these strides are none that a tessellation has");
     }
+    if (_forest && _forest->GetNumFaces() != base.GetNumFaces()) {
+        return FarExt::internal::Failure(
+            StatusCode::InvalidArgument,
+            "the forest has " + std::to_string(_forest->GetNumFaces()) + " trees, the mesh " +
+                std::to_string(base.GetNumFaces()) + " faces");
+    }
+    for (Index face = beginFace; face < endFace; ++face) {
+        if (base.IsFaceHole(face)) {
+            continue;
+        }
+        Status status;
+        if (!_factory.FaceHasLimitSurface(face, &status)) {
+            return status;
+        }
+        status = _forest ? checkTree(face) : checkLevels(face);
+        if (!status.IsOk()) {
+            return status;
+        }
+    }
+    return Status();
+}
+
+template <typename REAL>
+Status PatchStream<REAL>::checkTree(Index face) const {
+    return _forest->IsMatched(face)
+               ? Status()
+               : Status(StatusCode::InvalidArgument, ComponentType::Face, face,
+                        "the tree of face " + std::to_string(face) +
+                            " is not that of such a face, or its edges were not matched");
+}
+
+// Whether those of a face and its edges are some that a tessellation has.
+template <typename REAL>
+Status PatchStream<REAL>::checkLevels(Index face) const {
     auto const checkLevel = [](int level, ComponentType type, char const *name, Index index) {
         if (0 <= level && level <= Tessellation::kLastLevel) {
             return Status();
@@ -287,32 +385,30 @@ Status PatchStream<REAL>::check(Index beginFace, Index endFace) const {
                           std::to_string(level) + ", which is not one of 0 to " +
                           std::to_string(Tessellation::kLastLevel));
     };
-    for (Index face = beginFace; face < endFace; ++face) {
-        if (base.IsFaceHole(face)) {
-            continue;
-        }
-        Status status;
-        if (!_factory.FaceHasLimitSurface(face, &status)) {
-            return status;
-        }
-        status = checkLevel(_levels.GetFaceLevel(face), ComponentType::Face, "face", face);
-        for (Index const edge : base.GetFaceEdges(face)) {
-            if (status.IsOk()) {
-                status = checkLevel(_levels.GetEdgeLevel(edge), ComponentType::Edge, "edge", edge);
-            }
-        }
-        if (!status.IsOk()) {
-            return status;
+    Status status = checkLevel(_levels.GetFaceLevel(face), ComponentType::Face, "face", face);
+    for (Index const edge : _factory.GetMesh().GetLevel(0).GetFaceEdges(face)) {
+        if (status.IsOk()) {
+            status = checkLevel(_levels.GetEdgeLevel(edge), ComponentType::Edge, "edge", edge);
         }
     }
-    return Status();
+    return status;
 }
 
 template <typename REAL>
 bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
-                            Index beginFace, Index endFace, Sink const &sink,
-                            Status *status) const {
+                            std::vector<Values> const &values, Index beginFace, Index endFace,
+                            Sink const &sink, Status *status) const {
     Status result = check(beginFace, endFace);
+    for (Values const &further : values) {
+        bool const isChannel =
+            0 <= further.channel && further.channel < _factory.GetNumFVarChannels();
+        if (result.IsOk() && further.channel != Values::kVarying && !isChannel) {
+            result = FarExt::internal::Failure(
+                StatusCode::InvalidArgument,
+                "channel " + std::to_string(further.channel) + " is not one of the " +
+                    std::to_string(_factory.GetNumFVarChannels()) + " face-varying channels");
+        }
+    }
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
@@ -336,7 +432,7 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
         FarExt::internal::ParallelForRange(
             Index(faces.size()),
             [&] {
-                return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, *_plans, sink);
+                return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, values, sink);
             },
             run, std::min(std::max(numFaces / kNumRangesWanted, 1), kMaxRange));
     }

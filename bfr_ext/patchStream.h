@@ -2,11 +2,13 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_PATCH_STREAM_H
 #define OPENSUBDIVHEX_BFR_EXT_PATCH_STREAM_H
 
+#include "cellForest.h"
 #include "surfaceFactory.h"
 
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace OpenSubdivHex::BfrExt {
 
@@ -47,10 +49,13 @@ private:
 ///
 /// So the memory does not depend on how much comes out: it is what Options::SetMaxMemory() says and
 /// what the cache of the factory has.  What comes out is a patch for each base face that is no hole:
-/// its tessellation, and the points of that.
+/// its tessellation, and the points of that; with them derivatives, and values of varying and
+/// face-varying data, where they are asked for.
 ///
 ///  - Two patches that share an edge have the same points there, to the bit, as those of
 ///    Surface::Evaluate() of a tessellation have, with the exceptions said there.
+///  - With a CellForest, patches have the tessellations of its trees: each is made with its patch and
+///    forgotten with it.
 ///  - A patch depends on its face alone, to the bit: not on the number of threads, nor on which others
 ///    the call makes.  So processes may share the faces of a mesh.
 ///  - Points inside of a face are those of Surface::Evaluate() up to rounding.
@@ -70,6 +75,21 @@ public:
         Tessellation const &tessellation; ///< the places of the points, and the facets between them
         REAL const *points;               ///< tessellation.GetNumCoords() points, without gaps
         int pointSize;                    ///< numbers of a point
+        /// As many derivatives by u as points, of the same size; null unless options ask for them.
+        REAL const *du = nullptr;
+        REAL const *dv = nullptr; ///< by v
+        /// By number of what Run() was given besides: tessellation.GetNumCoords() values, without gaps.
+        REAL const *const *values = nullptr;
+    };
+
+    /// \brief Values that patches have besides points: of varying or face-varying data.
+    struct Values {
+        /// No channel: varying data.
+        static constexpr int kVarying = -1;
+
+        REAL const *values;     ///< of the base mesh, by vertex or by value of the channel
+        PointDescriptor desc;   ///< their size, and the distance from one to the next
+        int channel = kVarying; ///< of face-varying data
     };
 
     /// \brief Takes a patch.
@@ -83,7 +103,7 @@ public:
     /// \brief Facets and memory.
     class Options {
     public:
-        /// Triangles, and 4 megabytes.
+        /// Triangles, no derivatives, and 4 megabytes.
         Options() = default;
 
         /// Sets what facets are like; strides of coordinates are of no matter.
@@ -93,6 +113,14 @@ public:
         }
         /// That.
         Tessellation::Options const &GetTessellationOptions() const { return _tessellationOptions; }
+
+        /// Sets whether patches have the derivatives of their points: their cross products are normals.
+        Options &SetDerivatives(bool hasDerivatives) {
+            _hasDerivatives = hasDerivatives;
+            return *this;
+        }
+        /// Whether they have.
+        bool HasDerivatives() const { return _hasDerivatives; }
 
         /// \brief Sets how many bytes tessellations take at a time, over all threads, with what it takes to
         /// make them.
@@ -111,6 +139,7 @@ public:
 
     private:
         Tessellation::Options _tessellationOptions;
+        bool _hasDerivatives = false;
         std::size_t _maxMemory = std::size_t(4) << 20;
     };
 
@@ -123,6 +152,16 @@ public:
     /// The same with options.
     PatchStream(SurfaceFactory const &factory, PatchLevels levels, Options const &options);
 
+    /// \brief A stream of the cells of trees.
+    ///
+    /// \param factory  makes the surfaces; it must live as long
+    /// \param forest   of the same mesh, after MatchEdges(); it must live as long
+    /// \param options  facets and memory
+    PatchStream(SurfaceFactory const &factory, CellForest const &forest, Options const &options);
+    /// The same with the default options.
+    PatchStream(SurfaceFactory const &factory, CellForest const &forest)
+        : PatchStream(factory, forest, Options()) {}
+
     /// \brief Hands the patches of all faces to a sink.
     ///
     /// \param meshPoints     of level 0
@@ -131,6 +170,7 @@ public:
     /// \param status         where Run() gives false without a failure, it is Ok: the sink ended it
     /// \return               whether all patches were handed out.  Failures are, before any patch is:
     ///                       InvalidArgument for a level or options that Tessellation does not have,
+    ///                       or a forest of another mesh or that is not matched;
     ///                       Unsupported for a face without a surface (SurfaceFactory) that is no hole;
     ///                       and on the way, Unsupported for a vertex without a limit stencil
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Sink const &sink,
@@ -141,15 +181,26 @@ public:
     ///
     /// \return  false with InvalidArgument, too, for a range that is not one of faces
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Index beginFace,
-             Index endFace, Sink const &sink, FarExt::Status *status = nullptr) const;
+             Index endFace, Sink const &sink, FarExt::Status *status = nullptr) const {
+        return Run(meshPoints, meshPointDesc, {}, beginFace, endFace, sink, status);
+    }
+    /// \brief The same with further values.
+    ///
+    /// \param values  what patches have as Patch::values, in this order
+    /// \return        false with InvalidArgument, too, for a channel that the mesh has not
+    bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+             std::vector<Values> const &values, Index beginFace, Index endFace, Sink const &sink,
+             FarExt::Status *status = nullptr) const;
 
-    /// The tessellation that the patch of a face has, which is in range and has valid levels.
+    /// The tessellation that the patch of a face has, which is in range and has valid levels or trees.
     Tessellation MakeTessellation(Index face) const;
 
     /// The factory that was given.
     SurfaceFactory const &GetFactory() const { return _factory; }
-    /// The levels that were given.
+    /// The levels that were given; with a forest: 0.
     PatchLevels const &GetLevels() const { return _levels; }
+    /// The forest that was given, or null.
+    CellForest const *GetForest() const { return _forest; }
     /// The options that were given.
     Options const &GetOptions() const { return _options; }
 
@@ -158,11 +209,14 @@ private:
     class Worker;
 
     FarExt::Status check(Index beginFace, Index endFace) const;
+    FarExt::Status checkLevels(Index face) const;
+    FarExt::Status checkTree(Index face) const;
     void getLevels(Index face, std::vector<int> &levels) const;
     Index takeFaces(Index beginFace, Index endFace, std::vector<Index> &faces) const;
 
     SurfaceFactory const &_factory;
     PatchLevels const _levels;
+    CellForest const *const _forest; // null: levels
     Options const _options;
     std::shared_ptr<internal::PatchPlans> _plans;
 };

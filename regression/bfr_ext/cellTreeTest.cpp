@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Trees of cells, against books that are kept of every line, and their tessellations of whole meshes.
+#include "cellFixture.h"
 #include "surfaceFixture.h"
 
 #include "bfr_ext/cellForest.h"
@@ -27,30 +28,6 @@ using BfrExt::Surface;
 using BfrExt::Tessellation;
 
 namespace {
-
-/// A tree in which cells up to a level are refined by chance.
-CellTree makeRandomTree(int faceSize, std::mt19937 &random) {
-    CellTree tree(faceSize);
-    int const lastLevel = int(random() % 7);
-    unsigned const chance = 25 + random() % 35;
-    for (int cell = 0; cell < tree.GetNumCells() && tree.GetNumCells() < 400; ++cell) {
-        if (tree.GetLevel(cell) < lastLevel && random() % 100 < chance + (cell == 0 ? 30 : 0)) {
-            tree.Refine(cell);
-        }
-    }
-    return tree;
-}
-
-CellForest makeRandomForest(FarExt::TopologyRefiner const &refiner, unsigned seed) {
-    std::mt19937 random(seed);
-    CellForest forest(refiner);
-    for (int face = 0; face < forest.GetNumFaces(); ++face) {
-        forest.SetTree(face,
-                       makeRandomTree(refiner.GetLevel(0).GetFaceVertices(face).size(), random));
-    }
-    forest.MatchEdges();
-    return forest;
-}
 
 Tessellation::Options getPolygonOptions(int facetSize) {
     return Tessellation::Options().SetFacetSize(facetSize);
@@ -251,7 +228,7 @@ std::pair<long, long> roundPlace(double u, double v) {
 
 void expectReference(Shape const &shape, unsigned seed) {
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);
-    CellForest const forest = makeRandomForest(*refiner, seed);
+    CellForest const forest = MakeRandomForest(*refiner, seed);
     ReferenceMesh const base =
         MakeReferenceMesh(shape.positions, shape.faceSizes, shape.faceVertices);
     CellReference reference(base, shape.faceVertices);
@@ -411,7 +388,7 @@ void expectSound(Shape const &shape, ReferenceMask mask,
     }
     for (unsigned seed = 0; seed < numRounds; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        CellForest const forest = makeRandomForest(*refiner, seed + 1000);
+        CellForest const forest = MakeRandomForest(*refiner, seed + 1000);
         ForestMesh const mesh(forest, hasFace, seed % 2 == 0 ? 0 : 3);
         // The base mesh itself is the least tessellation.
         CellForest plain(*refiner);

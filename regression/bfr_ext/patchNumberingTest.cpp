@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Numbers of what a stream makes, and the PLY files that are made with them.
+#include "cellFixture.h"
 #include "streamFixture.h"
 
 #include "bfr_ext/plySink.h"
@@ -44,10 +45,12 @@ PatchStream<double>::Options getOptions(int facetSize) {
 
 /// A stream, joined by the numbers of its points.
 struct Joined {
-    Joined(Shape const &shape, unsigned seed, int facetSize)
+    Joined(Shape const &shape, unsigned seed, int facetSize, bool hasTrees = false)
         : refiner(CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly())),
           factory(SurfaceFactory::Create(*refiner)), levels(refiner->GetLevel(0), 4, seed),
-          stream(*factory, levels.Get(), getOptions(facetSize)),
+          forest(MakeRandomForest(*refiner, seed)),
+          stream(hasTrees ? PatchStream<double>(*factory, forest, getOptions(facetSize))
+                          : PatchStream<double>(*factory, levels.Get(), getOptions(facetSize))),
           numbering(PatchNumbering::Create(stream)) {
         ThreadsScope const threads(1);
         EXPECT_TRUE(
@@ -104,6 +107,7 @@ struct Joined {
     std::unique_ptr<FarExt::TopologyRefiner> refiner;
     std::unique_ptr<SurfaceFactory> factory;
     RandomPatchLevels levels;
+    BfrExt::CellForest forest;
     PatchStream<double> stream;
     std::unique_ptr<PatchNumbering> numbering;
     std::map<Number, Point> points;
@@ -219,9 +223,10 @@ TEST(PatchNumberingTest, HolesHaveNoPoints) {
 }
 
 TEST(PlySinkTest, AnyThreadsAndSharesWriteEveryByteOnce) {
-    for (int const facetSize : {0, 3, 4}) {
+    for (int const round : {0, 1, 2, 3}) {
+        int const facetSize = std::array<int, 4>{0, 3, 4, 0}[std::size_t(round)];
         Shape const &shape = GetFeatureShape("mixedSharpnessQuads");
-        Joined const joined(shape, 4, facetSize);
+        Joined const joined(shape, 4, facetSize, round == 3);
         std::string first;
         for (int const numShares : {1, 3}) {
             for (int const numThreads : {1, 2, 3}) {

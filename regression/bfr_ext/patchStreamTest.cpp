@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Streams of patches, against surfaces evaluated one by one.
+#include "cellFixture.h"
 #include "streamFixture.h"
 #include "surfaceFixture.h"
 
@@ -10,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -140,6 +142,87 @@ TEST(PatchStreamTest, PatchesDoNotDependOnThreadsMemoryAndShares) {
     EXPECT_EQ(int(expected.size()), shape.GetNumFaces());
 }
 
+// Cells of trees, with derivatives, varying values and two channels' values, on any number of threads.
+TEST(PatchStreamTest, HandsOutCellsOfTreesAndFurtherValues) {
+    for (char const *const name : {"seamAcrossCrease", "seamsCross", "mixedSharpnessQuads"}) {
+        SCOPED_TRACE(name);
+        Shape const &shape = GetFeatureShape(name);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly());
+        auto const factory = SurfaceFactory::Create(*refiner);
+        BfrExt::CellForest const forest = MakeRandomForest(*refiner, 17);
+        FarExt::TopologyLevel const &base = refiner->GetLevel(0);
+        using Stream = PatchStream<double>;
+        Stream const stream(*factory, forest, Stream::Options().SetDerivatives(true));
+        std::mt19937 random(7);
+        auto const makeNumbers = [&](int count) {
+            std::vector<double> numbers(std::size_t(count), 0.0);
+            std::generate(numbers.begin(), numbers.end(), [&] { return double(random() % 1000); });
+            return numbers;
+        };
+        std::vector<double> const varying = makeNumbers(4 * base.GetNumVertices());
+        std::vector<Stream::Values> values = {
+            {varying.data(), {2, 4}}, {varying.data() + 1, {1, 4}, Stream::Values::kVarying}};
+        std::vector<double> channel;
+        if (refiner->GetNumFVarChannels() > 0) {
+            channel = makeNumbers(2 * base.GetNumFVarValues());
+            values.push_back({channel.data(), 2, 0});
+        }
+        ASSERT_EQ(channel.empty(), std::string(name) == "mixedSharpnessQuads");
+        for (int const numThreads : {1, 3}) {
+            ThreadsScope const threads(numThreads);
+            std::mutex mutex;
+            int numPatches = 0;
+            auto const expectEqual = [&](Surface<double> const &surface, double const *from,
+                                         Surface<double>::PointDescriptor const &desc,
+                                         Tessellation const &tessellation,
+                                         std::array<double const *, 3> const &results) {
+                auto const size = std::size_t(desc.size);
+                std::vector<double> control(size * std::size_t(surface.GetNumControlPoints()));
+                surface.GatherControlPoints(from, desc, control.data(), desc.size);
+                std::vector<double> expected[3];
+                for (std::vector<double> &numbers : expected) {
+                    numbers.resize(size * std::size_t(tessellation.GetNumCoords()));
+                }
+                surface.Evaluate(tessellation, control.data(), desc.size, expected[0].data(),
+                                 expected[1].data(), expected[2].data(), desc.size);
+                for (std::size_t i = 0; i < 3 && results[i]; ++i) {
+                    ASSERT_EQ(expected[i],
+                              std::vector<double>(results[i], results[i] + expected[i].size()))
+                        << "kind " << i;
+                }
+            };
+            FarExt::Status status;
+            bool const isDone = stream.Run(
+                shape.positions.data(), 3, values, 0, base.GetNumFaces(),
+                [&](Stream::Patch const &patch) {
+                    std::lock_guard<std::mutex> const lock(mutex);
+                    ++numPatches;
+                    Tessellation const tessellation = forest.GetTessellation(patch.face);
+                    EXPECT_EQ(patch.tessellation.GetNumFacets(), tessellation.GetNumFacets());
+                    EXPECT_EQ(patch.tessellation.GetNumCoords(), tessellation.GetNumCoords());
+                    Surface<double> surface;
+                    factory->InitVertexSurface(patch.face, &surface);
+                    expectEqual(surface, shape.positions.data(), 3, tessellation,
+                                {patch.points, patch.du, patch.dv});
+                    factory->InitVaryingSurface(patch.face, &surface);
+                    expectEqual(surface, varying.data(), {2, 4}, tessellation,
+                                {patch.values[0], nullptr, nullptr});
+                    expectEqual(surface, varying.data() + 1, {1, 4}, tessellation,
+                                {patch.values[1], nullptr, nullptr});
+                    if (!channel.empty()) {
+                        factory->InitFaceVaryingSurface(patch.face, &surface);
+                        expectEqual(surface, channel.data(), 2, tessellation,
+                                    {patch.values[2], nullptr, nullptr});
+                    }
+                    return true;
+                },
+                &status);
+            ASSERT_TRUE(isDone) << status.GetMessage();
+            EXPECT_EQ(numPatches, base.GetNumFaces());
+        }
+    }
+}
+
 TEST(PatchStreamTest, TakesPointsOfAnySize) {
     Shape const &shape = GetShape("cube");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
@@ -207,6 +290,43 @@ TEST(PatchStreamTest, RefusesBeforeAnythingIsHandedOut) {
     EXPECT_EQ(numPatches, 0);
     EXPECT_TRUE(run(PatchLevels(1), 0, 1, 3));
     EXPECT_EQ(numPatches, 1);
+}
+
+TEST(PatchStreamTest, RefusesForestsThatDoNotFit) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    using Stream = PatchStream<double>;
+    auto const expectRefused = [&](BfrExt::CellForest const &forest,
+                                   std::vector<Stream::Values> const &values,
+                                   std::string const &cause) {
+        FarExt::Status status;
+        Stream const stream(*factory, forest);
+        EXPECT_FALSE(stream.Run(
+            shape.positions.data(), 3, values, 0, 6,
+            [](Stream::Patch const &) {
+                ADD_FAILURE() << "a patch was handed out";
+                return true;
+            },
+            &status));
+        EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+        EXPECT_NE(status.GetMessage().find(cause), std::string::npos) << status.GetMessage();
+    };
+    BfrExt::CellForest forest(*refiner);
+    EXPECT_TRUE(forest.IsMatched(3));
+    expectRefused(forest, {{shape.positions.data(), 3, 0}}, "channel 0");
+    expectRefused(forest, {{shape.positions.data(), 3, -2}}, "channel -2");
+    BfrExt::CellTree tree(4);
+    tree.Refine(tree.Refine(0) + 2);
+    forest.SetTree(3, tree);
+    EXPECT_FALSE(forest.IsMatched(3));
+    expectRefused(forest, {}, "face 3");
+    forest.MatchEdges();
+    EXPECT_TRUE(forest.IsMatched(3));
+    forest.SetTree(2, BfrExt::CellTree(5));
+    expectRefused(forest, {}, "face 2");
+    auto const other = CreateRefiner(GetShape("icosahedron"), ReferenceMask::Smooth, 0, {});
+    expectRefused(BfrExt::CellForest(*other), {}, "20 trees");
 }
 
 TEST(PatchStreamTest, EndsWhenTheSinkSaysSo) {
