@@ -192,10 +192,11 @@ std::vector<RowGroup> makeGroups(internal::MeshLevels const &mesh, int level, In
         for (Index face = 0; face < parent.numFaces; ++face) {
             Index const begin = parent.faceFirstCorner[face];
             Index const end = parent.faceFirstCorner[face + 1];
-            if (number < regularLevels.size() && next < regularLevels[number].faces.size() &&
-                regularLevels[number].faces[next].firstCorner == begin) {
-                groups.push_back(
-                    {parent.numVertices + begin, child - 1, &regularLevels[number].faces[next++]});
+            if (number < regularLevels.size() &&
+                next < regularLevels[number].fVertices.faces.size() &&
+                regularLevels[number].fVertices.faces[next].firstCorner == begin) {
+                groups.push_back({parent.numVertices + begin, child - 1,
+                                  &regularLevels[number].fVertices.faces[next++]});
                 continue;
             }
             for (Index corner = begin; corner < end; corner += internal::kMaxLimitRows) {
@@ -225,7 +226,7 @@ struct RegularRows {
         for (std::size_t i = 0; i < regularLevels.size(); ++i) {
             Level const &level = mesh.levels[i];
             levels.push_back(
-                {&level, firstSource, internal::RegularFaceRows(regularLevels[i].mask)});
+                {&level, firstSource, internal::RegularFaceRows(regularLevels[i].fVertices.mask)});
             firstSource += level.numVertices;
         }
     }
@@ -408,7 +409,7 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
     if (options.generateVertices) {
         vertexRows.emplace(level, refiner.GetSchemeOptions(), schemeOptions);
         if (hasStencils) {
-            regularFaces.emplace(mesh, options.level);
+            regularFaces.emplace(mesh, options.level, false);
         }
         Status const result =
             regularFaces ? regularFaces->FindMasks(schemeOptions, *vertexRows) : vertexRows->Find();
@@ -433,9 +434,9 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
 
     std::vector<RegularFaces::OfLevel> const noLevels;
     auto const &regularLevels = regularFaces ? regularFaces->GetLevels() : noLevels;
-    bool const hasRegular =
-        std::any_of(regularLevels.begin(), regularLevels.end(),
-                    [](RegularFaces::OfLevel const &ofLevel) { return !ofLevel.faces.empty(); });
+    bool const hasRegular = std::any_of(
+        regularLevels.begin(), regularLevels.end(),
+        [](RegularFaces::OfLevel const &ofLevel) { return !ofLevel.fVertices.faces.empty(); });
     std::unique_ptr<Far::StencilTableReal<double> const>
         tables[2]; // of the levels before, the last
     for (int i = hasRegular ? 0 : 1; i < 2 && hasStencils; ++i) {

@@ -268,16 +268,16 @@ void RefinementEvaluator::Impl::EvaluateLimit(Source values,
         copyElements(values, length, numElements[0], nullptr, 1, {_controlValues.data(), length});
         values = {_controlValues.data(), length};
     }
-    int const last = limit.HasOthers() ? level : level - 1;
+    int const last = limit.HasOthers() || limit.HasFaces(level) ? level : level - 1;
     resizeScratch(length, last);
-    for (int made = 1; made <= level; ++made) {
-        limit.EvaluateFVertices(made - 1, values, length, outputs);
-        if (made <= last) {
+    for (int made = 0; made <= last; ++made) {
+        if (made > 0) {
             Destination const next = {_scratch[made % 2].data(), length};
             internal::RefineElements({{&_refinements[std::size_t(made) - 1], values, next}},
                                      length);
             values = {next.data, next.stride};
         }
+        limit.EvaluateFaces(made, values, length, outputs);
     }
     if (limit.HasOthers()) {
         limit.EvaluateOthers(values, level > 0, length, outputs);

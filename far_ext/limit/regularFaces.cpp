@@ -7,6 +7,7 @@
 #include "far_ext/vtr/refinementMask.h"
 
 #include <array>
+#include <bitset>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -18,6 +19,12 @@ using Far::Index;
 namespace {
 
 constexpr int kSize = kRegularFaceSize;
+constexpr unsigned kAllCorners = (1u << kSize) - 1;
+
+bool hasCorner(RegularFace const &face, int corner) { return (face.corners >> corner & 1) != 0; }
+
+// Of its own vertices a face gives the limit for as many at least: fewer are made as fast one by one.
+constexpr int kMinOwnVertices = 3;
 
 // Marks of vertices, which several threads set.
 using Marks = std::vector<unsigned char>;
@@ -62,9 +69,10 @@ struct OtherSide {
     int local;
 };
 
-RegularFace gather(Level const &level, Index face) {
+RegularFace gather(Level const &level, Index face, unsigned corners) {
     RegularFace result;
     result.firstCorner = level.faceFirstCorner[face];
+    result.corners = corners;
     for (int i = 0; i < kSize; ++i) {
         // It runs the edge back: from vertex i + 1 of the face to vertex i, to the neighbour of that.
         OtherSide const across(level, face, result.firstCorner + i);
@@ -72,21 +80,66 @@ RegularFace gather(Level const &level, Index face) {
         result.neighbors[i] = level.faceVerts[across.GetCorner(2)];
         result.next[i] = level.faceVerts[across.GetCorner(3)];
         result.previous[next] = level.faceVerts[across.GetCorner(4)];
-        result.beyond[i] = OtherSide(level, across.face, across.GetCorner(2)).face;
+        result.beyond[i] =
+            hasCorner(result, i) ? OtherSide(level, across.face, across.GetCorner(2)).face : face;
     }
     return result;
 }
 
-std::vector<RegularFace> findFaces(Level const &level, Marks const &marks) {
-    std::vector<Index> const faces = ParallelSelect(level.numFaces, [&](Index face) {
-        auto const isRegular = [&](Index vert) { return marks[std::size_t(vert)] != 0; };
-        Far::ConstIndexArray const verts = level.GetFaceVertices(face);
-        return verts.size() == kSize && std::all_of(verts.begin(), verts.end(), isRegular);
-    });
+// The faces for which findCorners(face) finds any corners, where the face gives a limit.
+template <typename FIND_CORNERS>
+std::vector<RegularFace> findFaces(Level const &level, Index numFaces, FIND_CORNERS findCorners) {
+    std::vector<Index> const faces =
+        ParallelSelect(numFaces, [&](Index face) { return findCorners(face) != 0; });
     std::vector<RegularFace> result(faces.size());
-    ParallelFor(Index(faces.size()),
-                [&](Index i) { result[std::size_t(i)] = gather(level, faces[std::size_t(i)]); });
+    ParallelFor(Index(faces.size()), [&](Index i) {
+        Index const face = faces[std::size_t(i)];
+        result[std::size_t(i)] = gather(level, face, findCorners(face));
+    });
     return result;
+}
+
+// A bit for each vertex of a hexagon that is regular.
+unsigned findRegularCorners(Level const &level, Marks const &marks, Index face) {
+    Far::ConstIndexArray const verts = level.GetFaceVertices(face);
+    unsigned corners = 0;
+    for (int i = 0; i < kSize && verts.size() == kSize; ++i) {
+        corners |= unsigned(marks[std::size_t(verts[i])] != 0) << i;
+    }
+    return corners;
+}
+
+bool isAmongHexagons(Level const &level, Index face) {
+    for (Index const edge : Far::ConstIndexArray(
+             level.faceEdges.data() + level.faceFirstCorner[face], level.GetFaceSize(face))) {
+        if (level.IsBoundary(edge) || level.GetFaceSize(level.edgeFaces[edge][0]) != kSize ||
+            level.GetFaceSize(level.edgeFaces[edge][1]) != kSize) {
+            return false;
+        }
+    }
+    return true;
+}
+
+std::vector<RegularFace> findRegularFaces(Level const &level, Marks const &marks) {
+    return findFaces(level, level.numFaces, [&](Index face) {
+        return findRegularCorners(level, marks, face) == kAllCorners ? kAllCorners : 0u;
+    });
+}
+
+// F-faces that give the limit of vertices of their own, but for those of regular faces.
+std::vector<RegularFace> findOwnFaces(Level const &level, Marks const &marks,
+                                      std::vector<RegularFace> const &pFaces) {
+    Marks isOfRegular(std::size_t(level.numFFaceCorners), 0);
+    for (RegularFace const &face : pFaces) {
+        isOfRegular[std::size_t(face.firstCorner)] = 1;
+    }
+    return findFaces(level, level.numFFaces, [&](Index face) {
+        unsigned const corners = findRegularCorners(level, marks, face);
+        bool const isFound = std::bitset<kSize>(corners).count() >= kMinOwnVertices &&
+                             isOfRegular[std::size_t(level.faceFirstCorner[face])] == 0 &&
+                             isAmongHexagons(level, face);
+        return isFound ? corners : 0u;
+    });
 }
 
 // Of the hexagon beyond the neighbour of a corner, the vertex that is in no other face that matters.
@@ -98,8 +151,8 @@ Index findFarthest(Level const &level, RegularFace const &face, int corner) {
 
 // Whether a face's sources are all different, so that a row of their weights tells each one's: not
 // so on small tori, which have no other end.
-bool hasDifferentSources(Level const &level, RegularFace const &face) {
-    std::vector<Index> sources = {findFarthest(level, face, 0)};
+bool hasDifferentSources(Level const &level, RegularFace const &face, int corner) {
+    std::vector<Index> sources = {findFarthest(level, face, corner)};
     for (int i = 0; i < kSize; ++i) {
         sources.insert(sources.end(), {level.faceVerts[face.firstCorner + i], face.neighbors[i],
                                        face.next[i], face.previous[i]});
@@ -153,33 +206,32 @@ Row stepBack(Row const &cRow, Refinement const &refinement, RefinementMask const
 // them.
 constexpr double kTolerance = 1e-9;
 
-// The mask that makes a row of the F-vertex of corner 0.
-RegularFaceMask makeMask(Level const &level, RegularFace const &face, Row const &row) {
+// The mask that makes the row of a corner.
+RegularFaceMask makeMask(Level const &level, RegularFace const &face, int corner, Row const &row) {
     auto const find = [&](Index vert, int sum) {
         auto const found = row.find(vert);
         return found == row.end() ? 0 : found->second[std::size_t(sum)];
     };
-    Index const farthest = findFarthest(level, face, 0);
+    Index const farthest = findFarthest(level, face, corner);
     RegularFaceMask mask;
-    mask.beyondOfTip = 0;
     for (int sum = 0; sum < RegularFaceMask::kNumSums; ++sum) {
         RegularFaceMask::Sum &result = mask.sums[sum];
         for (int i = 0; i < kSize; ++i) {
-            result.verts[i] = find(level.faceVerts[face.firstCorner + i], sum);
-            result.neighbors[i] = find(face.neighbors[i], sum);
-            result.pairs[i] = i == 0 ? find(face.previous[1], sum) : find(face.next[i], sum);
+            int const at = (corner + i) % kSize;
+            result.verts[i] = find(level.faceVerts[face.firstCorner + at], sum);
+            result.neighbors[i] = find(face.neighbors[at], sum);
+            result.pairs[i] = find(i == 0 ? face.previous[(at + 1) % kSize] : face.next[at], sum);
         }
-        double const ofBeyond = find(farthest, sum);
-        result.neighbors[0] -= ofBeyond;
-        result.tip = find(face.next[0], sum) - result.pairs[0] - ofBeyond;
-        if (sum == 0) {
-            mask.beyondOfTip = ofBeyond / result.tip;
-        }
+        result.beyond = find(farthest, sum);
+        result.neighbors[0] -= result.beyond;
+        result.next = find(face.next[corner], sum) - result.pairs[0] - result.beyond;
+        result.previous =
+            find(face.previous[corner], sum) - result.pairs[kSize - 1] - result.beyond;
     }
     return mask;
 }
 
-// Whether the mask makes the row of the F-vertex of a corner.
+// Whether the mask makes the row of a corner.
 bool isRow(Level const &level, RegularFace const &face, RegularFaceMask const &mask, int corner,
            Row row) {
     auto const subtract = [&](Index vert, auto const &getWeight) {
@@ -196,10 +248,10 @@ bool isRow(Level const &level, RegularFace const &face, RegularFaceMask const &m
         subtract(face.next[at], [i](Sum const &s) { return s.pairs[i]; });
         subtract(face.previous[(at + 1) % kSize], [i](Sum const &s) { return s.pairs[i]; });
     }
-    subtract(face.next[corner], [](Sum const &s) { return s.tip; });
-    subtract(face.previous[corner], [](Sum const &s) { return s.tip; });
+    subtract(face.next[corner], [](Sum const &s) { return s.next; });
+    subtract(face.previous[corner], [](Sum const &s) { return s.previous; });
     for (Index vert : level.GetFaceVertices(face.beyond[corner])) {
-        subtract(vert, [&](Sum const &s) { return s.tip * mask.beyondOfTip; });
+        subtract(vert, [](Sum const &s) { return s.beyond; });
     }
     return std::all_of(row.begin(), row.end(), [](Row::value_type const &left) {
         return std::all_of(left.second.begin(), left.second.end(),
@@ -215,21 +267,27 @@ constexpr int kBeyond = 4 * kSize;
 
 } // namespace
 
+bool RegularFaceMask::HasOneTip() const {
+    return std::all_of(sums, sums + kNumSums, [this](Sum const &sum) {
+        return std::abs(sum.next - sum.previous) < kTolerance &&
+               std::abs(sum.beyond * sums[0].next - sums[0].beyond * sum.next) < kTolerance;
+    });
+}
+
 RegularFaceRows::RegularFaceRows(RegularFaceMask const &mask) {
     for (int i = 0; i < RegularFaceMask::kNumSums; ++i) {
         RegularFaceMask::Sum const &sum = mask.sums[i];
         double *const weights = _weights[i];
-        double const ofBeyond = mask.beyondOfTip * sum.tip;
         for (int k = 0; k < kSize; ++k) {
             weights[k] = sum.verts[k];
             weights[kNeighbors + k] = sum.neighbors[k];
             weights[kNext + k] = sum.pairs[k];
             weights[kPrevious + k] = sum.pairs[(k + kSize - 1) % kSize];
         }
-        weights[kNeighbors] += ofBeyond;
-        weights[kNext] += sum.tip + ofBeyond;
-        weights[kPrevious] += sum.tip + ofBeyond;
-        std::fill(weights + kBeyond, weights + kNumSources, ofBeyond);
+        weights[kNeighbors] += sum.beyond;
+        weights[kNext] += sum.next + sum.beyond;
+        weights[kPrevious] += sum.previous + sum.beyond;
+        std::fill(weights + kBeyond, weights + kNumSources, sum.beyond);
     }
 }
 
@@ -252,39 +310,60 @@ LimitRow RegularFaceRows::GetRow(Level const &level, RegularFace const &face, in
     return {kNumSources, sources, _weights[0], _weights[1], _weights[2]};
 }
 
-RegularFaces::RegularFaces(MeshLevels const &mesh, int level) : _mesh(mesh), _level(level) {
+RegularFaces::RegularFaces(MeshLevels const &mesh, int level, bool hasOwnVertices)
+    : _mesh(mesh), _level(level), _levels(std::size_t(level) + 1) {
     // Vertices keep their index in hexagonal steps.
     int first = level;
     while (first > 0 && mesh.levels[std::size_t(first)].isHexagonal) {
         --first;
     }
-    _levels.resize(std::size_t(level));
     Marks marks;
-    for (int i = first; i < level; ++i) {
+    std::vector<RegularFace> const none;
+    for (int i = first; i < (hasOwnVertices ? level + 1 : level); ++i) {
         Level const &ofFaces = mesh.levels[std::size_t(i)];
-        bool const isFirst = i == first;
-        marks =
-            markRegular(ofFaces, isFirst ? nullptr : &mesh.levels[std::size_t(i) - 1], marks,
-                        isFirst ? std::vector<RegularFace>() : _levels[std::size_t(i) - 1].faces);
+        Level const *const parent = i == first ? nullptr : &mesh.levels[std::size_t(i) - 1];
+        std::vector<RegularFace> const &pFaces =
+            parent ? _levels[std::size_t(i) - 1].fVertices.faces : none;
+        marks = markRegular(ofFaces, parent, marks, pFaces);
         OfLevel &ofLevel = _levels[std::size_t(i)];
-        ofLevel.faces = findFaces(ofFaces, marks);
-        auto const sample =
-            std::find_if(ofLevel.faces.begin(), ofLevel.faces.end(), [&](RegularFace const &face) {
-                return hasDifferentSources(ofFaces, face);
-            });
-        ofLevel.sample = std::size_t(sample - ofLevel.faces.begin());
-        if (sample == ofLevel.faces.end()) {
-            ofLevel.faces.clear();
+        if (parent && hasOwnVertices) {
+            setFaces(i, findOwnFaces(ofFaces, marks, pFaces), parent->numVertices,
+                     ofLevel.ownVertices);
+        }
+        if (i < level) {
+            setFaces(i, findRegularFaces(ofFaces, marks), ofFaces.numVertices, ofLevel.fVertices);
         }
     }
     listOthers();
 }
 
+// Those of a level, unless there is no sample of them.
+void RegularFaces::setFaces(int level, std::vector<RegularFace> faces, Index firstVertex,
+                            Set &set) const {
+    set.firstVertex = firstVertex;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        for (int corner = 0; corner < kSize; ++corner) {
+            if (hasCorner(faces[i], corner) &&
+                hasDifferentSources(_mesh.levels[std::size_t(level)], faces[i], corner)) {
+                set.sample = i;
+                set.sampleCorner = corner;
+                set.faces = std::move(faces);
+                return;
+            }
+        }
+    }
+}
+
 void RegularFaces::listOthers() {
     Marks isMade(std::size_t(_mesh.levels[std::size_t(_level)].numVertices), 0);
-    for (std::size_t i = 0; i < _levels.size(); ++i) {
-        for (RegularFace const &face : _levels[i].faces) {
-            std::fill_n(isMade.begin() + _mesh.levels[i].numVertices + face.firstCorner, kSize, 1);
+    for (OfLevel const &level : _levels) {
+        for (Set const *set : {&level.fVertices, &level.ownVertices}) {
+            for (RegularFace const &face : set->faces) {
+                auto const firstVertex = isMade.begin() + set->firstVertex + face.firstCorner;
+                for (int corner = 0; corner < kSize; ++corner) {
+                    firstVertex[corner] = hasCorner(face, corner);
+                }
+            }
         }
     }
     _others = ParallelSelect(Index(isMade.size()),
@@ -293,12 +372,14 @@ void RegularFaces::listOthers() {
 
 Status RegularFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows) {
     std::vector<Index> verts = _others;
-    for (std::size_t i = 0; i < _levels.size(); ++i) {
-        if (!_levels[i].faces.empty()) {
-            verts.resize(verts.size() + kSize);
-            std::iota(verts.end() - kSize, verts.end(),
-                      _mesh.levels[i].numVertices +
-                          _levels[i].faces[_levels[i].sample].firstCorner);
+    for (OfLevel const &level : _levels) {
+        for (Set const *set : {&level.fVertices, &level.ownVertices}) {
+            for (int corner = 0; corner < kSize && !set->faces.empty(); ++corner) {
+                RegularFace const &face = set->faces[set->sample];
+                if (hasCorner(face, corner)) {
+                    verts.push_back(set->firstVertex + face.firstCorner + corner);
+                }
+            }
         }
     }
     std::sort(verts.begin(), verts.end());
@@ -307,36 +388,42 @@ Status RegularFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
         return status;
     }
     for (std::size_t i = 0; i < _levels.size(); ++i) {
-        if (_levels[i].faces.empty()) {
-            continue;
+        for (Set *set : {&_levels[i].fVertices, &_levels[i].ownVertices}) {
+            if (set->faces.empty()) {
+                continue;
+            }
+            auto const mask = findMask(int(i), *set, schemeOptions, rows);
+            if (mask && (set == &_levels[i].ownVertices || mask->HasOneTip())) {
+                set->mask = *mask;
+                continue;
+            }
+            for (OfLevel &level : _levels) {
+                level = OfLevel();
+            }
+            listOthers();
+            return rows.Find(_others);
         }
-        if (auto const mask = findMask(int(i), schemeOptions, rows)) {
-            _levels[i].mask = *mask;
-            continue;
-        }
-        for (OfLevel &level : _levels) {
-            level.faces.clear();
-        }
-        listOthers();
-        return rows.Find(_others);
     }
     return Status();
 }
 
-std::optional<RegularFaceMask> RegularFaces::findMask(int level,
+std::optional<RegularFaceMask> RegularFaces::findMask(int level, Set const &set,
                                                       HexSchemeOptions const &schemeOptions,
                                                       LimitRows const &rows) const {
     Level const &ofFace = _mesh.levels[std::size_t(level)];
-    OfLevel const &ofLevel = _levels[std::size_t(level)];
-    RegularFace const &face = ofLevel.faces[ofLevel.sample];
+    RegularFace const &face = set.faces[set.sample];
     std::optional<RegularFaceMask> mask;
-    for (int corner = 0; corner < kSize; ++corner) {
+    for (int i = 0; i < kSize; ++i) {
+        int const corner = (set.sampleCorner + i) % kSize;
+        if (!hasCorner(face, corner)) {
+            continue;
+        }
         Index sources[PlainNeighborhoodGatherer::kNumRegular];
         LimitRow const ofVertex =
-            rows.GetRow(ofFace.numVertices + face.firstCorner + corner, 0, sources);
+            rows.GetRow(set.firstVertex + face.firstCorner + corner, 0, sources);
         Row row;
-        for (int i = 0; i < ofVertex.size; ++i) {
-            addTo(row, ofVertex.sources[i], {ofVertex.weights[i], ofVertex.du[i], ofVertex.dv[i]},
+        for (int k = 0; k < ofVertex.size; ++k) {
+            addTo(row, ofVertex.sources[k], {ofVertex.weights[k], ofVertex.du[k], ofVertex.dv[k]},
                   1);
         }
         for (int child = _level; child > level; --child) {
@@ -344,8 +431,8 @@ std::optional<RegularFaceMask> RegularFaces::findMask(int level,
                                         Interpolation::Vertex);
             row = stepBack(row, _mesh.refinements[std::size_t(child) - 1], ofStep);
         }
-        if (corner == 0) {
-            mask = makeMask(ofFace, face, row);
+        if (!mask) {
+            mask = makeMask(ofFace, face, corner, row);
         }
         if (!isRow(ofFace, face, *mask, corner, row)) {
             return {};

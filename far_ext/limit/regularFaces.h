@@ -20,20 +20,23 @@ constexpr int kRegularFaceSize = HexIndexing::kNumEFaceCorners;
 ///          neighbor          there it has the vertices "next" and "previous", which the faces across
 ///             |              the edges behind V and before V have, too.
 ///             V
+///
+/// Where only some of its vertices are regular, the others have an outer neighbour perhaps, but no face
+/// beyond: there it is the face itself.
 struct RegularFace {
     Far::Index firstCorner;
+    unsigned corners; ///< a bit for each corner whose vertex has a limit of the face's mask
     Far::Index neighbors[kRegularFaceSize];
     Far::Index next[kRegularFaceSize];
     Far::Index previous[kRegularFaceSize];
     Far::Index beyond[kRegularFaceSize]; ///< faces
 };
 
-/// \brief The limit at the F-vertices of a regular face as sums of vertices of its own level, alike
-/// for all regular faces of the level: weights for the F-vertex of corner 0, those for the others
-/// are as many places further around.
+/// \brief The limit at the F-vertices of a regular face, or at its own vertices, as sums of vertices of
+/// its own level, alike for all regular faces of the level: weights for corner 0, those for the
+/// others are as many places further around.
 ///
-/// A pair is "next" of corner i and "previous" of corner i + 1, two vertices of one face.  The tip is
-/// "next" and "previous" of corner 0, and beyondOfTip times the sum of the face beyond.
+/// A pair is "next" of corner i and "previous" of corner i + 1, two vertices of one face.
 struct RegularFaceMask {
     static constexpr int kNumSums = 3; ///< of the point, du and dv
 
@@ -41,20 +44,25 @@ struct RegularFaceMask {
         double verts[kRegularFaceSize];
         double neighbors[kRegularFaceSize];
         double pairs[kRegularFaceSize];
-        double tip;
+        double next; ///< of corner 0, on top of what it weighs in its pair
+        double previous;
+        double beyond; ///< the vertices of the face beyond corner 0
     };
     Sum sums[kNumSums];
-    double beyondOfTip;
+
+    /// Whether "next", "previous" and the face beyond are in all three sums in the same proportion, the
+    /// first two weighing the same: so it is for F-vertices.
+    OPENSUBDIVHEX_API bool HasOneTip() const;
 };
 
-/// \brief The rows of the F-vertices of regular faces, in terms of the vertices of their level.
+/// \brief The rows of what a RegularFaceMask is for, in terms of the vertices of the level of faces.
 struct RegularFaceRows {
     /// Those of the face, their neighbours, "next", "previous" and the others of the face beyond.
     static constexpr int kNumSources = 4 * kRegularFaceSize + 3;
 
     explicit RegularFaceRows(RegularFaceMask const &mask);
 
-    /// Of the F-vertex of a corner.  Valid until \p sources are used again.
+    /// Of a corner.  Valid until \p sources are used again.
     LimitRow GetRow(Level const &level, RegularFace const &face, int corner,
                     Far::Index sources[kNumSources]) const;
 
@@ -62,21 +70,35 @@ private:
     double _weights[RegularFaceMask::kNumSums][kNumSources];
 };
 
-/// \brief The vertices of a level that steps before made of regular faces: their limit follows from
-/// the level of their face, which is smaller, and for all six of a face together.
+/// \brief The vertices of a level whose limit follows from faces of that level or of one before, for
+/// all six of a face together.
+///
+/// Of a regular face these are the F-vertices, so that the level of the face will do, which is
+/// smaller.  Other F-vertices are regular, too: where faces near theirs are no hexagons, or have
+/// irregular vertices.  Their limit follows from the F-face that they are the vertices of, some of
+/// which may be irregular.
 class OPENSUBDIVHEX_API RegularFaces {
 public:
     using Index = Far::Index;
 
-    struct OfLevel {
+    /// \brief Faces of a level that have a mask in common.
+    struct Set {
         std::vector<RegularFace> faces;
-        std::size_t sample = 0; ///< the face from which the mask is found
+        Index firstVertex = 0; ///< vertex firstVertex + c has the limit of corner c
         RegularFaceMask mask = {};
+
+        std::size_t sample = 0; ///< the face and the corner from which the mask is found
+        int sampleCorner = 0;
+    };
+    struct OfLevel {
+        Set fVertices;   ///< regular faces, for their F-vertices
+        Set ownVertices; ///< F-faces whose parent is not regular, for their own vertices
     };
 
-    /// Finds the regular faces of all levels before \p level, one for which CheckLimitLevel() is
-    /// well.
-    RegularFaces(MeshLevels const &mesh, int level);
+    /// Finds the faces of \p level, one for which CheckLimitLevel() is well, and of all before.
+    ///
+    /// \param hasOwnVertices  whether OfLevel::ownVertices are wanted, else there are none
+    RegularFaces(MeshLevels const &mesh, int level, bool hasOwnVertices = true);
 
     /// \brief Finds the masks of all levels, and the rows that the other vertices of the level need:
     /// what GetOthers() lists.
@@ -85,14 +107,16 @@ public:
     /// is regular.
     Status FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows);
 
-    /// By level, from 0 to the one before the last.
+    /// By level, from 0 to the last one.
     std::vector<OfLevel> const &GetLevels() const { return _levels; }
     /// The other vertices of the last level, ascending.
     std::vector<Index> const &GetOthers() const { return _others; }
 
 private:
+    void setFaces(int level, std::vector<RegularFace> faces, Index firstVertex, Set &set) const;
     void listOthers();
-    std::optional<RegularFaceMask> findMask(int level, HexSchemeOptions const &schemeOptions,
+    std::optional<RegularFaceMask> findMask(int level, Set const &set,
+                                            HexSchemeOptions const &schemeOptions,
                                             LimitRows const &rows) const;
 
     MeshLevels const &_mesh;

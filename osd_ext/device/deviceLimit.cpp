@@ -38,13 +38,15 @@ DeviceRegularFace makeFace(Level const &level, RegularFace const &face) {
     return result;
 }
 
-// The limit kernels take the weights one by one, in this order.
+// The limit kernels take the weights one by one, in this order, but for the last two: the mask of
+// F-vertices has one tip.
 void addWeights(FarExt::internal::RegularFaceMask const &mask, std::vector<float> &weights) {
     RegularLimitWeights<Scalar> const ofMask = MakeRegularLimitWeights(mask);
     constexpr std::size_t kNumWeights = 52;
-    static_assert(sizeof(ofMask) == kNumWeights * sizeof(float));
+    static_assert(sizeof(ofMask) == (kNumWeights + 2) * sizeof(float));
     weights.resize(weights.size() + kNumWeights);
-    std::memcpy(weights.data() + weights.size() - kNumWeights, &ofMask, sizeof(ofMask));
+    std::memcpy(weights.data() + weights.size() - kNumWeights, &ofMask,
+                kNumWeights * sizeof(float));
 }
 
 void addVertices(std::vector<Index> const &verts, LimitRows const &rows, DeviceLimit &limit) {
@@ -70,13 +72,13 @@ void addVertices(std::vector<Index> const &verts, LimitRows const &rows, DeviceL
 Status MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
                        FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows,
                        DeviceLimit &limit) {
-    RegularFaces regularFaces(mesh, rows.GetLevel().depth);
+    RegularFaces regularFaces(mesh, rows.GetLevel().depth, false);
     Status result = regularFaces.FindMasks(schemeOptions, rows);
     if (!result.IsOk()) {
         return result;
     }
-    for (std::size_t i = 0; i < regularFaces.GetLevels().size(); ++i) {
-        RegularFaces::OfLevel const &ofLevel = regularFaces.GetLevels()[i];
+    for (int i = 0; i < rows.GetLevel().depth; ++i) {
+        RegularFaces::Set const &ofLevel = regularFaces.GetLevels()[std::size_t(i)].fVertices;
         std::size_t const first = limit.faces.size();
         limit.levels.push_back({std::uint32_t(ofLevel.faces.size()), std::uint32_t(first),
                                 std::uint32_t(limit.weights.size())});
@@ -87,7 +89,7 @@ Status MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
         limit.faces.resize(first + ofLevel.faces.size());
         FarExt::internal::ParallelFor(Index(ofLevel.faces.size()), [&](Index k) {
             limit.faces[first + std::size_t(k)] =
-                makeFace(mesh.levels[i], ofLevel.faces[std::size_t(k)]);
+                makeFace(mesh.levels[std::size_t(i)], ofLevel.faces[std::size_t(k)]);
         });
     }
     addVertices(regularFaces.GetOthers(), rows, limit);

@@ -31,7 +31,7 @@ struct DeviceLimitVertex {
 /// \brief The limit of a level as a device evaluates it: positions of faces, indices and weights are
 /// in arrays of its own.
 struct DeviceLimit {
-    /// By level, from 0 to the one before the last; those of weights are the 52 numbers of
+    /// By level, from 0 to the one before the last; those of weights are the first 52 numbers of
     /// RegularLimitWeights.
     struct RegularLevel {
         std::uint32_t count = 0;

@@ -65,13 +65,17 @@ RegularFaceMask::Sum combine(Combination const &c) {
         sum.neighbors[i] = c.ofDu * c.du.neighbors[i] + c.ofDv * c.dv.neighbors[i];
         sum.pairs[i] = c.ofDu * c.du.pairs[i] + c.ofDv * c.dv.pairs[i];
     }
-    sum.tip = c.ofDu * c.du.tip + c.ofDv * c.dv.tip;
+    sum.next = c.ofDu * c.du.next + c.ofDv * c.dv.next;
+    sum.previous = c.ofDu * c.du.previous + c.ofDv * c.dv.previous;
+    sum.beyond = c.ofDu * c.du.beyond + c.ofDv * c.dv.beyond;
     return sum;
 }
 
 SourceWeights getSource(RegularFaceMask::Sum const &sum, int kind) {
     return {kind == 0 ? sum.verts : kind == kPairs ? sum.pairs : sum.neighbors, kind};
 }
+
+double getTip(RegularFaceMask::Sum const &sum) { return (sum.next + sum.previous) / 2; }
 
 SymmetricWeights<Scalar> makeSymmetric(RegularFaceMask::Sum const &sum) {
     SymmetricWeights<Scalar> result;
@@ -93,7 +97,7 @@ SymmetricWeights<Scalar> makeSymmetric(RegularFaceMask::Sum const &sum) {
             result.alternating[kind] = float(source.SumCosines(3) / 6);
         }
     }
-    result.tip = float(sum.tip);
+    result.tip = float(getTip(sum));
     return result;
 }
 
@@ -139,7 +143,7 @@ void forEachRange(TASK const &task, Index count, Index range, EVALUATE evaluate)
         [&](Nothing, Index begin, Index end) { evaluate(task, begin, end); }, range);
 }
 
-constexpr Index kFaceRange = 2048;
+constexpr Index kSumRange = 2048;
 constexpr Index kGroupRange = 128;
 
 } // namespace
@@ -159,16 +163,21 @@ RegularLimitWeights<Scalar> MakeRegularLimitWeights(RegularFaceMask const &mask)
 
     RegularLimitWeights<Scalar> weights;
     weights.point = makeSymmetric(mask.sums[0]);
-    weights.along = makeSymmetric(combine({du, dv, cosine * cosine, -cosine * sine}));
-    weights.across = makeAntisymmetric(combine({du, dv, sine / cosine, 1}));
+    RegularFaceMask::Sum const along = combine({du, dv, cosine * cosine, -cosine * sine});
+    RegularFaceMask::Sum const across = combine({du, dv, sine / cosine, 1});
+    weights.along = makeSymmetric(along);
+    weights.across = makeAntisymmetric(across);
     weights.duOfAcross = float(sine * cosine);
     weights.dvOfDu = float(-sine / cosine);
-    weights.beyondOfTip = float(mask.beyondOfTip);
+    weights.beyondOfTip = float(mask.sums[0].beyond / getTip(mask.sums[0]));
+    weights.beyondOfTipAlong = float(along.beyond / getTip(along));
+    weights.tipAcross = float((across.next - across.previous) / 2);
     return weights;
 }
 
-std::vector<RegularFaceGroup> MakeRegularFaceGroups(Level const &level,
-                                                    std::vector<RegularFace> const &faces) {
+std::vector<RegularFaceGroup>
+MakeRegularFaceGroups(Level const &level, std::vector<RegularFace> const &faces,
+                      FarExt::internal::Buffer<Index> const &sumsOfFaces) {
     constexpr int kSize = RegularFaceGroup::kSize;
     auto const numFaces = Index(faces.size());
     std::vector<RegularFaceGroup> groups(std::size_t((numFaces + kSize - 1) / kSize));
@@ -187,17 +196,20 @@ std::vector<RegularFaceGroup> MakeRegularFaceGroups(Level const &level,
             setPoint(group.neighbors, face.neighbors[i]);
             setPoint(group.next, face.next[i]);
             setPoint(group.previous, face.previous[i]);
-            setPlace(group.beyond, face.beyond[i], RegularFaceGroup::kSumStride);
+            setPlace(group.beyond, sumsOfFaces[std::size_t(face.beyond[i])],
+                     RegularFaceGroup::kSumStride);
         }
         group.firstCorners[member] = face.firstCorner;
     });
     return groups;
 }
 
+void SumFaces(RegularLimitTask const &task, Index numSums) {
+    forEachRange(task, numSums, kSumRange, getKernel().sumFaces);
+}
+
 void EvaluateLimit(RegularLimitTask const &task, Index numGroups) {
-    LimitKernel const &kernel = getKernel();
-    forEachRange(task, task.level->numFaces, kFaceRange, kernel.sumFaces);
-    forEachRange(task, numGroups, kGroupRange, kernel.evaluateFaces);
+    forEachRange(task, numGroups, kGroupRange, getKernel().evaluateFaces);
 }
 
 void EvaluateLimit(VertexLimitTask const &task, Index numGroups) {

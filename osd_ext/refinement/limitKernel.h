@@ -52,9 +52,12 @@ struct RegularLimitWeights {
     SymmetricWeights<SIMD> point;
     SymmetricWeights<SIMD> along;
     AntisymmetricWeights<SIMD> across;
-    T duOfAcross; ///< du = along + duOfAcross across
-    T dvOfDu;     ///< dv = across + dvOfDu du
-    T beyondOfTip;
+    T duOfAcross;  ///< du = along + duOfAcross across
+    T dvOfDu;      ///< dv = across + dvOfDu du
+    T beyondOfTip; ///< of the point; and of the others, where the mask has one tip
+
+    T beyondOfTipAlong;
+    T tipAcross; ///< "next" has it, and "previous" with the opposite sign
 };
 
 RegularLimitWeights<Scalar> MakeRegularLimitWeights(FarExt::internal::RegularFaceMask const &mask);
@@ -78,9 +81,11 @@ struct RegularFaceGroup {
     Far::Index firstCorners[kSize];
 };
 
+/// \param sumsOfFaces  for each face of the level, where its sum is
 std::vector<RegularFaceGroup>
 MakeRegularFaceGroups(FarExt::internal::Level const &level,
-                      std::vector<FarExt::internal::RegularFace> const &faces);
+                      std::vector<FarExt::internal::RegularFace> const &faces,
+                      FarExt::internal::Buffer<Far::Index> const &sumsOfFaces);
 
 /// \brief Some vertices of one type, side by side; the last ones of a type filled up likewise.
 struct VertexGroup {
@@ -112,7 +117,7 @@ struct LimitTask {
     int numOutputs;                       ///< 1 or 3
 };
 
-/// \brief The limit at the F-vertices of regular faces of a level: outputs are by corner.
+/// \brief The limit that faces of a level give: outputs are by corner.
 struct RegularLimitTask : LimitTask {
     /// Floats from the sum of a face to the next.
     static std::ptrdiff_t GetSumStride(int length) {
@@ -123,10 +128,12 @@ struct RegularLimitTask : LimitTask {
         sums.data += count;
     }
 
-    FarExt::internal::Level const *level;
-    Elements<float> sums; ///< of the values of the vertices of each face of the level
+    Far::Index const *faceVerts;
+    Far::Index const *summedFaces; ///< hexagons, by their first corners
+    Elements<float> sums;          ///< of the values of the vertices of each of these
     RegularFaceGroup const *groups;
     RegularLimitWeights<Scalar> const *weights;
+    bool hasOneTip; ///< as the mask
 };
 
 /// \brief The limit at vertices of a level.
@@ -138,7 +145,7 @@ struct VertexLimitTask : LimitTask {
 
 /// \brief The kernels of one SimdLevel; all are instances of limitKernelTemplate.h.
 struct LimitKernel {
-    /// Writes the sums of faces [begin, end) of the level.
+    /// Writes sums [begin, end).
     void (*sumFaces)(RegularLimitTask const &task, Far::Index begin, Far::Index end);
     /// Writes the outputs of groups [begin, end), the sums being there.
     void (*evaluateFaces)(RegularLimitTask const &task, Far::Index begin, Far::Index end);
@@ -150,8 +157,10 @@ extern LimitKernel const kLimitKernelPortable;
 extern LimitKernel const kLimitKernelAvx2;
 extern LimitKernel const kLimitKernelAvx512;
 
-/// @name All groups, in parallel, with the kernel of the SimdLevel in use
+/// @name All faces or groups, in parallel, with the kernel of the SimdLevel in use
 /// @{
+/// Writes the sums, which EvaluateLimit() needs.
+void SumFaces(RegularLimitTask const &task, Far::Index numSums);
 void EvaluateLimit(RegularLimitTask const &task, Far::Index numGroups);
 void EvaluateLimit(VertexLimitTask const &task, Far::Index numGroups);
 /// @}

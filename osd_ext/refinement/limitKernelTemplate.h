@@ -242,7 +242,7 @@ private:
     }
 };
 
-template <class SIMD, class ACCESS, bool HAS_DERIVATIVES>
+template <class SIMD, class ACCESS, bool HAS_DERIVATIVES, bool HAS_ONE_TIP>
 OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
                                         RegularLimitWeights<SIMD> const &weights,
                                         FaceElements<SIMD, ACCESS> const &faces) {
@@ -256,13 +256,14 @@ OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
     sources[1] = findWavesOfCorners<SIMD>(x);
     Vector next[kRegularFaceSize];
     Vector previous[kRegularFaceSize];
+    Vector beyond[kRegularFaceSize];
     Vector tips[kRegularFaceSize];
     faces.Load(task.values, group.next, next);
     faces.Load(task.values, group.previous, previous);
-    faces.LoadSums({task.sums.data, task.sums.stride}, group.beyond, tips);
+    faces.LoadSums({task.sums.data, task.sums.stride}, group.beyond, beyond);
     for (int i = 0; i < kRegularFaceSize; ++i) {
         x[i] = next[i] + previous[(i + 1) % kRegularFaceSize];
-        tips[i] = SIMD::MultiplyAdd(weights.beyondOfTip, tips[i], next[i] + previous[i]);
+        tips[i] = SIMD::MultiplyAdd(weights.beyondOfTip, beyond[i], next[i] + previous[i]);
     }
     sources[2] = findWavesOfEdges<SIMD>(x);
 
@@ -276,6 +277,11 @@ OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
         Vector across[kRegularFaceSize];
         addWaves<SIMD>(weigh<SIMD>(weights.across, sources), across);
         for (int i = 0; i < kRegularFaceSize; ++i) {
+            if constexpr (!HAS_ONE_TIP) {
+                tips[i] =
+                    SIMD::MultiplyAdd(weights.beyondOfTipAlong, beyond[i], next[i] + previous[i]);
+                addProduct<SIMD>(across[i], weights.tipAcross, next[i] - previous[i]);
+            }
             addProduct<SIMD>(x[i], weights.along.tip, tips[i]);
             addProduct<SIMD>(x[i], weights.duOfAcross, across[i]);
             addProduct<SIMD>(across[i], weights.dvOfDu, x[i]);
@@ -285,7 +291,7 @@ OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
     }
 }
 
-template <class SIMD, class ACCESS, bool HAS_DERIVATIVES>
+template <class SIMD, class ACCESS, bool HAS_DERIVATIVES, bool HAS_ONE_TIP>
 void evaluateGroups(RegularLimitTask const &given, Far::Index begin, Far::Index end) {
     // A copy, since the compiler must expect that outputs are written to the given one.
     RegularLimitTask const task = given;
@@ -293,7 +299,7 @@ void evaluateGroups(RegularLimitTask const &given, Far::Index begin, Far::Index 
     for (Far::Index group = begin; group < end; ++group) {
         for (int first = 0; first < RegularFaceGroup::kSize; first += SIMD::kNumFaces) {
             FaceElements<SIMD, ACCESS> const faces = {task.groups[group], first};
-            evaluateFaces<SIMD, ACCESS, HAS_DERIVATIVES>(task, weights, faces);
+            evaluateFaces<SIMD, ACCESS, HAS_DERIVATIVES, HAS_ONE_TIP>(task, weights, faces);
         }
     }
 }
@@ -301,14 +307,17 @@ void evaluateGroups(RegularLimitTask const &given, Far::Index begin, Far::Index 
 template <class ACCESS>
 void sumVertices(RegularLimitTask const &task, Far::Index begin, Far::Index end) {
     constexpr int kReach = ACCESS::kReach;
-    Far::Index const *const faceVerts = task.level->faceVerts.data();
-    Far::Index const *const firsts = task.level->faceFirstCorner.data();
-    for (Far::Index face = begin; face < end; ++face) {
-        Quad sum = LoadFloats<kReach>(ACCESS::At(task.values, faceVerts[firsts[face]]));
-        for (Far::Index corner = firsts[face] + 1; corner < firsts[face + 1]; ++corner) {
-            sum = sum + LoadFloats<kReach>(ACCESS::At(task.values, faceVerts[corner]));
-        }
-        StoreFloats<kReach>(task.sums.data + face * task.sums.stride, sum);
+    Elements<float const> const values = task.values;
+    for (Far::Index i = begin; i < end; ++i) {
+        Far::Index const *const verts = task.faceVerts + task.summedFaces[i];
+        Quad const v[] = {LoadFloats<kReach>(ACCESS::At(values, verts[0])),
+                          LoadFloats<kReach>(ACCESS::At(values, verts[1])),
+                          LoadFloats<kReach>(ACCESS::At(values, verts[2])),
+                          LoadFloats<kReach>(ACCESS::At(values, verts[3])),
+                          LoadFloats<kReach>(ACCESS::At(values, verts[4])),
+                          LoadFloats<kReach>(ACCESS::At(values, verts[5]))};
+        StoreFloats<kReach>(task.sums.data + i * task.sums.stride,
+                            (v[0] + v[1]) + (v[2] + v[3]) + (v[4] + v[5]));
     }
 }
 
@@ -399,10 +408,13 @@ struct LimitKernels {
     }
     static void EvaluateFaces(RegularLimitTask const &task, Far::Index begin, Far::Index end) {
         forEachQuad(task, [=](RegularLimitTask const &part, auto access) {
-            if (part.numOutputs > 1) {
-                evaluateGroups<SIMD, decltype(access), true>(part, begin, end);
+            using Access = decltype(access);
+            if (part.numOutputs == 1) {
+                evaluateGroups<SIMD, Access, false, true>(part, begin, end);
+            } else if (part.hasOneTip) {
+                evaluateGroups<SIMD, Access, true, true>(part, begin, end);
             } else {
-                evaluateGroups<SIMD, decltype(access), false>(part, begin, end);
+                evaluateGroups<SIMD, Access, true, false>(part, begin, end);
             }
         });
     }

@@ -65,14 +65,39 @@ Status PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
     prepareOthers(regularFaces.GetOthers(), rows);
     std::vector<RegularFaces::OfLevel> const &levels = regularFaces.GetLevels();
     for (std::size_t i = 0; i < levels.size(); ++i) {
-        RegularLevel level = {
-            &mesh.levels[i], MakeRegularFaceGroups(mesh.levels[i], levels[i].faces), {}};
-        if (!level.groups.empty()) {
-            level.weights = MakeRegularLimitWeights(levels[i].mask);
-        }
-        _regularLevels.push_back(std::move(level));
+        prepareFaces(mesh.levels[i], levels[i]);
     }
     return result;
+}
+
+void PreparedLimit::prepareFaces(FarExt::internal::Level const &level,
+                                 RegularFaces::OfLevel const &faces) {
+    FaceLevel &result = _faceLevels.emplace_back(FaceLevel{&level, {}, {}});
+    std::vector<unsigned char> isBeyond(std::size_t(level.numFaces), 0);
+    RegularFaces::Set const *const sets[] = {&faces.fVertices, &faces.ownVertices};
+    for (RegularFaces::Set const *set : sets) {
+        for (FarExt::internal::RegularFace const &face : set->faces) {
+            for (Index const beyond : face.beyond) {
+                isBeyond[std::size_t(beyond)] = 1;
+            }
+        }
+    }
+    result.summedFaces = FarExt::internal::ParallelSelect(
+        level.numFaces, [&](Index face) { return isBeyond[std::size_t(face)] != 0; });
+    FarExt::internal::Buffer<Index> sumsOfFaces;
+    sumsOfFaces.Resize(isBeyond.size());
+    FarExt::internal::ParallelFor(Index(result.summedFaces.size()), [&](Index i) {
+        Index &face = result.summedFaces[std::size_t(i)];
+        sumsOfFaces[std::size_t(face)] = i;
+        face = level.faceFirstCorner[face];
+    });
+    for (RegularFaces::Set const *set : sets) {
+        if (!set->faces.empty()) {
+            result.sets.push_back({MakeRegularFaceGroups(level, set->faces, sumsOfFaces),
+                                   set->firstVertex, MakeRegularLimitWeights(set->mask),
+                                   set->mask.HasOneTip()});
+        }
+    }
 }
 
 void PreparedLimit::prepareOthers(std::vector<Index> const &verts, LimitRows const &rows) {
@@ -126,24 +151,30 @@ void PreparedLimit::prepareOthers(std::vector<Index> const &verts, LimitRows con
         kRange);
 }
 
-void PreparedLimit::EvaluateFVertices(int level, Elements<float const> values, int length,
-                                      Outputs const &outputs) {
+void PreparedLimit::EvaluateFaces(int level, Elements<float const> values, int length,
+                                  Outputs const &outputs) {
     if (!HasFaces(level)) {
         return;
     }
-    RegularLevel const &regular = _regularLevels[std::size_t(level)];
+    FaceLevel const &faces = _faceLevels[std::size_t(level)];
     RegularLimitTask task;
-    setTask(values, true, length, outputs, task);
-    for (int i = 0; i < task.numOutputs; ++i) {
-        task.outputs[i].data += std::ptrdiff_t(regular.level->numVertices) * task.outputs[i].stride;
-    }
-    task.level = regular.level;
+    task.faceVerts = faces.level->faceVerts.data();
     task.sums.stride = RegularLimitTask::GetSumStride(length);
-    _sums.Resize(std::size_t(regular.level->numFaces) * std::size_t(task.sums.stride));
+    _sums.Resize(faces.summedFaces.size() * std::size_t(task.sums.stride));
     task.sums.data = _sums.data();
-    task.groups = regular.groups.data();
-    task.weights = &regular.weights;
-    EvaluateLimit(task, Index(regular.groups.size()));
+    task.summedFaces = faces.summedFaces.data();
+    setTask(values, true, length, outputs, task);
+    SumFaces(task, Index(faces.summedFaces.size()));
+    for (FaceSet const &set : faces.sets) {
+        setTask(values, true, length, outputs, task);
+        for (int i = 0; i < task.numOutputs; ++i) {
+            task.outputs[i].data += std::ptrdiff_t(set.firstVertex) * task.outputs[i].stride;
+        }
+        task.groups = set.groups.data();
+        task.weights = &set.weights;
+        task.hasOneTip = set.hasOneTip;
+        EvaluateLimit(task, Index(set.groups.size()));
+    }
 }
 
 void PreparedLimit::EvaluateOthers(Elements<float const> values, bool isReadBehind, int length,

@@ -14,10 +14,11 @@ namespace OpenSubdivHex::OsdExt::internal {
 
 /// \brief The limit of a level prepared for evaluation.
 ///
-/// Most vertices are F-vertices of regular faces, of the level or of one before: their limit is made
-/// from the values of the level of their face, so that a frame needs no values of the last level for
-/// them.  What is kept for them is the regular faces.  The others are stencils of the level's
-/// vertices, whose weights are those of their type: so what a frame reads is mostly indices.
+/// Most vertices are F-vertices of regular faces of a level before: their limit is made from the values
+/// of the level of their face, so that a frame needs no values of the last level for them.  Nearly all
+/// else are vertices of F-faces, of the level or of one before.  What is kept for them is the faces.
+/// The others are stencils of the level's vertices, whose weights are those of their type: so what a
+/// frame reads is mostly indices.
 class PreparedLimit {
 public:
     /// Elements of all vertices of the level: points, and behind them du and dv or nothing.
@@ -29,19 +30,15 @@ public:
                            FarExt::HexSchemeOptions const &schemeOptions,
                            FarExt::internal::LimitRows &rows);
 
-    /// \brief Writes the outputs of those vertices that regular faces of \p level, one before the
-    /// last, make.
+    /// \brief Writes the outputs of those vertices that faces of \p level make, and of others that are
+    /// in these faces: EvaluateOthers() comes behind all levels.
     ///
     /// \param values  of \p level; one float may be read behind the last of them
-    void EvaluateFVertices(int level, Elements<float const> values, int length,
-                           Outputs const &outputs);
+    void EvaluateFaces(int level, Elements<float const> values, int length, Outputs const &outputs);
     /// Whether a level has such faces.
-    bool HasFaces(int level) const {
-        return std::size_t(level) < _regularLevels.size() &&
-               !_regularLevels[std::size_t(level)].groups.empty();
-    }
+    bool HasFaces(int level) const { return !_faceLevels[std::size_t(level)].sets.empty(); }
 
-    /// Whether there are vertices that no regular face makes.
+    /// Whether there are vertices that no face makes.
     bool HasOthers() const { return !_vertexGroups.empty(); }
     /// \brief Writes their outputs.
     ///
@@ -51,18 +48,27 @@ public:
                         Outputs const &outputs) const;
 
 private:
-    /// The regular faces of a level.
-    struct RegularLevel {
-        FarExt::internal::Level const *level;
+    /// Faces of a level that have a mask in common.
+    struct FaceSet {
         std::vector<RegularFaceGroup> groups;
+        Far::Index firstVertex; ///< that of corner 0
         RegularLimitWeights<Scalar> weights;
+        bool hasOneTip;
+    };
+    struct FaceLevel {
+        FarExt::internal::Level const *level;
+        std::vector<FaceSet> sets;
+        std::vector<Far::Index>
+            summedFaces; ///< those beyond any of the faces, by their first corners
     };
 
+    void prepareFaces(FarExt::internal::Level const &level,
+                      FarExt::internal::RegularFaces::OfLevel const &faces);
     void prepareOthers(std::vector<Far::Index> const &verts,
                        FarExt::internal::LimitRows const &rows);
 
-    std::vector<RegularLevel> _regularLevels;
-    FarExt::internal::Buffer<float> _sums; // of the faces of a level
+    std::vector<FaceLevel> _faceLevels;
+    FarExt::internal::Buffer<float> _sums; // of faces of a level
 
     std::vector<VertexGroup> _vertexGroups;
     FarExt::internal::Buffer<std::uint32_t> _places; // of their sources

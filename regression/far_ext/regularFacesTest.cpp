@@ -48,7 +48,7 @@ RegularFaces findFaces(TopologyRefiner const &refiner) {
 }
 
 std::size_t countFaces(RegularFaces const &faces, int level) {
-    return faces.GetLevels()[std::size_t(level)].faces.size();
+    return faces.GetLevels()[std::size_t(level)].fVertices.faces.size();
 }
 
 } // namespace
@@ -77,6 +77,57 @@ TEST(RegularFaces, AreAllThatAreNotNearAPentagon) {
                   std::size_t(refiner->GetLevel(level).GetNumFaces() - 12 * 11))
             << "level " << level;
     }
+}
+
+// Where all vertices have three faces, every vertex is regular once hexagons are all around: all but those
+// of level 0 and the corners of F-faces of pentagons.
+TEST(RegularFaces, LeaveTheCornersOfPentagons) {
+    for (FarExt::FaceMask mask : {FarExt::FaceMask::Average, FarExt::FaceMask::Smooth}) {
+        auto const refiner = createRefiner("dodecahedron", mask, 5);
+        RegularFaces const faces = findFaces(*refiner);
+        EXPECT_EQ(faces.GetOthers().size(), 20u + 5 * 60u);
+    }
+}
+
+// Vertices with four faces leave one corner for each of them at every level, besides the triangles: two
+// in the hexagons of level 1, one in those of further levels.
+TEST(RegularFaces, GiveSomeOfTheirOwnVertices) {
+    auto const refiner = createRefiner("octahedron", FarExt::FaceMask::Average, 4);
+    RegularFaces const faces = findFaces(*refiner);
+    for (int level = 0; level < 2; ++level) {
+        EXPECT_TRUE(faces.GetLevels()[std::size_t(level)].ownVertices.faces.empty());
+    }
+    std::vector<int> made(std::size_t(refiner->GetLevel(4).GetNumVertices()), 0);
+    auto const ofFace = [&](RegularFaces::Set const &set,
+                            FarExt::internal::RegularFace const &face) {
+        return made.begin() + set.firstVertex + face.firstCorner;
+    };
+    for (int level = 2; level <= 4; ++level) {
+        RegularFaces::Set const &set = faces.GetLevels()[std::size_t(level)].ownVertices;
+        std::size_t numPartial = 0;
+        for (auto const &face : set.faces) {
+            int numCorners = 0;
+            for (int corner = 0; corner < 6; ++corner) {
+                bool const isMade = (face.corners >> corner & 1) != 0;
+                numCorners += int(isMade);
+                ofFace(set, face)[corner] += int(isMade);
+            }
+            EXPECT_GE(numCorners, level == 2 ? 4 : 5);
+            numPartial += std::size_t(numCorners < 6);
+        }
+        EXPECT_EQ(numPartial, level == 2 ? 12u : 24u) << "level " << level;
+        auto const &fVertices = faces.GetLevels()[std::size_t(level)].fVertices;
+        for (auto const &face : fVertices.faces) {
+            for (int corner = 0; corner < 6; ++corner) {
+                ++ofFace(fVertices, face)[corner];
+            }
+        }
+    }
+    for (Far::Index const vert : faces.GetOthers()) {
+        ++made[std::size_t(vert)];
+    }
+    EXPECT_EQ(faces.GetOthers().size(), 6u + 24u + 3 * 48u);
+    EXPECT_EQ(std::count(made.begin(), made.end(), 1), std::ptrdiff_t(made.size()));
 }
 
 // Its masks weigh opposite vertices of hexagons more than others.

@@ -166,7 +166,8 @@ TEST(LimitEvaluator, TakesAnyLengthAndSimdLevel) {
 TEST(LimitEvaluator, TakesRegularFacesOfAnyMask) {
     for (auto faceMask :
          {FarExt::FaceMask::Average, FarExt::FaceMask::Cosine, FarExt::FaceMask::Smooth}) {
-        for (char const *name : {"hexTorus", "dodecahedron", "hexGrid", "mixedPatch"}) {
+        for (char const *name :
+             {"hexTorus", "dodecahedron", "octahedron", "hexGrid", "mixedPatch"}) {
             for (auto boundary :
                  {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}) {
                 SCOPED_TRACE(testing::Message()
