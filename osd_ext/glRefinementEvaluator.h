@@ -45,7 +45,7 @@ struct GLBinding {
 ///
 /// **Context.** A context of OpenGL 4.3 or later must be current in all functions, always the same or
 /// one that shares its objects.  Afterwards no program is current, and nothing is bound to
-/// GL_SHADER_STORAGE_BUFFER and its first seven indices.  Who reads the result
+/// GL_SHADER_STORAGE_BUFFER and its first eight indices.  Who reads the result
 /// by other means than shader storage buffers calls glMemoryBarrier() before, as behind
 /// Osd::GLComputeEvaluator.
 ///
@@ -75,7 +75,8 @@ public:
     ///             interpolationMode that is none,
     ///           - StatusCode::Unsupported without a context of OpenGL 4.3, or if its compiler takes
     ///             no shader,
-    ///           - StatusCode::TooLarge if there are more than 2^32 indices
+    ///           - StatusCode::TooLarge if there are more than 2^32 indices, or more bytes of them than the
+    ///             driver reaches
     static std::unique_ptr<GLRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                          Options options,
                                                          FarExt::Status *status = nullptr);

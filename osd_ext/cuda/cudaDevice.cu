@@ -80,10 +80,8 @@ void CudaDevice::Run(DeviceTask const &task) {
                    using Compiled = decltype(compiled);
                    typename Compiled::Kernels kernels;
                    static_cast<DeviceArguments &>(kernels) = arguments;
-                   kernels.count = DeviceTask::GetNumInvocations(Compiled::kKernel,
-                                                                 Compiled::kLength, task.count);
-                   unsigned const numGroups =
-                       kernels.count / kGroup + (kernels.count % kGroup != 0);
+                   kernels.count = task.count;
+                   unsigned const numGroups = task.count / kGroup + (task.count % kGroup != 0);
                    runKernel<Compiled><<<numGroups, kGroup, 0, _stream>>>(kernels);
                });
 }

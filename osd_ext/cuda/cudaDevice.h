@@ -5,6 +5,8 @@
 #include "osd_ext/cudaStream.h"
 #include "osd_ext/device/device.h"
 
+#include <limits>
+
 namespace OpenSubdivHex::OsdExt::internal {
 
 /// \brief The current device of CUDA.  Buffers are addresses on it.
@@ -14,6 +16,7 @@ public:
     void SetStream(CudaStream stream) { _stream = stream; }
 
     FarExt::Status CheckContext() const override;
+    std::int64_t GetMaxBytes() const override { return std::numeric_limits<std::int64_t>::max(); }
     DeviceBufferName Allocate(std::int64_t numBytes) override;
     void Free(DeviceBufferName buffer) override;
     void Write(DeviceBufferName buffer, std::int64_t firstByte, void const *data,

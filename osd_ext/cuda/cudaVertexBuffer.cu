@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 
 namespace OpenSubdivHex::OsdExt {
 
@@ -18,10 +19,13 @@ cudaStream_t getStream(void *deviceContext) { return static_cast<cudaStream_t>(d
 
 CudaVertexBuffer *CudaVertexBuffer::Create(int numElements, int numVertices,
                                            void * /*deviceContext*/) {
+    std::unique_ptr<CudaVertexBuffer> result(
+        new CudaVertexBuffer(numElements, numVertices, nullptr));
     std::size_t const numFloats = std::size_t(numElements) * std::size_t(numVertices);
     void *floats = nullptr;
     ThrowCudaError(cudaMalloc(&floats, std::max<std::size_t>(1, numFloats) * sizeof(float)));
-    return new CudaVertexBuffer(numElements, numVertices, static_cast<float *>(floats));
+    result->_floats = static_cast<float *>(floats);
+    return result.release();
 }
 
 CudaVertexBuffer::~CudaVertexBuffer() { cudaFree(_floats); }

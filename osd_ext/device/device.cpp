@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
@@ -30,6 +31,16 @@ DeviceArguments DeviceTask::GetArguments() const {
 }
 
 Device::~Device() = default;
+
+FarExt::Status Device::CheckSize(std::int64_t numBytes, std::string const &what) const {
+    std::int64_t const maxBytes = GetMaxBytes();
+    return numBytes <= maxBytes
+               ? FarExt::Status()
+               : FarExt::internal::Failure(FarExt::StatusCode::TooLarge,
+                                           what + " would take " + std::to_string(numBytes) +
+                                               " bytes, and the device reaches " +
+                                               std::to_string(maxBytes));
+}
 
 void DeviceBuffer::Resize(std::int64_t numBytes) {
     // A buffer without a byte would be none.

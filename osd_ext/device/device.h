@@ -17,11 +17,6 @@ using DeviceBufferName = std::uint64_t;
 
 /// \brief A kernel to be run on \c count things.
 struct OPENSUBDIVHEX_API DeviceTask {
-    /// RegularLimit has an invocation for each float of a face.
-    static std::uint32_t GetNumInvocations(DeviceKernel kernel, int length, std::uint32_t count) {
-        return kernel == DeviceKernel::RegularLimit ? count * std::uint32_t(length) : count;
-    }
-
     DeviceKernel kernel;
     int length;       ///< floats of an element
     int faceSize = 0; ///< for DeviceKernel::FaceRun
@@ -52,6 +47,13 @@ public:
 
     /// Whether anything can be run at all.
     virtual FarExt::Status CheckContext() const = 0;
+
+    /// \brief How many bytes of a buffer kernels reach.
+    virtual std::int64_t GetMaxBytes() const = 0;
+    /// \brief TooLarge for a buffer of more bytes than GetMaxBytes().
+    ///
+    /// \param what  names it in the message
+    FarExt::Status CheckSize(std::int64_t numBytes, std::string const &what) const;
 
     /// Gives a buffer of \p numBytes, 1 or more, whose content is not known.
     virtual DeviceBufferName Allocate(std::int64_t numBytes) = 0;

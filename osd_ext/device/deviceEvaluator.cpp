@@ -22,14 +22,18 @@ using FarExt::internal::RefinementMask;
 namespace {
 
 constexpr auto kWord = std::int64_t(sizeof(std::uint32_t));
-constexpr std::int64_t kMaxWords = std::int64_t(1) << 32;
 
 template <class RECORD>
 constexpr auto kWordsOf = std::int64_t(sizeof(RECORD)) / kWord;
 
-Status tooMany() {
-    return FarExt::internal::Failure(
-        StatusCode::TooLarge, "the refinements have more indices or weights than 32 bits reach");
+// Positions in arrays of the device are kept in 32 bits.
+Status checkPositions(std::int64_t count, std::string const &what) {
+    constexpr std::int64_t kMax = std::numeric_limits<std::uint32_t>::max();
+    return count <= kMax ? Status()
+                         : FarExt::internal::Failure(StatusCode::TooLarge,
+                                                     what + " are " + std::to_string(count) +
+                                                         ", more than the " + std::to_string(kMax) +
+                                                         " that positions of 32 bits reach");
 }
 
 bool isUnrolled(DeviceFaceRun const &run) {
@@ -71,9 +75,9 @@ Status DeviceEvaluator::Prepare(Options options) {
         }
     }
     DeviceArrays arrays;
-    _refinements = MakeDeviceRefinements(refinements, masks, arrays);
-    if (_refinements.size() < refinements.size()) {
-        return tooMany();
+    status = MakeDeviceRefinements(refinements, masks, arrays, _refinements);
+    if (!status.IsOk()) {
+        return status;
     }
     std::vector<std::int32_t> values;
     if (isFaceVarying) {
@@ -108,8 +112,16 @@ Status DeviceEvaluator::Prepare(Options options) {
             {corners, take(kWordsOf<DeviceVertex> * std::int64_t(refinement.vertices.size()))});
     }
     _firstValue = take(std::int64_t(values.size()));
-    if (next > kMaxWords) {
-        return tooMany();
+    status = checkPositions(next, "the indices of the refinements");
+    if (status.IsOk()) {
+        status = _device->CheckSize(next * kWord, "the indices of the refinements");
+    }
+    if (status.IsOk()) {
+        status = _device->CheckSize(std::int64_t(arrays.weights.size()) * kWord,
+                                    "the weights of the refinements");
+    }
+    if (!status.IsOk()) {
+        return status;
     }
     _indices.Resize(next * kWord);
     _indices.Write(0, arrays.indices);
@@ -222,7 +234,8 @@ auto DeviceEvaluator::getScratch(int level, int length) -> Elements {
     return {(level % 2 == 0 ? _evenLevel : _oddLevel).GetName(), 0, length};
 }
 
-// For levels 1 ... last, which grow: the last two have room for those before.
+// For levels 1 ... last, which grow: the last two have room for those before.  They are no larger than
+// results, which have been checked.
 void DeviceEvaluator::resizeScratch(int length, int last) {
     for (int level = std::max(1, last - 1); level <= last; ++level) {
         (level % 2 == 0 ? _evenLevel : _oddLevel)
@@ -359,18 +372,27 @@ Status DeviceEvaluator::prepareLimit(int level, int length) {
     if (!status.IsOk()) {
         return status;
     }
-    auto result = std::make_unique<Limit>(*_device);
     std::int64_t const firstVertex =
         kWordsOf<DeviceRegularFace> * std::int64_t(prepared.faces.size());
     std::int64_t const firstSource =
         firstVertex + kWordsOf<DeviceLimitVertex> * std::int64_t(prepared.vertices.size());
+    std::int64_t const numIndices = firstSource + std::int64_t(prepared.sources.size());
+    status = _device->CheckSize(numIndices * kWord, "the indices of the limit");
+    if (status.IsOk()) {
+        status = _device->CheckSize(std::int64_t(prepared.weights.size()) * kWord,
+                                    "the weights of the limit");
+    }
+    if (!status.IsOk()) {
+        return status;
+    }
+    auto result = std::make_unique<Limit>(*_device);
     for (DeviceLimitVertex &vertex : prepared.vertices) {
         vertex.firstIndex += std::uint32_t(firstSource);
     }
     result->numVertices = std::uint32_t(prepared.vertices.size());
     result->firstVertex = std::uint32_t(firstVertex);
     result->levels = std::move(prepared.levels);
-    result->indices.Resize((firstSource + std::int64_t(prepared.sources.size())) * kWord);
+    result->indices.Resize(numIndices * kWord);
     result->indices.Write(0, prepared.faces);
     result->indices.Write(firstVertex * kWord, prepared.vertices);
     result->indices.Write(firstSource * kWord, prepared.sources);
@@ -490,6 +512,10 @@ Status DeviceEvaluator::prepareFaces(int level) {
     faces->firstListedVertex = std::uint32_t(indices.size());
     indices.insert(indices.end(), ofMesh.faceVerts.begin() + faces->numConsecutiveCorners,
                    ofMesh.faceVerts.end());
+    status = _device->CheckSize(std::int64_t(indices.size()) * kWord, "the faces of the level");
+    if (!status.IsOk()) {
+        return status;
+    }
     faces->indices.Resize(std::int64_t(indices.size()) * kWord);
     faces->indices.Write(0, indices);
     _faces[std::size_t(level)] = std::move(faces);

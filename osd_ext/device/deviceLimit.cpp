@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <string>
 #include <unordered_map>
 
 namespace OpenSubdivHex::OsdExt::internal {
@@ -99,7 +100,9 @@ Status MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
                                  kWordsOfVertex * limit.vertices.size() + limit.sources.size();
     if (std::max(numWords, limit.weights.size()) > std::numeric_limits<std::uint32_t>::max()) {
         return FarExt::internal::Failure(
-            StatusCode::TooLarge, "the limit has more indices or weights than 32 bits reach");
+            StatusCode::TooLarge, "the limit has " + std::to_string(numWords) + " indices and " +
+                                      std::to_string(limit.weights.size()) +
+                                      " weights, more than 32 bits reach");
     }
     return result;
 }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
@@ -375,9 +376,9 @@ void Maker::fill(std::int32_t *indices) const {
 
 } // namespace
 
-std::vector<DeviceRefinement>
-MakeDeviceRefinements(std::vector<Refinement const *> const &refinements,
-                      std::vector<RefinementMask> const &masks, DeviceArrays &arrays) {
+FarExt::Status MakeDeviceRefinements(std::vector<Refinement const *> const &refinements,
+                                     std::vector<RefinementMask> const &masks, DeviceArrays &arrays,
+                                     std::vector<DeviceRefinement> &result) {
     std::vector<Maker> makers;
     std::size_t numIndices = 0;
     for (std::size_t i = 0; i < refinements.size(); ++i) {
@@ -386,16 +387,18 @@ MakeDeviceRefinements(std::vector<Refinement const *> const &refinements,
         makers.back().Plan();
         numIndices = makers.back().GetNumIndices();
     }
-    std::vector<DeviceRefinement> result;
     constexpr std::size_t kMaxSize = std::numeric_limits<std::uint32_t>::max();
     if (std::max(numIndices, arrays.weights.size()) > kMaxSize) {
-        return result;
+        return FarExt::internal::Failure(
+            FarExt::StatusCode::TooLarge,
+            "the refinements have " + std::to_string(numIndices) + " indices and " +
+                std::to_string(arrays.weights.size()) + " weights, more than 32 bits reach");
     }
     arrays.indices.Resize(numIndices);
     for (Maker &maker : makers) {
         result.push_back(maker.Take(arrays.indices.data()));
     }
-    return result;
+    return FarExt::Status();
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -87,11 +87,11 @@ struct DeviceRefinement {
 ///
 /// \param masks  by refinement
 ///
-/// \return  empty where there are more than 2^32 indices or weights
-OPENSUBDIVHEX_API std::vector<DeviceRefinement>
+/// \return  TooLarge, and how many there are, where there are more than 2^32 indices or weights
+OPENSUBDIVHEX_API FarExt::Status
 MakeDeviceRefinements(std::vector<FarExt::internal::Refinement const *> const &refinements,
                       std::vector<FarExt::internal::RefinementMask> const &masks,
-                      DeviceArrays &arrays);
+                      DeviceArrays &arrays, std::vector<DeviceRefinement> &result);
 
 } // namespace OpenSubdivHex::OsdExt::internal
 

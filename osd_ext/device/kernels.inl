@@ -7,7 +7,7 @@
 //   READ_ARRAY, ARRAY    (binding, block, type, name): declare arrays
 //   PARAMETER            (type, name): declares what kernelParameters.inl lists
 //   FUNCTION             what stands before a function
-//   REFERENCE(type)      the type of an argument that the function changes
+//   REFERENCE(type)      the type of an argument that the function changes, or that is large
 //   PRECISE              what keeps a compiler from other sums
 //   LENGTH               floats of an element
 //   SIZE                 vertices of the faces of a run, for makeFVerticesOfRun

@@ -74,34 +74,42 @@ FUNCTION Six addWaves(Waves waves) {
     return at;
 }
 
-FUNCTION float weigh3(PLACE first, float ofVertices, float ofNeighbors, float ofPairs) {
-    float sum = multiply(weights[first], ofVertices);
-    sum = addProduct(sum, weights[first + PLACE(1)], ofNeighbors);
-    return addProduct(sum, weights[first + PLACE(2)], ofPairs);
+// RegularLimitWeights, in their order.
+struct LimitWeights {
+    float x[52];
+};
+
+FUNCTION float weigh3(REFERENCE(LimitWeights) w, int first, float ofVertices, float ofNeighbors,
+                      float ofPairs) {
+    float sum = multiply(w.x[first], ofVertices);
+    sum = addProduct(sum, w.x[first + 1], ofNeighbors);
+    return addProduct(sum, w.x[first + 2], ofPairs);
 }
 
-// By SymmetricWeights.
-FUNCTION Waves weighSymmetric(PLACE first, Waves verts, Waves neighbors, Waves pairs) {
+// By SymmetricWeights, the first of which has a place.
+FUNCTION Waves weighSymmetric(REFERENCE(LimitWeights) w, int first, Waves verts, Waves neighbors,
+                              Waves pairs) {
     Waves result;
-    result.mean = weigh3(first, verts.mean, neighbors.mean, pairs.mean);
-    result.cosine1 = weigh3(first + PLACE(3), verts.cosine1, neighbors.cosine1, pairs.cosine1);
-    result.sine1 = weigh3(first + PLACE(6), verts.sine1, neighbors.sine1, pairs.sine1);
-    result.cosine2 = weigh3(first + PLACE(9), verts.cosine2, neighbors.cosine2, pairs.cosine2);
-    result.sine2 = weigh3(first + PLACE(12), verts.sine2, neighbors.sine2, pairs.sine2);
-    result.alternating = addProduct(multiply(weights[first + PLACE(15)], verts.alternating),
-                                    weights[first + PLACE(16)], neighbors.alternating);
+    result.mean = weigh3(w, first, verts.mean, neighbors.mean, pairs.mean);
+    result.cosine1 = weigh3(w, first + 3, verts.cosine1, neighbors.cosine1, pairs.cosine1);
+    result.sine1 = weigh3(w, first + 6, verts.sine1, neighbors.sine1, pairs.sine1);
+    result.cosine2 = weigh3(w, first + 9, verts.cosine2, neighbors.cosine2, pairs.cosine2);
+    result.sine2 = weigh3(w, first + 12, verts.sine2, neighbors.sine2, pairs.sine2);
+    result.alternating = addProduct(multiply(w.x[first + 15], verts.alternating), w.x[first + 16],
+                                    neighbors.alternating);
     return result;
 }
 
-// By AntisymmetricWeights.
-FUNCTION Waves weighAntisymmetric(PLACE first, Waves verts, Waves neighbors, Waves pairs) {
+// By AntisymmetricWeights, likewise.
+FUNCTION Waves weighAntisymmetric(REFERENCE(LimitWeights) w, int first, Waves verts,
+                                  Waves neighbors, Waves pairs) {
     Waves result;
     result.mean = 0.0f;
-    result.cosine1 = weigh3(first, verts.sine1, neighbors.sine1, pairs.sine1);
-    result.sine1 = weigh3(first + PLACE(3), verts.cosine1, neighbors.cosine1, pairs.cosine1);
-    result.cosine2 = weigh3(first + PLACE(6), verts.sine2, neighbors.sine2, pairs.sine2);
-    result.sine2 = weigh3(first + PLACE(9), verts.cosine2, neighbors.cosine2, pairs.cosine2);
-    result.alternating = multiply(weights[first + PLACE(12)], pairs.alternating);
+    result.cosine1 = weigh3(w, first, verts.sine1, neighbors.sine1, pairs.sine1);
+    result.sine1 = weigh3(w, first + 3, verts.cosine1, neighbors.cosine1, pairs.cosine1);
+    result.cosine2 = weigh3(w, first + 6, verts.sine2, neighbors.sine2, pairs.sine2);
+    result.sine2 = weigh3(w, first + 9, verts.cosine2, neighbors.cosine2, pairs.cosine2);
+    result.alternating = multiply(w.x[first + 12], pairs.alternating);
     return result;
 }
 
@@ -109,68 +117,75 @@ FUNCTION float getSourceFloat(uint vert, uint k) {
     return sources[sourceOffset + PLACE(vert) * sourceStride + PLACE(k)];
 }
 
-// One float of the F-vertices of a DeviceRegularFace, by RegularLimitWeights: so neighbouring
-// invocations read neighbouring floats.
+// The F-vertices of a DeviceRegularFace.  What is read once serves all floats of the elements.
 FUNCTION void makeRegularLimit(uint i) {
-    uint k = i % uint(LENGTH);
-    PLACE place = firstIndex + PLACE(8) * PLACE(i / uint(LENGTH));
+    PLACE place = firstIndex + PLACE(8) * PLACE(i);
     uint corner = indices[place];
     uint locals = indices[place + PLACE(7)];
-    PLACE along = firstWeight + PLACE(18);
-    PLACE across = firstWeight + PLACE(36);
-    float beyondOfTip = weights[firstWeight + PLACE(51)];
-
-    Six verts;
-    Six neighbors;
-    Six next;
-    Six previous;
-    Six tips;
+    LimitWeights w;
+    for (int j = 0; j < 52; ++j) {
+        w.x[j] = weights[firstWeight + PLACE(j)];
+    }
+    uint verts[6];
+    uint around[36]; // of the faces beyond, from the neighbour on
     for (int j = 0; j < 6; ++j) {
-        verts.x[j] = getSourceFloat(getVertexOfCorner(corner + uint(j)), k);
+        verts[j] = getVertexOfCorner(corner + uint(j));
         uint beyond = indices[place + PLACE(1 + j)];
         uint local = (locals >> uint(3 * j)) & 7u;
-        // Of the face beyond, from the neighbour on.
-        float around[6];
         for (int l = 0; l < 6; ++l) {
-            around[l] = getSourceFloat(getVertexOfCorner(beyond + (local + uint(l)) % 6u), k);
+            uint turned = local + uint(l);
+            around[6 * j + l] = getVertexOfCorner(beyond + (turned < 6u ? turned : turned - 6u));
         }
-        neighbors.x[j] = around[0];
-        previous.x[j] = around[1];
-        next.x[j] = around[5];
-        float sum = add(around[0], around[1]);
-        for (int l = 2; l < 6; ++l) {
-            sum = add(sum, around[l]);
+    }
+    for (int k = 0; k < LENGTH; ++k) {
+        Six ofVertices;
+        Six neighbors;
+        Six next;
+        Six previous;
+        Six tips;
+        for (int j = 0; j < 6; ++j) {
+            ofVertices.x[j] = getSourceFloat(verts[j], uint(k));
+            float x[6];
+            for (int l = 0; l < 6; ++l) {
+                x[l] = getSourceFloat(around[6 * j + l], uint(k));
+            }
+            neighbors.x[j] = x[0];
+            previous.x[j] = x[1];
+            next.x[j] = x[5];
+            float sum = add(x[0], x[1]);
+            for (int l = 2; l < 6; ++l) {
+                sum = add(sum, x[l]);
+            }
+            tips.x[j] = addProduct(add(next.x[j], previous.x[j]), w.x[51], sum);
         }
-        tips.x[j] = addProduct(add(next.x[j], previous.x[j]), beyondOfTip, sum);
-    }
-    Six pairs;
-    for (int j = 0; j < 6; ++j) {
-        pairs.x[j] = add(next.x[j], previous.x[(j + 1) % 6]);
-    }
-    Waves ofVerts = findWavesOfCorners(verts);
-    Waves ofNeighbors = findWavesOfCorners(neighbors);
-    Waves ofPairs = findWavesOfEdges(pairs);
+        Six pairs;
+        for (int j = 0; j < 6; ++j) {
+            pairs.x[j] = add(next.x[j], previous.x[(j + 1) % 6]);
+        }
+        Waves wavesOfVertices = findWavesOfCorners(ofVertices);
+        Waves wavesOfNeighbors = findWavesOfCorners(neighbors);
+        Waves wavesOfPairs = findWavesOfEdges(pairs);
 
-    Six points = addWaves(weighSymmetric(firstWeight, ofVerts, ofNeighbors, ofPairs));
-    PLACE result = resultOffset + PLACE(firstFVertex + corner) * resultStride + PLACE(k);
-    for (int j = 0; j < 6; ++j) {
-        results[result + PLACE(j) * resultStride] =
-            addProduct(points.x[j], weights[firstWeight + PLACE(17)], tips.x[j]);
-    }
-    if (hasDerivatives == 0u) {
-        return;
-    }
-    Six du = addWaves(weighSymmetric(along, ofVerts, ofNeighbors, ofPairs));
-    Six dv = addWaves(weighAntisymmetric(across, ofVerts, ofNeighbors, ofPairs));
-    float duOfAcross = weights[firstWeight + PLACE(49)];
-    float dvOfDu = weights[firstWeight + PLACE(50)];
-    PLACE duResult = duOffset + PLACE(firstFVertex + corner) * duStride + PLACE(k);
-    PLACE dvResult = dvOffset + PLACE(firstFVertex + corner) * dvStride + PLACE(k);
-    for (int j = 0; j < 6; ++j) {
-        float x = addProduct(du.x[j], weights[along + PLACE(17)], tips.x[j]);
-        x = addProduct(x, duOfAcross, dv.x[j]);
-        duResults[duResult + PLACE(j) * duStride] = x;
-        dvResults[dvResult + PLACE(j) * dvStride] = addProduct(dv.x[j], dvOfDu, x);
+        Six points =
+            addWaves(weighSymmetric(w, 0, wavesOfVertices, wavesOfNeighbors, wavesOfPairs));
+        PLACE result = resultOffset + PLACE(firstFVertex + corner) * resultStride + PLACE(k);
+        for (int j = 0; j < 6; ++j) {
+            results[result + PLACE(j) * resultStride] = addProduct(points.x[j], w.x[17], tips.x[j]);
+        }
+        if (hasDerivatives != 0u) {
+            Six du =
+                addWaves(weighSymmetric(w, 18, wavesOfVertices, wavesOfNeighbors, wavesOfPairs));
+            Six dv = addWaves(
+                weighAntisymmetric(w, 36, wavesOfVertices, wavesOfNeighbors, wavesOfPairs));
+            PLACE duResult = duOffset + PLACE(firstFVertex + corner) * duStride + PLACE(k);
+            PLACE dvResult = dvOffset + PLACE(firstFVertex + corner) * dvStride + PLACE(k);
+            for (int j = 0; j < 6; ++j) {
+                float x = addProduct(du.x[j], w.x[35], tips.x[j]);
+                x = addProduct(x, w.x[49], dv.x[j]);
+                duResults[duResult + PLACE(j) * duStride] = x;
+                dvResults[dvResult + PLACE(j) * dvStride] = addProduct(dv.x[j], w.x[50], x);
+            }
+        }
     }
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <new>
 #include <string>
 
 namespace OpenSubdivHex::OsdExt::internal {
@@ -70,19 +69,16 @@ Status GlDevice::CheckContext() const {
     return Status();
 }
 
+std::int64_t GlDevice::GetMaxBytes() const {
+    GLint64 maxBytes = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &maxBytes);
+    return std::min(std::max<GLint64>(maxBytes, kMaxBytes), kMaxPlaces * GLint64(sizeof(float)));
+}
+
 DeviceBufferName GlDevice::Allocate(std::int64_t numBytes) {
-    GLuint name = 0;
-    GLint64 numAllocated = 0;
-    glGenBuffers(1, &name);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
-    glBufferData(GL_SHADER_STORAGE_BUFFER, GLsizeiptr(numBytes), nullptr, GL_DYNAMIC_COPY);
-    glGetBufferParameteri64v(GL_SHADER_STORAGE_BUFFER, GL_BUFFER_SIZE, &numAllocated);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
-    if (numAllocated != numBytes) {
-        glDeleteBuffers(1, &name);
-        throw std::bad_alloc();
-    }
-    return name;
+    GlBuffer buffer;
+    buffer.Allocate(numBytes, nullptr);
+    return buffer.Release();
 }
 
 void GlDevice::Free(DeviceBufferName buffer) {
@@ -116,10 +112,7 @@ Status GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
                                                      " bytes, but its last element ends at byte " +
                                                      str(numNeeded));
     }
-    GLint64 maxBytes = 0;
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &maxBytes);
-    maxBytes =
-        std::min(std::max<GLint64>(maxBytes, kMaxBytes), kMaxPlaces * GLint64(sizeof(float)));
+    std::int64_t const maxBytes = GetMaxBytes();
     if (numNeeded > maxBytes) {
         return fail(StatusCode::TooLarge,
                     "the last element of the " + what + " ends at byte " + str(numNeeded) +
@@ -159,7 +152,7 @@ Status GlDevice::Prepare(DeviceKernel kernel, int length, int faceSize) {
 void GlDevice::Run(DeviceTask const &task) {
     Kernel const &kernel = _kernels.at({task.kernel, task.length, task.faceSize});
     DeviceParameters parameters = task.parameters;
-    parameters.count = DeviceTask::GetNumInvocations(task.kernel, task.length, task.count);
+    parameters.count = task.count;
     kernel.program->Use();
     GLint const *uniform = kernel.uniforms.data();
 #define PLACE Place

@@ -17,6 +17,7 @@ namespace OpenSubdivHex::OsdExt::internal {
 class GlDevice : public Device {
 public:
     FarExt::Status CheckContext() const override;
+    std::int64_t GetMaxBytes() const override;
     DeviceBufferName Allocate(std::int64_t numBytes) override;
     void Free(DeviceBufferName buffer) override;
     void Write(DeviceBufferName buffer, std::int64_t firstByte, void const *data,

@@ -2,7 +2,9 @@
 #include "hostEvaluator.h"
 
 #include <cstring>
+#include <limits>
 #include <string>
+#include <vector>
 
 namespace OpenSubdivHex::Regression {
 
@@ -18,9 +20,14 @@ DeviceBufferName getName(void const *buffer) {
 }
 char *getBytes(DeviceBufferName buffer) { return reinterpret_cast<char *>(std::uintptr_t(buffer)); }
 
+constexpr std::int64_t kAnyBytes = std::numeric_limits<std::int64_t>::max();
+
 class HostDevice : public Device {
 public:
+    explicit HostDevice(std::int64_t maxBytes) : _maxBytes(maxBytes) {}
+
     Status CheckContext() const override { return Status(); }
+    std::int64_t GetMaxBytes() const override { return _maxBytes; }
     DeviceBufferName Allocate(std::int64_t numBytes) override {
         return getName(new char[std::size_t(numBytes)]);
     }
@@ -36,32 +43,51 @@ public:
                                                        "the " + what + " is null");
     }
     Status Prepare(DeviceKernel, int, int) override { return Status(); }
-    void Run(DeviceTask const &task) override {
+    void Run(DeviceTask const &task) override { _tasks.push_back(task); }
+    void Wait() override {
+        for (; !_tasks.empty(); _tasks.pop_back()) {
+            runBackwards(_tasks.back());
+        }
+    }
+    Status EndFrame() override {
+        Wait();
+        return Status();
+    }
+
+private:
+    static void runBackwards(DeviceTask const &task) {
         RunInParts(task.kernel, task.length, task.faceSize, task.GetArguments(),
                    [&](auto compiled, DeviceArguments const &arguments) {
                        using Compiled = decltype(compiled);
                        typename Compiled::Kernels kernels;
                        static_cast<DeviceArguments &>(kernels) = arguments;
-                       kernels.count = DeviceTask::GetNumInvocations(Compiled::kKernel,
-                                                                     Compiled::kLength, task.count);
-                       for (std::uint32_t i = 0; i < kernels.count; ++i) {
-                           RunKernel<Compiled::kKernel>(kernels, i);
+                       kernels.count = task.count;
+                       for (std::uint32_t i = task.count; i > 0; --i) {
+                           RunKernel<Compiled::kKernel>(kernels, i - 1);
                        }
                    });
     }
-    void Wait() override {}
-    Status EndFrame() override { return Status(); }
+
+    std::int64_t _maxBytes;
+    std::vector<DeviceTask> _tasks; // that nothing waited for
 };
 
 } // namespace
 
-HostEvaluator::HostEvaluator(FarExt::TopologyRefiner const &refiner)
-    : _evaluator(std::make_unique<HostDevice>(), refiner) {}
+HostEvaluator::HostEvaluator(std::int64_t maxBytes, FarExt::TopologyRefiner const &refiner)
+    : _evaluator(std::make_unique<HostDevice>(maxBytes), refiner) {}
 
 std::unique_ptr<HostEvaluator> HostEvaluator::Create(FarExt::TopologyRefiner const &refiner,
                                                      Options options, Status *status) {
-    std::unique_ptr<HostEvaluator> result(new HostEvaluator(refiner));
+    std::unique_ptr<HostEvaluator> result(new HostEvaluator(kAnyBytes, refiner));
     return Report(result->_evaluator.Prepare(options), status) ? std::move(result) : nullptr;
+}
+
+std::unique_ptr<HostEvaluator> HostEvaluator::CreateWithin(std::int64_t maxBytes,
+                                                           FarExt::TopologyRefiner const &refiner,
+                                                           Status *status) {
+    std::unique_ptr<HostEvaluator> result(new HostEvaluator(maxBytes, refiner));
+    return Report(result->_evaluator.Prepare({}), status) ? std::move(result) : nullptr;
 }
 
 bool HostEvaluator::Evaluate(float const *src, BufferDescriptor const &srcDesc, float *dst,

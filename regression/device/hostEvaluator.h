@@ -9,8 +9,10 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// \brief A processor as a device: the evaluator of devices with the kernels that C++ compiles, one
-/// invocation after the other.
+/// \brief A processor as a device: the evaluator of devices with the kernels that C++ compiles.
+///
+/// What may run in any order on a device, kernels that nothing waits between and the invocations of each,
+/// runs from the last to the first here: a missing Device::Wait() shows.
 class HostEvaluator : public OsdExt::BufferEvaluator<HostEvaluator, OsdExt::CpuBinding> {
 public:
     using Options = OsdExt::RefinementEvaluator::Options;
@@ -18,6 +20,10 @@ public:
     static std::unique_ptr<HostEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                  Options options = Options(),
                                                  FarExt::Status *status = nullptr);
+    /// On a device whose buffers have so many bytes at most.
+    static std::unique_ptr<HostEvaluator> CreateWithin(std::int64_t maxBytes,
+                                                       FarExt::TopologyRefiner const &refiner,
+                                                       FarExt::Status *status);
 
     int GetMaxLevel() const { return _evaluator.GetMaxLevel(); }
     int GetNumElements(int level) const { return _evaluator.GetNumElements(level); }
@@ -47,7 +53,7 @@ public:
                              FarExt::Status *status = nullptr);
 
 private:
-    explicit HostEvaluator(FarExt::TopologyRefiner const &refiner);
+    HostEvaluator(std::int64_t maxBytes, FarExt::TopologyRefiner const &refiner);
 
     OsdExt::internal::DeviceEvaluator _evaluator;
 };

@@ -12,14 +12,9 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// \brief An array in a buffer of OpenGL, deleted with this.  A context is current wherever one lives.
+/// \brief An array in a buffer of OpenGL, for which GlBuffer's rules hold.
 class GlArray {
 public:
-    GlArray() = default;
-    GlArray(GlArray const &) = delete;
-    GlArray &operator=(GlArray const &) = delete;
-    ~GlArray() { glDeleteBuffers(1, &_name); }
-
     /// Makes room for \p size numbers of 4 bytes, whose values are not known.
     void Resize(std::size_t size) { allocate(size, nullptr); }
     /// Takes the numbers, of 4 bytes each, of another array.
@@ -29,28 +24,25 @@ public:
         allocate(values.size(), values.data());
     }
     /// The name of the buffer, as Osd's vertex buffers give it.
-    GLuint BindVBO() const { return _name; }
+    GLuint BindVBO() const { return _buffer.GetName(); }
     std::size_t GetSize() const { return _size; }
 
     /// Binds it for shaders.
-    void Bind(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, _name); }
+    void Bind(GLuint binding) const {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, BindVBO());
+    }
 
 private:
     static constexpr std::size_t kBytes = 4;
 
     void allocate(std::size_t size, void const *values) {
-        if (_name == 0) {
-            glGenBuffers(1, &_name);
-        }
-        _size = size;
-        glBindBuffer(GL_SHADER_STORAGE_BUFFER, _name);
         // A buffer without a byte cannot be bound for shaders.
-        std::size_t const bytes = size > 0 ? size * kBytes : kBytes;
-        glBufferData(GL_SHADER_STORAGE_BUFFER, GLsizeiptr(bytes), size > 0 ? values : nullptr,
-                     GL_DYNAMIC_DRAW);
+        std::size_t const numBytes = size > 0 ? size * kBytes : kBytes;
+        _buffer.Allocate(std::int64_t(numBytes), size > 0 ? values : nullptr);
+        _size = size;
     }
 
-    GLuint _name = 0;
+    OsdExt::internal::GlBuffer _buffer;
     std::size_t _size = 0;
 };
 
