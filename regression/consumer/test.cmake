@@ -66,6 +66,30 @@ if(OPENSUBDIVHEX_TOOLS)
   set_tests_properties(consumer.hexrefine PROPERTIES FIXTURES_REQUIRED installed)
 endif()
 
+# Programs that use the libraries of devices; ./dev test gl and ./dev test cuda build these.
+set(libraries far_ext osd_ext bfr_ext)
+set(programs "")
+foreach(device IN ITEMS gl cuda)
+  if(TARGET osd_ext_${device})
+    list(APPEND libraries osd_ext_${device})
+    list(APPEND programs consumer_${device})
+  endif()
+endforeach()
+if(programs)
+  list(JOIN libraries "," libraries)
+  list(JOIN programs "," programs)
+  add_test(NAME consumer.devices
+    COMMAND ${CMAKE_COMMAND}
+      -D sourceDir=${PROJECT_SOURCE_DIR}/regression/consumer/devices
+      -D buildDir=${PROJECT_BINARY_DIR}
+      -D workDir=${consumerDir}/devices
+      -D config=$<CONFIG>
+      -D libraries=${libraries}
+      -D programs=${programs}
+      -D options=-G${CMAKE_GENERATOR},-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER},-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS},-DOpenSubdiv_ROOT=${OpenSubdiv_ROOT}
+      -P ${PROJECT_SOURCE_DIR}/regression/consumer/devices.cmake)
+endif()
+
 # The recipe of the vcpkg port.
 if(OPENSUBDIVHEX_TOOLS AND CMAKE_INSTALL_LIBDIR STREQUAL "lib")
   add_test(NAME consumer.port
