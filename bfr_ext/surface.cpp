@@ -4,7 +4,6 @@
 #include "cell/cellPattern.h"
 #include "cell/cellValues.h"
 #include "cell/patchEvaluator.h"
-#include "cell/surfaceTurns.h"
 
 #include <algorithm>
 #include <limits>
@@ -68,7 +67,7 @@ void Surface<REAL>::Clear() {
 
 template <typename REAL>
 int Surface<REAL>::GetControlPointIndices(Index meshPointIndices[]) const {
-    std::copy(_controlPoints.begin(), _controlPoints.end(), meshPointIndices);
+    std::copy_n(_points.begin(), GetNumControlPoints(), meshPointIndices);
     return GetNumControlPoints();
 }
 
@@ -83,8 +82,7 @@ template <typename REAL>
 void Surface<REAL>::BoundControlPointsFromMesh(REAL const meshPoints[],
                                                PointDescriptor const &meshPointDesc,
                                                REAL minExtent[], REAL maxExtent[]) const {
-    bound(GetNumControlPoints(), meshPoints, _controlPoints.data(), meshPointDesc, minExtent,
-          maxExtent);
+    bound(GetNumControlPoints(), meshPoints, _points.data(), meshPointDesc, minExtent, maxExtent);
 }
 
 template <typename REAL>
@@ -143,7 +141,7 @@ bool Surface<REAL>::evaluateOnBorder(internal::BasePoint const &point, REAL cons
     if (!point.IsOnBorder()) {
         return false;
     }
-    internal::BorderPlace const place = internal::FindBorderPlace(*_type, _turns->turns, point);
+    internal::BorderPlace const place = internal::FindBorderPlace(*_type, getTurns(), point);
     using Evaluator = internal::BorderEvaluator<REAL>;
     Evaluator(controlPoints, pointDesc.stride, pointDesc.size)
         .Evaluate(*place.item,
@@ -288,14 +286,14 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
     for (int edge = 0; edge < numEdges; ++edge) {
         int const first = tessellation._firstEdgeCoords[std::size_t(edge)];
         evaluate(
-            _type->GetBorderItem(_turns->turns, std::size_t(numEdges) + std::size_t(edge)),
+            _type->GetBorderItem(getTurns(), std::size_t(numEdges) + std::size_t(edge)),
             PatternOf::Border, 0, [] { return std::vector<double>(1, 0.0); }, first, 0);
 
         int const numPlaces = tessellation.GetNumEdgeCoords(edge);
         if (numPlaces == 0) {
             continue;
         }
-        CellType::BorderItem const &item = _type->GetBorderItem(_turns->turns, std::size_t(edge));
+        CellType::BorderItem const &item = _type->GetBorderItem(getTurns(), std::size_t(edge));
         auto const getPlace = [&](int i) {
             return first + (item.isReversed ? numPlaces - i : i + 1);
         };
@@ -354,7 +352,7 @@ template <typename REAL>
 void Surface<REAL>::ApplyStencilFromMesh(REAL const stencil[], REAL const meshPoints[],
                                          PointDescriptor const &meshPointDesc,
                                          REAL result[]) const {
-    sumUp(stencil, GetNumControlPoints(), meshPoints, _controlPoints.data(), meshPointDesc, result);
+    sumUp(stencil, GetNumControlPoints(), meshPoints, _points.data(), meshPointDesc, result);
 }
 
 template class Surface<float>;

@@ -17,7 +17,7 @@ namespace BfrExt {
 
 namespace internal {
 class CellType;
-struct SurfaceTurns;
+class CellTypes;
 struct BasePoint;
 } // namespace internal
 
@@ -102,7 +102,7 @@ public:
     /// @{
 
     /// Control points of the face.
-    int GetNumControlPoints() const { return int(_controlPoints.size()); }
+    int GetNumControlPoints() const { return _numControlPoints; }
     /// Writes which points of the mesh they are: the vertices of the face first, none twice unless the
     /// face has it twice.
     /// \return  GetNumControlPoints()
@@ -111,8 +111,9 @@ public:
     template <typename REAL_MESH>
     void GatherControlPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
                              REAL controlPoints[], PointDescriptor const &controlPointDesc) const {
-        for (Index const point : _controlPoints) {
-            REAL_MESH const *const from = meshPoints + std::ptrdiff_t(point) * meshPointDesc.stride;
+        for (int k = 0; k < _numControlPoints; ++k) {
+            REAL_MESH const *const from =
+                meshPoints + std::ptrdiff_t(_points[std::size_t(k)]) * meshPointDesc.stride;
             for (int i = 0; i < meshPointDesc.size; ++i) {
                 controlPoints[i] = REAL(from[i]);
             }
@@ -200,9 +201,13 @@ private:
                         PointDescriptor const &pointDesc, REAL p[],
                         PointDescriptor const &resultDesc) const;
 
-    std::shared_ptr<internal::CellType const> _type;
-    std::shared_ptr<internal::SurfaceTurns const> _turns;
-    std::vector<Index> _controlPoints;
+    // By edge and then by vertex, how the face has what it shares with its neighbours.
+    int const *getTurns() const { return _points.data() + _numControlPoints; }
+
+    std::shared_ptr<internal::CellTypes const> _types; // which has the type
+    internal::CellType const *_type = nullptr;
+    int _numControlPoints = 0;
+    std::vector<Index> _points; // the control points, and then the turns
     Parameterization _parameterization;
 };
 

@@ -2,7 +2,7 @@
 #include "surfaceFactory.h"
 
 #include "cell/cellType.h"
-#include "cell/surfaceTurns.h"
+#include "cell/latticeWalk.h"
 
 #include "far_ext/limit/limitRows.h"
 #include "far_ext/limit/plainCell.h"
@@ -38,7 +38,8 @@ bool isAtFreeBoundary(Level const &level, Far::Index vert) {
 SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options)
     : _refiner(refiner), _options(options),
       _types(options.GetExternalCache() ? options.GetExternalCache()->_types
-                                        : std::make_shared<internal::CellTypes>()) {
+                                        : std::make_shared<internal::CellTypes>()),
+      _lattices(std::make_unique<internal::LatticeWalks>()) {
     FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
     for (int channel = -1; channel < refiner.GetNumFVarChannels(); ++channel) {
         _marks.push_back(FarExt::internal::MarkFeatures(hierarchy.GetMesh(channel).levels[0]));
@@ -57,27 +58,33 @@ std::unique_ptr<SurfaceFactory> SurfaceFactory::Create(FarExt::TopologyRefiner c
     return std::unique_ptr<SurfaceFactory>(new SurfaceFactory(refiner, options));
 }
 
-Status SurfaceFactory::checkFace(Index face) const {
-    auto const fail = [face](StatusCode code, std::string const &message) {
-        return Status(code, ComponentType::Face, face, "face " + std::to_string(face) + message);
-    };
+Status SurfaceFactory::checkIsFace(Index face) const {
     Level const &level = _refiner.GetHierarchy().mesh.levels[0];
-    if (face < 0 || face >= level.numFaces) {
-        return fail(StatusCode::InvalidArgument, " is not one of the " +
-                                                     std::to_string(level.numFaces) +
-                                                     " faces of the base mesh");
+    if (0 <= face && face < level.numFaces && level.GetHoles(face) != FarExt::internal::kHole) {
+        return Status();
     }
-    if (level.GetHoles(face) == FarExt::internal::kHole) {
-        return fail(StatusCode::InvalidArgument, " is a hole, which has no surface");
+    std::string const name = "face " + std::to_string(face);
+    return Status(StatusCode::InvalidArgument, ComponentType::Face, face,
+                  0 <= face && face < level.numFaces
+                      ? name + " is a hole, which has no surface"
+                      : name + " is not one of the " + std::to_string(level.numFaces) +
+                            " faces of the base mesh");
+}
+
+Status SurfaceFactory::checkFace(Index face) const {
+    Status result = checkIsFace(face);
+    if (!result.IsOk()) {
+        return result;
     }
+    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
     for (Index const vert : level.GetFaceVertices(face)) {
         if (isAtFreeBoundary(level, vert)) {
-            return fail(StatusCode::Unsupported,
-                        " has vertex " + std::to_string(vert) +
-                            " on a boundary that VTX_BOUNDARY_NONE leaves without a limit");
+            return Status(StatusCode::Unsupported, ComponentType::Face, face,
+                          "face " + std::to_string(face) + " has vertex " + std::to_string(vert) +
+                              " on a boundary that VTX_BOUNDARY_NONE leaves without a limit");
         }
     }
-    return Status();
+    return result;
 }
 
 bool SurfaceFactory::FaceHasLimitSurface(Index face, Status *status) const {
@@ -117,9 +124,9 @@ internal::CellType const &SurfaceFactory::findType(Level const &level,
 template <typename REAL>
 bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
                           Surface<REAL> *surface, Status *status) const {
-    surface->Clear();
-    Status result = checkFace(face);
+    Status result = checkIsFace(face);
     if (!result.IsOk()) {
+        surface->Clear();
         return FarExt::internal::Report(result, status);
     }
     FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();
@@ -127,33 +134,57 @@ bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
         channel < 0 ? nullptr : &hierarchy.channels[std::size_t(channel)];
     Level const &level = hierarchy.GetMesh(channel).levels[0];
     Index const levelFace = values ? values->levels[0].valueFaces[face] : face;
-
-    std::vector<Index> controlPoints;
-    internal::CellType const &type =
-        findType(level, _marks.begin()[channel + 1], levelFace,
-                 {_refiner.GetSchemeOptions(),
-                  FarExt::internal::GetStepsToLimit(_refiner.GetHexSchemeOptions()), interpolation},
-                 controlPoints);
-    if (values) {
-        for (Index &point : controlPoints) {
-            point = values->valuesOfVertices[point];
+    std::vector<VertexMark> const &marks = _marks.begin()[channel + 1];
+    int const size = level.GetFaceSize(levelFace);
+    auto const setType = [&](internal::CellType const &type, int numPoints) {
+        if (surface->_types != _types) {
+            surface->_types = _types;
         }
+        surface->_type = &type;
+        surface->_numControlPoints = numPoints;
+        surface->_points.resize(std::size_t(numPoints) + 2 * std::size_t(size));
+        surface->_parameterization = Parameterization(size);
+    };
+
+    internal::LatticeWalks::Entry const *const lattice = _lattices->Find(size, interpolation);
+    bool isInLattice = false;
+    if (lattice) {
+        setType(*lattice->type, lattice->walk.GetNumPoints());
+        Index *const points = surface->_points.data();
+        isInLattice = lattice->walk.Gather(level, marks, levelFace, points,
+                                           points + surface->_numControlPoints);
     }
-    Far::ConstIndexArray const verts = level.GetFaceVertices(levelFace);
-    bool const hasManyFaces = std::any_of(verts.begin(), verts.end(), [&](Index vert) {
-        return level.GetNumVertexFaces(vert) >= kManyFaces;
-    });
-    if (hasManyFaces && !type.HasCorners()) {
-        result = Status(StatusCode::Unsupported, ComponentType::Face, face,
-                        "the limit of face " + std::to_string(face) +
-                            " cannot be computed: the steps around a vertex do not converge");
-        return FarExt::internal::Report(result, status);
+    if (!isInLattice) {
+        surface->Clear();
+        result = checkFace(face);
+        if (!result.IsOk()) {
+            return FarExt::internal::Report(result, status);
+        }
+        std::vector<Index> points;
+        internal::CellType const &type = findType(
+            level, marks, levelFace,
+            {_refiner.GetSchemeOptions(),
+             FarExt::internal::GetStepsToLimit(_refiner.GetHexSchemeOptions()), interpolation},
+            points);
+        Far::ConstIndexArray const verts = level.GetFaceVertices(levelFace);
+        bool const hasManyFaces = std::any_of(verts.begin(), verts.end(), [&](Index vert) {
+            return level.GetNumVertexFaces(vert) >= kManyFaces;
+        });
+        if (hasManyFaces && !type.HasCorners()) {
+            result = Status(StatusCode::Unsupported, ComponentType::Face, face,
+                            "the limit of face " + std::to_string(face) +
+                                " cannot be computed: the steps around a vertex do not converge");
+            return FarExt::internal::Report(result, status);
+        }
+        _lattices->Add(type, interpolation);
+        setType(type, int(points.size()));
+        std::copy(points.begin(), points.end(), surface->_points.begin());
+        FindBaseCellTurns(level, levelFace, surface->_points.data() + points.size());
     }
-    surface->_type = std::shared_ptr<internal::CellType const>(_types, &type);
-    surface->_turns = std::make_shared<internal::SurfaceTurns const>(
-        internal::SurfaceTurns{FindBaseCellTurns(level, levelFace)});
-    surface->_controlPoints = std::move(controlPoints);
-    surface->_parameterization = Parameterization(verts.size());
+    if (values) {
+        std::for_each_n(surface->_points.begin(), surface->_numControlPoints,
+                        [&](Index &point) { point = values->valuesOfVertices[point]; });
+    }
     return FarExt::internal::Report(result, status);
 }
 

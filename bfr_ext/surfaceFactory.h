@@ -18,7 +18,8 @@ namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
 struct CellRules;
-}
+class LatticeWalks;
+} // namespace internal
 
 /// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
 ///
@@ -126,6 +127,7 @@ public:
 private:
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
 
+    FarExt::Status checkIsFace(Index face) const;
     FarExt::Status checkFace(Index face) const;
     internal::CellType const &findType(FarExt::internal::Level const &level,
                                        std::vector<FarExt::internal::VertexMark> const &marks,
@@ -140,6 +142,7 @@ private:
     std::shared_ptr<internal::CellTypes> _types;
     // Of the vertices of the mesh, and of the value mesh of each channel; empty where all are plain.
     std::vector<std::vector<FarExt::internal::VertexMark>> _marks;
+    std::unique_ptr<internal::LatticeWalks> _lattices;
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view.h"
 
+#include "cell/cellType.h"
 #include "cell/flatness.h"
-#include "cell/surfaceTurns.h"
 #include "cell/vector3.h"
 
 #include "far_ext/vtr/hierarchy.h"
@@ -322,7 +322,7 @@ template <typename REAL>
 Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
                         typename Surface<REAL>::PointDescriptor const &pointDesc) const {
     internal::CellType::BorderItem const &item =
-        surface._type->GetBorderItem(surface._turns->turns, std::size_t(edge));
+        surface._type->GetBorderItem(surface.getTurns(), std::size_t(edge));
     std::vector<double> points;
     for (int const point : item.points) {
         REAL const *const from = controlPoints + std::ptrdiff_t(point) * pointDesc.stride;

@@ -29,9 +29,8 @@ CellPattern<REAL>::CellPattern(CellType const &root, std::vector<BasePoint> cons
 template struct CellPattern<float>;
 template struct CellPattern<double>;
 
-BorderPlace FindBorderPlace(CellType const &root, FarExt::internal::BaseCellTurns const &turns,
-                            BasePoint const &point) {
-    std::size_t const numEdges = turns.turns.size();
+BorderPlace FindBorderPlace(CellType const &root, int const *turns, BasePoint const &point) {
+    auto const numEdges = std::size_t(root.GetNumCorners());
     auto const sector = std::size_t(point.sector);
     if (point.coords[1] == 0) {
         return {&root.GetBorderItem(turns, numEdges + sector), 0};

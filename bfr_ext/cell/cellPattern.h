@@ -28,8 +28,7 @@ struct BorderPlace {
     CellType::BorderItem const *item;
     double point;
 };
-BorderPlace FindBorderPlace(CellType const &root, FarExt::internal::BaseCellTurns const &turns,
-                            BasePoint const &point);
+BorderPlace FindBorderPlace(CellType const &root, int const *turns, BasePoint const &point);
 
 /// \brief Evaluates what lies on the border of a base face, of which all faces that share it form the
 /// same sums.

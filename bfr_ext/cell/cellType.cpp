@@ -37,14 +37,9 @@ void trim(CellPatch &cell) {
     cell.patch.vertSharpness.shrink_to_fit();
 }
 
-// How many faces of a size meet at a vertex of a lattice; 0 where there is none.
-int getLatticeValence(int faceSize) {
-    return faceSize == 3 ? 6 : faceSize == 4 ? 4 : faceSize == 6 ? 3 : 0;
-}
-
 bool isInLattice(LimitPatch const &patch) {
     int const faceSize = patch.faceSizes[0];
-    int const valence = getLatticeValence(faceSize);
+    int const valence = CellType::GetLatticeValence(faceSize);
     auto const isSame = [&](int size) { return size == faceSize; };
     auto const isNone = [](auto const &tags) {
         return std::all_of(tags.begin(), tags.end(), [](float tag) { return tag == 0; });
@@ -242,22 +237,20 @@ void CellType::findDerivatives(std::size_t corner, Vector (&result)[2]) const {
     }
 }
 
-CellType::BorderItem const &CellType::GetBorderItem(BaseCellTurns const &turns,
-                                                    std::size_t item) const {
-    std::size_t const numEdges = turns.turns.size();
+CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_t item) const {
     auto const get = [&](std::size_t i, auto const &make) -> BorderItem const & {
-        int const turn = i < numEdges ? int(turns.isReversed[i]) : turns.turns[i - numEdges];
-        return _borderItems.Get<BorderItem>(int(i), &turn, &turn + 1, make);
+        return _borderItems.Get<BorderItem>(int(i), turns + i, turns + i + 1, make);
     };
     return get(item, [&] {
         // The others are asked for, too.
         std::vector<CellPatch> patches = GatherBorder(_cell, turns);
+        std::size_t const numEdges = patches.size() / 2;
         std::vector<BorderItem> items;
         for (std::size_t i = 0; i < patches.size(); ++i) {
             std::vector<int> points = patches[i].patch.sources;
             points.shrink_to_fit();
             items.push_back({&_types.Find(std::move(patches[i]), _rules), std::move(points),
-                             i < numEdges && turns.isReversed[i]});
+                             i < numEdges && turns[i] == 1});
         }
         for (std::size_t i = 0; i < items.size(); ++i) {
             if (i != item) {

@@ -59,6 +59,10 @@ public:
     ///
     /// There are few such types, which most faces and edges of many meshes are of.
     bool IsInLattice() const { return _isInLattice; }
+    /// How many faces of a size meet at a vertex of a lattice; 0 where there is none.
+    static constexpr int GetLatticeValence(int faceSize) {
+        return faceSize == 3 ? 6 : faceSize == 4 ? 4 : faceSize == 6 ? 3 : 0;
+    }
     /// Whether the surface has bounded curvature where the lattice is regular.
     bool HasBoundedCurvature() const {
         return _rules.schemeOptions.faceMask != FarExt::FaceMask::Average &&
@@ -86,8 +90,9 @@ public:
     /// \brief Of a base face, which neighbours have the same of: an edge, or behind these a vertex.
     ///
     /// No lock is taken for what was asked for before.
-    BorderItem const &GetBorderItem(FarExt::internal::BaseCellTurns const &turns,
-                                    std::size_t item) const;
+    ///
+    /// \param turns  those of FindBaseCellTurns()
+    BorderItem const &GetBorderItem(int const *turns, std::size_t item) const;
 
     /// What has been made of this type.
     PatternTable &GetPatterns() const { return _patterns; }

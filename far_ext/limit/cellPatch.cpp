@@ -79,25 +79,23 @@ void GatherBaseCell(Level const &level, Index face, CellPatch &cell) {
     gather(gatherer, level, face, cell);
 }
 
-BaseCellTurns FindBaseCellTurns(Level const &level, Index face) {
-    BaseCellTurns result;
+void FindBaseCellTurns(Level const &level, Index face, int *turns) {
     Index const first = level.faceFirstCorner[face];
-    for (int i = 0; i < level.GetFaceSize(face); ++i) {
-        result.isReversed.push_back(!isFirstSide(level, face, i));
-        int turn = 0;
+    int const size = level.GetFaceSize(face);
+    for (int i = 0; i < size; ++i) {
+        turns[i] = isFirstSide(level, face, i) ? 0 : 1;
+        turns[size + i] = 0;
         ForEachFan(level, level.faceVerts[first + i], [&](VertexFan const &fan) {
             for (Index k = fan.begin; k < fan.end; ++k) {
                 if (level.GetVertexCorner(k) == first + i) {
-                    turn = int(k - fan.begin);
+                    turns[size + i] = int(k - fan.begin);
                 }
             }
         });
-        result.turns.push_back(turn);
     }
-    return result;
 }
 
-std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, BaseCellTurns const &turns) {
+std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns) {
     Level level;
     BuildPatchLevel(baseCell.patch, level);
     LimitPatchGatherer gatherer(level, kMaskOfBase);
@@ -105,7 +103,7 @@ std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, BaseCellTurns con
     std::vector<CellPatch> border;
     for (int i = 0; i < size; ++i) {
         Index const edge = level.faceEdges[i];
-        int const side = isFirstSide(level, 0, i) == turns.isReversed[std::size_t(i)] ? 1 : 0;
+        int const side = isFirstSide(level, 0, i) == (turns[i] == 1) ? 1 : 0;
         border.push_back({CellKind::Edge, {}, {}, {}});
         gatherEdge(gatherer, level, edge, side, border.back());
     }
@@ -115,7 +113,7 @@ std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, BaseCellTurns con
             int const numFaces = int(fan.end - fan.begin);
             for (int k = 0; k < numFaces; ++k) {
                 if (level.GetVertexCorner(fan.begin + k) == i) {
-                    int const turn = turns.turns[std::size_t(i)];
+                    int const turn = turns[size + i];
                     Index const place = fan.begin + (k + numFaces - turn) % numFaces;
                     border.back().locals = {level.vertFaceLocals[place]};
                     gather(gatherer, level, level.vertFaces[place], border.back());

@@ -39,17 +39,15 @@ struct CellPatch {
 /// Gathers the cell of a base face, \p level being level 0.
 OPENSUBDIVHEX_API void GatherBaseCell(Level const &level, Far::Index face, CellPatch &cell);
 
-/// \brief What the edges and vertices of a base face are in its own eyes, which all faces that share
-/// one need to number it alike.
-struct BaseCellTurns {
-    std::vector<bool> isReversed; ///< by edge: whether the edge runs against the face
-    std::vector<int> turns;       ///< by vertex: how many faces of its fan lie before the face
-};
-OPENSUBDIVHEX_API BaseCellTurns FindBaseCellTurns(Level const &level, Far::Index face);
+/// \brief Writes what the edges and vertices of a base face are in its own eyes, which all faces that
+/// share one need to number it alike: its *turns*.
+///
+/// \param turns  by edge, whether it runs against the face, 1 or 0; then by vertex, how many faces of
+///               its fan lie before the face
+OPENSUBDIVHEX_API void FindBaseCellTurns(Level const &level, Far::Index face, int *turns);
 
 /// The edges and then the vertices of a base cell, whose patch's vertices are their sources.
-OPENSUBDIVHEX_API std::vector<CellPatch> GatherBorder(CellPatch const &baseCell,
-                                                      BaseCellTurns const &turns);
+OPENSUBDIVHEX_API std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns);
 
 /// A cell that one step makes of another, and the vertices of its patch in terms of the other's.
 struct CellChild {
