@@ -72,9 +72,9 @@ Nanoseconds getThreadTime() {
 // a loop takes.
 //
 // There is credit in the beginning.  It grows by the work that is done by workers, is spent by
-// waiting for those who have no processor, and grows with time.  Without credit loops are done
-// alone: so waiting costs an eighth of the time at most beside what help gains, and where nobody is
-// held up there always is help.
+// waiting for those who have no processor, or for one to go on when they are done, and grows with
+// time.  Without credit loops are done alone: so waiting costs an eighth of the time at most beside
+// what help gains, and where nobody is held up there always is help.
 class HelpAccount {
 public:
     bool HasCredit() {
@@ -123,22 +123,27 @@ public:
     void Leave(Nanoseconds worked, Nanoseconds heldUp) {
         _worked += worked;
         _heldUp = std::max(_heldUp, heldUp);
+        if (_numWorkers == 1) {
+            _end = Clock::now();
+        }
         if (--_numWorkers == 0) {
             _isEmpty.notify_one();
         }
     }
     // Waits until all workers that entered have left; none enters any more.
     void WaitForWorkers(Lock &lock, HelpAccount &account) {
-        Nanoseconds waited(0);
+        Nanoseconds cost(0);
         if (_numWorkers > 0) {
             auto const start = Clock::now();
             lock.unlock();
             spinUntil([this] { return _numWorkers == 0; });
             lock.lock();
             _isEmpty.wait(lock, [this] { return _numWorkers == 0; });
-            waited = Clock::now() - start;
+            auto const now = Clock::now();
+            // Who has slept waits for a processor, too.
+            cost = std::min<Nanoseconds>(now - start, _heldUp + (now - _end));
         }
-        account.Settle(_worked, std::min(waited, _heldUp));
+        account.Settle(_worked, cost);
     }
 
     Loop *next = nullptr; // in the pool's list
@@ -151,6 +156,7 @@ private:
     std::atomic<int> _numWorkers{0};
     Nanoseconds _worked{0}; // all workers together
     Nanoseconds _heldUp{0}; // the longest of them
+    Clock::time_point _end; // of the last
     std::condition_variable _isEmpty;
 };
 
