@@ -21,11 +21,14 @@ using BfrExt::Tessellation;
 
 namespace {
 
+constexpr int kMaxPixels = 65536; // a side of the picture
+
 /// The width and the height that WxH says; false if it says none.
 bool parseResolution(std::string const &text, int *width, int *height) {
     std::size_t const x = text.find('x');
     return x != std::string::npos && ParseInt(text.substr(0, x), width) &&
-           ParseInt(text.substr(x + 1), height) && *width > 0 && *height > 0;
+           ParseInt(text.substr(x + 1), height) && *width > 0 && *width <= kMaxPixels &&
+           *height > 0 && *height <= kMaxPixels;
 }
 
 std::string checkResolution(std::string const &word) {
@@ -33,7 +36,8 @@ std::string checkResolution(std::string const &word) {
     int height = 0;
     return parseResolution(word, &width, &height)
                ? ""
-               : "'" + word + "' is not a resolution, as 1280x720";
+               : "'" + word + "' is not a resolution, as 1280x720, with sides up to " +
+                     std::to_string(kMaxPixels);
 }
 
 /// Looks at all of the mesh from the front and above.
@@ -393,8 +397,12 @@ AdaptiveCells RefineAdaptively(AdaptiveArguments const &arguments,
                        },
                        values.values, values.width),
                    &values);
+        statistics.channelValues.push_back(values.GetNumValues());
     }
     setFaces(cells, numFaces, mesh, &result);
+    statistics.facesOfMaxLevel = statistics.facesByLevel.back();
+    statistics.maxLevel = arguments.maxLevel;
+    statistics.pixelError = arguments.pixelError;
     while (statistics.facesByLevel.size() > 1 && statistics.facesByLevel.back() == 0) {
         statistics.facesByLevel.pop_back();
     }

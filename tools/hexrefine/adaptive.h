@@ -38,11 +38,15 @@ struct AdaptiveStatistics {
     std::vector<std::int64_t> facesByLevel;
     std::int64_t faces = 0;
     std::int64_t points = 0;
-    std::int64_t outside = 0;    ///< cells that were left coarse, being outside of the picture
-    std::int64_t backFacing = 0; ///< and those facing away
-    std::int64_t types = 0;      ///< of base faces
-    std::int64_t hits = 0;       ///< base faces of a type that was known
-    std::int64_t bytes = 0;      ///< of points and faces, as arrays
+    std::int64_t outside = 0;       ///< cells that were left coarse, being outside of the picture
+    std::int64_t backFacing = 0;    ///< and those facing away
+    std::int64_t types = 0;         ///< of base faces
+    std::int64_t hits = 0;          ///< base faces of a type that was known
+    std::int64_t bytes = 0;         ///< of points and faces, as arrays
+    std::vector<int> channelValues; ///< by channel
+    int maxLevel = 0;               ///< the last level that may be made
+    std::int64_t facesOfMaxLevel = 0;
+    float pixelError = 0; ///< that was asked for
 };
 
 /// A camera, as BfrExt::Camera with y up.

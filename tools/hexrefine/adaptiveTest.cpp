@@ -102,6 +102,27 @@ TEST_F(HexrefineAdaptive, KeepsMaterialsAndSeams) {
         run("\"" + strip + "\" --adaptive --boundary edge-and-corner -o " + getPath("out.off"));
     EXPECT_NE(result.out.find("materials"), std::string::npos) << result.out;
     EXPECT_NE(result.out.find("channel uv"), std::string::npos) << result.out;
+    Result const kept =
+        run("\"" + strip + "\" --adaptive --boundary edge-and-corner --mask smooth -o " +
+            getPath("kept.obj"));
+    std::string const values = std::to_string(uv.GetNumValues()) + " in the cells";
+    EXPECT_NE(kept.out.find(values), std::string::npos) << kept.out;
+}
+
+TEST_F(HexrefineAdaptive, TellsWhereTheLastLevelEnds) {
+    std::string const cube = makeCubeFile() + " --adaptive --mask smooth ";
+    std::string const note = "may be further than 0.5 pixels";
+    Result const coarse = run(cube + "--resolution 60000x60000 --max-level 3");
+    EXPECT_NE(coarse.out.find("faces are of level 3, the last: they " + note), std::string::npos)
+        << coarse.out;
+    Result const fine = run(cube + "--resolution 64x64");
+    EXPECT_EQ(fine.out.find(note), std::string::npos) << fine.out;
+    Result const json = run(cube + "--resolution 60000x60000 --max-level 3 --quiet --stats -");
+    Json const cells = Json::parse(json.out);
+    EXPECT_EQ(cells["evaluator"], "surface");
+    EXPECT_EQ(cells["adaptive"]["maxLevel"], 3);
+    EXPECT_EQ(cells["adaptive"]["facesOfMaxLevel"], cells["adaptive"]["facesByLevel"][3]);
+    EXPECT_GT(cells["adaptive"]["facesOfMaxLevel"], 0);
 }
 
 TEST_F(HexrefineAdaptive, StatisticsTellWhatWasMade) {
@@ -138,6 +159,7 @@ TEST_F(HexrefineAdaptive, BadArgumentsAreNamed) {
     expectBadUsage(cube + " --adaptive --fov 180", "--fov");
     expectBadUsage(cube + " --adaptive --resolution 10", "--resolution");
     expectBadUsage(cube + " --adaptive --resolution 0x10", "--resolution");
+    expectBadUsage(cube + " --adaptive --resolution 65537x10", "65536");
     expectBadUsage(cube + " --adaptive --pixel-error 0", "--pixel-error");
     expectBadUsage(cube + " --adaptive --max-level 13", "--max-level");
     expectBadUsage(cube + " --adaptive -l 3", "--level");

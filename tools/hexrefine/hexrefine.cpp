@@ -547,7 +547,7 @@ void run(Arguments const &arguments) {
         statistics.coplanar = {arguments.tolerance, arguments.hasOpenGaps};
     }
     statistics.mask = arguments.mask;
-    statistics.evaluator = arguments.evaluator;
+    statistics.evaluator = arguments.adaptive.isAdaptive ? "surface" : arguments.evaluator;
     statistics.input = arguments.input;
     auto &milliseconds = statistics.milliseconds;
     std::string tagText;
@@ -614,10 +614,16 @@ void run(Arguments const &arguments) {
         if (!arguments.png.empty()) {
             milliseconds.render = measure(progress, "rendering", [&] {
                 if (isAdaptive) {
-                    WriteCellPicture(
-                        mesh, cells.camera,
-                        FindCellRegions(arguments.pngColors, regions, mesh, cells.faceLevels),
-                        arguments.png);
+                    try {
+                        WriteCellPicture(
+                            mesh, cells.camera,
+                            FindCellRegions(arguments.pngColors, regions, mesh, cells.faceLevels),
+                            arguments.png);
+                    } catch (std::bad_alloc const &) {
+                        throw FileError(arguments.png, "not enough memory for a picture of " +
+                                                           arguments.adaptive.resolution +
+                                                           " pixels");
+                    }
                     return;
                 }
                 WritePicture(refiner->GetLevel(arguments.level), mesh.positions, regions,
@@ -682,8 +688,11 @@ int main(int argc, char **argv) {
         try {
             run(arguments);
         } catch (std::bad_alloc const &) {
-            throw FileError(arguments.input,
-                            "not enough memory for level " + std::to_string(arguments.level));
+            std::string const what =
+                arguments.adaptive.isAdaptive
+                    ? "--adaptive up to level " + std::to_string(arguments.adaptive.maxLevel)
+                    : "level " + std::to_string(arguments.level);
+            throw FileError(arguments.input, "not enough memory for " + what);
         }
     });
 }

@@ -167,7 +167,10 @@ std::string FormatJson(Statistics const &statistics) {
                     {"culled", {{"outside", cells.outside}, {"backFacing", cells.backFacing}}},
                     {"types", cells.types},
                     {"hits", cells.hits},
-                    {"bytes", cells.bytes}};
+                    {"bytes", cells.bytes},
+                    {"channelValues", cells.channelValues},
+                    {"maxLevel", cells.maxLevel},
+                    {"facesOfMaxLevel", cells.facesOfMaxLevel}};
     }
     auto const &milliseconds = statistics.milliseconds;
     AttributeStatistics const &attributes = statistics.attributes;
@@ -240,14 +243,20 @@ std::string formatTags(Statistics const &statistics) {
         lines += format("%d creases (%s), %d corners\n", statistics.creases,
                         statistics.creasingMethod.c_str(), statistics.corners);
     }
-    if (!statistics.holes.empty() && statistics.holes[0] > 0) {
+    bool const hasHoles = !statistics.holes.empty() && statistics.holes[0] > 0;
+    if (hasHoles && statistics.adaptive) {
+        lines += format("%d holes, which have no cells\n", statistics.holes[0]);
+    } else if (hasHoles) {
         lines += format("%d holes; without them the last level has %d faces\n", statistics.holes[0],
                         statistics.levels.back().faces - statistics.holes.back());
     }
-    for (ChannelStatistics const &channel : statistics.channels) {
-        lines += format("channel %s: %d values, %d in the last level, linear interpolation %s\n",
-                        channel.name.c_str(), channel.values.front(), channel.values.back(),
-                        statistics.fvarInterpolation.c_str());
+    for (std::size_t i = 0; i < statistics.channels.size(); ++i) {
+        ChannelStatistics const &channel = statistics.channels[i];
+        auto const &cells = statistics.adaptive;
+        lines += format(
+            "channel %s: %d values, %d in %s, linear interpolation %s\n", channel.name.c_str(),
+            channel.values.front(), cells ? cells->channelValues[i] : channel.values.back(),
+            cells ? "the cells" : "the last level", statistics.fvarInterpolation.c_str());
     }
     return lines;
 }
@@ -304,6 +313,13 @@ std::string formatAdaptive(AdaptiveStatistics const &cells) {
                static_cast<long long>(cells.points), static_cast<long long>(cells.faces));
     for (std::size_t level = 0; level < cells.facesByLevel.size(); ++level) {
         text += format(" %d:%lld", int(level), static_cast<long long>(cells.facesByLevel[level]));
+    }
+    if (cells.facesOfMaxLevel > 0) {
+        text += format(
+            "\n%lld faces are of level %d, the last: they may be further than %g pixels from "
+            "the surface, unless --max-level is higher",
+            static_cast<long long>(cells.facesOfMaxLevel), cells.maxLevel,
+            double(cells.pixelError));
     }
     text += format("\nculled: %lld cells outside of the picture, %lld facing away\n",
                    static_cast<long long>(cells.outside), static_cast<long long>(cells.backFacing));
