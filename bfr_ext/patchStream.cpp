@@ -127,6 +127,39 @@ private:
     std::map<std::vector<int>, std::list<Entry>::iterator> _places;
 };
 
+/// \brief A factory with a cache of its own, made anew when the cache has too many types.  Any number of
+/// threads may use it.
+class StreamTypes {
+public:
+    StreamTypes(SurfaceFactory const &factory, std::size_t maxTypes)
+        : _mesh(factory.GetMesh()), _maxTypes(maxTypes) {}
+
+    /// The factory to make some surfaces with, which lives as long as it is held.
+    std::shared_ptr<SurfaceFactory const> Get() {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        if (!_generation || _generation->cache.GetNumTypes() > _maxTypes) {
+            _generation.reset();
+            _generation = std::make_shared<Generation>(_mesh);
+        }
+        return std::shared_ptr<SurfaceFactory const>(_generation, _generation->factory.get());
+    }
+
+private:
+    struct Generation {
+        explicit Generation(FarExt::TopologyRefiner const &mesh)
+            : factory(SurfaceFactory::Create(
+                  mesh, SurfaceFactory::Options().SetExternalCache(&cache), nullptr)) {}
+
+        SurfaceFactoryCache cache;
+        std::unique_ptr<SurfaceFactory> factory; // of a mesh that has been found to have surfaces
+    };
+
+    FarExt::TopologyRefiner const &_mesh;
+    std::size_t const _maxTypes;
+    std::mutex _mutex;
+    std::shared_ptr<Generation> _generation;
+};
+
 } // namespace internal
 
 namespace {
@@ -143,12 +176,19 @@ class PatchStream<REAL>::Worker {
 public:
     Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
            std::vector<Values> const &values, Sink const &sink)
-        : _stream(stream), _meshPoints(meshPoints), _meshPointDesc(meshPointDesc), _values(values),
-          _sink(sink), _results(values.size()), _resultStarts(values.size()) {}
+        : _stream(stream), _factory(&stream._factory), _meshPoints(meshPoints),
+          _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _results(values.size()),
+          _resultStarts(values.size()) {}
 
     /// \return  false where the sink ended the stream, or a face has no surface, as status says
     bool Run(Index const *begin, Index const *end, Status *status) {
-        for (; begin != end; ++begin) {
+        for (int count = 0; begin != end; ++begin, ++count) {
+            if (_stream._types && count % kFacesOfFactory == 0) {
+                _surface.Clear();
+                _ownFactory.reset();
+                _ownFactory = _stream._types->Get();
+                _factory = _ownFactory.get();
+            }
             Tessellation const &tessellation = findTessellation(*begin);
             if (!evaluatePoints(*begin, tessellation, status) ||
                 !evaluateValues(*begin, tessellation, status)) {
@@ -186,7 +226,7 @@ private:
     }
 
     bool evaluatePoints(Index face, Tessellation const &tessellation, Status *status) {
-        if (!_stream._factory.InitVertexSurface(face, &_surface, status)) {
+        if (!_factory->InitVertexSurface(face, &_surface, status)) {
             return false;
         }
         PointDescriptor const desc(_meshPointDesc.size);
@@ -207,10 +247,10 @@ private:
     bool evaluateValues(Index face, Tessellation const &tessellation, Status *status) {
         for (std::size_t i = 0; i < _values.size(); ++i) {
             Values const &values = _values[i];
-            bool const isInit = values.channel == Values::kVarying
-                                    ? _stream._factory.InitVaryingSurface(face, &_surface, status)
-                                    : _stream._factory.InitFaceVaryingSurface(
-                                          face, &_surface, values.channel, status);
+            bool const isInit =
+                values.channel == Values::kVarying
+                    ? _factory->InitVaryingSurface(face, &_surface, status)
+                    : _factory->InitFaceVaryingSurface(face, &_surface, values.channel, status);
             if (!isInit) {
                 return false;
             }
@@ -224,7 +264,12 @@ private:
         return true;
     }
 
+    // Faces after which the types may be other ones.
+    static constexpr int kFacesOfFactory = 16;
+
     PatchStream const &_stream;
+    std::shared_ptr<SurfaceFactory const> _ownFactory; // while types are not kept
+    SurfaceFactory const *_factory;
     REAL const *const _meshPoints;
     PointDescriptor const _meshPointDesc;
     std::vector<Values> const &_values;
@@ -247,14 +292,24 @@ PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, PatchLevels levels
                                Options const &options)
     : _factory(factory), _levels(std::move(levels)), _forest(nullptr), _options(options),
       _plans(std::make_shared<internal::PatchPlans>(options.GetTessellationOptions(),
-                                                    options.GetMaxMemory())) {}
+                                                    options.GetMaxMemory())),
+      _types(makeTypes()) {}
 
 template <typename REAL>
 PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, CellForest const &forest,
                                Options const &options)
     : _factory(factory), _levels(0), _forest(&forest), _options(options),
       _plans(std::make_shared<internal::PatchPlans>(options.GetTessellationOptions(),
-                                                    options.GetMaxMemory())) {}
+                                                    options.GetMaxMemory())),
+      _types(makeTypes()) {}
+
+// Null where those of the factory are kept.
+template <typename REAL>
+std::shared_ptr<internal::StreamTypes> PatchStream<REAL>::makeTypes() const {
+    return _options.GetMaxTypes() == 0
+               ? nullptr
+               : std::make_shared<internal::StreamTypes>(_factory, _options.GetMaxTypes());
+}
 
 // The levels of the edges, then that of the inside.
 template <typename REAL>

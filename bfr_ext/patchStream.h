@@ -16,7 +16,8 @@ class PatchNumbering;
 
 namespace internal {
 class PatchPlans;
-}
+class StreamTypes;
+} // namespace internal
 
 /// \brief How fine the patches of a stream are: a level of refinement for the inside of each base face
 /// and one for each edge of the base mesh, 0 ... Tessellation::kLastLevel.
@@ -129,7 +130,7 @@ public:
         /// behind the other, and few tessellations are made twice.  Each thread has one patch, whatever
         /// its size: with what it takes to make it, about 300 bytes for each of its points.
         ///
-        /// Besides there is what all faces that look alike have in common, in the cache.
+        /// Besides there is what all faces that look alike have in common, in the cache (SetMaxTypes()).
         Options &SetMaxMemory(std::size_t bytes) {
             _maxMemory = bytes;
             return *this;
@@ -137,9 +138,23 @@ public:
         /// That number.
         std::size_t GetMaxMemory() const { return _maxMemory; }
 
+        /// \brief Sets how many types of faces and cells are kept at a time, each of about 12 kilobytes;
+        /// 0: all, in the cache of the factory.
+        ///
+        /// A stream that may not keep all has a cache of its own, which is forgotten as a whole when it
+        /// has more types, and begun anew: so memory is bounded for meshes whose faces all differ.  Faces
+        /// that threads work at may keep as many types once more for a while.
+        Options &SetMaxTypes(std::size_t count) {
+            _maxTypes = count;
+            return *this;
+        }
+        /// That number.
+        std::size_t GetMaxTypes() const { return _maxTypes; }
+
     private:
         Tessellation::Options _tessellationOptions;
         bool _hasDerivatives = false;
+        std::size_t _maxTypes = 0;
         std::size_t _maxMemory = std::size_t(4) << 20;
     };
 
@@ -208,6 +223,7 @@ private:
     friend class PatchNumbering;
     class Worker;
 
+    std::shared_ptr<internal::StreamTypes> makeTypes() const;
     FarExt::Status check(Index beginFace, Index endFace) const;
     FarExt::Status checkLevels(Index face) const;
     FarExt::Status checkTree(Index face) const;
@@ -219,6 +235,7 @@ private:
     CellForest const *const _forest; // null: levels
     Options const _options;
     std::shared_ptr<internal::PatchPlans> _plans;
+    std::shared_ptr<internal::StreamTypes> _types; // null: those of the factory
 };
 
 extern template class PatchStream<float>;

@@ -123,6 +123,7 @@ TEST(PatchStreamTest, PatchesDoNotDependOnThreadsMemoryAndShares) {
                 auto const factory = SurfaceFactory::Create(*refiner);
                 PatchStream<float>::Options options;
                 options.SetMaxMemory(memory);
+                options.SetMaxTypes(memory == 0 ? 40 : 0); // of some hundreds
                 PatchStream<float> const stream(*factory, levels.Get(), options);
                 Collection<float> collection;
                 int const numFaces = factory->GetNumFaces();
