@@ -212,42 +212,39 @@ std::vector<RowGroup> makeGroups(internal::MeshLevels const &mesh, int level, In
     return groups;
 }
 
-// The rows of regular faces by level.
-struct RegularRows {
-    struct OfLevel {
-        Level const *level;
-        Index firstSource; ///< among the stencils of the levels before, those of vertex 0
-        internal::RegularFaceRows rows;
-    };
-
-    RegularRows(internal::MeshLevels const &mesh,
-                std::vector<RegularFaces::OfLevel> const &regularLevels) {
-        Index firstSource = 0;
-        for (std::size_t i = 0; i < regularLevels.size(); ++i) {
-            Level const &level = mesh.levels[i];
-            levels.push_back(
-                {&level, firstSource, internal::RegularFaceRows(regularLevels[i].fVertices.mask)});
-            firstSource += level.numVertices;
-        }
-    }
-
-    std::vector<OfLevel> levels;
-};
-
 // Makes a table of rows: first the sizes of all stencils, then the stencils.
 template <typename REAL>
 class TableBuilder {
     using Multiplier = internal::LimitMultiplier<REAL>;
     using Columns = typename Multiplier::Columns;
     using RowBits = typename Multiplier::RowBits;
+    using FaceRows = internal::RegularFaceRows;
 
 public:
     TableBuilder(PointRows const &rows, std::vector<RowGroup> const &groups,
-                 RegularRows regularRows, SourceStencils const &stencils, Index numSources,
-                 Index numIndices, bool hasDerivatives)
-        : _rows(rows), _groups(groups), _regularRows(std::move(regularRows)), _stencils(stencils),
-          _numSources(numSources), _numIndices(numIndices), _hasDerivatives(hasDerivatives),
+                 SourceStencils const &stencils, Index numSources, Index numIndices,
+                 bool hasDerivatives)
+        : _rows(rows), _groups(groups), _stencils(stencils), _numSources(numSources),
+          _numIndices(numIndices), _hasDerivatives(hasDerivatives),
           _table(new WritableLimitTable<REAL>(numIndices)) {}
+
+    /// The rows of the regular faces in groups, if there are any.
+    void SetRegularRows(internal::MeshLevels const &mesh,
+                        std::vector<RegularFaces::OfLevel> const &regularLevels) {
+        Multiplier multiplier(_stencils, FaceRows::kNumFaceSources, 0, _hasDerivatives);
+        Index firstSource = 0;
+        for (std::size_t i = 0; i < regularLevels.size(); ++i) {
+            FaceRows const rows(regularLevels[i].fVertices.mask);
+            Index numbers[FaceRows::kNumSources];
+            multiplier.Clear();
+            for (int corner = 0; corner < internal::kRegularFaceSize; ++corner) {
+                multiplier.AddRow(rows.GetRow(corner, numbers), 0);
+            }
+            Level const &level = mesh.levels[i];
+            _regularRows.push_back({&level, firstSource, multiplier.ShareRows()});
+            firstSource += level.numVertices;
+        }
+    }
 
     Status Build(int level) {
         std::vector<int> &sizes = _table->GetRowSizes();
@@ -308,6 +305,13 @@ private:
         std::vector<RowBits> rows;
     };
 
+    // Of the regular faces of a level.
+    struct RegularRows {
+        Level const *level;
+        Index firstSource; // among the stencils of the levels before, those of vertex 0
+        typename Multiplier::SharedRows rows;
+    };
+
     // What a thread makes rows with.
     struct State {
         Multiplier multiplier;
@@ -317,17 +321,15 @@ private:
     Index getNumGroups() const { return Index(_groups.size()) - 1; }
 
     void setRows(std::size_t number, State &state) {
-        state.multiplier.Clear();
         RowGroup const &group = _groups[number];
         if (group.face) {
-            RegularRows::OfLevel const &rows = _regularRows.levels[std::size_t(group.level)];
-            Index sources[internal::RegularFaceRows::kNumSources];
-            for (int corner = 0; corner < internal::kRegularFaceSize; ++corner) {
-                state.multiplier.AddRow(rows.rows.GetRow(*rows.level, *group.face, corner, sources),
-                                        rows.firstSource);
-            }
+            RegularRows const &regular = _regularRows[std::size_t(group.level)];
+            Index sources[FaceRows::kNumFaceSources];
+            FaceRows::GetFaceSources(*regular.level, *group.face, sources);
+            state.multiplier.SetRows(regular.rows, sources, regular.firstSource);
             return;
         }
+        state.multiplier.Clear();
         for (Index row = group.first; row < _groups[number + 1].first; ++row) {
             state.multiplier.AddRow(_rows.GetRow(row, state.scratch), _stencils.GetNumBefore());
         }
@@ -354,7 +356,7 @@ private:
 
     PointRows const &_rows;
     std::vector<RowGroup> const &_groups;
-    RegularRows const _regularRows;
+    std::vector<RegularRows> _regularRows; // by level
     SourceStencils const _stencils;
     Index const _numSources;
     Index const _numIndices;
@@ -454,10 +456,10 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
     std::vector<RowGroup> const groups =
         makeGroups(mesh, options.level, options.generateVertices ? level.numVertices : 0,
                    Index(rows.GetNumRows()), regularLevels);
-    TableBuilder<REAL> builder(rows, groups, RegularRows(mesh, regularLevels), stencils,
-                               stencils.GetNumBefore() + level.numVertices,
+    TableBuilder<REAL> builder(rows, groups, stencils, stencils.GetNumBefore() + level.numVertices,
                                refiner.GetLevel(hasStencils ? 0 : options.level).GetNumVertices(),
                                options.generate1stDerivatives);
+    builder.SetRegularRows(mesh, regularLevels);
     if (!internal::Report(builder.Build(options.level), status)) {
         return nullptr;
     }

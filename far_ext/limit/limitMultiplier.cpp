@@ -80,6 +80,30 @@ void LimitMultiplier<REAL>::AddRow(LimitRow const &row, Index firstSource) {
 }
 
 template <typename REAL>
+auto LimitMultiplier<REAL>::ShareRows() const -> SharedRows {
+    SharedRows rows;
+    rows._firstTerms = _firstTerms;
+    rows._terms.assign(_terms.begin(), _terms.begin() + _numTerms);
+    rows._sources = _sources;
+    return rows;
+}
+
+template <typename REAL>
+void LimitMultiplier<REAL>::SetRows(SharedRows const &rows, Index const *sources,
+                                    Index firstSource) {
+    _firstTerms = rows._firstTerms;
+    _numTerms = int(rows._terms.size());
+    if (_terms.size() < rows._terms.size()) {
+        _terms.resize(rows._terms.size());
+    }
+    std::copy(rows._terms.begin(), rows._terms.end(), _terms.begin());
+    _sources = rows._sources;
+    for (Source &source : _sources) {
+        source.index = firstSource + sources[source.index];
+    }
+}
+
+template <typename REAL>
 auto LimitMultiplier<REAL>::getList(Source const &source) const -> List {
     if (_stencils.IsEmpty()) {
         return {&source.index, 1, source.rows};

@@ -88,12 +88,20 @@ public:
         : _stencils(stencils), _hasDerivatives(hasDerivatives),
           _numberOfSource(std::size_t(numSources)), _columnOfIndex(std::size_t(numIndices)) {}
 
+    /// \brief Rows that are added again and again, each time with other sources.
+    class SharedRows;
+
     /// Forgets all rows.
     void Clear();
     /// Adds a row, of which nothing is referred to afterwards; kMaxLimitRows at most.
     ///
     /// \param firstSource  that of vertex 0 of the level whose vertices the row has
     void AddRow(LimitRow const &row, Index firstSource);
+    /// All rows; their sources are numbers.
+    SharedRows ShareRows() const;
+    /// Forgets all rows and adds those, source number i being \p firstSource + \p sources[i].  Until
+    /// Clear(), no other may be added.
+    void SetRows(SharedRows const &rows, Index const *sources, Index firstSource);
     int GetNumRows() const { return int(_firstTerms.size()); }
 
     /// Valid until the next call.
@@ -165,6 +173,15 @@ private:
     std::vector<REAL> _negative;    // the differences of nothing to it
     std::vector<REAL> _dense;       // differences of all sources to it, one after the other
     std::vector<REAL> _sums;        // of a row by column: points, then derivatives
+};
+
+template <typename REAL>
+class LimitMultiplier<REAL>::SharedRows {
+    friend class LimitMultiplier;
+
+    std::vector<int> _firstTerms;
+    std::vector<Term> _terms;
+    std::vector<Source> _sources;
 };
 
 extern template class LimitMultiplier<float>;

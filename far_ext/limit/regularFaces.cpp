@@ -264,6 +264,7 @@ constexpr int kNeighbors = kSize;
 constexpr int kNext = 2 * kSize;
 constexpr int kPrevious = 3 * kSize;
 constexpr int kBeyond = 4 * kSize;
+constexpr int kNumOthersBeyond = kSize / 2; // of each face
 
 } // namespace
 
@@ -291,23 +292,31 @@ RegularFaceRows::RegularFaceRows(RegularFaceMask const &mask) {
     }
 }
 
-LimitRow RegularFaceRows::GetRow(Level const &level, RegularFace const &face, int corner,
-                                 Index sources[kNumSources]) const {
+LimitRow RegularFaceRows::GetRow(int corner, Index numbers[kNumSources]) const {
     for (int k = 0; k < kSize; ++k) {
-        int const at = (corner + k) % kSize;
-        sources[k] = level.faceVerts[face.firstCorner + at];
-        sources[kNeighbors + k] = face.neighbors[at];
-        sources[kNext + k] = face.next[at];
-        sources[kPrevious + k] = face.previous[at];
-    }
-    Index *rest = sources + kBeyond;
-    for (Index const vert : level.GetFaceVertices(face.beyond[corner])) {
-        if (vert != face.neighbors[corner] && vert != face.next[corner] &&
-            vert != face.previous[corner]) {
-            *rest++ = vert;
+        for (int first : {0, kNeighbors, kNext, kPrevious}) {
+            numbers[first + k] = first + (corner + k) % kSize;
         }
     }
-    return {kNumSources, sources, _weights[0], _weights[1], _weights[2]};
+    std::iota(numbers + kBeyond, numbers + kNumSources, kBeyond + kNumOthersBeyond * corner);
+    return {kNumSources, numbers, _weights[0], _weights[1], _weights[2]};
+}
+
+void RegularFaceRows::GetFaceSources(Level const &level, RegularFace const &face,
+                                     Index sources[kNumFaceSources]) {
+    std::copy_n(level.faceVerts.data() + face.firstCorner, kSize, sources);
+    std::copy_n(face.neighbors, kSize, sources + kNeighbors);
+    std::copy_n(face.next, kSize, sources + kNext);
+    std::copy_n(face.previous, kSize, sources + kPrevious);
+    Index *others = sources + kBeyond;
+    for (int corner = 0; corner < kSize; ++corner) {
+        for (Index const vert : level.GetFaceVertices(face.beyond[corner])) {
+            if (vert != face.neighbors[corner] && vert != face.next[corner] &&
+                vert != face.previous[corner]) {
+                *others++ = vert;
+            }
+        }
+    }
 }
 
 RegularFaces::RegularFaces(MeshLevels const &mesh, int level, bool hasOwnVertices)

@@ -55,16 +55,21 @@ struct RegularFaceMask {
     OPENSUBDIVHEX_API bool HasOneTip() const;
 };
 
-/// \brief The rows of what a RegularFaceMask is for, in terms of the vertices of the level of faces.
+/// \brief The rows of what a RegularFaceMask is for: in terms of the sources of a face, so that all faces
+/// have the same.
 struct RegularFaceRows {
-    /// Those of the face, their neighbours, "next", "previous" and the others of the face beyond.
+    /// Vertices of the face, their neighbours, "next", "previous", and three others of each face beyond.
+    static constexpr int kNumFaceSources = 7 * kRegularFaceSize;
+    /// Of these, those that a row has.
     static constexpr int kNumSources = 4 * kRegularFaceSize + 3;
 
     explicit RegularFaceRows(RegularFaceMask const &mask);
 
-    /// Of a corner.  Valid until \p sources are used again.
-    LimitRow GetRow(Level const &level, RegularFace const &face, int corner,
-                    Far::Index sources[kNumSources]) const;
+    /// That of a corner, its sources being numbers among those of a face.  Valid until \p numbers are
+    /// used again.
+    LimitRow GetRow(int corner, Far::Index numbers[kNumSources]) const;
+    static void GetFaceSources(Level const &level, RegularFace const &face,
+                               Far::Index sources[kNumFaceSources]);
 
 private:
     double _weights[RegularFaceMask::kNumSums][kNumSources];
