@@ -118,13 +118,14 @@ bool PlainCellGatherer::Gather(Level const &level, std::vector<VertexMark> const
         if (isFeature || numFaces < kLeastFaces || numFaces >= kEndOfBytes) {
             return false;
         }
-        // Two edges that join the same vertices are told apart by nothing in the key.
-        for (int a = 1; a < numFaces; ++a) {
-            for (int b = 0; b < a; ++b) {
-                if (getNextVertex(level, begin + a) == getNextVertex(level, begin + b)) {
-                    return false;
-                }
+        _neighbors.clear();
+        for (int a = 0; a < numFaces; ++a) {
+            Index const neighbor = getNextVertex(level, begin + a);
+            // Two edges that join the same vertices are told apart by nothing in the key.
+            if (std::find(_neighbors.begin(), _neighbors.end(), neighbor) != _neighbors.end()) {
+                return false;
             }
+            _neighbors.push_back(neighbor);
         }
         // Those of neighbours begin behind the edge to the first centre.
         Index first = 0;
@@ -133,7 +134,7 @@ bool PlainCellGatherer::Gather(Level const &level, std::vector<VertexMark> const
         } else {
             Index least = numCenters;
             for (int a = 0; a < numFaces; ++a) {
-                Index const number = _numbers.Find(getNextVertex(level, begin + a));
+                Index const number = _numbers.Find(_neighbors[std::size_t(a)]);
                 if (number != Far::INDEX_INVALID && number < least) {
                     least = number;
                     first = a;

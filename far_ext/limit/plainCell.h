@@ -38,6 +38,7 @@ private:
     IndexMap _numbers; // of the sources
     IndexMap _faces;   // that have been added
     Index _numFaces = 0;
+    std::vector<Index> _neighbors; // of a vertex
 };
 
 } // namespace OpenSubdivHex::FarExt::internal
