@@ -4,15 +4,24 @@
 #include "regression/shapes/meshOperations.h"
 
 #include <cmath>
+#include <random>
 
 namespace OpenSubdivHex::Regression {
 namespace {
 
-/// numU x numV quads, each of them cut in two if \p triangles.
-Shape makeTorus(char const *name, int numU, int numV, bool triangles) {
+/// What the faces of a torus are.
+enum class Faces {
+    Quads,
+    Triangles,         ///< quads that are cut in two
+    IrregularTriangles ///< the same, each quad along a diagonal by chance
+};
+
+/// numU x numV quads, or what they are cut into.
+Shape makeTorus(char const *name, int numU, int numV, Faces faces) {
     double const kTwoPi = 2 * std::acos(-1.0);
     Shape shape;
     shape.name = name;
+    std::mt19937 random;
     for (int u = 0; u < numU; ++u) {
         for (int v = 0; v < numV; ++v) {
             double const radius = 1 + 0.4 * std::cos(kTwoPi * v / numV);
@@ -33,7 +42,10 @@ Shape makeTorus(char const *name, int numU, int numV, bool triangles) {
             int const b = vertex(u + 1, v);
             int const c = vertex(u + 1, v + 1);
             int const d = vertex(u, v + 1);
-            if (triangles) {
+            if (faces == Faces::IrregularTriangles && random() % 2 == 0) {
+                addFace({a, b, d});
+                addFace({b, c, d});
+            } else if (faces != Faces::Quads) {
                 addFace({a, b, c});
                 addFace({a, c, d});
             } else {
@@ -48,16 +60,19 @@ Shape makeTorus(char const *name, int numU, int numV, bool triangles) {
 
 } // namespace
 
-Shape MakeQuadMesh() { return makeTorus("quad", 48, 32, false); }
+Shape MakeQuadMesh() { return makeTorus("quad", 48, 32, Faces::Quads); }
 
-Shape MakeTriangleMesh() { return makeTorus("triangle", 64, 40, true); }
+Shape MakeTriangleMesh() { return makeTorus("triangle", 64, 40, Faces::Triangles); }
+
+Shape MakeIrregularMesh() { return makeTorus("irregular", 64, 40, Faces::IrregularTriangles); }
 
 Shape MakeHexMesh() { return MakeDual("hex", MakeTriangleMesh()); }
 
-Shape MakeSmallQuadMesh() { return makeTorus("small quad", 24, 16, false); }
+Shape MakeSmallQuadMesh() { return makeTorus("small quad", 24, 16, Faces::Quads); }
 
 Shape MakeLargeMesh(bool triangles) {
-    return makeTorus(triangles ? "large triangle" : "large quad", 1000, 640, triangles);
+    return makeTorus(triangles ? "large triangle" : "large quad", 1000, 640,
+                     triangles ? Faces::Triangles : Faces::Quads);
 }
 
 double CountEdges(Shape const &shape) { return shape.GetNumCorners() / 2.0; }

@@ -8,9 +8,11 @@ namespace OpenSubdivHex::Regression {
 
 /// \brief The base meshes of the benchmarks: tori, larger than the shapes of the tests.
 /// @{
-Shape MakeQuadMesh();      ///< 1,536 quads
-Shape MakeTriangleMesh();  ///< 5,120 triangles
-Shape MakeHexMesh();       ///< 2,560 hexagons
+Shape MakeQuadMesh();     ///< 1,536 quads
+Shape MakeTriangleMesh(); ///< 5,120 triangles
+Shape MakeHexMesh();      ///< 2,560 hexagons
+/// 5,120 triangles, of which 4 to 8 meet at a vertex, as in meshes that were reduced.
+Shape MakeIrregularMesh();
 Shape MakeSmallQuadMesh(); ///< 384 quads, for many levels
 /// As large as scans: 640,000 quads, or twice as many triangles.
 Shape MakeLargeMesh(bool triangles);

@@ -16,7 +16,7 @@ namespace OpenSubdivHex::Regression {
 /// \brief A base mesh and the level that it is refined to.
 struct BenchMesh {
     std::shared_ptr<Shape const> shape;
-    std::string name; ///< quad, triangle or hexagon
+    std::string name; ///< quad, triangle, hexagon; of surfaces irregular and spot, too
     std::string size; ///< small or large; levels 1 ... 6: growth
     int level;
 };

@@ -44,6 +44,14 @@ Suite::Suite(Options options) : _options(std::move(options)), _results{_options.
     for (BenchMesh &mesh : _meshes) {
         mesh.level = std::max(mesh.level, 1);
     }
+    _irregularMeshes = {{share(MakeIrregularMesh()), "irregular", kLarge, large}};
+    if (!_options.isQuick) {
+        for (Shape const &shape : GetShapes()) {
+            if (shape.name == "spot") {
+                _irregularMeshes.push_back({share(shape), "spot", kLarge, large});
+            }
+        }
+    }
     auto const largeQuad = _options.isQuick ? quad : share(MakeLargeMesh(false));
     auto const largeTriangle = _options.isQuick ? triangle : share(MakeLargeMesh(true));
     _baseMeshes = {{quad, "quad", kSmall, 0},

@@ -33,6 +33,8 @@ public:
 
     /// A quad, a triangle and a hexagonal mesh, each at two sizes.
     std::vector<BenchMesh> const &GetMeshes() const { return _meshes; }
+    /// Triangles, of which any number meet at a vertex; and "spot", where its file is there.
+    std::vector<BenchMesh> const &GetIrregularMeshes() const { return _irregularMeshes; }
     /// Meshes that are large or small themselves, of quads and of triangles.
     std::vector<BenchMesh> const &GetBaseMeshes() const { return _baseMeshes; }
     /// One mesh at several levels.
@@ -63,6 +65,7 @@ private:
 
     Options _options;
     std::vector<BenchMesh> _meshes;
+    std::vector<BenchMesh> _irregularMeshes;
     std::vector<BenchMesh> _baseMeshes;
     std::vector<BenchMesh> _growthMeshes;
     std::vector<Benchmark> _benchmarks;

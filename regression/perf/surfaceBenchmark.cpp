@@ -174,7 +174,8 @@ Contestant makePointContestant(std::string const &name, std::shared_ptr<Workspac
     return contestant;
 }
 
-Contest makePointContest(BenchMesh const &mesh) {
+/// \param isRegular  whether all faces have the same stencils
+Contest makePointContest(BenchMesh const &mesh, bool isRegular) {
     auto const workspace = std::make_shared<Workspace>(mesh);
     auto const own = std::make_shared<OwnSurfaces>();
     auto const peer = std::make_shared<PeerSurfaces>();
@@ -219,13 +220,18 @@ Contest makePointContest(BenchMesh const &mesh) {
             },
             numThreads));
     }
-    auto const stencils = std::make_shared<std::vector<float>>(makeStencils(*peer, numPlaces));
-    contest.contestants.push_back(
-        makePointContestant("Bfr::Surface, stencils kept", workspace,
-                            [=] { return evaluateStencils(*peer, *stencils, *workspace); }));
-    contest.pairings = {{"surface-points", 0, {1}},      {"surface-stencils", 0, {6}},
-                        {"surface-derivatives", 2, {3}}, {"stream-1", 4, {1}},
-                        {"stream-stencils", 4, {6}},     {"stream-2", 5, {4}}};
+    contest.pairings = {{"surface-points", 0, {1}},
+                        {"surface-derivatives", 2, {3}},
+                        {"stream-1", 4, {1}},
+                        {"stream-2", 5, {4}}};
+    if (isRegular) {
+        auto const stencils = std::make_shared<std::vector<float>>(makeStencils(*peer, numPlaces));
+        contest.contestants.push_back(
+            makePointContestant("Bfr::Surface, stencils kept", workspace,
+                                [=] { return evaluateStencils(*peer, *stencils, *workspace); }));
+        contest.pairings.push_back({"surface-stencils", 0, {6}});
+        contest.pairings.push_back({"stream-stencils", 4, {6}});
+    }
     return contest;
 }
 
@@ -273,13 +279,19 @@ Contest makeInitContest(BenchMesh const &mesh) {
 } // namespace
 
 void AddSurfaceBenchmarks(Suite &suite) {
-    for (BenchMesh const &mesh : suite.GetMeshes()) {
+    auto const add = [&](BenchMesh const &mesh, bool isRegular) {
         suite.AddContest({"surfaces, level 4", "point", mesh, Memory::Resident},
-                         [=] { return makePointContest(mesh); });
+                         [=] { return makePointContest(mesh, isRegular); });
         for (Memory memory : {Memory::Default, Memory::Warm}) {
             suite.AddContest({"making surfaces", "surface", mesh, memory},
                              [=] { return makeInitContest(mesh); });
         }
+    };
+    for (BenchMesh const &mesh : suite.GetMeshes()) {
+        add(mesh, true);
+    }
+    for (BenchMesh const &mesh : suite.GetIrregularMeshes()) {
+        add(mesh, false);
     }
 }
 
