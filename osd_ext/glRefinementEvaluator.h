@@ -164,6 +164,8 @@ public:
     /// false, CreaseCuts::None and drawHoles, in its order.  They are made on the device, those of
     /// F-faces from the numbering alone, those of other faces from their vertices, which the first call
     /// for a level loads; it refers to the refiner that was given.
+    /// Triangles of cut faces are CreateTriangleIndices()'s: where faces are cut depends on tags, seams and
+    /// base faces, which no device has, and they change with the refinement alone, not with frames.
     /// @{
 
     /// How many a level has.

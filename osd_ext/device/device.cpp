@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device.h"
 
+#include "far_ext/vtr/buffer.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -40,6 +42,14 @@ FarExt::Status Device::CheckSize(std::int64_t numBytes, std::string const &what)
                                            what + " would take " + std::to_string(numBytes) +
                                                " bytes, and the device reaches " +
                                                std::to_string(maxBytes));
+}
+
+void Device::Fill(DeviceBufferName buffer, std::int64_t numBytes,
+                  std::function<void(void *)> const &write) {
+    FarExt::internal::Buffer<char> memory;
+    memory.Resize(std::size_t(numBytes));
+    write(memory.data());
+    Write(buffer, 0, memory.data(), numBytes);
 }
 
 void DeviceBuffer::Resize(std::int64_t numBytes) {

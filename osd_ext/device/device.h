@@ -8,6 +8,7 @@
 #include "far_ext/status.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace OpenSubdivHex::OsdExt::internal {
@@ -61,6 +62,11 @@ public:
     /// Copies \p numBytes of \p data to a buffer, from \p firstByte on.
     virtual void Write(DeviceBufferName buffer, std::int64_t firstByte, void const *data,
                        std::int64_t numBytes) = 0;
+
+    /// \brief Has write(memory) write the first \p numBytes of a buffer: to the buffer, or to memory that
+    /// is then copied.  It may be called again if the buffer has lost them.
+    virtual void Fill(DeviceBufferName buffer, std::int64_t numBytes,
+                      std::function<void(void *)> const &write);
 
     /// \brief Whether a user's buffer is one, and has \p numFloats or more.
     ///

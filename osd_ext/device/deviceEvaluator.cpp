@@ -5,6 +5,7 @@
 #include "osd_ext/refinement/evaluationChecks.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -74,11 +75,6 @@ Status DeviceEvaluator::Prepare(Options options) {
                                GetInterpolation(_refiner, options));
         }
     }
-    DeviceArrays arrays;
-    status = MakeDeviceRefinements(refinements, masks, arrays, _refinements);
-    if (!status.IsOk()) {
-        return status;
-    }
     std::vector<std::int32_t> values;
     if (isFaceVarying) {
         FVarChannel const &channel =
@@ -89,6 +85,21 @@ Status DeviceEvaluator::Prepare(Options options) {
             values.assign(channel.valuesOfVertices.begin(), channel.valuesOfVertices.end());
         }
     }
+    std::vector<float> weights;
+    status = MakeDeviceRefinements(
+        refinements, masks, weights, _refinements,
+        [&](std::size_t numIndices, std::function<void(std::int32_t *)> const &fill) {
+            return loadIndices(numIndices, fill, values);
+        });
+    if (status.IsOk()) {
+        status = _device->CheckSize(std::int64_t(weights.size()) * kWord,
+                                    "the weights of the refinements");
+    }
+    if (!status.IsOk()) {
+        return status;
+    }
+    _weights.Resize(std::int64_t(weights.size()) * kWord);
+    _weights.Write(0, weights);
     for (DeviceRefinement const &refinement : _refinements) {
         for (DeviceFaceRun const &run : refinement.faceRuns) {
             if (isUnrolled(run)) {
@@ -98,8 +109,14 @@ Status DeviceEvaluator::Prepare(Options options) {
     }
     std::sort(_faceSizes.begin(), _faceSizes.end());
     _faceSizes.erase(std::unique(_faceSizes.begin(), _faceSizes.end()), _faceSizes.end());
+    return _device->EndFrame();
+}
 
-    auto next = std::int64_t(arrays.indices.size());
+// The indices of the refinements, then what they list, then the values of vertices.
+Status DeviceEvaluator::loadIndices(std::size_t numIndices,
+                                    std::function<void(std::int32_t *)> const &fill,
+                                    std::vector<std::int32_t> const &values) {
+    auto next = std::int64_t(numIndices);
     auto const take = [&](std::int64_t count) {
         auto const first = std::uint32_t(next);
         next += count;
@@ -112,27 +129,24 @@ Status DeviceEvaluator::Prepare(Options options) {
             {corners, take(kWordsOf<DeviceVertex> * std::int64_t(refinement.vertices.size()))});
     }
     _firstValue = take(std::int64_t(values.size()));
-    status = checkPositions(next, "the indices of the refinements");
+    Status status = checkPositions(next, "the indices of the refinements");
     if (status.IsOk()) {
         status = _device->CheckSize(next * kWord, "the indices of the refinements");
-    }
-    if (status.IsOk()) {
-        status = _device->CheckSize(std::int64_t(arrays.weights.size()) * kWord,
-                                    "the weights of the refinements");
     }
     if (!status.IsOk()) {
         return status;
     }
     _indices.Resize(next * kWord);
-    _indices.Write(0, arrays.indices);
+    if (numIndices > 0) {
+        _device->Fill(_indices.GetName(), std::int64_t(numIndices) * kWord,
+                      [&](void *memory) { fill(static_cast<std::int32_t *>(memory)); });
+    }
     for (std::size_t i = 0; i < _refinements.size(); ++i) {
         _indices.Write(_places[i].corners * kWord, _refinements[i].corners);
         _indices.Write(_places[i].vertices * kWord, _refinements[i].vertices);
     }
     _indices.Write(_firstValue * kWord, values);
-    _weights.Resize(std::int64_t(arrays.weights.size()) * kWord);
-    _weights.Write(0, arrays.weights);
-    return _device->EndFrame();
+    return status;
 }
 
 std::int64_t DeviceEvaluator::GetNumElementsAllLevels() const {

@@ -8,7 +8,9 @@
 
 #include "osd_ext/refinementEvaluator.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -95,6 +97,9 @@ private:
         DeviceBuffer indices;
     };
 
+    FarExt::Status loadIndices(std::size_t numIndices,
+                               std::function<void(std::int32_t *)> const &fill,
+                               std::vector<std::int32_t> const &values);
     FarExt::Status check(Values const &src, std::vector<Values> const &outputs, int level,
                          std::int64_t numWritten) const;
     FarExt::Status prepareKernels(int length);

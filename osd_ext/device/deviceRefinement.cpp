@@ -62,9 +62,9 @@ bool isRun(Range const &range, std::vector<Range> const &ranges) {
 class Maker {
 public:
     Maker(RefinementMask const &mask, Refinement const &refinement, Refinement const *before,
-          std::size_t firstIndex, std::vector<float> &weights)
+          std::size_t firstIndex, std::vector<float> &weights, DeviceRefinement &result)
         : _mask(mask), _refinement(refinement), _before(before), _level(*refinement.parent),
-          _numIndices(firstIndex), _weights(weights) {
+          _numIndices(firstIndex), _weights(weights), _result(result) {
         _result.numVVertices = refinement.child->numVVertices;
         FarExt::VertexVertexMask const plain = mask.GetPlainVertexMask(kRunValence);
         _result.vertexWeight = float(plain.vertexWeight);
@@ -96,10 +96,7 @@ public:
         planVertices();
     }
     std::size_t GetNumIndices() const { return _numIndices; }
-    DeviceRefinement Take(std::int32_t *indices) {
-        fill(indices);
-        return std::move(_result);
-    }
+    void Fill(std::int32_t *indices) const;
 
 private:
     void planFaces();
@@ -111,7 +108,6 @@ private:
     std::uint32_t takeIndicesOf(Index face);
     void listPlainVertex(Index vert);
     void listVertex(Index vert);
-    void fill(std::int32_t *indices) const;
 
     std::uint32_t takeIndices(std::size_t count) {
         std::size_t const first = _numIndices;
@@ -158,6 +154,7 @@ private:
     Level const &_level;
     std::size_t _numIndices;
     std::vector<float> &_weights;
+    DeviceRefinement &_result;
     Index _firstNewVertex;                     // F-vertices of the level before ...
     Index _firstOlderVertex;                   // ... and of the level before that
     std::vector<std::uint32_t> _plainWeights;  // by size, twice in a row
@@ -166,7 +163,6 @@ private:
     std::vector<Index> _listedFaces;           // F-faces
     std::vector<std::uint32_t> _firstIndices;  // of those
     std::vector<Index> _truncationSources;
-    DeviceRefinement _result;
     std::vector<double> _scratch;
 };
 
@@ -331,7 +327,7 @@ void Maker::planTruncation() {
     }
 }
 
-void Maker::fill(std::int32_t *indices) const {
+void Maker::Fill(std::int32_t *indices) const {
     if (_refinement.isTruncation) {
         // Those of level 0 are the first of all.
         std::copy(_truncationSources.begin(), _truncationSources.end(), indices);
@@ -376,29 +372,32 @@ void Maker::fill(std::int32_t *indices) const {
 
 } // namespace
 
-FarExt::Status MakeDeviceRefinements(std::vector<Refinement const *> const &refinements,
-                                     std::vector<RefinementMask> const &masks, DeviceArrays &arrays,
-                                     std::vector<DeviceRefinement> &result) {
+FarExt::Status MakeDeviceRefinements(
+    std::vector<Refinement const *> const &refinements, std::vector<RefinementMask> const &masks,
+    std::vector<float> &weights, std::vector<DeviceRefinement> &result,
+    std::function<FarExt::Status(std::size_t numIndices,
+                                 std::function<void(std::int32_t *)> const &fill)> const &write) {
     std::vector<Maker> makers;
     std::size_t numIndices = 0;
+    result.resize(refinements.size());
     for (std::size_t i = 0; i < refinements.size(); ++i) {
         makers.emplace_back(masks[i], *refinements[i], i > 0 ? refinements[i - 1] : nullptr,
-                            numIndices, arrays.weights);
+                            numIndices, weights, result[i]);
         makers.back().Plan();
         numIndices = makers.back().GetNumIndices();
     }
     constexpr std::size_t kMaxSize = std::numeric_limits<std::uint32_t>::max();
-    if (std::max(numIndices, arrays.weights.size()) > kMaxSize) {
-        return FarExt::internal::Failure(
-            FarExt::StatusCode::TooLarge,
-            "the refinements have " + std::to_string(numIndices) + " indices and " +
-                std::to_string(arrays.weights.size()) + " weights, more than 32 bits reach");
+    if (std::max(numIndices, weights.size()) > kMaxSize) {
+        return FarExt::internal::Failure(FarExt::StatusCode::TooLarge,
+                                         "the refinements have " + std::to_string(numIndices) +
+                                             " indices and " + std::to_string(weights.size()) +
+                                             " weights, more than 32 bits reach");
     }
-    arrays.indices.Resize(numIndices);
-    for (Maker &maker : makers) {
-        result.push_back(maker.Take(arrays.indices.data()));
-    }
-    return FarExt::Status();
+    return write(numIndices, [&](std::int32_t *indices) {
+        for (Maker const &maker : makers) {
+            maker.Fill(indices);
+        }
+    });
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -6,16 +6,12 @@
 #include "far_ext/vtr/refinement.h"
 #include "far_ext/vtr/refinementMask.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace OpenSubdivHex::OsdExt::internal {
-
-/// \brief The arrays that the refinements of all levels point into.
-struct DeviceArrays {
-    FarExt::internal::Buffer<std::int32_t> indices;
-    std::vector<float> weights;
-};
 
 /// \brief Plain faces of one size that follow one another.
 struct DeviceFaceRun {
@@ -85,13 +81,20 @@ struct DeviceRefinement {
 
 /// \brief Prepares all refinements of a mesh, which lead from level 0 on.
 ///
-/// \param masks  by refinement
+/// \param masks    by refinement
+/// \param weights  gets those that the refinements point to
+/// \param result   one for each refinement
+/// \param write    is called once \p result is there, with the number of indices and a function that
+///                 writes them all to memory that it is given
 ///
-/// \return  TooLarge, and how many there are, where there are more than 2^32 indices or weights
-OPENSUBDIVHEX_API FarExt::Status
-MakeDeviceRefinements(std::vector<FarExt::internal::Refinement const *> const &refinements,
-                      std::vector<FarExt::internal::RefinementMask> const &masks,
-                      DeviceArrays &arrays, std::vector<DeviceRefinement> &result);
+/// \return  that of \p write; TooLarge, and how many there are, where there are more than 2^32 indices
+///          or weights
+OPENSUBDIVHEX_API FarExt::Status MakeDeviceRefinements(
+    std::vector<FarExt::internal::Refinement const *> const &refinements,
+    std::vector<FarExt::internal::RefinementMask> const &masks, std::vector<float> &weights,
+    std::vector<DeviceRefinement> &result,
+    std::function<FarExt::Status(std::size_t numIndices,
+                                 std::function<void(std::int32_t *)> const &fill)> const &write);
 
 } // namespace OpenSubdivHex::OsdExt::internal
 

@@ -93,6 +93,37 @@ void GlDevice::Write(DeviceBufferName buffer, std::int64_t firstByte, void const
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
 }
 
+void GlDevice::Fill(DeviceBufferName buffer, std::int64_t numBytes,
+                    std::function<void(void *)> const &write) {
+    // Unmaps the buffer, whatever write() throws.
+    struct Mapping {
+        explicit Mapping(DeviceBufferName buffer, std::int64_t numBytes) {
+            glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(buffer));
+            memory = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, GLsizeiptr(numBytes),
+                                      GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
+        }
+        Mapping(Mapping const &) = delete;
+        Mapping &operator=(Mapping const &) = delete;
+        ~Mapping() {
+            Unmap();
+            glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+        }
+        /// Whether the buffer has what was written.
+        bool Unmap() {
+            return std::exchange(memory, nullptr) != nullptr &&
+                   glUnmapBuffer(GL_SHADER_STORAGE_BUFFER) == GL_TRUE;
+        }
+        void *memory;
+    };
+    Mapping mapping(buffer, numBytes);
+    if (mapping.memory) {
+        write(mapping.memory);
+    }
+    if (!mapping.Unmap()) {
+        Device::Fill(buffer, numBytes, write);
+    }
+}
+
 Status GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
                              std::string const &what) const {
     auto const fail = [](StatusCode code, std::string const &message) {

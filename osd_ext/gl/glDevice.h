@@ -6,6 +6,7 @@
 
 #include "osd_ext/device/device.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <tuple>
@@ -22,6 +23,8 @@ public:
     void Free(DeviceBufferName buffer) override;
     void Write(DeviceBufferName buffer, std::int64_t firstByte, void const *data,
                std::int64_t numBytes) override;
+    void Fill(DeviceBufferName buffer, std::int64_t numBytes,
+              std::function<void(void *)> const &write) override;
     FarExt::Status CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
                                std::string const &what) const override;
     FarExt::Status Prepare(DeviceKernel kernel, int length, int faceSize) override;
