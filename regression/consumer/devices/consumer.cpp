@@ -20,8 +20,8 @@ int main() {
     descriptor.numVertsPerFace = kVertsPerFace;
     descriptor.vertIndicesPerFace = kFaceVerts;
     FarExt::Status status;
-    auto const refiner = FarExt::TopologyRefinerFactory::Create(
-        descriptor, OpenSubdiv::Sdc::Options(), &status);
+    auto const refiner =
+        FarExt::TopologyRefinerFactory::Create(descriptor, OpenSubdiv::Sdc::Options(), &status);
     if (!refiner || !refiner->RefineUniform({3}, &status)) {
         std::printf("%s\n", status.GetMessage().c_str());
         return 1;
@@ -29,8 +29,7 @@ int main() {
     auto const evaluator = OsdExt::EVALUATOR::Create(*refiner, &status);
     if (!evaluator) {
         std::printf("%s\n", status.GetMessage().c_str());
-        return status.GetCode() == FarExt::StatusCode::Unsupported &&
-                       !status.GetMessage().empty()
+        return status.GetCode() == FarExt::StatusCode::Unsupported && !status.GetMessage().empty()
                    ? 0
                    : 1;
     }
