@@ -111,16 +111,24 @@ struct IrregularWeights {
     double ofFaces;       // of the mean of the F-vertices, in V'
 };
 
-// The first levels beside quads, and at vertices with four faces: found by a search.
+constexpr double kAtNeighborOfFour[4] = {14 / 32.0, 4 / 32.0, 9 / 32.0, 5 / 32.0};
+
+// The first levels of quads, where points are uneven: what F-vertices at a vertex among quads and
+// beside a quad are made of.  regression/analysis/searchQuadMasks.cpp finds them.  At the first
+// level all corners beside a neighbor of the vertex are beside a quad, too.
+struct UnevenWeights {
+    double atVertex[4];   // as in IrregularWeights
+    double atNeighbor[4]; // as in IrregularWeights
+    double besideQuad[6];
+};
 constexpr int kNumUnevenSteps = kNumStepsToConstantMasks - 1;
-constexpr IrregularWeights kUnevenWeights[kNumUnevenSteps] = {
-    {{11 / 64.0, 23 / 64.0, 3 / 64.0, 1 / 64.0},
-     {14 / 32.0, 4 / 32.0, 9 / 32.0, 5 / 32.0},
-     23 / 64.0},
-    {{24 / 64.0, 16 / 64.0, 4 / 64.0, 0}, {41 / 64.0, 0, 8 / 64.0, 15 / 64.0}, 40 / 64.0}};
-constexpr double kQuadNeighborWeights[kNumUnevenSteps][6] = {
-    {35 / 64.0, 13 / 64.0, 0, 4 / 64.0, 12 / 64.0, 0},
-    {32 / 64.0, 13 / 64.0, 2 / 64.0, 6 / 64.0, 5 / 64.0, 6 / 64.0}};
+constexpr UnevenWeights kUnevenWeights[kNumUnevenSteps] = {
+    {{24 / 128.0, 45 / 128.0, 7 / 128.0, 0},
+     {kAtNeighborOfFour[0], kAtNeighborOfFour[1], kAtNeighborOfFour[2], kAtNeighborOfFour[3]},
+     {9 / 16.0, 3 / 16.0, 0, 1 / 16.0, 3 / 16.0, 0}},
+    {{46 / 128.0, 41 / 128.0, 0, 0},
+     {76 / 128.0, 4 / 128.0, 18 / 128.0, 30 / 128.0},
+     {63 / 128.0, 29 / 128.0, 5 / 128.0, 6 / 128.0, 16 / 128.0, 9 / 128.0}}};
 
 // The share of a vertex with many faces that goes along its edges; see the header.
 constexpr double kMaxSpokeShare = 0.77;
@@ -161,13 +169,11 @@ IrregularWeights solveWeights(int numFaces, double lambda, double const atNeighb
             ofFaces};
 }
 
-IrregularWeights findWeights(int numFaces, int numSteps) {
-    constexpr double kAtNeighborOfFour[4] = {14 / 32.0, 4 / 32.0, 9 / 32.0, 5 / 32.0};
+IrregularWeights findWeights(int numFaces) {
     constexpr double kAtNeighbor[4] = {15 / 32.0, 4 / 32.0, 8 / 32.0, 5 / 32.0};
     constexpr double kLambda = 4 / 7.0;
     if (numFaces == 4) {
-        return numSteps <= kNumUnevenSteps ? kUnevenWeights[numSteps - 1]
-                                           : solveWeights(4, kLambda, kAtNeighborOfFour);
+        return solveWeights(4, kLambda, kAtNeighborOfFour);
     }
     if (numFaces == 5) {
         return solveWeights(5, kLambda, kAtNeighbor);
@@ -181,8 +187,13 @@ IrregularWeights findWeights(int numFaces, int numSteps) {
 
 } // namespace
 
-IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps) {
-    IrregularWeights const weights = findWeights(numFaces, numSteps);
+IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps, bool isAmongQuads) {
+    IrregularWeights weights = findWeights(numFaces);
+    if (isAmongQuads && numSteps <= kNumUnevenSteps) {
+        UnevenWeights const &uneven = kUnevenWeights[numSteps - 1];
+        std::copy_n(uneven.atVertex, 4, weights.atVertex);
+        std::copy_n(uneven.atNeighbor, 4, weights.atNeighbor);
+    }
     auto const [self, side, next, opposite] = weights.atVertex;
     auto const [n, v, a, m] = weights.atNeighbor;
     return {{self, side, next, opposite, next, side},
@@ -194,7 +205,7 @@ bool ComputeQuadNeighborMask(int numSteps, double *weights) {
     if (numSteps > kNumUnevenSteps) {
         return false;
     }
-    std::copy_n(kQuadNeighborWeights[numSteps - 1], 6, weights);
+    std::copy_n(kUnevenWeights[numSteps - 1].besideQuad, 6, weights);
     return true;
 }
 

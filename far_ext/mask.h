@@ -98,6 +98,9 @@ OPENSUBDIVHEX_API VertexVertexMask ComputeVertexVertexMask(Interpolation interpo
 /// own around it.
 inline constexpr int kMinIrregularFaces = 4;
 
+/// \brief The faces of a vertex among quads, which all have been quads when hexagonal steps began.
+inline constexpr int kNumFacesAmongQuads = 4;
+
 /// \brief The hexagonal steps from which on the masks of irregular vertices and beside quads do not
 /// change any more.
 inline constexpr int kNumStepsToConstantMasks = 3;
@@ -116,6 +119,9 @@ struct IrregularVertexMask {
 /// \brief Returns the masks around a vertex inside the mesh with \p numFaces hexagons,
 /// kMinIrregularFaces or more, after \p numSteps hexagonal steps, 1 or more.
 ///
+/// \param isAmongQuads  whether all of its faces, kNumFacesAmongQuads, were quads before these steps;
+///                      \p numSteps matters only then
+///
 /// With the mask of all hexagons curvature would grow there from level to level without bound, by
 /// 1.14 with 4 faces and 1.32 with 6.  These keep the square of the sub-dominant eigenvalue as the
 /// next one for 4 to 7 faces, so that it is bounded, and nearly do beyond: it grows by 1.08 at 8
@@ -127,14 +133,19 @@ struct IrregularVertexMask {
 ///     (x - 2 c1 C)(x^2 - nA^2) = 2 a2 (x (nN + nM D) + nA C (nN + nM))
 ///
 /// where atVertex is (a, c1, a2, 0, a2, c1).  x = lambda at w = 1 and x = lambda^2 at w = 2 give c1
-/// and a2, and the same for w = 0 the weight of V'.  In the first levels, where points are still
-/// uneven, other weights at four faces make surfaces of quads more even: they were found by a
-/// search (see docs/guide/masks.md), and have no bearing on the limit of curvature.
-OPENSUBDIVHEX_API IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps);
+/// and a2, and the same for w = 0 the weight of V'.  Among quads the points of the first two levels
+/// are uneven, and the F-vertices have other weights there, which make surfaces more even: they were
+/// found by a search (see docs/guide/masks.md), and have no bearing on the limit of curvature.
+OPENSUBDIVHEX_API IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps,
+                                                                 bool isAmongQuads = false);
 
 /// \brief Writes the six weights with which Smooth makes the F-vertex of a hexagon at an end of an
 /// edge that it shares with a quad, for the vertices from there on around the hexagon, along that
 /// edge first.
+///
+/// At the first level they are (9, 3, 0, 1, 3, 0)/16: so bowl and saddles shrink alike around a quad,
+/// to 1/4 in a step, where linear functions shrink to 1/2.  Those of the second level were found by a
+/// search.
 ///
 /// \param numSteps  hexagonal steps that made the level, 1 or more
 /// \return  whether there are such weights at this level: after three steps and more hexagons beside

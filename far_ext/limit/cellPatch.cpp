@@ -229,7 +229,7 @@ std::vector<CellChild> RefineCell(CellPatch const &cell, Sdc::Options sdcOptions
     Refinement refinement;
     BuildPatchLevel(cell.patch, parent);
     RefineHexagonally(parent, sdcOptions, true, refinement, child);
-    FindIrregularFeatures(schemeOptions.faceMask, child);
+    FindIrregularFeatures(schemeOptions.faceMask, refinement, child);
     std::vector<CellChild> children;
     for (CellPatch &result : CellRefiner(refinement, schemeOptions.faceMask, cell).Refine()) {
         PatchRefinement step =

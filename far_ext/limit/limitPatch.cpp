@@ -541,7 +541,7 @@ PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
     Refinement refinement;
     BuildPatchLevel(pPatch, parent);
     RefineHexagonally(parent, sdcOptions, true, refinement, child);
-    FindIrregularFeatures(schemeOptions.faceMask, child);
+    FindIrregularFeatures(schemeOptions.faceMask, refinement, child);
     LimitPatchGatherer(child, schemeOptions.faceMask)
         .Gather(refinement.GetVertexChildVertex(0), cPatch);
 

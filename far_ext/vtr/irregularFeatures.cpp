@@ -69,8 +69,9 @@ void forEachCorner(Mark mark, ADD const &add) {
 // then which faces are concerned, and last their corners, in the order of the faces.
 class IrregularFinder {
 public:
-    explicit IrregularFinder(Level &level)
-        : _level(level), _endVert(std::min(level.numVertsOfAnyValence, level.numVVertices)) {}
+    IrregularFinder(Refinement const &refinement, Level &level)
+        : _refinement(refinement), _level(level),
+          _endVert(std::min(level.numVertsOfAnyValence, level.numVVertices)) {}
 
     void Find() {
         findVertices();
@@ -84,8 +85,14 @@ public:
     }
 
 private:
+    // Of a vertex: the share of its masks, negative of those that are not irregular.
+    struct Vertex {
+        float weight;
+        bool isAmongQuads;
+    };
     void findVertices();
-    float findWeight(Index vert) const;
+    Vertex findVertex(Index vert) const;
+    bool isAmongQuads(Index vert) const;
     void markFacesOfVertices();
     void markFacesBesideQuads();
     Mark &markOf(Index face) { return _marks[std::size_t(face - _level.numFFaces)]; }
@@ -94,17 +101,18 @@ private:
     void findCorners();
     IrregularCorner *writeCorners(Index face, Mark mark, IrregularCorner *next) const;
 
+    Refinement const &_refinement;
     Level &_level;
     Index const _endVert; // of those that may be irregular
-    Buffer<float> _weights;
+    Buffer<Vertex> _vertices;
     std::vector<Mark> _marks; // by E-face
 };
 
-// The share of the masks of a vertex inside the mesh all of whose faces are E-faces of six sides;
-// 0 of others.
-float IrregularFinder::findWeight(Index vert) const {
-    if (_level.GetNumVertexFaces(vert) < kMinIrregularFaces) {
-        return 0;
+// Irregular are vertices inside the mesh all of whose faces are E-faces of six sides.
+auto IrregularFinder::findVertex(Index vert) const -> Vertex {
+    constexpr Vertex kNone = {-1, false};
+    if (_level.GetNumVertexFaces(vert) < kMinIrregularFaces || _level.IsNonManifold(vert)) {
+        return kNone;
     }
     float sharpness = _level.GetVertexSharpness(vert);
     for (Index k = _level.vertFirstFace[vert]; k < _level.vertFirstFace[vert + 1]; ++k) {
@@ -113,19 +121,41 @@ float IrregularFinder::findWeight(Index vert) const {
         Index const edge = _level.faceEdges[corner];
         Index const before = _level.faceEdges[_level.GetPrevCorner(face, corner)];
         if (!isWholeEFace(_level, face) || _level.IsBoundary(edge) || _level.IsBoundary(before)) {
-            return 0;
+            return kNone;
         }
         sharpness =
             std::max({sharpness, _level.GetDiagonalSharpness(face), _level.GetEdgeSharpness(edge)});
     }
-    return _level.IsNonManifold(vert) ? 0 : smoothPart(sharpness);
+    Vertex const result = {smoothPart(sharpness), isAmongQuads(vert)};
+    // The next level learns from this one what was among quads.
+    bool const matters =
+        result.weight > 0 || (result.isAmongQuads && _level.numHexagonalSteps == 1 &&
+                              !Sdc::Crease::IsInfinite(sharpness));
+    return matters ? result : kNone;
+}
+
+bool IrregularFinder::isAmongQuads(Index vert) const {
+    if (_level.GetNumVertexFaces(vert) != kNumFacesAmongQuads ||
+        _level.numHexagonalSteps >= kNumStepsToConstantMasks) {
+        return false; // or makes no difference
+    }
+    Level const &parent = *_refinement.parent;
+    Index const pVert = _refinement.GetVVertexParent(vert);
+    if (parent.numHexagonalSteps > 0) {
+        Index const corner = parent.GetVertexCorner(parent.vertFirstFace[pVert]);
+        auto const irregular = parent.GetIrregularCorners(corner, corner + 1);
+        return !irregular.empty() && irregular[0].kind == IrregularCorner::kAtVertexAmongQuads;
+    }
+    Far::ConstIndexArray const faces = parent.GetVertexFaces(pVert);
+    return std::all_of(faces.begin(), faces.end(),
+                       [&](Index face) { return parent.GetFaceSize(face) == kQuad; });
 }
 
 void IrregularFinder::findVertices() {
-    _weights.Resize(std::size_t(_endVert));
-    ParallelFor(_endVert, [&](Index vert) { _weights[std::size_t(vert)] = findWeight(vert); });
+    _vertices.Resize(std::size_t(_endVert));
+    ParallelFor(_endVert, [&](Index vert) { _vertices[std::size_t(vert)] = findVertex(vert); });
     for (Index vert = 0; vert < _endVert; ++vert) {
-        if (float const weight = _weights[std::size_t(vert)]; weight > 0) {
+        if (float const weight = _vertices[std::size_t(vert)].weight; weight >= 0) {
             _level.irregularVerts.push_back({vert, weight});
         }
     }
@@ -205,9 +235,14 @@ IrregularCorner *IrregularFinder::writeCorners(Index face, Mark mark, IrregularC
         local %= kHexagon;
         bool const isAtQuad =
             kind == IrregularCorner::kAlongQuad || kind == IrregularCorner::kBehindQuad;
-        Index const vert = _level.faceVerts[first + side.places.startVertex];
-        found[local] = {first + local, isAtQuad ? 0 : _level.GetNumVertexFaces(vert),
-                        isAtQuad ? besideQuad : _weights[std::size_t(vert)], kind};
+        if (isAtQuad) {
+            found[local] = {first + local, 0, besideQuad, kind};
+        } else {
+            Index const vert = _level.faceVerts[first + side.places.startVertex];
+            auto const [weight, isAmongQuads] = _vertices[std::size_t(vert)];
+            found[local] = {first + local, _level.GetNumVertexFaces(vert), weight,
+                            isAmongQuads ? IrregularCorner::AmongQuads(kind) : kind};
+        }
         places |= 1U << local;
     });
     for (int local = 0; local < kHexagon; ++local) {
@@ -220,11 +255,11 @@ IrregularCorner *IrregularFinder::writeCorners(Index face, Mark mark, IrregularC
 
 } // namespace
 
-void FindIrregularFeatures(FaceMask faceMask, Level &level) {
+void FindIrregularFeatures(FaceMask faceMask, Refinement const &refinement, Level &level) {
     level.irregularVerts.clear();
     level.irregularCorners.clear();
     if (faceMask == FaceMask::Smooth && level.numHexagonalSteps > 0 && level.hasFullTopology) {
-        IrregularFinder(level).Find();
+        IrregularFinder(refinement, level).Find();
     }
 }
 

@@ -49,8 +49,9 @@ struct SectorCorner {
 /// in mask.h.
 struct IrregularVertex {
     Far::Index vert;
-    float
-        weight; ///< share of its masks: less than 1 where it, or an edge or diagonal at it, is sharp
+    /// Share of its masks: less than 1 where it, or an edge or diagonal at it, is sharp.  0 where the
+    /// vertex was among quads and only the next level may have a share.
+    float weight;
 };
 
 /// \brief A corner of a hexagon whose F-vertex has a mask of its own, since an irregular vertex or a
@@ -62,8 +63,15 @@ struct IrregularCorner {
         kBehindVertex,       ///< the vertex before it in the face
         kBeforeVertex,       ///< the vertex behind it in the face
         kAlongQuad,          ///< the face across the edge from it
-        kBehindQuad          ///< the face across the edge to it
+        kBehindQuad,         ///< the face across the edge to it
+        // As the first three, of a vertex all four faces of which were quads.
+        kAtVertexAmongQuads,
+        kBehindVertexAmongQuads,
+        kBeforeVertexAmongQuads
     };
+    static bool IsAmongQuads(Kind kind) { return kind >= kAtVertexAmongQuads; }
+    /// The same of a vertex among quads, of one of the first three.
+    static Kind AmongQuads(Kind kind) { return Kind(kind + kAtVertexAmongQuads); }
     Far::Index corner;
     Far::Index numFaces; ///< of the irregular vertex; 0 beside a quad
     float weight;        ///< as of the vertex

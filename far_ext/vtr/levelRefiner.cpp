@@ -105,7 +105,7 @@ Status LevelRefiner::addHexagonalLevel(bool fullTopology) {
         Status status = checker.Add(GetHexagonalSizes(GetSizes(next.parent)));
         if (status.IsOk()) {
             RefineHexagonally(next.parent, _sdcOptions, fullTopology, next.refinement, next.child);
-            FindIrregularFeatures(_faceMask, next.child);
+            FindIrregularFeatures(_faceMask, next.refinement, next.child);
         }
         return status;
     };
@@ -151,7 +151,7 @@ Status LevelRefiner::addLevels(std::deque<REFINER> &refiners, bool fullTopology)
     auto const refine = [&](REFINER &refiner, MeshLevels &levels) {
         NextLevel next(levels, _numLevels);
         refiner.Refine(fullTopology, next.refinement, next.child);
-        FindIrregularFeatures(_faceMask, next.child);
+        FindIrregularFeatures(_faceMask, next.refinement, next.child);
     };
     refine(refiners[0], _hierarchy.mesh);
     for (std::size_t i = 0; i < _hierarchy.channels.size(); ++i) {

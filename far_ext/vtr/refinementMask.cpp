@@ -65,6 +65,8 @@ void RefinementMask::findIrregularMasks() {
             }
         }
     }
+    _maskAmongQuads =
+        ComputeIrregularVertexMask(kNumFacesAmongQuads, _level.numHexagonalSteps, true);
     if (_hasQuads) {
         ComputeQuadNeighborMask(_level.numHexagonalSteps, _quadNeighborWeights);
     }
@@ -203,10 +205,15 @@ void RefinementMask::addIrregularWeights(IrregularCorner const &irregular, int c
                                          double *weights) const {
     double const *mask = _quadNeighborWeights;
     if (irregular.numFaces > 0) {
-        IrregularVertexMask const &masks = getIrregularMask(irregular.numFaces);
-        mask = irregular.kind == IrregularCorner::kAtVertex ? masks.atVertex : masks.atNeighbor;
+        IrregularVertexMask const &masks = IrregularCorner::IsAmongQuads(irregular.kind)
+                                               ? _maskAmongQuads
+                                               : getIrregularMask(irregular.numFaces);
+        bool const isAtVertex = irregular.kind == IrregularCorner::kAtVertex ||
+                                irregular.kind == IrregularCorner::kAtVertexAmongQuads;
+        mask = isAtVertex ? masks.atVertex : masks.atNeighbor;
     }
     bool const isBackwards = irregular.kind == IrregularCorner::kBeforeVertex ||
+                             irregular.kind == IrregularCorner::kBeforeVertexAmongQuads ||
                              irregular.kind == IrregularCorner::kBehindQuad;
     for (int j = 0; j < kHexagonSize; ++j) {
         int const place = (corner + (isBackwards ? kHexagonSize - j : j)) % kHexagonSize;

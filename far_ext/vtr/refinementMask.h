@@ -150,7 +150,8 @@ private:
     std::vector<std::vector<double>> _faceMasks;  ///< by face size
 
     IrregularMasks _irregularMasks; ///< by number of faces
-    bool _hasQuads = false;         ///< with masks beside them
+    IrregularVertexMask _maskAmongQuads;
+    bool _hasQuads = false; ///< with masks beside them
     double _quadNeighborWeights[HexIndexing::kNumEFaceCorners];
     std::vector<int> _irregularTypes; ///< by face; empty without irregular ones
     std::vector<IrregularFace> _irregularFaces;

@@ -86,32 +86,39 @@ Shape makeHull(char const *name, std::vector<Vector3d> const &points) {
 
 } // namespace
 
-double MeasureUnevenness(PolygonMesh const &mesh, std::vector<int> const &vertices,
-                         std::vector<int> const &groups, Curvature curvature) {
+Eigen::VectorXd MeasureDeviations(PolygonMesh const &mesh, std::vector<int> const &vertices,
+                                  std::vector<int> const &groups, Curvature curvature) {
     struct Sum {
         double area = 0;
         double curvature = 0;
-        double square = 0;
     };
     std::vector<double> const areas = findAreas(mesh);
     std::map<int, Sum> sums;
     Sum all;
+    Eigen::VectorXd values(vertices.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         auto const [smaller, larger] = EstimateCurvatures(mesh, vertices[i]);
         double const value =
             curvature == Curvature::Mean ? (smaller + larger) / 2 : smaller * larger;
-        double const area = areas[vertices[i]];
+        values[Eigen::Index(i)] = value;
         for (Sum *sum : {&sums[groups[i]], &all}) {
-            sum->area += area;
-            sum->curvature += area * value;
-            sum->square += area * value * value;
+            sum->area += areas[vertices[i]];
+            sum->curvature += areas[vertices[i]] * value;
         }
     }
-    double deviation = 0;
-    for (auto const &[group, sum] : sums) {
-        deviation += std::max(0.0, sum.square - sum.curvature * sum.curvature / sum.area);
+    double const mean = std::abs(all.curvature / all.area);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        Sum const &sum = sums[groups[i]];
+        double &value = values[Eigen::Index(i)];
+        value =
+            std::sqrt(areas[vertices[i]] / all.area) * (value - sum.curvature / sum.area) / mean;
     }
-    return std::sqrt(deviation / all.area) / std::abs(all.curvature / all.area);
+    return values;
+}
+
+double MeasureUnevenness(PolygonMesh const &mesh, std::vector<int> const &vertices,
+                         std::vector<int> const &groups, Curvature curvature) {
+    return MeasureDeviations(mesh, vertices, groups, curvature).norm();
 }
 
 double MeasureSphereUnevenness(PolygonMesh const &mesh) {
@@ -122,28 +129,35 @@ double MeasureSphereUnevenness(PolygonMesh const &mesh) {
 
 namespace {
 
-/// Within the parallels of one sector, of those whose angle around the tube, in turns, isWanted.
+/// The vertices of one sector whose angle around the tube, in turns, isWanted, by parallels.
 template <typename IS_WANTED>
-double measureSector(PolygonMesh const &mesh, int numU, IS_WANTED isWanted) {
-    std::vector<int> vertices;
-    std::vector<int> groups;
+VertexGroups findInSector(PolygonMesh const &mesh, int numU, IS_WANTED isWanted) {
+    VertexGroups result;
     for (int vertex = 0; vertex < mesh.GetNumVertices(); ++vertex) {
         Vector3d const &position = mesh.positions[vertex];
         double const around = std::atan2(position.y(), position.x());
         double const out = std::hypot(position.x(), position.y()) - kTorusRadius;
         double const angle = std::atan2(position.z(), out) / (2 * kPi);
         if (around >= 0 && around < 2 * kPi / numU && isWanted(angle)) {
-            vertices.push_back(vertex);
-            groups.push_back(int(std::floor(angle * kNumParallels)));
+            result.vertices.push_back(vertex);
+            result.groups.push_back(int(std::floor(angle * kNumParallels)));
         }
     }
-    return MeasureUnevenness(mesh, vertices, groups);
+    return result;
+}
+
+double measure(PolygonMesh const &mesh, VertexGroups const &chosen) {
+    return MeasureUnevenness(mesh, chosen.vertices, chosen.groups);
 }
 
 } // namespace
 
+VertexGroups FindTorusSector(PolygonMesh const &mesh, int numU) {
+    return findInSector(mesh, numU, [](double) { return true; });
+}
+
 double MeasureTorusUnevenness(PolygonMesh const &mesh, int numU) {
-    return measureSector(mesh, numU, [](double) { return true; });
+    return measure(mesh, FindTorusSector(mesh, numU));
 }
 
 std::vector<double> MeasureTorusStrips(PolygonMesh const &mesh, int numU, double line,
@@ -155,11 +169,12 @@ std::vector<double> MeasureTorusStrips(PolygonMesh const &mesh, int numU, double
            (2 * kPi);
     std::vector<double> result(std::size_t(numStrips), 0.0);
     for (int strip = 0; strip < numStrips; ++strip) {
-        result[std::size_t(strip)] = measureSector(mesh, numU, [&](double angle) {
+        auto const isInside = [&](double angle) {
             double const turns = angle - line;
             double const rows = (turns - std::round(turns)) / rowWidth;
             return rows >= std::max(double(strip), kMargin) && rows < strip + 1;
-        });
+        };
+        result[std::size_t(strip)] = measure(mesh, findInSector(mesh, numU, isInside));
     }
     return result;
 }

@@ -19,8 +19,21 @@ enum class Curvature { Mean, Gaussian };
 double MeasureUnevenness(PolygonMesh const &mesh, std::vector<int> const &vertices,
                          std::vector<int> const &groups, Curvature curvature = Curvature::Mean);
 
+/// What that is the norm of, by entry of \p vertices.
+Eigen::VectorXd MeasureDeviations(PolygonMesh const &mesh, std::vector<int> const &vertices,
+                                  std::vector<int> const &groups, Curvature curvature);
+
 /// Over the whole of \p mesh, as of a sphere.
 double MeasureSphereUnevenness(PolygonMesh const &mesh);
+
+/// Vertices of a mesh, and the group that each is in.
+struct VertexGroups {
+    std::vector<int> vertices;
+    std::vector<int> groups;
+};
+
+/// Those of a refined MakeTorus(numU, ...) that MeasureTorusUnevenness looks at.
+VertexGroups FindTorusSector(PolygonMesh const &mesh, int numU);
 
 /// \brief Within the parallels of a refined MakeTorus(numU, ...): over one of the \p numU sectors
 /// that look alike, in groups of the same angle around the tube, 128 to a turn.

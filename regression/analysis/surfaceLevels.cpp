@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surfaceLevels.h"
 
+#include "maskedStep.h"
 #include "position.h"
 
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "far_ext/vtr/hierarchy.h"
-#include "far_ext/vtr/refinementMask.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/far/primvarRefiner.h>
@@ -104,34 +104,12 @@ public:
     void Interpolate(int depth, std::vector<Position> const &src,
                      std::vector<Position> &dst) const {
         auto const &parent = _levels.levels[std::size_t(depth) - 1];
-        auto const &refinement = _levels.refinements[std::size_t(depth) - 1];
         FarExt::internal::RefinementMask const mask(parent, {FarExt::FaceMask::Smooth},
                                                     FarExt::Interpolation::Vertex);
         std::vector<double> scratch;
-        for (int face = 0; face < parent.numFaces; ++face) {
-            Far::ConstIndexArray const verts = parent.GetFaceVertices(face);
-            int const first = parent.faceFirstCorner[std::size_t(face)];
-            for (int i = 0; i < verts.size(); ++i) {
-                double const *const weights = mask.GetFaceVertexWeights(face, i, scratch);
-                Position &point = dst[refinement.GetCornerChildVertex(first + i)];
-                point.Clear();
-                for (int j = 0; j < verts.size(); ++j) {
-                    point.AddWithWeight(src[verts[j]], weights[j]);
-                }
-            }
-        }
-        for (int vert = 0; vert < parent.numVertices; ++vert) {
-            auto const weights = mask.GetVertexMask(vert);
-            Position &point = dst[refinement.GetVertexChildVertex(vert)];
-            point.Clear();
-            for (int i = 0; i < weights.numSources; ++i) {
-                point.AddWithWeight(src[weights.sources[i]], weights.weights[i]);
-            }
-            for (int k = parent.vertFirstFace[vert]; k < parent.vertFirstFace[vert + 1]; ++k) {
-                point.AddWithWeight(dst[refinement.GetCornerChildVertex(parent.GetVertexCorner(k))],
-                                    weights.faceWeight);
-            }
-        }
+        InterpolateMasked(
+            _levels.refinements[std::size_t(depth) - 1], mask,
+            [&](int face, int i) { return mask.GetFaceVertexWeights(face, i, scratch); }, src, dst);
     }
 
 private:

@@ -167,7 +167,21 @@ TEST(Mask, VertexMask) {
     }
 }
 
-// Smooth around irregular vertices: averages of what is there, the same from three steps on.
+namespace {
+
+void expectSameAround(FarExt::IrregularVertexMask const &mask,
+                      FarExt::IrregularVertexMask const &expected) {
+    for (int i = 0; i < 6; ++i) {
+        EXPECT_EQ(mask.atVertex[i], expected.atVertex[i]);
+        EXPECT_EQ(mask.atNeighbor[i], expected.atNeighbor[i]);
+    }
+    EXPECT_EQ(mask.vertex.vertexWeight, expected.vertex.vertexWeight);
+    EXPECT_EQ(mask.vertex.faceWeight, expected.vertex.faceWeight);
+}
+
+} // namespace
+
+// Smooth around irregular vertices: averages of what is there, the same at all levels.
 TEST(Mask, IrregularVertices) {
     for (int numFaces = FarExt::kMinIrregularFaces; numFaces <= 400; ++numFaces) {
         for (int numSteps = 1; numSteps <= 5; ++numSteps) {
@@ -182,14 +196,31 @@ TEST(Mask, IrregularVertices) {
             EXPECT_NEAR(mask.vertex.vertexWeight + numFaces * mask.vertex.faceWeight, 1, 1e-15);
             EXPECT_GE(mask.vertex.vertexWeight, 0);
             EXPECT_GE(mask.vertex.faceWeight, 0);
-            if (numSteps > FarExt::kNumStepsToConstantMasks) {
-                auto const before = FarExt::ComputeIrregularVertexMask(numFaces, numSteps - 1);
-                EXPECT_EQ(mask.atVertex[0], before.atVertex[0]);
-                EXPECT_EQ(mask.atNeighbor[0], before.atNeighbor[0]);
-                EXPECT_EQ(mask.vertex.faceWeight, before.vertex.faceWeight);
-            }
+            expectSameAround(mask, FarExt::ComputeIrregularVertexMask(numFaces, 1));
         }
     }
+}
+
+// Among quads F-vertices have other weights, until three steps are done.
+TEST(Mask, IrregularVerticesAmongQuads) {
+    auto const compute = [](int numSteps, bool isAmongQuads) {
+        return FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads, numSteps,
+                                                  isAmongQuads);
+    };
+    for (int numSteps : {1, 2}) {
+        auto const mask = compute(numSteps, true);
+        auto const other = compute(numSteps, false);
+        for (auto const &weights : {mask.atVertex, mask.atNeighbor}) {
+            EXPECT_EQ(std::accumulate(weights, weights + 6, 0.0), 1);
+            EXPECT_GE(*std::min_element(weights, weights + 6), 0);
+        }
+        EXPECT_EQ(mask.atVertex[1], mask.atVertex[5]);
+        EXPECT_EQ(mask.atVertex[2], mask.atVertex[4]);
+        EXPECT_GT(std::abs(mask.atVertex[0] - other.atVertex[0]), 0.05);
+        EXPECT_EQ(mask.vertex.faceWeight, other.vertex.faceWeight);
+    }
+    expectSameAround(compute(FarExt::kNumStepsToConstantMasks, true), compute(1, false));
+    expectSameAround(compute(FarExt::kNumStepsToConstantMasks + 1, true), compute(1, false));
 }
 
 // To the digits of the derivation: a, c1, a2 at the vertex, the weight of the faces in V'.
@@ -223,6 +254,11 @@ TEST(Mask, BesideQuads) {
         EXPECT_EQ(std::accumulate(weights, weights + 6, 0.0), 1);
         EXPECT_GE(*std::min_element(weights, weights + 6), 0);
     }
+    // A step takes x^2 - y^2 on the far side of the hexagons to w3 + w4, and the bowl to half of w2 + w5
+    // more: 1/4, as the quad's own mask takes xy.
+    ASSERT_TRUE(FarExt::ComputeQuadNeighborMask(1, weights));
+    EXPECT_EQ(weights[3] + weights[4], 0.25);
+    EXPECT_EQ(weights[2] + weights[5], 0);
     double untouched = 7;
     EXPECT_FALSE(FarExt::ComputeQuadNeighborMask(3, &untouched));
     EXPECT_EQ(untouched, 7);

@@ -90,33 +90,32 @@ void setWeightsOfN(double const (&in32nds)[6], IrregularRule &rule) {
     }
 }
 
-/// Four faces, the first two levels: weights in 64ths of V, N, A, B, C, M.
-IrregularRule makeFirstRule(double const (&ofV)[6], double const (&ofN)[6], double ofMean) {
-    IrregularRule rule{};
+/// Among quads, the first two levels: the new points have other weights, in 128ths of V, N, A, B, C
+/// and M; V' stays.
+void setWeightsAmongQuads(int numSteps, IrregularRule &rule) {
+    double const ofV[2][6] = {{24, 45, 7, 0, 7, 45}, {46, 41, 0, 0, 0, 41}};
+    double const ofN[6] = {4, 76, 18, 0, 0, 30};
     for (int i = 0; i < 6; ++i) {
-        rule.ofV[i] = ofV[i] / 64;
-        rule.ofN[i] = ofN[i] / 64;
+        rule.ofV[i] = ofV[numSteps - 1][i] / 128;
+        if (numSteps == 2) {
+            rule.ofN[i] = ofN[i] / 128;
+        }
     }
-    rule.meanWeight = ofMean / 64;
-    return rule;
 }
 
-/// Weights in 64ths by distance around the hexagon, along the edge to the quad first.
-double const kWeightsBesideQuad[2][6] = {{35, 13, 0, 4, 12, 0}, {32, 13, 2, 6, 5, 6}};
+/// Weights in 128ths by distance around the hexagon, along the edge to the quad first.
+double const kWeightsBesideQuad[2][6] = {{72, 24, 0, 8, 24, 0}, {63, 29, 5, 6, 16, 9}};
 
 } // namespace
 
-IrregularRule MakeIrregularRule(int numFaces, int numSteps) {
-    if (numFaces == 4 && numSteps == 1) {
-        return makeFirstRule({11, 23, 3, 1, 3, 23}, {8, 28, 18, 0, 0, 10}, 23);
-    }
-    if (numFaces == 4 && numSteps == 2) {
-        return makeFirstRule({24, 16, 4, 0, 4, 16}, {0, 41, 8, 0, 0, 15}, 40);
-    }
+IrregularRule MakeIrregularRule(int numFaces, int numSteps, bool isAmongQuads) {
     IrregularRule rule{};
     if (numFaces == 4) {
         setWeightsOfN({4, 14, 9, 0, 0, 5}, rule);
         balance(4, 4.0 / 7, rule);
+        if (isAmongQuads && numSteps <= 2) {
+            setWeightsAmongQuads(numSteps, rule);
+        }
         return rule;
     }
     setWeightsOfN({4, 15, 8, 0, 0, 5}, rule);
@@ -151,7 +150,7 @@ std::optional<Point> NewPointBesideQuad(int numSteps, std::vector<Point> const &
     }
     Point sum = Point::Zero(face[0].size());
     for (int j = 0; j < 6; ++j) {
-        sum += kWeightsBesideQuad[numSteps - 1][j] / 64 * face[(i + (i == edge ? j : 6 - j)) % 6];
+        sum += kWeightsBesideQuad[numSteps - 1][j] / 128 * face[(i + (i == edge ? j : 6 - j)) % 6];
     }
     return sum;
 }

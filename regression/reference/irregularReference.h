@@ -21,7 +21,9 @@ struct IrregularRule {
 
 /// Of a vertex with \p numFaces hexagons, four or more, at a level made by \p numSteps steps, one or
 /// more.
-IrregularRule MakeIrregularRule(int numFaces, int numSteps);
+///
+/// \param isAmongQuads  whether it had four faces before these steps, and all of them quads
+IrregularRule MakeIrregularRule(int numFaces, int numSteps, bool isAmongQuads);
 
 /// \brief The new point beside corner \p i of a hexagon, from the values at its corners.
 ///

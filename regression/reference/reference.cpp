@@ -108,6 +108,25 @@ int irregularFaces(ReferenceMesh const &mesh, VertexHandle vertex) {
     return mesh.numSteps > 0 && count >= 4 && !mesh.is_boundary(vertex) ? count : 0;
 }
 
+/// Whether a vertex had four faces in the base mesh, and all of them quads.
+bool isAmongQuads(ReferenceMesh const &mesh, VertexHandle vertex) {
+    if (mesh.numSteps > 0) {
+        return mesh.areAmongQuads[vertex.idx()];
+    }
+    int count = 0;
+    for (FaceHandle face : mesh.vf_range(vertex)) {
+        if (mesh.valence(face) != 4) {
+            return false;
+        }
+        ++count;
+    }
+    return count == 4;
+}
+
+IrregularRule makeRule(ReferenceMesh const &mesh, VertexHandle vertex, int numFaces) {
+    return MakeIrregularRule(numFaces, mesh.numSteps, isAmongQuads(mesh, vertex));
+}
+
 /// Whether across the edge from a corner is the smaller copy of a quad: quads made for edges are at
 /// boundaries.
 bool isBesideQuad(ReferenceMesh const &mesh, HalfedgeHandle corner) {
@@ -135,9 +154,9 @@ std::optional<Point> irregularPoint(ReferenceMesh const &mesh,
         }
     }
     for (int corner : {i, (i + 1) % 6, (i + 5) % 6}) {
-        int const numFaces = irregularFaces(mesh, mesh.from_vertex_handle(corners[corner]));
-        if (numFaces > 0) {
-            return NewIrregularPoint(MakeIrregularRule(numFaces, mesh.numSteps), points, i, corner);
+        VertexHandle const vertex = mesh.from_vertex_handle(corners[corner]);
+        if (int const numFaces = irregularFaces(mesh, vertex); numFaces > 0) {
+            return NewIrregularPoint(makeRule(mesh, vertex, numFaces), points, i, corner);
         }
     }
     return {};
@@ -175,7 +194,7 @@ Point movedVertex(ReferenceMesh const &mesh, ReferenceValues const &values,
     }
     int const numFaces = mask == ReferenceMask::Smooth ? irregularFaces(mesh, vertex) : 0;
     if (numFaces > 0) {
-        double const weight = MakeIrregularRule(numFaces, mesh.numSteps).meanWeight;
+        double const weight = makeRule(mesh, vertex, numFaces).meanWeight;
         Point const old = values.row(vertex.idx());
         return (1 - weight) * old + weight / numFaces * (sum - old);
     }
@@ -292,6 +311,10 @@ ReferenceLevel Refine(ReferenceMesh const &mesh, ReferenceMask mask) {
     child.mesh.numSteps = mesh.numSteps + 1;
     std::vector<VertexHandle> const fVertices = numberFVertices(mesh);
     std::size_t const numFVertices = countCorners(mesh);
+    child.mesh.areAmongQuads.resize(numFVertices + mesh.n_vertices());
+    for (VertexHandle v : mesh.vertices()) {
+        child.mesh.areAmongQuads[vVertex(numFVertices, v).idx()] = isAmongQuads(mesh, v);
+    }
     child.vertexOrigins.resize(numFVertices + mesh.n_vertices());
     for (FaceHandle face : mesh.faces()) {
         for (HalfedgeHandle corner : faceCorners(mesh, face)) {

@@ -18,6 +18,8 @@ struct ReferenceTraits : OpenMesh::DefaultTraits {
 /// A polygon mesh with positions in double precision.
 struct ReferenceMesh : OpenMesh::PolyMesh_ArrayKernelT<ReferenceTraits> {
     int numSteps = 0; ///< that made it
+    /// By vertex of a refined mesh: whether it had four faces in the base mesh, and all of them quads.
+    std::vector<bool> areAmongQuads;
 };
 
 /// Values of any width, one row per vertex.
