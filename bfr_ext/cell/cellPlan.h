@@ -47,7 +47,7 @@ private:
 
 /// \brief Which cells the places inside of a base face lie in: a base face is taken apart step by step
 /// into *leaves*, cells whose places are made at once, by a dense matrix of the cell's type
-/// (LeafMatrix).
+/// (PlaceMatrix).
 ///
 /// A place that several leaves have belongs to that which CellStencil follows it to, so that it is made
 /// once.  No base face is a leaf: there are many types of these, and few of the cells in them.
