@@ -274,26 +274,46 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
     using Evaluator = internal::BorderEvaluator<REAL>;
     using Matrix = internal::PlaceMatrix<REAL>;
     Evaluator evaluator(controlPoints, pointDesc.stride, pointDesc.size);
-    auto const evaluate = [&](CellType::BorderItem const &item, PatternOf of, int key,
-                              auto const &makePoints, int place, std::ptrdiff_t stride) {
+    CellType::Border const *const border =
+        _type->IsInLattice() ? nullptr : &_type->GetBorder(getTurns());
+    if (border) {
+        evaluator.SetBorder(*border);
+    }
+    auto const getMatrix = [&](CellType::BorderItem const &item, PatternOf of, int key,
+                               auto const &makePoints) -> Matrix const & {
         CellType const &type = Evaluator::GetType(item);
-        Matrix const &matrix = type.GetPatterns().template Get<Matrix>(
+        return type.GetPatterns().template Get<Matrix>(
             PatternTable::GetKind<REAL>(of), &key, &key + 1,
             [&] { return Evaluator::MakeMatrix(type, makePoints()); });
-        evaluator.Evaluate(item, matrix, p + std::ptrdiff_t(place) * resultDesc.stride, stride);
     };
-    int const numEdges = GetFaceSize();
-    for (int edge = 0; edge < numEdges; ++edge) {
-        int const first = tessellation._firstEdgeCoords[std::size_t(edge)];
-        evaluate(
-            _type->GetBorderItem(getTurns(), std::size_t(numEdges) + std::size_t(edge)),
-            PatternOf::Border, 0, [] { return std::vector<double>(1, 0.0); }, first, 0);
+    auto const numEdges = std::size_t(GetFaceSize());
+    for (std::size_t edge = 0; edge < numEdges; ++edge) {
+        int const first = tessellation._firstEdgeCoords[edge];
+        REAL *const vertexResult = p + std::ptrdiff_t(first) * resultDesc.stride;
+        if (border) {
+            evaluator.EvaluateVertex(edge, vertexResult);
+        } else {
+            CellType::BorderItem const &item = _type->GetBorderItem(getTurns(), numEdges + edge);
+            evaluator.Evaluate(
+                item,
+                getMatrix(item, PatternOf::Border, 0, [] { return std::vector<double>(1, 0.0); }),
+                vertexResult, 0);
+        }
 
-        int const numPlaces = tessellation.GetNumEdgeCoords(edge);
+        int const numPlaces = tessellation.GetNumEdgeCoords(int(edge));
         if (numPlaces == 0) {
             continue;
         }
-        CellType::BorderItem const &item = _type->GetBorderItem(getTurns(), std::size_t(edge));
+        CellType::BorderItem const &item =
+            border ? *border->items[edge] : _type->GetBorderItem(getTurns(), edge);
+        auto const evaluate = [&](Matrix const &matrix, int place, std::ptrdiff_t stride) {
+            REAL *const results = p + std::ptrdiff_t(place) * resultDesc.stride;
+            if (border) {
+                evaluator.EvaluateEdge(edge, matrix, results, stride);
+            } else {
+                evaluator.Evaluate(item, matrix, results, stride);
+            }
+        };
         auto const getPlace = [&](int i) {
             return first + (item.isReversed ? numPlaces - i : i + 1);
         };
@@ -305,9 +325,10 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
         if (tessellation._tree) {
             // Points of polylines are found one by one, since they have few in common.
             for (int i = 0; i < numPlaces; ++i) {
-                evaluate(
-                    item, PatternOf::BorderPlace, int(getPoint(i) * Polyline::kLength),
-                    [&] { return std::vector<double>(1, getPoint(i)); }, getPlace(i), 0);
+                Matrix const &matrix =
+                    getMatrix(item, PatternOf::BorderPlace, int(getPoint(i) * Polyline::kLength),
+                              [&] { return std::vector<double>(1, getPoint(i)); });
+                evaluate(matrix, getPlace(i), 0);
             }
             continue;
         }
@@ -318,7 +339,7 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
             }
             return points;
         };
-        evaluate(item, PatternOf::Border, tessellation._levels[std::size_t(edge)], getPoints,
+        evaluate(getMatrix(item, PatternOf::Border, tessellation._levels[edge], getPoints),
                  getPlace(0), item.isReversed ? -resultDesc.stride : resultDesc.stride);
     }
 }

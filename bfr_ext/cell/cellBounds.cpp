@@ -21,7 +21,7 @@ Pair toLattice(Pair const &p) { return {p[0], p[1] * std::sqrt(0.75)}; }
 Pair fromLattice(Pair const &p) { return {p[0], p[1] / std::sqrt(0.75)}; }
 
 // Rows of the child's points in terms of the first ancestor's, from those of the parent.
-Matrix multiply(StepMatrix const &step, Matrix const &rows) {
+Matrix multiply(ChildStep const &step, Matrix const &rows) {
     Matrix result(step.GetNumRows(), std::vector<double>(rows[0].size()));
     for (std::size_t i = 0; i < result.size(); ++i) {
         step.ForEachEntry(i, [&](std::size_t point, double weight) {
@@ -119,7 +119,7 @@ std::vector<Pair> findPlaces(FarExt::internal::CellPatch const &cell) {
 bool keepsPlaces(CellType const &type, std::vector<Pair> const &places) {
     constexpr double kTolerance = 1e-9;
     for (std::size_t child = 0; child < 4; ++child) {
-        StepMatrix const &step = type.GetChildren()[child].step;
+        ChildStep const &step = type.GetChildren()[child].step;
         for (std::size_t i = 0; i < places.size(); ++i) {
             Pair sum = {0, 0};
             step.ForEachEntry(i, [&](std::size_t point, double weight) {

@@ -62,18 +62,50 @@ void BorderEvaluator<REAL>::Evaluate(CellType::BorderItem const &item,
         SumUpPlaces(matrix, {_points, _stride, _size, item.points.data(), results, resultStride});
         return;
     }
-    StepMatrix const &step = item.type->GetChildren()[0].step;
-    std::size_t const paddedSize = StepMatrix::GetPaddedSize(_size);
-    _edgePoints.resize(item.points.size() * paddedSize);
-    _longEdgePoints.resize(step.GetNumRows() * paddedSize);
-    REAL *to = _edgePoints.data();
-    for (int const point : item.points) {
-        std::copy_n(_points + point * _stride, _size, to);
-        to += paddedSize;
+    StepMatrix const &step = item.type->GetStep();
+    padPoints(item.points.data(), item.points.size());
+    _sums.resize(step.GetNumRows() * _paddedSize);
+    step.Apply(_paddedPoints.data(), _paddedSize, _sums.data());
+    SumUpPlaces(matrix, {_sums.data(), std::ptrdiff_t(_paddedSize), _size,
+                         item.type->GetChildren()[0].step.GetMatrixRows(), results, resultStride});
+}
+
+template <typename REAL>
+void BorderEvaluator<REAL>::SetBorder(CellType::Border const &border) {
+    _border = &border;
+    padPoints(nullptr, border.sums.GetNumParentPoints());
+    _sums.resize(border.sums.GetNumRows() * _paddedSize);
+    border.sums.Apply(_paddedPoints.data(), _paddedSize, _sums.data());
+}
+
+template <typename REAL>
+void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) const {
+    auto const row = std::size_t(_border->firstRows[_border->items.size() / 2 + vert]);
+    std::copy_n(&_sums[row * _paddedSize], _size, result);
+}
+
+template <typename REAL>
+void BorderEvaluator<REAL>::EvaluateEdge(std::size_t edge, PlaceMatrix<REAL> const &matrix,
+                                         REAL *results, std::ptrdiff_t resultStride) const {
+    CellType::BorderItem const &item = *_border->items[edge];
+    if (&GetType(item) == item.type) {
+        SumUpPlaces(matrix, {_points, _stride, _size, item.points.data(), results, resultStride});
+        return;
     }
-    step.Apply(_edgePoints.data(), paddedSize, _longEdgePoints.data());
-    SumUpPlaces(matrix, {_longEdgePoints.data(), std::ptrdiff_t(paddedSize), _size, nullptr,
+    auto const row = std::size_t(_border->firstRows[edge]);
+    SumUpPlaces(matrix, {&_sums[row * _paddedSize], std::ptrdiff_t(_paddedSize), _size, nullptr,
                          results, resultStride});
+}
+
+// Copies points, those that indices say or all in turn.
+template <typename REAL>
+void BorderEvaluator<REAL>::padPoints(int const *indices, std::size_t numPoints) {
+    _paddedPoints.resize(numPoints * _paddedSize);
+    for (std::size_t i = 0; i < numPoints; ++i) {
+        std::size_t const point = indices ? std::size_t(indices[i]) : i;
+        std::copy_n(_points + std::ptrdiff_t(point) * _stride, _size,
+                    &_paddedPoints[i * _paddedSize]);
+    }
 }
 
 template class BorderEvaluator<float>;

@@ -41,7 +41,8 @@ class BorderEvaluator {
 public:
     /// \param size  of a point; they are \p stride numbers apart
     BorderEvaluator(REAL const *points, std::ptrdiff_t stride, int size)
-        : _points(points), _stride(stride), _size(std::size_t(size)) {}
+        : _points(points), _stride(stride), _size(std::size_t(size)),
+          _paddedSize(StepMatrix::GetPaddedSize(_size)) {}
 
     /// That of an edge, of the long edge of it or of a vertex: the matrices are of its points.
     static CellType const &GetType(CellType::BorderItem const &item) {
@@ -55,13 +56,29 @@ public:
     void Evaluate(CellType::BorderItem const &item, PlaceMatrix<REAL> const &matrix, REAL *results,
                   std::ptrdiff_t resultStride);
 
+    /// @name The same for all of a border
+    /// @{
+
+    /// Forms the sums that the border is made of, which must live as long.
+    void SetBorder(CellType::Border const &border);
+    /// Writes the point of a vertex.
+    void EvaluateVertex(std::size_t vert, REAL *result) const;
+    /// Writes the points at the places of a matrix, on an edge.
+    void EvaluateEdge(std::size_t edge, PlaceMatrix<REAL> const &matrix, REAL *results,
+                      std::ptrdiff_t resultStride) const;
+    /// @}
+
 private:
+    void padPoints(int const *indices, std::size_t numPoints);
+
     REAL const *const _points;
     std::ptrdiff_t const _stride;
     std::size_t const _size;
-    // Of an edge and of its long edge, padded.
-    std::vector<REAL> _edgePoints;
-    std::vector<REAL> _longEdgePoints;
+    std::size_t const _paddedSize;
+    CellType::Border const *_border = nullptr;
+    // Those that sums are formed of, and these, padded.
+    std::vector<REAL> _paddedPoints;
+    std::vector<REAL> _sums;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

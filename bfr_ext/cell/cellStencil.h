@@ -65,7 +65,7 @@ private:
     void addCorner(Place const &place, std::size_t corner, double weight, bool hasDerivatives);
 
     CellType const &_root;
-    std::vector<StepMatrix const *> _steps;
+    std::vector<ChildStep const *> _steps;
     std::vector<double> _weights[3];
     std::vector<double> _scratch;
 };
@@ -80,7 +80,7 @@ public:
     std::vector<double> const &GetWeights() const { return _weights; }
 
 private:
-    std::vector<StepMatrix const *> _steps;
+    std::vector<ChildStep const *> _steps;
     std::vector<double> _weights;
     std::vector<double> _scratch;
 };

@@ -16,6 +16,9 @@ namespace {
 
 using Vector = std::vector<double>;
 
+// The kind of a whole border, where those of its items are their numbers.
+constexpr int kWholeBorder = -1;
+
 // Appends a number in as many bytes as it takes, small ones, of either sign, in one.
 void addNumber(int number, std::string &key) {
     auto rest = (std::uint32_t(number) << 1) ^ std::uint32_t(number < 0 ? -1 : 0);
@@ -117,13 +120,17 @@ CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
 
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {
+        CellRefinement refinement =
+            RefineCell(_cell, _rules.sdcOptions, _rules.schemeOptions, _rules.interpolation);
         std::vector<Child> children;
-        for (CellChild &child :
-             RefineCell(_cell, _rules.sdcOptions, _rules.schemeOptions, _rules.interpolation)) {
-            children.push_back(
-                {&_types.Find(std::move(child.cell), _rules), StepMatrix(child.step)});
+        children.reserve(refinement.children.size());
+        for (std::size_t i = 0; i < refinement.children.size(); ++i) {
+            children.push_back({&_types.Find(std::move(refinement.children[i]), _rules),
+                                ChildStep(_step, std::move(refinement.rows[i]))});
         }
-        children.shrink_to_fit();
+        if (!children.empty()) {
+            _step = StepMatrix(refinement.step);
+        }
         _children = std::move(children);
     });
     return _children;
@@ -168,7 +175,7 @@ std::vector<Vector> const &CellType::GetCornerPoints() const {
 void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) const {
     CellType const *type = this;
     CellMap map = {{{1, 0}, {0, 1}}, {0, 0}};
-    std::vector<StepMatrix const *> steps;
+    std::vector<ChildStep const *> steps;
     for (int i = 0; i < numSteps; ++i) {
         auto const c = std::size_t(corner);
         auto const child = type->IsWhole() ? c + 1 : std::size_t(HalfCell::kCornerChildren[c]);
@@ -258,6 +265,41 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
             }
         }
         return items[item];
+    });
+}
+
+CellType::Border const &CellType::GetBorder(int const *turns) const {
+    auto const numEdges = std::size_t(GetNumCorners());
+    return _borderItems.Get<Border>(kWholeBorder, turns, turns + 2 * numEdges, [&] {
+        Border border;
+        PatchRefinement sums;
+        sums.numParentVerts = GetNumPoints();
+        sums.firsts.push_back(0);
+        auto const addEntry = [&](std::size_t point, double weight) {
+            sums.verts.push_back(border.items.back()->points[point]);
+            sums.weights.push_back(weight);
+        };
+        auto const endRow = [&] { sums.firsts.push_back(int(sums.verts.size())); };
+        for (std::size_t i = 0; i < 2 * numEdges; ++i) {
+            border.items.push_back(&GetBorderItem(turns, i));
+            border.firstRows.push_back(int(sums.firsts.size()) - 1);
+            CellType const &type = *border.items.back()->type;
+            if (type.IsVertex()) {
+                Vector const &weights = type.GetCornerPoints()[0];
+                for (std::size_t point = 0; point < weights.size(); ++point) {
+                    addEntry(point, weights[point]);
+                }
+                endRow();
+            } else if (!type.IsInLattice()) {
+                ChildStep const &step = type.GetChildren()[0].step;
+                for (std::size_t row = 0; row < step.GetNumRows(); ++row) {
+                    step.ForEachEntry(row, addEntry);
+                    endRow();
+                }
+            }
+        }
+        border.sums = StepMatrix(sums);
+        return border;
     });
 }
 

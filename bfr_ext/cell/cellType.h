@@ -36,7 +36,7 @@ public:
     /// A cell that a step makes.
     struct Child {
         CellType const *type;
-        StepMatrix step; ///< its points in terms of the parent's
+        ChildStep step; ///< its points in terms of the parent's
     };
 
     /// The surface at a corner, as sums of points: it, and its first derivatives by the coordinates of
@@ -71,6 +71,11 @@ public:
 
     /// Children are in the order of RefineCell().
     std::vector<Child> const &GetChildren() const;
+    /// The points that the children have, in terms of those of the type.
+    StepMatrix const &GetStep() const {
+        GetChildren();
+        return _step;
+    }
     /// Whether all children are of this type, too: so is every cell of a regular lattice.
     bool IsRegular() const;
 
@@ -93,6 +98,16 @@ public:
     ///
     /// \param turns  those of FindBaseCellTurns()
     BorderItem const &GetBorderItem(int const *turns, std::size_t item) const;
+    /// \brief All of these together, with the sums of the face's points that the border is made of, in
+    /// the order in which the items have their points: the points of the long edges that edges become in
+    /// the first step, but for those of edges in a lattice, and the points of vertices.
+    struct Border {
+        std::vector<BorderItem const *> items; ///< by edge, then by vertex
+        std::vector<int> firstRows;            ///< of these, in the sums
+        StepMatrix sums;
+    };
+    /// As GetBorderItem(), of a face that is not in a lattice: few have the same.
+    Border const &GetBorder(int const *turns) const;
 
     /// What has been made of this type.
     PatternTable &GetPatterns() const { return _patterns; }
@@ -108,6 +123,7 @@ private:
     CellRules const _rules;
     mutable std::once_flag _onceChildren;
     mutable std::vector<Child> _children;
+    mutable StepMatrix _step;
     mutable std::once_flag _oncePoints;
     mutable std::vector<std::vector<double>> _points;
     mutable std::vector<FarExt::internal::LimitMask::Tangents> _tangents;

@@ -52,7 +52,7 @@ void CellValues::SetChild(CellValues const &parent, int child) {
     _type = link.type;
     _level = parent._level + 1;
     _length = parent._length;
-    StepMatrix const &step = link.step;
+    ChildStep const &step = link.step;
     std::size_t const numVerts = step.GetNumRows();
     auto const length = std::size_t(_length);
     _values.resize(numVerts * length);

@@ -31,39 +31,50 @@ void PatchEvaluator<REAL>::Evaluate(CellType const &type, CellPlan const &plan,
                                     std::ptrdiff_t resultStride) {
     _results = results;
     _resultStride = resultStride;
-    if (_points.empty()) {
-        _points.emplace_back();
-    }
     auto const numPoints = std::size_t(type.GetNumPoints());
-    _points[0].resize(std::max(_points[0].size(), numPoints * _paddedSize));
+    std::vector<REAL> &points = getPoints(0, numPoints);
     for (std::size_t i = 0; i < numPoints; ++i) {
-        std::copy_n(controlPoints + std::ptrdiff_t(i) * stride, _size,
-                    &_points[0][i * _paddedSize]);
+        std::copy_n(controlPoints + std::ptrdiff_t(i) * stride, _size, &points[i * _paddedSize]);
     }
     descend(type, plan, 0, 0);
 }
 
+// Makes the points of all children of a cell, whose own are at twice the depth: those that one of them
+// needs in turn are behind these.
 template <typename REAL>
 void PatchEvaluator<REAL>::descend(CellType const &type, CellPlan const &plan, std::size_t node,
                                    std::size_t depth) {
-    if (_points.size() <= depth + 1) {
-        _points.emplace_back();
-    }
+    StepMatrix const &step = type.GetStep();
+    std::vector<REAL> &points = getPoints(2 * depth + 1, step.GetNumRows());
+    step.Apply(getPoints(2 * depth, 0).data(), _paddedSize, points.data());
     for (std::size_t const next : plan[node].children) {
         CellPlan::Node const &child = plan[next];
         CellType::Child const &link = type.GetChildren()[child.child];
-        std::vector<REAL> &points = _points[depth + 1];
-        points.resize(
-            std::max(points.size(), std::size_t(link.type->GetNumPoints()) * _paddedSize));
-        link.step.Apply(_points[depth].data(), _paddedSize, points.data());
+        int const *const rows = link.step.GetMatrixRows();
         if (child.leaf) {
             SumUpPlaces(getMatrix<REAL>(*link.type, *child.leaf),
-                        {points.data(), std::ptrdiff_t(_paddedSize), _size, nullptr, _results,
+                        {points.data(), std::ptrdiff_t(_paddedSize), _size, rows, _results,
                          _resultStride, child.rows.data(), child.rows.size()});
         } else {
+            std::size_t const numPoints = link.step.GetNumRows();
+            REAL *to = getPoints(2 * depth + 2, numPoints).data();
+            for (std::size_t i = 0; i < numPoints; ++i, to += _paddedSize) {
+                std::copy_n(&points[std::size_t(rows[i]) * _paddedSize], _paddedSize, to);
+            }
             descend(*link.type, plan, next, depth + 1);
         }
     }
+}
+
+// With room for some points at least.
+template <typename REAL>
+std::vector<REAL> &PatchEvaluator<REAL>::getPoints(std::size_t place, std::size_t numPoints) {
+    while (_points.size() <= place) {
+        _points.emplace_back();
+    }
+    std::vector<REAL> &points = _points[place];
+    points.resize(std::max(points.size(), numPoints * _paddedSize));
+    return points;
 }
 
 template class PatchEvaluator<float>;

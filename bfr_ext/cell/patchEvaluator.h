@@ -4,6 +4,7 @@
 
 #include "cellPlan.h"
 
+#include <deque>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -26,10 +27,11 @@ public:
 
 private:
     void descend(CellType const &type, CellPlan const &plan, std::size_t node, std::size_t depth);
+    std::vector<REAL> &getPoints(std::size_t place, std::size_t numPoints);
 
     std::size_t const _size; // of a point
     std::size_t const _paddedSize;
-    std::vector<std::vector<REAL>> _points; // by depth
+    std::deque<std::vector<REAL>> _points; // by depth, of a cell and of its children
     REAL *_results = nullptr;
     std::ptrdiff_t _resultStride = 0;
 };

@@ -4,7 +4,6 @@
 
 #include "placeKernel.h"
 
-#include <cstring>
 #include <utility>
 
 // Included by one source file for each set of instructions, which must not share what the compiler
@@ -34,34 +33,44 @@ struct PlainLanes {
     REAL values[kSize];
 };
 
+///
+/// In memory they are aligned as numbers are.  They are read and written as InMemory and never by
+/// std::memcpy(), with which compilers would keep all sums in memory.
 template <typename REAL, std::size_t BYTES>
 struct LanesOf {
     using Type = PlainLanes<REAL, BYTES>;
+    using InMemory = Type;
 };
 #if defined(__GNUC__)
 template <>
 struct LanesOf<float, 16> {
     using Type = float __attribute__((vector_size(16)));
+    using InMemory = float __attribute__((vector_size(16), aligned(4), may_alias));
 };
 template <>
 struct LanesOf<double, 16> {
     using Type = double __attribute__((vector_size(16)));
+    using InMemory = double __attribute__((vector_size(16), aligned(8), may_alias));
 };
 template <>
 struct LanesOf<float, 32> {
     using Type = float __attribute__((vector_size(32)));
+    using InMemory = float __attribute__((vector_size(32), aligned(4), may_alias));
 };
 template <>
 struct LanesOf<double, 32> {
     using Type = double __attribute__((vector_size(32)));
+    using InMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
 };
 template <>
 struct LanesOf<float, 64> {
     using Type = float __attribute__((vector_size(64)));
+    using InMemory = float __attribute__((vector_size(64), aligned(4), may_alias));
 };
 template <>
 struct LanesOf<double, 64> {
     using Type = double __attribute__((vector_size(64)));
+    using InMemory = double __attribute__((vector_size(64), aligned(8), may_alias));
 };
 #endif
 
@@ -88,6 +97,7 @@ template <std::size_t BYTES, typename REAL>
 class BlockSums {
 public:
     using Lanes = typename LanesOf<REAL, BYTES>::Type;
+    using InMemory = typename LanesOf<REAL, BYTES>::InMemory;
     static constexpr std::size_t kSize = BYTES / sizeof(REAL);
     static_assert(sizeof(Lanes) == BYTES);
 
@@ -173,14 +183,14 @@ private:
         REAL const *const points = _sums.points + component;
         Lanes sums[NUM_COMPONENTS][NUM_LANES] = {};
         for (std::size_t i = 0; i < numPoints; ++i) {
-            Lanes lanes[NUM_LANES];
-            std::memcpy(lanes, weights, sizeof(lanes));
+            auto const *const lanes = reinterpret_cast<InMemory const *>(weights);
             weights += _width;
             auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(_sums.indices[i]) : i);
             REAL const *const point = points + place * _sums.stride;
-            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                    sums[k][lane] += lanes[lane] * point[k];
+            for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
+                Lanes const ofLane = lanes[lane];
+                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                    sums[k][lane] += ofLane * point[k];
                 }
             }
         }
@@ -188,15 +198,14 @@ private:
         if constexpr (NUM_COMPONENTS == 3) {
             if (_isPacked && first + NUM_LANES * kSize <= _count) {
                 constexpr std::make_index_sequence<kSize> kIndices;
-                REAL *result = _sums.results + 3 * (_begin + first);
-                for (std::size_t lane = 0; lane < NUM_LANES; ++lane, result += 3 * kSize) {
+                auto *result = reinterpret_cast<InMemory *>(_sums.results + 3 * (_begin + first));
+                for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
                     Lanes const &x = sums[0][lane];
                     Lanes const &y = sums[1][lane];
                     Lanes const &z = sums[2][lane];
-                    Lanes const points3[3] = {interleave<0>(x, y, z, kIndices),
-                                              interleave<1>(x, y, z, kIndices),
-                                              interleave<2>(x, y, z, kIndices)};
-                    std::memcpy(result, points3, sizeof(points3));
+                    *result++ = interleave<0>(x, y, z, kIndices);
+                    *result++ = interleave<1>(x, y, z, kIndices);
+                    *result++ = interleave<2>(x, y, z, kIndices);
                 }
                 _numWritten = first + NUM_LANES * kSize;
                 return;
@@ -204,7 +213,10 @@ private:
         }
 #endif
         for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            std::memcpy(_numbers[k] + first, sums[k], sizeof(sums[k]));
+            auto *numbers = reinterpret_cast<InMemory *>(_numbers[k] + first);
+            for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
+                *numbers++ = sums[k][lane];
+            }
         }
     }
 

@@ -21,6 +21,7 @@ StepMatrix::StepMatrix(FarExt::internal::PatchRefinement const &step)
     auto const isSame = [&](double a, double b) { return getBits(a) == getBits(b); };
     _weights.erase(std::unique(_weights.begin(), _weights.end(), isSame), _weights.end());
     _weights.shrink_to_fit();
+    _floatWeights.assign(_weights.begin(), _weights.end());
 
     auto const fill = [&](auto &entries) {
         using Number = decltype(entries.front().point);
@@ -41,8 +42,8 @@ StepMatrix::StepMatrix(FarExt::internal::PatchRefinement const &step)
     }
 }
 
-void StepMatrix::ApplyLeft(std::vector<double> const &left, std::vector<double> &result) const {
-    result.assign(_numParentPoints, 0.0);
+void ChildStep::ApplyLeft(std::vector<double> const &left, std::vector<double> &result) const {
+    result.assign(_matrix->GetNumParentPoints(), 0.0);
     for (std::size_t row = 0; row < left.size(); ++row) {
         ForEachEntry(row, [&, factor = left[row]](std::size_t point, double weight) {
             result[point] += factor * weight;

@@ -220,23 +220,31 @@ private:
 
 } // namespace
 
-std::vector<CellChild> RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
-                                  HexSchemeOptions const &schemeOptions,
-                                  Interpolation interpolation) {
+CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
+                          HexSchemeOptions const &schemeOptions, Interpolation interpolation) {
     ExecutorScope const alone(nullptr, 1); // patches are small
     Level parent;
-    Level child;
+    Level refined;
     Refinement refinement;
     BuildPatchLevel(cell.patch, parent);
-    RefineHexagonally(parent, sdcOptions, true, refinement, child);
-    FindIrregularFeatures(schemeOptions.faceMask, refinement, child);
-    std::vector<CellChild> children;
-    for (CellPatch &result : CellRefiner(refinement, schemeOptions.faceMask, cell).Refine()) {
-        PatchRefinement step =
-            MakePatchStep(refinement, schemeOptions, interpolation, result.patch.sources);
-        children.push_back({std::move(result), std::move(step)});
+    RefineHexagonally(parent, sdcOptions, true, refinement, refined);
+    FindIrregularFeatures(schemeOptions.faceMask, refinement, refined);
+    CellRefinement result;
+    result.children = CellRefiner(refinement, schemeOptions.faceMask, cell).Refine();
+    std::vector<Index> verts;
+    for (CellPatch const &child : result.children) {
+        verts.insert(verts.end(), child.patch.sources.begin(), child.patch.sources.end());
     }
-    return children;
+    SortUnique(verts);
+    result.step = MakePatchStep(refinement, schemeOptions, interpolation, verts);
+    for (CellPatch const &child : result.children) {
+        std::vector<int> rows;
+        for (Index const vert : child.patch.sources) {
+            rows.push_back(int(std::lower_bound(verts.begin(), verts.end(), vert) - verts.begin()));
+        }
+        result.rows.push_back(std::move(rows));
+    }
+    return result;
 }
 
 std::vector<CornerLimit> FindCornerLimits(CellPatch const &cell, LimitMaskFinder &finder) {

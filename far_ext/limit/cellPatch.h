@@ -49,10 +49,12 @@ OPENSUBDIVHEX_API void FindBaseCellTurns(Level const &level, Far::Index face, in
 /// The edges and then the vertices of a base cell, whose patch's vertices are their sources.
 OPENSUBDIVHEX_API std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns);
 
-/// A cell that one step makes of another, and the vertices of its patch in terms of the other's.
-struct CellChild {
-    CellPatch cell;
+/// \brief What one step makes of a cell: the cells that it becomes, and the vertices that their patches
+/// have, each once, in terms of those of the cell's patch.
+struct CellRefinement {
+    std::vector<CellPatch> children;
     PatchRefinement step;
+    std::vector<std::vector<int>> rows; ///< by child, which rows of the step its vertices are
 };
 
 /// \brief The cells that a step makes of a cell: first the F-face, or the same half of it, then the
@@ -61,9 +63,9 @@ struct CellChild {
 ///
 /// Of an edge it is the long edge from end to end; of a long edge the edge from its start, the long
 /// edge in its middle and the edge from its end.
-OPENSUBDIVHEX_API std::vector<CellChild> RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
-                                                    HexSchemeOptions const &schemeOptions,
-                                                    Interpolation interpolation);
+OPENSUBDIVHEX_API CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
+                                            HexSchemeOptions const &schemeOptions,
+                                            Interpolation interpolation);
 
 /// \brief The limit at a corner of a cell, and the first derivatives there on the side of the cell, in
 /// terms of the vertices of the patch.  LimitStencilTableFactory says what they are derivatives by.

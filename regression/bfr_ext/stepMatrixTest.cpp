@@ -5,11 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 namespace OpenSubdivHex::Regression {
 
+using BfrExt::internal::ChildStep;
 using BfrExt::internal::StepMatrix;
 using FarExt::internal::PatchRefinement;
 
@@ -67,8 +70,24 @@ TEST(StepMatrixTest, HasTheEntriesOfTheStep) {
         std::vector<double> expected;
         std::vector<double> result;
         step.ApplyLeft(left, expected);
-        matrix.ApplyLeft(left, result);
+        std::vector<int> rows(matrix.GetNumRows());
+        std::iota(rows.begin(), rows.end(), 0);
+        ChildStep(matrix, rows).ApplyLeft(left, result);
         ASSERT_EQ(result, expected);
+
+        // A child may have its points in any order.
+        std::reverse(left.begin(), left.end());
+        std::reverse(rows.begin(), rows.end());
+        ChildStep const child(matrix, rows);
+        std::size_t first = 0;
+        child.ForEachEntry(1, [&](std::size_t point, double) {
+            ASSERT_EQ(point,
+                      std::size_t(step.verts[std::size_t(step.firsts[rows.size() - 2]) + first++]));
+        });
+        child.ApplyLeft(left, result);
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            ASSERT_NEAR(result[i], expected[i], 1e-6);
+        }
     }
 }
 
