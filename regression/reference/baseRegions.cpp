@@ -2,6 +2,9 @@
 #include "baseRegions.h"
 
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
 
 namespace OpenSubdivHex::Regression {
 
@@ -93,6 +96,81 @@ std::vector<ReferencePolygon> DivideRegularPolygon(int size, int numLevels) {
     }
     trapezoids.insert(trapezoids.begin(), polygon);
     return trapezoids;
+}
+
+std::vector<BasePiece> MakeBasePieces(TaggedMesh const &base) {
+    std::vector<BasePiece> pieces;
+    for (std::size_t f = 0; f < base.faces.size(); ++f) {
+        std::vector<int> corners(base.faces[f].vertices.size());
+        std::iota(corners.begin(), corners.end(), 0);
+        int const size = int(corners.size());
+        pieces.push_back({int(f), int(f), corners, DivideRegularPolygon(size, 0)[0], false});
+    }
+    return pieces;
+}
+
+std::vector<BasePiece> RefineBasePieces(TaggedMesh const &mesh, TaggedMesh const &child,
+                                        std::vector<BasePiece> const &pieces) {
+    using Corners = std::vector<int>;
+    // By their vertices from the start of the long side on, and the F-faces by their parents.
+    std::map<Corners, std::pair<int, Corners>> halves;
+    std::map<int, int> fFaces;
+    for (std::size_t f = 0; f < child.faces.size(); ++f) {
+        TaggedMesh::Face const &face = child.faces[f];
+        if (child.faceOrigins[f].face >= 0) {
+            fFaces[child.faceOrigins[f].face] = int(f);
+        }
+        std::vector<Corners> ofFace;
+        if (face.isHalf) {
+            ofFace = {{0, 1, 2, 3}};
+        } else if (face.vertices.size() == 6) {
+            ofFace = {{0, 3, 4, 5}, {3, 0, 1, 2}};
+        }
+        for (Corners const &corners : ofFace) {
+            Corners vertices;
+            for (int const corner : corners) {
+                vertices.push_back(face.vertices[corner]);
+            }
+            halves[vertices] = {int(f), corners};
+        }
+    }
+    std::vector<BasePiece> result;
+    for (BasePiece const &piece : pieces) {
+        Corners vertices;
+        Corners fVertices;
+        Point center{0, 0};
+        std::size_t const size = piece.corners.size();
+        for (int const corner : piece.corners) {
+            vertices.push_back(child.vVertices[mesh.faces[piece.face].vertices[corner]]);
+            fVertices.push_back(child.fVertices[piece.face][corner]);
+        }
+        for (std::size_t i = 0; i < size; ++i) {
+            if (!piece.isHalf || i < 2) { // the middle of the long side
+                double const weight = piece.isHalf ? 0.5 : 1.0 / double(size);
+                center = {center[0] + weight * piece.places[i][0],
+                          center[1] + weight * piece.places[i][1]};
+            }
+        }
+        auto const addHalf = [&](Corners const &ofHalf, ReferencePolygon const &places) {
+            auto const found = halves.find(ofHalf);
+            if (found != halves.end()) {
+                result.push_back(
+                    {piece.baseFace, found->second.first, found->second.second, places, true});
+            }
+        };
+        ReferencePolygon const inner = halve(piece.places, center);
+        if (piece.isHalf) {
+            addHalf(fVertices, inner);
+        } else {
+            result.push_back({piece.baseFace, fFaces.at(piece.face), piece.corners, inner, false});
+        }
+        for (std::size_t i = piece.isHalf ? 1 : 0; i < size; ++i) {
+            std::size_t const next = (i + 1) % size;
+            addHalf({vertices[i], vertices[next], fVertices[next], fVertices[i]},
+                    {piece.places[i], piece.places[next], inner[next], inner[i]});
+        }
+    }
+    return result;
 }
 
 } // namespace OpenSubdivHex::Regression

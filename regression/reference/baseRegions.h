@@ -28,6 +28,24 @@ using ReferencePolygon = std::vector<std::array<double, 2>>;
 /// other sides.
 std::vector<ReferencePolygon> DivideRegularPolygon(int size, int numLevels);
 
+/// \brief What lies in one face of the base: a face, or half a hexagon, with the places of its corners in
+/// the regular polygon that the base face is.
+struct BasePiece {
+    int baseFace;
+    int face;
+    std::vector<int> corners; ///< of the face; of half a hexagon from the start of its long side
+    ReferencePolygon places;
+    bool isHalf;
+};
+
+/// The faces of a base mesh.
+std::vector<BasePiece> MakeBasePieces(TaggedMesh const &base);
+/// \brief The pieces of \p child, which a hexagonal step made of \p mesh, that pieces of that fall in.
+///
+/// What lies at free boundaries is left out.
+std::vector<BasePiece> RefineBasePieces(TaggedMesh const &mesh, TaggedMesh const &child,
+                                        std::vector<BasePiece> const &pieces);
+
 } // namespace OpenSubdivHex::Regression
 
 #endif

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Surfaces against the limits that the reference finds by refining again and again.
+#include "surfaceFixture.h"
+
+#include "regression/far_ext/referenceMatch.h"
+#include "regression/far_ext/taggedMatch.h"
+#include "regression/reference/baseRegions.h"
+#include "regression/reference/limitReference.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <Eigen/QR>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <random>
+#include <set>
+#include <utility>
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+/// A shape refined by the reference, with the places that vertices of its last level have.
+class ReferenceSurface {
+public:
+    ReferenceSurface(Shape const &shape, FarExt::TopologyRefiner const &refiner, ReferenceMask mask)
+        : _mask(mask), _positions(GetPositions(shape)) {
+        TaggedMatch const match(shape, refiner);
+        EXPECT_EQ(match.GetError(), "");
+        _mesh = match.GetMesh(0);
+        _pieces = MakeBasePieces(_mesh);
+        setPlaces();
+    }
+
+    void Refine() {
+        TaggedMesh child = Regression::Refine(_mesh);
+        _pieces = RefineBasePieces(_mesh, child, _pieces);
+        _positions = Interpolate(_mesh, child, _mask, _positions);
+        _mesh = std::move(child);
+        setPlaces();
+    }
+
+    struct Place {
+        int baseFace;
+        std::array<double, 2> uv;
+    };
+    /// By vertex, in all base faces around.
+    std::map<int, std::vector<Place>> const &GetPlaces() const { return _places; }
+    TaggedMesh const &GetMesh() const { return _mesh; }
+
+    Vector3 FindLimit(LimitReference &limits, int vertex) const {
+        Eigen::RowVectorXd const limit = limits.Find(_mesh, _positions, vertex);
+        return {limit[0], limit[1], limit[2]};
+    }
+
+private:
+    void setPlaces() {
+        _places.clear();
+        for (BasePiece const &piece : _pieces) {
+            for (std::size_t i = 0; i < piece.corners.size(); ++i) {
+                int const vertex = _mesh.faces[piece.face].vertices[piece.corners[i]];
+                _places[vertex].push_back({piece.baseFace, piece.places[i]});
+            }
+        }
+    }
+
+    ReferenceMask const _mask;
+    TaggedMesh _mesh;
+    ReferenceValues _positions;
+    std::vector<BasePiece> _pieces;
+    std::map<int, std::vector<Place>> _places;
+};
+
+/// What was compared, for the log.
+struct Comparison {
+    void Report() const {
+        std::cout << numPlaces << " places, the largest distance " << largest << " of the size\n";
+    }
+
+    long numPlaces = 0;
+    double largest = 0;
+};
+
+void expectLimits(SurfaceSet<double> const &surfaces, ReferenceSurface const &reference,
+                  double size, std::size_t maxNumVertices, LimitReference &limits,
+                  Comparison &comparison) {
+    auto const hasSurface = [&](ReferenceSurface::Place const &place) {
+        return surfaces[place.baseFace].IsValid();
+    };
+    std::vector<int> vertices;
+    for (auto const &[vertex, places] : reference.GetPlaces()) {
+        if (std::any_of(places.begin(), places.end(), hasSurface)) {
+            vertices.push_back(vertex);
+        }
+    }
+    std::mt19937 random(unsigned(vertices.size()));
+    std::shuffle(vertices.begin(), vertices.end(), random);
+    vertices.resize(std::min(vertices.size(), maxNumVertices));
+    for (int const vertex : vertices) {
+        Vector3 const limit = reference.FindLimit(limits, vertex);
+        for (ReferenceSurface::Place const &place : reference.GetPlaces().at(vertex)) {
+            if (!hasSurface(place)) {
+                continue;
+            }
+            double const distance =
+                GetDistance(surfaces.Evaluate(place.baseFace, place.uv.data()).p, limit) / size;
+            comparison.largest = std::max(comparison.largest, distance);
+            ++comparison.numPlaces;
+            ASSERT_LE(distance, 1e-11) << "vertex " << vertex << ", face " << place.baseFace
+                                       << " at " << place.uv[0] << ", " << place.uv[1];
+        }
+    }
+}
+
+/// At some of the levels up to \p maxLevel.
+void expectLimits(Shape const &shape, ReferenceMask mask,
+                  Sdc::Options::VtxBoundaryInterpolation boundary, int maxLevel,
+                  std::size_t maxNumVertices, LimitReference &limits, Comparison &comparison) {
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(boundary);
+    auto const refiner = CreateRefiner(shape, mask, 0, options);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    ReferenceSurface reference(shape, *refiner, mask);
+    double const size = GetSize(GetPositions(shape));
+    for (int level = 0; level <= GetTestLevel(shape, maxLevel, 4000); ++level) {
+        SCOPED_TRACE(testing::Message()
+                     << shape.name << ", boundary rule " << boundary << ", level " << level);
+        if (level > 0) {
+            reference.Refine();
+        }
+        ASSERT_NO_FATAL_FAILURE(
+            expectLimits(surfaces, reference, size, maxNumVertices, limits, comparison));
+    }
+}
+
+} // namespace
+
+class ReferenceSurfaceTest : public testing::TestWithParam<ReferenceMask> {};
+
+TEST_P(ReferenceSurfaceTest, PointsAreTheLimitsOfTheReference) {
+    LimitReference limits(GetParam());
+    Comparison comparison;
+    for (Shape const &shape : GetShapes()) {
+        ASSERT_NO_FATAL_FAILURE(expectLimits(
+            shape, GetParam(), Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, 3, 6, limits, comparison));
+    }
+    comparison.Report();
+}
+
+TEST_P(ReferenceSurfaceTest, PointsBesideFeaturesAreTheLimitsOfTheReference) {
+    LimitReference limits(GetParam());
+    Comparison comparison;
+    for (Shape const &shape : GetFeatureShapes()) {
+        for (auto const boundary :
+             {Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+            ASSERT_NO_FATAL_FAILURE(
+                expectLimits(shape, GetParam(), boundary, 1, 4, limits, comparison));
+        }
+    }
+    comparison.Report();
+}
+
+namespace {
+
+/// The first derivatives of the quadratic function that is nearest to some points.
+std::array<Vector3, 2> fitDerivatives(std::vector<std::array<double, 2>> const &places,
+                                      std::vector<Vector3> const &points) {
+    Eigen::MatrixXd terms(Eigen::Index(places.size()), 6);
+    Eigen::MatrixXd values(Eigen::Index(places.size()), 3);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        auto const [u, v] = places[i];
+        terms.row(Eigen::Index(i)) << 1, u, v, u * u, u * v, v * v;
+        values.row(Eigen::Index(i)) << points[i][0], points[i][1], points[i][2];
+    }
+    Eigen::MatrixXd const found = terms.colPivHouseholderQr().solve(values);
+    return {Vector3{found(1, 0), found(1, 1), found(1, 2)},
+            Vector3{found(2, 0), found(2, 1), found(2, 2)}};
+}
+
+/// How far a place in a polygon is from the lines between the triangles of the centre and an edge each.
+double getDistanceToSectors(ReferencePolygon const &polygon, std::array<double, 2> const &place) {
+    std::array<double, 2> center{};
+    for (std::array<double, 2> const &corner : polygon) {
+        center[0] += corner[0] / double(polygon.size());
+        center[1] += corner[1] / double(polygon.size());
+    }
+    double distance = 1;
+    auto const addLine = [&](std::array<double, 2> const &p, std::array<double, 2> const &q) {
+        std::array<double, 2> const d = {q[0] - p[0], q[1] - p[1]};
+        double const cross = d[0] * (place[1] - p[1]) - d[1] * (place[0] - p[0]);
+        distance = std::min(distance, std::abs(cross) / std::hypot(d[0], d[1]));
+    };
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        addLine(polygon[i], polygon[(i + 1) % polygon.size()]);
+        addLine(polygon[i], center);
+    }
+    return distance;
+}
+
+} // namespace
+
+// Inside of sectors, between which parameters have kinks.
+TEST_P(ReferenceSurfaceTest, DerivativesAreThoseOfTheReference) {
+    if (GetParam() == ReferenceMask::Average) {
+        GTEST_SKIP() << "has none";
+    }
+    constexpr int kLevel = 6;
+    constexpr double kDistance = 0.07;
+    LimitReference limits(GetParam());
+    int numPlaces = 0;
+    double largest = 0;
+    double sum = 0;
+    for (char const *const name : {"cube", "icosahedron", "creasedBall", "dartsQuads"}) {
+        SCOPED_TRACE(name);
+        auto const &plain = GetManifoldShapes();
+        bool const isPlain = std::any_of(plain.begin(), plain.end(),
+                                         [&](Shape const &shape) { return shape.name == name; });
+        Shape const &shape = isPlain ? GetShape(name) : GetFeatureShape(name);
+        Sdc::Options options;
+        options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        auto const refiner = CreateRefiner(shape, GetParam(), 0, options);
+        SurfaceSet<double> const surfaces(*refiner, shape.positions);
+        ReferenceSurface reference(shape, *refiner, GetParam());
+        for (int level = 0; level < kLevel; ++level) {
+            reference.Refine();
+        }
+        std::mt19937 random(7);
+        auto const &places = reference.GetPlaces();
+        TaggedMesh const &mesh = reference.GetMesh();
+        for (int sample = 0; sample < 60; ++sample) {
+            auto const chosen = std::next(places.begin(), std::ptrdiff_t(random() % places.size()));
+            ReferenceSurface::Place const &place = chosen->second.front();
+            ReferencePolygon const polygon =
+                DivideRegularPolygon(surfaces[place.baseFace].GetFaceSize(), 0)[0];
+            if (getDistanceToSectors(polygon, place.uv) < kDistance) {
+                continue;
+            }
+            std::vector<std::array<double, 2>> around;
+            std::vector<Vector3> points;
+            std::set<int> vertices;
+            for (TaggedMesh::Side const corner : mesh.vertices[chosen->first].corners) {
+                auto const &face = mesh.faces[corner.face];
+                vertices.insert(face.vertices.begin(), face.vertices.end());
+            }
+            for (int const vertex : vertices) {
+                auto const &uv = places.at(vertex).front().uv;
+                around.push_back({uv[0] - place.uv[0], uv[1] - place.uv[1]});
+                points.push_back(reference.FindLimit(limits, vertex));
+            }
+            std::array<Vector3, 2> const expected = fitDerivatives(around, points);
+            SurfacePoint const point = surfaces.Evaluate(place.baseFace, place.uv.data());
+            ++numPlaces;
+            for (auto const &[found, wanted] :
+                 {std::pair(point.du, expected[0]), std::pair(point.dv, expected[1])}) {
+                double const distance = GetDistance(found, wanted) / GetLength(wanted);
+                largest = std::max(largest, distance);
+                sum += distance / 2;
+                ASSERT_LE(distance, 0.02)
+                    << "face " << place.baseFace << " at " << place.uv[0] << ", " << place.uv[1];
+            }
+        }
+    }
+    std::cout << numPlaces << " places, the largest distance " << largest << " of the length, "
+              << sum / numPlaces << " on average\n";
+    EXPECT_GT(numPlaces, 60);
+    EXPECT_LE(sum, 0.001 * numPlaces);
+}
+
+INSTANTIATE_TEST_SUITE_P(Masks, ReferenceSurfaceTest, testing::ValuesIn(kMasks),
+                         [](auto const &mask) { return std::string(ToString(mask.param)); });
+
+} // namespace OpenSubdivHex::Regression
