@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_EXECUTOR_H
 #define OPENSUBDIVHEX_FAR_EXT_EXECUTOR_H
 
-#include "export.h"
+#include "threads.h"
 
 #include <functional>
 

@@ -28,8 +28,35 @@ void BaseTopology::refuse(Status const &status) {
     }
 }
 
-void BaseTopology::refuseIndex(Index index, int count, ComponentType component, char const *name) {
-    refuse(internal::IndexFailure(index, count, component, name));
+bool BaseTopology::isIn(Stage stage, char const *function) {
+    if (_stage == stage) {
+        return true;
+    }
+    refuse(internal::Failure(StatusCode::InvalidArgument, std::string(function) + " is for " +
+                                                              getName(stage) + ", not for " +
+                                                              getName(_stage)));
+    return false;
+}
+
+void BaseTopology::refuseIndex(Stage stage, char const *function, Index index, int count,
+                               ComponentType component) {
+    if (isIn(stage, function)) {
+        refuse(internal::IndexFailure(index, count, component, function));
+    }
+}
+
+char const *BaseTopology::getName(Stage stage) {
+    switch (stage) {
+    case Stage::Resize:
+        return "resizeComponentTopology";
+    case Stage::Assign:
+        return "assignComponentTopology";
+    case Stage::AssignTags:
+        return "assignComponentTags";
+    case Stage::AssignFaceVarying:
+        break;
+    }
+    return "assignFaceVaryingTopology";
 }
 
 namespace {
@@ -49,6 +76,9 @@ Status failedCount(char const *function, int count) {
 } // namespace
 
 void MeshRefinerFactoryBase::setNumBaseVertices(BaseTopology &base, int count) {
+    if (!base.isIn(BaseTopology::Stage::Resize, "setNumBaseVertices")) {
+        return;
+    }
     if (count < 0) {
         base.refuse(failedCount("setNumBaseVertices", count));
     } else {
@@ -57,6 +87,9 @@ void MeshRefinerFactoryBase::setNumBaseVertices(BaseTopology &base, int count) {
 }
 
 void MeshRefinerFactoryBase::setNumBaseFaces(BaseTopology &base, int count) {
+    if (!base.isIn(BaseTopology::Stage::Resize, "setNumBaseFaces")) {
+        return;
+    }
     if (count < 0) {
         base.refuse(failedCount("setNumBaseFaces", count));
         return;
@@ -83,6 +116,9 @@ Index MeshRefinerFactoryBase::findBaseEdge(BaseTopology const &base, Index v0, I
 }
 
 void MeshRefinerFactoryBase::setBaseEdgeSharpness(BaseTopology &base, Index edge, float sharpness) {
+    if (!base.isIn(BaseTopology::Stage::AssignTags, "setBaseEdgeSharpness")) {
+        return;
+    }
     Status status = CheckIndex(edge, getNumBaseEdges(base), ComponentType::Edge,
                                [] { return "setBaseEdgeSharpness"; });
     if (status.IsOk()) {
@@ -98,6 +134,9 @@ void MeshRefinerFactoryBase::setBaseEdgeSharpness(BaseTopology &base, Index edge
 
 void MeshRefinerFactoryBase::setBaseVertexSharpness(BaseTopology &base, Index vert,
                                                     float sharpness) {
+    if (!base.isIn(BaseTopology::Stage::AssignTags, "setBaseVertexSharpness")) {
+        return;
+    }
     Status status = CheckIndex(vert, getNumBaseVertices(base), ComponentType::Vertex,
                                [] { return "setBaseVertexSharpness"; });
     if (status.IsOk()) {
@@ -112,10 +151,14 @@ void MeshRefinerFactoryBase::setBaseVertexSharpness(BaseTopology &base, Index ve
 }
 
 void MeshRefinerFactoryBase::setBaseFaceHole(BaseTopology &base, Index face, bool isHole) {
+    if (!base.isIn(BaseTopology::Stage::AssignTags, "setBaseFaceHole")) {
+        return;
+    }
     if (0 <= face && face < base._numFaces) {
         base._mesh.SetHole(face, isHole);
     } else {
-        base.refuseIndex(face, base._numFaces, ComponentType::Face, "setBaseFaceHole");
+        base.refuse(
+            internal::IndexFailure(face, base._numFaces, ComponentType::Face, "setBaseFaceHole"));
     }
 }
 
@@ -125,8 +168,12 @@ int MeshRefinerFactoryBase::createBaseFVarChannel(BaseTopology &base, int numVal
 
 int MeshRefinerFactoryBase::createBaseFVarChannel(BaseTopology &base, int numValues,
                                                   Sdc::Options const &options) {
+    if (!base.isIn(BaseTopology::Stage::AssignFaceVarying, "createBaseFVarChannel")) {
+        return Far::INDEX_INVALID;
+    }
     if (numValues < 0) {
         base.refuse(failedCount("createBaseFVarChannel", numValues));
+        return Far::INDEX_INVALID;
     }
     base.refuse(internal::CheckOptions(HexSchemeOptions(), options));
     base._channels.push_back({numValues, options.GetFVarLinearInterpolation(), {}});
@@ -136,13 +183,19 @@ int MeshRefinerFactoryBase::createBaseFVarChannel(BaseTopology &base, int numVal
 
 MeshRefinerFactoryBase::IndexArray
 MeshRefinerFactoryBase::getBaseFaceFVarValues(BaseTopology &base, Index face, int channel) {
-    if (channel < 0 || channel >= int(base._channels.size())) {
-        base.refuseIndex(channel, int(base._channels.size()), ComponentType::None,
-                         "the channel of getBaseFaceFVarValues");
+    if (!base.isIn(BaseTopology::Stage::AssignFaceVarying, "getBaseFaceFVarValues")) {
+        return IndexArray();
+    }
+    int const numChannels = int(base._channels.size());
+    if (channel < 0 || channel >= numChannels) {
+        base.refuse(Status(StatusCode::InvalidTopology, ComponentType::None, channel,
+                           "getBaseFaceFVarValues refers to channel " + std::to_string(channel) +
+                               ", but there are " + std::to_string(numChannels)));
         return IndexArray();
     }
     if (face < 0 || face >= base._numFaces) {
-        base.refuseIndex(face, base._numFaces, ComponentType::Face, "getBaseFaceFVarValues");
+        base.refuse(internal::IndexFailure(face, base._numFaces, ComponentType::Face,
+                                           "getBaseFaceFVarValues"));
         return IndexArray();
     }
     Index const first = base._firstCorner[face];
@@ -158,14 +211,17 @@ MeshRefinerFactoryBase::create(Sdc::Options sdcOptions, TopologyRefinerFactory::
         sdcOptions, options, status, [&](internal::BaseMesh &mesh) {
             BaseTopology base(mesh);
             internal::Level &level = mesh.GetLevel();
-            auto const call = [&](Function const &function, char const *name) {
+            using Stage = BaseTopology::Stage;
+            auto const call = [&](Function const &function, Stage stage) {
+                base._stage = stage;
                 if (!function(base)) {
                     base.refuse(internal::Failure(StatusCode::InvalidTopology,
-                                                  std::string(name) + " returned false"));
+                                                  std::string(BaseTopology::getName(stage)) +
+                                                      " returned false"));
                 }
                 return base._status;
             };
-            Status result = call(resize, "resizeComponentTopology");
+            Status result = call(resize, Stage::Resize);
             base._faceSizes = nullptr;
             if (result.IsOk()) {
                 result = mesh.CompleteSizes();
@@ -174,7 +230,7 @@ MeshRefinerFactoryBase::create(Sdc::Options sdcOptions, TopologyRefinerFactory::
                 fill(level.faceVerts, std::size_t(level.numCorners), kUnassigned);
                 base._firstCorner = level.faceFirstCorner.data();
                 base._faceVerts = level.faceVerts.data();
-                result = call(assign, "assignComponentTopology");
+                result = call(assign, Stage::Assign);
                 base._faceVerts = nullptr;
             }
             if (result.IsOk()) {
@@ -185,11 +241,11 @@ MeshRefinerFactoryBase::create(Sdc::Options sdcOptions, TopologyRefinerFactory::
             }
             Status const topology = result; // with its warnings
             if (result.IsOk()) {
-                result = call(assignTags, "assignComponentTags");
+                result = call(assignTags, Stage::AssignTags);
             }
             if (result.IsOk()) {
                 mesh.CompleteTags();
-                result = call(assignFaceVarying, "assignFaceVaryingTopology");
+                result = call(assignFaceVarying, Stage::AssignFaceVarying);
             }
             for (std::size_t i = 0; i < base._channels.size() && result.IsOk(); ++i) {
                 BaseTopology::Channel &channel = base._channels[i];

@@ -28,11 +28,20 @@ private:
     explicit BaseTopology(internal::BaseMesh &mesh);
     ~BaseTopology();
 
+    /// The functions of the factory, in their order.
+    enum class Stage { Resize, Assign, AssignTags, AssignFaceVarying };
+
+    static char const *getName(Stage stage);
     void refuse(Status const &status);
-    void refuseIndex(Far::Index index, int count, ComponentType component, char const *name);
+    /// Whether \p function, which is for \p stage, was called there; else refuses.
+    bool isIn(Stage stage, char const *function);
+    /// Refuses a call of \p function: for its stage, else for its index.
+    void refuseIndex(Stage stage, char const *function, Far::Index index, int count,
+                     ComponentType component);
 
     internal::BaseMesh &_mesh;
     Status _status; // the first failure
+    Stage _stage = Stage::Resize;
     int _numFaces = 0;
     Far::Index *_faceSizes = nullptr;         // while they are assigned
     Far::Index const *_firstCorner = nullptr; // by face, once these have their sizes
@@ -42,9 +51,10 @@ private:
 
 /// \brief What the functions of a MeshRefinerFactory call, named as in Far::TopologyRefinerFactory.
 ///
-/// An index that is out of range, a count that is negative, and a sharpness that is negative or not a
-/// number are refused by name: the functions return without effect (or an empty array, or
-/// INDEX_INVALID), and Create() fails with the first of these causes.
+/// An index that is out of range, a count that is negative, a sharpness that is negative or not a
+/// number, and what is called elsewhere than in the function that it is for are refused by name: the
+/// call returns without effect (or with an empty array, or INDEX_INVALID), and Create() fails with the
+/// first of these causes.
 class OPENSUBDIVHEX_API MeshRefinerFactoryBase {
 protected:
     /// A vertex, an edge, a face or a value.
@@ -65,7 +75,8 @@ protected:
         if (base._faceSizes && 0 <= face && face < base._numFaces) {
             base._faceSizes[face] = count;
         } else {
-            base.refuseIndex(face, base._numFaces, ComponentType::Face, "setNumBaseFaceVertices");
+            base.refuseIndex(BaseTopology::Stage::Resize, "setNumBaseFaceVertices", face,
+                             base._numFaces, ComponentType::Face);
         }
     }
     /// @}
@@ -83,7 +94,8 @@ protected:
             Index const first = base._firstCorner[face];
             return IndexArray(base._faceVerts + first, base._firstCorner[face + 1] - first);
         }
-        base.refuseIndex(face, base._numFaces, ComponentType::Face, "getBaseFaceVertices");
+        base.refuseIndex(BaseTopology::Stage::Assign, "getBaseFaceVertices", face, base._numFaces,
+                         ComponentType::Face);
         return IndexArray();
     }
     /// @}
@@ -109,7 +121,7 @@ protected:
 
     /// \brief Adds a channel of \p numValues values, with the face-varying rule of \p options or
     /// else of the options of the refiner.
-    /// \return  its number, from 0 on
+    /// \return  its number, from 0 on; INDEX_INVALID where it is refused
     static int createBaseFVarChannel(BaseTopology &base, int numValues);
     /// \copydoc createBaseFVarChannel(BaseTopology &, int)
     static int createBaseFVarChannel(BaseTopology &base, int numValues,
@@ -132,7 +144,7 @@ protected:
 ///
 /// Specialise resizeComponentTopology() and assignComponentTopology() and, for a mesh with tags or
 /// face-varying values, the other two.  What you have written for Far serves with FarExt::BaseTopology
-/// in place of Far::TopologyRefiner:
+/// in place of Far::TopologyRefiner, unless it assigns edges of its own, which are found here:
 ///
 /// \code
 /// namespace OpenSubdivHex::FarExt {

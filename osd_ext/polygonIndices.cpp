@@ -8,6 +8,7 @@
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
 
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -270,6 +271,11 @@ private:
     PolygonIndices _result;
 };
 
+// Those of the level, or sides.
+Index getNumVertices(TopologyLevel const &level, DrawOptions const &options) {
+    return options.splitVertices ? options.sides->GetNumSides() : level.GetNumVertices();
+}
+
 Status checkOptions(TopologyLevel const &level, DrawOptions const &options) {
     auto const fail = [](std::string message) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument, std::move(message));
@@ -282,15 +288,30 @@ Status checkOptions(TopologyLevel const &level, DrawOptions const &options) {
     }
     Index const numBaseFaces = level.GetHierarchy().mesh.levels[0].numFaces;
     if (!options.labels.empty() && options.labels.size() != numBaseFaces) {
-        return fail("there are " + std::to_string(options.labels.size()) +
-                    " labels for a base mesh of " + std::to_string(numBaseFaces) + " faces");
+        return fail("labels are one for each of the " + std::to_string(numBaseFaces) +
+                    " base faces, but " + std::to_string(options.labels.size()) + " were given");
+    }
+    if (!FarExt::internal::IsInEnum(int(options.cutCreases), CreaseCuts::All)) {
+        return fail("there is no CreaseCuts " + std::to_string(int(options.cutCreases)));
     }
     if (options.sides && options.sides->GetNumVertices() != level.GetNumVertices()) {
         return fail("the sides are those of " + std::to_string(options.sides->GetNumVertices()) +
                     " vertices; the level has " + std::to_string(level.GetNumVertices()));
     }
+    if (options.sides && !level.HasFullTopology()) {
+        return fail("level " + std::to_string(level.GetDepth()) +
+                    " has no full topology, and so no sides: see "
+                    "UniformOptions::fullTopologyInLastLevel");
+    }
     if (options.splitVertices && !options.sides) {
         return fail("vertices are split by sides, and none are given");
+    }
+    std::int64_t const last =
+        std::int64_t(options.vertexOffset) + getNumVertices(level, options) - 1;
+    if (last > std::numeric_limits<Index>::max()) {
+        return FarExt::internal::Failure(
+            StatusCode::TooLarge, "with its offset the last vertex would be " +
+                                      std::to_string(last) + ", more than 32-bit indices reach");
     }
     for (int depth = 1; depth <= level.GetDepth() && options.generateBaseCoords; ++depth) {
         if (!level.GetHierarchy().mesh.levels[std::size_t(depth)].isHexagonal) {
@@ -312,8 +333,7 @@ PolygonIndices CreatePolygonIndices(TopologyLevel const &level, DrawOptions cons
     }
     PolygonIndices result = Cutter(level, options).Run();
     if (options.separateVertices) {
-        Index const numVertices =
-            options.splitVertices ? options.sides->GetNumSides() : level.GetNumVertices();
+        Index const numVertices = getNumVertices(level, options);
         internal::VertexSeparator separator(numVertices, options.vertexOffset, result);
         if (!FarExt::internal::Report(separator.Run(), status)) {
             return {};

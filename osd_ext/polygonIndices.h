@@ -117,9 +117,10 @@ struct PolygonIndices : DrawnFaces {
 /// once.  std::bad_alloc passes through.
 ///
 /// \return  no polygons on failure: InvalidArgument (a channel that the level does not have, labels
-///          that are not one for each face of level 0, sides of another level, splitVertices without
-///          sides), Unsupported (generateBaseCoords behind other than hexagonal steps) or TooLarge
-///          (separateVertices of more corners, or to more vertices, than 32-bit indices reach)
+///          that are not one for each face of level 0, no CreaseCuts, sides of another level or of one
+///          without full topology, splitVertices without sides), Unsupported (generateBaseCoords
+///          behind other than hexagonal steps) or TooLarge (a vertexOffset, or separateVertices, by
+///          which there are more corners or vertices than 32-bit indices reach)
 OPENSUBDIVHEX_API PolygonIndices CreatePolygonIndices(FarExt::TopologyLevel const &level,
                                                       DrawOptions const &options = DrawOptions(),
                                                       FarExt::Status *status = nullptr);

@@ -31,7 +31,7 @@ Status CheckLimitLevel(Hierarchy const &hierarchy, HexSchemeOptions const &schem
     }
     if (schemeOptions.GetStepOfLevel(level + 1) != StepType::Hexagonal) {
         return fail(StatusCode::Unsupported,
-                    " is not refined by hexagonal steps, which alone have limit stencils");
+                    " is not refined by hexagonal steps, which alone have limits");
     }
     if (!hierarchy.mesh.levels[std::size_t(level)].hasFullTopology) {
         return fail(StatusCode::InvalidArgument,

@@ -3,6 +3,9 @@
 
 #include "parallel.h"
 
+#include <cstdio>
+#include <utility>
+
 namespace OpenSubdivHex::FarExt::internal {
 
 using Far::Index;
@@ -55,6 +58,11 @@ Status CheckCounts(int numVertices, int numFaces) {
     if (numVertices > 0 && numFaces > 0) {
         return Status();
     }
+    if (numVertices < 0 || numFaces < 0) {
+        return Failure(StatusCode::InvalidTopology, "the mesh has " + str(numVertices) +
+                                                        " vertices and " + str(numFaces) +
+                                                        " faces, but counts are 0 or more");
+    }
     return Failure(StatusCode::InvalidTopology, "the mesh is empty: it has " + str(numVertices) +
                                                     " vertices and " + str(numFaces) + " faces");
 }
@@ -62,15 +70,32 @@ Status CheckCounts(int numVertices, int numFaces) {
 // Not a number is less than 0, too.
 Status SharpnessFailure(float sharpness, ComponentType component, Index index,
                         std::string const &name) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%g", double(sharpness));
     return Status(StatusCode::InvalidTopology, component, index,
-                  name + " has sharpness " + std::to_string(sharpness) +
-                      ", but a sharpness is 0 or more");
+                  name + " has sharpness " + number + ", but a sharpness is 0 or more");
 }
 
 Status IndexFailure(Index index, int count, ComponentType component, std::string const &name) {
+    std::pair<char const *, char const *> names = {"value", "values"};
+    switch (component) {
+    case ComponentType::Face:
+        names = {"face", "faces"};
+        break;
+    case ComponentType::Edge:
+        names = {"edge", "edges"};
+        break;
+    case ComponentType::Vertex:
+        names = {"vertex", "vertices"};
+        break;
+    case ComponentType::None:
+    case ComponentType::Level:
+        break;
+    }
+    std::string const range = count > 0 ? " go from 0 to " + str(count - 1) : " are none";
     return Status(StatusCode::InvalidTopology, component, index,
-                  name + " refers to " + str(index) + ", but indices go from 0 to " +
-                      str(count - 1));
+                  name + " refers to " + names.first + " " + str(index) + ", but " + names.second +
+                      range);
 }
 
 Status CheckValues(Index const *values, Index numCorners, Index numValues, int channel) {

@@ -239,7 +239,7 @@ TEST(MeshFactory, ValuesAreChecked) {
     Mesh mesh;
     mesh.assignValues = make([](BaseTopology &base) { Calls::createBaseFVarChannel(base, 4); });
     expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::None, -1,
-                  "corner 0 of face-varying channel 0 refers to -1");
+                  "corner 0 of face-varying channel 0 refers to value -1");
     mesh.assignValues = make([](BaseTopology &base) { Calls::createBaseFVarChannel(base, -4); });
     expectRefused(mesh, StatusCode::InvalidArgument, ComponentType::None, -1, "-4");
     mesh.assignValues = make(
@@ -251,6 +251,53 @@ TEST(MeshFactory, ValuesAreChecked) {
     });
     expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::Face, 2,
                   "getBaseFaceFVarValues");
+}
+
+// What is called in another function than that which it is for would change what is complete, or find
+// no room: it is refused.
+TEST(MeshFactory, CallsAreForTheirFunctions) {
+    struct Call {
+        char const *name;
+        int stage; // of kSteps
+        void (*call)(BaseTopology &);
+    };
+    Call const calls[] = {
+        {"setNumBaseVertices", 0, [](BaseTopology &base) { Calls::setNumBaseVertices(base, 6); }},
+        {"setNumBaseFaces", 0, [](BaseTopology &base) { Calls::setNumBaseFaces(base, 1); }},
+        {"setNumBaseFaceVertices", 0,
+         [](BaseTopology &base) { Calls::setNumBaseFaceVertices(base, 0, 4); }},
+        {"getBaseFaceVertices", 1,
+         [](BaseTopology &base) { EXPECT_EQ(Calls::getBaseFaceVertices(base, 0).size(), 0); }},
+        {"setBaseEdgeSharpness", 2,
+         [](BaseTopology &base) { Calls::setBaseEdgeSharpness(base, 0, 1); }},
+        {"setBaseVertexSharpness", 2,
+         [](BaseTopology &base) { Calls::setBaseVertexSharpness(base, 0, 1); }},
+        {"setBaseFaceHole", 2, [](BaseTopology &base) { Calls::setBaseFaceHole(base, 0, true); }},
+        {"createBaseFVarChannel", 3,
+         [](BaseTopology &base) {
+             EXPECT_EQ(Calls::createBaseFVarChannel(base, 4), Far::INDEX_INVALID);
+         }},
+        {"getBaseFaceFVarValues", 3,
+         [](BaseTopology &base) { EXPECT_EQ(Calls::getBaseFaceFVarValues(base, 0).size(), 0); }},
+    };
+    constexpr struct {
+        Mesh::Step Mesh::*step;
+        char const *name;
+    } kSteps[] = {{&Mesh::resize, "resizeComponentTopology"},
+                  {&Mesh::assign, "assignComponentTopology"},
+                  {&Mesh::tag, "assignComponentTags"},
+                  {&Mesh::assignValues, "assignFaceVaryingTopology"}};
+    for (Call const &call : calls) {
+        for (int stage = 0; stage < 4; ++stage) {
+            if (stage != call.stage) {
+                Mesh mesh;
+                mesh.*kSteps[stage].step = make(call.call);
+                expectRefused(mesh, StatusCode::InvalidArgument, ComponentType::None, -1,
+                              std::string(call.name) + " is for " + kSteps[call.stage].name +
+                                  ", not for " + kSteps[stage].name);
+            }
+        }
+    }
 }
 
 TEST(MeshFactory, AFunctionMayRefuse) {

@@ -333,7 +333,7 @@ TEST_F(StatusTest, CreaseOutOfRange) {
                 shape, {StatusCode::InvalidTopology,
                         ComponentType::Vertex,
                         vertex,
-                        {"crease 1", "refers to " + std::to_string(vertex), "0 to 4"}});
+                        {"crease 1", "refers to vertex " + std::to_string(vertex), "0 to 4"}});
         }
     }
 }
@@ -343,11 +343,11 @@ TEST_F(StatusTest, CornerOutOfRange) {
     for (int vertex : {-2, 4}) {
         shape.cornerVertices = {0, vertex};
         shape.cornerSharpness = {1, 2};
-        expectDescriptorRefused(shape,
-                                {StatusCode::InvalidTopology,
-                                 ComponentType::Vertex,
-                                 vertex,
-                                 {"corner 1", "refers to " + std::to_string(vertex), "0 to 3"}});
+        expectDescriptorRefused(
+            shape, {StatusCode::InvalidTopology,
+                    ComponentType::Vertex,
+                    vertex,
+                    {"corner 1", "refers to vertex " + std::to_string(vertex), "0 to 3"}});
     }
 }
 
@@ -355,10 +355,11 @@ TEST_F(StatusTest, HoleOutOfRange) {
     Shape shape = MakeShape(5, {{0, 1, 2, 3}, {3, 2, 4}});
     for (int face : {-1, 2}) {
         shape.holeFaces = {0, face};
-        expectDescriptorRefused(shape, {StatusCode::InvalidTopology,
-                                        ComponentType::Face,
-                                        face,
-                                        {"hole 1", "refers to " + std::to_string(face), "0 to 1"}});
+        expectDescriptorRefused(shape,
+                                {StatusCode::InvalidTopology,
+                                 ComponentType::Face,
+                                 face,
+                                 {"hole 1", "refers to face " + std::to_string(face), "0 to 1"}});
     }
 }
 
@@ -371,11 +372,11 @@ TEST_F(StatusTest, FaceVaryingValueOutOfRange) {
     }
     for (int value : {-1, 7}) {
         shape.fvarChannels[1].valueIndices[4] = value;
-        expectDescriptorRefused(
-            shape, {StatusCode::InvalidTopology,
-                    ComponentType::None,
-                    value,
-                    {"corner 4", "channel 1", "refers to " + std::to_string(value), "0 to 6"}});
+        expectDescriptorRefused(shape, {StatusCode::InvalidTopology,
+                                        ComponentType::None,
+                                        value,
+                                        {"corner 4", "channel 1",
+                                         "refers to value " + std::to_string(value), "0 to 6"}});
     }
 }
 

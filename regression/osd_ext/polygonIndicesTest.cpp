@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -260,13 +261,32 @@ TEST(PolygonIndices, RefusesWhatDoesNotFit) {
     options = DrawOptions();
     std::vector<int> const labels(5);
     options.labels = toArray(labels);
-    expectRefused(options, "there are 5 labels for a base mesh of 6 faces");
+    expectRefused(options, "labels are one for each of the 6 base faces, but 5 were given");
     options = DrawOptions();
     options.splitVertices = true;
     expectRefused(options, "vertices are split by sides, and none are given");
     FarExt::LimitSides const sides(refiner->GetLevel(0));
     options.sides = &sides;
     expectRefused(options, "the sides are those of 8 vertices; the level has 32");
+    options = DrawOptions();
+    options.cutCreases = static_cast<CreaseCuts>(3);
+    expectRefused(options, "there is no CreaseCuts 3");
+    // The last index is the largest that there is, then one too many.
+    options = DrawOptions();
+    options.vertexOffset = std::numeric_limits<int>::max() - 31;
+    EXPECT_GT(CreatePolygonIndices(level, options).GetNumPolygons(), 0);
+    ++options.vertexOffset;
+    FarExt::Status status;
+    EXPECT_EQ(CreatePolygonIndices(level, options, &status).GetNumPolygons(), 0);
+    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::TooLarge);
+    EXPECT_NE(status.GetMessage().find("2147483648"), std::string::npos) << status.GetMessage();
+    // Such a level knows of no edges, and so of no sides.
+    ASSERT_TRUE(refiner->RefineUniform(1));
+    FarExt::LimitSides const noSides(refiner->GetLevel(1));
+    options = DrawOptions();
+    options.sides = &noSides;
+    expectRefused(options, "level 1 has no full topology, and so no sides: see "
+                           "UniformOptions::fullTopologyInLastLevel");
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -30,11 +30,19 @@ TEST_F(Hexrefine, WritesNoFileTwice) {
     for (std::string const &spelling :
          {output, getPath("folder/../out.obj"), getPath("./out.obj"), getPath("link")}) {
         expectBadUsage(input + " -o " + output + " --stats " + spelling, "is the file of --output");
-#ifdef HEXREFINE_HAS_RENDERER
-        expectBadUsage(input + " -o " + output + " --png " + spelling, "is the file of --output");
-        expectBadUsage(input + " --png " + output + " --stats " + spelling, "is the file of --png");
-#endif
     }
+#ifdef HEXREFINE_HAS_RENDERER
+    std::string const picture = getPath("out.png");
+    std::filesystem::create_symlink("out.png", getPath("link.obj"));
+    for (std::string const &spelling : {picture, getPath("folder/../out.png")}) {
+        expectBadUsage(input + " --png " + picture + " --stats " + spelling,
+                       "is the file of --png");
+    }
+    expectBadUsage(input + " -o " + getPath("link.obj") + " --png " + picture,
+                   "is the file of --output");
+    expectBadUsage(input + " --png " + output, "is not a .png file");
+    std::filesystem::remove(getPath("link.obj"));
+#endif
     // Anything but a mesh in the place of the mesh that is refined.
     expectBadUsage(input + " --stats " + input, "is the file of INPUT");
     expectBadUsage(getPath("folder/../cube.obj") + " --stats " + input, "is the file of INPUT");

@@ -241,7 +241,10 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->type_name("LEVEL")
         ->default_str("that of OPENSUBDIVHEX_SIMD, or the highest of the processor");
     app.add_option("--png", arguments->png, "File for a ray traced picture of the last level")
-        ->check([](std::string const &) {
+        ->check([](std::string const &name) {
+            if (std::filesystem::path(name).extension() != ".png") {
+                return "'" + name + "' is not a .png file";
+            }
             return std::string(HasRenderer() ? "" : "this program was built without Embree");
         })
         ->type_name("FILE");

@@ -156,7 +156,8 @@ TEST_F(Attributes, RefusesBadPlyProperties) {
     refuse("0 0 0 -1 0 0\n", "line 14: '-1' is not a number of type uchar");
     refuse("0 0 0 1.0 0 0\n", "line 14: '1.0' is not a number of type uchar");
     refuse("0 0 0 1 0 inf\n", "line 14: 'inf' is not a finite number of type double");
-    refuse("0 0 0 1 0 1e300\n", "line 14: vertex 0 has a d that is not a finite number");
+    refuse("0 0 0 1 0 1e300\n", "line 14: vertex 0 has a d that is out of the range of floats");
+    refuse("0 1e39 0 1 0 0\n", "line 14: '1e39' is out of the range of floats");
     refuse("0 0 0 1 1 x 0\n", "line 14: 'x' is not a finite number of type float");
     refuse("0 0 0 1 2 .25 0\n", "line 14: the line of vertex 0 ends too early");
     refuse("0 0 0 1 55 1 0\n", "line 14: vertex 0 has a list 'l' of 55 numbers, which are");
@@ -201,6 +202,7 @@ TEST_F(Attributes, ObjKeepsColorsAndWeights) {
     }
     expectRefused("a.obj", "v 0 0 0 1 0 x\n", "line 1: 'x' is not a finite number");
     expectRefused("a.obj", "v 0 0 0 nan\n", "line 1: 'nan' is not a finite number");
+    expectRefused("a.obj", "v 0 0 -1e300\n", "line 1: '-1e300' is out of the range of floats");
 }
 
 TEST_F(Attributes, ObjKeepsLabels) {

@@ -106,14 +106,17 @@ std::errc parseWord(std::string_view word, T *value) {
     return result.ptr == end ? result.ec : std::errc::invalid_argument;
 }
 
+// std::from_chars takes none.
+std::string_view dropPlus(std::string_view word) {
+    return word.substr(!word.empty() && word.front() == '+' ? 1 : 0);
+}
+
 } // namespace
 
 bool ParseInt(std::string_view word, int *value) { return parseWord(word, value) == std::errc(); }
 
 bool ParseFiniteFloat(std::string_view word, float *value) {
-    if (!word.empty() && word.front() == '+') {
-        word.remove_prefix(1);
-    }
+    word = dropPlus(word);
     std::errc error = parseWord(word, value);
     if (error == std::errc::result_out_of_range) {
         // Too large, or so small that it is 0.
@@ -122,6 +125,12 @@ bool ParseFiniteFloat(std::string_view word, float *value) {
         *value = float(number);
     }
     return error == std::errc() && std::isfinite(*value);
+}
+
+std::string NameFloatFailure(std::string_view word) {
+    float value = 0;
+    bool const isOutOfRange = parseWord(dropPlus(word), &value) == std::errc::result_out_of_range;
+    return isOutOfRange ? "out of the range of floats" : "not a finite number";
 }
 
 } // namespace OpenSubdivHex::Tools

@@ -127,7 +127,7 @@ TEST_F(ObjChannel, RefusesBadValues) {
     expectRefused("vt 0 nan\n", "line 5: 'nan' is not a finite number");
     expectRefused("vn 0 0\n", "line 5: a normal needs three numbers");
     expectRefused("vn 0 0 1 0\n", "line 5: a normal needs three numbers");
-    expectRefused("vn 0 0 1e99\n", "line 5: '1e99' is not a finite number");
+    expectRefused("vn 0 0 1e99\n", "line 5: '1e99' is out of the range of floats");
     std::string const values = "vt 0 0\nvn 0 0 1\n";
     expectRefused(values + "f 1/1 2/1 3/2\n", "line 7: texture coordinate index 2 is out of range");
     expectRefused(values + "f 1/1 2/1 3/0\n", "line 7: texture coordinate index 0 is out of range");

@@ -132,7 +132,7 @@ void checkCorner(ObjContent const &content, int line, std::string_view word) {
 float readNumber(ObjContent const &content, int line, std::string_view word) {
     float value = 0;
     if (!ParseFiniteFloat(word, &value)) {
-        content.Refuse(line, "'" + std::string(word) + "' is not a finite number");
+        content.Refuse(line, "'" + std::string(word) + "' is " + NameFloatFailure(word));
     }
     return value;
 }

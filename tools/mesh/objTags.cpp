@@ -113,7 +113,7 @@ ObjTagReader::Tag ObjTagReader::parse(int line, std::string_view text) const {
     for (int i = 0; i < counts[1]; ++i, ++word) {
         tag.floats.emplace_back();
         if (!ParseFiniteFloat(*word, &tag.floats.back())) {
-            refuse(line, quote(*word) + " is not a finite number");
+            refuse(line, quote(*word) + " is " + NameFloatFailure(*word));
         }
     }
     tag.strings.assign(word, words.end());

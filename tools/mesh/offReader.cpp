@@ -53,7 +53,8 @@ struct Colors {
         for (std::string_view word : words) {
             float value = 0;
             if (!ParseFiniteFloat(word, &value)) {
-                return "'" + std::string(word.substr(0, 40)) + "', which is not a finite number";
+                return "'" + std::string(word.substr(0, 40)) + "', which is " +
+                       NameFloatFailure(word);
             }
             int integer = 0;
             areBytes = areBytes && ParseInt(word, &integer) && integer >= 0 && integer <= 255;
@@ -136,8 +137,8 @@ private:
         for (std::size_t i = 0; i < words.size(); ++i) {
             float value = 0;
             if (!ParseFiniteFloat(words[i], &value)) {
-                return "'" + std::string(words[i].substr(0, 40)) +
-                       "', which is not a finite number";
+                return "'" + std::string(words[i].substr(0, 40)) + "', which is " +
+                       NameFloatFailure(words[i]);
             }
             (*properties)[i].values.push_back(value);
         }

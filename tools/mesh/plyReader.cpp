@@ -61,8 +61,10 @@ public:
         }
         double number = 0;
         if (!parse(type, &number)) {
-            Refuse("'" + std::string(_word.substr(0, 40)) + "' is not a " +
-                   (IsInteger(type) ? "number of type " : "finite number of type ") +
+            std::string const what = type == NumberType::Float ? NameFloatFailure(_word)
+                                     : IsInteger(type)         ? "not a number"
+                                                               : "not a finite number";
+            Refuse("'" + std::string(_word.substr(0, 40)) + "' is " + what + " of type " +
                    Tools::GetName(type));
         }
         _word = TakeWord(&_line);
@@ -307,8 +309,9 @@ private:
                 float const value = float(number);
                 if (!std::isfinite(value)) {
                     _source.Refuse("vertex " + std::to_string(index) + " has a " +
-                                   (column.axis < 0 ? property.name : "coordinate") +
-                                   " that is not a finite number");
+                                   (column.axis < 0 ? property.name : "coordinate") + " that is " +
+                                   (std::isfinite(number) ? "out of the range of floats"
+                                                          : "not a finite number"));
                 }
                 column.isRounded = column.isRounded || double(value) != number;
                 if (column.axis < 0) {

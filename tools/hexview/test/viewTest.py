@@ -89,7 +89,7 @@ def test_pictures(program, meshes):
         expect(run.returncode == 2 and cause in run.stderr, "bad options are named")
     run = subprocess.run([program, torus, "--evaluator", "opengl", "--limit", "--scheme",
                           "doo-sabin", "--png", "no.png"], capture_output=True, text=True)
-    expect(run.returncode == 1 and "limit stencils" in run.stderr and
+    expect(run.returncode == 1 and "alone have limits" in run.stderr and
            not os.path.exists("no.png"), "Doo-Sabin has no limit points")
 
 
