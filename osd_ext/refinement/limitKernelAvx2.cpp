@@ -29,6 +29,13 @@ struct Avx2Faces {
         StoreFloats<WIDTH>(places[0], Quad(_mm256_castps256_ps128(vector)));
         StoreFloats<WIDTH>(places[1], Quad(_mm256_extractf128_ps(vector, 1)));
     }
+    template <bool IS_EXACT>
+    static OPENSUBDIVHEX_INLINE void StorePairs(float *const *places, Vector first, Vector second) {
+        // Joining them takes as long as it saves.
+        float *const ofSecond[] = {places[0] + kPoint, places[1] + kPoint};
+        Store<kQuad>(places, first);
+        Store<IS_EXACT ? kPoint : kQuad>(ofSecond, second);
+    }
 
 private:
     template <int WIDTH>

@@ -24,6 +24,12 @@ struct PortableFaces {
     static OPENSUBDIVHEX_INLINE void Store(float *const *places, Vector const &vector) {
         StoreFloats<WIDTH>(places[0], vector);
     }
+    template <bool IS_EXACT>
+    static OPENSUBDIVHEX_INLINE void StorePairs(float *const *places, Vector const &first,
+                                                Vector const &second) {
+        StoreFloats<kQuad>(places[0], first);
+        StoreFloats<IS_EXACT ? kPoint : kQuad>(places[0] + kPoint, second);
+    }
 };
 
 } // namespace

@@ -21,6 +21,7 @@ namespace {
 using FarExt::internal::kRegularFaceSize;
 
 constexpr int kHalf = kRegularFaceSize / 2;
+constexpr int kPoint = RegularFaceGroup::kPointStride;
 
 /// How elements of WIDTH floats are read and written.  A quad of three packed floats takes in the
 /// first of the next element.
@@ -211,15 +212,25 @@ struct FaceElements {
         for (int i = 0; i < SIMD::kNumFaces; ++i) {
             begins[i] = ACCESS::At(output, group.firstCorners[first + i]);
         }
-        std::ptrdiff_t const stride = ACCESS::kIsPoints ? ACCESS::kWidth : output.stride;
-        for (int corner = 0; corner < kRegularFaceSize; ++corner) {
-            float *places[SIMD::kNumFaces];
+        float *places[SIMD::kNumFaces];
+        auto const findPlaces = [&](int corner) {
+            std::ptrdiff_t const stride = ACCESS::kIsPoints ? kPoint : output.stride;
             for (int i = 0; i < SIMD::kNumFaces; ++i) {
                 places[i] = begins[i] + corner * stride;
             }
-            if (corner + 1 < kRegularFaceSize) {
-                SIMD::template Store<ACCESS::kReach>(places, x[corner]);
-            } else {
+        };
+        if constexpr (ACCESS::kIsPoints) {
+            // Each two overwrite what comes behind them, but for the last ones.
+            for (int corner = 0; corner + 2 < kRegularFaceSize; corner += 2) {
+                findPlaces(corner);
+                SIMD::template StorePairs<false>(places, x[corner], x[corner + 1]);
+            }
+            findPlaces(kRegularFaceSize - 2);
+            SIMD::template StorePairs<true>(places, x[kRegularFaceSize - 2],
+                                            x[kRegularFaceSize - 1]);
+        } else {
+            for (int corner = 0; corner < kRegularFaceSize; ++corner) {
+                findPlaces(corner);
                 SIMD::template Store<ACCESS::kWidth>(places, x[corner]);
             }
         }
