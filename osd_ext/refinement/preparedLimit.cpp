@@ -151,6 +151,35 @@ void PreparedLimit::prepareOthers(std::vector<Index> const &verts, LimitRows con
         kRange);
 }
 
+std::vector<unsigned char> PreparedLimit::FindSources(Index numVertices) const {
+    FaceLevel const &faces = _faceLevels.back();
+    if (faces.sets.empty() && !HasOthers()) {
+        return {};
+    }
+    std::vector<unsigned char> isSource(std::size_t(numVertices), 0);
+    auto const markPlace = [&](std::uint32_t place) {
+        isSource[place / RegularFaceGroup::kPointStride] = 1;
+    };
+    for (FaceSet const &set : faces.sets) {
+        for (RegularFaceGroup const &group : set.groups) {
+            for (RegularFaceGroup::Places const *places :
+                 {&group.verts, &group.neighbors, &group.next, &group.previous}) {
+                for (auto const &ofCorner : *places) {
+                    std::for_each(std::begin(ofCorner), std::end(ofCorner), markPlace);
+                }
+            }
+        }
+    }
+    for (Index const firstCorner : faces.summedFaces) {
+        Index const *const verts = faces.level->faceVerts.data() + firstCorner;
+        for (int i = 0; i < FarExt::internal::kRegularFaceSize; ++i) {
+            isSource[std::size_t(verts[i])] = 1;
+        }
+    }
+    std::for_each(_places.data(), _places.data() + _places.size(), markPlace);
+    return isSource;
+}
+
 void PreparedLimit::EvaluateFaces(int level, Elements<float const> values, int length,
                                   Outputs const &outputs) {
     if (!HasFaces(level)) {

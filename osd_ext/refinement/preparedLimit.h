@@ -33,16 +33,21 @@ public:
     /// \brief Writes the outputs of those vertices that faces of \p level make, and of others that are
     /// in these faces: EvaluateOthers() comes behind all levels.
     ///
-    /// \param values  of \p level; one float may be read behind the last of them
+    /// \param values  of \p level; one float may be read behind the last of them.  Of the last
+    ///                level those will do that FindSources() marks
     void EvaluateFaces(int level, Elements<float const> values, int length, Outputs const &outputs);
     /// Whether a level has such faces.
     bool HasFaces(int level) const { return !_faceLevels[std::size_t(level)].sets.empty(); }
+
+    /// A mark for each of the \p numVertices vertices of the last level, whether outputs depend on
+    /// it; empty if none do.
+    std::vector<unsigned char> FindSources(Far::Index numVertices) const;
 
     /// Whether there are vertices that no face makes.
     bool HasOthers() const { return !_vertexGroups.empty(); }
     /// \brief Writes their outputs.
     ///
-    /// \param values        of the last level
+    /// \param values        of the last level; those will do that FindSources() marks
     /// \param isReadBehind  whether one float may be read behind the last of them
     void EvaluateOthers(Elements<float const> values, bool isReadBehind, int length,
                         Outputs const &outputs) const;

@@ -85,7 +85,8 @@ struct WeightedFace {
     std::size_t firstWeight; ///< position in faceWeights
 };
 
-/// \brief Irregular faces [begin, end), hexagons of one type.
+/// \brief Irregular faces [begin, end), hexagons of one type.  It may reach beyond the run of plain
+/// faces that it is in, where not all faces are refined.
 struct IrregularRun {
     Far::Index begin;
     Far::Index end;
@@ -143,6 +144,26 @@ struct VertexRun {
     bool areIrregular;
 };
 
+/// \brief What a refinement does, in groups that are done side by side: those of tiles, and behind
+/// them those of vertices between tiles.
+///
+/// Of the parent, faces by tile.  The faces of a run are of one size, and all F-faces or none.
+/// Vertices that are F-vertices of all corners of a face of the level before it, and of the level
+/// before that one, come in runs of such faces.
+struct RefinementGroups {
+    Groups<FaceRun> plainFaces;
+    Groups<WeightedFace> weightedFaces;
+
+    /// Of a truncation, all vertices that it makes, in tiles of some each.
+    Groups<ListedVertex> listedVertices;
+
+    Groups<IndexRun> newVertexFaces;
+    Groups<IndexRun> olderVertexFaces;
+    /// The other vertices of the parent.
+    Groups<VertexRun> vertexRuns;
+    Groups<WeightedVertex> weightedVertices;
+};
+
 /// \brief A refinement prepared for evaluation: all that making the points of its child takes.
 /// Refers to the parent level and to the two levels before it.
 ///
@@ -157,7 +178,7 @@ struct VertexRun {
 /// and for all other vertices the corners around them.  The last vertex of the level is never
 /// plain, nor are its faces of 3 to 6 sides and the vertex whose F-vertex is the last: what plain
 /// faces and vertices read may be read in packets that reach into the element behind.
-struct PreparedRefinement {
+struct PreparedRefinement : RefinementGroups {
     PlainMasks masks;
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
     FarExt::internal::Level const *parent = nullptr;
@@ -166,29 +187,17 @@ struct PreparedRefinement {
     FarExt::internal::Level const *beforeThat = nullptr;
     int numTiles = 0;
 
-    // Of the parent, by tile.  The faces of a run are of one size, and all F-faces or none.
-    Groups<FaceRun> plainFaces;
-    Groups<WeightedFace> weightedFaces;
-    std::vector<float> faceWeights;
+    std::vector<float> faceWeights; ///< of weighted faces
     /// In the runs of plain faces, ascending; behind all, one that is in no run.
     std::vector<IrregularRun> irregularFaces;
 
-    // Of a truncation, all vertices that it makes, in tiles of some each.
-    Groups<ListedVertex> listedVertices;
+    // Of listed vertices.
     std::vector<Far::Index> listedSources;
     std::vector<float> listedWeights;
 
-    // Vertices of the parent that are F-vertices of all corners of a face of the level before it,
-    // and of the level before that one, by tile.  Runs of faces as above.
-    Groups<IndexRun> newVertexFaces;
-    Groups<IndexRun> olderVertexFaces;
     /// Where the numbering does not tell, by corner of the level before: its F-vertex's corner in
     /// the E-face of the edge from that corner to the next, side by side with that of the next.
     FarExt::internal::Buffer<Far::Index> startCorners;
-
-    // The other vertices of the parent, by group.
-    Groups<VertexRun> vertexRuns;
-    Groups<WeightedVertex> weightedVertices;
     FarExt::internal::Buffer<Far::Index> vertCorners; ///< of each vertex of a run, in each face
 
     int GetNumVertexGroups() const { return vertexRuns.GetNumGroups(); }

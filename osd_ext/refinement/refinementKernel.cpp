@@ -143,13 +143,14 @@ void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMa
             break;
         }
         if constexpr (SIZE == IrregularFaceMask::kSize) {
-            Index const numFaces = irregular->end - face;
+            Index const irregularEnd = std::min(run.end, irregular->end);
+            Index const numFaces = irregularEnd - face;
             refineIrregularFaces<ACCESS>(
                 task.refinement->masks.irregularFaces[std::size_t(irregular->mask)], mask, src,
                 verts, numFaces, dst, corner);
             corner += SIZE * numFaces;
             verts += std::ptrdiff_t(SIZE) * numFaces;
-            face = irregular->end;
+            face = irregularEnd;
             ++irregular;
         }
     }
@@ -509,11 +510,11 @@ void runKernel(RefinementTask const &task, int length, Groups<ITEM> const &group
 }
 
 void refineVertices(RefinementTask const &task, int length, int group) {
-    PreparedRefinement const &refinement = *task.refinement;
-    runKernel<NewVertexKernel>(task, length, refinement.newVertexFaces, group);
-    runKernel<OlderVertexKernel>(task, length, refinement.olderVertexFaces, group);
-    runKernel<VertexKernel>(task, length, refinement.vertexRuns, group);
-    runKernel<VertexKernel>(task, length, refinement.weightedVertices, group);
+    RefinementGroups const &groups = *task.groups;
+    runKernel<NewVertexKernel>(task, length, groups.newVertexFaces, group);
+    runKernel<OlderVertexKernel>(task, length, groups.olderVertexFaces, group);
+    runKernel<VertexKernel>(task, length, groups.vertexRuns, group);
+    runKernel<VertexKernel>(task, length, groups.weightedVertices, group);
 }
 
 // Calls function(group) for groups [begin, end), in parallel.  It throws nothing.
@@ -533,9 +534,9 @@ void RefineElements(std::vector<RefinementTask> const &tasks, int length) {
     for (RefinementTask const &task : tasks) {
         PreparedRefinement const &refinement = *task.refinement;
         forEachGroup(0, refinement.numTiles, [&](int tile) {
-            runKernel<ListedVertexKernel>(task, length, refinement.listedVertices, tile);
-            runKernel<FaceKernel>(task, length, refinement.plainFaces, tile);
-            runKernel<FaceKernel>(task, length, refinement.weightedFaces, tile);
+            runKernel<ListedVertexKernel>(task, length, task.groups->listedVertices, tile);
+            runKernel<FaceKernel>(task, length, task.groups->plainFaces, tile);
+            runKernel<FaceKernel>(task, length, task.groups->weightedFaces, tile);
             refineVertices(task, length, tile);
         });
         // Their F-vertices are in several tiles, which are done by now.
