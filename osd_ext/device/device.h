@@ -18,8 +18,8 @@ using DeviceBufferName = std::uint64_t;
 
 /// \brief A kernel to be run on \c count things.
 struct OPENSUBDIVHEX_API DeviceTask {
-    DeviceKernel kernel;
-    int length;       ///< floats of an element
+    DeviceKernel kernel = DeviceKernel::Copy;
+    int length = 0;   ///< floats of an element
     int faceSize = 0; ///< for DeviceKernel::FaceRun
     DeviceBufferName sources = 0;
     DeviceBufferName results = 0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -35,6 +36,12 @@ Status checkPositions(std::int64_t count, std::string const &what) {
                                                      what + " are " + std::to_string(count) +
                                                          ", more than the " + std::to_string(kMax) +
                                                          " that positions of 32 bits reach");
+}
+
+void setCorners(DeviceRefinement const &refinement, DeviceTask &task) {
+    task.parameters.numConsecutiveCorners = refinement.numConsecutiveCorners;
+    task.parameters.firstConsecutiveVertex = refinement.firstConsecutiveVertex;
+    task.parameters.firstListedVertex = refinement.firstListedVertex;
 }
 
 bool isUnrolled(DeviceFaceRun const &run) {
@@ -263,9 +270,7 @@ void DeviceEvaluator::refine(std::size_t number, Elements const &src, Elements c
     auto const makeTaskOf = [&](DeviceKernel kernel) {
         DeviceTask task = makeTask(kernel, length, src, dst);
         task.parameters.firstFVertex = std::uint32_t(refinement.numVVertices);
-        task.parameters.numConsecutiveCorners = refinement.numConsecutiveCorners;
-        task.parameters.firstConsecutiveVertex = refinement.firstConsecutiveVertex;
-        task.parameters.firstListedVertex = refinement.firstListedVertex;
+        setCorners(refinement, task);
         return task;
     };
     for (DeviceFaceRun const &faceRun : refinement.faceRuns) {
@@ -276,6 +281,10 @@ void DeviceEvaluator::refine(std::size_t number, Elements const &src, Elements c
         task.parameters.faceSize = std::uint32_t(faceRun.size);
         task.parameters.firstCorner = faceRun.firstCorner;
         task.parameters.firstWeight = faceRun.firstWeight;
+        task.parameters.weightOfAll = faceRun.all;
+        task.parameters.weightOfSelf = faceRun.self;
+        task.parameters.weightOfNeighbors = faceRun.neighbor;
+        task.parameters.weightOfOpposite = faceRun.opposite;
         run(task, faceRun.count);
     }
     if (!refinement.corners.empty()) {
@@ -361,9 +370,12 @@ Status DeviceEvaluator::checkRefiner() const {
 
 // Finds the masks of a level, unless it has, and loads them.
 Status DeviceEvaluator::prepareLimit(int level, int length) {
-    Status status = _device->Prepare(DeviceKernel::RegularLimit, length, 0);
-    if (status.IsOk()) {
-        status = _device->Prepare(DeviceKernel::VertexLimit, length, 0);
+    Status status;
+    for (DeviceKernel const kernel :
+         {DeviceKernel::RegularLimit, DeviceKernel::OwnLimit, DeviceKernel::VertexLimit}) {
+        if (status.IsOk()) {
+            status = _device->Prepare(kernel, length, 0);
+        }
     }
     _limits.resize(_numElements.size());
     std::unique_ptr<Limit> &limit = _limits[std::size_t(level)];
@@ -386,8 +398,10 @@ Status DeviceEvaluator::prepareLimit(int level, int length) {
     if (!status.IsOk()) {
         return status;
     }
+    std::int64_t const firstOwnFace =
+        kWordsOf<DeviceRegularFace> * std::int64_t(prepared.regularFaces.size());
     std::int64_t const firstVertex =
-        kWordsOf<DeviceRegularFace> * std::int64_t(prepared.faces.size());
+        firstOwnFace + kWordsOf<DeviceOwnFace> * std::int64_t(prepared.ownFaces.size());
     std::int64_t const firstSource =
         firstVertex + kWordsOf<DeviceLimitVertex> * std::int64_t(prepared.vertices.size());
     std::int64_t const numIndices = firstSource + std::int64_t(prepared.sources.size());
@@ -404,10 +418,12 @@ Status DeviceEvaluator::prepareLimit(int level, int length) {
         vertex.firstIndex += std::uint32_t(firstSource);
     }
     result->numVertices = std::uint32_t(prepared.vertices.size());
+    result->firstOwnFace = std::uint32_t(firstOwnFace);
     result->firstVertex = std::uint32_t(firstVertex);
     result->levels = std::move(prepared.levels);
     result->indices.Resize(numIndices * kWord);
-    result->indices.Write(0, prepared.faces);
+    result->indices.Write(0, prepared.regularFaces);
+    result->indices.Write(firstOwnFace * kWord, prepared.ownFaces);
     result->indices.Write(firstVertex * kWord, prepared.vertices);
     result->indices.Write(firstSource * kWord, prepared.sources);
     result->weights.Resize(std::int64_t(prepared.weights.size()) * kWord);
@@ -443,30 +459,40 @@ Status DeviceEvaluator::EvaluateLimit(Values const &src, std::vector<Values> con
     return _device->EndFrame();
 }
 
-// Level by level, and of each the limits that its regular faces make.
+// Level by level, and of each the limits that its faces make; then those of the other vertices, some of
+// which faces have made, too.
 void DeviceEvaluator::evaluateLimit(Elements const &src, std::vector<Elements> const &outputs,
                                     int length, int level) {
     Limit const &limit = *_limits[std::size_t(level)];
-    int const last = limit.numVertices > 0 ? level : level - 1;
+    bool const needsLast =
+        limit.numVertices > 0 || limit.levels[std::size_t(level)].ownVertices.count > 0;
+    int const last = needsLast ? level : level - 1;
     resizeScratch(length, last);
     Elements values = src;
-    for (int made = 1; made <= level; ++made) {
-        DeviceLimit::RegularLevel const &regular = limit.levels[std::size_t(made) - 1];
-        DeviceRefinement const &refinement = _refinements[std::size_t(made) - 1];
-        DeviceTask task = makeTask(DeviceKernel::RegularLimit, length, values, outputs[0]);
-        task.parameters.firstIndex = regular.firstFace * kWordsOf<DeviceRegularFace>;
-        task.parameters.firstWeight = regular.firstWeight;
-        task.parameters.firstFVertex = std::uint32_t(refinement.numVVertices);
-        task.parameters.numConsecutiveCorners = refinement.numConsecutiveCorners;
-        task.parameters.firstConsecutiveVertex = refinement.firstConsecutiveVertex;
-        task.parameters.firstListedVertex = refinement.firstListedVertex;
-        runLimit(task, limit, outputs, regular.count);
-        if (made <= last) {
-            Elements const next = getScratch(made, length);
-            refine(std::size_t(made) - 1, values, next, length);
+    auto const runSet = [&](DeviceTask &task, DeviceLimit::Set const &set) {
+        task.parameters.firstFVertex = set.firstVertex;
+        std::copy(std::begin(set.weights), std::end(set.weights), task.parameters.regularWeights);
+        runLimit(task, limit, outputs, set.count);
+    };
+    for (int i = 0; i <= last; ++i) {
+        DeviceLimit::OfLevel const &sets = limit.levels[std::size_t(i)];
+        if (i > 0) {
+            Elements const next = getScratch(i, length);
+            refine(std::size_t(i) - 1, values, next, length);
             values = next;
         }
+        if (sets.fVertices.count > 0) {
+            DeviceTask task = makeTask(DeviceKernel::RegularLimit, length, values, outputs[0]);
+            setCorners(_refinements[std::size_t(i)], task);
+            task.parameters.firstIndex = sets.fVertices.firstFace * kWordsOf<DeviceRegularFace>;
+            runSet(task, sets.fVertices);
+        }
+        DeviceTask task = makeTask(DeviceKernel::OwnLimit, length, values, outputs[0]);
+        task.parameters.firstIndex =
+            limit.firstOwnFace + sets.ownVertices.firstFace * kWordsOf<DeviceOwnFace>;
+        runSet(task, sets.ownVertices);
     }
+    _device->Wait();
     DeviceTask task = makeTask(DeviceKernel::VertexLimit, length, values, outputs[0]);
     task.parameters.firstIndex = limit.firstVertex;
     runLimit(task, limit, outputs, limit.numVertices);

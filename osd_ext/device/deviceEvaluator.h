@@ -68,13 +68,14 @@ private:
         std::int64_t offset;
         std::int64_t stride;
     };
-    // The limit of a level, and its arrays: faces, vertices and sources in one.
+    // The limit of a level, and its arrays: faces of both kinds, vertices and sources in one.
     struct Limit {
         explicit Limit(Device &device) : indices(device), weights(device) {}
 
-        std::vector<DeviceLimit::RegularLevel> levels; // places of faces are those of indices
+        std::vector<DeviceLimit::OfLevel> levels;
         std::uint32_t numVertices = 0;
-        std::uint32_t firstVertex = 0; // in indices
+        std::uint32_t firstOwnFace = 0; // these two in indices
+        std::uint32_t firstVertex = 0;
         DeviceBuffer indices;
         DeviceBuffer weights;
     };

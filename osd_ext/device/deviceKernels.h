@@ -21,7 +21,9 @@ struct DeviceParameters {
 
 #define PLACE Place
 #define PARAMETER(type, name) type name = 0;
+#define PARAMETER_ARRAY(type, name, size) type name[size] = {};
 #include "kernelParameters.inl"
+#undef PARAMETER_ARRAY
 #undef PARAMETER
 #undef PLACE
 };
@@ -42,8 +44,11 @@ struct DeviceArguments : DeviceParameters {
 template <int LENGTH, int SIZE>
 struct DeviceKernels : DeviceArguments {
 #define PLACE Place
-#define READ_ARRAY(binding, block, type, name)
 #define ARRAY(binding, block, type, name)
+#define READ_FLOATS(binding, block, name)
+#define READ_INDICES(binding, block, name)
+#define READ(name, place) name[place]
+#define READ_RESULT(place) results[place]
 #define FUNCTION OPENSUBDIVHEX_KERNEL_FUNCTION
 #define REFERENCE(type) type &
 #define PRECISE
@@ -52,8 +57,11 @@ struct DeviceKernels : DeviceArguments {
 #undef PRECISE
 #undef REFERENCE
 #undef FUNCTION
+#undef READ_RESULT
+#undef READ
+#undef READ_INDICES
+#undef READ_FLOATS
 #undef ARRAY
-#undef READ_ARRAY
 #undef PLACE
 };
 
@@ -67,6 +75,7 @@ enum class DeviceKernel {
     VertexRun,
     Vertices,
     RegularLimit,
+    OwnLimit,
     VertexLimit,
     Triangles
 };
@@ -91,6 +100,8 @@ OPENSUBDIVHEX_KERNEL_FUNCTION void RunKernel(DeviceKernels<LENGTH, SIZE> &kernel
         kernels.makeListedVVertex(i);
     } else if constexpr (KERNEL == DeviceKernel::RegularLimit) {
         kernels.makeRegularLimit(i);
+    } else if constexpr (KERNEL == DeviceKernel::OwnLimit) {
+        kernels.makeOwnLimit(i);
     } else if constexpr (KERNEL == DeviceKernel::VertexLimit) {
         kernels.makeListedLimit(i);
     } else {
@@ -140,6 +151,8 @@ void RunCompiled(DeviceKernel kernel, int length, int faceSize, RUN const &run) 
         return run(CompiledKernel<DeviceKernel::Vertices, LENGTH, 3>());
     case DeviceKernel::RegularLimit:
         return run(CompiledKernel<DeviceKernel::RegularLimit, LENGTH, 3>());
+    case DeviceKernel::OwnLimit:
+        return run(CompiledKernel<DeviceKernel::OwnLimit, LENGTH, 3>());
     case DeviceKernel::VertexLimit:
         return run(CompiledKernel<DeviceKernel::VertexLimit, LENGTH, 3>());
     case DeviceKernel::Triangles:

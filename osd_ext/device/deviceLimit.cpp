@@ -26,7 +26,7 @@ namespace {
 
 constexpr int kBitsOfLocal = 3;
 
-DeviceRegularFace makeFace(Level const &level, RegularFace const &face) {
+DeviceRegularFace makeRegularFace(Level const &level, RegularFace const &face) {
     DeviceRegularFace result = {std::uint32_t(face.firstCorner), {}, 0};
     for (int i = 0; i < kRegularFaceSize; ++i) {
         Index const first = level.faceFirstCorner[std::size_t(face.beyond[i])];
@@ -39,15 +39,46 @@ DeviceRegularFace makeFace(Level const &level, RegularFace const &face) {
     return result;
 }
 
-// The limit kernels take the weights one by one, in this order, but for the last two: the mask of
-// F-vertices has one tip.
-void addWeights(FarExt::internal::RegularFaceMask const &mask, std::vector<float> &weights) {
-    RegularLimitWeights<Scalar> const ofMask = MakeRegularLimitWeights(mask);
-    constexpr std::size_t kNumWeights = 52;
-    static_assert(sizeof(ofMask) == (kNumWeights + 2) * sizeof(float));
-    weights.resize(weights.size() + kNumWeights);
-    std::memcpy(weights.data() + weights.size() - kNumWeights, &ofMask,
-                kNumWeights * sizeof(float));
+DeviceOwnFace makeOwnFace(Level const &level, RegularFace const &face) {
+    DeviceOwnFace result = {std::uint32_t(level.faceVerts[std::size_t(face.firstCorner)]), {}};
+    for (int i = 0; i < kRegularFaceSize; ++i) {
+        std::uint32_t(&around)[kRegularFaceSize] = result.around[i];
+        Index const *const verts =
+            level.faceVerts.data() + level.faceFirstCorner[std::size_t(face.beyond[i])];
+        // Of a vertex that has no face beyond, three of the face itself.
+        int count = 2;
+        for (int k = 0; k < kRegularFaceSize && count < kRegularFaceSize - 1; ++k) {
+            if (verts[k] != face.neighbors[i] && verts[k] != face.next[i] &&
+                verts[k] != face.previous[i]) {
+                around[count++] = std::uint32_t(verts[k]);
+            }
+        }
+        around[0] = std::uint32_t(face.neighbors[i]);
+        around[1] = std::uint32_t(face.previous[i]);
+        around[kRegularFaceSize - 1] = std::uint32_t(face.next[i]);
+    }
+    return result;
+}
+
+// Adds the faces of a set, made by \p make.
+template <typename FACE, typename MAKE>
+DeviceLimit::Set addFaces(Level const &level, RegularFaces::Set const &set, MAKE const &make,
+                          std::vector<FACE> &faces) {
+    std::size_t const first = faces.size();
+    DeviceLimit::Set result;
+    result.count = std::uint32_t(set.faces.size());
+    result.firstFace = std::uint32_t(first);
+    result.firstVertex = std::uint32_t(set.firstVertex);
+    if (!set.faces.empty()) {
+        RegularLimitWeights<Scalar> const weights = MakeRegularLimitWeights(set.mask);
+        static_assert(sizeof(weights) == sizeof(result.weights));
+        std::memcpy(result.weights, &weights, sizeof(weights));
+    }
+    faces.resize(first + set.faces.size());
+    FarExt::internal::ParallelFor(Index(set.faces.size()), [&](Index i) {
+        faces[first + std::size_t(i)] = make(level, set.faces[std::size_t(i)]);
+    });
+    return result;
 }
 
 void addVertices(std::vector<Index> const &verts, LimitRows const &rows, DeviceLimit &limit) {
@@ -73,31 +104,24 @@ void addVertices(std::vector<Index> const &verts, LimitRows const &rows, DeviceL
 Status MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
                        FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows,
                        DeviceLimit &limit) {
-    RegularFaces regularFaces(mesh, rows.GetLevel().depth, false);
+    RegularFaces regularFaces(mesh, rows.GetLevel().depth);
     Status result = regularFaces.FindMasks(schemeOptions, rows);
     if (!result.IsOk()) {
         return result;
     }
-    for (int i = 0; i < rows.GetLevel().depth; ++i) {
-        RegularFaces::Set const &ofLevel = regularFaces.GetLevels()[std::size_t(i)].fVertices;
-        std::size_t const first = limit.faces.size();
-        limit.levels.push_back({std::uint32_t(ofLevel.faces.size()), std::uint32_t(first),
-                                std::uint32_t(limit.weights.size())});
-        if (ofLevel.faces.empty()) {
-            continue;
-        }
-        addWeights(ofLevel.mask, limit.weights);
-        limit.faces.resize(first + ofLevel.faces.size());
-        FarExt::internal::ParallelFor(Index(ofLevel.faces.size()), [&](Index k) {
-            limit.faces[first + std::size_t(k)] =
-                makeFace(mesh.levels[std::size_t(i)], ofLevel.faces[std::size_t(k)]);
-        });
+    std::vector<RegularFaces::OfLevel> const &levels = regularFaces.GetLevels();
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        Level const &level = mesh.levels[i];
+        limit.levels.push_back(
+            {addFaces(level, levels[i].fVertices, makeRegularFace, limit.regularFaces),
+             addFaces(level, levels[i].ownVertices, makeOwnFace, limit.ownFaces)});
     }
     addVertices(regularFaces.GetOthers(), rows, limit);
-    constexpr std::size_t kWordsOfFace = sizeof(DeviceRegularFace) / sizeof(std::uint32_t);
-    constexpr std::size_t kWordsOfVertex = sizeof(DeviceLimitVertex) / sizeof(std::uint32_t);
-    std::size_t const numWords = kWordsOfFace * limit.faces.size() +
-                                 kWordsOfVertex * limit.vertices.size() + limit.sources.size();
+    constexpr auto kWordsOf = [](auto const &array) {
+        return array.size() * sizeof(array[0]) / sizeof(std::uint32_t);
+    };
+    std::size_t const numWords = kWordsOf(limit.regularFaces) + kWordsOf(limit.ownFaces) +
+                                 kWordsOf(limit.vertices) + kWordsOf(limit.sources);
     if (std::max(numWords, limit.weights.size()) > std::numeric_limits<std::uint32_t>::max()) {
         return FarExt::internal::Failure(
             StatusCode::TooLarge, "the limit has " + std::to_string(numWords) + " indices and " +

@@ -2,10 +2,13 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_LIMIT_H
 #define OPENSUBDIVHEX_OSD_EXT_DEVICE_DEVICE_LIMIT_H
 
+#include "deviceKernels.h"
+
 #include "far_ext/export.h"
 #include "far_ext/limit/regularFaces.h"
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 namespace OpenSubdivHex::OsdExt::internal {
@@ -17,6 +20,15 @@ struct DeviceRegularFace {
     std::uint32_t beyond[FarExt::internal::kRegularFaceSize]; ///< the first corner of each
     /// The place of the neighbour in each, in three bits from the lowest on.
     std::uint32_t locals;
+};
+
+/// \brief An F-face that gives the limit of vertices of its own, but for those of regular faces: see
+/// FarExt::internal::RegularFaces.  Others of its vertices are among those of DeviceLimit::vertices, and
+/// made again.
+struct DeviceOwnFace {
+    std::uint32_t firstVertex; ///< the others follow
+    /// Of each face beyond, from the neighbour on.
+    std::uint32_t around[FarExt::internal::kRegularFaceSize][FarExt::internal::kRegularFaceSize];
 };
 
 /// \brief The limit of a vertex as a sum of vertices of its level: each of \c numSources indices from
@@ -31,16 +43,22 @@ struct DeviceLimitVertex {
 /// \brief The limit of a level as a device evaluates it: positions of faces, indices and weights are
 /// in arrays of its own.
 struct DeviceLimit {
-    /// By level, from 0 to the one before the last; those of weights are the first 52 numbers of
-    /// RegularLimitWeights.
-    struct RegularLevel {
+    /// Faces of one kind that have a mask in common.
+    struct Set {
         std::uint32_t count = 0;
-        std::uint32_t firstFace = 0;   ///< in \c faces
-        std::uint32_t firstWeight = 0; ///< in \c weights
+        std::uint32_t firstFace = 0;   ///< in \c regularFaces or \c ownFaces
+        std::uint32_t firstVertex = 0; ///< of the last level: where the limit of corner 0 goes
+        /// RegularLimitWeights, in their order.
+        float weights[std::extent_v<decltype(DeviceParameters::regularWeights)>] = {};
     };
-    std::vector<RegularLevel> levels;
-    std::vector<DeviceRegularFace> faces;
-    std::vector<DeviceLimitVertex> vertices; ///< those that no regular face makes
+    struct OfLevel {
+        Set fVertices; ///< none of the last level
+        Set ownVertices;
+    };
+    std::vector<OfLevel> levels; ///< from 0 to the last one
+    std::vector<DeviceRegularFace> regularFaces;
+    std::vector<DeviceOwnFace> ownFaces;
+    std::vector<DeviceLimitVertex> vertices; ///< those that no face makes
     std::vector<std::uint32_t> sources;      ///< of these, the indices
     std::vector<float> weights;
 };

@@ -158,7 +158,6 @@ private:
     Index _firstNewVertex;                     // F-vertices of the level before ...
     Index _firstOlderVertex;                   // ... and of the level before that
     std::vector<std::uint32_t> _plainWeights;  // by size, twice in a row
-    std::vector<std::uint32_t> _plainMasks;    // by size, four each
     std::vector<std::uint32_t> _vertexWeights; // of plain vertices, by their number of faces
     std::vector<Index> _listedFaces;           // F-faces
     std::vector<std::uint32_t> _firstIndices;  // of those
@@ -192,15 +191,10 @@ void Maker::planFaces() {
 void Maker::addRun(Range const &range) {
     PlainFaceMask const mask = MakePlainFaceMask(_mask.GetPlainFaceWeights(range.size), range.size);
     bool const isWeighted = !mask.weights.empty();
-    std::uint32_t const firstWeight =
-        isWeighted ? getPlainWeights(range.size) : find(_plainMasks, range.size, [&] {
-            auto const first = std::uint32_t(_weights.size());
-            _weights.insert(_weights.end(), {mask.all, mask.self, mask.neighbor, mask.opposite});
-            return first;
-        });
     _result.faceRuns.push_back({range.size, std::uint32_t(range.end - range.begin),
                                 std::uint32_t(_level.faceFirstCorner[std::size_t(range.begin)]),
-                                isWeighted, firstWeight});
+                                isWeighted, isWeighted ? getPlainWeights(range.size) : 0, mask.all,
+                                mask.self, mask.neighbor, mask.opposite});
     listIrregularCorners(range);
 }
 

@@ -19,10 +19,16 @@ struct DeviceFaceRun {
     std::uint32_t count;
     std::uint32_t firstCorner;
     /// Whether each vertex has a weight of its own: those of corner 0 stand twice in a row, so that
-    /// every rotation of them is contiguous.  Else there are \c all, \c self, \c neighbor and
-    /// \c opposite of a PlainFaceMask.
+    /// every rotation of them is contiguous.
     bool isWeighted;
     std::uint32_t firstWeight;
+    /// @name Else those of a PlainFaceMask
+    /// @{
+    float all;
+    float self;
+    float neighbor;
+    float opposite;
+    /// @}
 };
 
 /// \brief Vertices with three faces, and the mask that all these have, that follow one another and

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What kernels are told besides their arrays: PARAMETER(type, name).  See kernels.inl.
+// What kernels are told besides their arrays: PARAMETER(type, name), or PARAMETER_ARRAY(type, name,
+// size).  See kernels.inl.
 
 PARAMETER(uint, count) // of invocations
 
@@ -30,8 +31,15 @@ PARAMETER(uint, vertexOffset) // added to the vertices of triangles
 PARAMETER(uint, faceSize)     // of its faces
 PARAMETER(uint, firstVertex)  // of a run of vertices
 PARAMETER(float, vertexWeight)
+// Of plain faces.
+PARAMETER(float, weightOfAll)
+PARAMETER(float, weightOfSelf)
+PARAMETER(float, weightOfNeighbors)
+PARAMETER(float, weightOfOpposite)
 // Elements that are copied are listed, and the first corners of faces; else they follow one another.
 PARAMETER(uint, hasIndices)
 PARAMETER(uint, averagesFaces) // else V-vertices stay
 PARAMETER(uint, addsInTurn)    // the three F-vertices of a vertex; else the last two first
 PARAMETER(uint, hasDerivatives)
+
+PARAMETER_ARRAY(float, regularWeights, 54) // RegularLimitWeights, in their order

@@ -4,7 +4,10 @@
 // their arithmetic.  Programs of OpenGL are compiled from this text; CUDA and C++ include it as the
 // body of DeviceKernels.  Whoever takes it defines before
 //   PLACE                a type for positions in arrays
-//   READ_ARRAY, ARRAY    (binding, block, type, name): declare arrays
+//   ARRAY                (binding, block, type, name): declares an array that is written
+//   READ_FLOATS,         (binding, block, name): declare arrays that are read alone, at READ(name, place)
+//   READ_INDICES
+//   READ_RESULT          (place): reads what a kernel before has written to the results
 //   PARAMETER            (type, name): declares what kernelParameters.inl lists
 //   FUNCTION             what stands before a function
 //   REFERENCE(type)      the type of an argument that the function changes, or that is large
@@ -16,13 +19,13 @@
 // are in the order of RefinementEvaluator's wherever most vertices are; products and sums are rounded
 // one by one, so that the same arrays give the same bits on every device.
 
-READ_ARRAY(0, Sources, float, sources)
+READ_FLOATS(0, Sources, sources)
 ARRAY(1, Results, float, results)
-READ_ARRAY(2, Indices, uint, indices)
-READ_ARRAY(3, Weights, float, weights)
+READ_INDICES(2, Indices, indices)
+READ_FLOATS(3, Weights, weights)
 ARRAY(4, DuResults, float, duResults)
 ARRAY(5, DvResults, float, dvResults)
-READ_ARRAY(6, ListedVertices, uint, listedVertices)
+READ_INDICES(6, ListedVertices, listedVertices)
 ARRAY(7, Triangles, uint, triangles)
 
 struct Element {
@@ -68,7 +71,7 @@ FUNCTION Element getSource(uint i) {
     Element e;
     PLACE place = sourceOffset + PLACE(i) * sourceStride;
     for (int k = 0; k < LENGTH; ++k) {
-        e.x[k] = sources[place + PLACE(k)];
+        e.x[k] = READ(sources, place + PLACE(k));
     }
     return e;
 }
@@ -76,7 +79,7 @@ FUNCTION Element getFVertex(uint corner) {
     Element e;
     PLACE place = resultOffset + PLACE(firstFVertex + corner) * resultStride;
     for (int k = 0; k < LENGTH; ++k) {
-        e.x[k] = results[place + PLACE(k)];
+        e.x[k] = READ_RESULT(place + PLACE(k));
     }
     return e;
 }
@@ -90,21 +93,17 @@ FUNCTION void store(uint i, Element e) {
 FUNCTION uint getVertexOfCorner(uint corner) {
     return corner < numConsecutiveCorners
                ? firstConsecutiveVertex + corner
-               : listedVertices[firstListedVertex + PLACE(corner - numConsecutiveCorners)];
+               : READ(listedVertices, firstListedVertex + PLACE(corner - numConsecutiveCorners));
 }
 
 // Elements one behind the other, those of the control values or of what the indices list.
 FUNCTION void copyElement(uint i) {
-    store(i, getSource(hasIndices != 0u ? indices[firstIndex + PLACE(i)] : i));
+    store(i, getSource(hasIndices != 0u ? READ(indices, firstIndex + PLACE(i)) : i));
 }
 
-// A plain face of 3 to 6 sides: P = self V + neighbor (V before + V behind) + opposite V across +
-// all (sum of V).
+// A plain face of 3 to 6 sides: P = weightOfSelf V + weightOfNeighbors (V before + V behind) +
+// weightOfOpposite V across + weightOfAll (sum of V).
 FUNCTION void makeFVerticesOfRun(uint i) {
-    float all = weights[firstWeight];
-    float self = weights[firstWeight + PLACE(1)];
-    float neighbor = weights[firstWeight + PLACE(2)];
-    float opposite = weights[firstWeight + PLACE(3)];
     uint corner = firstCorner + i * uint(SIZE);
     Element v[SIZE];
     for (int j = 0; j < SIZE; ++j) {
@@ -114,15 +113,15 @@ FUNCTION void makeFVerticesOfRun(uint i) {
     for (int j = 1; j < SIZE; ++j) {
         sum = addElements(sum, v[j]);
     }
-    sum = scaleElement(all, sum);
+    sum = scaleElement(weightOfAll, sum);
     for (int j = 0; j < SIZE; ++j) {
         Element e = sum;
-        addTo(e, self, v[j]);
+        addTo(e, weightOfSelf, v[j]);
         if (SIZE > 3) {
-            addTo(e, neighbor, addElements(v[(j + SIZE - 1) % SIZE], v[(j + 1) % SIZE]));
+            addTo(e, weightOfNeighbors, addElements(v[(j + SIZE - 1) % SIZE], v[(j + 1) % SIZE]));
         }
-        if (SIZE == 6 && opposite != 0.0f) {
-            addTo(e, opposite, v[(j + SIZE / 2) % SIZE]);
+        if (SIZE == 6 && weightOfOpposite != 0.0f) {
+            addTo(e, weightOfOpposite, v[(j + SIZE / 2) % SIZE]);
         }
         store(firstFVertex + corner + uint(j), e);
     }
@@ -130,21 +129,18 @@ FUNCTION void makeFVerticesOfRun(uint i) {
 
 // A plain face of any size.
 FUNCTION void makeFVerticesOfFace(uint i) {
-    float all = weights[firstWeight];
-    float self = weights[firstWeight + PLACE(1)];
-    float neighbor = weights[firstWeight + PLACE(2)];
     uint corner = firstCorner + i * faceSize;
     Element sum = getSource(getVertexOfCorner(corner));
     for (uint j = 1u; j < faceSize; ++j) {
         sum = addElements(sum, getSource(getVertexOfCorner(corner + j)));
     }
-    sum = scaleElement(all, sum);
+    sum = scaleElement(weightOfAll, sum);
     for (uint j = 0u; j < faceSize; ++j) {
         uint before = j == 0u ? faceSize - 1u : j - 1u;
         uint behind = j + 1u == faceSize ? 0u : j + 1u;
         Element e = sum;
-        addTo(e, self, getSource(getVertexOfCorner(corner + j)));
-        addTo(e, neighbor,
+        addTo(e, weightOfSelf, getSource(getVertexOfCorner(corner + j)));
+        addTo(e, weightOfNeighbors,
               addElements(getSource(getVertexOfCorner(corner + before)),
                           getSource(getVertexOfCorner(corner + behind))));
         store(firstFVertex + corner + j, e);
@@ -157,7 +153,7 @@ FUNCTION void makeFVerticesByWeights(uint i) {
     for (uint c = 0u; c < faceSize; ++c) {
         Element e = getZero();
         for (uint j = 0u; j < faceSize; ++j) {
-            addTo(e, weights[firstWeight + PLACE(faceSize - c + j)],
+            addTo(e, READ(weights, firstWeight + PLACE(faceSize - c + j)),
                   getSource(getVertexOfCorner(corner + j)));
         }
         store(firstFVertex + corner + c, e);
@@ -167,17 +163,17 @@ FUNCTION void makeFVerticesByWeights(uint i) {
 // A DeviceCorner.
 FUNCTION void makeListedFVertex(uint i) {
     PLACE place = firstIndex + PLACE(4) * PLACE(i);
-    uint size = indices[place + PLACE(1)];
-    PLACE vert = PLACE(indices[place + PLACE(2)]);
-    PLACE first = PLACE(indices[place + PLACE(3)]);
+    uint size = READ(indices, place + PLACE(1));
+    PLACE vert = PLACE(READ(indices, place + PLACE(2)));
+    PLACE first = PLACE(READ(indices, place + PLACE(3)));
     Element e = getZero();
     for (uint j = 0u; j < size; ++j) {
-        float weight = weights[first + PLACE(j)];
+        float weight = READ(weights, first + PLACE(j));
         if (weight != 0.0f) {
-            addTo(e, weight, getSource(indices[vert + PLACE(j)]));
+            addTo(e, weight, getSource(READ(indices, vert + PLACE(j))));
         }
     }
-    store(firstFVertex + indices[place], e);
+    store(firstFVertex + READ(indices, place), e);
 }
 
 // A vertex with three faces.
@@ -185,9 +181,9 @@ FUNCTION void makeVVertexOfRun(uint i) {
     Element e = getSource(firstVertex + i);
     if (averagesFaces != 0u) {
         PLACE place = firstIndex + PLACE(3) * PLACE(i);
-        Element a = getFVertex(indices[place]);
-        Element b = getFVertex(indices[place + PLACE(1)]);
-        Element c = getFVertex(indices[place + PLACE(2)]);
+        Element a = getFVertex(READ(indices, place));
+        Element b = getFVertex(READ(indices, place + PLACE(1)));
+        Element c = getFVertex(READ(indices, place + PLACE(2)));
         if (addsInTurn != 0u) {
             e = addElements(addElements(addElements(e, a), b), c);
         } else {
@@ -201,28 +197,28 @@ FUNCTION void makeVVertexOfRun(uint i) {
 // A DeviceVertex.
 FUNCTION void makeListedVVertex(uint i) {
     PLACE place = firstIndex + PLACE(5) * PLACE(i);
-    uint child = indices[place];
-    uint numSources = indices[place + PLACE(1)];
-    uint numCorners = indices[place + PLACE(2)];
-    PLACE next = PLACE(indices[place + PLACE(3)]);
-    PLACE first = PLACE(indices[place + PLACE(4)]);
+    uint child = READ(indices, place);
+    uint numSources = READ(indices, place + PLACE(1));
+    uint numCorners = READ(indices, place + PLACE(2));
+    PLACE next = PLACE(READ(indices, place + PLACE(3)));
+    PLACE first = PLACE(READ(indices, place + PLACE(4)));
     Element e = getZero();
     for (uint j = 0u; j < numSources; ++j) {
-        addTo(e, weights[first + PLACE(j)], getSource(indices[next + PLACE(j)]));
+        addTo(e, READ(weights, first + PLACE(j)), getSource(READ(indices, next + PLACE(j))));
     }
     if (numSources == 0u) {
         e = getSource(child);
         for (uint j = 0u; j < numCorners; ++j) {
-            e = addElements(e, getFVertex(indices[next + PLACE(j)]));
+            e = addElements(e, getFVertex(READ(indices, next + PLACE(j))));
         }
-        e = scaleElement(weights[first], e);
+        e = scaleElement(READ(weights, first), e);
     } else if (numCorners > 0u) {
         next = next + PLACE(numSources);
-        Element sum = getFVertex(indices[next]);
+        Element sum = getFVertex(READ(indices, next));
         for (uint j = 1u; j < numCorners; ++j) {
-            sum = addElements(sum, getFVertex(indices[next + PLACE(j)]));
+            sum = addElements(sum, getFVertex(READ(indices, next + PLACE(j))));
         }
-        addTo(e, weights[first + PLACE(numSources)], sum);
+        addTo(e, READ(weights, first + PLACE(numSources)), sum);
     }
     store(child, e);
 }
@@ -239,8 +235,8 @@ FUNCTION void makeTriangles(uint i) {
     uint corner = firstCorner + i * faceSize;
     uint size = faceSize;
     if (hasIndices != 0u) {
-        corner = indices[firstIndex + PLACE(i)];
-        size = indices[firstIndex + PLACE(i + 1u)] - corner;
+        corner = READ(indices, firstIndex + PLACE(i));
+        size = READ(indices, firstIndex + PLACE(i + 1u)) - corner;
     }
     PLACE place = resultOffset + PLACE(3) * PLACE(corner - 2u * (firstFace + i));
     uint low = corner;

@@ -27,17 +27,31 @@ constexpr std::int64_t kMaxBytes = std::int64_t(1) << 31;
 constexpr char const *kNames[] = {
     "copyElement",       "makeFVerticesOfRun", "makeFVerticesOfFace", "makeFVerticesByWeights",
     "makeListedFVertex", "makeVVertexOfRun",   "makeListedVVertex",   "makeRegularLimit",
-    "makeListedLimit",   "makeTriangles"};
+    "makeOwnLimit",      "makeListedLimit",    "makeTriangles"};
 
-// What stands before the kernels, behind LENGTH and SIZE: see kernels.inl.
+// What stands before the kernels, behind LENGTH and SIZE: see kernels.inl.  What is read alone may be
+// TEXTURES.
 constexpr char const *kHead = R"(
 layout(local_size_x = 64) in;
 #define PLACE uint
-#define READ_ARRAY(number, block, type, name) \
-    layout(std430, binding = number) readonly buffer block { type name[]; };
+#ifdef TEXTURES
+#define READ_FLOATS(number, block, name) layout(binding = number) uniform samplerBuffer name;
+#define READ_INDICES(number, block, name) layout(binding = number) uniform usamplerBuffer name;
+#define READ(name, place) texelFetch(name, int(place)).x
+#define READ_RESULT(place) READ(readResults, place)
+READ_FLOATS(1, ReadResults, readResults)
+#else
+#define READ_FLOATS(number, block, name) \
+    layout(std430, binding = number) readonly buffer block { float name[]; };
+#define READ_INDICES(number, block, name) \
+    layout(std430, binding = number) readonly buffer block { uint name[]; };
+#define READ(name, place) name[place]
+#define READ_RESULT(place) results[place]
+#endif
 #define ARRAY(number, block, type, name) \
     layout(std430, binding = number) buffer block { type name[]; };
 #define PARAMETER(type, name) uniform type name;
+#define PARAMETER_ARRAY(type, name, size) uniform type name[size];
 #define FUNCTION
 #define REFERENCE(type) inout type
 #define PRECISE precise
@@ -55,6 +69,7 @@ void main() {
 std::string str(std::int64_t number) { return std::to_string(number); }
 
 void set(GLint place, float value) { glUniform1f(place, value); }
+void set(GLint place, float const *values, GLsizei count) { glUniform1fv(place, count, values); }
 void set(GLint place, std::uint32_t value) { glUniform1ui(place, value); }
 // Places that are used fit, since CheckBuffer() has seen the last one.
 void set(GLint place, std::uint64_t value) { glUniform1ui(place, GLuint(value)); }
@@ -153,14 +168,20 @@ Status GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
 }
 
 Status GlDevice::Prepare(DeviceKernel kernel, int length, int faceSize) {
-    Kernel &prepared = _kernels[{kernel, length, faceSize}];
+    return prepare({kernel, length, faceSize, _textures.AreFaster()});
+}
+
+Status GlDevice::prepare(Key const &key) {
+    Kernel &prepared = _kernels[key];
     if (prepared.program) {
         return Status();
     }
+    auto const [kernel, length, faceSize, readsTextures] = key;
     char const *const name = kNames[int(kernel)];
     std::string const definitions =
         "#version 430\n#define LENGTH " + str(length) + "\n#define SIZE " +
-        str(faceSize == 0 ? kMinUnrolledFace : faceSize) + "\n#define KERNEL " + name + "\n";
+        str(faceSize == 0 ? kMinUnrolledFace : faceSize) + "\n#define KERNEL " + name + "\n" +
+        (readsTextures ? "#define TEXTURES\n" : "");
     std::vector<char const *> texts = {definitions.c_str(), kHead};
     texts.insert(texts.end(), std::begin(kKernelTexts), std::end(kKernelTexts));
     texts.push_back(kMain);
@@ -174,21 +195,32 @@ Status GlDevice::Prepare(DeviceKernel kernel, int length, int faceSize) {
     prepared.program = std::move(program);
 #define PLACE Place
 #define PARAMETER(type, name) prepared.uniforms.push_back((*prepared.program)[#name]);
+#define PARAMETER_ARRAY(type, name, size) PARAMETER(type, name)
 #include "osd_ext/device/kernelParameters.inl"
+#undef PARAMETER_ARRAY
 #undef PARAMETER
 #undef PLACE
     return Status();
 }
 
 void GlDevice::Run(DeviceTask const &task) {
-    Kernel const &kernel = _kernels.at({task.kernel, task.length, task.faceSize});
+    Key const key = {task.kernel, task.length, task.faceSize, _textures.Bind(task)};
+    if (_status.IsOk()) {
+        _status = prepare(key);
+    }
+    if (!_status.IsOk()) {
+        return;
+    }
+    Kernel const &kernel = _kernels.at(key);
     DeviceParameters parameters = task.parameters;
     parameters.count = task.count;
     kernel.program->Use();
     GLint const *uniform = kernel.uniforms.data();
 #define PLACE Place
 #define PARAMETER(type, name) set(*uniform++, parameters.name);
+#define PARAMETER_ARRAY(type, name, size) set(*uniform++, parameters.name, size);
 #include "osd_ext/device/kernelParameters.inl"
+#undef PARAMETER_ARRAY
 #undef PARAMETER
 #undef PLACE
     DeviceBufferName const buffers[] = {task.sources,        task.results,   task.indices,
@@ -202,7 +234,9 @@ void GlDevice::Run(DeviceTask const &task) {
     glDispatchCompute(numGroups / numRows + (numGroups % numRows != 0), numRows, 1);
 }
 
-void GlDevice::Wait() { glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT); }
+void GlDevice::Wait() {
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+}
 
 // Binds nothing, as if nothing had been.
 Status GlDevice::EndFrame() {
@@ -212,7 +246,8 @@ Status GlDevice::EndFrame() {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
     }
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
-    return Status();
+    _textures.Unbind();
+    return std::exchange(_status, Status());
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

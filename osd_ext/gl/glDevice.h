@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_OSD_EXT_GL_GL_DEVICE_H
 
 #include "glObjects.h"
+#include "glTextures.h"
 
 #include "osd_ext/device/device.h"
 
@@ -33,12 +34,17 @@ public:
     FarExt::Status EndFrame() override;
 
 private:
-    using Key = std::tuple<DeviceKernel, int, int>; // with length and face size
+    // With length and face size, and whether arrays are read as textures.
+    using Key = std::tuple<DeviceKernel, int, int, bool>;
     struct Kernel {
         std::unique_ptr<GlProgram> program;
         std::vector<GLint> uniforms; // in the order of kernelParameters.inl
     };
+    FarExt::Status prepare(Key const &key);
+
     std::map<Key, Kernel> _kernels;
+    GlTextures _textures;
+    FarExt::Status _status; // of what was run since the last frame
 };
 
 } // namespace OpenSubdivHex::OsdExt::internal
