@@ -14,6 +14,9 @@
 #include <thread>
 #include <vector>
 
+#if defined(__GLIBC__)
+#include <sched.h>
+#endif
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -67,6 +70,16 @@ Nanoseconds getThreadTime() {
     return Nanoseconds(0);
 }
 
+// The processor that the calling thread runs on, for now; kUnknown where the system does not tell.
+constexpr int kUnknown = -1;
+int getProcessor() {
+#if defined(__GLIBC__)
+    return sched_getcpu();
+#else
+    return kUnknown;
+#endif
+}
+
 // \brief What the help of workers has gained and cost.  On a busy machine a worker may lose its
 // processor in the middle of a call, and the caller of the loop has to wait for it, as long as many
 // a loop takes.
@@ -112,6 +125,9 @@ public:
         }
     }
 
+    // Where it was called.
+    int GetProcessor() const { return _processor; }
+
     bool WantsWorker() const {
         return _numPlaces > 0 && _next.load(std::memory_order_relaxed) < _count;
     }
@@ -150,6 +166,7 @@ public:
 
 private:
     int const _count;
+    int const _processor = getProcessor();
     std::function<void(int)> const &_function;
     std::atomic<int> _next{0};
     int _numPlaces; // of workers that may still enter
@@ -268,9 +285,14 @@ private:
             loop->Work();
             Nanoseconds const worked = getThreadTime() - threadStart;
             Nanoseconds const heldUp = Clock::now() - start - worked;
+            int const processor = getProcessor();
+            bool const isApart = processor == kUnknown || processor != loop->GetProcessor();
             lock.lock();
             loop->Leave(worked, heldUp);
             --_numBusy;
+            if (!isApart) {
+                continue; // who spins here keeps the caller from its processor
+            }
             // Mostly the caller makes another loop at once.
             ++_numSpinning;
             lock.unlock();

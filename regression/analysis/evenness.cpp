@@ -179,36 +179,8 @@ std::vector<double> MeasureTorusStrips(PolygonMesh const &mesh, int numU, double
     return result;
 }
 
-Shape MakeTorus(int numU, int numV, bool isTriangles) {
-    Shape shape;
-    shape.name = "even torus";
-    for (int i = 0; i < numU; ++i) {
-        for (int j = 0; j < numV; ++j) {
-            double const u = 2 * kPi * i / numU;
-            double const v = 2 * kPi * j / numV;
-            double const out = kTorusRadius + kTubeRadius * std::cos(v);
-            addVertex({out * std::cos(u), out * std::sin(u), kTubeRadius * std::sin(v)}, shape);
-        }
-    }
-    for (int i = 0; i < numU; ++i) {
-        for (int j = 0; j < numV; ++j) {
-            int const nextI = (i + 1) % numU;
-            int const nextJ = (j + 1) % numV;
-            int const corners[4] = {i * numV + j, nextI * numV + j, nextI * numV + nextJ,
-                                    i * numV + nextJ};
-            if (isTriangles) {
-                addFace({corners[0], corners[1], corners[2]}, shape);
-                addFace({corners[0], corners[2], corners[3]}, shape);
-            } else {
-                addFace({corners[0], corners[1], corners[2], corners[3]}, shape);
-            }
-        }
-    }
-    return shape;
-}
-
-Shape MakeCreasedTorus(int numU, int numV, bool isTriangles) {
-    Shape shape = MakeTorus(numU, numV, isTriangles);
+Shape MakeCreasedTorus(int numU, int numV, TorusFaces faces) {
+    Shape shape = MakeTorus(numU, numV, faces);
     for (int i = 0; i < numU; ++i) {
         shape.creaseVertexPairs.insert(shape.creaseVertexPairs.end(),
                                        {i * numV, (i + 1) % numU * numV});
@@ -217,10 +189,11 @@ Shape MakeCreasedTorus(int numU, int numV, bool isTriangles) {
     return shape;
 }
 
-Shape MakeOpenTorus(int numU, int numV, bool isTriangles) {
-    Shape shape = MakeTorus(numU, numV, isTriangles);
-    int const facesPerQuad = isTriangles ? 2 : 1;
-    int const size = isTriangles ? 3 : 4;
+Shape MakeOpenTorus(int numU, int numV, TorusFaces faces) {
+    Shape shape = MakeTorus(numU, numV, faces);
+    shape.closed = false;
+    int const facesPerQuad = faces == TorusFaces::Quads ? 1 : 2;
+    int const size = faces == TorusFaces::Quads ? 4 : 3;
     for (int i = numU - 1; i >= 0; --i) {
         auto const first = std::ptrdiff_t(i) * numV * facesPerQuad;
         shape.faceSizes.erase(shape.faceSizes.begin() + first,

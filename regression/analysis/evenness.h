@@ -4,6 +4,8 @@
 
 #include "surfaceLevels.h"
 
+#include "regression/shapes/torus.h"
+
 #include <vector>
 
 namespace OpenSubdivHex::Regression {
@@ -51,19 +53,11 @@ double MeasureTorusUnevenness(PolygonMesh const &mesh, int numU);
 std::vector<double> MeasureTorusStrips(PolygonMesh const &mesh, int numU, double line,
                                        double rowWidth, int numStrips);
 
-/// The radii of MakeTorus.
-inline constexpr double kTorusRadius = 3;
-inline constexpr double kTubeRadius = 1;
-
-/// \brief A torus of numU x numV quads, or of twice as many triangles, \p numU around the axis, its
-/// vertices at equal angles.
-Shape MakeTorus(int numU, int numV, bool isTriangles);
-
-/// The same with an infinitely sharp crease around the axis, along the outermost line.
-Shape MakeCreasedTorus(int numU, int numV, bool isTriangles);
+/// MakeTorus() with an infinitely sharp crease around the axis, along the outermost line.
+Shape MakeCreasedTorus(int numU, int numV, TorusFaces faces);
 
 /// The same without the row of faces above the outermost line, which is a border then.
-Shape MakeOpenTorus(int numU, int numV, bool isTriangles);
+Shape MakeOpenTorus(int numU, int numV, TorusFaces faces);
 
 /// The regular tetrahedron, octahedron and icosahedron: triangles, 3, 4 and 5 at a vertex.
 std::vector<Shape> MakeTrianglePlatonics();

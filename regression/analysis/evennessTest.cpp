@@ -21,8 +21,8 @@ namespace Sdc = OpenSubdiv::Sdc;
 constexpr int kLevel = 5;
 constexpr double kDigits = 1e-4;
 
-double measureTorus(int numU, int numV, bool isTriangles, AnyScheme const &scheme) {
-    Shape const torus = MakeTorus(numU, numV, isTriangles);
+double measureTorus(int numU, int numV, TorusFaces faces, AnyScheme const &scheme) {
+    Shape const torus = MakeTorus(numU, numV, faces);
     return MeasureTorusUnevenness(RefineSurface(torus, scheme, kLevel).back().mesh, numU);
 }
 
@@ -37,7 +37,7 @@ struct Strips {
     std::vector<double> border;
 };
 
-Strips measureStrips(int numU, int numV, bool isTriangles, AnyScheme const &scheme) {
+Strips measureStrips(int numU, int numV, TorusFaces faces, AnyScheme const &scheme) {
     double const rowWidth = 1.0 / numV;
     auto const measure = [&](Shape const &shape, auto boundary, double line) {
         Sdc::Options options;
@@ -45,10 +45,10 @@ Strips measureStrips(int numU, int numV, bool isTriangles, AnyScheme const &sche
         auto const levels = RefineSurface(shape, scheme, kLevel, MeshCenter(), options);
         return MeasureTorusStrips(levels.back().mesh, numU, line, rowWidth, 2);
     };
-    Shape const open = MakeOpenTorus(numU, numV, isTriangles);
+    Shape const open = MakeOpenTorus(numU, numV, faces);
     Strips result;
     result.crease =
-        measure(MakeCreasedTorus(numU, numV, isTriangles), Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, 0);
+        measure(MakeCreasedTorus(numU, numV, faces), Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, 0);
     result.border = measure(open, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, rowWidth);
     // Its border has no corner.
     EXPECT_EQ(measure(open, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER, rowWidth), result.border);
@@ -113,17 +113,19 @@ TEST(Evenness, ToriOfQuads) {
         SCOPED_TRACE(row.numU);
         HexSchemeOptions const smooth{FaceMask::Smooth};
         EXPECT_LT(row.smooth, 0.1);
-        EXPECT_NEAR(measureTorus(row.numU, row.numV, false, smooth), row.smooth, kDigits);
-        EXPECT_NEAR(measureTorus(row.numU, row.numV, false, Sdc::SCHEME_CATMARK), row.catmark,
+        EXPECT_NEAR(measureTorus(row.numU, row.numV, TorusFaces::Quads, smooth), row.smooth,
                     kDigits);
+        EXPECT_NEAR(measureTorus(row.numU, row.numV, TorusFaces::Quads, Sdc::SCHEME_CATMARK),
+                    row.catmark, kDigits);
     }
 }
 
 // What the masks around irregular vertices and beside quads are for.
 TEST(Evenness, OneMaskForAllHexagons) {
-    Shape const torus = MakeTorus(14, 8, false);
+    Shape const torus = MakeTorus(14, 8, TorusFaces::Quads);
     double const uneven = MeasureTorusUnevenness(RefineWithOneMask(torus, kLevel).back().mesh, 14);
-    EXPECT_GT(uneven, 2 * measureTorus(14, 8, false, HexSchemeOptions{FaceMask::Smooth}));
+    EXPECT_GT(uneven,
+              2 * measureTorus(14, 8, TorusFaces::Quads, HexSchemeOptions{FaceMask::Smooth}));
     // Where nothing is irregular, it is Smooth.
     Shape const dodecahedron = GetShape("dodecahedron");
     PolygonMesh const expected =
@@ -137,8 +139,8 @@ TEST(Evenness, OneMaskForAllHexagons) {
 // Control meshes of triangles: six faces at nearly every vertex, where Loop is regular.
 TEST(Evenness, Triangles) {
     AnyScheme const smooth = HexSchemeOptions{FaceMask::Smooth};
-    EXPECT_NEAR(measureTorus(14, 8, true, smooth), 0.7984, kDigits);
-    EXPECT_NEAR(measureTorus(14, 8, true, Sdc::SCHEME_LOOP), 0.0082, kDigits);
+    EXPECT_NEAR(measureTorus(14, 8, TorusFaces::Triangles, smooth), 0.7984, kDigits);
+    EXPECT_NEAR(measureTorus(14, 8, TorusFaces::Triangles, Sdc::SCHEME_LOOP), 0.0082, kDigits);
     double const ofSmooth[] = {0.4892, 0.2991, 0.3788};
     double const ofLoop[] = {0.3866, 0.1558, 0.0602};
     std::vector<Shape> const shapes = MakeTrianglePlatonics();
@@ -157,7 +159,7 @@ TEST(Evenness, Triangles) {
 TEST(Evenness, TrianglesTruncatedFirst) {
     AnyScheme const truncate = HexSchemeOptions{FaceMask::Smooth, FarExt::SchemeType::Hexagonal,
                                                 FarExt::FirstStep::Truncate};
-    EXPECT_LT(measureTorus(14, 8, true, truncate), 0.03);
+    EXPECT_LT(measureTorus(14, 8, TorusFaces::Triangles, truncate), 0.03);
     double const bounds[] = {0.32, 0.12, 0.05};
     std::vector<Shape> const shapes = MakeTrianglePlatonics();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -180,7 +182,7 @@ TEST(Evenness, QuadsBesideLines) {
                            Row{9, 6, {0.0994, 0.0638}, {0.1681, 0.2342}}}) {
         SCOPED_TRACE(row.numU);
         HexSchemeOptions const smooth{FaceMask::Smooth};
-        Strips const strips = measureStrips(row.numU, row.numV, false, smooth);
+        Strips const strips = measureStrips(row.numU, row.numV, TorusFaces::Quads, smooth);
         for (std::size_t i = 0; i < 2; ++i) {
             EXPECT_LT(row.crease[i], 0.1);
             EXPECT_NEAR(strips.crease[i], row.crease[i], kDigits);
@@ -188,11 +190,14 @@ TEST(Evenness, QuadsBesideLines) {
         }
         // The second row of the open torus is that of the closed one, and so is its measure.
         PolygonMesh const closed =
-            RefineSurface(MakeTorus(row.numU, row.numV, false), smooth, kLevel).back().mesh;
+            RefineSurface(MakeTorus(row.numU, row.numV, TorusFaces::Quads), smooth, kLevel)
+                .back()
+                .mesh;
         double const rowWidth = 1.0 / row.numV;
         EXPECT_NEAR(MeasureTorusStrips(closed, row.numU, rowWidth, rowWidth, 2)[1],
                     strips.border[1], 0.002);
-        Strips const catmark = measureStrips(row.numU, row.numV, false, Sdc::SCHEME_CATMARK);
+        Strips const catmark =
+            measureStrips(row.numU, row.numV, TorusFaces::Quads, Sdc::SCHEME_CATMARK);
         EXPECT_LT(catmark.crease[0], 0.03);
         EXPECT_LT(catmark.border[0], 0.035);
     }
@@ -213,7 +218,7 @@ TEST(Evenness, TruncatedTrianglesBesideLines) {
          {Row{14, 8, {0.26, 0.03}, {0.21, 0.04}}, Row{20, 10, {0.23, 0.02}, {0.21, 0.02}},
           Row{9, 6, {0.35, 0.05}, {0.20, 0.09}}}) {
         SCOPED_TRACE(row.numU);
-        Strips const strips = measureStrips(row.numU, row.numV, true, truncate);
+        Strips const strips = measureStrips(row.numU, row.numV, TorusFaces::Triangles, truncate);
         for (std::size_t i = 0; i < 2; ++i) {
             EXPECT_LT(strips.crease[i], row.crease[i]);
             EXPECT_LT(strips.border[i], row.border[i]);

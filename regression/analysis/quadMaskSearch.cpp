@@ -190,7 +190,7 @@ QuadJudge::QuadJudge(int level) {
     for (auto const &[numU, numV] : {std::pair(14, 8), {20, 10}, {9, 6}}) {
         _surfaces.push_back(std::make_unique<Surface>(
             "torus " + std::to_string(numU) + " x " + std::to_string(numV),
-            MakeTorus(numU, numV, false), level, Curvature::Mean, 1));
+            MakeTorus(numU, numV, TorusFaces::Quads), level, Curvature::Mean, 1));
         _surfaces.back()->LookAtSector(numU);
     }
     auto const addLifted = [&](char const *name, Shape const &shape, Curvature curvature) {

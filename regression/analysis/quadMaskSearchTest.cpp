@@ -18,7 +18,8 @@ TEST(QuadMaskSearch, JudgesTheLibrary) {
     QuadJudge judge(kLevel);
     judge.Measure(GetShippedQuadWeights());
     FarExt::HexSchemeOptions const smooth{FarExt::FaceMask::Smooth};
-    PolygonMesh const torus = RefineSurface(MakeTorus(14, 8, false), smooth, kLevel).back().mesh;
+    PolygonMesh const torus =
+        RefineSurface(MakeTorus(14, 8, TorusFaces::Quads), smooth, kLevel).back().mesh;
     EXPECT_NEAR(judge.GetEntries()[0].unevenness, MeasureTorusUnevenness(torus, 14), 1e-12);
     EXPECT_EQ(RoundQuadWeights(GetShippedQuadWeights()), GetShippedQuadWeights());
 }

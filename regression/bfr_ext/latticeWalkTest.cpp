@@ -8,6 +8,7 @@
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
 
 #include <gtest/gtest.h>
 
@@ -22,32 +23,14 @@ using BfrExt::internal::LatticeWalk;
 
 namespace {
 
-/// numU x numV quads, each of them cut in two if \p triangles, whose faces begin at any corner.
-Shape makeTorus(int numU, int numV, bool triangles) {
-    Shape shape;
-    shape.name = "torus";
-    shape.positions.resize(std::size_t(numU) * std::size_t(numV) * 3);
+/// A torus whose faces begin at any corner.
+Shape makeTurnedTorus(int numU, int numV, TorusFaces faces) {
+    Shape shape = MakeTorus(numU, numV, faces);
     std::mt19937 random;
-    auto const addFace = [&](std::vector<int> vertices) {
-        std::rotate(vertices.begin(), vertices.begin() + int(random() % vertices.size()),
-                    vertices.end());
-        shape.faceSizes.push_back(int(vertices.size()));
-        shape.faceVertices.insert(shape.faceVertices.end(), vertices.begin(), vertices.end());
-    };
-    auto const vertex = [&](int u, int v) { return u % numU * numV + v % numV; };
-    for (int u = 0; u < numU; ++u) {
-        for (int v = 0; v < numV; ++v) {
-            int const a = vertex(u, v);
-            int const b = vertex(u + 1, v);
-            int const c = vertex(u + 1, v + 1);
-            int const d = vertex(u, v + 1);
-            if (triangles) {
-                addFace({a, b, c});
-                addFace({a, c, d});
-            } else {
-                addFace({a, b, c, d});
-            }
-        }
+    auto first = shape.faceVertices.begin();
+    for (int size : shape.faceSizes) {
+        std::rotate(first, first + int(random() % unsigned(size)), first + size);
+        first += size;
     }
     return shape;
 }
@@ -98,8 +81,8 @@ CellType const &findType(Shape const &shape, CellTypes &types) {
 } // namespace
 
 TEST(LatticeWalkTest, FindsThePointsOfPatches) {
-    Shape const quads = makeTorus(9, 7, false);
-    Shape const triangles = makeTorus(8, 9, true);
+    Shape const quads = makeTurnedTorus(9, 7, TorusFaces::Quads);
+    Shape const triangles = makeTurnedTorus(8, 9, TorusFaces::Triangles);
     Shape const hexagons = MakeDual("hexagons", triangles);
     CellTypes types;
     for (Shape const *const lattice : {&quads, &triangles, &hexagons}) {
@@ -120,8 +103,8 @@ TEST(LatticeWalkTest, FindsThePointsOfPatches) {
         }
         for (int size = 2; size <= 6; ++size) {
             SCOPED_TRACE(size);
-            expectPatches(makeTorus(size, 9, false), types, type);
-            expectPatches(makeTorus(size, 7, true), types, type);
+            expectPatches(makeTurnedTorus(size, 9, TorusFaces::Quads), types, type);
+            expectPatches(makeTurnedTorus(size, 7, TorusFaces::Triangles), types, type);
         }
         expectPatches(GetFeatureShape("creasedBall"), types, type);
     }

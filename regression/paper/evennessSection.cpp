@@ -118,13 +118,13 @@ void AddEvennessSection(Page *page, Settings const &settings) {
         row.push_back(isTriangles ? measure(unevenness, shape, Sdc::SCHEME_LOOP, level) : "");
         table.rows.push_back(row);
     };
-    addRow("torus of 14 x 8 quads", MakeTorus(14, 8, false), false,
+    addRow("torus of 14 x 8 quads", MakeTorus(14, 8, TorusFaces::Quads), false,
            [](PolygonMesh const &mesh) { return MeasureTorusUnevenness(mesh, 14); });
-    addRow("torus of 20 x 10 quads", MakeTorus(20, 10, false), false,
+    addRow("torus of 20 x 10 quads", MakeTorus(20, 10, TorusFaces::Quads), false,
            [](PolygonMesh const &mesh) { return MeasureTorusUnevenness(mesh, 20); });
-    addRow("torus of 9 x 6 quads", MakeTorus(9, 6, false), false,
+    addRow("torus of 9 x 6 quads", MakeTorus(9, 6, TorusFaces::Quads), false,
            [](PolygonMesh const &mesh) { return MeasureTorusUnevenness(mesh, 9); });
-    addRow("torus of triangles", MakeTorus(14, 8, true), true,
+    addRow("torus of triangles", MakeTorus(14, 8, TorusFaces::Triangles), true,
            [](PolygonMesh const &mesh) { return MeasureTorusUnevenness(mesh, 14); });
     for (Shape const &shape : MakeTrianglePlatonics()) {
         addRow(shape.name, shape, true, MeasureSphereUnevenness);
@@ -146,11 +146,11 @@ void AddEvennessSection(Page *page, Settings const &settings) {
                           std::string(faces) + ", " + contestant.name));
         }
     };
-    addPictures("quads", MakeTorus(14, 8, false),
+    addPictures("quads", MakeTorus(14, 8, TorusFaces::Quads),
                 {{"Cosine", cosine}, {"Smooth", smooth}, {"Catmull-Clark", Sdc::SCHEME_CATMARK}});
     std::vector<Contestant> const ofTriangles = {
         {"Smooth", smooth}, {"Smooth, truncate first", truncateFirst}, {"Loop", Sdc::SCHEME_LOOP}};
-    addPictures("triangles", MakeTorus(14, 8, true), ofTriangles);
+    addPictures("triangles", MakeTorus(14, 8, TorusFaces::Triangles), ofTriangles);
     addPictures("icosahedron", MakeIcosahedron(), ofTriangles);
     page->AddFigure(pictures, 3,
                     "Reflection lines of tori of 14 x 8 quads, and of triangles, and of an "

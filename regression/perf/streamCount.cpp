@@ -10,6 +10,7 @@
 #include "far_ext/topologyRefinerFactory.h"
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/program.h"
+#include "tools/mesh/ruleNames.h"
 #include "tools/mesh/topologyDescriptor.h"
 
 #include <atomic>
@@ -19,7 +20,6 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 
@@ -188,9 +188,7 @@ void run(Arguments const &arguments, std::string const &program) {
         first = numThreads == 1 ? result : first;
         areEqual = areEqual && result == first;
     }
-    char const *const mask = arguments.mask == FarExt::FaceMask::Average  ? "average"
-                             : arguments.mask == FarExt::FaceMask::Cosine ? "cosine"
-                                                                          : "smooth";
+    std::string const &mask = Tools::kMaskNames[std::size_t(arguments.mask)];
     auto const start = std::chrono::steady_clock::now();
     Count const result =
         countByProcesses(quote(program) + " " + quote(arguments.input) + " --level " +
@@ -224,10 +222,7 @@ int main(int argc, char **argv) {
         ->check(CLI::Range(0, BfrExt::Tessellation::kLastLevel))
         ->capture_default_str();
     app.add_option("--mask", arguments.mask, "Mask of the face points: average, cosine or smooth")
-        ->transform(CLI::Transformer(
-            std::map<std::string, FarExt::FaceMask>{{"average", FarExt::FaceMask::Average},
-                                                    {"cosine", FarExt::FaceMask::Cosine},
-                                                    {"smooth", FarExt::FaceMask::Smooth}}))
+        ->transform(CLI::Transformer(Tools::MapRules<FarExt::FaceMask>(Tools::kMaskNames)))
         ->type_name("NAME")
         ->default_str("smooth");
     app.add_option("--memory", arguments.megabytes, "Megabytes that tessellations may take")

@@ -17,7 +17,6 @@
 #include "picture.h"
 #include "pictureColors.h"
 #include "progress.h"
-#include "ruleNames.h"
 #include "statistics.h"
 #include "tagText.h"
 #include "tools/mesh/fileError.h"
@@ -28,6 +27,7 @@
 #include "tools/mesh/meshWriter.h"
 #include "tools/mesh/outputFile.h"
 #include "tools/mesh/program.h"
+#include "tools/mesh/ruleNames.h"
 #include "tools/mesh/topologyDescriptor.h"
 
 #ifdef _OPENMP
@@ -110,7 +110,7 @@ void addSchemeOptions(CLI::App &app, Arguments *arguments) {
            "Make level 1 by another step, after which vertices have three faces each: "
            "truncate, which cuts off corners, for meshes of triangles; tri-hex, which takes "
            "what the scheme of that name does")
-        ->check(CLI::IsMember({"none", "tri-hex", "truncate"}))
+        ->check(CLI::IsMember(kFirstStepNames))
         ->capture_default_str();
     auto *const coplanar =
         app.add_flag("--coplanar", arguments->isCoplanar,
@@ -175,7 +175,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->type_name("FILE");
     app.add_option("--mask", arguments->mask,
                    "Mask of the face points: average is the paper's, smooth is the smoothest")
-        ->check(CLI::IsMember({"average", "cosine", "smooth"}))
+        ->check(CLI::IsMember(kMaskNames))
         ->capture_default_str();
     addSchemeOptions(app, arguments);
     app.add_option("--boundary", arguments->boundary,
@@ -295,21 +295,12 @@ void addOptions(CLI::App &app, Arguments *arguments) {
     app.footer("Exit status: 0 success, 1 bad input or failed output, 2 bad usage.");
 }
 
-FarExt::FaceMask findMask(std::string const &name) {
-    return name == "cosine"   ? FarExt::FaceMask::Cosine
-           : name == "smooth" ? FarExt::FaceMask::Smooth
-                              : FarExt::FaceMask::Average;
-}
-
 FarExt::HexSchemeOptions findSchemeOptions(Arguments const &arguments) {
     FarExt::HexSchemeOptions options;
-    options.faceMask = findMask(arguments.mask);
-    options.schemeType = arguments.scheme == "doo-sabin" ? FarExt::SchemeType::DooSabin
-                         : arguments.scheme == "tri-hex" ? FarExt::SchemeType::TriHex
-                                                         : FarExt::SchemeType::Hexagonal;
-    options.firstStep = arguments.firstStep == "tri-hex"    ? FarExt::FirstStep::TriHex
-                        : arguments.firstStep == "truncate" ? FarExt::FirstStep::Truncate
-                                                            : FarExt::FirstStep::None;
+    options.faceMask = FindRule<FarExt::FaceMask>(kMaskNames, arguments.mask);
+    options.schemeType = FindRule<FarExt::SchemeType>(
+        kSchemeNames, arguments.scheme == "hex" ? "hexagonal" : arguments.scheme);
+    options.firstStep = FindRule<FarExt::FirstStep>(kFirstStepNames, arguments.firstStep);
     return options;
 }
 

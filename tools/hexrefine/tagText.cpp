@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tagText.h"
 
-#include "ruleNames.h"
+#include "tools/mesh/ruleNames.h"
 
 #include <charconv>
 

@@ -8,19 +8,16 @@
 #include "window.h"
 
 #include "far_ext/version.h"
-#include "tools/hexrefine/ruleNames.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/program.h"
+#include "tools/mesh/ruleNames.h"
 #include "tools/render/pngFile.h"
 
 namespace OpenSubdivHex::Tools {
 
 namespace {
 
-std::vector<std::string> const kSchemeNames = {"hexagonal", "doo-sabin", "tri-hex"};
-std::vector<std::string> const kFirstStepNames = {"none", "tri-hex", "truncate"};
-std::vector<std::string> const kMaskNames = {"average", "cosine", "smooth"};
 std::vector<std::string> const kEvaluatorNames = {"cpu", "opengl", "tables"};
 std::vector<std::string> const kShadingNames = {"smooth",     "facets",  "reflection", "curvature",
                                                 "base-faces", "checker", "levels"};

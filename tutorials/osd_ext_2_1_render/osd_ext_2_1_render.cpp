@@ -18,6 +18,7 @@
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/meshText.h"
 #include "tools/mesh/program.h"
+#include "tools/mesh/ruleNames.h"
 #include "tools/mesh/topologyDescriptor.h"
 #include "tools/render/pngFile.h"
 #include "tools/render/renderer.h"
@@ -94,26 +95,18 @@ void addPanelOptions(CLI::App &app, PanelSettings *settings) {
         ->check(CLI::Range(0.001, 1000.0))
         ->capture_default_str();
     app.add_option("--mask", settings->mask, "Mask of the face points: average, cosine or smooth")
-        ->transform(CLI::Transformer(
-            std::map<std::string, FarExt::FaceMask>{{"average", FarExt::FaceMask::Average},
-                                                    {"cosine", FarExt::FaceMask::Cosine},
-                                                    {"smooth", FarExt::FaceMask::Smooth}}))
+        ->transform(CLI::Transformer(Tools::MapRules<FarExt::FaceMask>(Tools::kMaskNames)))
         ->type_name("NAME")
         ->default_str("smooth");
     app.add_option("--first-step", settings->firstStep,
                    "How level 1 is made: none (as the others), tri-hex or truncate")
-        ->transform(CLI::Transformer(
-            std::map<std::string, FarExt::FirstStep>{{"none", FarExt::FirstStep::None},
-                                                     {"tri-hex", FarExt::FirstStep::TriHex},
-                                                     {"truncate", FarExt::FirstStep::Truncate}}))
+        ->transform(CLI::Transformer(Tools::MapRules<FarExt::FirstStep>(Tools::kFirstStepNames)))
         ->type_name("NAME")
         ->default_str("none");
     app.add_option("--boundary", settings->boundary,
                    "Rule for boundaries: none, edge-only or edge-and-corner")
-        ->transform(CLI::Transformer(std::map<std::string, Sdc::Options::VtxBoundaryInterpolation>{
-            {"none", Sdc::Options::VTX_BOUNDARY_NONE},
-            {"edge-only", Sdc::Options::VTX_BOUNDARY_EDGE_ONLY},
-            {"edge-and-corner", Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}}))
+        ->transform(CLI::Transformer(
+            Tools::MapRules<Sdc::Options::VtxBoundaryInterpolation>(Tools::kBoundaryNames)))
         ->type_name("NAME")
         ->default_str("none");
     app.add_flag("--wireframe", settings->hasWireframe, "Draw the edges of the refined polygons");

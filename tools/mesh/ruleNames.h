@@ -2,10 +2,16 @@
 #ifndef OPENSUBDIVHEX_TOOLS_RULE_NAMES_H
 #define OPENSUBDIVHEX_TOOLS_RULE_NAMES_H
 
+#include <map>
 #include <string>
 #include <vector>
 
 namespace OpenSubdivHex::Tools {
+
+/// The names of the values of FaceMask, SchemeType and FirstStep, in the order of the values.
+inline std::vector<std::string> const kMaskNames = {"average", "cosine", "smooth"};
+inline std::vector<std::string> const kSchemeNames = {"hexagonal", "doo-sabin", "tri-hex"};
+inline std::vector<std::string> const kFirstStepNames = {"none", "tri-hex", "truncate"};
 
 /// The names of the values of Sdc::Options::VtxBoundaryInterpolation, FVarLinearInterpolation and
 /// CreasingMethod, in the order of the values.
@@ -22,6 +28,16 @@ ENUM FindRule(std::vector<std::string> const &names, std::string const &name) {
         ++value;
     }
     return ENUM(value);
+}
+
+/// All values by their names, for CLI::Transformer.
+template <typename ENUM>
+std::map<std::string, ENUM> MapRules(std::vector<std::string> const &names) {
+    std::map<std::string, ENUM> rules;
+    for (std::string const &name : names) {
+        rules[name] = FindRule<ENUM>(names, name);
+    }
+    return rules;
 }
 
 } // namespace OpenSubdivHex::Tools
