@@ -143,9 +143,10 @@ bool Surface<REAL>::evaluateOnBorder(internal::BasePoint const &point, REAL cons
     }
     internal::BorderPlace const place = internal::FindBorderPlace(*_type, getTurns(), point);
     using Evaluator = internal::BorderEvaluator<REAL>;
-    Evaluator(controlPoints, pointDesc.stride, pointDesc.size)
-        .Evaluate(*place.item,
-                  Evaluator::MakeMatrix(Evaluator::GetType(*place.item), {place.point}), p, 0);
+    Evaluator evaluator;
+    evaluator.SetPoints(controlPoints, pointDesc.stride, pointDesc.size);
+    evaluator.Evaluate(*place.item,
+                       Evaluator::MakeMatrix(Evaluator::GetType(*place.item), {place.point}), p, 0);
     return true;
 }
 
@@ -184,9 +185,15 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         sumUp(getPattern(PatternOf::Face).points,
               results[0] + std::ptrdiff_t(numBorderPlaces) * resultDesc.stride);
     } else {
-        internal::PatchEvaluator<REAL>(pointDesc.size)
-            .Evaluate(*_type, tessellation.getCellPlan(), controlPoints, pointDesc.stride,
-                      results[0], resultDesc.stride);
+        // What it has taken of memory is kept for the next face, here and below.
+        static thread_local internal::PatchEvaluator<REAL> evaluator;
+        if (!_type->IsInLattice()) {
+            // Mostly no other face has the same, so that it would be waited for.
+            _type->GetStep().Prefetch();
+            _type->GetBorder(getTurns()).sums.Prefetch();
+        }
+        evaluator.Evaluate(*_type, tessellation.getCellPlan(), pointDesc.size, controlPoints,
+                           pointDesc.stride, results[0], resultDesc.stride);
     }
     if (results[1]) {
         Pattern const &pattern = getPattern(PatternOf::FaceDerivatives);
@@ -273,15 +280,15 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
     using internal::PatternTable;
     using Evaluator = internal::BorderEvaluator<REAL>;
     using Matrix = internal::PlaceMatrix<REAL>;
-    Evaluator evaluator(controlPoints, pointDesc.stride, pointDesc.size);
+    static thread_local Evaluator evaluator;
+    evaluator.SetPoints(controlPoints, pointDesc.stride, pointDesc.size);
     CellType::Border const *const border =
         _type->IsInLattice() ? nullptr : &_type->GetBorder(getTurns());
     if (border) {
-        evaluator.SetBorder(*border);
+        evaluator.FormSums(*border);
     }
-    auto const getMatrix = [&](CellType::BorderItem const &item, PatternOf of, int key,
+    auto const getMatrix = [&](CellType const &type, PatternOf of, int key,
                                auto const &makePoints) -> Matrix const & {
-        CellType const &type = Evaluator::GetType(item);
         return type.GetPatterns().template Get<Matrix>(
             PatternTable::GetKind<REAL>(of), &key, &key + 1,
             [&] { return Evaluator::MakeMatrix(type, makePoints()); });
@@ -294,39 +301,39 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
             evaluator.EvaluateVertex(edge, vertexResult);
         } else {
             CellType::BorderItem const &item = _type->GetBorderItem(getTurns(), numEdges + edge);
-            evaluator.Evaluate(
-                item,
-                getMatrix(item, PatternOf::Border, 0, [] { return std::vector<double>(1, 0.0); }),
-                vertexResult, 0);
+            evaluator.Evaluate(item,
+                               getMatrix(*item.type, PatternOf::Border, 0,
+                                         [] { return std::vector<double>(1, 0.0); }),
+                               vertexResult, 0);
         }
 
         int const numPlaces = tessellation.GetNumEdgeCoords(int(edge));
         if (numPlaces == 0) {
             continue;
         }
-        CellType::BorderItem const &item =
-            border ? *border->items[edge] : _type->GetBorderItem(getTurns(), edge);
+        CellType::BorderItem const *const item =
+            border ? nullptr : &_type->GetBorderItem(getTurns(), edge);
+        CellType const &type = border ? *border->edges[edge].type : Evaluator::GetType(*item);
+        bool const isReversed = border ? border->edges[edge].isReversed : item->isReversed;
         auto const evaluate = [&](Matrix const &matrix, int place, std::ptrdiff_t stride) {
             REAL *const results = p + std::ptrdiff_t(place) * resultDesc.stride;
             if (border) {
-                evaluator.EvaluateEdge(edge, matrix, results, stride);
+                evaluator.EvaluateEdge(border->edges[edge], matrix, results, stride);
             } else {
-                evaluator.Evaluate(item, matrix, results, stride);
+                evaluator.Evaluate(*item, matrix, results, stride);
             }
         };
-        auto const getPlace = [&](int i) {
-            return first + (item.isReversed ? numPlaces - i : i + 1);
-        };
+        auto const getPlace = [&](int i) { return first + (isReversed ? numPlaces - i : i + 1); };
         auto const getPoint = [&](int i) {
             Tessellation::SectorCoords const &place =
                 tessellation._places[std::size_t(getPlace(i))];
-            return item.isReversed ? place.start : place.end;
+            return isReversed ? place.start : place.end;
         };
         if (tessellation._tree) {
             // Points of polylines are found one by one, since they have few in common.
             for (int i = 0; i < numPlaces; ++i) {
                 Matrix const &matrix =
-                    getMatrix(item, PatternOf::BorderPlace, int(getPoint(i) * Polyline::kLength),
+                    getMatrix(type, PatternOf::BorderPlace, int(getPoint(i) * Polyline::kLength),
                               [&] { return std::vector<double>(1, getPoint(i)); });
                 evaluate(matrix, getPlace(i), 0);
             }
@@ -339,8 +346,8 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
             }
             return points;
         };
-        evaluate(getMatrix(item, PatternOf::Border, tessellation._levels[edge], getPoints),
-                 getPlace(0), item.isReversed ? -resultDesc.stride : resultDesc.stride);
+        evaluate(getMatrix(type, PatternOf::Border, tessellation._levels[edge], getPoints),
+                 getPlace(0), isReversed ? -resultDesc.stride : resultDesc.stride);
     }
 }
 

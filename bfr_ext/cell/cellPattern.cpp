@@ -55,6 +55,14 @@ PlaceMatrix<REAL> BorderEvaluator<REAL>::MakeMatrix(CellType const &type,
 }
 
 template <typename REAL>
+void BorderEvaluator<REAL>::SetPoints(REAL const *points, std::ptrdiff_t stride, int size) {
+    _points = points;
+    _stride = stride;
+    _size = std::size_t(size);
+    _paddedSize = StepMatrix::GetPaddedSize(_size);
+}
+
+template <typename REAL>
 void BorderEvaluator<REAL>::Evaluate(CellType::BorderItem const &item,
                                      PlaceMatrix<REAL> const &matrix, REAL *results,
                                      std::ptrdiff_t resultStride) {
@@ -63,16 +71,18 @@ void BorderEvaluator<REAL>::Evaluate(CellType::BorderItem const &item,
         return;
     }
     StepMatrix const &step = item.type->GetStep();
+    ChildStep const &longEdge = item.type->GetChildren()[0].step;
     padPoints(item.points.data(), item.points.size());
     _sums.resize(step.GetNumRows() * _paddedSize);
     step.Apply(_paddedPoints.data(), _paddedSize, _sums.data());
-    SumUpPlaces(matrix, {_sums.data(), std::ptrdiff_t(_paddedSize), _size,
-                         item.type->GetChildren()[0].step.GetMatrixRows(), results, resultStride});
+    _longEdgePoints.resize(longEdge.GetNumRows() * _paddedSize);
+    longEdge.CopyPoints(_sums.data(), _paddedSize, _longEdgePoints.data());
+    SumUpPlaces(matrix, {_longEdgePoints.data(), std::ptrdiff_t(_paddedSize), _size, nullptr,
+                         results, resultStride});
 }
 
 template <typename REAL>
-void BorderEvaluator<REAL>::SetBorder(CellType::Border const &border) {
-    _border = &border;
+void BorderEvaluator<REAL>::FormSums(CellType::Border const &border) {
     padPoints(nullptr, border.sums.GetNumParentPoints());
     _sums.resize(border.sums.GetNumRows() * _paddedSize);
     border.sums.Apply(_paddedPoints.data(), _paddedSize, _sums.data());
@@ -80,21 +90,19 @@ void BorderEvaluator<REAL>::SetBorder(CellType::Border const &border) {
 
 template <typename REAL>
 void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) const {
-    auto const row = std::size_t(_border->firstRows[_border->items.size() / 2 + vert]);
-    std::copy_n(&_sums[row * _paddedSize], _size, result);
+    std::copy_n(&_sums[vert * _paddedSize], _size, result);
 }
 
 template <typename REAL>
-void BorderEvaluator<REAL>::EvaluateEdge(std::size_t edge, PlaceMatrix<REAL> const &matrix,
-                                         REAL *results, std::ptrdiff_t resultStride) const {
-    CellType::BorderItem const &item = *_border->items[edge];
-    if (&GetType(item) == item.type) {
-        SumUpPlaces(matrix, {_points, _stride, _size, item.points.data(), results, resultStride});
-        return;
+void BorderEvaluator<REAL>::EvaluateEdge(CellType::Border::Edge const &edge,
+                                         PlaceMatrix<REAL> const &matrix, REAL *results,
+                                         std::ptrdiff_t resultStride) const {
+    if (edge.points) {
+        SumUpPlaces(matrix, {_points, _stride, _size, edge.points, results, resultStride});
+    } else {
+        SumUpPlaces(matrix, {&_sums[edge.firstSum * _paddedSize], std::ptrdiff_t(_paddedSize),
+                             _size, nullptr, results, resultStride});
     }
-    auto const row = std::size_t(_border->firstRows[edge]);
-    SumUpPlaces(matrix, {&_sums[row * _paddedSize], std::ptrdiff_t(_paddedSize), _size, nullptr,
-                         results, resultStride});
 }
 
 // Copies points, those that indices say or all in turn.
@@ -103,8 +111,8 @@ void BorderEvaluator<REAL>::padPoints(int const *indices, std::size_t numPoints)
     _paddedPoints.resize(numPoints * _paddedSize);
     for (std::size_t i = 0; i < numPoints; ++i) {
         std::size_t const point = indices ? std::size_t(indices[i]) : i;
-        std::copy_n(_points + std::ptrdiff_t(point) * _stride, _size,
-                    &_paddedPoints[i * _paddedSize]);
+        StepMatrix::Pad(_points + std::ptrdiff_t(point) * _stride, _size,
+                        &_paddedPoints[i * _paddedSize]);
     }
 }
 

@@ -40,9 +40,7 @@ template <typename REAL>
 class BorderEvaluator {
 public:
     /// \param size  of a point; they are \p stride numbers apart
-    BorderEvaluator(REAL const *points, std::ptrdiff_t stride, int size)
-        : _points(points), _stride(stride), _size(std::size_t(size)),
-          _paddedSize(StepMatrix::GetPaddedSize(_size)) {}
+    void SetPoints(REAL const *points, std::ptrdiff_t stride, int size);
 
     /// That of an edge, of the long edge of it or of a vertex: the matrices are of its points.
     static CellType const &GetType(CellType::BorderItem const &item) {
@@ -59,26 +57,26 @@ public:
     /// @name The same for all of a border
     /// @{
 
-    /// Forms the sums that the border is made of, which must live as long.
-    void SetBorder(CellType::Border const &border);
+    /// Forms the sums that the border is made of.
+    void FormSums(CellType::Border const &border);
     /// Writes the point of a vertex.
     void EvaluateVertex(std::size_t vert, REAL *result) const;
-    /// Writes the points at the places of a matrix, on an edge.
-    void EvaluateEdge(std::size_t edge, PlaceMatrix<REAL> const &matrix, REAL *results,
-                      std::ptrdiff_t resultStride) const;
+    /// Writes the points at the places of a matrix.
+    void EvaluateEdge(CellType::Border::Edge const &edge, PlaceMatrix<REAL> const &matrix,
+                      REAL *results, std::ptrdiff_t resultStride) const;
     /// @}
 
 private:
     void padPoints(int const *indices, std::size_t numPoints);
 
-    REAL const *const _points;
-    std::ptrdiff_t const _stride;
-    std::size_t const _size;
-    std::size_t const _paddedSize;
-    CellType::Border const *_border = nullptr;
-    // Those that sums are formed of, and these, padded.
+    REAL const *_points = nullptr;
+    std::ptrdiff_t _stride = 0;
+    std::size_t _size = 0;
+    std::size_t _paddedSize = 0;
+    // Those that sums are formed of, these, and those of a long edge, padded.
     std::vector<REAL> _paddedPoints;
     std::vector<REAL> _sums;
+    std::vector<REAL> _longEdgePoints;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -126,7 +126,7 @@ std::vector<CellType::Child> const &CellType::GetChildren() const {
         children.reserve(refinement.children.size());
         for (std::size_t i = 0; i < refinement.children.size(); ++i) {
             children.push_back({&_types.Find(std::move(refinement.children[i]), _rules),
-                                ChildStep(_step, std::move(refinement.rows[i]))});
+                                ChildStep(_step, refinement.rows[i])});
         }
         if (!children.empty()) {
             _step = StepMatrix(refinement.step);
@@ -275,27 +275,33 @@ CellType::Border const &CellType::GetBorder(int const *turns) const {
         PatchRefinement sums;
         sums.numParentVerts = GetNumPoints();
         sums.firsts.push_back(0);
-        auto const addEntry = [&](std::size_t point, double weight) {
-            sums.verts.push_back(border.items.back()->points[point]);
-            sums.weights.push_back(weight);
+        auto const addRow = [&](BorderItem const &item, auto const &forEachEntry) {
+            forEachEntry([&](std::size_t point, double weight) {
+                sums.verts.push_back(item.points[point]);
+                sums.weights.push_back(weight);
+            });
+            sums.firsts.push_back(int(sums.verts.size()));
         };
-        auto const endRow = [&] { sums.firsts.push_back(int(sums.verts.size())); };
-        for (std::size_t i = 0; i < 2 * numEdges; ++i) {
-            border.items.push_back(&GetBorderItem(turns, i));
-            border.firstRows.push_back(int(sums.firsts.size()) - 1);
-            CellType const &type = *border.items.back()->type;
-            if (type.IsVertex()) {
-                Vector const &weights = type.GetCornerPoints()[0];
+        for (std::size_t vert = 0; vert < numEdges; ++vert) {
+            BorderItem const &item = GetBorderItem(turns, numEdges + vert);
+            Vector const &weights = item.type->GetCornerPoints()[0];
+            addRow(item, [&](auto const &add) {
                 for (std::size_t point = 0; point < weights.size(); ++point) {
-                    addEntry(point, weights[point]);
+                    add(point, weights[point]);
                 }
-                endRow();
-            } else if (!type.IsInLattice()) {
-                ChildStep const &step = type.GetChildren()[0].step;
-                for (std::size_t row = 0; row < step.GetNumRows(); ++row) {
-                    step.ForEachEntry(row, addEntry);
-                    endRow();
-                }
+            });
+        }
+        for (std::size_t edge = 0; edge < numEdges; ++edge) {
+            BorderItem const &item = GetBorderItem(turns, edge);
+            if (item.type->IsInLattice()) {
+                border.edges.push_back({item.type, item.points.data(), 0, item.isReversed});
+                continue;
+            }
+            Child const &longEdge = item.type->GetChildren()[0];
+            border.edges.push_back(
+                {longEdge.type, nullptr, sums.firsts.size() - 1, item.isReversed});
+            for (std::size_t row = 0; row < longEdge.step.GetNumRows(); ++row) {
+                addRow(item, [&](auto const &add) { longEdge.step.ForEachEntry(row, add); });
             }
         }
         border.sums = StepMatrix(sums);

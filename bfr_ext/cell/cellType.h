@@ -99,11 +99,16 @@ public:
     /// \param turns  those of FindBaseCellTurns()
     BorderItem const &GetBorderItem(int const *turns, std::size_t item) const;
     /// \brief All of these together, with the sums of the face's points that the border is made of, in
-    /// the order in which the items have their points: the points of the long edges that edges become in
-    /// the first step, but for those of edges in a lattice, and the points of vertices.
+    /// the order in which the items have their points: first the surface at the vertices, then the
+    /// points of the long edges that edges become in the first step, but for edges in a lattice.
     struct Border {
-        std::vector<BorderItem const *> items; ///< by edge, then by vertex
-        std::vector<int> firstRows;            ///< of these, in the sums
+        struct Edge {
+            CellType const *type; ///< of the long edge, or of an edge in a lattice
+            int const *points;    ///< of an edge in a lattice: its points; else null
+            std::size_t firstSum; ///< else that of its long edge's points
+            bool isReversed;      ///< as in its item
+        };
+        std::vector<Edge> edges;
         StepMatrix sums;
     };
     /// As GetBorderItem(), of a face that is not in a lattice: few have the same.

@@ -26,21 +26,24 @@ PlaceMatrix<REAL> const &getMatrix(CellType const &type, LeafPlaces const &place
 } // namespace
 
 template <typename REAL>
-void PatchEvaluator<REAL>::Evaluate(CellType const &type, CellPlan const &plan,
+void PatchEvaluator<REAL>::Evaluate(CellType const &type, CellPlan const &plan, int size,
                                     REAL const *controlPoints, std::ptrdiff_t stride, REAL *results,
                                     std::ptrdiff_t resultStride) {
+    _size = std::size_t(size);
+    _paddedSize = StepMatrix::GetPaddedSize(_size);
     _results = results;
     _resultStride = resultStride;
     auto const numPoints = std::size_t(type.GetNumPoints());
     std::vector<REAL> &points = getPoints(0, numPoints);
     for (std::size_t i = 0; i < numPoints; ++i) {
-        std::copy_n(controlPoints + std::ptrdiff_t(i) * stride, _size, &points[i * _paddedSize]);
+        StepMatrix::Pad(controlPoints + std::ptrdiff_t(i) * stride, _size,
+                        &points[i * _paddedSize]);
     }
     descend(type, plan, 0, 0);
 }
 
-// Makes the points of all children of a cell, whose own are at twice the depth: those that one of them
-// needs in turn are behind these.
+// Makes the points of all children of a cell, whose own are at twice the depth; those of one child at a
+// time are behind these.
 template <typename REAL>
 void PatchEvaluator<REAL>::descend(CellType const &type, CellPlan const &plan, std::size_t node,
                                    std::size_t depth) {
@@ -50,17 +53,13 @@ void PatchEvaluator<REAL>::descend(CellType const &type, CellPlan const &plan, s
     for (std::size_t const next : plan[node].children) {
         CellPlan::Node const &child = plan[next];
         CellType::Child const &link = type.GetChildren()[child.child];
-        int const *const rows = link.step.GetMatrixRows();
+        std::vector<REAL> &childPoints = getPoints(2 * depth + 2, link.step.GetNumRows());
+        link.step.CopyPoints(points.data(), _paddedSize, childPoints.data());
         if (child.leaf) {
             SumUpPlaces(getMatrix<REAL>(*link.type, *child.leaf),
-                        {points.data(), std::ptrdiff_t(_paddedSize), _size, rows, _results,
+                        {childPoints.data(), std::ptrdiff_t(_paddedSize), _size, nullptr, _results,
                          _resultStride, child.rows.data(), child.rows.size()});
         } else {
-            std::size_t const numPoints = link.step.GetNumRows();
-            REAL *to = getPoints(2 * depth + 2, numPoints).data();
-            for (std::size_t i = 0; i < numPoints; ++i, to += _paddedSize) {
-                std::copy_n(&points[std::size_t(rows[i]) * _paddedSize], _paddedSize, to);
-            }
             descend(*link.type, plan, next, depth + 1);
         }
     }

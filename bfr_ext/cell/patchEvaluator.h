@@ -14,23 +14,20 @@ namespace OpenSubdivHex::BfrExt::internal {
 template <typename REAL>
 class PatchEvaluator {
 public:
-    /// \param size  numbers of a point
-    explicit PatchEvaluator(int size)
-        : _size(std::size_t(size)), _paddedSize(StepMatrix::GetPaddedSize(_size)) {}
-
     /// \brief Writes the points at the places of a plan, where their numbers say.
     ///
+    /// \param size          numbers of a point
     /// \param stride        from one control point to the next
     /// \param resultStride  from one place to the next
-    void Evaluate(CellType const &type, CellPlan const &plan, REAL const *controlPoints,
+    void Evaluate(CellType const &type, CellPlan const &plan, int size, REAL const *controlPoints,
                   std::ptrdiff_t stride, REAL *results, std::ptrdiff_t resultStride);
 
 private:
     void descend(CellType const &type, CellPlan const &plan, std::size_t node, std::size_t depth);
     std::vector<REAL> &getPoints(std::size_t place, std::size_t numPoints);
 
-    std::size_t const _size; // of a point
-    std::size_t const _paddedSize;
+    std::size_t _size = 0; // of a point
+    std::size_t _paddedSize = 0;
     std::deque<std::vector<REAL>> _points; // by depth, of a cell and of its children
     REAL *_results = nullptr;
     std::ptrdiff_t _resultStride = 0;

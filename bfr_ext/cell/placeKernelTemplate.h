@@ -119,6 +119,7 @@ public:
                 if (row == firstRow) {
                     continue;
                 }
+                _count = std::size_t(row[-1].row) + 1 - _begin;
             }
             std::size_t component = 0;
             for (; component + 3 <= _sums.size; component += 3) {
@@ -163,14 +164,15 @@ private:
     void formTiles(std::size_t component) {
         _numWritten = 0;
         std::size_t first = 0;
-        for (; first + 3 * kSize <= _width; first += 3 * kSize) {
+        std::size_t const end = (_count + kSize - 1) / kSize * kSize;
+        for (; first + 3 * kSize <= end; first += 3 * kSize) {
             formTile<3, NUM_COMPONENTS, HAS_INDICES>(component, first);
         }
-        if (first + 2 * kSize <= _width) {
+        if (first + 2 * kSize <= end) {
             formTile<2, NUM_COMPONENTS, HAS_INDICES>(component, first);
             first += 2 * kSize;
         }
-        if (first < _width) {
+        if (first < end) {
             formTile<1, NUM_COMPONENTS, HAS_INDICES>(component, first);
         }
     }
@@ -225,7 +227,7 @@ private:
     bool const _isPacked; // whether results are three numbers each without gaps
     std::size_t _begin = 0;
     std::size_t _width = 0;
-    std::size_t _count = 0;      // places of the block
+    std::size_t _count = 0;      // places of the block, up to the last one that is wanted
     std::size_t _numWritten = 0; // of these, the first ones, which are in the results already
     REAL _numbers[3][PlaceMatrix<REAL>::kMaxWidth];
 };

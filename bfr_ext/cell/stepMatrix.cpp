@@ -7,38 +7,77 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-StepMatrix::StepMatrix(FarExt::internal::PatchRefinement const &step)
-    : _numParentPoints(std::size_t(step.numParentVerts)),
-      _firsts(step.firsts.begin(), step.firsts.end()), _weights(step.weights) {
-    // Weights are the same if their bits are.
-    auto const getBits = [](double weight) {
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &weight, sizeof(bits));
-        return bits;
-    };
-    auto const isBefore = [&](double a, double b) { return getBits(a) < getBits(b); };
-    std::sort(_weights.begin(), _weights.end(), isBefore);
-    auto const isSame = [&](double a, double b) { return getBits(a) == getBits(b); };
-    _weights.erase(std::unique(_weights.begin(), _weights.end(), isSame), _weights.end());
-    _weights.shrink_to_fit();
-    _floatWeights.assign(_weights.begin(), _weights.end());
+namespace {
 
-    auto const fill = [&](auto &entries) {
-        using Number = decltype(entries.front().point);
-        entries.reserve(step.verts.size());
-        for (std::size_t i = 0; i < step.verts.size(); ++i) {
-            auto const weight =
-                std::lower_bound(_weights.begin(), _weights.end(), step.weights[i], isBefore);
-            entries.push_back({Number(step.verts[i]), Number(weight - _weights.begin())});
-        }
-    };
-    std::size_t const size = std::max(_numParentPoints, _weights.size());
-    if (size <= std::size_t(std::numeric_limits<std::uint8_t>::max()) + 1) {
-        fill(_bytes);
-    } else if (size <= std::size_t(std::numeric_limits<std::uint16_t>::max()) + 1) {
-        fill(_shorts);
+// Weights are the same if their bits are.
+std::uint64_t getBits(double weight) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &weight, sizeof(bits));
+    return bits;
+}
+bool isBefore(double a, double b) { return getBits(a) < getBits(b); }
+bool isSame(double a, double b) { return getBits(a) == getBits(b); }
+
+template <typename NUMBER>
+bool fits(std::size_t largest) {
+    return largest <= std::size_t(std::numeric_limits<NUMBER>::max());
+}
+
+} // namespace
+
+StepMatrix::StepMatrix(FarExt::internal::PatchRefinement const &step)
+    : _numParentPoints(std::uint32_t(step.numParentVerts)),
+      _numRows(std::uint32_t(step.firsts.size() - 1)) {
+    std::vector<double> weights = step.weights;
+    std::sort(weights.begin(), weights.end(), isBefore);
+    weights.erase(std::unique(weights.begin(), weights.end(), isSame), weights.end());
+    _numWeights = std::uint32_t(weights.size());
+    std::uint32_t const last = std::max({_numParentPoints, _numWeights, std::uint32_t(1)}) - 1;
+    if (fits<std::uint8_t>(last) && fits<std::uint16_t>(step.verts.size())) {
+        _width = Width::Bytes;
+        fill<std::uint8_t, std::uint16_t>(step, weights);
+    } else if (fits<std::uint16_t>(last)) {
+        _width = Width::Shorts;
+        fill<std::uint16_t, std::uint32_t>(step, weights);
     } else {
-        fill(_longs);
+        _width = Width::Longs;
+        fill<std::uint32_t, std::uint32_t>(step, weights);
+    }
+}
+
+template <typename NUMBER, typename END>
+void StepMatrix::fill(FarExt::internal::PatchRefinement const &step,
+                      std::vector<double> const &weights) {
+    std::vector<float> const floatWeights(weights.begin(), weights.end());
+    std::vector<END> const ends(step.firsts.begin() + 1, step.firsts.end());
+    std::vector<Entry<NUMBER>> entries;
+    entries.reserve(step.verts.size());
+    for (std::size_t i = 0; i < step.verts.size(); ++i) {
+        auto const weight =
+            std::lower_bound(weights.begin(), weights.end(), step.weights[i], isBefore);
+        entries.push_back({NUMBER(step.verts[i]), NUMBER(weight - weights.begin())});
+    }
+    auto const getSize = [](auto const &array) { return array.size() * sizeof(array[0]); };
+    std::size_t const size =
+        getSize(weights) + getSize(floatWeights) + getSize(ends) + getSize(entries);
+    _block.resize((size + sizeof(_block[0]) - 1) / sizeof(_block[0]));
+    char *to = reinterpret_cast<char *>(_block.data());
+    auto const append = [&](auto const &array) {
+        std::memcpy(to, array.data(), getSize(array));
+        to += getSize(array);
+    };
+    append(weights);
+    append(floatWeights);
+    append(ends);
+    append(entries);
+}
+
+ChildStep::ChildStep(StepMatrix const &matrix, std::vector<int> const &rows) : _matrix(&matrix) {
+    if (rows.empty() ||
+        fits<std::uint8_t>(std::size_t(*std::max_element(rows.begin(), rows.end())))) {
+        _bytes.assign(rows.begin(), rows.end());
+    } else {
+        _longs.assign(rows.begin(), rows.end());
     }
 }
 

@@ -14,24 +14,27 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// are many types of cells.
 ///
 /// Few weights differ from each other, and most patches are small: entries are mostly two bytes.
+///
+/// All lies in one block: what a face needs is read from end to end, and is mostly not in the cache.
 class StepMatrix {
 public:
     /// Of no points.
     StepMatrix() = default;
     explicit StepMatrix(FarExt::internal::PatchRefinement const &step);
 
-    std::size_t GetNumRows() const { return _firsts.size() - 1; }
+    std::size_t GetNumRows() const { return _numRows; }
+    std::size_t GetNumParentPoints() const { return _numParentPoints; }
 
     /// Calls function(point of the parent, weight) for the entries of a row, in their order.
     template <typename FUNCTION>
     void ForEachEntry(std::size_t row, FUNCTION const &function) const {
-        if (!_bytes.empty()) {
-            forEachEntry(_bytes, row, function);
-        } else if (!_shorts.empty()) {
-            forEachEntry(_shorts, row, function);
-        } else {
-            forEachEntry(_longs, row, function);
-        }
+        use([&](auto const &arrays) {
+            auto const *const end = arrays.entries + arrays.ends[row];
+            for (auto const *entry = arrays.entries + (row == 0 ? 0 : arrays.ends[row - 1]);
+                 entry != end; ++entry) {
+                function(std::size_t(entry->point), arrays.weights[entry->weight]);
+            }
+        });
     }
 
     /// \brief Numbers of a point that Apply() computes with at once: points have a multiple of it, the
@@ -40,71 +43,99 @@ public:
     static std::size_t GetPaddedSize(std::size_t size) {
         return (size + kPadding - 1) / kPadding * kPadding;
     }
+    /// Copies a point of \p size numbers to where it is computed with.
+    template <typename REAL>
+    static void Pad(REAL const *point, std::size_t size, REAL *result) {
+        if (size == 3) { // by far the most
+            std::copy_n(point, 3, result);
+        } else {
+            std::copy_n(point, size, result);
+        }
+    }
+    /// Has what Apply() reads brought to the cache, while something else is done.
+    void Prefetch() const {
+#if defined(__GNUC__)
+        constexpr std::size_t kLine = 8; // of a block
+        for (std::size_t i = 0; i < _block.size(); i += kLine) {
+            __builtin_prefetch(&_block[i]);
+        }
+#endif
+    }
     /// Writes the points that the step makes, \p paddedSize numbers each as those of the parent.
     template <typename REAL>
     void Apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
-        if (!_bytes.empty()) {
-            apply(_bytes, points, paddedSize, result);
-        } else if (!_shorts.empty()) {
-            apply(_shorts, points, paddedSize, result);
-        } else {
-            apply(_longs, points, paddedSize, result);
-        }
+        use([&](auto const &arrays) {
+            auto const *const weights = arrays.GetWeights(REAL());
+            auto const *begin = arrays.entries;
+            for (std::size_t row = 0; row < _numRows; ++row) {
+                auto const *const end = arrays.entries + arrays.ends[row];
+                for (std::size_t first = 0; first < paddedSize;
+                     first += kPadding, result += kPadding) {
+                    REAL sums[kPadding] = {};
+                    for (auto const *entry = begin; entry != end; ++entry) {
+                        REAL const *const point = points + entry->point * paddedSize + first;
+                        REAL const weight = weights[entry->weight];
+                        for (std::size_t i = 0; i < kPadding; ++i) {
+                            sums[i] += weight * point[i];
+                        }
+                    }
+                    std::copy(sums, sums + kPadding, result);
+                }
+                begin = end;
+            }
+        });
     }
 
-    std::size_t GetNumParentPoints() const { return _numParentPoints; }
-
 private:
+    // How large numbers are.
+    enum class Width { Bytes, Shorts, Longs };
+
     template <typename NUMBER>
     struct Entry {
         NUMBER point;
-        NUMBER weight; // in _weights
+        NUMBER weight;
     };
-    template <typename NUMBER>
-    using Entries = std::vector<Entry<NUMBER>>;
+    // What a block has, one behind the other; END: a number of entries.
+    template <typename NUMBER, typename END>
+    struct Arrays {
+        Arrays(std::uint64_t const *block, std::size_t numWeights, std::size_t numRows)
+            : weights(reinterpret_cast<double const *>(block)),
+              floatWeights(reinterpret_cast<float const *>(weights + numWeights)),
+              ends(reinterpret_cast<END const *>(floatWeights + numWeights)),
+              entries(reinterpret_cast<Entry<NUMBER> const *>(ends + numRows)) {}
 
-    template <typename NUMBER, typename FUNCTION>
-    void forEachEntry(Entries<NUMBER> const &entries, std::size_t row,
-                      FUNCTION const &function) const {
-        Entry<NUMBER> const *const end = entries.data() + _firsts[row + 1];
-        for (Entry<NUMBER> const *entry = entries.data() + _firsts[row]; entry != end; ++entry) {
-            function(std::size_t(entry->point), _weights[entry->weight]);
+        double const *GetWeights(double /*precision*/) const { return weights; }
+        float const *GetWeights(float /*precision*/) const { return floatWeights; }
+
+        double const *weights; // those that differ
+        float const *floatWeights;
+        END const *ends; // by row, in the entries
+        Entry<NUMBER> const *entries;
+    };
+
+    // Calls function(arrays).
+    template <typename FUNCTION>
+    void use(FUNCTION const &function) const {
+        switch (_width) {
+        case Width::Bytes:
+            function(Arrays<std::uint8_t, std::uint16_t>(_block.data(), _numWeights, _numRows));
+            break;
+        case Width::Shorts:
+            function(Arrays<std::uint16_t, std::uint32_t>(_block.data(), _numWeights, _numRows));
+            break;
+        case Width::Longs:
+            function(Arrays<std::uint32_t, std::uint32_t>(_block.data(), _numWeights, _numRows));
+            break;
         }
     }
+    template <typename NUMBER, typename END>
+    void fill(FarExt::internal::PatchRefinement const &step, std::vector<double> const &weights);
 
-    template <typename NUMBER, typename REAL>
-    void apply(Entries<NUMBER> const &entries, REAL const *points, std::size_t paddedSize,
-               REAL *result) const {
-        REAL const *const weights = getWeights(REAL());
-        std::size_t const numRows = GetNumRows();
-        for (std::size_t row = 0; row < numRows; ++row) {
-            Entry<NUMBER> const *const begin = entries.data() + _firsts[row];
-            Entry<NUMBER> const *const end = entries.data() + _firsts[row + 1];
-            for (std::size_t first = 0; first < paddedSize; first += kPadding, result += kPadding) {
-                REAL sums[kPadding] = {};
-                for (Entry<NUMBER> const *entry = begin; entry != end; ++entry) {
-                    REAL const *const point = points + entry->point * paddedSize + first;
-                    REAL const weight = weights[entry->weight];
-                    for (std::size_t i = 0; i < kPadding; ++i) {
-                        sums[i] += weight * point[i];
-                    }
-                }
-                std::copy(sums, sums + kPadding, result);
-            }
-        }
-    }
-
-    double const *getWeights(double /*precision*/) const { return _weights.data(); }
-    float const *getWeights(float /*precision*/) const { return _floatWeights.data(); }
-
-    std::size_t _numParentPoints = 0;
-    std::vector<std::uint32_t> _firsts = {0}; // by row, then the end
-    std::vector<double> _weights;             // those that differ
-    std::vector<float> _floatWeights;         // the same
-    // One of these, as large as numbers are.
-    Entries<std::uint8_t> _bytes;
-    Entries<std::uint16_t> _shorts;
-    Entries<std::uint32_t> _longs;
+    std::uint32_t _numParentPoints = 0;
+    std::uint32_t _numRows = 0;
+    std::uint32_t _numWeights = 0;
+    Width _width = Width::Bytes;
+    std::vector<std::uint64_t> _block;
 };
 
 /// \brief The points of one of the cells that a step makes, in terms of the parent's: the children of a
@@ -113,25 +144,39 @@ class ChildStep {
 public:
     /// \param matrix  of the step, which must live as long
     /// \param rows    by point of the child
-    ChildStep(StepMatrix const &matrix, std::vector<int> rows)
-        : _matrix(&matrix), _rows(std::move(rows)) {}
+    ChildStep(StepMatrix const &matrix, std::vector<int> const &rows);
 
-    std::size_t GetNumRows() const { return _rows.size(); }
-    /// Which rows of the matrix are those of the child's points.
-    int const *GetMatrixRows() const { return _rows.data(); }
+    std::size_t GetNumRows() const { return _bytes.size() + _longs.size(); }
+    /// Copies the points of the child from those that the matrix made.
+    template <typename REAL>
+    void CopyPoints(REAL const *points, std::size_t paddedSize, REAL *result) const {
+        std::size_t const numRows = GetNumRows();
+        for (std::size_t i = 0; i < numRows; ++i) {
+            REAL const *const point = points + getMatrixRow(i) * paddedSize;
+            for (std::size_t k = 0; k < paddedSize; k += StepMatrix::kPadding) {
+                result = std::copy_n(point + k, StepMatrix::kPadding, result);
+            }
+        }
+    }
 
     /// As StepMatrix::ForEachEntry(), of a point of the child.
     template <typename FUNCTION>
     void ForEachEntry(std::size_t row, FUNCTION const &function) const {
-        _matrix->ForEachEntry(std::size_t(_rows[row]), function);
+        _matrix->ForEachEntry(getMatrixRow(row), function);
     }
 
     /// result = left A: what the points of the child weigh, in terms of the parent's.
     void ApplyLeft(std::vector<double> const &left, std::vector<double> &result) const;
 
 private:
+    std::size_t getMatrixRow(std::size_t row) const {
+        return _longs.empty() ? _bytes[row] : _longs[row];
+    }
+
     StepMatrix const *_matrix;
-    std::vector<int> _rows;
+    // One of these, as large as numbers are.
+    std::vector<std::uint8_t> _bytes;
+    std::vector<std::uint32_t> _longs;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -44,9 +44,9 @@ TEST(StepMatrixTest, HasTheEntriesOfTheStep) {
         int numRows;
         int numWeights;
     };
-    for (Size const &size :
-         {Size{40, 40, 12}, Size{256, 80, 20}, Size{257, 80, 20}, Size{50, 400, 1000},
-          Size{65536, 100, 9}, Size{65537, 100, 9}, Size{100, 80000, 1000000}}) {
+    for (Size const &size : {Size{40, 40, 12}, Size{256, 80, 20}, Size{257, 80, 20},
+                             Size{50, 400, 1000}, Size{65536, 100, 9}, Size{65537, 100, 9},
+                             Size{100, 80000, 1000000}, Size{40, 40000, 12}}) {
         PatchRefinement const step = makeStep(size.numParentVerts, size.numRows, size.numWeights);
         StepMatrix const matrix(step);
         ASSERT_EQ(matrix.GetNumRows(), std::size_t(size.numRows));
@@ -91,10 +91,63 @@ TEST(StepMatrixTest, HasTheEntriesOfTheStep) {
     }
 }
 
+TEST(StepMatrixTest, MakesPointsOfAnySize) {
+    auto const check = [](auto number, std::size_t size) {
+        using Real = decltype(number);
+        PatchRefinement const step = makeStep(30, 300, 20);
+        StepMatrix const matrix(step);
+        std::size_t const paddedSize = StepMatrix::GetPaddedSize(size);
+        std::vector<Real> points(30 * paddedSize);
+        for (std::size_t i = 0; i < 30; ++i) {
+            std::vector<Real> point(size);
+            for (std::size_t k = 0; k < size; ++k) {
+                point[k] = Real(i + 1) / Real(k + 3);
+            }
+            StepMatrix::Pad(point.data(), size, &points[i * paddedSize]);
+        }
+        std::vector<Real> results(300 * paddedSize);
+        matrix.Apply(points.data(), paddedSize, results.data());
+        for (std::size_t row = 0; row < 300; ++row) {
+            for (std::size_t k = 0; k < size; ++k) {
+                Real sum = 0;
+                matrix.ForEachEntry(row, [&](std::size_t point, double weight) {
+                    sum += Real(weight) * points[point * paddedSize + k];
+                });
+                ASSERT_EQ(results[row * paddedSize + k], sum) << size << ", row " << row;
+            }
+        }
+        // Rows beyond 255 take more than a byte.
+        for (std::vector<int> const &rows : {std::vector<int>{255, 3, 0}, {256, 299, 1, 256}}) {
+            ChildStep const child(matrix, rows);
+            ASSERT_EQ(child.GetNumRows(), rows.size());
+            std::vector<Real> copies(rows.size() * paddedSize);
+            child.CopyPoints(results.data(), paddedSize, copies.data());
+            for (std::size_t i = 0; i < rows.size(); ++i) {
+                ASSERT_TRUE(std::equal(copies.begin() + std::ptrdiff_t(i * paddedSize),
+                                       copies.begin() + std::ptrdiff_t((i + 1) * paddedSize),
+                                       results.begin() +
+                                           std::ptrdiff_t(std::size_t(rows[i]) * paddedSize)));
+            }
+        }
+    };
+    for (std::size_t const size : {1, 3, 4, 7}) {
+        check(float(), size);
+        check(double(), size);
+    }
+}
+
 TEST(StepMatrixTest, MayBeEmpty) {
     PatchRefinement step;
     step.firsts.push_back(0);
     EXPECT_EQ(StepMatrix(step).GetNumRows(), 0U);
+    // Rows may be, too.
+    step.firsts.push_back(0);
+    step.firsts.push_back(0);
+    StepMatrix const matrix(step);
+    EXPECT_EQ(matrix.GetNumRows(), 2U);
+    double result[2 * StepMatrix::kPadding] = {1, 1, 1, 1, 1, 1, 1, 1};
+    matrix.Apply(static_cast<double const *>(nullptr), StepMatrix::kPadding, result);
+    EXPECT_EQ(*std::max_element(std::begin(result), std::end(result)), 0);
 }
 
 } // namespace OpenSubdivHex::Regression
