@@ -180,10 +180,15 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
                                        nullptr, result, resultDesc.stride});
     };
-    // Few types, and few levels, have matrices of the points of a face: others go by cells.
+    // Few types, and few levels, have matrices of a face: others go by cells.
     if (_type->IsInLattice() && tessellation.IsUniform() && levels[0] <= kLastLevelOfMatrices) {
         sumUp(getPattern(PatternOf::Face).points,
               results[0] + std::ptrdiff_t(numBorderPlaces) * resultDesc.stride);
+        if (results[1]) {
+            Pattern const &pattern = getPattern(PatternOf::FaceDerivatives);
+            sumUp(pattern.derivatives[0], results[1]);
+            sumUp(pattern.derivatives[1], results[2]);
+        }
     } else {
         // What it has taken of memory is kept for the next face, here and below.
         static thread_local internal::PatchEvaluator<REAL> evaluator;
@@ -194,11 +199,11 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         }
         evaluator.Evaluate(*_type, tessellation.getCellPlan(), pointDesc.size, controlPoints,
                            pointDesc.stride, results[0], resultDesc.stride);
-    }
-    if (results[1]) {
-        Pattern const &pattern = getPattern(PatternOf::FaceDerivatives);
-        sumUp(pattern.derivatives[0], results[1]);
-        sumUp(pattern.derivatives[1], results[2]);
+        if (results[1]) {
+            evaluator.EvaluateDerivatives(*_type, tessellation.getCellPlan(true), pointDesc.size,
+                                          controlPoints, pointDesc.stride, results[1], results[2],
+                                          resultDesc.stride);
+        }
     }
     evaluateBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
 }

@@ -159,23 +159,30 @@ void Tessellation::initialize(Parameterization const &parameterization, int numL
     _cellPlan = std::make_shared<LazyCellPlan>();
 }
 
+// Of points and of derivatives.
 struct Tessellation::LazyCellPlan {
-    std::once_flag once;
-    std::unique_ptr<internal::CellPlan const> plan;
+    std::once_flag once[2];
+    std::unique_ptr<internal::CellPlan const> plans[2];
 };
 
-internal::CellPlan const &Tessellation::getCellPlan() const {
-    std::call_once(_cellPlan->once, [&] {
-        int const first = GetNumBoundaryCoords();
+// Points on the border are made apart, derivatives are not.
+internal::CellPlan const &Tessellation::getCellPlan(bool isOfDerivatives) const {
+    using internal::CellPlan;
+    std::unique_ptr<CellPlan const> &plan = _cellPlan->plans[isOfDerivatives ? 1 : 0];
+    std::call_once(_cellPlan->once[isOfDerivatives ? 1 : 0], [&] {
+        int const first = isOfDerivatives ? 0 : GetNumBoundaryCoords();
+        int const level =
+            isOfDerivatives ? *std::max_element(_levels.begin(), _levels.end()) : _levels.back();
         std::vector<internal::LeafPlaces::Place> places;
-        places.reserve(std::size_t(GetNumInteriorCoords()));
+        places.reserve(std::size_t(GetNumCoords() - first));
         std::for_each(_places.begin() + first, _places.end(), [&](SectorCoords const &place) {
             places.push_back({place.sector, {place.start, place.end}});
         });
-        _cellPlan->plan = std::make_unique<internal::CellPlan const>(GetFaceSize(), _levels.back(),
-                                                                     places, first);
+        plan = std::make_unique<CellPlan const>(GetFaceSize(), level, places, first,
+                                                isOfDerivatives ? CellPlan::Use::Derivatives
+                                                                : CellPlan::Use::Points);
     });
-    return *_cellPlan->plan;
+    return *plan;
 }
 
 // Returns the places of the mesh's vertices.

@@ -221,7 +221,7 @@ private:
 
     // Which cells the places inside lie in, made when it is first asked for; of levels.
     struct LazyCellPlan;
-    internal::CellPlan const &getCellPlan() const;
+    internal::CellPlan const &getCellPlan(bool isOfDerivatives = false) const;
 
     void initialize(Parameterization const &parameterization, int numLevels, int const levels[],
                     Options const &options);

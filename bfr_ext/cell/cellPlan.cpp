@@ -2,6 +2,7 @@
 #include "cellPlan.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -61,7 +62,10 @@ int LeafPlaces::findGroup(Pair const &coords) {
 
 void LeafPlaces::add(Place const &place) {
     if (_rows.emplace(getKey(place), 0).second) {
-        _places.push_back(place);
+        // Derivatives are from the side of the sector that begins at the line.
+        bool const isAtEnd = _faceSize > 0 && place.coords[0] == 0;
+        _places.push_back(isAtEnd ? Place{(place.sector + 1) % _faceSize, {place.coords[1], 0}}
+                                  : place);
     }
 }
 
@@ -94,16 +98,32 @@ void LeafPlaces::refineHalf(int sector, std::array<Pair, 4> const &corners, int 
     }
 }
 
-CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, int first)
+CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, int first,
+                   Use use)
     : _faceSize(faceSize) {
-    _nodes.push_back({0, true, level, {}, nullptr, {}});
+    _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}});
     for (std::size_t i = 0; i < places.size(); ++i) {
         LeafPlaces::Place place = places[i];
+        BasePoint const base = MakeBasePoint(faceSize, place.sector, place.coords);
+        Pair toCoords[2] = {base.toCoords[0], base.toCoords[1]};
         std::size_t node = 0;
+        bool isCorner = false;
         while (!_nodes[node].leaf) {
+            isCorner = use == Use::Derivatives && addCorner(node, place, toCoords, first + int(i));
+            if (isCorner) {
+                break;
+            }
             CellStep const step = FindCellStep(_nodes[node].isWhole, place.sector, place.coords);
             place.coords = step.map->Apply(place.coords);
-            node = findChild(node, step);
+            Pair const before[2] = {toCoords[0], toCoords[1]};
+            for (std::size_t k = 0; k < 4; ++k) {
+                toCoords[k / 2][k % 2] = step.map->rows[k / 2][0] * before[0][k % 2] +
+                                         step.map->rows[k / 2][1] * before[1][k % 2];
+            }
+            node = findChild(node, step, toCoords);
+        }
+        if (isCorner) {
+            continue;
         }
         Node &leaf = _nodes[node];
         if (!leaf.isWhole) {
@@ -118,13 +138,49 @@ CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const
     }
 }
 
-std::size_t CellPlan::findChild(std::size_t node, CellStep const &step) {
+// Adds a place to the corners of a cell, or returns false where it is none.
+bool CellPlan::addCorner(std::size_t node, LeafPlaces::Place const &place,
+                         Pair const (&toCoords)[2], int number) {
+    Node &cell = _nodes[node];
+    int const corner = FindCellCorner(cell.isWhole ? _faceSize : 0, place.sector, place.coords);
+    if (corner < 0) {
+        return false;
+    }
+    CornerPlace result = {std::size_t(corner), number, {toCoords[0], toCoords[1]}};
+    if (cell.isWhole) {
+        // The corner has the coordinates of its own sector.
+        BasePoint const own = MakeBasePoint(_faceSize, corner, {});
+        for (std::size_t i = 0; i < 2; ++i) {
+            for (std::size_t k = 0; k < 2; ++k) {
+                result.toCoords[i][k] = std::ldexp(own.toCoords[i][k], cell.depth);
+            }
+        }
+    }
+    cell.corners.push_back(result);
+    return true;
+}
+
+// The derivatives are those of the coordinates in it, if it is a half cell.
+std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair const (&toCoords)[2]) {
     for (std::size_t const child : _nodes[node].children) {
         if (_nodes[child].child == step.child) {
             return child;
         }
     }
-    Node child = {step.child, step.isChildWhole, _nodes[node].numSteps - 1, {}, nullptr, {}};
+    Node child = {step.child,
+                  step.isChildWhole,
+                  _nodes[node].depth + 1,
+                  _nodes[node].numSteps - 1,
+                  {},
+                  nullptr,
+                  {},
+                  {toCoords[0], toCoords[1]},
+                  {}};
+    if (child.isWhole) {
+        double const scale = std::ldexp(1.0, child.depth);
+        child.toCoords[0] = {scale, 0};
+        child.toCoords[1] = {0, scale};
+    }
     if (child.numSteps <= (child.isWhole ? kNumStepsOfWholes : kNumStepsOfHalves)) {
         int const size = child.isWhole ? _faceSize : 0;
         std::unique_ptr<LeafPlaces const> &leafPlaces = _leafPlaces[{size, child.numSteps}];
@@ -142,7 +198,8 @@ std::size_t CellPlan::GetSize() const {
     std::size_t size = 0;
     for (Node const &node : _nodes) {
         size += sizeof(Node) + node.children.size() * sizeof(node.children[0]) +
-                node.rows.size() * sizeof(node.rows[0]);
+                node.rows.size() * sizeof(node.rows[0]) +
+                node.corners.size() * sizeof(node.corners[0]);
     }
     return size;
 }

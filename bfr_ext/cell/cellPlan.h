@@ -50,23 +50,39 @@ private:
 /// (PlaceMatrix).
 ///
 /// A place that several leaves have belongs to that which CellStencil follows it to, so that it is made
-/// once.  No base face is a leaf: there are many types of these, and few of the cells in them.
+/// once.  Derivatives are those of the first cell that has the place as a corner, as far as that makes a
+/// difference.  No base face is a leaf: there are many types of these, and few of the cells in them.
 class CellPlan {
 public:
+    /// A place that is a corner of a cell.
+    struct CornerPlace {
+        std::size_t corner;
+        int place;
+        Pair toCoords[2]; ///< of u and v: the derivatives by them of what the corner's are by
+    };
     /// A cell with places, and which child of the cell before it is.
     struct Node {
         std::size_t child;
         bool isWhole;
+        int depth;
         int numSteps; ///< that are left
         std::vector<std::size_t> children;
         /// Of leaves, with the rows that are of places, ascending.
         LeafPlaces const *leaf;
         std::vector<PlaceOfRow> rows;
+        /// Of a plan for derivatives: of u and v, the derivatives by them of what those of the leaf are
+        /// by, which are the coordinates in a half cell or its own u and v in a whole one; and the
+        /// corners of cells that are no leaves.
+        Pair toCoords[2];
+        std::vector<CornerPlace> corners;
     };
+    /// What is to be evaluated.
+    enum class Use { Points, Derivatives };
 
     /// \param level   that of the places, at most
-    /// \param places  those inside of the face, from place number \p first on
-    CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, int first);
+    /// \param places  from place number \p first on; for points those inside of the face
+    CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, int first,
+             Use use);
 
     /// Node 0 is the face.
     Node const &operator[](std::size_t node) const { return _nodes[node]; }
@@ -74,7 +90,9 @@ public:
     std::size_t GetSize() const;
 
 private:
-    std::size_t findChild(std::size_t node, CellStep const &step);
+    bool addCorner(std::size_t node, LeafPlaces::Place const &place, Pair const (&toCoords)[2],
+                   int number);
+    std::size_t findChild(std::size_t node, CellStep const &step, Pair const (&toCoords)[2]);
 
     int const _faceSize;
     std::vector<Node> _nodes;

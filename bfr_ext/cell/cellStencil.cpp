@@ -92,22 +92,13 @@ CellStep FindCellStep(bool isWhole, int sector, Pair const &coords) {
     return {0, &kToFFace, true};
 }
 
-bool CellStencil::findCorner(Place const &place, std::size_t *corner) const {
-    if (place.type->IsWhole()) {
-        if (place.coords != Pair{1, 0} && place.coords != Pair{0, 1}) {
-            return false;
-        }
-        auto const sector = std::size_t(place.sector);
-        *corner = (sector + (place.coords[1] == 1)) % std::size_t(place.type->GetNumCorners());
-        return true;
+int FindCellCorner(int faceSize, int sector, Pair const &coords) {
+    if (faceSize > 0) {
+        return coords == Pair{1, 0} ? sector : coords == Pair{0, 1} ? (sector + 1) % faceSize : -1;
     }
-    for (std::size_t i = 0; i < 4; ++i) {
-        if (place.coords == HalfCell::kCorners[i]) {
-            *corner = i;
-            return true;
-        }
-    }
-    return false;
+    auto const *const corner =
+        std::find(std::begin(HalfCell::kCorners), std::end(HalfCell::kCorners), coords);
+    return corner == std::end(HalfCell::kCorners) ? -1 : int(corner - HalfCell::kCorners);
 }
 
 bool CellStencil::isLast(Place const &place) const {
@@ -146,9 +137,12 @@ void CellStencil::addCorner(Place const &place, std::size_t corner, double weigh
 void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
     Place place = {&_root, 0, point.sector, point.coords, {point.toCoords[0], point.toCoords[1]}};
     _steps.clear();
-    std::size_t corner = 0;
-    bool isCorner = false;
-    while (!(isCorner = findCorner(place, &corner)) && !isLast(place)) {
+    auto const findCorner = [&] {
+        return FindCellCorner(place.type->IsWhole() ? place.type->GetNumCorners() : 0, place.sector,
+                              place.coords);
+    };
+    int corner = -1;
+    while ((corner = findCorner()) < 0 && !isLast(place)) {
         CellStep const step = FindCellStep(place.type->IsWhole(), place.sector, place.coords);
         CellMap const *const map = step.map;
         CellType::Child const &next = place.type->GetChildren()[step.child];
@@ -172,8 +166,8 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
     for (int i = 0; i < numRows; ++i) {
         _weights[i].assign(std::size_t(place.type->GetNumPoints()), 0.0);
     }
-    if (isCorner) {
-        addCorner(place, corner, 1, hasDerivatives);
+    if (corner >= 0) {
+        addCorner(place, std::size_t(corner), 1, hasDerivatives);
     } else if (place.type->IsWhole()) {
         auto const numCorners = std::size_t(place.type->GetNumCorners());
         double const inner = (1 - place.coords[0] - place.coords[1]) / double(numCorners);

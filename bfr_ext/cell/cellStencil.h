@@ -34,6 +34,11 @@ struct CellStep {
 /// \param sector, coords  of the point in the cell; the sector of a whole cell alone matters
 CellStep FindCellStep(bool isWhole, int sector, Pair const &coords);
 
+/// \brief Which corner of a cell a point is, or -1.
+///
+/// \param faceSize  of a whole cell; 0: of half cells
+int FindCellCorner(int faceSize, int sector, Pair const &coords);
+
 /// \brief The stencils of points of a base face and of their derivatives by u and v.
 ///
 /// The cells that have a point are followed until it is a corner of one, or they are so small that
@@ -60,7 +65,6 @@ private:
         Pair toCoords[2];
     };
 
-    bool findCorner(Place const &place, std::size_t *corner) const;
     bool isLast(Place const &place) const;
     void addCorner(Place const &place, std::size_t corner, double weight, bool hasDerivatives);
 

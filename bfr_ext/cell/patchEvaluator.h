@@ -22,14 +22,26 @@ public:
     void Evaluate(CellType const &type, CellPlan const &plan, int size, REAL const *controlPoints,
                   std::ptrdiff_t stride, REAL *results, std::ptrdiff_t resultStride);
 
+    /// The same with the derivatives by u and v.
+    ///
+    /// \param plan  one for derivatives
+    void EvaluateDerivatives(CellType const &type, CellPlan const &plan, int size,
+                             REAL const *controlPoints, std::ptrdiff_t stride, REAL *du, REAL *dv,
+                             std::ptrdiff_t resultStride);
+
 private:
+    void evaluate(CellType const &type, CellPlan const &plan, int size, REAL const *controlPoints,
+                  std::ptrdiff_t stride);
     void descend(CellType const &type, CellPlan const &plan, std::size_t node, std::size_t depth);
+    void evaluateLeaf(CellType const &type, CellPlan::Node const &leaf, REAL const *points);
+    void evaluateCorners(CellType const &type, CellPlan::Node const &cell, REAL const *points);
     std::vector<REAL> &getPoints(std::size_t place, std::size_t numPoints);
 
     std::size_t _size = 0; // of a point
     std::size_t _paddedSize = 0;
     std::deque<std::vector<REAL>> _points; // by depth, of a cell and of its children
-    REAL *_results = nullptr;
+    REAL *_results = nullptr;              // points
+    REAL *_derivatives[2] = {};
     std::ptrdiff_t _resultStride = 0;
 };
 

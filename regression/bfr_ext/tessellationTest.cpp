@@ -364,8 +364,11 @@ TEST(TessellationSurface, PointsAreThoseOfSinglePlaces) {
         SurfaceSet<double> const surfaces(*refiner, shape.positions);
         RandomLevels levels(base, 3);
         for (int face = 0; face < base.GetNumFaces(); ++face) {
-            Tessellation const tessellation = levels.Make(base, face, 3);
             Surface<double> const &surface = surfaces[face];
+            // Of level 5, a face is taken apart further.
+            Tessellation const tessellation = face == 0
+                                                  ? Tessellation(surface.GetParameterization(), 5)
+                                                  : levels.Make(base, face, 3);
             std::vector<double> control(4 * std::size_t(surface.GetNumControlPoints()));
             surface.GatherControlPoints(shape.positions.data(), 3, control.data(), {3, 4});
             auto const numPlaces = std::size_t(tessellation.GetNumCoords());
