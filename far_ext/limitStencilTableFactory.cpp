@@ -160,11 +160,49 @@ private:
     Index const _numSides;
 };
 
+// Of the regular faces of a level, those that give the limit of their F-vertices or of their own.
+struct RegularKind {
+    int level = 0;
+    bool isOwn = false;
+
+    RegularFaces::Set const &GetSet(std::vector<RegularFaces::OfLevel> const &levels) const {
+        RegularFaces::OfLevel const &ofLevel = levels[std::size_t(level)];
+        return isOwn ? ofLevel.ownVertices : ofLevel.fVertices;
+    }
+};
+
 // Rows of a table that are near one another, up to the first one of the next group.
 struct RowGroup {
     Index first;
-    int level;               ///< of the face
-    RegularFace const *face; ///< whose F-vertices' rows they are, or null
+    RegularFace const *face = nullptr; ///< that gives the limit of some of them, by corner
+    RegularKind kind = {};
+};
+
+// The faces of a set one after the other, in the order of their corners.
+class RegularFaceReader {
+public:
+    RegularFaceReader(std::vector<RegularFaces::OfLevel> const &levels, RegularKind kind)
+        : _kind(kind) {
+        if (std::size_t(kind.level) < levels.size()) {
+            std::vector<RegularFace> const &faces = kind.GetSet(levels).faces;
+            _next = faces.data();
+            _end = _next + faces.size();
+        }
+    }
+
+    // Adds a group if the next face is that with this first corner.
+    bool AddGroup(Index firstCorner, Index firstRow, std::vector<RowGroup> &groups) {
+        bool const isFound = _next != _end && _next->firstCorner == firstCorner;
+        if (isFound) {
+            groups.push_back({firstRow, _next++, _kind});
+        }
+        return isFound;
+    }
+
+private:
+    RegularKind _kind;
+    RegularFace const *_next = nullptr;
+    RegularFace const *_end = nullptr;
 };
 
 // Cuts the rows of a table into groups: the F-vertices that the steps before made of the same face.
@@ -183,32 +221,32 @@ std::vector<RowGroup> makeGroups(internal::MeshLevels const &mesh, int level, In
         std::min(numVertexRows, mesh.levels[std::size_t(firstLevel)].numVertices);
     groups.reserve(std::size_t(numFirst) + 1);
     for (Index row = 0; row < numFirst; ++row) {
-        groups.push_back({row, level, nullptr});
+        groups.push_back({row});
     }
     for (int child = firstLevel + 1; child <= level && numVertexRows > 0; ++child) {
-        auto const number = std::size_t(child) - 1;
-        Level const &parent = mesh.levels[number];
-        std::size_t next = 0; // of the regular faces
+        Level const &parent = mesh.levels[std::size_t(child) - 1];
+        // An F-face has its vertices' corners in the order of those that they were made of.
+        RegularFaceReader fVertices(regularLevels, {child - 1, false});
+        RegularFaceReader ownVertices(regularLevels, {child, true});
         for (Index face = 0; face < parent.numFaces; ++face) {
             Index const begin = parent.faceFirstCorner[face];
             Index const end = parent.faceFirstCorner[face + 1];
-            if (number < regularLevels.size() &&
-                next < regularLevels[number].fVertices.faces.size() &&
-                regularLevels[number].fVertices.faces[next].firstCorner == begin) {
-                groups.push_back({parent.numVertices + begin, child - 1,
-                                  &regularLevels[number].fVertices.faces[next++]});
+            Index const firstRow = parent.numVertices + begin;
+            if (fVertices.AddGroup(begin, firstRow, groups) ||
+                ownVertices.AddGroup(begin, firstRow, groups)) {
                 continue;
             }
-            for (Index corner = begin; corner < end; corner += internal::kMaxLimitRows) {
-                groups.push_back({parent.numVertices + corner, level, nullptr});
+            for (Index row = firstRow; row < parent.numVertices + end;
+                 row += internal::kMaxLimitRows) {
+                groups.push_back({row});
             }
         }
     }
     Index const numVertices = mesh.levels[std::size_t(level)].numVertices;
     for (Index row = std::min(numVertexRows, numVertices); row < numRows; ++row) {
-        groups.push_back({row, level, nullptr});
+        groups.push_back({row});
     }
-    groups.push_back({numRows, level, nullptr});
+    groups.push_back({numRows});
     return groups;
 }
 
@@ -231,18 +269,16 @@ public:
     /// The rows of the regular faces in groups, if there are any.
     void SetRegularRows(internal::MeshLevels const &mesh,
                         std::vector<RegularFaces::OfLevel> const &regularLevels) {
-        Multiplier multiplier(_stencils, FaceRows::kNumFaceSources, 0, _hasDerivatives);
         Index firstSource = 0;
         for (std::size_t i = 0; i < regularLevels.size(); ++i) {
-            FaceRows const rows(regularLevels[i].fVertices.mask);
-            Index numbers[FaceRows::kNumSources];
-            multiplier.Clear();
-            for (int corner = 0; corner < internal::kRegularFaceSize; ++corner) {
-                multiplier.AddRow(rows.GetRow(corner, numbers), 0);
+            bool const isLast = i + 1 == regularLevels.size();
+            for (bool const isOwn : {false, true}) {
+                RegularRows regular = {
+                    &mesh.levels[i], isLast ? _stencils.GetNumBefore() : firstSource, {}};
+                addRows(RegularKind{int(i), isOwn}.GetSet(regularLevels), regular);
+                _regularRows.push_back(std::move(regular));
             }
-            Level const &level = mesh.levels[i];
-            _regularRows.push_back({&level, firstSource, multiplier.ShareRows()});
-            firstSource += level.numVertices;
+            firstSource += mesh.levels[i].numVertices;
         }
     }
 
@@ -252,14 +288,13 @@ public:
         internal::ResizeLarge(sizes, numRows);
         std::vector<KeptColumns> kept(
             std::size_t(internal::GetNumParallelRanges(getNumGroups(), kRange)));
-        forEachGroup([&](Multiplier &multiplier, Index group) {
+        forEachGroup([&](Multiplier &multiplier, Index const *rows, Index group) {
             Columns const columns = multiplier.FindColumns();
             kept[std::size_t(group / kRange)].Add(columns);
-            int *const ofRows = sizes.data() + _groups[std::size_t(group)].first;
             for (int row = 0; row < multiplier.GetNumRows(); ++row) {
-                ofRows[row] =
+                sizes[std::size_t(rows[row])] =
                     int(std::count_if(columns.rows, columns.rows + columns.size,
-                                      [row](RowBits rows) { return (rows >> row & 1) != 0; }));
+                                      [row](RowBits bits) { return (bits >> row & 1) != 0; }));
             }
         });
         std::int64_t const numWeights =
@@ -272,10 +307,10 @@ public:
         }
         _table->Resize(numRows, std::size_t(numWeights), _hasDerivatives);
         std::exclusive_scan(sizes.begin(), sizes.end(), _table->GetRowOffsets().begin(), 0);
-        forEachGroup([&](Multiplier &multiplier, Index group) {
+        forEachGroup([&](Multiplier &multiplier, Index const *rows, Index group) {
             typename Multiplier::Place places[internal::kMaxLimitRows];
             for (int row = 0; row < multiplier.GetNumRows(); ++row) {
-                places[row] = _table->GetPlace(_groups[std::size_t(group)].first + row);
+                places[row] = _table->GetPlace(rows[row]);
             }
             multiplier.Fill(kept[std::size_t(group / kRange)].Get(group % kRange), places);
         });
@@ -305,48 +340,80 @@ private:
         std::vector<RowBits> rows;
     };
 
-    // Of the regular faces of a level.
+    // Of a RegularKind.
     struct RegularRows {
         Level const *level;
-        Index firstSource; // among the stencils of the levels before, those of vertex 0
-        typename Multiplier::SharedRows rows;
+        Index firstSource; // that of vertex 0 of the level
+        std::map<unsigned, typename Multiplier::SharedRows> ofCorners; // by RegularFace::corners
     };
 
     // What a thread makes rows with.
     struct State {
         Multiplier multiplier;
         PointRows::Scratch scratch;
+        Index rows[internal::kMaxLimitRows]; // of the table, by row of the multiplier
     };
 
     Index getNumGroups() const { return Index(_groups.size()) - 1; }
 
-    void setRows(std::size_t number, State &state) {
-        RowGroup const &group = _groups[number];
-        if (group.face) {
-            RegularRows const &regular = _regularRows[std::size_t(group.level)];
-            Index sources[FaceRows::kNumFaceSources];
-            FaceRows::GetFaceSources(*regular.level, *group.face, sources);
-            state.multiplier.SetRows(regular.rows, sources, regular.firstSource);
-            return;
-        }
-        state.multiplier.Clear();
-        for (Index row = group.first; row < _groups[number + 1].first; ++row) {
-            state.multiplier.AddRow(_rows.GetRow(row, state.scratch), _stencils.GetNumBefore());
+    // Adds the rows of all kinds of faces of a set: some have fewer corners.
+    void addRows(RegularFaces::Set const &set, RegularRows &regular) const {
+        FaceRows const rows(set.mask);
+        Multiplier multiplier(_stencils, FaceRows::kNumFaceSources, 0, _hasDerivatives);
+        for (RegularFace const &face : set.faces) {
+            if (regular.ofCorners.count(face.corners) > 0) {
+                continue;
+            }
+            multiplier.Clear();
+            for (int corner = 0; corner < internal::kRegularFaceSize; ++corner) {
+                if (face.HasCorner(corner)) {
+                    Index numbers[FaceRows::kNumSources];
+                    multiplier.AddRow(rows.GetRow(corner, numbers), 0);
+                }
+            }
+            regular.ofCorners.emplace(face.corners, multiplier.ShareRows());
         }
     }
 
-    // Calls function(multiplier, group) for each group, whose rows the multiplier has.
+    void setRows(std::size_t number, State &state) {
+        RowGroup const &group = _groups[number];
+        Index *next = state.rows;
+        if (group.face) {
+            RegularRows const &regular =
+                _regularRows[2 * std::size_t(group.kind.level) + std::size_t(group.kind.isOwn)];
+            Index sources[FaceRows::kNumFaceSources];
+            FaceRows::GetFaceSources(*regular.level, *group.face, sources);
+            state.multiplier.SetRows(regular.ofCorners.at(group.face->corners), sources,
+                                     regular.firstSource, group.face->HasAllCorners());
+            for (int corner = 0; corner < internal::kRegularFaceSize; ++corner) {
+                if (group.face->HasCorner(corner)) {
+                    *next++ = group.first + corner;
+                }
+            }
+        } else {
+            state.multiplier.Clear();
+        }
+        for (Index row = group.first; row < _groups[number + 1].first; ++row) {
+            if (!group.face || !group.face->HasCorner(row - group.first)) {
+                state.multiplier.AddRow(_rows.GetRow(row, state.scratch), _stencils.GetNumBefore());
+                *next++ = row;
+            }
+        }
+    }
+
+    // Calls function(multiplier, rows, group) for each group: the multiplier has those rows of it.
     template <typename FUNCTION>
     void forEachGroup(FUNCTION function) {
         internal::ParallelForRange(
             getNumGroups(),
             [&] {
-                return State{Multiplier(_stencils, _numSources, _numIndices, _hasDerivatives), {}};
+                return State{
+                    Multiplier(_stencils, _numSources, _numIndices, _hasDerivatives), {}, {}};
             },
             [&](State &state, Index begin, Index end) {
                 for (Index group = begin; group < end; ++group) {
                     setRows(std::size_t(group), state);
-                    function(state.multiplier, group);
+                    function(state.multiplier, state.rows, group);
                 }
             },
             kRange);
@@ -356,7 +423,7 @@ private:
 
     PointRows const &_rows;
     std::vector<RowGroup> const &_groups;
-    std::vector<RegularRows> _regularRows; // by level
+    std::vector<RegularRows> _regularRows; // by level, of F-vertices and own ones
     SourceStencils const _stencils;
     Index const _numSources;
     Index const _numIndices;
@@ -411,7 +478,7 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
     if (options.generateVertices) {
         vertexRows.emplace(level, refiner.GetSchemeOptions(), schemeOptions);
         if (hasStencils) {
-            regularFaces.emplace(mesh, options.level, false);
+            regularFaces.emplace(mesh, options.level);
         }
         Status const result =
             regularFaces ? regularFaces->FindMasks(schemeOptions, *vertexRows) : vertexRows->Find();
@@ -436,9 +503,13 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
 
     std::vector<RegularFaces::OfLevel> const noLevels;
     auto const &regularLevels = regularFaces ? regularFaces->GetLevels() : noLevels;
+    // Those of the last level have its own vertices alone.
     bool const hasRegular = std::any_of(
-        regularLevels.begin(), regularLevels.end(),
-        [](RegularFaces::OfLevel const &ofLevel) { return !ofLevel.fVertices.faces.empty(); });
+        regularLevels.begin(),
+        regularLevels.empty() ? regularLevels.end() : regularLevels.end() - 1,
+        [](RegularFaces::OfLevel const &ofLevel) {
+            return !ofLevel.fVertices.faces.empty() || !ofLevel.ownVertices.faces.empty();
+        });
     std::unique_ptr<Far::StencilTableReal<double> const>
         tables[2]; // of the levels before, the last
     for (int i = hasRegular ? 0 : 1; i < 2 && hasStencils; ++i) {

@@ -89,8 +89,8 @@ auto LimitMultiplier<REAL>::ShareRows() const -> SharedRows {
 }
 
 template <typename REAL>
-void LimitMultiplier<REAL>::SetRows(SharedRows const &rows, Index const *sources,
-                                    Index firstSource) {
+void LimitMultiplier<REAL>::SetRows(SharedRows const &rows, Index const *sources, Index firstSource,
+                                    bool isAll) {
     _firstTerms = rows._firstTerms;
     _numTerms = int(rows._terms.size());
     if (_terms.size() < rows._terms.size()) {
@@ -100,6 +100,12 @@ void LimitMultiplier<REAL>::SetRows(SharedRows const &rows, Index const *sources
     _sources = rows._sources;
     for (Source &source : _sources) {
         source.index = firstSource + sources[source.index];
+    }
+    if (!isAll) {
+        beginRound(_numberOfSource, _round);
+        for (std::size_t i = 0; i < _sources.size(); ++i) {
+            _numberOfSource[std::size_t(_sources[i].index)] = {_round, int(i)};
+        }
     }
 }
 

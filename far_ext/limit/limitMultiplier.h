@@ -99,9 +99,10 @@ public:
     void AddRow(LimitRow const &row, Index firstSource);
     /// All rows; their sources are numbers.
     SharedRows ShareRows() const;
-    /// Forgets all rows and adds those, source number i being \p firstSource + \p sources[i].  Until
-    /// Clear(), no other may be added.
-    void SetRows(SharedRows const &rows, Index const *sources, Index firstSource);
+    /// Forgets all rows and adds those, source number i being \p firstSource + \p sources[i].
+    ///
+    /// \param isAll  whether no other will be added, until Clear()
+    void SetRows(SharedRows const &rows, Index const *sources, Index firstSource, bool isAll);
     int GetNumRows() const { return int(_firstTerms.size()); }
 
     /// Valid until the next call.

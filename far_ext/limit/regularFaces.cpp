@@ -21,8 +21,6 @@ namespace {
 constexpr int kSize = kRegularFaceSize;
 constexpr unsigned kAllCorners = (1u << kSize) - 1;
 
-bool hasCorner(RegularFace const &face, int corner) { return (face.corners >> corner & 1) != 0; }
-
 // Of its own vertices a face gives the limit for as many at least: fewer are made as fast one by one.
 constexpr int kMinOwnVertices = 3;
 
@@ -81,7 +79,7 @@ RegularFace gather(Level const &level, Index face, unsigned corners) {
         result.next[i] = level.faceVerts[across.GetCorner(3)];
         result.previous[next] = level.faceVerts[across.GetCorner(4)];
         result.beyond[i] =
-            hasCorner(result, i) ? OtherSide(level, across.face, across.GetCorner(2)).face : face;
+            result.HasCorner(i) ? OtherSide(level, across.face, across.GetCorner(2)).face : face;
     }
     return result;
 }
@@ -310,6 +308,10 @@ void RegularFaceRows::GetFaceSources(Level const &level, RegularFace const &face
     std::copy_n(face.previous, kSize, sources + kPrevious);
     Index *others = sources + kBeyond;
     for (int corner = 0; corner < kSize; ++corner) {
+        if (!face.HasCorner(corner)) {
+            others = std::fill_n(others, kNumOthersBeyond, face.neighbors[corner]);
+            continue;
+        }
         for (Index const vert : level.GetFaceVertices(face.beyond[corner])) {
             if (vert != face.neighbors[corner] && vert != face.next[corner] &&
                 vert != face.previous[corner]) {
@@ -352,7 +354,7 @@ void RegularFaces::setFaces(int level, std::vector<RegularFace> faces, Index fir
     set.firstVertex = firstVertex;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         for (int corner = 0; corner < kSize; ++corner) {
-            if (hasCorner(faces[i], corner) &&
+            if (faces[i].HasCorner(corner) &&
                 hasDifferentSources(_mesh.levels[std::size_t(level)], faces[i], corner)) {
                 set.sample = i;
                 set.sampleCorner = corner;
@@ -370,7 +372,7 @@ void RegularFaces::listOthers() {
             for (RegularFace const &face : set->faces) {
                 auto const firstVertex = isMade.begin() + set->firstVertex + face.firstCorner;
                 for (int corner = 0; corner < kSize; ++corner) {
-                    firstVertex[corner] = hasCorner(face, corner);
+                    firstVertex[corner] = face.HasCorner(corner);
                 }
             }
         }
@@ -385,7 +387,7 @@ Status RegularFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
         for (Set const *set : {&level.fVertices, &level.ownVertices}) {
             for (int corner = 0; corner < kSize && !set->faces.empty(); ++corner) {
                 RegularFace const &face = set->faces[set->sample];
-                if (hasCorner(face, corner)) {
+                if (face.HasCorner(corner)) {
                     verts.push_back(set->firstVertex + face.firstCorner + corner);
                 }
             }
@@ -424,7 +426,7 @@ std::optional<RegularFaceMask> RegularFaces::findMask(int level, Set const &set,
     std::optional<RegularFaceMask> mask;
     for (int i = 0; i < kSize; ++i) {
         int const corner = (set.sampleCorner + i) % kSize;
-        if (!hasCorner(face, corner)) {
+        if (!face.HasCorner(corner)) {
             continue;
         }
         Index sources[PlainNeighborhoodGatherer::kNumRegular];

@@ -24,6 +24,9 @@ constexpr int kRegularFaceSize = HexIndexing::kNumEFaceCorners;
 /// Where only some of its vertices are regular, the others have an outer neighbour perhaps, but no face
 /// beyond: there it is the face itself.
 struct RegularFace {
+    bool HasCorner(int corner) const { return (corners >> corner & 1) != 0; }
+    bool HasAllCorners() const { return corners + 1 == 1u << kRegularFaceSize; }
+
     Far::Index firstCorner;
     unsigned corners; ///< a bit for each corner whose vertex has a limit of the face's mask
     Far::Index neighbors[kRegularFaceSize];
@@ -68,6 +71,7 @@ struct RegularFaceRows {
     /// That of a corner, its sources being numbers among those of a face.  Valid until \p numbers are
     /// used again.
     LimitRow GetRow(int corner, Far::Index numbers[kNumSources]) const;
+    /// Those beyond a corner without a face there are any.
     static void GetFaceSources(Level const &level, RegularFace const &face,
                                Far::Index sources[kNumFaceSources]);
 
