@@ -5,6 +5,8 @@
 #include "evaluation.h"
 
 #include "far_ext/ompExecutor.h"
+#include "far_ext/topologyRefinerFactory.h"
+#include "regression/shapes/shapeDescriptor.h"
 
 #include <algorithm>
 #include <atomic>
@@ -86,6 +88,26 @@ Contest makeContest(std::string const &row, int numRounds, MAKE make) {
     return contest;
 }
 
+/// The base level, from a descriptor.
+Contest makeBaseLevel(BenchMesh const &mesh, int numRounds) {
+    return makeContest("busy-base", numRounds, [&](int numThreads) {
+        auto const refiner = std::make_shared<std::unique_ptr<FarExt::TopologyRefiner>>();
+        Contestant contestant;
+        contestant.name = "FarExt";
+        contestant.numThreads = numThreads;
+        contestant.work = [=] {
+            ShapeDescriptor const descriptor(*mesh.shape);
+            *refiner = FarExt::TopologyRefinerFactory::Create(descriptor.Get());
+        };
+        contestant.validate = [=] {
+            Require(*refiner != nullptr, "no base level");
+            return double((*refiner)->GetLevel(0).GetNumVertices());
+        };
+        contestant.release = [=] { refiner->reset(); };
+        return contestant;
+    });
+}
+
 /// Refines the same refiner, whose memory stays.
 Contest makeTopology(BenchMesh const &mesh, int numRounds) {
     return makeContest("busy-topology", numRounds, [&](int numThreads) {
@@ -130,6 +152,13 @@ Contest makeTableFree(BenchMesh const &mesh, int numRounds) {
 } // namespace
 
 void AddBusyBenchmarks(Suite &suite) {
+    for (BenchMesh const &mesh : suite.GetBaseMeshes()) {
+        int const numRounds = mesh.size == "small" ? 64 * kNumRounds : kNumRounds;
+        for (Memory memory : {Memory::Default, Memory::Warm}) {
+            suite.AddContest({"busy, base level", "vertex", mesh, memory},
+                             [=] { return makeBaseLevel(mesh, numRounds); });
+        }
+    }
     for (BenchMesh const &mesh : suite.GetMeshes()) {
         int const numRounds = mesh.size == "small" ? 16 * kNumRounds : kNumRounds;
         auto const add = [&](char const *work, char const *item, Memory memory, auto make) {

@@ -91,7 +91,8 @@ std::vector<Row> const &GetRows() {
         result.push_back({"evaluation-catmark", "Far's Catmull-Clark table, length 3",
                           "Osd::CpuEvaluator", 5, 8});
         // 1.3 times as slow at most.
-        for (auto const &[name, work] : {std::pair("topology", "topology, full last level"),
+        for (auto const &[name, work] : {std::pair("base", "base level from a descriptor"),
+                                         {"topology", "topology, full last level"},
                                          {"table", "table, per weight"},
                                          {"evaluation", "evaluation, length 3"},
                                          {"table-free", "table-free, all levels"}}) {
