@@ -45,11 +45,21 @@ struct Range {
     SumOrder order = SumOrder::InTurn;
 };
 
-// Adds one component, or some.
-void append(std::vector<Range> &ranges, Range const &range, Index mayNotJoinAt) {
-    FarExt::internal::AppendRun(ranges, range, [=](Range const &a, Range const &b) {
-        return a.size == b.size && a.order == b.order && b.begin != mayNotJoinAt;
-    });
+// Adds components [begin, end), each with the size that getSize(component) says, but joins none from
+// mayNotJoinAt on with those before.
+template <typename GET_SIZE>
+void append(std::vector<Range> &ranges, Range rest, Index mayNotJoinAt, GET_SIZE const &getSize) {
+    while (rest.begin < rest.end) {
+        Index const end = rest.begin < mayNotJoinAt ? std::min(rest.end, mayNotJoinAt) : rest.end;
+        Range range = {rest.begin, rest.begin + 1, getSize(rest.begin), rest.order};
+        while (range.end < end && getSize(range.end) == range.size) {
+            ++range.end;
+        }
+        FarExt::internal::AppendRun(ranges, range, [=](Range const &a, Range const &b) {
+            return a.size == b.size && a.order == b.order && b.begin != mayNotJoinAt;
+        });
+        rest.begin = range.end;
+    }
 }
 
 // Whether one of some ranges is evaluated as a run.
@@ -146,6 +156,13 @@ private:
         return vert >= _firstOlderVertex ? SumOrder::FirstTwo : SumOrder::InTurn;
     }
 
+    // Behind the vertices that follow one and have its order.
+    Index getEndOfOrder(Index vert) const {
+        return vert >= _firstNewVertex     ? _level.numVertices
+               : vert >= _firstOlderVertex ? _firstNewVertex
+                                           : _firstOlderVertex;
+    }
+
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
     RefinementMask const &_mask;
@@ -172,9 +189,8 @@ void Maker::planFaces() {
     ForEachRun(
         0, _level.numFaces, _mask.FindSharpFaces(),
         [&](Index begin, Index end, Index) {
-            for (Index face = begin; face < end; ++face) {
-                append(ranges, {face, face + 1, _level.GetFaceSize(face)}, numFFaces);
-            }
+            append(ranges, {begin, end, 0}, numFFaces,
+                   [&](Index face) { return _level.GetFaceSize(face); });
         },
         [&](Index face, Index) { listFace(face); });
     for (Range const &range : ranges) {
@@ -259,9 +275,11 @@ void Maker::planVertices() {
     ForEachRun(
         0, _level.numVertices, _mask.FindFeatureVertices(),
         [&](Index begin, Index end, Index) {
-            for (Index vert = begin; vert < end; ++vert) {
-                append(ranges, {vert, vert + 1, _level.GetNumVertexFaces(vert), getSumOrder(vert)},
-                       -1);
+            while (begin < end) {
+                Index const behind = std::min(end, getEndOfOrder(begin));
+                append(ranges, {begin, behind, 0, getSumOrder(begin)}, -1,
+                       [&](Index vert) { return _level.GetNumVertexFaces(vert); });
+                begin = behind;
             }
         },
         [&](Index vert, Index) { listVertex(vert); });
