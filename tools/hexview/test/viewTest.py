@@ -84,7 +84,9 @@ def test_pictures(program, meshes):
     expect(len(hues_of(cube, 500)) >= 3, "three sides of a cube have three colours")
     test_cells(program, meshes)
     test_frames(program, os.path.join(meshes, "cube.obj"))
-    for options, cause in ((["--level", "99"], "99"), (["--mask", "none"], "none")):
+    for options, cause in ((["--level", "99"], "99"), (["--mask", "none"], "none"),
+                           (["--distance", "nan"], "nan"), (["--azimuth", "361"], "361"),
+                           (["--png", "no.jpg"], "'no.jpg' is not a .png file")):
         run = subprocess.run([program, torus, *options], capture_output=True, text=True)
         expect(run.returncode == 2 and cause in run.stderr, "bad options are named")
     run = subprocess.run([program, torus, "--evaluator", "opengl", "--limit", "--scheme",
