@@ -32,7 +32,7 @@ enum class SchemeType {
 /// - TriHex is one step of the scheme of that name, with the same limits.
 /// - Truncate cuts the corners off: a face of n sides becomes one of 2n, a vertex the polygon of the
 ///   points beside it on its edges.  Of triangles it makes hexagons.  It takes what the hexagonal
-///   scheme takes: boundaries, creases, corners and face-varying data.  ComputeTruncateWeight has
+///   scheme takes: boundaries, creases, corners and face-varying data.  ComputeTruncateMask has
 ///   its masks, INDEXING.md its numbering.
 enum class FirstStep {
     None,    ///< level 1 is made as those behind it

@@ -83,8 +83,18 @@ void ComputeTriHexMask(int n, double *weights) {
     weights[0] = weights[1] = (n + 1) / (3.0 * n);
 }
 
-double ComputeTruncateWeight(int numFaces) {
-    return std::min(0.5, double((4 - 2 * cosOfTurn(1, numFaces)) / 9));
+TruncateMask ComputeTruncateMask(int numFaces) {
+    constexpr int kMinFitted = 3;
+    constexpr TruncateMask kFitted[] = {
+        {0, 27 / 64.0, 10 / 64.0},      {1 / 32.0, 12 / 32.0, 7 / 32.0},
+        {1 / 14.0, 5 / 14.0, 3 / 14.0}, {1 / 6.0, 1 / 3.0, 1 / 6.0},
+        {4 / 16.0, 5 / 16.0, 2 / 16.0}, {20 / 64.0, 19 / 64.0, 6 / 64.0},
+    };
+    if (numFaces >= kMinFitted && numFaces <= kMaxTruncatedAround) {
+        return kFitted[numFaces - kMinFitted];
+    }
+    double const beside = std::min(0.5, double((4 - 2 * cosOfTurn(1, numFaces)) / 9));
+    return {1 - 2 * beside, beside, 0};
 }
 
 double ComputeSectorShrink(FaceMask mask, double sectorSize) {

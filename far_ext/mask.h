@@ -57,14 +57,33 @@ OPENSUBDIVHEX_API void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation in
 /// symmetric and reproduce linear functions this is the smoothest.
 OPENSUBDIVHEX_API void ComputeTriHexMask(int n, double *weights);
 
-/// \brief Weight b of FirstStep::Truncate beside a vertex V with \p numFaces faces: the vertex on the
-/// edge between faces with the centroids G and G' is T = (1 - 2b) V + b (G + G').
+/// \brief The faces up to which the masks of FirstStep::Truncate take all faces around a vertex, and not
+/// those alone that an edge lies between.
+inline constexpr int kMaxTruncatedAround = 8;
+
+/// \brief The mask of FirstStep::Truncate beside a vertex V: the vertex on the edge between faces with
+/// the centroids G and G' is
+/// T = vertexWeight V + besideWeight (G + G') + aroundWeight (the mean of the centroids around V).
+struct TruncateMask {
+    double vertexWeight;
+    double besideWeight;
+    double aroundWeight;
+};
+
+/// \brief Returns the mask of FirstStep::Truncate beside a vertex with \p numFaces faces, k.
 ///
-///     b = min(1/2, (4 - 2 cos(2 pi/k))/9)
+/// | k            | 3     | 4     | 5    | 6   | 7     | 8     | more                    |
+/// |--------------|-------|-------|------|-----|-------|-------|-------------------------|
+/// | vertexWeight | 0     | 1/32  | 1/14 | 1/6 | 4/16  | 20/64 | 1 - 2 besideWeight      |
+/// | besideWeight | 27/64 | 12/32 | 5/14 | 1/3 | 5/16  | 19/64 | (4 - 2 cos(2 pi/k))/9   |
+/// | aroundWeight | 10/64 | 7/32  | 3/14 | 1/6 | 2/16  | 6/64  | 0                       |
 ///
-/// At k = 6 this is 1/3.  All new points of a regular mesh of triangles then have the same second
-/// moments, alike in all directions, so that quadratics are kept but for a constant.
-OPENSUBDIVHEX_API double ComputeTruncateWeight(int numFaces);
+/// At k = 6 all new points of a regular mesh of triangles have the same second moments, alike in all
+/// directions, so that quadratics are kept but for a constant; these are those of the points on sharp
+/// edges, 2/9 of the square of an edge.  The others are fits: at 3 and 4 to the tetrahedron and the
+/// octahedron, at 5, 7 and 8 to hulls of points on a sphere and the icosahedron, whose mean curvature
+/// they make as even as it gets.  Weights are not negative, linear functions are kept.
+OPENSUBDIVHEX_API TruncateMask ComputeTruncateMask(int numFaces);
 
 /// \brief The least sector that ComputeSectorShrink is for.
 inline constexpr double kMinShrunkSector = 3;

@@ -10,8 +10,9 @@ using Sdc::Crease;
 
 namespace {
 
-constexpr double kAlongEdge = 1.0 / 3;         // of W in T on a sharp edge
-constexpr double kAlongCrease = 1.0 / 9;       // of each neighbour in V' on a crease
+constexpr double kAlongEdge = 1.0 / 3;   // of W in T on a sharp edge
+constexpr double kAlongCrease = 1.0 / 9; // of each neighbour in V' on a crease
+constexpr double kOfAround = 1.0 / 6;    // of each neighbor, for what faces around V would have
 constexpr double kOfHexagonalCrease = 1.0 / 8; // in SharpVertex, where both edges are A edges
 
 bool isBorder(Level const &level, Index edge) {
@@ -73,14 +74,10 @@ auto TruncationMask::getShares(Index vert, SharpVertex const *sharp) const -> Ru
     return isFree ? RuleShares{0, crease, smooth} : RuleShares{smooth, crease, 0};
 }
 
-// The weight b on the smooth edge along which a face begins to run in a corner of the vertex.
-double TruncationMask::getWeight(Index vert, Index corner) const {
-    RuleShares const shares = getShares(vert, _parent.FindSharpVertex(vert));
-    int const numFaces = _parent.GetNumVertexFaces(vert);
-    if (shares.smooth == 1) {
-        return ComputeTruncateWeight(numFaces);
-    }
-    // Faces are counted to both sides of the edge, up to sharp ones or all around.
+// The number of faces that an edge counts as lying between at a vertex, where a face begins to run
+// along it in a corner: those of a sector and of its mirror image.
+int TruncationMask::countSector(Index corner) const {
+    // They are counted to both sides of the edge, up to sharp ones or all around.
     Index const edge = _parent.faceEdges[corner];
     int count = 0;
     auto const isLast = [&](Index bound) {
@@ -95,24 +92,51 @@ double TruncationMask::getWeight(Index vert, Index corner) const {
         in = _parent.GetPrevCorner(at.face, at.corner);
     }
     Index const lastBound = _parent.faceEdges[in];
-    if (lastBound == edge) {
-        return ComputeTruncateWeight(count);
+    bool isDart = lastBound == edge;
+    if (!isDart) {
+        Index out = corner;
+        do {
+            at = getOtherSide(_parent, out);
+            out = _parent.GetNextCorner(at.face, at.corner);
+        } while (!isLast(_parent.faceEdges[out]));
+        isDart = _parent.faceEdges[out] == lastBound;
     }
-    Index out = corner;
-    do {
-        at = getOtherSide(_parent, out);
-        out = _parent.GetNextCorner(at.face, at.corner);
-    } while (!isLast(_parent.faceEdges[out]));
-    bool const isDart = _parent.faceEdges[out] == lastBound;
-    double const ofSector = ComputeTruncateWeight(isDart ? count : 2 * count);
-    return shares.smooth * ComputeTruncateWeight(numFaces) + (1 - shares.smooth) * ofSector;
+    return isDart ? count : 2 * count;
+}
+
+// What a vertex and those around it have of the centroids in the mask on the edge that starts in a
+// corner of it; each source once where all faces are triangles.
+void TruncationMask::addCentroids(Index vert, Index corner, TruncateMask const &mask,
+                                  Sources &sources) const {
+    FaceCorner const across = getOtherSide(_parent, corner);
+    Index const beside[] = {corner, _parent.GetNextCorner(across.face, across.corner)};
+    Index const first = _parent.vertFirstFace[vert];
+    int const numFaces = _parent.GetNumVertexFaces(vert);
+    // Of each corner of a face at the vertex.
+    auto const getWeight = [&](FaceCorner const &at) {
+        bool const isBeside = at.corner == beside[0] || at.corner == beside[1];
+        return (mask.aroundWeight / numFaces + (isBeside ? mask.besideWeight : 0)) /
+               _parent.GetFaceSize(at.face);
+    };
+    double own = mask.vertexWeight;
+    for (Index k = first; k < first + numFaces; ++k) {
+        FaceCorner const at = {_parent.vertFaces[k], _parent.GetVertexCorner(k)};
+        double const weight = getWeight(at);
+        own += weight;
+        FaceCorner next = getOtherSide(_parent, at.corner);
+        next.corner = _parent.GetNextCorner(next.face, next.corner);
+        Index const end = _parent.GetPrevCorner(at.face, at.corner);
+        Index source = _parent.GetNextCorner(at.face, at.corner);
+        sources.Add(_parent.faceVerts[source], weight + getWeight(next));
+        for (source = _parent.GetNextCorner(at.face, source); source != end;
+             source = _parent.GetNextCorner(at.face, source)) {
+            sources.Add(_parent.faceVerts[source], weight);
+        }
+    }
+    sources.Add(vert, own);
 }
 
 void TruncationMask::addEdgeVertex(std::size_t end, Sources &sources) const {
-    auto const add = [&](Index vert, double weight) {
-        sources.verts.push_back(vert);
-        sources.weights.push_back(weight);
-    };
     Index const edge = Index(end / 2);
     int const side = int(end % 2);
     Index const vert = _parent.edgeVerts[edge][side];
@@ -120,68 +144,98 @@ void TruncationMask::addEdgeVertex(std::size_t end, Sources &sources) const {
     bool const isLinear = _interpolation == Interpolation::Varying;
     double const sharp = isLinear ? 1 : getSharpShare(_parent, edge);
     if (sharp == 1) {
-        add(vert, 1 - kAlongEdge);
-        add(other, kAlongEdge);
+        sources.Add(vert, 1 - kAlongEdge);
+        sources.Add(other, kAlongEdge);
         return;
     }
-    double const b = (1 - sharp) * getWeight(vert, _parent.GetSideCorner(edge, side));
+    Index const corner = _parent.GetSideCorner(edge, side);
+    SharpVertex const *const sharpVertex = _parent.FindSharpVertex(vert);
+    RuleShares const shares = getShares(vert, sharpVertex);
+    TruncateMask mask = ComputeTruncateMask(_parent.GetNumVertexFaces(vert));
+    if (shares.smooth != 1) {
+        TruncateMask const ofSector = ComputeTruncateMask(countSector(corner));
+        mask.besideWeight =
+            shares.smooth * mask.besideWeight + (1 - shares.smooth) * ofSector.besideWeight;
+        mask.aroundWeight *= shares.smooth;
+        double const ofLine = addAlongLine(
+            vert, sharpVertex, shares, (1 - sharp) * ofSector.aroundWeight * kOfAround, sources);
+        mask.vertexWeight = 1 - 2 * mask.besideWeight - mask.aroundWeight - ofLine / (1 - sharp);
+    }
+    mask.vertexWeight = sharp * (1 - kAlongEdge) + (1 - sharp) * mask.vertexWeight;
+    mask.besideWeight *= 1 - sharp;
+    mask.aroundWeight *= 1 - sharp;
+    if (mask.aroundWeight > 0) {
+        addCentroids(vert, corner, mask, sources);
+        if (sharp > 0) {
+            sources.Add(other, sharp * kAlongEdge);
+        }
+        return;
+    }
     double ofFaces = 0; // that of a vertex which both faces have
     for (int i : {0, 1}) {
-        ofFaces += b / _parent.GetFaceSize(_parent.edgeFaces[edge][i]);
+        ofFaces += mask.besideWeight / _parent.GetFaceSize(_parent.edgeFaces[edge][i]);
     }
-    add(vert, sharp * (1 - kAlongEdge) + (1 - sharp) - 2 * b + ofFaces);
-    add(other, sharp * kAlongEdge + ofFaces);
+    sources.Add(vert, mask.vertexWeight + ofFaces);
+    sources.Add(other, sharp * kAlongEdge + ofFaces);
     for (int i : {0, 1}) {
         Index const face = _parent.edgeFaces[edge][i];
         Index const start = _parent.GetSideCorner(edge, i);
         Index const last = _parent.GetNextCorner(face, start);
         for (Index at = _parent.GetNextCorner(face, last); at != start;
              at = _parent.GetNextCorner(face, at)) {
-            add(_parent.faceVerts[at], b / _parent.GetFaceSize(face));
+            sources.Add(_parent.faceVerts[at], mask.besideWeight / _parent.GetFaceSize(face));
         }
     }
 }
 
-void TruncationMask::addVVertex(Index vert, Sources &sources) const {
-    int const numFaces = _parent.GetNumVertexFaces(vert);
-    if (_interpolation == Interpolation::Varying || numFaces == 0) {
-        sources.verts.push_back(vert);
-        sources.weights.push_back(1);
-        return;
-    }
-    double rest = 1;
-    auto const add = [&](Index source, double weight) {
-        sources.verts.push_back(source);
-        sources.weights.push_back(weight);
-        rest -= weight;
+// The neighbors of a vertex along the crease or border that it is on, each with a weight by the shares
+// of these rules.  Returns the sum of what is added.
+double TruncationMask::addAlongLine(Index vert, SharpVertex const *sharp, RuleShares const &shares,
+                                    double weight, Sources &sources) const {
+    double sum = 0;
+    auto const add = [&](Index neighbor, double ofNeighbor) {
+        sources.Add(neighbor, ofNeighbor);
+        sum += ofNeighbor;
     };
-    // Neighbors come first, so that it does not matter for the sum which of them is left and right.
-    SharpVertex const *const sharp = _parent.FindSharpVertex(vert);
-    RuleShares const shares = getShares(vert, sharp);
-    if (shares.crease > 0) {
+    if (shares.crease > 0 && weight > 0) {
         for (Index neighbor : sharp->neighbors) {
-            add(neighbor, shares.crease * kAlongCrease);
+            add(neighbor, shares.crease * weight);
         }
     }
-    if (shares.border > 0) {
+    if (shares.border > 0 && weight > 0) {
         Index const first = _parent.vertFirstEdge[vert];
         Index const last = _parent.vertFirstEdge[vert + 1] - 1;
         Far::LocalIndex const *const locals = _parent.GetVertexEdgeLocals(vert);
         for (Index i : {first, last}) {
             add(_parent.edgeVerts[_parent.vertEdges[i]][1 - locals[i - first]],
-                shares.border * kAlongCrease);
+                shares.border * weight);
         }
     }
+    return sum;
+}
+
+void TruncationMask::addVVertex(Index vert, Sources &sources) const {
+    int const numFaces = _parent.GetNumVertexFaces(vert);
+    if (_interpolation == Interpolation::Varying || numFaces == 0) {
+        sources.Add(vert, 1);
+        return;
+    }
+    SharpVertex const *const sharp = _parent.FindSharpVertex(vert);
+    RuleShares const shares = getShares(vert, sharp);
+    // Neighbors come first, so that it does not matter for the sum which of them is left and right.
+    double rest = 1 - addAlongLine(vert, sharp, shares, kAlongCrease, sources);
     if (shares.smooth > 0) {
-        double const ofFace = shares.smooth * 2 * ComputeTruncateWeight(numFaces) / numFaces;
+        double const ofFaces = 1 - ComputeTruncateMask(numFaces).vertexWeight;
+        double const ofFace = shares.smooth * ofFaces / numFaces;
         for (Index face : _parent.GetVertexFaces(vert)) {
             for (Index source : _parent.GetFaceVertices(face)) {
-                add(source, ofFace / _parent.GetFaceSize(face));
+                double const weight = ofFace / _parent.GetFaceSize(face);
+                sources.Add(source, weight);
+                rest -= weight;
             }
         }
     }
-    sources.verts.push_back(vert);
-    sources.weights.push_back(rest);
+    sources.Add(vert, rest);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -22,14 +22,14 @@ Far::Index GetEdgeEndVertex(Refinement const &truncation, std::size_t end);
 
 /// \brief The masks of a truncation: the sources of each vertex that it makes, with their weights.
 ///
-/// Beside the vertex V of an edge V-W, between faces with the centroids G and G',
-/// T = (1 - 2b) V + b (G + G'), with b of ComputeTruncateWeight for the faces around V.  On a sharp
-/// edge T = (2 V + W)/3, and along a crease V' = (7 V + V_l + V_r)/9: new points have the second
+/// Beside a vertex the mask is that of ComputeTruncateMask for the faces around it.  On a sharp edge
+/// V-W it is T = (2 V + W)/3, and along a crease V' = (7 V + V_l + V_r)/9: new points have the second
 /// moment 2/9 along it, as all have in a regular mesh of triangles.  Between two sharp edges of V
-/// there are as many faces as beside an interior vertex with twice as many.  A free boundary follows
-/// the rules of a sharp one here.  Where a vertex that is cut is smooth, V' is the mean of what the T
-/// around it would be.  Rules of semi-sharp edges and vertices are blended as in the hexagonal step.
-/// Varying data are linear: T = (2 V + W)/3 and V' = V.
+/// there are as many faces as beside an interior vertex with twice as many; what the mean of all
+/// their centroids would bring is what it brings along the line, (V_l + V_r - 2 V)/6.  A free
+/// boundary follows the rules of a sharp one here.  Where a vertex that is cut is smooth, V' is the
+/// mean of what the T around it would be.  Rules of semi-sharp edges and vertices are blended as in
+/// the hexagonal step.  Varying data are linear: T = (2 V + W)/3 and V' = V.
 class OPENSUBDIVHEX_API TruncationMask {
 public:
     using Index = Far::Index;
@@ -38,6 +38,11 @@ public:
     struct Sources {
         std::vector<Index> verts;
         std::vector<double> weights;
+
+        void Add(Index vert, double weight) {
+            verts.push_back(vert);
+            weights.push_back(weight);
+        }
     };
 
     /// Refers to \p truncation and its parent.
@@ -55,7 +60,10 @@ private:
     };
 
     RuleShares getShares(Index vert, SharpVertex const *sharp) const;
-    double getWeight(Index vert, Index corner) const;
+    int countSector(Index corner) const;
+    void addCentroids(Index vert, Index corner, TruncateMask const &mask, Sources &sources) const;
+    double addAlongLine(Index vert, SharpVertex const *sharp, RuleShares const &shares,
+                        double weight, Sources &sources) const;
     void addEdgeVertex(std::size_t end, Sources &sources) const;
     void addVVertex(Index vert, Sources &sources) const;
 

@@ -317,4 +317,41 @@ TEST(Mask, SectorShrink) {
     }
 }
 
+TEST(Mask, Truncation) {
+    for (int k = 2; k <= 64; ++k) {
+        SCOPED_TRACE(k);
+        FarExt::TruncateMask const mask = FarExt::ComputeTruncateMask(k);
+        EXPECT_NEAR(mask.vertexWeight + 2 * mask.besideWeight + mask.aroundWeight, 1, 1e-15);
+        EXPECT_GE(mask.vertexWeight, 0);
+        EXPECT_GT(mask.besideWeight, 0);
+        EXPECT_EQ(mask.aroundWeight > 0, k >= 3 && k <= FarExt::kMaxTruncatedAround);
+    }
+}
+
+// New points of regular triangles all have the same second moments, 2/9 in each direction.
+TEST(Mask, TruncatedTrianglesKeepQuadratics) {
+    FarExt::TruncateMask const mask = FarExt::ComputeTruncateMask(6);
+    double sum[2] = {0, 0};
+    double square[3] = {0, 0, 0};
+    for (int i = 0; i < 6; ++i) {
+        // The edge in question goes to (1, 0), between faces 0 and 5.
+        double const angle = (2 * i + 1) * kPi / 6;
+        double const weight = mask.aroundWeight / 6 + (i % 5 == 0 ? mask.besideWeight : 0);
+        for (double const to : {angle - kPi / 6, angle + kPi / 6}) {
+            double const x = std::cos(to);
+            double const y = std::sin(to);
+            sum[0] += weight / 3 * x;
+            sum[1] += weight / 3 * y;
+            square[0] += weight / 3 * x * x;
+            square[1] += weight / 3 * x * y;
+            square[2] += weight / 3 * y * y;
+        }
+    }
+    EXPECT_NEAR(sum[0], 1 / 3.0, 1e-15);
+    EXPECT_NEAR(sum[1], 0, 1e-15);
+    EXPECT_NEAR(square[0] - 1 / 9.0, 2 / 9.0, 1e-15);
+    EXPECT_NEAR(square[1], 0, 1e-15);
+    EXPECT_NEAR(square[2], 2 / 9.0, 1e-15);
+}
+
 } // namespace OpenSubdivHex::Regression

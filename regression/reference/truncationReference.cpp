@@ -245,9 +245,31 @@ private:
     std::map<Key, Edge> _edges;
 };
 
-/// b of section "truncate first": of a vertex with as many faces.
-double weightOf(int numFaces) {
-    return std::min(0.5, (4 - 2 * std::cos(2 * std::acos(-1.0) / numFaces)) / 9);
+/// T = v V + b (G + G') + c (the mean of the centroids around V), of a vertex with as many faces; and
+/// what a vertex on a line has of V_l - 2 V + V_r.
+struct Weights {
+    double v, b, c;
+    double line = 0;
+};
+
+Weights weightsOf(int numFaces) {
+    switch (numFaces) {
+    case 3:
+        return {0, 27.0 / 64, 5.0 / 32};
+    case 4:
+        return {1.0 / 32, 3.0 / 8, 7.0 / 32};
+    case 5:
+        return {1.0 / 14, 5.0 / 14, 3.0 / 14};
+    case 6:
+        return {1.0 / 6, 1.0 / 3, 1.0 / 6};
+    case 7:
+        return {1.0 / 4, 5.0 / 16, 1.0 / 8};
+    case 8:
+        return {5.0 / 16, 19.0 / 64, 3.0 / 32};
+    default:
+        double const b = std::min(0.5, (4 - 2 * std::cos(2 * std::acos(-1.0) / numFaces)) / 9);
+        return {1 - 2 * b, b, 0};
+    }
 }
 
 class TruncatedValues {
@@ -288,9 +310,11 @@ public:
         if (_isVarying || edge.sides.size() == 1 || edge.sharpness >= 1) {
             return onLine;
         }
-        double const b = findWeight(origin.vertex, side);
-        Point const smooth = (1 - 2 * b) * vertex +
-                             b * (centroid(edge.sides[0].face) + centroid(edge.sides[1].face));
+        Weights const weights = findWeights(origin.vertex, side);
+        Point const beside = centroid(edge.sides[0].face) + centroid(edge.sides[1].face);
+        Point const smooth = weights.v * vertex + weights.b * beside +
+                             weights.c * meanAround(origin.vertex) +
+                             weights.line * bendAlongLine(origin.vertex);
         double const sharp = std::max(0.0f, edge.sharpness);
         return sharp * onLine + (1 - sharp) * smooth;
     }
@@ -327,13 +351,32 @@ private:
         if (std::vector<int> const ends = boundaryEnds(v); !ends.empty()) {
             return curvePoint(v, ends[0], ends[1]);
         }
-        std::vector<Side> const &corners = _mesh.vertices[v].corners;
-        double const b = weightOf(int(corners.size()));
-        Point mean = Point::Zero(_values.cols());
-        for (Side corner : corners) {
-            mean += centroid(corner.face) / double(corners.size());
+        double const own = weightsOf(int(_mesh.vertices[v].corners.size())).v;
+        return own * _values.row(v) + (1 - own) * meanAround(v);
+    }
+
+    /// V_l - 2 V + V_r by the shares of the rules that know such neighbors.
+    Point bendAlongLine(int v) const {
+        Point result = Point::Zero(_values.cols());
+        std::vector<int> const ends = boundaryEnds(v);
+        for (RuleShare const &share : ruleShares(_mesh, v)) {
+            Point const twice = 2 * _values.row(v);
+            if (share.rule == TaggedRule::Crease) {
+                result += share.weight * (_values.row(share.lines[0].neighbor) +
+                                          _values.row(share.lines[1].neighbor) - twice);
+            } else if (share.rule != TaggedRule::Corner && !ends.empty()) {
+                result += share.weight * (_values.row(ends[0]) + _values.row(ends[1]) - twice);
+            }
         }
-        return (1 - 2 * b) * _values.row(v) + 2 * b * mean;
+        return result;
+    }
+
+    Point meanAround(int v) const {
+        Point sum = Point::Zero(_values.cols());
+        for (Side corner : _mesh.vertices[v].corners) {
+            sum += centroid(corner.face);
+        }
+        return sum / double(_mesh.vertices[v].corners.size());
     }
 
     double smoothShare(int v) const {
@@ -346,10 +389,10 @@ private:
         return sum;
     }
 
-    /// b on the edge that begins in a corner of a vertex.
-    double findWeight(int v, Side corner) const {
+    /// Those on the edge that begins in a corner of a vertex.
+    Weights findWeights(int v, Side corner) const {
         double const smooth = smoothShare(v);
-        double const whole = weightOf(int(_mesh.vertices[v].corners.size()));
+        Weights const whole = weightsOf(int(_mesh.vertices[v].corners.size()));
         for (Fan const &fan : findFans(_mesh, v)) {
             int const size = int(fan.corners.size());
             int at = 0;
@@ -377,8 +420,9 @@ private:
             }
             int const count = end - begin;
             bool const isAllAround = fan.isClosed && count >= size;
-            double const own = weightOf(isAllAround ? size : 2 * count);
-            return smooth * whole + (1 - smooth) * own;
+            Weights const mirrored = weightsOf(isAllAround ? size : 2 * count);
+            double const b = smooth * whole.b + (1 - smooth) * mirrored.b;
+            return {1 - 2 * b - smooth * whole.c, b, smooth * whole.c, mirrored.c / 6};
         }
         return whole;
     }
