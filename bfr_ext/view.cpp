@@ -147,30 +147,63 @@ private:
         }
     }
 
-    CellVisibility find(CellValues const &values) const {
+    CellVisibility find(CellValues const &values) {
         if (!_options.IsCulling()) {
             return CellVisibility::Visible;
         }
         if (_geometry.IsOutside(values.GetValues())) {
             return CellVisibility::Outside;
         }
-        return isBackFacing(values) ? CellVisibility::BackFacing : CellVisibility::Visible;
+        return isBackFacing(values, kStepsAhead) ? CellVisibility::BackFacing
+                                                 : CellVisibility::Visible;
     }
 
-    // With a and b the slopes, and t what derivatives may differ from them by, Du x Dv differs from
-    // n = a x b by at most e = t (|a| + |b|) + t^2.  With c the mean of the points and r how far they are
-    // from it, (Du x Dv) . (eye - p) is at most n . (eye - c) - n . (p - c) + e (|eye - c| + r).
-    bool isBackFacing(CellValues const &values) const {
+    // Whether the cell faces away, or all cells do that some steps make of it.
+    bool isBackFacing(CellValues const &values, int numSteps) {
+        if (areSlopesBackFacing(values)) {
+            return true;
+        }
+        if (numSteps == 0 || !areCornersBackFacing(values)) {
+            return false;
+        }
+        std::vector<CellValues> &children = _partsAhead[std::size_t(numSteps) - 1];
+        std::size_t const numChildren = values.GetType().GetChildren().size();
+        children.resize(std::max(children.size(), numChildren));
+        for (std::size_t i = 0; i < numChildren; ++i) {
+            children[i].SetChild(values, int(i));
+            if (!isBackFacing(children[i], numSteps - 1)) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    // Whether the polygon of the corners does, which others of the surface are likely to do as well then.
+    bool areCornersBackFacing(CellValues const &values) const {
+        Vector3 first;
+        Vector3 last;
+        Vector3 corner;
+        Vector3 area = {};
+        values.EvaluateCorner(0, first.data());
+        values.EvaluateCorner(1, last.data());
+        for (int i = 2; i < values.GetType().GetNumCorners(); ++i, last = corner) {
+            values.EvaluateCorner(i, corner.data());
+            Vector3 const part = Cross(Subtract(last, first), Subtract(corner, first));
+            area = {area[0] + part[0], area[1] + part[1], area[2] + part[2]};
+        }
+        return Dot(area, Subtract(_geometry.GetEye(), first)) < 0;
+    }
+
+    // With m the unit normal of the slopes, all normals are m + s w, with w of length 1 at most in their
+    // plane.  With c the mean of the points and r how far they are from it, (m + s w) . (eye - p) is at
+    // most m . (eye - c) - m . (p - c) + s (|part of eye - c in the plane| + r).
+    bool areSlopesBackFacing(CellValues const &values) const {
         CellBounds const &bounds = CellBounds::Find(values.GetType());
         if (!bounds.HasSlopes()) {
             return false;
         }
         std::vector<double> const &points = values.GetValues();
-        CellBounds::Slopes const slopes = bounds.GetSlopes(points);
-        Vector3 const normal = Cross(slopes.along, slopes.across);
-        double const tolerance =
-            slopes.tolerance * (GetLength(slopes.along) + GetLength(slopes.across)) +
-            slopes.tolerance * slopes.tolerance;
+        CellBounds::Normals const normals = bounds.GetNormals(points);
         Vector3 center = {};
         for (std::size_t i = 0; i < points.size(); ++i) {
             center[i % 3] += 3 * points[i] / double(points.size());
@@ -180,10 +213,12 @@ private:
         for (std::size_t i = 0; i < points.size(); i += 3) {
             Vector3 const d = Subtract(ToVector3(&points[i]), center);
             radius = std::max(radius, GetLength(d));
-            depth = std::max(depth, -Dot(normal, d));
+            depth = std::max(depth, -Dot(normals.middle, d));
         }
         Vector3 const toEye = Subtract(_geometry.GetEye(), center);
-        return Dot(normal, toEye) + depth + tolerance * (GetLength(toEye) + radius) < 0;
+        double const height = Dot(normals.middle, toEye);
+        double const across = GetLength(Subtract(toEye, Scale(normals.middle, height)));
+        return height + depth + normals.spread * (across + radius) < 0;
     }
 
     bool isToRefine(CellValues const &values, std::vector<CellValues> const &children,
@@ -207,6 +242,9 @@ private:
                !_flatness.IsFlat(corners, children, fraction * _options.GetFlatness() / pixels);
     }
 
+    // How many steps on cells are looked at for whether they face away.
+    static constexpr int kStepsAhead = 4;
+
     ViewGeometry const &_geometry;
     View::Options const &_options;
     CellTree const *const _previous;
@@ -214,6 +252,7 @@ private:
     std::vector<CellVisibility> *const _visibility;
     std::vector<std::vector<CellValues>>
         _cells; // by level: the children of the cell that is looked at
+    std::array<std::vector<CellValues>, kStepsAhead> _partsAhead;
     Flatness _flatness;
 };
 

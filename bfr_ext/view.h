@@ -51,8 +51,9 @@ enum class CellVisibility : unsigned char {
 /// outer side of one of the planes through its sides, or behind the eye: so is their hull, and with it
 /// the surface.  A cell faces away if (Du x Dv) . (eye - p) < 0 for all its points p.  That is shown
 /// where the lattice is regular and derivatives are bounded by the second differences of control
-/// points, with FaceMask::Smooth and Cosine; a cell at a base vertex or base face that is no hexagon, at
-/// a feature, and with FaceMask::Average any cell, counts as visible.
+/// points, with FaceMask::Smooth and Cosine, of the cell or of all cells some steps on; a cell at a base
+/// vertex or base face that is no hexagon, at a feature, and with FaceMask::Average any cell, counts as
+/// visible.
 ///
 /// **Animation.**  Given the tree of the last frame, a cell that is refined there stays refined until the
 /// error is below a fraction of what is allowed, so that nothing flickers.

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellBounds.h"
 
+#include "vector3.h"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -15,6 +18,7 @@ using Matrix = std::vector<std::vector<double>>; // by row
 // Steps that weights and rests are looked at behind.
 constexpr int kStepsOfWeights = 2;
 constexpr int kStepsOfRests = 5;
+constexpr int kRoundsOfBounds = 4;
 
 // A half cell as it is in the regular lattice: coordinates that steps turn and make larger by 2.
 Pair toLattice(Pair const &p) { return {p[0], p[1] * std::sqrt(0.75)}; }
@@ -193,38 +197,68 @@ CellBounds::CellBounds(CellType const &type) {
         slopes[0].push_back((yy * d[0] - xy * d[1]) / determinant);
         slopes[1].push_back((xx * d[1] - xy * d[0]) / determinant);
     }
+    auto const applyToPlaces = [&](std::vector<double> const &row) {
+        Pair sum = {0, 0};
+        for (std::size_t i = 0; i < size; ++i) {
+            sum[0] += row[i] * (_places[i][0] - _center[0]);
+            sum[1] += row[i] * (_places[i][1] - _center[1]);
+        }
+        return sum;
+    };
     double largestRest = 0;
     double largestChange = 0;
+    struct Descendant {
+        std::vector<double> changes; // of slopes, by point
+        Matrix rests;                // absolute values
+    };
+    std::vector<Descendant> descendants;
     std::vector<double> rests(size);
     std::vector<double> changes(size);
-    forDescendants(type, makeIdentity(size), kStepsOfRests, path,
-                   [&](Matrix const &rows, std::vector<std::size_t> const &children) {
-                       // What the child's linear function is, in terms of the first points.
-                       std::vector<double> mean(size);
-                       std::vector<double> childSlopes[2] = {mean, mean};
-                       for (std::size_t k = 0; k < size; ++k) {
-                           for (std::size_t i = 0; i < size; ++i) {
-                               mean[i] += rows[k][i] / double(size);
-                               childSlopes[0][i] += slopes[0][k] * rows[k][i];
-                               childSlopes[1][i] += slopes[1][k] * rows[k][i];
-                           }
-                       }
-                       for (std::size_t k = 0; k < size; ++k) {
-                           std::vector<double> rest(size);
-                           for (std::size_t i = 0; i < size; ++i) {
-                               rest[i] = rows[k][i] - mean[i] -
-                                         (_places[k][0] - _center[0]) * childSlopes[0][i] -
-                                         (_places[k][1] - _center[1]) * childSlopes[1][i];
-                           }
-                           largestRest = std::max(largestRest, sumAbsolute(rest));
-                           takeLargest(rest, rests);
-                       }
-                       // Coordinates are turned and 2^k times as large.
-                       double const scale = std::ldexp(1.0, int(children.size()));
-                       largestChange =
-                           std::max(largestChange, scale * std::hypot(sumAbsolute(childSlopes[0]),
-                                                                      sumAbsolute(childSlopes[1])));
-                   });
+    forDescendants(
+        type, makeIdentity(size), kStepsOfRests, path,
+        [&](Matrix const &rows, std::vector<std::size_t> const &children) {
+            // What the child's linear function is, in terms of the first points.
+            std::vector<double> mean(size);
+            std::vector<double> childSlopes[2] = {mean, mean};
+            for (std::size_t k = 0; k < size; ++k) {
+                for (std::size_t i = 0; i < size; ++i) {
+                    mean[i] += rows[k][i] / double(size);
+                    childSlopes[0][i] += slopes[0][k] * rows[k][i];
+                    childSlopes[1][i] += slopes[1][k] * rows[k][i];
+                }
+            }
+            Descendant descendant{std::vector<double>(size), {}};
+            for (std::size_t k = 0; k < size; ++k) {
+                std::vector<double> rest(size);
+                for (std::size_t i = 0; i < size; ++i) {
+                    rest[i] = rows[k][i] - mean[i] -
+                              (_places[k][0] - _center[0]) * childSlopes[0][i] -
+                              (_places[k][1] - _center[1]) * childSlopes[1][i];
+                }
+                largestRest = std::max(largestRest, sumAbsolute(rest));
+                takeLargest(rest, rests);
+                std::transform(rest.begin(), rest.end(), rest.begin(),
+                               [](double a) { return std::abs(a); });
+                descendant.rests.push_back(std::move(rest));
+            }
+            // What they are of points without a slope.  Coordinates are turned and 2^k times
+            // as large.
+            Pair const ofSlopes[2] = {applyToPlaces(childSlopes[0]), applyToPlaces(childSlopes[1])};
+            double const scale = std::ldexp(1.0, int(children.size()));
+            double sums[2] = {};
+            for (std::size_t i = 0; i < size; ++i) {
+                double change[2];
+                for (std::size_t j = 0; j < 2; ++j) {
+                    change[j] = childSlopes[j][i] - ofSlopes[j][0] * slopes[0][i] -
+                                ofSlopes[j][1] * slopes[1][i];
+                    sums[j] += std::abs(change[j]);
+                }
+                descendant.changes[i] = scale * std::hypot(change[0], change[1]);
+                changes[i] = std::max(changes[i], descendant.changes[i]);
+            }
+            largestChange = std::max(largestChange, scale * std::hypot(sums[0], sums[1]));
+            descendants.push_back(std::move(descendant));
+        });
     double const growth = std::ldexp(largestRest, kStepsOfRests);
     if (growth < 1) {
         _slopes[0] = std::move(slopes[0]);
@@ -233,6 +267,23 @@ CellBounds::CellBounds(CellType const &type) {
         _slopeChanges = std::move(changes);
         for (std::size_t i = 0; i < size; ++i) {
             _slopeChanges[i] += further * rests[i];
+        }
+        // What bounds changes in all cells bounds those behind the first steps, each by its own rests.
+        for (int round = 0; round < kRoundsOfBounds; ++round) {
+            std::vector<double> bounds(size);
+            for (Descendant const &descendant : descendants) {
+                std::vector<double> sum(size);
+                for (std::size_t k = 0; k < size; ++k) {
+                    for (std::size_t i = 0; i < size; ++i) {
+                        sum[i] += _slopeChanges[k] * descendant.rests[k][i];
+                    }
+                }
+                for (std::size_t i = 0; i < size; ++i) {
+                    bounds[i] = std::max(bounds[i],
+                                         descendant.changes[i] + std::ldexp(sum[i], kStepsOfRests));
+                }
+            }
+            _slopeChanges = std::move(bounds);
         }
     }
 }
@@ -256,29 +307,47 @@ CellBounds::Range CellBounds::GetRange(std::vector<double> const &numbers) const
     return {sum(order.begin(), order.end()), sum(order.rbegin(), order.rend())};
 }
 
-CellBounds::Slopes CellBounds::GetSlopes(std::vector<double> const &values) const {
-    Slopes result = {{}, {}, 0};
-    std::array<double, 3> mean{};
+CellBounds::Normals CellBounds::GetNormals(std::vector<double> const &values) const {
+    Vector3 along = {};
+    Vector3 across = {};
+    Vector3 mean = {};
     std::size_t const size = _places.size();
     for (std::size_t i = 0; i < size; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
             double const value = values[3 * i + k];
             mean[k] += value / double(size);
-            result.along[k] += _slopes[0][i] * value;
-            result.across[k] += _slopes[1][i] * value;
+            along[k] += _slopes[0][i] * value;
+            across[k] += _slopes[1][i] * value;
         }
     }
+    Vector3 const area = Cross(along, across);
+    double const length = GetLength(area);
+    Normals const none = {{}, std::numeric_limits<double>::infinity()};
+    if (!(length > 0)) {
+        return none;
+    }
+    Vector3 const normal = Scale(area, 1 / length);
+    // The rests, in the plane of the slopes and out of it.
+    double changesIn = 0;
+    double changesOut = 0;
     for (std::size_t i = 0; i < size; ++i) {
-        double square = 0;
+        Vector3 rest;
         for (std::size_t k = 0; k < 3; ++k) {
-            double const rest = values[3 * i + k] - mean[k] -
-                                (_places[i][0] - _center[0]) * result.along[k] -
-                                (_places[i][1] - _center[1]) * result.across[k];
-            square += rest * rest;
+            rest[k] = values[3 * i + k] - mean[k] - (_places[i][0] - _center[0]) * along[k] -
+                      (_places[i][1] - _center[1]) * across[k];
         }
-        result.tolerance += _slopeChanges[i] * std::sqrt(square);
+        double const height = Dot(normal, rest);
+        changesOut += _slopeChanges[i] * std::abs(height);
+        changesIn += _slopeChanges[i] * GetLength(Subtract(rest, Scale(normal, height)));
     }
-    return result;
+    // The square of how much the slopes make a direction longer, at least, of a symmetric matrix.
+    double const alongAlong = Dot(along, along);
+    double const acrossAcross = Dot(across, across);
+    double const alongAcross = Dot(along, across);
+    double const leastSquare =
+        (alongAlong + acrossAcross - std::hypot(alongAlong - acrossAcross, 2 * alongAcross)) / 2;
+    double const least = std::sqrt(std::max(0.0, leastSquare)) - changesIn;
+    return least > 0 ? Normals{normal, changesOut / least} : none;
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -25,7 +25,8 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// and so on for each k further steps, as far as one goes.  Where 2^k g < 1, all of it is at most
 /// h |r| + s 2^k n |r| / (1 - 2^k g).  That bounds what the derivatives of the surface differ by from the
 /// slope: the surface differs from A by no more than the largest rest, and rests fall faster than
-/// lengths do, so that slopes tend to the derivatives.
+/// lengths do, so that slopes tend to the derivatives.  Once there is such a bound b |r|, those of the
+/// matrices of each of the cells are a closer one: |H r| + 2^k b |N r|, and so on.
 class CellBounds {
 public:
     explicit CellBounds(CellType const &type);
@@ -42,14 +43,20 @@ public:
 
     /// Whether derivatives are bounded.
     bool HasSlopes() const { return !_slopes[0].empty(); }
-    /// The slopes of the nearest linear function, along the long edge and from it into the cell, and by
-    /// how much derivatives in any direction may differ from it.  \p values: of points, 3 numbers each.
-    struct Slopes {
-        std::array<double, 3> along;
-        std::array<double, 3> across;
-        double tolerance;
+    /// \brief A unit vector, and the largest length of what normals of the surface have besides, in the
+    /// plane across from it, where they have length 1 along it; infinite where nothing is known.
+    struct Normals {
+        std::array<double, 3> middle;
+        double spread;
     };
-    Slopes GetSlopes(std::vector<double> const &values) const;
+    /// \brief The normals in the cell, as Du x Dv.
+    ///
+    /// The slopes of the nearest linear function span a plane.  By the parts of rests in it
+    /// derivatives change there: where it is by less than the slopes stretch any direction, they are not
+    /// turned over.  By the parts along the normal they leave it.
+    ///
+    /// \param values  of points, 3 numbers each
+    Normals GetNormals(std::vector<double> const &values) const;
 
 private:
     std::vector<double> _weights;      // by point

@@ -102,8 +102,9 @@ struct ForestMesh {
 /// How many random forests a shape gets: OPENSUBDIVHEX_TREES, or so many that small ones have some
 /// hundred trees.
 unsigned getNumRounds(Shape const &shape) {
+    constexpr int kDecimal = 10;
     char const *const more = std::getenv("OPENSUBDIVHEX_TREES");
-    return more ? unsigned(std::max(1, std::atoi(more)))
+    return more ? unsigned(std::max(1L, std::strtol(more, nullptr, kDecimal)))
                 : std::max(2U, 200 / unsigned(std::max(1, shape.GetNumFaces())));
 }
 

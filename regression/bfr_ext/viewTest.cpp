@@ -3,6 +3,7 @@
 // Trees of cells made for a view: how far facets are from the surface, and what is left out.
 #include "surfaceFixture.h"
 
+#include "bfr_ext/cell/cellBounds.h"
 #include "bfr_ext/cell/cellValues.h"
 #include "bfr_ext/cell/flatness.h"
 #include "bfr_ext/surfaceFactory.h"
@@ -410,6 +411,52 @@ TEST(View, NothingThatIsSeenIsCulled) {
               << " facing away\n";
     EXPECT_GT(numOutside, 1000);
     EXPECT_GT(numBackFacing, 100);
+}
+
+// Where points lie by chance, normals differ as much as they can.
+TEST(View, NormalsAreWithinTheirBounds) {
+    std::mt19937 random(17);
+    std::normal_distribution<double> normal;
+    for (auto const mask : {ReferenceMask::Smooth, ReferenceMask::Cosine}) {
+        Shape shape = MakeTiling(Tiling::Hexagons, 7, 7);
+        std::vector<double> const flat = shape.positions;
+        auto const refiner = makeRefiner(shape, mask);
+        double largest = 0;
+        int numCells = 0;
+        for (int round = 0; round < 40; ++round) {
+            double const amount = 0.002 * std::pow(1.15, round);
+            for (std::size_t i = 0; i < flat.size(); ++i) {
+                shape.positions[i] = flat[i] + amount * normal(random);
+            }
+            BaseCells cells(*refiner, shape.positions);
+            forDescendants(cells.Make(24), 2, [&](CellValues const &values) {
+                auto const &bounds = BfrExt::internal::CellBounds::Find(values.GetType());
+                if (!bounds.HasSlopes()) {
+                    return;
+                }
+                auto const normals = bounds.GetNormals(values.GetValues());
+                if (!std::isfinite(normals.spread)) {
+                    return;
+                }
+                ++numCells;
+                forDescendants(values, 4, [&](CellValues const &part) {
+                    for (int i = 0; i < part.GetType().GetNumCorners(); ++i) {
+                        SurfacePoint point;
+                        part.EvaluateCorner(i, point.du.data(), point.dv.data());
+                        Vector3 const found = GetNormal(point);
+                        double const height = dot(found, normals.middle);
+                        double const across =
+                            GetLength(Subtract(found, Scale(normals.middle, height)));
+                        ASSERT_LE(across, normals.spread * height);
+                        largest = std::max(largest, across / height / normals.spread);
+                    }
+                });
+            });
+        }
+        std::cout << numCells << " cells, where normals come to " << largest << " of the bound\n";
+        EXPECT_GT(numCells, 100);
+        EXPECT_GT(largest, 0.1);
+    }
 }
 
 TEST(View, WhatWasRefinedStaysSo) {
