@@ -65,9 +65,9 @@ inline constexpr int kMaxTruncatedAround = 8;
 /// the centroids G and G' is
 /// T = vertexWeight V + besideWeight (G + G') + aroundWeight (the mean of the centroids around V).
 struct TruncateMask {
-    double vertexWeight;
-    double besideWeight;
-    double aroundWeight;
+    double vertexWeight; ///< of V
+    double besideWeight; ///< of each of G and G'
+    double aroundWeight; ///< of the mean of the centroids of all faces of V
 };
 
 /// \brief Returns the mask of FirstStep::Truncate beside a vertex with \p numFaces faces, k.
