@@ -321,7 +321,7 @@ void RegularFaceRows::GetFaceSources(Level const &level, RegularFace const &face
     }
 }
 
-RegularFaces::RegularFaces(MeshLevels const &mesh, int level, bool hasOwnVertices)
+RegularFaces::RegularFaces(MeshLevels const &mesh, int level)
     : _mesh(mesh), _level(level), _levels(std::size_t(level) + 1) {
     // Vertices keep their index in hexagonal steps.
     int first = level;
@@ -330,14 +330,14 @@ RegularFaces::RegularFaces(MeshLevels const &mesh, int level, bool hasOwnVertice
     }
     Marks marks;
     std::vector<RegularFace> const none;
-    for (int i = first; i < (hasOwnVertices ? level + 1 : level); ++i) {
+    for (int i = first; i <= level; ++i) {
         Level const &ofFaces = mesh.levels[std::size_t(i)];
         Level const *const parent = i == first ? nullptr : &mesh.levels[std::size_t(i) - 1];
         std::vector<RegularFace> const &pFaces =
             parent ? _levels[std::size_t(i) - 1].fVertices.faces : none;
         marks = markRegular(ofFaces, parent, marks, pFaces);
         OfLevel &ofLevel = _levels[std::size_t(i)];
-        if (parent && hasOwnVertices) {
+        if (parent) {
             setFaces(i, findOwnFaces(ofFaces, marks, pFaces), parent->numVertices,
                      ofLevel.ownVertices);
         }

@@ -105,9 +105,7 @@ public:
     };
 
     /// Finds the faces of \p level, one for which CheckLimitLevel() is well, and of all before.
-    ///
-    /// \param hasOwnVertices  whether OfLevel::ownVertices are wanted, else there are none
-    RegularFaces(MeshLevels const &mesh, int level, bool hasOwnVertices = true);
+    RegularFaces(MeshLevels const &mesh, int level);
 
     /// \brief Finds the masks of all levels, and the rows that the other vertices of the level need:
     /// what GetOthers() lists.
