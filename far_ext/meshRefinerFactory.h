@@ -29,7 +29,12 @@ private:
     ~BaseTopology();
 
     /// The functions of the factory, in their order.
-    enum class Stage { Resize, Assign, AssignTags, AssignFaceVarying };
+    enum class Stage {
+        Resize,            ///< resizeComponentTopology()
+        Assign,            ///< assignComponentTopology()
+        AssignTags,        ///< assignComponentTags()
+        AssignFaceVarying, ///< assignFaceVaryingTopology()
+    };
 
     static char const *getName(Stage stage);
     void refuse(Status const &status);
