@@ -28,7 +28,7 @@ Status CheckScheme(HexSchemeOptions schemeOptions, Hierarchy const &base);
 
 Status SharpnessFailure(float sharpness, ComponentType component, Far::Index index,
                         std::string const &name);
-/// Of a vertex, an edge or a face, else a value.
+/// An index that is out of range: of a vertex, an edge or a face, as \p component says, else of a value.
 Status IndexFailure(Far::Index index, int count, ComponentType component, std::string const &name);
 
 /// A sharpness that is negative or not a number; \p getName() is called for it alone.

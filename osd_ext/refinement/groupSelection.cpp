@@ -4,7 +4,6 @@
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
-#include <cstdint>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
