@@ -12,6 +12,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_set>
 
@@ -127,6 +128,52 @@ private:
     std::map<std::vector<int>, std::list<Entry>::iterator> _places;
 };
 
+/// \brief Adds up what plans take in memory, each counted once, until it is more than there is.  Any
+/// number of threads may add to it, each by a Counter of its own.
+class PlanMemory {
+public:
+    explicit PlanMemory(std::size_t maxMemory) : _maxMemory(maxMemory) {}
+
+    /// Whether all plans that were added have room.
+    bool HasRoom() const { return _hasRoom; }
+
+    /// Adds the plans that it is told of, and remembers them, so that few have to be looked up together.
+    class Counter {
+    public:
+        explicit Counter(PlanMemory &memory) : _memory(memory) {}
+
+        void Add(std::vector<int> const &levels) {
+            if (levels == _last || !_memory.HasRoom()) {
+                return;
+            }
+            _last = levels;
+            if (_known.insert(levels).second) {
+                _memory.add(levels);
+            }
+        }
+
+    private:
+        PlanMemory &_memory;
+        std::vector<int> _last;
+        std::set<std::vector<int>> _known;
+    };
+
+private:
+    void add(std::vector<int> const &levels) {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        if (_known.insert(levels).second) {
+            _memory += PatchPlan::GetSizeOfMaking(levels);
+            _hasRoom = _memory <= _maxMemory;
+        }
+    }
+
+    std::size_t const _maxMemory;
+    std::size_t _memory = 0;
+    std::atomic<bool> _hasRoom{true};
+    std::mutex _mutex;
+    std::set<std::vector<int>> _known;
+};
+
 /// \brief A factory with a cache of its own, made anew when the cache has too many types.  Any number of
 /// threads may use it.
 class StreamTypes {
@@ -172,7 +219,7 @@ constexpr Far::Index kNumRangesWanted = 64;
 
 /// \brief Makes the patches of some faces one by one, and hands them out.
 template <typename REAL>
-class PatchStream<REAL>::Worker {
+class alignas(FarExt::internal::kCacheLine) PatchStream<REAL>::Worker {
 public:
     Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
            std::vector<Values> const &values, Sink const &sink)
@@ -180,28 +227,25 @@ public:
           _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _results(values.size()),
           _resultStarts(values.size()) {}
 
+    /// \brief Makes the patch of a face that is no hole.
+    ///
     /// \return  false where the sink ended the stream, or a face has no surface, as status says
-    bool Run(Index const *begin, Index const *end, Status *status) {
-        for (int count = 0; begin != end; ++begin, ++count) {
-            if (_stream._types && count % kFacesOfFactory == 0) {
-                _surface.Clear();
-                _ownFactory.reset();
-                _ownFactory = _stream._types->Get();
-                _factory = _ownFactory.get();
-            }
-            Tessellation const &tessellation = findTessellation(*begin);
-            if (!evaluatePoints(*begin, tessellation, status) ||
-                !evaluateValues(*begin, tessellation, status)) {
-                return false;
-            }
-            bool const hasDerivatives = _stream._options.HasDerivatives();
-            if (!_sink({*begin, tessellation, _points.data(), _meshPointDesc.size,
-                        hasDerivatives ? _du.data() : nullptr,
-                        hasDerivatives ? _dv.data() : nullptr, _resultStarts.data()})) {
-                return false;
-            }
+    bool Run(Index face, Status *status) {
+        if (_stream._types && _numPatches++ % kFacesOfFactory == 0) {
+            _surface.Clear();
+            _ownFactory.reset();
+            _ownFactory = _stream._types->Get();
+            _factory = _ownFactory.get();
         }
-        return true;
+        Tessellation const &tessellation = findTessellation(face);
+        if (!evaluatePoints(face, tessellation, status) ||
+            !evaluateValues(face, tessellation, status)) {
+            return false;
+        }
+        bool const hasDerivatives = _stream._options.HasDerivatives();
+        return _sink({face, tessellation, _points.data(), _meshPointDesc.size,
+                      hasDerivatives ? _du.data() : nullptr, hasDerivatives ? _dv.data() : nullptr,
+                      _resultStarts.data()});
     }
 
 private:
@@ -265,7 +309,7 @@ private:
     }
 
     // Faces after which the types may be other ones.
-    static constexpr int kFacesOfFactory = 16;
+    static constexpr std::size_t kFacesOfFactory = 16;
 
     PatchStream const &_stream;
     std::shared_ptr<SurfaceFactory const> _ownFactory; // while types are not kept
@@ -274,6 +318,7 @@ private:
     PointDescriptor const _meshPointDesc;
     std::vector<Values> const &_values;
     Sink const &_sink;
+    std::size_t _numPatches = 0;
     std::optional<Tessellation> _tessellation; // of a tree
     std::vector<int> _levels;
     std::vector<int> _planLevels;
@@ -321,8 +366,8 @@ void PatchStream<REAL>::getLevels(Index face, std::vector<int> &levels) const {
     levels.push_back(_levels.GetFaceLevel(face));
 }
 
-// Takes the next faces that are no holes.  Where not all of their plans fit in memory, faces with the same
-// levels stand side by side.
+// Takes the next faces that are no holes, of a stream whose plans do not all fit in memory; where not all
+// of theirs do, faces with the same levels stand side by side.
 template <typename REAL>
 Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace,
                                         std::vector<Index> &faces) const {
@@ -340,10 +385,6 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace,
     std::size_t memory = 0;
     for (; beginFace < endFace && order.size() < numFaces; ++beginFace) {
         if (_factory.GetMesh().GetLevel(0).IsFaceHole(beginFace)) {
-            continue;
-        }
-        if (_forest) { // whose tessellations have nothing in common
-            order.push_back({0, beginFace});
             continue;
         }
         getLevels(beginFace, levels);
@@ -380,8 +421,9 @@ Tessellation PatchStream<REAL>::MakeTessellation(Index face) const {
                         _options.GetTessellationOptions());
 }
 
+// Of several faces that are wrong, the first is told of, whoever finds it.
 template <typename REAL>
-Status PatchStream<REAL>::check(Index beginFace, Index endFace) const {
+Status PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKept) const {
     FarExt::TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
     if (beginFace < 0 || endFace < beginFace || endFace > base.GetNumFaces()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
@@ -403,20 +445,57 @@ Status PatchStream<REAL>::check(Index beginFace, Index endFace) const {
             "the forest has " + std::to_string(_forest->GetNumFaces()) + " trees, the mesh " +
                 std::to_string(base.GetNumFaces()) + " faces");
     }
-    for (Index face = beginFace; face < endFace; ++face) {
-        if (base.IsFaceHole(face)) {
-            continue;
+    struct Checker {
+        internal::PlanMemory::Counter counter;
+        std::vector<int> levels;
+    };
+    internal::PlanMemory memory(_options.GetMaxMemory());
+    std::atomic<Index> firstBad(endFace);
+    Status result;
+    std::mutex mutex;
+    auto const check = [&](Checker &checker, Index begin, Index end) {
+        for (Index face = beginFace + begin; face < beginFace + end && face < firstBad; ++face) {
+            if (base.IsFaceHole(face)) {
+                continue;
+            }
+            Status status = checkFace(face, checker.levels);
+            if (!status.IsOk()) {
+                std::lock_guard<std::mutex> const lock(mutex);
+                if (face < firstBad) {
+                    firstBad = face;
+                    result = std::move(status);
+                }
+                return;
+            }
+            if (!_forest) {
+                checker.counter.Add(checker.levels);
+            }
         }
-        Status status;
-        if (!_factory.FaceHasLimitSurface(face, &status)) {
-            return status;
-        }
-        status = _forest ? checkTree(face) : checkLevels(face);
-        if (!status.IsOk()) {
-            return status;
-        }
+    };
+    FarExt::internal::ParallelForRange(
+        endFace - beginFace,
+        [&] {
+            return Checker{internal::PlanMemory::Counter(memory), {}};
+        },
+        check, FarExt::internal::kShortParallelRange);
+    if (arePlansKept) {
+        *arePlansKept = memory.HasRoom();
     }
-    return Status();
+    return result;
+}
+
+// Of a stream of levels, these are written.
+template <typename REAL>
+Status PatchStream<REAL>::checkFace(Index face, std::vector<int> &levels) const {
+    Status status;
+    if (!_factory.FaceHasLimitSurface(face, &status)) {
+        return status;
+    }
+    if (_forest) {
+        return checkTree(face);
+    }
+    getLevels(face, levels);
+    return checkLevels(face, levels);
 }
 
 template <typename REAL>
@@ -430,30 +509,31 @@ Status PatchStream<REAL>::checkTree(Index face) const {
 
 // Whether those of a face and its edges are some that a tessellation has.
 template <typename REAL>
-Status PatchStream<REAL>::checkLevels(Index face) const {
-    auto const checkLevel = [](int level, ComponentType type, char const *name, Index index) {
-        if (0 <= level && level <= Tessellation::kLastLevel) {
-            return Status();
-        }
+Status PatchStream<REAL>::checkLevels(Index face, std::vector<int> const &levels) const {
+    auto const isLevel = [](int level) { return 0 <= level && level <= Tessellation::kLastLevel; };
+    auto const refuse = [](int level, ComponentType type, char const *name, Index index) {
         return Status(StatusCode::InvalidArgument, type, index,
                       std::string(name) + " " + std::to_string(index) + " has level " +
                           std::to_string(level) + ", which is not one of 0 to " +
                           std::to_string(Tessellation::kLastLevel));
     };
-    Status status = checkLevel(_levels.GetFaceLevel(face), ComponentType::Face, "face", face);
-    for (Index const edge : _factory.GetMesh().GetLevel(0).GetFaceEdges(face)) {
-        if (status.IsOk()) {
-            status = checkLevel(_levels.GetEdgeLevel(edge), ComponentType::Edge, "edge", edge);
-        }
+    if (!isLevel(levels.back())) {
+        return refuse(levels.back(), ComponentType::Face, "face", face);
     }
-    return status;
+    auto const bad = std::find_if_not(levels.begin(), levels.end(), isLevel);
+    if (bad == levels.end()) {
+        return Status();
+    }
+    Index const edge = _factory.GetMesh().GetLevel(0).GetFaceEdges(face)[int(bad - levels.begin())];
+    return refuse(*bad, ComponentType::Edge, "edge", edge);
 }
 
 template <typename REAL>
 bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
                             std::vector<Values> const &values, Index beginFace, Index endFace,
                             Sink const &sink, Status *status) const {
-    Status result = check(beginFace, endFace);
+    bool arePlansKept = false;
+    Status result = check(beginFace, endFace, &arePlansKept);
     for (Values const &further : values) {
         bool const isChannel =
             0 <= further.channel && further.channel < _factory.GetNumFVarChannels();
@@ -467,29 +547,39 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
-    std::vector<Index> faces;
     std::atomic<bool> isEnded(false);
     std::mutex mutex;
-    auto const run = [&](std::unique_ptr<Worker> &worker, Index begin, Index end) {
-        Status workerStatus;
-        if (isEnded || worker->Run(faces.data() + begin, faces.data() + end, &workerStatus)) {
-            return;
-        }
-        isEnded = true;
-        std::lock_guard<std::mutex> const lock(mutex);
-        if (result.IsOk()) {
-            result = workerStatus;
-        }
-    };
-    Index const numFaces = endFace - beginFace;
-    while (beginFace < endFace && !isEnded) {
-        beginFace = takeFaces(beginFace, endFace, faces);
+    Index const length = std::min(std::max((endFace - beginFace) / kNumRangesWanted, 1), kMaxRange);
+    // Hands out the patches of faces getFace(0) ... getFace(count - 1), where they are no holes.
+    auto const run = [&](Index count, auto const &getFace) {
+        FarExt::TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
         FarExt::internal::ParallelForRange(
-            Index(faces.size()),
+            count,
             [&] {
                 return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, values, sink);
             },
-            run, std::min(std::max(numFaces / kNumRangesWanted, 1), kMaxRange));
+            [&](std::unique_ptr<Worker> &worker, Index begin, Index end) {
+                Status workerStatus;
+                for (Index i = begin; i < end && !isEnded; ++i) {
+                    if (base.IsFaceHole(getFace(i)) || worker->Run(getFace(i), &workerStatus)) {
+                        continue;
+                    }
+                    isEnded = true;
+                    std::lock_guard<std::mutex> const lock(mutex);
+                    if (result.IsOk()) {
+                        result = workerStatus;
+                    }
+                }
+            },
+            length);
+    };
+    if (arePlansKept) {
+        run(endFace - beginFace, [&](Index i) { return beginFace + i; });
+    }
+    std::vector<Index> faces;
+    while (!arePlansKept && beginFace < endFace && !isEnded) {
+        beginFace = takeFaces(beginFace, endFace, faces);
+        run(Index(faces.size()), [&](Index i) { return faces[std::size_t(i)]; });
     }
     _plans->Trim();
     FarExt::internal::Report(result, status);

@@ -224,8 +224,9 @@ private:
     class Worker;
 
     std::shared_ptr<internal::StreamTypes> makeTypes() const;
-    FarExt::Status check(Index beginFace, Index endFace) const;
-    FarExt::Status checkLevels(Index face) const;
+    FarExt::Status check(Index beginFace, Index endFace, bool *arePlansKept = nullptr) const;
+    FarExt::Status checkFace(Index face, std::vector<int> &levels) const;
+    FarExt::Status checkLevels(Index face, std::vector<int> const &levels) const;
     FarExt::Status checkTree(Index face) const;
     void getLevels(Index face, std::vector<int> &levels) const;
     Index takeFaces(Index beginFace, Index endFace, std::vector<Index> &faces) const;

@@ -7,6 +7,7 @@
 
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
+#include "regression/shapes/flatShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <gtest/gtest.h>
@@ -291,6 +292,29 @@ TEST(PatchStreamTest, RefusesBeforeAnythingIsHandedOut) {
     EXPECT_EQ(numPatches, 0);
     EXPECT_TRUE(run(PatchLevels(1), 0, 1, 3));
     EXPECT_EQ(numPatches, 1);
+}
+
+// Threads look at faces in any order, and tell of the same one.
+TEST(PatchStreamTest, TellsOfTheFirstFaceThatIsWrong) {
+    Shape const shape = MakeBox(30, 30, 30);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    constexpr int kFirst = 2500;
+    PatchLevels const levels([](int face) { return face < kFirst ? 0 : face; },
+                             [](int) { return 0; });
+    for (int const numThreads : {1, 2, 3}) {
+        ThreadsScope const threads(numThreads);
+        FarExt::Status status;
+        EXPECT_FALSE(PatchStream<double>(*factory, levels)
+                         .Run(
+                             shape.positions.data(), 3,
+                             [](PatchStream<double>::Patch const &) {
+                                 ADD_FAILURE() << "a patch was handed out";
+                                 return true;
+                             },
+                             &status));
+        EXPECT_EQ(status.GetComponentIndex(), kFirst) << status.GetMessage();
+    }
 }
 
 TEST(PatchStreamTest, RefusesForestsThatDoNotFit) {
