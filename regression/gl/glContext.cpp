@@ -106,4 +106,8 @@ void GlContext::BindFramebuffer() {
         GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffer);
 }
 
+void GlContext::UnbindFramebuffer() {
+    getFunction<PFNGLBINDFRAMEBUFFERPROC>("glBindFramebuffer")(GL_FRAMEBUFFER, 0);
+}
+
 } // namespace OpenSubdivHex::Regression

@@ -40,6 +40,8 @@ public:
 
     /// Makes a complete framebuffer of one pixel, and binds it.
     void BindFramebuffer();
+    /// Binds the framebuffer of the surface, of which there is none.
+    void UnbindFramebuffer();
 
 private:
     EGLDisplay _display = EGL_NO_DISPLAY;

@@ -214,6 +214,41 @@ TYPED_TEST(Gl, LimitTablesGivePointsAndDerivatives) {
 
 namespace {
 
+class GlTransformFeedback : public Gl<TransformFeedback> {};
+
+} // namespace
+
+// What the guide warns of: without a complete framebuffer there is an error of OpenGL, and no output, but
+// Osd's evaluator returns true.
+TEST_F(GlTransformFeedback, WritesNothingWithoutAFramebuffer) {
+    auto const table = makeTable(true);
+    auto const glTable = OsdExt::CreateGLStencilTable<Osd::GLStencilTableTBO>(*table);
+    Descriptor const desc(0, 3, 3);
+    std::vector<float> const src = makeSource(table->GetNumControlVertices(), 3);
+    std::vector<float> const before(3 * std::size_t(table->GetNumStencils()), 9);
+    GlBuffer const srcBuffer = makeBuffer(src, 3);
+    GlBuffer const dstBuffer = makeBuffer(before, 3);
+    std::unique_ptr<Osd::GLXFBEvaluator> const evaluator(
+        Osd::GLXFBEvaluator::Create(desc, desc, Descriptor(), Descriptor()));
+    ASSERT_TRUE(evaluator);
+    auto const evaluate = [&] {
+        return Osd::GLXFBEvaluator::EvalStencils(srcBuffer.get(), desc, dstBuffer.get(), desc,
+                                                 glTable.get(), evaluator.get());
+    };
+    auto const read = [&] { return context.Read(dstBuffer->BindVBO(), before.size()); };
+    ASSERT_EQ(context.GetGlError(), GLenum(GL_NO_ERROR));
+    context.UnbindFramebuffer();
+    EXPECT_TRUE(evaluate());
+    EXPECT_EQ(context.GetGlError(), GLenum(GL_INVALID_FRAMEBUFFER_OPERATION)); // 0x506
+    EXPECT_TRUE(read() == before);
+    context.BindFramebuffer();
+    EXPECT_TRUE(evaluate());
+    EXPECT_EQ(context.GetGlError(), GLenum(GL_NO_ERROR));
+    EXPECT_FALSE(read() == before);
+}
+
+namespace {
+
 /// As many stencils as one likes, each of one source and half its value.
 class LargeTable : public Far::StencilTable {
 public:
