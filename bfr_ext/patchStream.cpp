@@ -24,40 +24,54 @@ using FarExt::StatusCode;
 
 namespace internal {
 
+/// What plans are made for.
+struct PlanOptions {
+    Tessellation::Options tessellation;
+    bool hasDerivatives;
+};
+
 /// \brief What patches with the same levels have in common: their tessellation, with the cells its places
 /// lie in.
 struct PatchPlan {
-    PatchPlan(std::vector<int> const &levels, Tessellation::Options const &options)
+    PatchPlan(std::vector<int> const &levels, PlanOptions const &options)
         : tessellation(Parameterization(int(levels.size()) - 1), int(levels.size()), levels.data(),
-                       options) {}
+                       options.tessellation),
+          hasDerivatives(options.hasDerivatives) {}
 
     /// Memory, in bytes.
     std::size_t GetSize() const {
-        return std::size_t(tessellation.GetNumCoords()) * kBytesOfCoord +
+        return kBytesOfPlan + std::size_t(tessellation.GetNumCoords()) * kBytesOfCoord +
                std::size_t(tessellation.GetNumFacetVertices()) * sizeof(int) +
                std::size_t(tessellation.GetNumFacets()) * 2 * sizeof(int) +
-               tessellation.getCellPlan().GetSize();
+               tessellation.getCellPlan().GetSize() +
+               (hasDerivatives ? tessellation.getCellPlan(true).GetSize() : 0);
     }
 
     /// \brief About what it takes in memory to make the plan of some levels, with the plan itself.
     ///
-    /// The cells in which the levels of edges take part are counted as if they had that of the inside.
-    static std::size_t GetSizeOfMaking(std::vector<int> const &levels) {
+    /// The cells in which the levels of edges take part are counted as if they had that of the inside;
+    /// derivatives on an edge follow cells that are there for one or two of its points alone.
+    static std::size_t GetSizeOfMaking(std::vector<int> const &levels, bool hasDerivatives) {
         // Bytes for each place, of triangles: of the plan, and of what the tessellation is made of.
-        constexpr std::size_t kBytes = kBytesOfCoord + 8 * sizeof(int) + 2 * sizeof(int) + 160;
+        std::size_t const bytes =
+            kBytesOfCoord + 8 * sizeof(int) + 2 * sizeof(int) + (hasDerivatives ? 300 : 160);
+        std::size_t const bytesOnEdge = bytes + (hasDerivatives ? 700 : 0);
         std::size_t const numCells = (std::size_t(1) << (2 * levels.back())) / 3;
-        std::size_t numPlaces = (levels.size() - 1) * (numCells + 2);
+        std::size_t size = kBytesOfPlan + (levels.size() - 1) * (numCells + 2) * bytes;
         for (std::size_t edge = 0; edge + 1 < levels.size(); ++edge) {
-            numPlaces += (std::size_t(1) << levels[edge]) / 3 + 1;
+            size += ((std::size_t(2) << levels[edge]) / 3 + 1) * bytesOnEdge;
         }
-        return numPlaces * kBytes;
+        return size;
     }
 
     Tessellation const tessellation;
+    bool const hasDerivatives;
 
 private:
     // Its place, and its u and v.
     static constexpr std::size_t kBytesOfCoord = sizeof(LeafPlaces::Place) + 2 * sizeof(double);
+    // What it has besides arrays of its own, and what the heap keeps of these.
+    static constexpr std::size_t kBytesOfPlan = 2048;
 };
 
 /// \brief The plans that have been asked for.  Where they come to take too much memory, those that nobody
@@ -65,10 +79,14 @@ private:
 /// use it.
 class PatchPlans {
 public:
-    PatchPlans(Tessellation::Options const &options, std::size_t maxMemory)
+    PatchPlans(PlanOptions const &options, std::size_t maxMemory)
         : _options(options), _maxMemory(maxMemory) {}
 
     std::size_t GetMaxMemory() const { return _maxMemory; }
+    /// PatchPlan::GetSizeOfMaking().
+    std::size_t GetSizeOfMaking(std::vector<int> const &levels) const {
+        return PatchPlan::GetSizeOfMaking(levels, _options.hasDerivatives);
+    }
 
     /// \brief Finds the plan of some levels, or makes it.
     ///
@@ -80,7 +98,7 @@ public:
             _plans.splice(_plans.begin(), _plans, found->second);
             return _plans.front().plan;
         }
-        makeRoom(PatchPlan::GetSizeOfMaking(levels));
+        makeRoom(GetSizeOfMaking(levels));
         auto plan = std::make_shared<PatchPlan const>(levels, _options);
         std::size_t const size = plan->GetSize();
         _plans.push_front({levels, std::move(plan), size});
@@ -120,7 +138,7 @@ private:
         }
     }
 
-    Tessellation::Options const _options;
+    PlanOptions const _options;
     std::size_t const _maxMemory;
     std::size_t _memory = 0;
     std::mutex _mutex;
@@ -132,7 +150,7 @@ private:
 /// number of threads may add to it, each by a Counter of its own.
 class PlanMemory {
 public:
-    explicit PlanMemory(std::size_t maxMemory) : _maxMemory(maxMemory) {}
+    explicit PlanMemory(PatchPlans const &plans) : _plans(plans) {}
 
     /// Whether all plans that were added have room.
     bool HasRoom() const { return _hasRoom; }
@@ -162,12 +180,12 @@ private:
     void add(std::vector<int> const &levels) {
         std::lock_guard<std::mutex> const lock(_mutex);
         if (_known.insert(levels).second) {
-            _memory += PatchPlan::GetSizeOfMaking(levels);
-            _hasRoom = _memory <= _maxMemory;
+            _memory += _plans.GetSizeOfMaking(levels);
+            _hasRoom = _memory <= _plans.GetMaxMemory();
         }
     }
 
-    std::size_t const _maxMemory;
+    PatchPlans const &_plans;
     std::size_t _memory = 0;
     std::atomic<bool> _hasRoom{true};
     std::mutex _mutex;
@@ -336,17 +354,20 @@ template <typename REAL>
 PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, PatchLevels levels,
                                Options const &options)
     : _factory(factory), _levels(std::move(levels)), _forest(nullptr), _options(options),
-      _plans(std::make_shared<internal::PatchPlans>(options.GetTessellationOptions(),
-                                                    options.GetMaxMemory())),
-      _types(makeTypes()) {}
+      _plans(makePlans()), _types(makeTypes()) {}
 
 template <typename REAL>
 PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, CellForest const &forest,
                                Options const &options)
-    : _factory(factory), _levels(0), _forest(&forest), _options(options),
-      _plans(std::make_shared<internal::PatchPlans>(options.GetTessellationOptions(),
-                                                    options.GetMaxMemory())),
+    : _factory(factory), _levels(0), _forest(&forest), _options(options), _plans(makePlans()),
       _types(makeTypes()) {}
+
+template <typename REAL>
+std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::makePlans() const {
+    return std::make_shared<internal::PatchPlans>(
+        internal::PlanOptions{_options.GetTessellationOptions(), _options.HasDerivatives()},
+        _options.GetMaxMemory());
+}
 
 // Null where those of the factory are kept.
 template <typename REAL>
@@ -395,7 +416,7 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace,
         }
         order.push_back({hash, beginFace});
         if (memory <= _plans->GetMaxMemory() && hashes.insert(hash).second) {
-            memory += internal::PatchPlan::GetSizeOfMaking(levels);
+            memory += _plans->GetSizeOfMaking(levels);
         }
     }
     if (memory > _plans->GetMaxMemory()) {
@@ -449,7 +470,7 @@ Status PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKe
         internal::PlanMemory::Counter counter;
         std::vector<int> levels;
     };
-    internal::PlanMemory memory(_options.GetMaxMemory());
+    internal::PlanMemory memory(*_plans);
     std::atomic<Index> firstBad(endFace);
     Status result;
     std::mutex mutex;

@@ -223,6 +223,7 @@ private:
     friend class PatchNumbering;
     class Worker;
 
+    std::shared_ptr<internal::PatchPlans> makePlans() const;
     std::shared_ptr<internal::StreamTypes> makeTypes() const;
     FarExt::Status check(Index beginFace, Index endFace, bool *arePlansKept = nullptr) const;
     FarExt::Status checkFace(Index face, std::vector<int> &levels) const;

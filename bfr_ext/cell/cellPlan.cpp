@@ -135,7 +135,9 @@ CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const
         std::sort(node.rows.begin(), node.rows.end(),
                   [](PlaceOfRow const &a, PlaceOfRow const &b) { return a.row < b.row; });
         node.rows.shrink_to_fit();
+        node.corners.shrink_to_fit();
     }
+    _nodes.shrink_to_fit();
 }
 
 // Adds a place to the corners of a cell, or returns false where it is none.
@@ -194,12 +196,19 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
     return _nodes.size() - 1;
 }
 
+// Nodes are many, and their arrays short: what the heap takes for blocks counts.
 std::size_t CellPlan::GetSize() const {
-    std::size_t size = 0;
+    static constexpr std::size_t kLeastBlock = 4 * sizeof(void *);
+    auto const getBytes = [](auto const &array) {
+        std::size_t const size = array.capacity() * sizeof(array[0]);
+        return size == 0 ? 0 : std::max(size + 2 * sizeof(void *), kLeastBlock);
+    };
+    std::size_t size = getBytes(_nodes);
     for (Node const &node : _nodes) {
-        size += sizeof(Node) + node.children.size() * sizeof(node.children[0]) +
-                node.rows.size() * sizeof(node.rows[0]) +
-                node.corners.size() * sizeof(node.corners[0]);
+        size += getBytes(node.children) + getBytes(node.rows) + getBytes(node.corners);
+    }
+    for (auto const &leafPlaces : _leafPlaces) {
+        size += leafPlaces.second->GetMemory();
     }
     return size;
 }

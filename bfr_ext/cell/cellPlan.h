@@ -27,6 +27,12 @@ public:
 
     int GetNumSteps() const { return _numSteps; }
     std::size_t GetSize() const { return _places.size(); }
+    /// In bytes.
+    std::size_t GetMemory() const {
+        constexpr std::size_t kBytesOfLinks = 6 * sizeof(void *); // of a node of the map
+        return sizeof(LeafPlaces) + _places.capacity() * sizeof(Place) +
+               _rows.size() * (sizeof(Key) + sizeof(std::size_t) + kBytesOfLinks);
+    }
     Place const &operator[](std::size_t row) const { return _places[row]; }
     std::size_t Find(Place const &place) const { return _rows.at(getKey(place)); }
 

@@ -24,6 +24,7 @@ namespace {
 struct Usage {
     long bytes; ///< at a time
     long numPoints;
+    long maxPoints; ///< of a patch
 };
 
 /// A shape, of which all types of cells are known before anything is measured.
@@ -43,13 +44,18 @@ public:
     /// What a new stream takes.
     Usage Measure(PatchLevels const &levels, PatchStream<float>::Options const &options) const {
         std::atomic<long> count(0);
+        std::atomic<long> maxCount(0);
         auto const run = [&] {
             PatchStream<float> const stream(*_factory, levels, options);
             ResetPeakBytes();
             long const before = CountLiveBytes();
             EXPECT_TRUE(
                 stream.Run(_positions.data(), 3, [&](PatchStream<float>::Patch const &patch) {
-                    count += patch.tessellation.GetNumCoords();
+                    long const numPoints = patch.tessellation.GetNumCoords();
+                    count += numPoints;
+                    for (long known = maxCount;
+                         known < numPoints && !maxCount.compare_exchange_weak(known, numPoints);) {
+                    }
                     return true;
                 }));
             return GetPeakBytes() - before;
@@ -57,7 +63,7 @@ public:
         run();
         count = 0;
         long const bytes = run();
-        return {bytes, count};
+        return {bytes, count, maxCount};
     }
 
 private:
@@ -79,16 +85,22 @@ TEST(StreamMemoryTest, IsWhatWasAskedFor) {
     for (Case const &testCase : {Case{5, 512, 1000}, Case{6, 1024, 5000}, Case{7, 2560, 14000}}) {
         RandomPatchLevels const levels(subject.GetBase(), testCase.numLevels, 1);
         for (int const facetSize : {0, 3, 4}) {
-            PatchStream<float>::Options options;
-            options.SetTessellationOptions(Tessellation::Options().SetFacetSize(facetSize));
-            options.SetMaxMemory(testCase.kilobytes << 10);
-            for (int const numThreads : {1, 2}) {
-                ThreadsScope const threads(numThreads);
-                Usage const usage = subject.Measure(levels.Get(), options);
-                EXPECT_GE(usage.numPoints, testCase.minNumPoints);
-                EXPECT_LE(usage.bytes, long(options.GetMaxMemory()))
-                    << testCase.numLevels << " levels, facets of " << facetSize << ", "
-                    << numThreads << " threads";
+            for (bool const hasDerivatives : {false, true}) {
+                PatchStream<float>::Options options;
+                options.SetTessellationOptions(Tessellation::Options().SetFacetSize(facetSize));
+                options.SetDerivatives(hasDerivatives);
+                options.SetMaxMemory(testCase.kilobytes << 10);
+                for (int const numThreads : {1, 2}) {
+                    ThreadsScope const threads(numThreads);
+                    Usage const usage = subject.Measure(levels.Get(), options);
+                    EXPECT_GE(usage.numPoints, testCase.minNumPoints);
+                    // Each thread has the points of a patch besides.
+                    long const numbers = (hasDerivatives ? 9 : 3) * usage.maxPoints;
+                    EXPECT_LE(usage.bytes, long(options.GetMaxMemory()) +
+                                               numThreads * numbers * long(sizeof(float)))
+                        << testCase.numLevels << " levels, facets of " << facetSize << ", "
+                        << numThreads << " threads" << (hasDerivatives ? ", derivatives" : "");
+                }
             }
         }
     }
