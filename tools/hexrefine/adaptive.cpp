@@ -413,8 +413,8 @@ AdaptiveCells RefineAdaptively(AdaptiveArguments const &arguments,
                      sizeof(int) * (mesh->faceSizes.size() + mesh->faceVertices.size()));
     BfrExt::Camera const &camera = view.GetCamera();
     for (int k = 0; k < 3; ++k) {
-        result.camera.eye[k] = float(camera.eye[k]);
-        result.camera.target[k] = float(camera.target[k]);
+        result.camera.eye[k] = camera.eye[k];
+        result.camera.target[k] = camera.target[k];
     }
     result.camera.fieldOfView = arguments.fieldOfView;
     result.camera.width = camera.width;

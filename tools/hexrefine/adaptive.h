@@ -51,8 +51,8 @@ struct AdaptiveStatistics {
 
 /// A camera, as BfrExt::Camera with y up.
 struct AdaptiveCamera {
-    float eye[3];
-    float target[3];
+    double eye[3];
+    double target[3];
     float fieldOfView;
     int width;
     int height;

@@ -187,6 +187,26 @@ TEST_F(HexrefineAdaptive, MakesPicturesOfWhatItsCameraSees) {
         EXPECT_EQ(std::count(contents.begin(), contents.end(), contents.back()), 1);
     }
 }
+
+// The camera is farther away than a float can say.
+TEST_F(HexrefineAdaptive, MakesPicturesOfHugeMeshes) {
+    std::vector<std::string> contents;
+    for (char const *const number : {"1", "1.7014118346046923e38"}) { // 2^127
+        std::string text;
+        for (char const *const corner : {"n 0 0", "0 n 0", "0 0 n", "-n -n -n"}) {
+            text += std::string("v ") + corner + "\n";
+            for (std::size_t at = text.find('n'); at != std::string::npos; at = text.find('n')) {
+                text.replace(at, 1, number);
+            }
+        }
+        std::string const input =
+            makeFile("huge.obj", text + "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n");
+        std::string const path = getPath("huge.png");
+        EXPECT_EQ(run(input + " --adaptive --resolution 120x90 --png " + path).status, 0);
+        contents.push_back(getContent(path));
+    }
+    EXPECT_TRUE(contents[0] == contents[1]);
+}
 #endif
 
 TEST_F(HexrefineAdaptive, LeavesHolesOut) {

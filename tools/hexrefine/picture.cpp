@@ -9,6 +9,9 @@
 #include "tools/render/pngFile.h"
 #include "tools/render/renderer.h"
 #include "tools/render/unitSize.h"
+
+#include <algorithm>
+#include <iterator>
 #endif
 
 namespace OpenSubdivHex::Tools {
@@ -35,14 +38,16 @@ void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> positio
 
 void WriteCellPicture(Mesh const &mesh, AdaptiveCamera const &camera,
                       std::vector<int> const &regions, std::string const &path) {
+    // Eye and target are scaled with the mesh; they may be farther away than floats can say.
+    std::vector<double> places(mesh.positions.begin(), mesh.positions.end());
+    places.insert(places.end(), camera.eye, camera.eye + 3);
+    places.insert(places.end(), camera.target, camera.target + 3);
+    ScaleToUnitSize(&places);
     Mesh faces;
     faces.faceSizes = mesh.faceSizes;
     faces.faceVertices = mesh.faceVertices;
-    faces.positions = mesh.positions;
-    // Eye and target are scaled with the mesh.
-    faces.positions.insert(faces.positions.end(), camera.eye, camera.eye + 3);
-    faces.positions.insert(faces.positions.end(), camera.target, camera.target + 3);
-    ScaleToUnitSize(&faces.positions);
+    std::transform(places.begin(), places.end(), std::back_inserter(faces.positions),
+                   [](double place) { return float(place); });
     Vec3 const eye = GetVec3(faces.positions.data(), mesh.GetNumVertices());
     Vec3 const target = GetVec3(faces.positions.data(), mesh.GetNumVertices() + 1);
     faces.positions.resize(mesh.positions.size());

@@ -14,6 +14,7 @@
 #include "tools/mesh/program.h"
 #include "tools/mesh/ruleNames.h"
 #include "tools/render/pngFile.h"
+#include "tools/render/unitSize.h"
 
 #include <filesystem>
 
@@ -152,6 +153,20 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                    "twists the control mesh, to the other")
         ->check(CLI::Range(1, kMaxFrames))
         ->needs(png);
+    app.callback([arguments] {
+        // Three bytes a pixel, and as many again for the file.
+        constexpr std::int64_t kMaxBytes = std::int64_t(1) << 30;
+        std::int64_t const numBytes =
+            std::int64_t(3) * arguments->width * arguments->height * arguments->numFrames;
+        if (numBytes > kMaxBytes) {
+            throw CLI::ValidationError("--frames",
+                                       std::to_string(arguments->numFrames) + " pictures of " +
+                                           std::to_string(arguments->width) + " by " +
+                                           std::to_string(arguments->height) + " pixels take " +
+                                           std::to_string(numBytes >> 20) + " MiB, and " +
+                                           std::to_string(kMaxBytes >> 20) + " MiB is the most");
+        }
+    });
     app.set_version_flag("--version", "hexview " OPENSUBDIVHEX_VERSION);
     app.footer(
         "In the window: drag to turn, the wheel to come nearer, drag vertices of the control "
@@ -194,7 +209,8 @@ std::vector<float> findTwists(int numFrames) {
 }
 
 void run(Arguments const &arguments) {
-    Mesh const mesh = ReadMesh(arguments.input);
+    Mesh mesh = ReadMesh(arguments.input);
+    ScaleToUnitSize(&mesh.positions);
     SurfaceSettings const settings = findSettings(arguments, mesh.tags);
     DrawSettings drawSettings;
     drawSettings.shading = FindRule<Shading>(kShadingNames, arguments.shading);

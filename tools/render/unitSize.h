@@ -10,14 +10,17 @@ namespace OpenSubdivHex::Tools {
 
 /// \brief Multiplies \p positions by the power of two that makes the largest coordinate 1/2 to 1.
 /// A picture of them stays the same, and squares of lengths stay in the range of floats.
-inline void ScaleToUnitSize(std::vector<float> *positions) {
-    float largest = 0;
-    for (float position : *positions) {
+///
+/// \tparam REAL  float or double
+template <typename REAL>
+void ScaleToUnitSize(std::vector<REAL> *positions) {
+    REAL largest = 0;
+    for (REAL position : *positions) {
         largest = std::max(largest, std::fabs(position));
     }
     int exponent = 0;
     std::frexp(largest, &exponent);
-    for (float &position : *positions) {
+    for (REAL &position : *positions) {
         position = std::ldexp(position, -exponent);
     }
 }

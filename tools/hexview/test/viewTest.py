@@ -84,6 +84,7 @@ def test_pictures(program, meshes):
     expect(len(hues_of(cube, 500)) >= 3, "three sides of a cube have three colours")
     test_cells(program, meshes)
     test_frames(program, os.path.join(meshes, "cube.obj"))
+    test_sizes(program, os.path.join(meshes, "cube.obj"))
     for options, cause in ((["--level", "99"], "99"), (["--mask", "none"], "none"),
                            (["--distance", "nan"], "nan"), (["--azimuth", "361"], "361"),
                            (["--png", "no.jpg"], "'no.jpg' is not a .png file")):
@@ -141,8 +142,30 @@ def test_frames(program, cube):
                "the mesh is at rest in the middle")
         expect(min(share_of_different(first, rest), share_of_different(first, last),
                    share_of_different(rest, last)) > 0.01, "it is twisted to and fro")
-    run = subprocess.run([program, cube, "--frames", "3"], capture_output=True, text=True)
-    expect(run.returncode == 2 and "--png" in run.stderr, "frames are of pictures")
+    for options, cause in ((["--frames", "3"], "--png"),
+                           (["--frames", "64", "--width", "8192", "--height", "8192", "--png",
+                             "no.png"], "64 pictures of 8192 by 8192 pixels take 12288 MiB")):
+        run = subprocess.run([program, cube, *options], capture_output=True, text=True)
+        expect(run.returncode == 2 and cause in run.stderr and not os.path.exists("no.png"),
+               f"{options} is refused")
+
+
+def test_sizes(program, cube):
+    # Squares of lengths leave the range of floats, from 1.8e19 on and below 1e-19.
+    with tempfile.TemporaryDirectory() as folder:
+        for options in (["-l", "3"], ["--adaptive"]):
+            usual = draw(program, cube, *options)
+            for exponent in (126, 80, -100):
+                path = os.path.join(folder, "cube.obj")
+                with open(cube) as source, open(path, "w") as scaled:
+                    for line in source:
+                        words = line.split()
+                        if words and words[0] == "v":
+                            line = " ".join(["v", *(repr(float(word) * 2.0 ** exponent)
+                                                    for word in words[1:])]) + "\n"
+                        scaled.write(line)
+                expect(share_of_different(usual, draw(program, path, *options), 1) == 0,
+                       f"a mesh 2^{exponent} times as large looks the same")
 
 
 def read_screen(display):
