@@ -3,6 +3,7 @@
 
 #include "cell/cellType.h"
 #include "cell/flatness.h"
+#include "cell/slopeBounds.h"
 #include "cell/vector3.h"
 
 #include "far_ext/vtr/hierarchy.h"
@@ -130,15 +131,15 @@ private:
         if (found != CellVisibility::Visible || values.GetLevel() >= _options.GetMaxLevel()) {
             return;
         }
+        bool const wasRefined = previousCell >= 0 && _previous->IsRefined(previousCell);
+        if (!isToRefine(values, wasRefined ? _options.GetHysteresis() : 1)) {
+            return;
+        }
         std::size_t const numChildren = values.GetType().GetChildren().size();
         std::vector<CellValues> &children = _cells[std::size_t(values.GetLevel())];
         children.resize(numChildren);
         for (std::size_t i = 0; i < numChildren; ++i) {
             children[i].SetChild(values, int(i));
-        }
-        bool const wasRefined = previousCell >= 0 && _previous->IsRefined(previousCell);
-        if (!isToRefine(values, children, wasRefined ? _options.GetHysteresis() : 1)) {
-            return;
         }
         int const first = _tree.Refine(cell);
         for (std::size_t i = 0; i < numChildren; ++i) {
@@ -198,12 +199,12 @@ private:
     // plane.  With c the mean of the points and r how far they are from it, (m + s w) . (eye - p) is at
     // most m . (eye - c) - m . (p - c) + s (|part of eye - c in the plane| + r).
     bool areSlopesBackFacing(CellValues const &values) const {
-        CellBounds const &bounds = CellBounds::Find(values.GetType());
-        if (!bounds.HasSlopes()) {
+        SlopeBounds const &bounds = SlopeBounds::Find(values.GetType());
+        if (!bounds.Exist()) {
             return false;
         }
         std::vector<double> const &points = values.GetValues();
-        CellBounds::Normals const normals = bounds.GetNormals(points);
+        SlopeBounds::Normals const normals = bounds.GetNormals(points);
         Vector3 center = {};
         for (std::size_t i = 0; i < points.size(); ++i) {
             center[i % 3] += 3 * points[i] / double(points.size());
@@ -221,8 +222,7 @@ private:
         return height + depth + normals.spread * (across + radius) < 0;
     }
 
-    bool isToRefine(CellValues const &values, std::vector<CellValues> const &children,
-                    double fraction) {
+    bool isToRefine(CellValues const &values, double fraction) {
         auto const numCorners = std::size_t(values.GetType().GetNumCorners());
         std::vector<double> corners(3 * numCorners);
         for (std::size_t i = 0; i < numCorners; ++i) {
@@ -239,7 +239,7 @@ private:
             }
         }
         return _options.GetFlatness() > 0 &&
-               !_flatness.IsFlat(corners, children, fraction * _options.GetFlatness() / pixels);
+               !_flatness.IsFlat(values, corners, fraction * _options.GetFlatness() / pixels);
     }
 
     // How many steps on cells are looked at for whether they face away.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flatness.h"
 
+#include "cellBounds.h"
+#include "latticeBounds.h"
 #include "vector3.h"
 
 #include <algorithm>
@@ -48,7 +50,7 @@ bool isStraight(CellValues const &values, Line const &line, double length, int n
     for (std::size_t i = 0; i < points.size(); i += 3) {
         distances.push_back(line.GetDistance(&points[i]));
     }
-    if (CellBounds::Find(values.GetType()).GetRange(distances).max <= length) {
+    if (CellBounds::Find(values.GetType()).GetMax(distances, length) <= length) {
         return true;
     }
     if (numSteps == 0) {
@@ -66,82 +68,121 @@ bool isStraight(CellValues const &values, Line const &line, double length, int n
 
 } // namespace
 
-void Flatness::Range::Add(double height) {
-    min = std::min(min, height);
-    max = std::max(max, height);
+// Makes a range as long as is allowed, on both sides by as large a part of what a bound has beyond it.
+Flatness::Range Flatness::widen(Range const &range, Range const &bound, double length) {
+    double const below = range.min - bound.min;
+    double const above = bound.max - range.max;
+    double const factor = std::max(0.0, length - range.GetLength()) / (below + above);
+    return {range.min - factor * below, range.max + factor * above};
 }
 
-bool Flatness::IsFlat(std::vector<double> const &corners, std::vector<CellValues> const &children,
-                      double length) {
+void Flatness::Cell::SetType(CellType const &cellType) {
+    type = &cellType;
+    LatticeBounds const &bounds = LatticeBounds::Find(cellType);
+    lattice = bounds.Exist() ? &bounds : nullptr;
+}
+
+Flatness::Cell &Flatness::Cells::Add() {
+    if (size == cells.size()) {
+        cells.emplace_back();
+    }
+    return cells[size++];
+}
+
+bool Flatness::IsFlat(CellValues const &values, std::vector<double> const &corners, double length) {
     Plane const plane = findPlane(corners);
-    Range attained = {0, 0};
+    _attained = {0, 0};
     for (std::size_t i = 0; i < corners.size(); i += 3) {
-        attained.Add(plane.GetHeight(&corners[i]));
+        _attained.Add(plane.GetHeight(&corners[i]));
+    }
+    if (_attained.GetLength() > length) {
+        return false;
     }
     Cells *cells = &_cells[0];
-    cells->cells.clear();
-    cells->heights.clear();
-    for (CellValues const &child : children) {
-        cells->cells.push_back({&child.GetType(), cells->heights.size(), false});
-        std::vector<double> const &points = child.GetValues();
-        for (std::size_t i = 0; i < points.size(); i += 3) {
-            cells->heights.push_back(plane.GetHeight(&points[i]));
-        }
+    Cells *next = &_cells[1];
+    cells->size = 0;
+    next->size = 0;
+    Cell &first = cells->Add();
+    first.SetType(values.GetType());
+    first.numStepsLeft = first.lattice ? kNumLatticeSteps : kNumSteps;
+    first.heights.clear();
+    for (std::size_t i = 0; i < values.GetValues().size(); i += 3) {
+        first.heights.push_back(plane.GetHeight(&values.GetValues()[i]));
     }
-    for (int step = 1; attained.GetLength() <= length; ++step) {
-        if (findBound(*cells, attained).GetLength() <= length) {
+    if (!first.lattice) {
+        refine(first, *next); // its own range is too far from what the surface has
+        std::swap(cells, next);
+    }
+    Range closed = {0, 0}; // of all that is not refined
+    while (cells->size > 0) {
+        Range bound = closed;
+        for (std::size_t i = 0; i < cells->size; ++i) {
+            Cell &cell = cells->cells[i];
+            cell.range = findRange(cell);
+            if (_attained.GetLength() > length) {
+                return false;
+            }
+            bound.Add(cell.range);
+        }
+        closed.Add(_attained);
+        bound.Add(_attained);
+        if (bound.GetLength() <= length) {
             return true;
         }
-        if (step == kNumSteps) {
+        Range const window = widen(closed, bound, length);
+        next->size = 0;
+        for (std::size_t i = 0; i < cells->size; ++i) {
+            Cell const &cell = cells->cells[i];
+            if (cell.numStepsLeft == 0 || window.Has(cell.range)) {
+                closed.Add(cell.range);
+            } else {
+                refine(cell, *next);
+            }
+        }
+        if (closed.GetLength() > length) {
             return false;
         }
-        if (step == 1) {
+        std::swap(cells, next);
+    }
+    return true;
+}
+
+// Of all heights in a cell, and those that the surface has for certain.
+Flatness::Range Flatness::findRange(Cell const &cell) {
+    if (cell.lattice) {
+        LatticeBounds::Ranges const range = cell.lattice->GetRanges(cell.heights, _scratch);
+        _attained.Add(range.attained.min);
+        _attained.Add(range.attained.max);
+        return {range.bound.min, range.bound.max};
+    }
+    auto const [least, largest] = std::minmax_element(cell.heights.begin(), cell.heights.end());
+    if (*least >= _attained.min && *largest <= _attained.max) {
+        return {*least, *largest};
+    }
+    CellBounds const &bounds = CellBounds::Find(*cell.type);
+    return {bounds.GetMin(cell.heights, _attained.min), bounds.GetMax(cell.heights, _attained.max)};
+}
+
+void Flatness::refine(Cell const &parent, Cells &children) {
+    parent.type->GetStep().Apply(parent.heights, _scratch);
+    bool isFirst = true;
+    for (CellType::Child const &link : parent.type->GetChildren()) {
+        Cell &child = children.Add();
+        child.SetType(*link.type);
+        child.numStepsLeft =
+            std::min(parent.numStepsLeft - 1, child.lattice ? kNumLatticeSteps : kNumSteps);
+        link.step.CopyNumbers(_scratch, child.heights);
+        if (isFirst && !parent.lattice) {
             // Of all children it alone has corners that the cell has not.
-            for (int i = 0; i < children[0].GetType().GetNumCorners(); ++i) {
-                double corner[3];
-                children[0].EvaluateCorner(i, corner);
-                attained.Add(plane.GetHeight(corner));
-            }
-        }
-        Cells *const next = &_cells[step % 2];
-        refine(*cells, *next);
-        cells = next;
-    }
-    return false;
-}
-
-// Of all heights, having found which cells may go beyond those that the surface has.
-Flatness::Range Flatness::findBound(Cells &cells, Range const &attained) {
-    Range bound = attained;
-    for (Cell &cell : cells.cells) {
-        auto const begin = cells.heights.begin() + std::ptrdiff_t(cell.firstHeight);
-        _scratch.assign(begin, begin + cell.type->GetNumPoints());
-        CellBounds::Range const range = CellBounds::Find(*cell.type).GetRange(_scratch);
-        cell.isWithin = attained.Has({range.min, range.max});
-        bound.Add(range.min);
-        bound.Add(range.max);
-    }
-    return bound;
-}
-
-void Flatness::refine(Cells const &parents, Cells &children) {
-    children.cells.clear();
-    children.heights.clear();
-    for (Cell const &parent : parents.cells) {
-        if (parent.isWithin) {
-            continue;
-        }
-        double const *const heights = &parents.heights[parent.firstHeight];
-        for (CellType::Child const &child : parent.type->GetChildren()) {
-            children.cells.push_back({child.type, children.heights.size(), false});
-            for (std::size_t row = 0; row < child.step.GetNumRows(); ++row) {
+            for (std::vector<double> const &weights : link.type->GetCornerPoints()) {
                 double height = 0;
-                child.step.ForEachEntry(row, [&](std::size_t point, double weight) {
-                    height += weight * heights[point];
-                });
-                children.heights.push_back(height);
+                for (std::size_t i = 0; i < weights.size(); ++i) {
+                    height += weights[i] * child.heights[i];
+                }
+                _attained.Add(height);
             }
         }
+        isFirst = false;
     }
 }
 

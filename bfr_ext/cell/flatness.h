@@ -2,11 +2,14 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_FLATNESS_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_FLATNESS_H
 
-#include "cellBounds.h"
+#include "cellValues.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
+
+class LatticeBounds;
 
 /// \brief Says whether the surface in a cell is as flat as is asked for.
 ///
@@ -16,51 +19,71 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// normal.
 ///
 /// **Why it holds.**  Heights are linear in the points, so those of a cell's points give, by the same
-/// steps, those of the points of all cells in it; and CellBounds::GetRange() has no height of the
-/// surface in such a cell outside of its range.  Each part of the surface is in one of the children, and
-/// in one of their children, and so on: so the ranges of the cells any number of steps on, together,
-/// bound all heights.  A cell whose range lies within heights that the surface has for certain, as at
-/// corners, adds nothing, and neither do the cells in it: these are not looked at.
+/// steps, those of the points of all cells in it; and no height of the surface in such a cell is outside
+/// of the range that LatticeBounds or, where there are none, CellBounds tell of it.  Each part of the
+/// surface is in one of the children, and in one of their children, and so on: so the ranges of cells
+/// any number of steps on, together, bound all heights.  Where heights that the surface has for certain,
+/// as at corners, have a range that is too large, the cell is not flat.
 ///
-/// **How close it is.**  Points of a cell reach beyond it by about its size, so that their heights have
-/// a range that is some times as large as that of the surface.  Where curvature is bounded, this excess
+/// **What is looked at.**  Only cells whose range is not within a window, which is as long as is asked
+/// for and around the heights that the surface has for certain, are looked at one step on.
+///
+/// **How close it is.**  Ranges of LatticeBounds are close, and mostly decide at once.  Those of other
+/// cells reach farther: their points lie around a cell by about its size, so that their heights have a
+/// range that is some times as large as that of the surface.  Where curvature is bounded, this excess
 /// falls by 4 in a step, so that it is a small part after kNumSteps of them.  What cannot be shown then
 /// counts as not flat.
 class Flatness {
 public:
     /// Whether the surface of a cell is so flat.
     ///
-    /// \param corners   the surface's points there, of 3 numbers each
-    /// \param children  of the cell
-    /// \param length    the largest range of heights
-    bool IsFlat(std::vector<double> const &corners, std::vector<CellValues> const &children,
-                double length);
+    /// \param values   of its points, 3 numbers each
+    /// \param corners  the surface's points there
+    /// \param length   the largest range of heights
+    bool IsFlat(CellValues const &values, std::vector<double> const &corners, double length);
 
 private:
-    static constexpr int kNumSteps = 3;
+    static constexpr int kNumSteps = 4;
+    static constexpr int kNumLatticeSteps = 1; // of these, at most
 
     struct Range {
-        void Add(double height);
+        void Add(double height) {
+            min = std::min(min, height);
+            max = std::max(max, height);
+        }
+        void Add(Range const &other) {
+            Add(other.min);
+            Add(other.max);
+        }
         bool Has(Range const &other) const { return min <= other.min && other.max <= max; }
         double GetLength() const { return max - min; }
         double min;
         double max;
     };
-    // A cell some steps on, with the heights of its points in a row of all such cells'.
+    // A cell some steps on, with the heights of its points.
     struct Cell {
+        void SetType(CellType const &cellType);
+
         CellType const *type;
-        std::size_t firstHeight;
-        bool isWithin; // heights that the surface has
-    };
-    struct Cells {
-        std::vector<Cell> cells;
+        LatticeBounds const *lattice; // null where there are none
+        int numStepsLeft;
         std::vector<double> heights;
+        Range range; // of them
+    };
+    // Cells one behind the other, which keep their memory.
+    struct Cells {
+        Cell &Add();
+
+        std::vector<Cell> cells;
+        std::size_t size = 0;
     };
 
-    Range findBound(Cells &cells, Range const &attained);
-    static void refine(Cells const &parents, Cells &children);
+    static Range widen(Range const &range, Range const &bound, double length);
+    Range findRange(Cell const &cell);
+    void refine(Cell const &parent, Cells &children);
 
     Cells _cells[2]; // of this step and of the next, in turn
+    Range _attained; // of heights that the surface has
     std::vector<double> _scratch;
 };
 

@@ -13,7 +13,17 @@
 namespace OpenSubdivHex::BfrExt::internal {
 
 /// What a PatternTable of a type of cells has: one kind for each precision of a PatternOf.
-enum class PatternOf { Face, FaceDerivatives, Border, BorderPlace, Leaf, LeafDerivatives, Bounds };
+enum class PatternOf {
+    Face,
+    FaceDerivatives,
+    Border,
+    BorderPlace,
+    Leaf,
+    LeafDerivatives,
+    CellBounds,
+    LatticeBounds,
+    SlopeBounds
+};
 
 /// \brief What was made for some keys, of whatever type.
 ///

@@ -3,9 +3,9 @@
 // Trees of cells made for a view: how far facets are from the surface, and what is left out.
 #include "surfaceFixture.h"
 
-#include "bfr_ext/cell/cellBounds.h"
 #include "bfr_ext/cell/cellValues.h"
 #include "bfr_ext/cell/flatness.h"
+#include "bfr_ext/cell/slopeBounds.h"
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
 #include "far_ext/executor.h"
@@ -430,8 +430,8 @@ TEST(View, NormalsAreWithinTheirBounds) {
             }
             BaseCells cells(*refiner, shape.positions);
             forDescendants(cells.Make(24), 2, [&](CellValues const &values) {
-                auto const &bounds = BfrExt::internal::CellBounds::Find(values.GetType());
-                if (!bounds.HasSlopes()) {
+                auto const &bounds = BfrExt::internal::SlopeBounds::Find(values.GetType());
+                if (!bounds.Exist()) {
                     return;
                 }
                 auto const normals = bounds.GetNormals(values.GetValues());
@@ -549,17 +549,13 @@ TEST(View, FlatnessIsABoundAndCloseToTheSurface) {
                 auto const look = [&](CellValues const &values) {
                     std::array<double, 2> const sampled = sampleHeights(values, 3);
                     double const size = sampled[1] - sampled[0];
-                    std::vector<CellValues> children(values.GetType().GetChildren().size());
-                    for (std::size_t i = 0; i < children.size(); ++i) {
-                        children[i].SetChild(values, int(i));
-                    }
                     std::vector<double> corners;
                     for (Vector3 const &corner : getCorners(values)) {
                         corners.insert(corners.end(), corner.begin(), corner.end());
                     }
-                    ASSERT_FALSE(flatness.IsFlat(corners, children, size * (1 - 1e-6)));
+                    ASSERT_FALSE(flatness.IsFlat(values, corners, size * (1 - 1e-6)));
                     double ratio = 1.01;
-                    while (size > 1e-6 && !flatness.IsFlat(corners, children, size * ratio)) {
+                    while (size > 1e-6 && !flatness.IsFlat(values, corners, size * ratio)) {
                         ratio *= 1.01;
                         ASSERT_LT(ratio, 16);
                     }
