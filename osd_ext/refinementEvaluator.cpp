@@ -280,13 +280,13 @@ void RefinementEvaluator::Impl::EvaluateLimit(Source values,
     internal::PreparedLimit &limit = ofLevel.prepared;
     float const scale = findScale(values, length, numElements[0]);
     values = toVertices(values, length, scale);
-    if (limit.HasFaces(0) && values.data != _controlValues.data()) {
+    if (level > 0 && limit.IsNeeded(0) && values.data != _controlValues.data()) {
         // Only our own memory may be read behind its values.
         _controlValues.Resize(std::size_t(numElements[0]) * std::size_t(length) + 1);
         copyElements(values, length, numElements[0], nullptr, 1, {_controlValues.data(), length});
         values = {_controlValues.data(), length};
     }
-    int const last = limit.HasOthers() || limit.HasFaces(level) ? level : level - 1;
+    int const last = limit.IsNeeded(level) ? level : level - 1;
     resizeScratch(length, last);
     for (int made = 0; made <= last; ++made) {
         if (made > 0) {
@@ -298,10 +298,7 @@ void RefinementEvaluator::Impl::EvaluateLimit(Source values,
             internal::RefineElements({task}, length);
             values = {next.data, next.stride};
         }
-        limit.EvaluateFaces(made, values, length, outputs);
-    }
-    if (limit.HasOthers()) {
-        limit.EvaluateOthers(values, level > 0, length, outputs);
+        limit.Evaluate(made, values, level > 0, length, outputs);
     }
     for (Destination const &output : outputs) {
         undoScale(scale, output, length, numElements[std::size_t(level)]);

@@ -2,14 +2,12 @@
 #include "regularFaces.h"
 
 #include "plainNeighborhood.h"
+#include "rowSteps.h"
 
 #include "far_ext/vtr/parallel.h"
-#include "far_ext/vtr/refinementMask.h"
 
-#include <array>
 #include <bitset>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -159,53 +157,13 @@ bool hasDifferentSources(Level const &level, RegularFace const &face, int corner
     return std::adjacent_find(sources.begin(), sources.end()) == sources.end();
 }
 
-// Weights of vertices of a level for the three sums of a row.
-using Weights = std::array<double, RegularFaceMask::kNumSums>;
-using Row = std::map<Index, Weights>;
-
-void addTo(Row &row, Index vert, Weights const &weights, double factor) {
-    Weights &sum = row[vert];
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        sum[i] += factor * weights[i];
-    }
-}
-
-// The row in terms of the vertices of the parent.
-Row stepBack(Row const &cRow, Refinement const &refinement, RefinementMask const &mask) {
-    Level const &parent = *refinement.parent;
-    Row row;
-    std::vector<double> scratch;
-    auto const addFVertex = [&](Index corner, Weights const &weights, double factor) {
-        Index const face = parent.FindFaceOfCorner(corner);
-        Index const first = parent.faceFirstCorner[face];
-        double const *const ofFace = mask.GetFaceVertexWeights(face, corner - first, scratch);
-        for (int i = 0; i < parent.GetFaceSize(face); ++i) {
-            addTo(row, parent.faceVerts[first + i], weights, factor * ofFace[i]);
-        }
-    };
-    for (auto const &[vert, weights] : cRow) {
-        if (vert >= refinement.child->numVVertices) {
-            addFVertex(refinement.GetChildVertexCorner(vert), weights, 1);
-            continue;
-        }
-        Index const pVert = refinement.GetVVertexParent(vert);
-        RefinementMask::VertexMask const ofVertex = mask.GetVertexMask(pVert);
-        for (int i = 0; i < ofVertex.numSources; ++i) {
-            addTo(row, ofVertex.sources[i], weights, ofVertex.weights[i]);
-        }
-        for (Index k = parent.vertFirstFace[pVert]; k < parent.vertFirstFace[pVert + 1]; ++k) {
-            addFVertex(parent.GetVertexCorner(k), weights, ofVertex.faceWeight);
-        }
-    }
-    return row;
-}
-
 // Of the largest weights, which are about 1: those of the masks of limits are less exact than sums of
 // them.
 constexpr double kTolerance = 1e-9;
 
 // The mask that makes the row of a corner.
-RegularFaceMask makeMask(Level const &level, RegularFace const &face, int corner, Row const &row) {
+RegularFaceMask makeMask(Level const &level, RegularFace const &face, int corner,
+                         SteppedRow const &row) {
     auto const find = [&](Index vert, int sum) {
         auto const found = row.find(vert);
         return found == row.end() ? 0 : found->second[std::size_t(sum)];
@@ -231,9 +189,9 @@ RegularFaceMask makeMask(Level const &level, RegularFace const &face, int corner
 
 // Whether the mask makes the row of a corner.
 bool isRow(Level const &level, RegularFace const &face, RegularFaceMask const &mask, int corner,
-           Row row) {
+           SteppedRow row) {
     auto const subtract = [&](Index vert, auto const &getWeight) {
-        Weights &left = row[vert];
+        LimitWeights &left = row[vert];
         for (int sum = 0; sum < RegularFaceMask::kNumSums; ++sum) {
             left[std::size_t(sum)] -= getWeight(mask.sums[sum]);
         }
@@ -251,7 +209,7 @@ bool isRow(Level const &level, RegularFace const &face, RegularFaceMask const &m
     for (Index vert : level.GetFaceVertices(face.beyond[corner])) {
         subtract(vert, [](Sum const &s) { return s.beyond; });
     }
-    return std::all_of(row.begin(), row.end(), [](Row::value_type const &left) {
+    return std::all_of(row.begin(), row.end(), [](SteppedRow::value_type const &left) {
         return std::all_of(left.second.begin(), left.second.end(),
                            [](double weight) { return std::abs(weight) < kTolerance; });
     });
@@ -432,16 +390,7 @@ std::optional<RegularFaceMask> RegularFaces::findMask(int level, Set const &set,
         Index sources[PlainNeighborhoodGatherer::kNumRegular];
         LimitRow const ofVertex =
             rows.GetRow(set.firstVertex + face.firstCorner + corner, 0, sources);
-        Row row;
-        for (int k = 0; k < ofVertex.size; ++k) {
-            addTo(row, ofVertex.sources[k], {ofVertex.weights[k], ofVertex.du[k], ofVertex.dv[k]},
-                  1);
-        }
-        for (int child = _level; child > level; --child) {
-            RefinementMask const ofStep(_mesh.levels[std::size_t(child) - 1], schemeOptions,
-                                        Interpolation::Vertex);
-            row = stepBack(row, _mesh.refinements[std::size_t(child) - 1], ofStep);
-        }
+        SteppedRow const row = StepRowBack(_mesh, schemeOptions, ofVertex, _level, level);
         if (!mask) {
             mask = makeMask(ofFace, face, corner, row);
         }

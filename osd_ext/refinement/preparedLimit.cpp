@@ -14,6 +14,7 @@ using FarExt::internal::LimitRow;
 using FarExt::internal::LimitRows;
 using FarExt::internal::PlainNeighborhoodGatherer;
 using FarExt::internal::RegularFaces;
+using FarExt::internal::RegularVertices;
 
 namespace {
 
@@ -24,33 +25,12 @@ constexpr Index kRange = 256;
 // the cache, and enough for groups to be full.
 constexpr std::size_t kWindow = 8192;
 
-// A row and room for its sources.
-struct Reader {
-    LimitRow Read(LimitRows const &rows, Index vert) { return rows.GetRow(vert, 0, sources); }
-
-    Index sources[PlainNeighborhoodGatherer::kNumRegular];
-};
-
 // Sets the places of a group's sources.
-void setPlaces(VertexGroup const &group, LimitRows const &rows, Reader &reader,
-               std::uint32_t *places) {
-    for (int k = 0; k < VertexGroup::kSize; ++k) {
-        LimitRow const row = reader.Read(rows, group.verts[k]);
-        std::uint32_t *place = places + group.firstPlace + k;
-        for (int i = 0; i < row.size; ++i, place += VertexGroup::kSize) {
-            *place = std::uint32_t(row.sources[i]) * RegularFaceGroup::kPointStride;
-        }
+void setPlaces(VertexGroup const &group, int member, LimitRow const &row, std::uint32_t *places) {
+    std::uint32_t *place = places + group.firstPlace + member;
+    for (int i = 0; i < row.size; ++i, place += VertexGroup::kSize) {
+        *place = std::uint32_t(row.sources[i]) * RegularFaceGroup::kPointStride;
     }
-}
-
-// What all tasks have.
-void setTask(Elements<float const> values, bool isReadBehind, int length,
-             PreparedLimit::Outputs const &outputs, LimitTask &task) {
-    task.length = length;
-    task.values = values;
-    task.isReadBehind = isReadBehind;
-    task.numOutputs = int(outputs.size());
-    std::copy(outputs.begin(), outputs.end(), task.outputs);
 }
 
 } // namespace
@@ -62,17 +42,30 @@ Status PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
     if (!result.IsOk()) {
         return result;
     }
-    prepareOthers(regularFaces.GetOthers(), rows);
+    RegularVertices const regularVertices(mesh, schemeOptions, rows, regularFaces.GetOthers());
     std::vector<RegularFaces::OfLevel> const &levels = regularFaces.GetLevels();
     for (std::size_t i = 0; i < levels.size(); ++i) {
-        prepareFaces(mesh.levels[i], levels[i]);
+        LevelLimit &ofLevel = _levels.emplace_back();
+        ofLevel.level = &mesh.levels[i];
+        prepareFaces(levels[i], ofLevel);
+        if (i + 1 < levels.size()) {
+            prepareVertices(
+                regularVertices.GetVertices(int(i)),
+                [&](Index vert, Index *sources) {
+                    return regularVertices.GetRow(int(i), vert, sources);
+                },
+                ofLevel);
+        } else {
+            prepareVertices(
+                regularVertices.GetOthers(),
+                [&](Index vert, Index *sources) { return rows.GetRow(vert, 0, sources); }, ofLevel);
+        }
     }
     return result;
 }
 
-void PreparedLimit::prepareFaces(FarExt::internal::Level const &level,
-                                 RegularFaces::OfLevel const &faces) {
-    FaceLevel &result = _faceLevels.emplace_back(FaceLevel{&level, {}, {}});
+void PreparedLimit::prepareFaces(RegularFaces::OfLevel const &faces, LevelLimit &result) {
+    FarExt::internal::Level const &level = *result.level;
     std::vector<unsigned char> isBeyond(std::size_t(level.numFaces), 0);
     RegularFaces::Set const *const sets[] = {&faces.fVertices, &faces.ownVertices};
     for (RegularFaces::Set const *set : sets) {
@@ -100,7 +93,10 @@ void PreparedLimit::prepareFaces(FarExt::internal::Level const &level,
     }
 }
 
-void PreparedLimit::prepareOthers(std::vector<Index> const &verts, LimitRows const &rows) {
+// readRow(vert, sources) gives the row of a vertex, with room for the sources of a regular one.
+template <typename READ_ROW>
+void PreparedLimit::prepareVertices(std::vector<Index> const &verts, READ_ROW readRow,
+                                    LevelLimit &result) {
     struct Other {
         Index vert;
         int numSources;
@@ -109,9 +105,9 @@ void PreparedLimit::prepareOthers(std::vector<Index> const &verts, LimitRows con
     std::vector<Other> others;
     others.reserve(verts.size());
     std::unordered_map<double const *, std::size_t> firstWeights; // of the types, by their weights
-    Reader reader;
+    Index sources[PlainNeighborhoodGatherer::kNumRegular];
     for (Index const vert : verts) {
-        LimitRow const row = reader.Read(rows, vert);
+        LimitRow const row = readRow(vert, sources);
         // The sides of a vertex share the weights of its point.
         auto const [found, isNew] = firstWeights.try_emplace(row.du, _weights.size());
         for (int i = 0; i < row.size && isNew; ++i) {
@@ -135,32 +131,36 @@ void PreparedLimit::prepareOthers(std::vector<Index> const &verts, LimitRows con
             for (int i = 0; i < VertexGroup::kSize; ++i) {
                 group.verts[i] = (other + i < last ? other + i : last - 1)->vert;
             }
-            _vertexGroups.push_back(group);
+            result.vertexGroups.push_back(group);
             numPlaces += std::size_t(group.numSources) * VertexGroup::kSize;
             other = last;
         }
     }
-    _places.Resize(numPlaces);
+    result.places.Resize(numPlaces);
     FarExt::internal::ParallelForRange(
-        Index(_vertexGroups.size()), [] { return Reader(); },
-        [&](Reader &rangeReader, Index begin, Index end) {
+        Index(result.vertexGroups.size()), [] { return FarExt::internal::Nothing(); },
+        [&](FarExt::internal::Nothing, Index begin, Index end) {
+            Index ofVertex[PlainNeighborhoodGatherer::kNumRegular];
             for (Index i = begin; i < end; ++i) {
-                setPlaces(_vertexGroups[std::size_t(i)], rows, rangeReader, _places.data());
+                VertexGroup const &group = result.vertexGroups[std::size_t(i)];
+                for (int k = 0; k < VertexGroup::kSize; ++k) {
+                    setPlaces(group, k, readRow(group.verts[k], ofVertex), result.places.data());
+                }
             }
         },
         kRange);
 }
 
 std::vector<unsigned char> PreparedLimit::FindSources(Index numVertices) const {
-    FaceLevel const &faces = _faceLevels.back();
-    if (faces.sets.empty() && !HasOthers()) {
+    LevelLimit const &last = _levels.back();
+    if (!IsNeeded(last.level->depth)) {
         return {};
     }
     std::vector<unsigned char> isSource(std::size_t(numVertices), 0);
     auto const markPlace = [&](std::uint32_t place) {
         isSource[place / RegularFaceGroup::kPointStride] = 1;
     };
-    for (FaceSet const &set : faces.sets) {
+    for (FaceSet const &set : last.sets) {
         for (RegularFaceGroup const &group : set.groups) {
             for (RegularFaceGroup::Places const *places :
                  {&group.verts, &group.neighbors, &group.next, &group.previous}) {
@@ -170,32 +170,48 @@ std::vector<unsigned char> PreparedLimit::FindSources(Index numVertices) const {
             }
         }
     }
-    for (Index const firstCorner : faces.summedFaces) {
-        Index const *const verts = faces.level->faceVerts.data() + firstCorner;
+    for (Index const firstCorner : last.summedFaces) {
+        Index const *const verts = last.level->faceVerts.data() + firstCorner;
         for (int i = 0; i < FarExt::internal::kRegularFaceSize; ++i) {
             isSource[std::size_t(verts[i])] = 1;
         }
     }
-    std::for_each(_places.data(), _places.data() + _places.size(), markPlace);
+    std::for_each(last.places.begin(), last.places.end(), markPlace);
     return isSource;
 }
 
-void PreparedLimit::EvaluateFaces(int level, Elements<float const> values, int length,
-                                  Outputs const &outputs) {
-    if (!HasFaces(level)) {
-        return;
+void PreparedLimit::Evaluate(int level, Elements<float const> values, bool isReadBehind, int length,
+                             Outputs const &outputs) {
+    LevelLimit const &ofLevel = _levels[std::size_t(level)];
+    LimitTask common;
+    common.length = length;
+    common.values = values;
+    common.isReadBehind = isReadBehind;
+    common.numOutputs = int(outputs.size());
+    std::copy(outputs.begin(), outputs.end(), common.outputs);
+    if (!ofLevel.sets.empty()) {
+        evaluateFaces(ofLevel, common);
     }
-    FaceLevel const &faces = _faceLevels[std::size_t(level)];
-    RegularLimitTask task;
-    task.faceVerts = faces.level->faceVerts.data();
-    task.sums.stride = RegularLimitTask::GetSumStride(length);
-    _sums.Resize(faces.summedFaces.size() * std::size_t(task.sums.stride));
-    task.sums.data = _sums.data();
-    task.summedFaces = faces.summedFaces.data();
-    setTask(values, true, length, outputs, task);
-    SumFaces(task, Index(faces.summedFaces.size()));
-    for (FaceSet const &set : faces.sets) {
-        setTask(values, true, length, outputs, task);
+    // Behind the faces, which write something for all their vertices.
+    VertexLimitTask task;
+    static_cast<LimitTask &>(task) = common;
+    task.groups = ofLevel.vertexGroups.data();
+    task.places = ofLevel.places.data();
+    task.weights = _weights.data();
+    EvaluateLimit(task, Index(ofLevel.vertexGroups.size()));
+}
+
+void PreparedLimit::evaluateFaces(LevelLimit const &ofLevel, LimitTask const &common) {
+    RegularLimitTask summing;
+    static_cast<LimitTask &>(summing) = common;
+    summing.faceVerts = ofLevel.level->faceVerts.data();
+    summing.sums.stride = RegularLimitTask::GetSumStride(common.length);
+    _sums.Resize(ofLevel.summedFaces.size() * std::size_t(summing.sums.stride));
+    summing.sums.data = _sums.data();
+    summing.summedFaces = ofLevel.summedFaces.data();
+    SumFaces(summing, Index(ofLevel.summedFaces.size()));
+    for (FaceSet const &set : ofLevel.sets) {
+        RegularLimitTask task = summing;
         for (int i = 0; i < task.numOutputs; ++i) {
             task.outputs[i].data += std::ptrdiff_t(set.firstVertex) * task.outputs[i].stride;
         }
@@ -204,16 +220,6 @@ void PreparedLimit::EvaluateFaces(int level, Elements<float const> values, int l
         task.hasOneTip = set.hasOneTip;
         EvaluateLimit(task, Index(set.groups.size()));
     }
-}
-
-void PreparedLimit::EvaluateOthers(Elements<float const> values, bool isReadBehind, int length,
-                                   Outputs const &outputs) const {
-    VertexLimitTask task;
-    setTask(values, isReadBehind, length, outputs, task);
-    task.groups = _vertexGroups.data();
-    task.places = _places.data();
-    task.weights = _weights.data();
-    EvaluateLimit(task, Index(_vertexGroups.size()));
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -6,6 +6,7 @@
 
 #include "far_ext/limit/limitRows.h"
 #include "far_ext/limit/regularFaces.h"
+#include "far_ext/limit/regularVertices.h"
 
 #include <cstdint>
 #include <vector>
@@ -17,8 +18,8 @@ namespace OpenSubdivHex::OsdExt::internal {
 /// Most vertices are F-vertices of regular faces of a level before: their limit is made from the values
 /// of the level of their face, so that a frame needs no values of the last level for them.  Nearly all
 /// else are vertices of F-faces, of the level or of one before.  What is kept for them is the faces.
-/// The others are stencils of the level's vertices, whose weights are those of their type: so what a
-/// frame reads is mostly indices.
+/// The others are stencils of vertices, of the first level in which they are regular or else of the
+/// last one, whose weights are those of their type: so what a frame reads is mostly indices.
 class PreparedLimit {
 public:
     /// Elements of all vertices of the level: points, and behind them du and dv or nothing.
@@ -30,27 +31,22 @@ public:
                            FarExt::HexSchemeOptions const &schemeOptions,
                            FarExt::internal::LimitRows &rows);
 
-    /// \brief Writes the outputs of those vertices that faces of \p level make, and of others that are
-    /// in these faces: EvaluateOthers() comes behind all levels.
+    /// \brief Writes the outputs of those vertices whose limit follows from \p level, and of others that
+    /// are in faces of the level: later levels must come behind.
     ///
-    /// \param values  of \p level; one float may be read behind the last of them.  Of the last
-    ///                level those will do that FindSources() marks
-    void EvaluateFaces(int level, Elements<float const> values, int length, Outputs const &outputs);
-    /// Whether a level has such faces.
-    bool HasFaces(int level) const { return !_faceLevels[std::size_t(level)].sets.empty(); }
+    /// \param values        of \p level; of the last level those will do that FindSources() marks
+    /// \param isReadBehind  whether one float may be read behind the last of them
+    void Evaluate(int level, Elements<float const> values, bool isReadBehind, int length,
+                  Outputs const &outputs);
+    /// Whether the limit of any vertex follows from a level.
+    bool IsNeeded(int level) const {
+        LevelLimit const &ofLevel = _levels[std::size_t(level)];
+        return !ofLevel.sets.empty() || !ofLevel.vertexGroups.empty();
+    }
 
     /// A mark for each of the \p numVertices vertices of the last level, whether outputs depend on
     /// it; empty if none do.
     std::vector<unsigned char> FindSources(Far::Index numVertices) const;
-
-    /// Whether there are vertices that no face makes.
-    bool HasOthers() const { return !_vertexGroups.empty(); }
-    /// \brief Writes their outputs.
-    ///
-    /// \param values        of the last level; those will do that FindSources() marks
-    /// \param isReadBehind  whether one float may be read behind the last of them
-    void EvaluateOthers(Elements<float const> values, bool isReadBehind, int length,
-                        Outputs const &outputs) const;
 
 private:
     /// Faces of a level that have a mask in common.
@@ -60,24 +56,26 @@ private:
         RegularLimitWeights<Scalar> weights;
         bool hasOneTip;
     };
-    struct FaceLevel {
+    struct LevelLimit {
         FarExt::internal::Level const *level;
         std::vector<FaceSet> sets;
         std::vector<Far::Index>
             summedFaces; ///< those beyond any of the faces, by their first corners
+        std::vector<VertexGroup> vertexGroups;
+        FarExt::internal::Buffer<std::uint32_t> places; ///< of the sources of these
     };
 
-    void prepareFaces(FarExt::internal::Level const &level,
-                      FarExt::internal::RegularFaces::OfLevel const &faces);
-    void prepareOthers(std::vector<Far::Index> const &verts,
-                       FarExt::internal::LimitRows const &rows);
+    static void prepareFaces(FarExt::internal::RegularFaces::OfLevel const &faces,
+                             LevelLimit &result);
+    template <typename READ_ROW>
+    void prepareVertices(std::vector<Far::Index> const &verts, READ_ROW readRow,
+                         LevelLimit &result);
+    void evaluateFaces(LevelLimit const &ofLevel, LimitTask const &common);
 
-    std::vector<FaceLevel> _faceLevels;
+    std::vector<LevelLimit> _levels;
     FarExt::internal::Buffer<float> _sums; // of faces of a level
 
-    std::vector<VertexGroup> _vertexGroups;
-    FarExt::internal::Buffer<std::uint32_t> _places; // of their sources
-    std::vector<float> _weights;                     // of all types in turn
+    std::vector<float> _weights; // of all types of vertices in turn
 };
 
 } // namespace OpenSubdivHex::OsdExt::internal
