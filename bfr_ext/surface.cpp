@@ -18,6 +18,8 @@ using internal::CellType;
 // Matrices of finer levels leave the cache.
 constexpr int kLastLevelOfMatrices = 5;
 
+constexpr std::size_t kMaxLatticeFaceSize = 6;
+
 // A weighted sum of points, in double precision.
 template <typename REAL, typename WEIGHT>
 void sumUp(WEIGHT const *weights, int numPoints, REAL const *points, Far::Index const *indices,
@@ -42,6 +44,19 @@ void bound(int numPoints, REAL const *points, Far::Index const *indices,
             maxExtent[k] = i == 0 ? point[k] : std::max(maxExtent[k], point[k]);
         }
     }
+}
+
+// The place of a vertex on the border.
+std::vector<double> makeVertex() { return {0.0}; }
+
+// The stencils of places on the border, which makePoints() gives when they are first asked for.
+template <typename REAL, typename MAKE>
+internal::PlaceMatrix<REAL> const &getBorderMatrix(CellType const &type, internal::PatternOf of,
+                                                   int key, MAKE const &makePoints) {
+    using internal::PatternTable;
+    return type.GetPatterns().template Get<internal::PlaceMatrix<REAL>>(
+        PatternTable::GetKind<REAL>(of), &key, &key + 1,
+        [&] { return internal::BorderEvaluator<REAL>::MakeMatrix(type, makePoints()); });
 }
 
 template <typename REAL>
@@ -176,18 +191,18 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
                                              : Pattern(*_type, places);
             });
     };
-    auto const sumUp = [&](internal::PlaceMatrix<REAL> const &matrix, REAL *result) {
+    auto const sumUp = [&](internal::MirrorMatrix<REAL> const &matrix, REAL *result) {
         internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
                                        nullptr, result, resultDesc.stride});
     };
     // Few types, and few levels, have matrices of a face: others go by cells.
     if (_type->IsInLattice() && tessellation.IsUniform() && levels[0] <= kLastLevelOfMatrices) {
-        sumUp(getPattern(PatternOf::Face).points,
+        sumUp(getPattern(PatternOf::Face).matrices[0],
               results[0] + std::ptrdiff_t(numBorderPlaces) * resultDesc.stride);
         if (results[1]) {
             Pattern const &pattern = getPattern(PatternOf::FaceDerivatives);
-            sumUp(pattern.derivatives[0], results[1]);
-            sumUp(pattern.derivatives[1], results[2]);
+            sumUp(pattern.matrices[0], results[1]);
+            sumUp(pattern.matrices[1], results[2]);
         }
     } else {
         // What it has taken of memory is kept for the next face, here and below.
@@ -276,15 +291,30 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
     evaluateBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
 }
 
+// The places inside of an edge, from its start on; they are the same from its end.
+template <typename REAL>
+std::vector<double> Surface<REAL>::makeEdgePoints(Tessellation const &tessellation, int edge) {
+    auto const numPlaces = static_cast<std::size_t>(tessellation.GetNumEdgeCoords(edge));
+    std::vector<double> points(numPlaces);
+    auto place = tessellation._places.begin() + tessellation._firstEdgeCoords[std::size_t(edge)];
+    for (double &point : points) {
+        point = (++place)->end;
+    }
+    return points;
+}
+
 // Edges are evaluated in their own direction, by what all faces at an edge of this level share.
 template <typename REAL>
 void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const controlPoints[],
                                    PointDescriptor const &pointDesc, REAL p[],
                                    PointDescriptor const &resultDesc) const {
     using internal::PatternOf;
-    using internal::PatternTable;
     using Evaluator = internal::BorderEvaluator<REAL>;
     using Matrix = internal::PlaceMatrix<REAL>;
+    if (_type->IsInLattice() && tessellation.IsUniform()) {
+        evaluateLatticeBorder(tessellation, controlPoints, pointDesc, p, resultDesc);
+        return;
+    }
     static thread_local Evaluator evaluator;
     evaluator.SetPoints(controlPoints, pointDesc.stride, pointDesc.size);
     CellType::Border const *const border =
@@ -292,12 +322,6 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
     if (border) {
         evaluator.FormSums(*border);
     }
-    auto const getMatrix = [&](CellType const &type, PatternOf of, int key,
-                               auto const &makePoints) -> Matrix const & {
-        return type.GetPatterns().template Get<Matrix>(
-            PatternTable::GetKind<REAL>(of), &key, &key + 1,
-            [&] { return Evaluator::MakeMatrix(type, makePoints()); });
-    };
     auto const numEdges = std::size_t(GetFaceSize());
     for (std::size_t edge = 0; edge < numEdges; ++edge) {
         int const first = tessellation._firstEdgeCoords[edge];
@@ -307,8 +331,7 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
         } else {
             CellType::BorderItem const &item = _type->GetBorderItem(getTurns(), numEdges + edge);
             evaluator.Evaluate(item,
-                               getMatrix(*item.type, PatternOf::Border, 0,
-                                         [] { return std::vector<double>(1, 0.0); }),
+                               getBorderMatrix<REAL>(*item.type, PatternOf::Border, 0, makeVertex),
                                vertexResult, 0);
         }
 
@@ -337,23 +360,56 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
         if (tessellation._tree) {
             // Points of polylines are found one by one, since they have few in common.
             for (int i = 0; i < numPlaces; ++i) {
-                Matrix const &matrix =
-                    getMatrix(type, PatternOf::BorderPlace, int(getPoint(i) * Polyline::kLength),
-                              [&] { return std::vector<double>(1, getPoint(i)); });
+                Matrix const &matrix = getBorderMatrix<REAL>(
+                    type, PatternOf::BorderPlace, int(getPoint(i) * Polyline::kLength),
+                    [&] { return std::vector<double>(1, getPoint(i)); });
                 evaluate(matrix, getPlace(i), 0);
             }
             continue;
         }
-        auto const getPoints = [&] {
-            std::vector<double> points(static_cast<std::size_t>(numPlaces));
-            for (int i = 0; i < numPlaces; ++i) {
-                points[std::size_t(i)] = getPoint(i);
-            }
-            return points;
-        };
-        evaluate(getMatrix(type, PatternOf::Border, tessellation._levels[edge], getPoints),
+        evaluate(getBorderMatrix<REAL>(type, PatternOf::Border, tessellation._levels[edge],
+                                       [&] { return makeEdgePoints(tessellation, int(edge)); }),
                  getPlace(0), isReversed ? -resultDesc.stride : resultDesc.stride);
     }
+}
+
+// All edges are of one type, and all vertices: so they are evaluated together.
+template <typename REAL>
+void Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
+                                          REAL const controlPoints[],
+                                          PointDescriptor const &pointDesc, REAL p[],
+                                          PointDescriptor const &resultDesc) const {
+    using internal::PatternOf;
+    using Item = typename internal::ItemSums<REAL>::Item;
+    CellType::LatticeBorder const &border = _type->GetLatticeBorder();
+    auto const numEdges = std::size_t(GetFaceSize());
+    Item items[kMaxLatticeFaceSize];
+    auto const getItem = [&](std::size_t item) -> CellType::BorderItem const & {
+        return *border.items[item][std::size_t(getTurns()[item])];
+    };
+    auto const evaluate = [&](internal::PlaceMatrix<REAL> const &matrix) {
+        internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
+                                       items, numEdges});
+    };
+    auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
+    for (std::size_t edge = 0; edge < numEdges; ++edge) {
+        items[edge] = {getItem(numEdges + edge).points.data(),
+                       getResult(tessellation._firstEdgeCoords[edge]), 0};
+    }
+    evaluate(getBorderMatrix<REAL>(*getItem(numEdges).type, PatternOf::Border, 0, makeVertex));
+    int const numPlaces = tessellation.GetNumEdgeCoords(0);
+    if (numPlaces == 0) {
+        return;
+    }
+    for (std::size_t edge = 0; edge < numEdges; ++edge) {
+        CellType::BorderItem const &item = getItem(edge);
+        int const first = tessellation._firstEdgeCoords[edge];
+        items[edge] = {item.points.data(),
+                       getResult(item.isReversed ? first + numPlaces : first + 1),
+                       item.isReversed ? -resultDesc.stride : resultDesc.stride};
+    }
+    evaluate(getBorderMatrix<REAL>(*getItem(0).type, PatternOf::Border, tessellation._levels[0],
+                                   [&] { return makeEdgePoints(tessellation, 0); }));
 }
 
 template <typename REAL>

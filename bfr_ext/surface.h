@@ -201,6 +201,11 @@ private:
                         PointDescriptor const &pointDesc, REAL p[],
                         PointDescriptor const &resultDesc) const;
 
+    void evaluateLatticeBorder(Tessellation const &tessellation, REAL const controlPoints[],
+                               PointDescriptor const &pointDesc, REAL p[],
+                               PointDescriptor const &resultDesc) const;
+    static std::vector<double> makeEdgePoints(Tessellation const &tessellation, int edge);
+
     // By edge and then by vertex, how the face has what it shares with its neighbours.
     int const *getTurns() const { return _points.data() + _numControlPoints; }
 

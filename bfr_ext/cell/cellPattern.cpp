@@ -5,24 +5,33 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 template <typename REAL>
 CellPattern<REAL>::CellPattern(CellType const &root, std::vector<BasePoint> const &places,
-                               std::size_t numBorderPlaces)
-    : points(places.size() - numBorderPlaces, std::size_t(root.GetNumPoints())) {
+                               std::size_t numBorderPlaces) {
     CellStencil stencil(root);
+    std::vector<std::vector<double>> stencils;
     for (std::size_t place = numBorderPlaces; place < places.size(); ++place) {
         stencil.Find(places[place], false);
-        points.Set(place - numBorderPlaces, stencil.GetWeights());
+        stencils.push_back(stencil.GetWeights());
     }
+    constexpr std::size_t kEven = 0;
+    matrices.emplace_back(Symmetries(root, Symmetries::Kind::Reflections), places, numBorderPlaces,
+                          stencils, kEven);
 }
 
+// Derivatives are from the side of a cell, so that they are not reflected.
 template <typename REAL>
-CellPattern<REAL>::CellPattern(CellType const &root, std::vector<BasePoint> const &places)
-    : derivatives{{places.size(), std::size_t(root.GetNumPoints())},
-                  {places.size(), std::size_t(root.GetNumPoints())}} {
+CellPattern<REAL>::CellPattern(CellType const &root, std::vector<BasePoint> const &places) {
     CellStencil stencil(root);
-    for (std::size_t place = 0; place < places.size(); ++place) {
-        stencil.Find(places[place], true);
-        derivatives[0].Set(place, stencil.GetDuWeights());
-        derivatives[1].Set(place, stencil.GetDvWeights());
+    std::vector<std::vector<double>> duStencils;
+    std::vector<std::vector<double>> dvStencils;
+    for (BasePoint const &place : places) {
+        stencil.Find(place, true);
+        duStencils.push_back(stencil.GetDuWeights());
+        dvStencils.push_back(stencil.GetDvWeights());
+    }
+    Symmetries const symmetries(root, Symmetries::Kind::HalfTurn);
+    std::size_t const odd = symmetries.GetNumImages() - 1;
+    for (auto const *stencils : {&duStencils, &dvStencils}) {
+        matrices.emplace_back(symmetries, places, 0, *stencils, odd);
     }
 }
 

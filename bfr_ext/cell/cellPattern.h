@@ -3,11 +3,11 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_PATTERN_H
 
 #include "cellStencil.h"
-#include "placeKernel.h"
+#include "mirrorMatrix.h"
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief A pattern of places of a base face, as the dense matrices of their stencils.
+/// \brief A pattern of places of a base face in a lattice, as matrices of their stencils.
 template <typename REAL>
 struct CellPattern {
     /// Of the points.
@@ -18,8 +18,8 @@ struct CellPattern {
     /// Of the derivatives of all places.
     CellPattern(CellType const &root, std::vector<BasePoint> const &places);
 
-    PlaceMatrix<REAL> points;
-    PlaceMatrix<REAL> derivatives[2];
+    /// One of the points, or those of the derivatives by u and v.
+    std::vector<MirrorMatrix<REAL>> matrices;
 };
 
 /// \brief What a place on the border is summed up with: an item of the border, by edge and then by

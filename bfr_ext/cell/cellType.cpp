@@ -16,8 +16,9 @@ namespace {
 
 using Vector = std::vector<double>;
 
-// The kind of a whole border, where those of its items are their numbers.
+// The kinds of whole borders, where those of their items are their numbers.
 constexpr int kWholeBorder = -1;
+constexpr int kLatticeBorder = -2;
 
 // Appends a number in as many bytes as it takes, small ones, of either sign, in one.
 void addNumber(int number, std::string &key) {
@@ -265,6 +266,23 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
             }
         }
         return items[item];
+    });
+}
+
+CellType::LatticeBorder const &CellType::GetLatticeBorder() const {
+    return _borderItems.Get<LatticeBorder>(kLatticeBorder, nullptr, nullptr, [&] {
+        auto const numEdges = std::size_t(GetNumCorners());
+        LatticeBorder border;
+        border.items.resize(2 * numEdges);
+        std::vector<int> turns(2 * numEdges);
+        for (std::size_t item = 0; item < 2 * numEdges; ++item) {
+            int const numTurns = item < numEdges ? 2 : GetLatticeValence(GetNumCorners());
+            for (int turn = 0; turn < numTurns; ++turn) {
+                turns[item] = turn;
+                border.items[item].push_back(&GetBorderItem(turns.data(), item));
+            }
+        }
+        return border;
     });
 }
 

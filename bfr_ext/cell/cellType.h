@@ -98,6 +98,12 @@ public:
     ///
     /// \param turns  those of FindBaseCellTurns()
     BorderItem const &GetBorderItem(int const *turns, std::size_t item) const;
+    /// \brief All of them, of a face in a lattice: by edge, and behind these by vertex, what the turns
+    /// 0, 1 and so on make of it.  All edges are of one type, and all vertices.
+    struct LatticeBorder {
+        std::vector<std::vector<BorderItem const *>> items;
+    };
+    LatticeBorder const &GetLatticeBorder() const;
     /// \brief All of these together, with the sums of the face's points that the border is made of, in
     /// the order in which the items have their points: first the surface at the vertices, then the
     /// points of the long edges that edges become in the first step, but for edges in a lattice.

@@ -5,11 +5,11 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
-template <typename REAL>
-using Kernel = void (*)(PlaceMatrix<REAL> const &, PlaceSums<REAL> const &);
+template <typename MATRIX, typename SUMS>
+using Kernel = void (*)(MATRIX const &, SUMS const &);
 
-template <typename REAL>
-Kernel<REAL> chooseKernel() {
+template <typename MATRIX, typename SUMS>
+Kernel<MATRIX, SUMS> chooseKernel() {
 #ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f")) {
@@ -22,9 +22,9 @@ Kernel<REAL> chooseKernel() {
     return SumUpPlacesPortable;
 }
 
-template <typename REAL>
-void sumUpWidest(PlaceMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums) {
-    static Kernel<REAL> const kKernel = chooseKernel<REAL>();
+template <typename MATRIX, typename SUMS>
+void sumUpWidest(MATRIX const &matrix, SUMS const &sums) {
+    static Kernel<MATRIX, SUMS> const kKernel = chooseKernel<MATRIX, SUMS>();
     kKernel(matrix, sums);
 }
 
@@ -35,6 +35,22 @@ void SumUpPlaces(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums)
 }
 
 void SumUpPlaces(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums) {
+    sumUpWidest(matrix, sums);
+}
+
+void SumUpPlaces(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums) {
+    sumUpWidest(matrix, sums);
+}
+
+void SumUpPlaces(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums) {
+    sumUpWidest(matrix, sums);
+}
+
+void SumUpPlaces(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums) {
+    sumUpWidest(matrix, sums);
+}
+
+void SumUpPlaces(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums) {
     sumUpWidest(matrix, sums);
 }
 

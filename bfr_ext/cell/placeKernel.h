@@ -8,6 +8,9 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
+template <typename REAL>
+class MirrorMatrix;
+
 /// \brief The stencils of places as a dense matrix.
 ///
 /// Places stand in blocks of kMaxWidth, and of what is left at the end; a block has the weights of its
@@ -72,19 +75,58 @@ struct PlaceSums {
     std::size_t numRows = 0;
 };
 
+/// \brief Points, and where the weighted sums of several choices of them go that one matrix makes.
+///
+/// Each number is the same sum as that of PlaceSums.
+template <typename REAL>
+struct ItemSums {
+    struct Item {
+        int const *indices; ///< which points the columns of the matrix have
+        REAL *results;
+        std::ptrdiff_t resultStride;
+    };
+
+    REAL const *points;
+    std::ptrdiff_t stride; ///< from one point to the next, in numbers
+    std::size_t size;      ///< of a point
+    Item const *items;
+    std::size_t numItems;
+};
+
 /// Forms the sums with the widest registers that the machine has.
 void SumUpPlaces(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 /// \copydoc SumUpPlaces(PlaceMatrix<float> const &, PlaceSums<float> const &)
 void SumUpPlaces(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+/// The same of all places, without indices.
+void SumUpPlaces(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
+/// \copydoc SumUpPlaces(MirrorMatrix<float> const &, PlaceSums<float> const &)
+void SumUpPlaces(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
+
+/// The same of several items.
+void SumUpPlaces(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums);
+/// \copydoc SumUpPlaces(PlaceMatrix<float> const &, ItemSums<float> const &)
+void SumUpPlaces(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums);
 
 /// @name The same with some instructions, which the machine must have
 /// @{
 void SumUpPlacesPortable(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+void SumUpPlacesPortable(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
+void SumUpPlacesPortable(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
+void SumUpPlacesPortable(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums);
+void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums);
 void SumUpPlacesAvx2(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+void SumUpPlacesAvx2(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
+void SumUpPlacesAvx2(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
+void SumUpPlacesAvx2(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums);
+void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums);
 void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+void SumUpPlacesAvx512(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
+void SumUpPlacesAvx512(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
+void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums);
+void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums);
 /// @}
 
 } // namespace OpenSubdivHex::BfrExt::internal

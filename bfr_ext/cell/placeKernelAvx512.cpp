@@ -11,4 +11,20 @@ void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> cons
     sumUpPlaces<64>(matrix, sums);
 }
 
+void SumUpPlacesAvx512(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums) {
+    sumUpPlaces<64>(matrix, sums);
+}
+
+void SumUpPlacesAvx512(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums) {
+    sumUpPlaces<64>(matrix, sums);
+}
+
+void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums) {
+    sumUpPlaces<64>(matrix, sums);
+}
+
+void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums) {
+    sumUpPlaces<64>(matrix, sums);
+}
+
 } // namespace OpenSubdivHex::BfrExt::internal

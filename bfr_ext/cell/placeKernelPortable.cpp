@@ -11,4 +11,20 @@ void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, PlaceSums<double> co
     sumUpPlaces<16>(matrix, sums);
 }
 
+void SumUpPlacesPortable(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums) {
+    sumUpPlaces<16>(matrix, sums);
+}
+
+void SumUpPlacesPortable(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums) {
+    sumUpPlaces<16>(matrix, sums);
+}
+
+void SumUpPlacesPortable(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums) {
+    sumUpPlaces<16>(matrix, sums);
+}
+
+void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums) {
+    sumUpPlaces<16>(matrix, sums);
+}
+
 } // namespace OpenSubdivHex::BfrExt::internal

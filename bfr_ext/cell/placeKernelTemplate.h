@@ -2,8 +2,9 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_TEMPLATE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_TEMPLATE_H
 
-#include "placeKernel.h"
+#include "mirrorMatrix.h"
 
+#include <cstring>
 #include <utility>
 
 // Included by one source file for each set of instructions, which must not share what the compiler
@@ -28,6 +29,14 @@ struct PlainLanes {
             values[i] += other.values[i];
         }
         return *this;
+    }
+    PlainLanes operator+(PlainLanes const &other) const { return PlainLanes(*this) += other; }
+    PlainLanes operator-(PlainLanes const &other) const {
+        PlainLanes result;
+        for (std::size_t i = 0; i < kSize; ++i) {
+            result.values[i] = values[i] - other.values[i];
+        }
+        return result;
     }
 
     REAL values[kSize];
@@ -81,36 +90,98 @@ struct LanesOf<double, 64> {
 #endif
 
 #ifdef OPENSUBDIVHEX_HAS_SHUFFLES
-/// Register OUT of three, in which x, y and z of points alternate, from those of all x, y and z.
+/// Register OUT of four, in which x, y, z and any number of points alternate, from those of all x, y and
+/// z.
 template <std::size_t OUT, typename LANES, std::size_t... I>
 LANES interleave(LANES const &x, LANES const &y, LANES const &z, std::index_sequence<I...>) {
     constexpr std::size_t kSize = sizeof...(I);
     LANES const xy = __builtin_shufflevector(
-        x, y, int((OUT * kSize + I) / 3 + (OUT * kSize + I) % 3 % 2 * kSize)...);
+        x, y, int((OUT * kSize + I) / 4 + ((OUT * kSize + I) % 4 == 1 ? kSize : 0))...);
     return __builtin_shufflevector(
-        xy, z, int((OUT * kSize + I) % 3 == 2 ? kSize + (OUT * kSize + I) / 3 : I)...);
+        xy, z, int((OUT * kSize + I) % 4 < 2 ? I : kSize + (OUT * kSize + I) / 4)...);
 }
 #endif
 
-/// Sums of a block of places.
+/// Forms sums of a block of places, in tiles of some registers each.
 template <std::size_t BYTES, typename REAL>
-class BlockSums {
+class TileSums {
 public:
     using Lanes = typename LanesOf<REAL, BYTES>::Type;
     using InMemory = typename LanesOf<REAL, BYTES>::InMemory;
     static constexpr std::size_t kSize = BYTES / sizeof(REAL);
     static_assert(sizeof(Lanes) == BYTES);
 
+    /// The numbers of the places of a block, component by component.
+    using Numbers = REAL[3][PlaceMatrix<REAL>::kMaxWidth];
+
+    /// \param begin   the first place of the block
+    /// \param count   places of the block that are wanted, the first ones
+    /// \param points  as those of PlaceSums, from the first component on that is wanted
+    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES>
+    static void Form(PlaceMatrix<REAL> const &matrix, std::size_t begin, std::size_t count,
+                     REAL const *points, std::ptrdiff_t stride, int const *indices,
+                     Numbers &numbers) {
+        TileSums const tiles{matrix.GetNumPoints(), matrix.GetWidth(begin), points, stride,
+                             indices};
+        REAL const *const weights = matrix.GetBlock(begin);
+        std::size_t first = 0;
+        std::size_t const end = (count + kSize - 1) / kSize * kSize;
+        for (; first + 3 * kSize <= end; first += 3 * kSize) {
+            tiles.form<3, NUM_COMPONENTS, HAS_INDICES>(weights + first, numbers, first);
+        }
+        if (first + 2 * kSize <= end) {
+            tiles.form<2, NUM_COMPONENTS, HAS_INDICES>(weights + first, numbers, first);
+            first += 2 * kSize;
+        }
+        if (first < end) {
+            tiles.form<1, NUM_COMPONENTS, HAS_INDICES>(weights + first, numbers, first);
+        }
+    }
+
+    std::size_t numPoints;
+    std::size_t width; // of the block
+    REAL const *points;
+    std::ptrdiff_t stride;
+    int const *indices;
+
+private:
+    /// NUM_LANES registers of places, from the first on, of each component.
+    template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES>
+    void form(REAL const *weights, Numbers &numbers, std::size_t first) const {
+        Lanes sums[NUM_COMPONENTS][NUM_LANES] = {};
+        for (std::size_t i = 0; i < numPoints; ++i) {
+            auto const *const lanes = reinterpret_cast<InMemory const *>(weights);
+            weights += width;
+            auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i);
+            REAL const *const point = points + place * stride;
+            for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
+                Lanes const ofLane = lanes[lane];
+                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                    sums[k][lane] += ofLane * point[k];
+                }
+            }
+        }
+        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+            auto *results = reinterpret_cast<InMemory *>(numbers[k] + first);
+            for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
+                *results++ = sums[k][lane];
+            }
+        }
+    }
+};
+
+/// Sums of the places of a matrix, block by block.
+template <std::size_t BYTES, typename REAL>
+class BlockSums {
+public:
     BlockSums(PlaceMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums)
-        : _matrix(matrix), _sums(sums),
-          _isPacked(sums.size == 3 && sums.resultStride == 3 && !sums.rows) {}
+        : _matrix(matrix), _sums(sums) {}
 
     void Form() {
         std::size_t const numPlaces = _matrix.GetNumPlaces();
         PlaceOfRow const *row = _sums.rows;
         for (_begin = 0; _begin < numPlaces; _begin += PlaceMatrix<REAL>::kMaxWidth) {
-            _width = _matrix.GetWidth(_begin);
-            _count = std::min(_width, numPlaces - _begin);
+            _count = std::min(_matrix.GetWidth(_begin), numPlaces - _begin);
             PlaceOfRow const *const firstRow = row;
             if (_sums.rows) {
                 while (row != _sums.rows + _sums.numRows && row->row < int(_begin + _count)) {
@@ -132,17 +203,22 @@ public:
     }
 
 private:
+    using Tiles = TileSums<BYTES, REAL>;
+
     template <std::size_t NUM_COMPONENTS>
     void formComponents(std::size_t component, PlaceOfRow const *firstRow,
                         PlaceOfRow const *lastRow) {
+        REAL const *const points = _sums.points + component;
         if (_sums.indices) {
-            formTiles<NUM_COMPONENTS, true>(component);
+            Tiles::template Form<NUM_COMPONENTS, true>(_matrix, _begin, _count, points,
+                                                       _sums.stride, _sums.indices, _numbers);
         } else {
-            formTiles<NUM_COMPONENTS, false>(component);
+            Tiles::template Form<NUM_COMPONENTS, false>(_matrix, _begin, _count, points,
+                                                        _sums.stride, nullptr, _numbers);
         }
         REAL *const results = _sums.results + component;
         if (!_sums.rows) {
-            for (std::size_t i = _numWritten; i < _count; ++i) {
+            for (std::size_t i = 0; i < _count; ++i) {
                 write<NUM_COMPONENTS>(i, results + std::ptrdiff_t(_begin + i) * _sums.resultStride);
             }
             return;
@@ -160,81 +236,291 @@ private:
         }
     }
 
-    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES>
-    void formTiles(std::size_t component) {
-        _numWritten = 0;
-        std::size_t first = 0;
-        std::size_t const end = (_count + kSize - 1) / kSize * kSize;
-        for (; first + 3 * kSize <= end; first += 3 * kSize) {
-            formTile<3, NUM_COMPONENTS, HAS_INDICES>(component, first);
+    PlaceMatrix<REAL> const &_matrix;
+    PlaceSums<REAL> const &_sums;
+    std::size_t _begin = 0;
+    std::size_t _count = 0; // places of the block, up to the last one that is wanted
+    typename Tiles::Numbers _numbers;
+};
+
+/// The same of a mirrored matrix.
+template <std::size_t BYTES, typename REAL>
+class MirrorSums {
+public:
+    MirrorSums(MirrorMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums)
+        : _matrix(matrix), _sums(sums) {}
+
+    void Form() {
+        std::size_t component = 0;
+        for (; component + 3 <= _sums.size; component += 3) {
+            formComponents<3>(component);
         }
-        if (first + 2 * kSize <= end) {
-            formTile<2, NUM_COMPONENTS, HAS_INDICES>(component, first);
-            first += 2 * kSize;
-        }
-        if (first < end) {
-            formTile<1, NUM_COMPONENTS, HAS_INDICES>(component, first);
+        for (; component < _sums.size; ++component) {
+            formComponents<1>(component);
         }
     }
 
-    /// NUM_LANES registers of places, from the first on, of each component.
-    template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES>
-    void formTile(std::size_t component, std::size_t first) {
-        std::size_t const numPoints = _matrix.GetNumPoints();
-        REAL const *weights = _matrix.GetBlock(_begin) + first;
-        REAL const *const points = _sums.points + component;
-        Lanes sums[NUM_COMPONENTS][NUM_LANES] = {};
-        for (std::size_t i = 0; i < numPoints; ++i) {
-            auto const *const lanes = reinterpret_cast<InMemory const *>(weights);
-            weights += _width;
-            auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(_sums.indices[i]) : i);
-            REAL const *const point = points + place * _sums.stride;
-            for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                Lanes const ofLane = lanes[lane];
+private:
+    using Tiles = TileSums<BYTES, REAL>;
+    using Lanes = typename Tiles::Lanes;
+    using InMemory = typename Tiles::InMemory;
+    static constexpr std::size_t kMaxWidth = PlaceMatrix<REAL>::kMaxWidth;
+
+    template <std::size_t NUM_COMPONENTS>
+    void formComponents(std::size_t component) {
+        formPoints<NUM_COMPONENTS>(_sums.points + component);
+        auto const &parts = _matrix.GetParts();
+        PlaceMatrix<REAL> const &slots = parts[0].matrix;
+        for (std::size_t begin = 0; begin < slots.GetNumPlaces(); begin += kMaxWidth) {
+            std::size_t const width = slots.GetWidth(begin);
+            for (std::size_t i = 0; i < parts.size(); ++i) {
+                Tiles::template Form<NUM_COMPONENTS, false>(parts[i].matrix, begin, width,
+                                                            _points + 3 * parts[i].firstColumn, 3,
+                                                            nullptr, _numbers[i]);
+            }
+            if (parts.size() == 2) {
+                joinTwo<NUM_COMPONENTS>(width);
+            } else if (parts.size() == 4) {
+                joinFour<NUM_COMPONENTS>(width);
+            }
+            auto const &targets = _matrix.GetTargets(begin / kMaxWidth);
+            if (NUM_COMPONENTS == 3 && _sums.resultStride == 3) {
+                interleaveNumbers(width);
+                writePoints(targets);
+            } else {
+                writeNumbers<NUM_COMPONENTS>(targets, component);
+            }
+        }
+    }
+
+    using Targets = typename MirrorMatrix<REAL>::Targets;
+    using Target = typename MirrorMatrix<REAL>::Target;
+
+    /// Writes points of three numbers without gaps.  A fourth number is where the next point begins, which
+    /// is written afterwards.
+    void writePoints(Targets const &targets) {
+        REAL *const results = _sums.results;
+        for (Target const &target : targets.followed) {
+            std::memcpy(results + 3 * std::ptrdiff_t(target.place), _slots[target.slot],
+                        4 * sizeof(REAL));
+        }
+        for (Target const &target : targets.others) {
+            std::memcpy(results + 3 * std::ptrdiff_t(target.place), _slots[target.slot],
+                        3 * sizeof(REAL));
+        }
+    }
+
+    template <std::size_t NUM_COMPONENTS>
+    void writeNumbers(Targets const &targets, std::size_t component) {
+        REAL *const results = _sums.results + component;
+        for (auto const *some : {&targets.followed, &targets.others}) {
+            for (Target const &target : *some) {
+                auto const slot = std::size_t(target.slot);
+                REAL *const to = results + std::ptrdiff_t(target.place) * _sums.resultStride;
                 for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    sums[k][lane] += ofLane * point[k];
+                    to[k] = _numbers[slot / kMaxWidth][k][slot % kMaxWidth];
                 }
             }
         }
+    }
+
+    /// Copies the numbers of all images to the slots.
+    void interleaveNumbers(std::size_t width) {
+        for (std::size_t image = 0; image < _matrix.GetParts().size(); ++image) {
+            typename Tiles::Numbers const &numbers = _numbers[image];
 #ifdef OPENSUBDIVHEX_HAS_SHUFFLES
-        if constexpr (NUM_COMPONENTS == 3) {
-            if (_isPacked && first + NUM_LANES * kSize <= _count) {
-                constexpr std::make_index_sequence<kSize> kIndices;
-                auto *result = reinterpret_cast<InMemory *>(_sums.results + 3 * (_begin + first));
-                for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                    Lanes const &x = sums[0][lane];
-                    Lanes const &y = sums[1][lane];
-                    Lanes const &z = sums[2][lane];
-                    *result++ = interleave<0>(x, y, z, kIndices);
-                    *result++ = interleave<1>(x, y, z, kIndices);
-                    *result++ = interleave<2>(x, y, z, kIndices);
+            constexpr std::make_index_sequence<Tiles::kSize> kIndices;
+            auto *to = reinterpret_cast<InMemory *>(_slots[image * kMaxWidth]);
+            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
+                Lanes const x = *reinterpret_cast<InMemory const *>(numbers[0] + i);
+                Lanes const y = *reinterpret_cast<InMemory const *>(numbers[1] + i);
+                Lanes const z = *reinterpret_cast<InMemory const *>(numbers[2] + i);
+                *to++ = interleave<0>(x, y, z, kIndices);
+                *to++ = interleave<1>(x, y, z, kIndices);
+                *to++ = interleave<2>(x, y, z, kIndices);
+                *to++ = interleave<3>(x, y, z, kIndices);
+            }
+#else
+            for (std::size_t i = 0; i < width; ++i) {
+                for (std::size_t k = 0; k < 4; ++k) {
+                    _slots[image * kMaxWidth + i][k] = numbers[k < 3 ? k : 2][i];
                 }
-                _numWritten = first + NUM_LANES * kSize;
-                return;
+            }
+#endif
+        }
+    }
+
+    /// The sums of points that symmetries exchange.
+    template <std::size_t NUM_COMPONENTS>
+    void formPoints(REAL const *points) {
+        for (auto const &orbit : _matrix.GetOrbits()) {
+            auto const getPoint = [&](std::size_t i) {
+                return points + std::ptrdiff_t(orbit.points[i]) * _sums.stride;
+            };
+            auto const getSum = [&](std::size_t i) {
+                return _points + 3 * std::size_t(orbit.columns[i]);
+            };
+            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                if (orbit.size == 1) {
+                    getSum(0)[k] = getPoint(0)[k];
+                } else if (orbit.size == 2) {
+                    getSum(0)[k] = getPoint(0)[k] + getPoint(1)[k];
+                    getSum(1)[k] = getPoint(0)[k] - getPoint(1)[k];
+                } else {
+                    REAL const sums[2] = {getPoint(0)[k] + getPoint(1)[k],
+                                          getPoint(2)[k] + getPoint(3)[k]};
+                    REAL const differences[2] = {getPoint(0)[k] - getPoint(1)[k],
+                                                 getPoint(2)[k] - getPoint(3)[k]};
+                    getSum(0)[k] = sums[0] + sums[1];
+                    getSum(1)[k] = differences[0] + differences[1];
+                    getSum(2)[k] = sums[0] - sums[1];
+                    getSum(3)[k] = differences[0] - differences[1];
+                }
             }
         }
-#endif
+    }
+
+    /// Of the parts, by parity, the images.
+    template <std::size_t NUM_COMPONENTS>
+    void joinTwo(std::size_t width) {
         for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            auto *numbers = reinterpret_cast<InMemory *>(_numbers[k] + first);
-            for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                *numbers++ = sums[k][lane];
+            auto *const even = reinterpret_cast<InMemory *>(_numbers[0][k]);
+            auto *const odd = reinterpret_cast<InMemory *>(_numbers[1][k]);
+            for (std::size_t i = 0; i < width / Tiles::kSize; ++i) {
+                Lanes const ofEven = even[i];
+                Lanes const ofOdd = odd[i];
+                even[i] = ofEven + ofOdd;
+                odd[i] = ofEven - ofOdd;
+            }
+        }
+    }
+    template <std::size_t NUM_COMPONENTS>
+    void joinFour(std::size_t width) {
+        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+            InMemory *numbers[4];
+            for (std::size_t i = 0; i < 4; ++i) {
+                numbers[i] = reinterpret_cast<InMemory *>(_numbers[i][k]);
+            }
+            for (std::size_t i = 0; i < width / Tiles::kSize; ++i) {
+                Lanes const ofParts[4] = {numbers[0][i], numbers[1][i], numbers[2][i],
+                                          numbers[3][i]};
+                Lanes const sums[2] = {ofParts[0] + ofParts[1], ofParts[2] + ofParts[3]};
+                Lanes const differences[2] = {ofParts[0] - ofParts[1], ofParts[2] - ofParts[3]};
+                numbers[0][i] = sums[0] + sums[1];
+                numbers[1][i] = differences[0] + differences[1];
+                numbers[2][i] = sums[0] - sums[1];
+                numbers[3][i] = differences[0] - differences[1];
+            }
+        }
+    }
+
+    MirrorMatrix<REAL> const &_matrix;
+    PlaceSums<REAL> const &_sums;
+    REAL _points[3 * MirrorMatrix<REAL>::kMaxPoints]; // by column
+    // Of a block, by image: of all places a component, or of each place all components.
+    typename Tiles::Numbers _numbers[MirrorMatrix<REAL>::kMaxImages];
+    REAL _slots[MirrorMatrix<REAL>::kMaxImages * kMaxWidth][4];
+};
+
+/// The same of several items, some at a time, so that their sums keep the machine busy.
+template <std::size_t BYTES, typename REAL>
+class BlockItemSums {
+public:
+    BlockItemSums(PlaceMatrix<REAL> const &matrix, ItemSums<REAL> const &sums)
+        : _matrix(matrix), _sums(sums) {}
+
+    void Form() {
+        std::size_t component = 0;
+        for (; component + 3 <= _sums.size; component += 3) {
+            formComponents<3>(component);
+        }
+        for (; component < _sums.size; ++component) {
+            formComponents<1>(component);
+        }
+    }
+
+private:
+    using Tiles = TileSums<BYTES, REAL>;
+    using Lanes = typename Tiles::Lanes;
+    using InMemory = typename Tiles::InMemory;
+    static constexpr std::size_t kSize = Tiles::kSize;
+
+    template <std::size_t NUM_COMPONENTS>
+    void formComponents(std::size_t component) {
+        constexpr std::size_t kMaxItems = 4; // whose sums fit in 16 registers
+        std::size_t item = 0;
+        if (_sums.numItems % kMaxItems == 0) {
+            for (; item < _sums.numItems; item += kMaxItems) {
+                formItems<kMaxItems, NUM_COMPONENTS>(item, component);
+            }
+        }
+        for (; item + 3 <= _sums.numItems; item += 3) {
+            formItems<3, NUM_COMPONENTS>(item, component);
+        }
+        for (; item < _sums.numItems; ++item) {
+            formItems<1, NUM_COMPONENTS>(item, component);
+        }
+    }
+
+    template <std::size_t NUM_ITEMS, std::size_t NUM_COMPONENTS>
+    void formItems(std::size_t item, std::size_t component) const {
+        constexpr std::size_t kMaxWidth = PlaceMatrix<REAL>::kMaxWidth;
+        for (std::size_t first = 0; first < _matrix.GetNumPlaces(); first += kSize) {
+            std::size_t const begin = first / kMaxWidth * kMaxWidth;
+            formTile<NUM_ITEMS, NUM_COMPONENTS>(_sums.items + item, component, first,
+                                                _matrix.GetBlock(begin) + (first - begin),
+                                                _matrix.GetWidth(begin));
+        }
+    }
+
+    template <std::size_t NUM_ITEMS, std::size_t NUM_COMPONENTS>
+    void formTile(typename ItemSums<REAL>::Item const *items, std::size_t component,
+                  std::size_t first, REAL const *weights, std::size_t width) const {
+        Lanes sums[NUM_ITEMS][NUM_COMPONENTS] = {};
+        std::size_t const numPoints = _matrix.GetNumPoints();
+        for (std::size_t i = 0; i < numPoints; ++i, weights += width) {
+            Lanes const ofPoint = *reinterpret_cast<InMemory const *>(weights);
+            for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
+                REAL const *const point =
+                    _sums.points + component + items[item].indices[i] * _sums.stride;
+                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                    sums[item][k] += ofPoint * point[k];
+                }
+            }
+        }
+        REAL numbers[NUM_ITEMS][NUM_COMPONENTS][kSize];
+        for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
+            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                *reinterpret_cast<InMemory *>(numbers[item][k]) = sums[item][k];
+            }
+        }
+        std::size_t const count = std::min(kSize, _matrix.GetNumPlaces() - first);
+        for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
+            REAL *result =
+                items[item].results + component + std::ptrdiff_t(first) * items[item].resultStride;
+            for (std::size_t i = 0; i < count; ++i, result += items[item].resultStride) {
+                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                    result[k] = numbers[item][k][i];
+                }
             }
         }
     }
 
     PlaceMatrix<REAL> const &_matrix;
-    PlaceSums<REAL> const &_sums;
-    bool const _isPacked; // whether results are three numbers each without gaps
-    std::size_t _begin = 0;
-    std::size_t _width = 0;
-    std::size_t _count = 0;      // places of the block, up to the last one that is wanted
-    std::size_t _numWritten = 0; // of these, the first ones, which are in the results already
-    REAL _numbers[3][PlaceMatrix<REAL>::kMaxWidth];
+    ItemSums<REAL> const &_sums;
 };
 
 template <std::size_t BYTES, typename REAL>
+void sumUpPlaces(PlaceMatrix<REAL> const &matrix, ItemSums<REAL> const &sums) {
+    BlockItemSums<BYTES, REAL>(matrix, sums).Form();
+}
+template <std::size_t BYTES, typename REAL>
 void sumUpPlaces(PlaceMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums) {
     BlockSums<BYTES, REAL>(matrix, sums).Form();
+}
+template <std::size_t BYTES, typename REAL>
+void sumUpPlaces(MirrorMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums) {
+    MirrorSums<BYTES, REAL>(matrix, sums).Form();
 }
 
 } // namespace

@@ -66,6 +66,42 @@ public:
         return results;
     }
 
+    /// The sums of several choices of the points, each of all places.
+    using ItemFunction = void (*)(PlaceMatrix<REAL> const &,
+                                  BfrExt::internal::ItemSums<REAL> const &);
+    std::vector<REAL> FormItems(ItemFunction function, std::size_t numItems) const {
+        std::vector<std::vector<int>> const indices = makeItems(numItems);
+        std::size_t const sizeOfItem = _numPlaces * _stride;
+        std::vector<REAL> results(numItems * sizeOfItem, REAL(kUntouched));
+        std::vector<typename BfrExt::internal::ItemSums<REAL>::Item> items;
+        for (std::size_t item = 0; item < numItems; ++item) {
+            // Every other one is written from its end on.
+            auto const stride = std::ptrdiff_t(_stride);
+            REAL *const begin = results.data() + item * sizeOfItem;
+            items.push_back({indices[item].data(),
+                             item % 2 == 0 ? begin : begin + sizeOfItem - _stride,
+                             item % 2 == 0 ? stride : -stride});
+        }
+        function(_matrix, {_points.data(), std::ptrdiff_t(_stride), _size, items.data(), numItems});
+        return results;
+    }
+
+    /// The same one by one.
+    std::vector<REAL> FormItemByItem(std::size_t numItems) const {
+        std::size_t const sizeOfItem = _numPlaces * _stride;
+        std::vector<REAL> results(numItems * sizeOfItem, REAL(kUntouched));
+        std::vector<std::vector<int>> const indices = makeItems(numItems);
+        for (std::size_t item = 0; item < numItems; ++item) {
+            auto const stride = std::ptrdiff_t(_stride);
+            REAL *const begin = results.data() + item * sizeOfItem;
+            BfrExt::internal::SumUpPlacesPortable(
+                _matrix, {_points.data(), stride, _size, indices[item].data(),
+                          item % 2 == 0 ? begin : begin + sizeOfItem - _stride,
+                          item % 2 == 0 ? stride : -stride});
+        }
+        return results;
+    }
+
     std::vector<REAL> FormLiterally() const {
         std::vector<REAL> results(_numPlaces * _stride, REAL(kUntouched));
         auto const form = [&](std::size_t row, std::size_t place) {
@@ -91,6 +127,17 @@ public:
     }
 
 private:
+    // Which points each of some items has.
+    std::vector<std::vector<int>> makeItems(std::size_t numItems) const {
+        std::vector<std::vector<int>> items(numItems);
+        for (std::size_t item = 0; item < numItems; ++item) {
+            for (std::size_t i = 0; i < _matrix.GetNumPoints(); ++i) {
+                items[item].push_back(int((i + item) % (2 * _matrix.GetNumPoints())));
+            }
+        }
+        return items;
+    }
+
     std::size_t const _numPlaces;
     std::size_t const _size;
     std::size_t const _stride;
@@ -117,6 +164,36 @@ void expectSameBits(Sums<REAL> const &sums) {
 }
 
 template <typename REAL>
+void expectSameBitsOfItems(Sums<REAL> const &sums, std::size_t numItems) {
+    std::vector<REAL> const expected = sums.FormItemByItem(numItems);
+    ASSERT_EQ(sums.FormItems(BfrExt::internal::SumUpPlaces, numItems), expected);
+    ASSERT_EQ(sums.FormItems(BfrExt::internal::SumUpPlacesPortable, numItems), expected);
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("avx2")) {
+        ASSERT_EQ(sums.FormItems(BfrExt::internal::SumUpPlacesAvx2, numItems), expected);
+    }
+    if (__builtin_cpu_supports("avx512f")) {
+        ASSERT_EQ(sums.FormItems(BfrExt::internal::SumUpPlacesAvx512, numItems), expected);
+    }
+#endif
+}
+
+template <typename REAL>
+void expectSameBitsOfItems() {
+    for (std::size_t const numPlaces : {1, 2, 10, 16, 17, 48, 50, 100}) {
+        for (std::size_t const size : {1, 3, 4, 6}) {
+            for (std::size_t const gap : {0, 2}) {
+                for (std::size_t numItems = 1; numItems <= 8; ++numItems) {
+                    SCOPED_TRACE(std::to_string(numItems) + " times " + std::to_string(numPlaces) +
+                                 " places, points of " + std::to_string(size) + " numbers");
+                    expectSameBitsOfItems(Sums<REAL>(numPlaces, 19, size, gap, false), numItems);
+                }
+            }
+        }
+    }
+}
+
+template <typename REAL>
 void expectSameBits() {
     for (std::size_t numPlaces = 0; numPlaces <= 210; numPlaces += numPlaces < 50 ? 1 : 7) {
         for (std::size_t const numPoints : {1, 2, 31}) {
@@ -139,6 +216,11 @@ void expectSameBits() {
 TEST(PlaceKernelTest, AnyInstructionsGiveTheSameBits) {
     expectSameBits<float>();
     expectSameBits<double>();
+}
+
+TEST(PlaceKernelTest, ItemsAreTheSameTogether) {
+    expectSameBitsOfItems<float>();
+    expectSameBitsOfItems<double>();
 }
 
 } // namespace OpenSubdivHex::Regression
