@@ -16,7 +16,7 @@ using internal::CellStencil;
 using internal::CellType;
 
 // Matrices of finer levels leave the cache.
-constexpr int kLastLevelOfMatrices = 5;
+constexpr int kLastLevelOfMatrices = 6;
 
 constexpr std::size_t kMaxLatticeFaceSize = 6;
 
