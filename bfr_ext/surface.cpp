@@ -4,11 +4,16 @@
 #include "cell/cellPattern.h"
 #include "cell/cellValues.h"
 #include "cell/patchEvaluator.h"
+#include "cell/plainFace.h"
 
 #include <algorithm>
 #include <limits>
 
 namespace OpenSubdivHex::BfrExt {
+
+internal::CellType const &internal::BaseType::operator*() const {
+    return _type ? *_type : _plain->Get();
+}
 
 namespace {
 

@@ -18,7 +18,24 @@ namespace BfrExt {
 namespace internal {
 class CellType;
 class CellTypes;
+class PlainFaceType;
 struct BasePoint;
+
+/// The type of a base face: that of a plain one, or one that was made at once.
+class BaseType {
+public:
+    BaseType() = default;
+    explicit BaseType(CellType const &type) : _type(&type) {}
+    explicit BaseType(PlainFaceType const &plain) : _plain(&plain) {}
+
+    explicit operator bool() const { return _type || _plain; }
+    CellType const &operator*() const;
+    CellType const *operator->() const { return &**this; }
+
+private:
+    CellType const *_type = nullptr;
+    PlainFaceType const *_plain = nullptr;
+};
 } // namespace internal
 
 /// \brief The limit surface of a base face, as Bfr::Surface: a function of u and v.
@@ -89,7 +106,7 @@ public:
     Surface &operator=(Surface const &other);
 
     /// Whether SurfaceFactory initialized it.
-    bool IsValid() const { return _type != nullptr; }
+    bool IsValid() const { return bool(_type); }
     /// Makes it invalid.
     void Clear();
 
@@ -210,7 +227,7 @@ private:
     int const *getTurns() const { return _points.data() + _numControlPoints; }
 
     std::shared_ptr<internal::CellTypes const> _types; // which has the type
-    internal::CellType const *_type = nullptr;
+    internal::BaseType _type;
     int _numControlPoints = 0;
     std::vector<Index> _points; // the control points, and then the turns
     Parameterization _parameterization;

@@ -2,10 +2,9 @@
 #include "surfaceFactory.h"
 
 #include "cell/cellType.h"
-#include "cell/latticeWalk.h"
+#include "cell/plainFace.h"
 
 #include "far_ext/limit/limitRows.h"
-#include "far_ext/limit/plainCell.h"
 
 #include <algorithm>
 #include <string>
@@ -19,7 +18,6 @@ using FarExt::StatusCode;
 using FarExt::internal::CellPatch;
 using FarExt::internal::FVarChannel;
 using FarExt::internal::Level;
-using FarExt::internal::VertexMark;
 
 namespace {
 
@@ -33,13 +31,21 @@ bool isAtFreeBoundary(Level const &level, Far::Index vert) {
     });
 }
 
+internal::CellRules getRules(FarExt::TopologyRefiner const &refiner, Interpolation interpolation) {
+    return {refiner.GetSchemeOptions(),
+            FarExt::internal::GetStepsToLimit(refiner.GetHexSchemeOptions()), interpolation};
+}
+
 } // namespace
 
 SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options)
     : _refiner(refiner), _options(options),
       _types(options.GetExternalCache() ? options.GetExternalCache()->_types
-                                        : std::make_shared<internal::CellTypes>()),
-      _lattices(std::make_unique<internal::LatticeWalks>()) {
+                                        : std::make_shared<internal::CellTypes>()) {
+    for (Interpolation const interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
+        _plainTypes[std::size_t(interpolation)] =
+            &_types->GetPlainFaces(getRules(refiner, interpolation));
+    }
     FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
     for (int channel = -1; channel < refiner.GetNumFVarChannels(); ++channel) {
         _marks.push_back(FarExt::internal::MarkFeatures(hierarchy.GetMesh(channel).levels[0]));
@@ -95,30 +101,34 @@ Parameterization SurfaceFactory::GetFaceParameterization(Index face) const {
     return Parameterization(_refiner.GetHierarchy().mesh.levels[0].GetFaceSize(face));
 }
 
-// Plain faces, which are most, are known by a short key; of each, the type is found from the patch once.
-internal::CellType const &SurfaceFactory::findType(Level const &level,
-                                                   std::vector<VertexMark> const &marks, Index face,
-                                                   internal::CellRules const &rules,
-                                                   std::vector<Index> &points) const {
-    // What it has taken of memory is kept for the next face.
-    static thread_local FarExt::internal::PlainCellGatherer gatherer;
-    static thread_local FarExt::internal::PlainCell plain;
-    bool const isPlain = gatherer.Gather(level, marks, face, plain);
-    if (isPlain) {
-        internal::CellTypes::AddRules(rules, plain.key);
-        if (internal::CellType const *const type = _types->FindPlain(plain.key)) {
-            points = plain.sources;
-            return *type;
-        }
+// The type of a face that is not plain, from all of its patch; null, and a status, where it has no limit.
+internal::CellType const *SurfaceFactory::findType(Level const &level, Index levelFace, Index face,
+                                                   Interpolation interpolation,
+                                                   std::vector<Index> &points,
+                                                   Status &status) const {
+    status = checkFace(face);
+    if (!status.IsOk()) {
+        return nullptr;
     }
     CellPatch cell;
-    GatherBaseCell(level, face, cell);
-    points = cell.patch.sources;
-    internal::CellType const &type = _types->Find(std::move(cell), rules);
-    if (isPlain) {
-        _types->AddPlain(plain.key, type);
+    GatherBaseCell(level, levelFace, cell);
+    std::size_t const numPoints = cell.patch.sources.size();
+    points.assign(cell.patch.sources.begin(), cell.patch.sources.end());
+    internal::CellType const &type =
+        _types->Find(std::move(cell), getRules(_refiner, interpolation));
+    Far::ConstIndexArray const verts = level.GetFaceVertices(levelFace);
+    bool const hasManyFaces = std::any_of(verts.begin(), verts.end(), [&](Index vert) {
+        return level.GetNumVertexFaces(vert) >= kManyFaces;
+    });
+    if (hasManyFaces && !type.HasCorners()) {
+        status = Status(StatusCode::Unsupported, ComponentType::Face, face,
+                        "the limit of face " + std::to_string(face) +
+                            " cannot be computed: the steps around a vertex do not converge");
+        return nullptr;
     }
-    return type;
+    points.resize(numPoints + 2 * std::size_t(verts.size()));
+    FindBaseCellTurns(level, levelFace, points.data() + numPoints);
+    return &type;
 }
 
 template <typename REAL>
@@ -134,53 +144,25 @@ bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
         channel < 0 ? nullptr : &hierarchy.channels[std::size_t(channel)];
     Level const &level = hierarchy.GetMesh(channel).levels[0];
     Index const levelFace = values ? values->levels[0].valueFaces[face] : face;
-    std::vector<VertexMark> const &marks = _marks.begin()[channel + 1];
-    int const size = level.GetFaceSize(levelFace);
-    auto const setType = [&](internal::CellType const &type, int numPoints) {
-        if (surface->_types != _types) {
-            surface->_types = _types;
-        }
-        surface->_type = &type;
-        surface->_numControlPoints = numPoints;
-        surface->_points.resize(std::size_t(numPoints) + 2 * std::size_t(size));
-        surface->_parameterization = Parameterization(size);
-    };
-
-    internal::LatticeWalks::Entry const *const lattice = _lattices->Find(size, interpolation);
-    bool isInLattice = false;
-    if (lattice) {
-        setType(*lattice->type, lattice->walk.GetNumPoints());
-        Index *const points = surface->_points.data();
-        isInLattice = lattice->walk.Gather(level, marks, levelFace, points,
-                                           points + surface->_numControlPoints);
-    }
-    if (!isInLattice) {
+    // What it has taken of memory is kept for the next face.
+    static thread_local internal::PlainFaceGatherer gatherer;
+    if (internal::PlainFaceType const *const plain =
+            gatherer.Find(*_plainTypes[std::size_t(interpolation)], level,
+                          _marks.begin()[channel + 1], levelFace, surface->_points)) {
+        surface->_type = internal::BaseType(*plain);
+    } else if (internal::CellType const *const type =
+                   findType(level, levelFace, face, interpolation, surface->_points, result)) {
+        surface->_type = internal::BaseType(*type);
+    } else {
         surface->Clear();
-        result = checkFace(face);
-        if (!result.IsOk()) {
-            return FarExt::internal::Report(result, status);
-        }
-        std::vector<Index> points;
-        internal::CellType const &type = findType(
-            level, marks, levelFace,
-            {_refiner.GetSchemeOptions(),
-             FarExt::internal::GetStepsToLimit(_refiner.GetHexSchemeOptions()), interpolation},
-            points);
-        Far::ConstIndexArray const verts = level.GetFaceVertices(levelFace);
-        bool const hasManyFaces = std::any_of(verts.begin(), verts.end(), [&](Index vert) {
-            return level.GetNumVertexFaces(vert) >= kManyFaces;
-        });
-        if (hasManyFaces && !type.HasCorners()) {
-            result = Status(StatusCode::Unsupported, ComponentType::Face, face,
-                            "the limit of face " + std::to_string(face) +
-                                " cannot be computed: the steps around a vertex do not converge");
-            return FarExt::internal::Report(result, status);
-        }
-        _lattices->Add(type, interpolation);
-        setType(type, int(points.size()));
-        std::copy(points.begin(), points.end(), surface->_points.begin());
-        FindBaseCellTurns(level, levelFace, surface->_points.data() + points.size());
+        return FarExt::internal::Report(result, status);
     }
+    if (surface->_types != _types) {
+        surface->_types = _types;
+    }
+    int const size = level.GetFaceSize(levelFace);
+    surface->_numControlPoints = int(surface->_points.size()) - 2 * size;
+    surface->_parameterization = Parameterization(size);
     if (values) {
         std::for_each_n(surface->_points.begin(), surface->_numControlPoints,
                         [&](Index &point) { point = values->valuesOfVertices[point]; });

@@ -7,6 +7,7 @@
 
 #include "far_ext/topologyRefiner.h"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -17,8 +18,7 @@ enum class VertexMark : unsigned char;
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
-struct CellRules;
-class LatticeWalks;
+class PlainFaceTypes;
 } // namespace internal
 
 /// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
@@ -129,10 +129,9 @@ private:
 
     FarExt::Status checkIsFace(Index face) const;
     FarExt::Status checkFace(Index face) const;
-    internal::CellType const &findType(FarExt::internal::Level const &level,
-                                       std::vector<FarExt::internal::VertexMark> const &marks,
-                                       Index face, internal::CellRules const &rules,
-                                       std::vector<Index> &points) const;
+    internal::CellType const *findType(FarExt::internal::Level const &level, Index levelFace,
+                                       Index face, FarExt::Interpolation interpolation,
+                                       std::vector<Index> &points, FarExt::Status &status) const;
     template <typename REAL>
     bool init(Index face, FarExt::Interpolation interpolation, int channel, Surface<REAL> *surface,
               FarExt::Status *status) const;
@@ -142,7 +141,7 @@ private:
     std::shared_ptr<internal::CellTypes> _types;
     // Of the vertices of the mesh, and of the value mesh of each channel; empty where all are plain.
     std::vector<std::vector<FarExt::internal::VertexMark>> _marks;
-    std::unique_ptr<internal::LatticeWalks> _lattices;
+    std::array<internal::PlainFaceTypes *, 2> _plainTypes; // by interpolation
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -2,6 +2,7 @@
 #include "cellType.h"
 
 #include "halfCell.h"
+#include "plainFace.h"
 
 #include <algorithm>
 #include <cmath>
@@ -339,6 +340,9 @@ std::vector<CellType::Corner> const &CellType::GetCorners() const {
     return _corners;
 }
 
+CellTypes::CellTypes() = default;
+CellTypes::~CellTypes() = default;
+
 CellTypes::Key CellTypes::getKey(CellRules const &rules) {
     Key key;
     for (int const number : {int(rules.sdcOptions.GetVtxBoundaryInterpolation()),
@@ -373,20 +377,22 @@ CellType const &CellTypes::Find(CellPatch &&cell, CellRules const &rules) {
     return *_types.emplace(std::move(key), std::move(type)).first->second;
 }
 
-CellType const *CellTypes::FindPlain(std::string const &key) const {
-    std::shared_lock<std::shared_mutex> const lock(_mutex);
-    auto const found = _plainTypes.find(key);
-    return found == _plainTypes.end() ? nullptr : found->second;
-}
-
-void CellTypes::AddPlain(std::string const &key, CellType const &type) {
+PlainFaceTypes &CellTypes::GetPlainFaces(CellRules const &rules) {
     std::lock_guard<std::shared_mutex> const lock(_mutex);
-    _plainTypes.emplace(key, &type);
+    std::unique_ptr<PlainFaceTypes> &types = _plainFaces[getKey(rules)];
+    if (!types) {
+        types = std::make_unique<PlainFaceTypes>(*this, rules);
+    }
+    return *types;
 }
 
 std::size_t CellTypes::GetSize() const {
     std::shared_lock<std::shared_mutex> const lock(_mutex);
-    return _types.size();
+    std::size_t size = _types.size();
+    for (auto const &[key, faces] : _plainFaces) {
+        size += faces->GetNumUnmade();
+    }
+    return size;
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

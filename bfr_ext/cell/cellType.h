@@ -17,6 +17,7 @@
 namespace OpenSubdivHex::BfrExt::internal {
 
 class CellTypes;
+class PlainFaceTypes;
 
 /// What besides its patch tells the surface of a cell.
 struct CellRules {
@@ -147,16 +148,13 @@ private:
 /// \brief The types that have been met.  Any number of threads may use it.
 class CellTypes {
 public:
+    CellTypes();
+    ~CellTypes();
+
     /// The type of a cell, which belongs to these types.
     CellType const &Find(FarExt::internal::CellPatch &&cell, CellRules const &rules);
-    /// \brief The type of a plain cell of a base face, where AddPlain() has told of it; else null.
-    ///
-    /// \param key  of the cell, with AddRules()
-    CellType const *FindPlain(std::string const &key) const;
-    /// Tells of it.
-    void AddPlain(std::string const &key, CellType const &type);
-    /// Appends to the key of a plain cell what the rules are.
-    static void AddRules(CellRules const &rules, std::string &key) { key += getKey(rules); }
+    /// The types of plain base faces with some rules.
+    PlainFaceTypes &GetPlainFaces(CellRules const &rules);
     /// Calls function(finder), which no other thread uses then, for the limit masks of \p rules.
     template <typename FUNCTION>
     auto UseMasks(CellRules const &rules, FUNCTION function) {
@@ -170,6 +168,7 @@ public:
         }
         return function(*finder);
     }
+    /// Those of plain base faces count even while nobody has asked for more of them.
     std::size_t GetSize() const;
 
 private:
@@ -180,7 +179,7 @@ private:
 
     mutable std::shared_mutex _mutex;
     std::unordered_map<Key, std::unique_ptr<CellType>> _types;
-    std::unordered_map<Key, CellType const *> _plainTypes;
+    std::unordered_map<Key, std::unique_ptr<PlainFaceTypes>> _plainFaces;
     std::mutex _masksMutex;
     int _numMaskUses = 0;
     std::unordered_map<Key, std::unique_ptr<FarExt::internal::LimitMaskFinder>> _masks;

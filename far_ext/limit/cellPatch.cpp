@@ -79,6 +79,45 @@ void GatherBaseCell(Level const &level, Index face, CellPatch &cell) {
     gather(gatherer, level, face, cell);
 }
 
+CellPatch MakePlainBaseCell(std::vector<int> const &faceSizes, std::vector<Index> const &faceVerts,
+                            int numInner, int numPoints) {
+    auto const size = std::size_t(faceSizes[0]);
+    auto const end = std::size_t(numPoints);
+    CellPatch cell;
+    cell.locals.resize(size);
+    std::iota(cell.locals.begin(), cell.locals.end(), 0);
+    cell.corners.assign(faceVerts.begin(), faceVerts.begin() + std::ptrdiff_t(size));
+    LimitPatch &patch = cell.patch;
+    patch.sources.resize(end);
+    std::iota(patch.sources.begin(), patch.sources.end(), 0);
+    patch.faceSizes = faceSizes;
+    patch.faceVerts = faceVerts;
+    patch.otherCorners.assign(faceVerts.size(), Index(kFreeBoundary));
+    patch.edgeSharpness.resize(faceVerts.size());
+    patch.diagonalSharpness.resize(faceSizes.size());
+    patch.vertSharpness.resize(end);
+    // The corners from which there is an edge from one point to another, by the two.
+    std::vector<Index> corners(end * end, Far::INDEX_INVALID);
+    Index first = 0;
+    for (int const faceSize : faceSizes) {
+        for (int i = 0; i < faceSize; ++i) {
+            Index const corner = first + i;
+            Index const start = faceVerts[std::size_t(corner)];
+            Index const next = i + 1 == faceSize ? first : corner + 1;
+            Index const stop = faceVerts[std::size_t(next)];
+            corners[std::size_t(start) * end + std::size_t(stop)] = corner;
+            Index const other = corners[std::size_t(stop) * end + std::size_t(start)];
+            if (other != Far::INDEX_INVALID && (start < numInner || stop < numInner)) {
+                patch.otherCorners[std::size_t(corner)] = other;
+                patch.otherCorners[std::size_t(other)] = corner;
+            }
+        }
+        first += faceSize;
+    }
+    LimitPatchGatherer::AddSignature(patch);
+    return cell;
+}
+
 void FindBaseCellTurns(Level const &level, Index face, int *turns) {
     Index const first = level.faceFirstCorner[face];
     int const size = level.GetFaceSize(face);

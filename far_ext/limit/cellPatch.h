@@ -39,6 +39,15 @@ struct CellPatch {
 /// Gathers the cell of a base face, \p level being level 0.
 OPENSUBDIVHEX_API void GatherBaseCell(Level const &level, Far::Index face, CellPatch &cell);
 
+/// \brief Makes the cell of a base face that GatherBaseCell() gathers where no feature is near, but for the
+/// sources, which are the numbers of the points themselves.
+///
+/// \param faceSizes, faceVerts  of the patch, the base face first
+/// \param numInner              points all of whose faces are in the patch, the first ones
+OPENSUBDIVHEX_API CellPatch MakePlainBaseCell(std::vector<int> const &faceSizes,
+                                              std::vector<Far::Index> const &faceVerts,
+                                              int numInner, int numPoints);
+
 /// \brief Writes what the edges and vertices of a base face are in its own eyes, which all faces that
 /// share one need to number it alike: its *turns*.
 ///

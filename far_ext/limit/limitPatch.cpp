@@ -253,7 +253,7 @@ void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
     }
 }
 
-void LimitPatchGatherer::addSignature(LimitPatch &patch) {
+void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
     std::vector<int> &signature = patch.signature;
     auto const add = [&](auto const &numbers) {
         signature.push_back(int(numbers.size()));
@@ -339,7 +339,7 @@ void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
     addTags(patch);
     addSharpVertices(patch);
     addIrregularVertices(patch);
-    addSignature(patch);
+    AddSignature(patch);
 }
 
 // Which of the edges of a fan leads to the first centre; numEdges where none does.

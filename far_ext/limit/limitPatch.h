@@ -66,6 +66,9 @@ public:
     /// \return        where in the face it begins in the patch
     int GatherCell(Index face, int const *locals, int numCorners, LimitPatch &patch);
 
+    /// Adds the signature of a patch that has all else.
+    static void AddSignature(LimitPatch &patch);
+
 private:
     void clear(LimitPatch &patch);
     void addNeighborhood(int numCenters, LimitPatch &patch);
@@ -79,7 +82,6 @@ private:
     void addSharpVertices(LimitPatch &patch);
     void addIrregularVertices(LimitPatch &patch);
     bool hasIrregularities(LimitPatch const &patch) const;
-    static void addSignature(LimitPatch &patch);
 
     Level const &_level;
     FaceMask const _faceMask;

@@ -59,7 +59,7 @@ private:
 
 /// \brief A few indices with a value each.  All are forgotten at once, and neither time nor memory
 /// depend on the range that they are from.
-class IndexMap {
+class OPENSUBDIVHEX_API IndexMap {
 public:
     using Index = Far::Index;
 

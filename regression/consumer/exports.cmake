@@ -8,7 +8,7 @@ set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report S
   RefinementMask TruncationMask LimitRows RegularFaces RegularFaceMask RegularVertices CheckLimitLevel
   PrimvarRows PrimvarLimitRows
   FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
-  FindCornerLimits PatchRefinement MarkFeatures StepRowBack PlainCellGatherer
+  FindCornerLimits PatchRefinement MarkFeatures StepRowBack MakePlainBaseCell IndexMap
   Device MakeDeviceLimit MakeDeviceRefinements
   CheckOptions CheckLevel CheckDescriptors GetInterpolation)
 

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
+
+#include "cellType.h"
+#include "entryTable.h"
+
+#include "far_ext/limit/plainNeighborhood.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief What a plain base face has in its patch, in a few bytes: the size of the face, the numbers of
+/// faces at its vertices and at their neighbours, in the order of the patch, and where these faces are
+/// not all of one size, their sizes.
+///
+/// A face is *plain* where no feature is near and its patch is a disc, no vertices of which are the
+/// same: so the key tells all of the patch.
+class PlainFaceKey {
+public:
+    /// Vertices at most, all of whose faces are in the patch.
+    static constexpr int kMaxVerts = 31;
+    static constexpr std::size_t kMaxSize = 192;
+
+    void Clear() { _size = 0; }
+    void Add(int number) { _bytes[_size++] = std::uint8_t(number); }
+    /// Whether so many numbers more are too many.
+    bool IsFull(int number) const { return _size + std::size_t(number) > kMaxSize; }
+
+    std::uint8_t const *GetBytes() const { return _bytes; }
+    std::size_t GetSize() const { return _size; }
+    std::size_t GetHash() const;
+
+private:
+    std::size_t _size = 0;
+    std::uint8_t _bytes[kMaxSize] = {};
+};
+
+/// \brief All plain base faces of a key.  Their CellType is made when it is first asked for: a face whose
+/// surface is made but not evaluated needs none.
+class PlainFaceType {
+public:
+    /// A control point: the vertex of the patch at which a face has it, the place of that face among
+    /// those at the vertex, and the corner there, from the vertex on.
+    struct Point {
+        std::uint8_t vert;
+        std::uint8_t place;
+        std::uint8_t corner;
+    };
+    /// \brief What the type is of.
+    struct Patch {
+        int numVerts;                    ///< the first points, all of whose faces are there
+        std::vector<Point> points;       ///< those behind them
+        std::vector<std::uint8_t> faces; ///< the size of each, and its points
+    };
+
+    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, Patch patch);
+
+    std::size_t const hash; ///< of the key
+
+    bool HasKey(PlainFaceKey const &key) const;
+    int GetNumPoints() const { return _patch.numVerts + int(_patch.points.size()); }
+    /// Those behind the vertices whose faces are all there.
+    std::vector<Point> const &GetPoints() const { return _patch.points; }
+    /// What evaluates them.
+    CellType const &Get() const {
+        CellType const *const type = _type.load(std::memory_order_acquire);
+        return type ? *type : make();
+    }
+
+private:
+    CellType const &make() const;
+    FarExt::internal::CellPatch makeCell() const;
+
+    PlainFaceTypes &_types;
+    std::vector<std::uint8_t> const _key;
+    Patch const _patch;
+    mutable std::atomic<CellType const *> _type{nullptr};
+};
+
+/// The types of plain base faces that have been met with some rules.  Any number of threads may use them.
+class PlainFaceTypes {
+public:
+    PlainFaceTypes(CellTypes &types, CellRules const &rules) : _types(types), _rules(rules) {}
+
+    /// Null where there is none.
+    PlainFaceType const *Find(PlainFaceKey const &key, std::size_t hash) const {
+        return _entries.Find(hash, [&](PlainFaceType const &type) { return type.HasKey(key); });
+    }
+    PlainFaceType const &Add(PlainFaceKey const &key, PlainFaceType::Patch patch);
+    /// How many have no CellType yet.
+    std::size_t GetNumUnmade() const { return _numUnmade; }
+
+private:
+    friend class PlainFaceType;
+
+    CellTypes &_types;
+    CellRules const _rules;
+    EntryTable<PlainFaceType> _entries;
+    std::atomic<std::size_t> _numUnmade{0};
+};
+
+/// \brief Gathers the control points of plain base faces.  One thread uses it at a time.
+class PlainFaceGatherer {
+public:
+    using Index = Far::Index;
+
+    /// \brief Finds the type of a face among some, and adds it where there is none.
+    ///
+    /// \param level   level 0 of a mesh, or of the values of a channel; another one may follow
+    /// \param marks   those of MarkFeatures()
+    /// \param points  the control points, and behind these the turns of FindBaseCellTurns()
+    /// \return        null where the face is not plain, or may not be; then the points are of no use
+    PlainFaceType const *Find(PlainFaceTypes &types, FarExt::internal::Level const &level,
+                              std::vector<FarExt::internal::VertexMark> const &marks, Index face,
+                              std::vector<Index> &points);
+
+private:
+    // A vertex all of whose faces are in the patch, these beginning at a place of their own.
+    struct Vertex {
+        // In vertFaces.
+        Index GetPlace(int face) const {
+            int const place = begin + face;
+            return first + (place < numFaces ? place : place - numFaces);
+        }
+
+        Index vert;
+        Index first;
+        int begin;
+        int numFaces;
+    };
+
+    bool addVertex(FarExt::internal::Level const &level,
+                   std::vector<FarExt::internal::VertexMark> const &marks, Index vert, Index face,
+                   int turn);
+    bool findVertices(FarExt::internal::Level const &level,
+                      std::vector<FarExt::internal::VertexMark> const &marks, Index face);
+    bool findKey(FarExt::internal::Level const &level);
+    int getSize(int vert, int face) const;
+    int countPoints() const;
+    PlainFaceType const *addType(PlainFaceTypes &types, FarExt::internal::Level const &level) const;
+    bool areDistinct(Index const *points, int numPoints);
+
+    static constexpr std::size_t kNumStamps = 4096;
+
+    int _faceSize = 0;
+    int _numVerts = 0;
+    Vertex _verts[PlainFaceKey::kMaxVerts] = {};
+    PlainFaceKey _key;
+    bool _hasSizes = false; // in the key
+    // By the last digits of points: the number of the search in which there was one.
+    std::uint16_t _stamps[kNumStamps] = {};
+    std::uint16_t _search = 0;
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif
