@@ -72,8 +72,8 @@ struct RegularFaceRows {
     /// used again.
     LimitRow GetRow(int corner, Far::Index numbers[kNumSources]) const;
     /// Those beyond a corner without a face there are any.
-    static void GetFaceSources(Level const &level, RegularFace const &face,
-                               Far::Index sources[kNumFaceSources]);
+    OPENSUBDIVHEX_API static void GetFaceSources(Level const &level, RegularFace const &face,
+                                                 Far::Index sources[kNumFaceSources]);
 
 private:
     double _weights[RegularFaceMask::kNumSums][kNumSources];

@@ -70,7 +70,7 @@ DeviceLimit::Set addFaces(Level const &level, RegularFaces::Set const &set, MAKE
     result.firstFace = std::uint32_t(first);
     result.firstVertex = std::uint32_t(set.firstVertex);
     if (!set.faces.empty()) {
-        RegularLimitWeights<Scalar> const weights = MakeRegularLimitWeights(set.mask);
+        RegularLimitWeights<Scalar> const weights = MakeRegularLimitWeights(set.mask, false);
         static_assert(sizeof(weights) == sizeof(result.weights));
         std::memcpy(result.weights, &weights, sizeof(weights));
     }

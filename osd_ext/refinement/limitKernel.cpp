@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
@@ -14,6 +15,7 @@ using FarExt::internal::kRegularFaceSize;
 using FarExt::internal::Level;
 using FarExt::internal::RegularFace;
 using FarExt::internal::RegularFaceMask;
+using FarExt::internal::RegularFaceRows;
 
 namespace {
 
@@ -69,6 +71,16 @@ RegularFaceMask::Sum combine(Combination const &c) {
     sum.previous = c.ofDu * c.du.previous + c.ofDv * c.dv.previous;
     sum.beyond = c.ofDu * c.du.beyond + c.ofDv * c.dv.beyond;
     return sum;
+}
+
+// With weights for the three vertices beyond that nothing else weighs, instead of all of the face.
+RegularFaceMask weighOthers(RegularFaceMask mask) {
+    for (RegularFaceMask::Sum &sum : mask.sums) {
+        sum.neighbors[0] += sum.beyond;
+        sum.next += sum.beyond;
+        sum.previous += sum.beyond;
+    }
+    return mask;
 }
 
 SourceWeights getSource(RegularFaceMask::Sum const &sum, int kind) {
@@ -152,9 +164,10 @@ constexpr Index kGroupRange = 128;
 // alike, what is across with opposite signs.  With cos and sin of the angle from the axis to du,
 // du = cos along + sin across and dv = cos across - sin along; the angle is a multiple of 60 degrees,
 // so that cos is not 0, and along and across are scaled to save two products.
-RegularLimitWeights<Scalar> MakeRegularLimitWeights(RegularFaceMask const &mask) {
-    RegularFaceMask::Sum const &du = mask.sums[1];
-    RegularFaceMask::Sum const &dv = mask.sums[2];
+RegularLimitWeights<Scalar> MakeRegularLimitWeights(RegularFaceMask const &mask, bool sumsOthers) {
+    RegularFaceMask const weighed = sumsOthers ? weighOthers(mask) : mask;
+    RegularFaceMask::Sum const &du = weighed.sums[1];
+    RegularFaceMask::Sum const &dv = weighed.sums[2];
     double cosine = du.verts[0] - du.verts[3];
     double sine = dv.verts[3] - dv.verts[0];
     double const length = std::hypot(cosine, sine);
@@ -162,14 +175,14 @@ RegularLimitWeights<Scalar> MakeRegularLimitWeights(RegularFaceMask const &mask)
     sine /= length;
 
     RegularLimitWeights<Scalar> weights;
-    weights.point = makeSymmetric(mask.sums[0]);
+    weights.point = makeSymmetric(weighed.sums[0]);
     RegularFaceMask::Sum const along = combine({du, dv, cosine * cosine, -cosine * sine});
     RegularFaceMask::Sum const across = combine({du, dv, sine / cosine, 1});
     weights.along = makeSymmetric(along);
     weights.across = makeAntisymmetric(across);
     weights.duOfAcross = float(sine * cosine);
     weights.dvOfDu = float(-sine / cosine);
-    weights.beyondOfTip = float(mask.sums[0].beyond / getTip(mask.sums[0]));
+    weights.beyondOfTip = float(weighed.sums[0].beyond / getTip(weighed.sums[0]));
     weights.beyondOfTipAlong = float(along.beyond / getTip(along));
     weights.tipAcross = float((across.next - across.previous) / 2);
     return weights;
@@ -200,6 +213,27 @@ MakeRegularFaceGroups(Level const &level, std::vector<RegularFace> const &faces,
                      RegularFaceGroup::kSumStride);
         }
         group.firstCorners[member] = face.firstCorner;
+    });
+    return groups;
+}
+
+std::vector<OthersBeyond> MakeOthersBeyond(Level const &level,
+                                           std::vector<RegularFace> const &faces) {
+    constexpr int kSize = RegularFaceGroup::kSize;
+    constexpr int kNumOthers = OthersBeyond::kSize * kRegularFaceSize;
+    auto const numFaces = Index(faces.size());
+    std::vector<OthersBeyond> groups(std::size_t((numFaces + kSize - 1) / kSize));
+    FarExt::internal::ParallelFor(Index(groups.size()) * kSize, [&](Index k) {
+        Index sources[RegularFaceRows::kNumFaceSources];
+        RegularFaceRows::GetFaceSources(level, faces[std::size_t(std::min(k, numFaces - 1))],
+                                        sources);
+        Index const *others = std::end(sources) - kNumOthers;
+        for (int corner = 0; corner < kRegularFaceSize; ++corner) {
+            for (RegularFaceGroup::Places &places : groups[std::size_t(k / kSize)].places) {
+                places[corner][k % kSize] =
+                    std::uint32_t(*others++) * std::uint32_t(RegularFaceGroup::kPointStride);
+            }
+        }
     });
     return groups;
 }

@@ -60,7 +60,9 @@ struct RegularLimitWeights {
     T tipAcross; ///< "next" has it, and "previous" with the opposite sign
 };
 
-RegularLimitWeights<Scalar> MakeRegularLimitWeights(FarExt::internal::RegularFaceMask const &mask);
+/// \param sumsOthers  whether what is beyond is that of OthersBeyond, not the sums of faces
+RegularLimitWeights<Scalar> MakeRegularLimitWeights(FarExt::internal::RegularFaceMask const &mask,
+                                                    bool sumsOthers);
 
 /// \brief Some regular faces, side by side: as many as the widest vectors hold, the last ones of a
 /// level filled up by repeating one.
@@ -77,7 +79,7 @@ struct RegularFaceGroup {
     Places neighbors; ///< these three as in RegularFace
     Places next;
     Places previous;
-    Places beyond; ///< the only faces
+    Places beyond; ///< the only faces; not used with OthersBeyond
     Far::Index firstCorners[kSize];
 };
 
@@ -86,6 +88,21 @@ std::vector<RegularFaceGroup>
 MakeRegularFaceGroups(FarExt::internal::Level const &level,
                       std::vector<FarExt::internal::RegularFace> const &faces,
                       FarExt::internal::Buffer<Far::Index> const &sumsOfFaces);
+
+/// \brief Of each face beyond a RegularFaceGroup, the three vertices that are in no other face around, or
+/// any where there is no such face.
+///
+/// Where regular faces lie side by side, each face is beyond six of them, and its sum is made once.
+/// F-faces that give limits of their own vertices lie apart: their groups have these instead, each of
+/// which most often is in one group alone.
+struct OthersBeyond {
+    static constexpr int kSize = 3;
+
+    RegularFaceGroup::Places places[kSize];
+};
+
+std::vector<OthersBeyond> MakeOthersBeyond(FarExt::internal::Level const &level,
+                                           std::vector<FarExt::internal::RegularFace> const &faces);
 
 /// \brief Some vertices of one type, side by side; the last ones of a type filled up likewise.
 struct VertexGroup {
@@ -132,8 +149,9 @@ struct RegularLimitTask : LimitTask {
     Far::Index const *summedFaces; ///< hexagons, by their first corners
     Elements<float> sums;          ///< of the values of the vertices of each of these
     RegularFaceGroup const *groups;
+    /// By group; null where the sums are used, and the mask has one tip.
+    OthersBeyond const *othersBeyond;
     RegularLimitWeights<Scalar> const *weights;
-    bool hasOneTip; ///< as the mask
 };
 
 /// \brief The limit at vertices of a level.

@@ -207,6 +207,16 @@ struct FaceElements {
                                        RegularFaceGroup::Places const &places, Values &x) const {
         load(sums, places, RegularFaceGroup::kSumStride, x);
     }
+    OPENSUBDIVHEX_INLINE void LoadOthers(Elements<float const> const &points,
+                                         OthersBeyond const &others, Values &x) const {
+        Values more[OthersBeyond::kSize - 1];
+        Load(points, others.places[0], x);
+        Load(points, others.places[1], more[0]);
+        Load(points, others.places[2], more[1]);
+        for (int i = 0; i < kRegularFaceSize; ++i) {
+            x[i] = x[i] + (more[0][i] + more[1][i]);
+        }
+    }
     OPENSUBDIVHEX_INLINE void Store(Elements<float> const &output, Values const &x) const {
         float *begins[SIMD::kNumFaces];
         for (int i = 0; i < SIMD::kNumFaces; ++i) {
@@ -237,6 +247,7 @@ struct FaceElements {
     }
 
     RegularFaceGroup const &group;
+    OthersBeyond const *othersBeyond;
     int first;
 
 private:
@@ -253,7 +264,7 @@ private:
     }
 };
 
-template <class SIMD, class ACCESS, bool HAS_DERIVATIVES, bool HAS_ONE_TIP>
+template <class SIMD, class ACCESS, bool HAS_DERIVATIVES, bool SUMS_OTHERS>
 OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
                                         RegularLimitWeights<SIMD> const &weights,
                                         FaceElements<SIMD, ACCESS> const &faces) {
@@ -271,7 +282,11 @@ OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
     Vector tips[kRegularFaceSize];
     faces.Load(task.values, group.next, next);
     faces.Load(task.values, group.previous, previous);
-    faces.LoadSums({task.sums.data, task.sums.stride}, group.beyond, beyond);
+    if constexpr (SUMS_OTHERS) {
+        faces.LoadOthers(task.values, *faces.othersBeyond, beyond);
+    } else {
+        faces.LoadSums({task.sums.data, task.sums.stride}, group.beyond, beyond);
+    }
     for (int i = 0; i < kRegularFaceSize; ++i) {
         x[i] = next[i] + previous[(i + 1) % kRegularFaceSize];
         tips[i] = SIMD::MultiplyAdd(weights.beyondOfTip, beyond[i], next[i] + previous[i]);
@@ -288,7 +303,7 @@ OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
         Vector across[kRegularFaceSize];
         addWaves<SIMD>(weigh<SIMD>(weights.across, sources), across);
         for (int i = 0; i < kRegularFaceSize; ++i) {
-            if constexpr (!HAS_ONE_TIP) {
+            if constexpr (SUMS_OTHERS) {
                 tips[i] =
                     SIMD::MultiplyAdd(weights.beyondOfTipAlong, beyond[i], next[i] + previous[i]);
                 addProduct<SIMD>(across[i], weights.tipAcross, next[i] - previous[i]);
@@ -302,15 +317,16 @@ OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
     }
 }
 
-template <class SIMD, class ACCESS, bool HAS_DERIVATIVES, bool HAS_ONE_TIP>
+template <class SIMD, class ACCESS, bool HAS_DERIVATIVES, bool SUMS_OTHERS>
 void evaluateGroups(RegularLimitTask const &given, Far::Index begin, Far::Index end) {
     // A copy, since the compiler must expect that outputs are written to the given one.
     RegularLimitTask const task = given;
     RegularLimitWeights<SIMD> const weights = spreadWeights<SIMD>(*task.weights);
     for (Far::Index group = begin; group < end; ++group) {
         for (int first = 0; first < RegularFaceGroup::kSize; first += SIMD::kNumFaces) {
-            FaceElements<SIMD, ACCESS> const faces = {task.groups[group], first};
-            evaluateFaces<SIMD, ACCESS, HAS_DERIVATIVES, HAS_ONE_TIP>(task, weights, faces);
+            FaceElements<SIMD, ACCESS> const faces = {
+                task.groups[group], SUMS_OTHERS ? task.othersBeyond + group : nullptr, first};
+            evaluateFaces<SIMD, ACCESS, HAS_DERIVATIVES, SUMS_OTHERS>(task, weights, faces);
         }
     }
 }
@@ -420,12 +436,13 @@ struct LimitKernels {
     static void EvaluateFaces(RegularLimitTask const &task, Far::Index begin, Far::Index end) {
         forEachQuad(task, [=](RegularLimitTask const &part, auto access) {
             using Access = decltype(access);
-            if (part.numOutputs == 1) {
-                evaluateGroups<SIMD, Access, false, true>(part, begin, end);
-            } else if (part.hasOneTip) {
-                evaluateGroups<SIMD, Access, true, true>(part, begin, end);
+            bool const hasDerivatives = part.numOutputs > 1;
+            if (part.othersBeyond) {
+                hasDerivatives ? evaluateGroups<SIMD, Access, true, true>(part, begin, end)
+                               : evaluateGroups<SIMD, Access, false, true>(part, begin, end);
             } else {
-                evaluateGroups<SIMD, Access, true, false>(part, begin, end);
+                hasDerivatives ? evaluateGroups<SIMD, Access, true, false>(part, begin, end)
+                               : evaluateGroups<SIMD, Access, false, false>(part, begin, end);
             }
         });
     }

@@ -13,6 +13,7 @@ using FarExt::Status;
 using FarExt::internal::LimitRow;
 using FarExt::internal::LimitRows;
 using FarExt::internal::PlainNeighborhoodGatherer;
+using FarExt::internal::RegularFace;
 using FarExt::internal::RegularFaces;
 using FarExt::internal::RegularVertices;
 
@@ -67,28 +68,28 @@ Status PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
 void PreparedLimit::prepareFaces(RegularFaces::OfLevel const &faces, LevelLimit &result) {
     FarExt::internal::Level const &level = *result.level;
     std::vector<unsigned char> isBeyond(std::size_t(level.numFaces), 0);
-    RegularFaces::Set const *const sets[] = {&faces.fVertices, &faces.ownVertices};
-    for (RegularFaces::Set const *set : sets) {
-        for (FarExt::internal::RegularFace const &face : set->faces) {
-            for (Index const beyond : face.beyond) {
-                isBeyond[std::size_t(beyond)] = 1;
-            }
+    for (RegularFace const &face : faces.fVertices.faces) {
+        for (Index const beyond : face.beyond) {
+            isBeyond[std::size_t(beyond)] = 1;
         }
     }
     result.summedFaces = FarExt::internal::ParallelSelect(
         level.numFaces, [&](Index face) { return isBeyond[std::size_t(face)] != 0; });
     FarExt::internal::Buffer<Index> sumsOfFaces;
     sumsOfFaces.Resize(isBeyond.size());
+    std::fill(sumsOfFaces.data(), sumsOfFaces.data() + sumsOfFaces.size(), 0);
     FarExt::internal::ParallelFor(Index(result.summedFaces.size()), [&](Index i) {
         Index &face = result.summedFaces[std::size_t(i)];
         sumsOfFaces[std::size_t(face)] = i;
         face = level.faceFirstCorner[face];
     });
-    for (RegularFaces::Set const *set : sets) {
+    for (RegularFaces::Set const *set : {&faces.fVertices, &faces.ownVertices}) {
+        bool const sumsOthers = set == &faces.ownVertices;
         if (!set->faces.empty()) {
-            result.sets.push_back({MakeRegularFaceGroups(level, set->faces, sumsOfFaces),
-                                   set->firstVertex, MakeRegularLimitWeights(set->mask),
-                                   set->mask.HasOneTip()});
+            result.sets.push_back(
+                {MakeRegularFaceGroups(level, set->faces, sumsOfFaces),
+                 sumsOthers ? MakeOthersBeyond(level, set->faces) : std::vector<OthersBeyond>(),
+                 set->firstVertex, MakeRegularLimitWeights(set->mask, sumsOthers)});
         }
     }
 }
@@ -160,20 +161,21 @@ std::vector<unsigned char> PreparedLimit::FindSources(Index numVertices) const {
     auto const markPlace = [&](std::uint32_t place) {
         isSource[place / RegularFaceGroup::kPointStride] = 1;
     };
+    auto const markPlaces = [&](RegularFaceGroup::Places const &places) {
+        for (auto const &ofCorner : places) {
+            std::for_each(std::begin(ofCorner), std::end(ofCorner), markPlace);
+        }
+    };
+    // No faces of the last level use sums.
     for (FaceSet const &set : last.sets) {
         for (RegularFaceGroup const &group : set.groups) {
-            for (RegularFaceGroup::Places const *places :
-                 {&group.verts, &group.neighbors, &group.next, &group.previous}) {
-                for (auto const &ofCorner : *places) {
-                    std::for_each(std::begin(ofCorner), std::end(ofCorner), markPlace);
-                }
-            }
+            markPlaces(group.verts);
+            markPlaces(group.neighbors);
+            markPlaces(group.next);
+            markPlaces(group.previous);
         }
-    }
-    for (Index const firstCorner : last.summedFaces) {
-        Index const *const verts = last.level->faceVerts.data() + firstCorner;
-        for (int i = 0; i < FarExt::internal::kRegularFaceSize; ++i) {
-            isSource[std::size_t(verts[i])] = 1;
+        for (OthersBeyond const &others : set.othersBeyond) {
+            std::for_each(std::begin(others.places), std::end(others.places), markPlaces);
         }
     }
     std::for_each(last.places.begin(), last.places.end(), markPlace);
@@ -217,7 +219,7 @@ void PreparedLimit::evaluateFaces(LevelLimit const &ofLevel, LimitTask const &co
         }
         task.groups = set.groups.data();
         task.weights = &set.weights;
-        task.hasOneTip = set.hasOneTip;
+        task.othersBeyond = set.othersBeyond.empty() ? nullptr : set.othersBeyond.data();
         EvaluateLimit(task, Index(set.groups.size()));
     }
 }

@@ -52,15 +52,15 @@ private:
     /// Faces of a level that have a mask in common.
     struct FaceSet {
         std::vector<RegularFaceGroup> groups;
-        Far::Index firstVertex; ///< that of corner 0
+        std::vector<OthersBeyond> othersBeyond; ///< of F-faces, for their own vertices; else empty
+        Far::Index firstVertex;                 ///< that of corner 0
         RegularLimitWeights<Scalar> weights;
-        bool hasOneTip;
     };
     struct LevelLimit {
         FarExt::internal::Level const *level;
         std::vector<FaceSet> sets;
         std::vector<Far::Index>
-            summedFaces; ///< those beyond any of the faces, by their first corners
+            summedFaces; ///< those beyond any faces that use sums, by their first corners
         std::vector<VertexGroup> vertexGroups;
         FarExt::internal::Buffer<std::uint32_t> places; ///< of the sources of these
     };
