@@ -19,6 +19,8 @@ namespace {
 constexpr int kTriangle = 3;
 constexpr int kLeastFaces = 3;
 constexpr int kEndOfBytes = 256;
+// That patches have, but for those at vertices of many faces.
+constexpr std::size_t kMaxFacesOfMost = 48;
 // In the first byte of a key: that the sizes of faces come behind the rest.
 constexpr int kHasSizes = 0x80;
 
@@ -213,7 +215,11 @@ bool PlainFaceGatherer::addVertex(Level const &level, std::vector<VertexMark> co
         return false;
     }
     Index const *const faces = level.vertFaces.data() + first;
-    int const begin = int(std::find(faces, faces + numFaces, face) - faces) + turn;
+    int begin = 0;
+    while (faces[begin] != face) {
+        ++begin;
+    }
+    begin += turn;
     _verts[_numVerts++] = {vert, first, begin < numFaces ? begin : begin - numFaces, numFaces};
     return true;
 }
@@ -318,7 +324,12 @@ PlainFaceType const *PlainFaceGatherer::addType(PlainFaceTypes &types, Level con
     numbers.Clear();
     faces.Clear();
     int const numExpected = countPoints();
+    if (numExpected < 0) {
+        return nullptr;
+    }
     PlainFaceType::Patch patch = {_numVerts, {}, {}};
+    patch.points.reserve(std::size_t(numExpected - _numVerts));
+    patch.faces.reserve(kMaxFacesOfMost * (1 + std::size_t(_faceSize)));
     for (int i = 0; i < _numVerts; ++i) {
         numbers.FindOrSet(_verts[i].vert, i);
     }
@@ -358,13 +369,14 @@ bool PlainFaceGatherer::areDistinct(Index const *points, int numPoints) {
         std::fill_n(_stamps, kNumStamps, std::uint16_t(0));
         ++_search;
     }
-    bool isSame = false;
+    std::uint16_t const search = _search;
+    int numSame = 0;
     for (int i = 0; i < numPoints; ++i) {
         std::uint16_t &stamp = _stamps[std::size_t(points[i]) % kNumStamps];
-        isSame = isSame || stamp == _search;
-        stamp = _search;
+        numSame += stamp == search ? 1 : 0;
+        stamp = search;
     }
-    if (!isSame) {
+    if (numSame == 0) {
         return true;
     }
     // Others may end with the same digits.
@@ -393,13 +405,17 @@ PlainFaceType const *PlainFaceGatherer::Find(PlainFaceTypes &types, Level const 
     for (int i = 0; i < _numVerts; ++i) {
         *to++ = _verts[i].vert;
     }
+    // What is written might change the level for all that the compiler knows.
+    Index const *const faces = level.vertFaces.data();
+    auto const *const locals = level.vertFaceLocals.data();
+    Index const *const firstCorners = level.faceFirstCorner.data();
+    Index const *const faceVerts = level.faceVerts.data();
     for (PlainFaceType::Point const &point : type->GetPoints()) {
         Index const place = _verts[point.vert].GetPlace(point.place);
-        Index const of = level.vertFaces[place];
-        Index const first = level.faceFirstCorner[of];
-        Index const corner = first + level.vertFaceLocals[place] + point.corner;
-        Index const end = level.faceFirstCorner[of + 1];
-        *to++ = level.faceVerts[corner < end ? corner : corner - (end - first)];
+        Index const first = firstCorners[faces[place]];
+        Index const end = firstCorners[faces[place] + 1];
+        Index const corner = first + locals[place] + point.corner;
+        *to++ = faceVerts[corner < end ? corner : corner - (end - first)];
     }
     if (!areDistinct(points.data(), numPoints)) {
         return nullptr;
