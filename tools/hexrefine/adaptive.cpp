@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adaptive.h"
-#include "faceLoop.h"
+#include "cellPieces.h"
 
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
@@ -17,7 +17,6 @@ namespace OpenSubdivHex::Tools {
 using BfrExt::CellForest;
 using BfrExt::Surface;
 using BfrExt::SurfaceFactory;
-using BfrExt::Tessellation;
 
 namespace {
 
@@ -83,191 +82,6 @@ BfrExt::View makeView(AdaptiveArguments const &arguments, std::vector<float> con
                                     .SetFlatness(double(arguments.pixelError))
                                     .SetMaxLevel(arguments.maxLevel)
                                     .SetCulling(arguments.isCulling));
-}
-
-/// The tessellations of all faces, with values at their places.
-class Cells {
-public:
-    Cells(FarExt::TopologyRefiner const &refiner, CellForest const &forest)
-        : _base(refiner.GetLevel(0)), _forest(forest), _faces(std::size_t(forest.GetNumFaces())),
-          _points(_faces.size()) {
-        Tessellation::Options const options = Tessellation::Options().SetFacetSize(0);
-        forFaces([&](int face) {
-            _faces[std::size_t(face)] =
-                std::make_unique<Tessellation>(forest.GetTessellation(face, options));
-        });
-        numberPoints();
-    }
-
-    bool HasFace(int face) const { return !_base.IsFaceHole(face); }
-    int GetNumPoints() const { return _numPoints; }
-    Tessellation const &GetTessellation(int face) const { return *_faces[std::size_t(face)]; }
-    /// The point at each place of a face.
-    std::vector<int> const &GetPoints(int face) const { return _points[std::size_t(face)]; }
-
-    /// \brief Values at all places of all faces.
-    ///
-    /// \param init   init(face, surface) makes the surface of a face
-    /// \param width  numbers of a value
-    template <typename INIT>
-    std::vector<std::vector<float>> Evaluate(INIT init, std::vector<float> const &values,
-                                             int width) const {
-        std::vector<std::vector<float>> result(_faces.size());
-        forFaces([&](int face) {
-            Surface<float> surface;
-            init(face, &surface);
-            std::vector<float> control(std::size_t(surface.GetNumControlPoints()) *
-                                       std::size_t(width));
-            surface.GatherControlPoints(values.data(), width, control.data(), width);
-            std::vector<float> &places = result[std::size_t(face)];
-            places.resize(std::size_t(GetTessellation(face).GetNumCoords()) * std::size_t(width));
-            surface.Evaluate(GetTessellation(face), control.data(), width, places.data(), width);
-        });
-        return result;
-    }
-    /// The same by point, of data that have no seams.
-    template <typename INIT>
-    std::vector<float> EvaluatePoints(INIT init, std::vector<float> const &values,
-                                      int width) const {
-        std::vector<std::vector<float>> const places = Evaluate(init, values, width);
-        std::vector<float> result(std::size_t(_numPoints) * std::size_t(width));
-        for (std::size_t face = 0; face < places.size(); ++face) {
-            float const *value = places[face].data();
-            for (std::size_t i = 0; i < places[face].size() / std::size_t(width); ++i) {
-                std::copy_n(value, width,
-                            &result[std::size_t(_points[face][i]) * std::size_t(width)]);
-                value += width;
-            }
-        }
-        return result;
-    }
-
-    /// Numbers of the face's places that follow one another, facet by facet.
-    std::vector<int> GetFacets(int face) const {
-        std::vector<int> facets(std::size_t(GetTessellation(face).GetNumFacetVertices()));
-        GetTessellation(face).GetFacets(facets.data());
-        return facets;
-    }
-
-private:
-    template <typename FUNCTION>
-    void forFaces(FUNCTION function) const {
-        ForEachFace(_forest.GetNumFaces(), [&](int face) {
-            if (HasFace(face)) {
-                function(face);
-            }
-        });
-    }
-
-    // Those of boundaries that some face has, in the order of the forest, then those inside of faces.
-    void numberPoints() {
-        std::vector<int> numbers(std::size_t(_forest.GetNumBoundaryPoints()), -1);
-        for (int face = 0; face < _forest.GetNumFaces(); ++face) {
-            if (HasFace(face)) {
-                std::vector<int> &points = _points[std::size_t(face)];
-                points.resize(std::size_t(GetTessellation(face).GetNumCoords()));
-                int const numBoundary = _forest.GetBoundaryPoints(face, points.data());
-                std::for_each(points.begin(), points.begin() + numBoundary,
-                              [&](int point) { numbers[std::size_t(point)] = 0; });
-            }
-        }
-        for (int &number : numbers) {
-            number = number == 0 ? _numPoints++ : number;
-        }
-        for (int face = 0; face < _forest.GetNumFaces(); ++face) {
-            if (HasFace(face)) {
-                std::vector<int> &points = _points[std::size_t(face)];
-                auto const numBoundary = GetTessellation(face).GetNumBoundaryCoords();
-                for (int i = 0; i < int(points.size()); ++i) {
-                    int &point = points[std::size_t(i)];
-                    point = i < numBoundary ? numbers[std::size_t(point)] : _numPoints++;
-                }
-            }
-        }
-    }
-
-    FarExt::TopologyLevel _base;
-    CellForest const &_forest;
-    std::vector<std::unique_ptr<Tessellation>> _faces; // null of holes
-    std::vector<std::vector<int>> _points;
-    int _numPoints = 0;
-};
-
-/// Replaces the values of a channel: places of one point that have the same value share it.
-void setChannel(Cells const &cells, std::vector<std::vector<float>> const &places,
-                FVarChannel *channel) {
-    auto const width = std::size_t(channel->width);
-    channel->values.clear();
-    channel->faceValues.clear();
-    std::vector<std::vector<int>> valuesOfPoints(std::size_t(cells.GetNumPoints()));
-    for (std::size_t face = 0; face < places.size(); ++face) {
-        if (places[face].empty()) {
-            continue;
-        }
-        for (int const place : cells.GetFacets(int(face))) {
-            float const *const value = &places[face][std::size_t(place) * width];
-            std::vector<int> &known =
-                valuesOfPoints[std::size_t(cells.GetPoints(int(face))[std::size_t(place)])];
-            auto const found = std::find_if(known.begin(), known.end(), [&](int other) {
-                return std::equal(value, value + width,
-                                  &channel->values[std::size_t(other) * width]);
-            });
-            if (found != known.end()) {
-                channel->faceValues.push_back(*found);
-                continue;
-            }
-            known.push_back(channel->GetNumValues());
-            channel->faceValues.push_back(known.back());
-            channel->values.insert(channel->values.end(), value, value + width);
-        }
-    }
-}
-
-void setProperties(Cells const &cells, SurfaceFactory const &factory, Mesh *mesh) {
-    std::size_t const width = mesh->vertexProperties.size();
-    if (width == 0) {
-        return;
-    }
-    std::vector<float> values(width * mesh->vertexProperties[0].values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        values[i] = mesh->vertexProperties[i % width].values[i / width];
-    }
-    std::vector<float> const points = cells.EvaluatePoints(
-        [&](int face, Surface<float> *surface) { factory.InitVaryingSurface(face, surface); },
-        values, int(width));
-    for (std::size_t k = 0; k < width; ++k) {
-        std::vector<float> &property = mesh->vertexProperties[k].values;
-        property.clear();
-        for (std::size_t i = k; i < points.size(); i += width) {
-            property.push_back(points[i]);
-        }
-    }
-}
-
-/// Faces, and their levels.
-void setFaces(Cells const &cells, int numBaseFaces, Mesh *mesh, AdaptiveCells *result) {
-    mesh->faceSizes.clear();
-    mesh->faceVertices.clear();
-    mesh->baseFaces.clear();
-    for (int face = 0; face < numBaseFaces; ++face) {
-        if (!cells.HasFace(face)) {
-            continue;
-        }
-        Tessellation const &tessellation = cells.GetTessellation(face);
-        auto const numFacets = std::size_t(tessellation.GetNumFacets());
-        std::vector<int> numbers(numFacets);
-        tessellation.GetFacetSizes(numbers.data());
-        mesh->faceSizes.insert(mesh->faceSizes.end(), numbers.begin(), numbers.end());
-        mesh->baseFaces.insert(mesh->baseFaces.end(), numFacets, face);
-        tessellation.GetFacetLevels(numbers.data());
-        for (int const level : numbers) {
-            ++result->statistics.facesByLevel[std::size_t(level)];
-            result->faceLevels.push_back(level);
-        }
-        for (int const place : cells.GetFacets(face)) {
-            mesh->faceVertices.push_back(cells.GetPoints(face)[std::size_t(place)]);
-        }
-    }
 }
 
 } // namespace
@@ -340,11 +154,15 @@ void CheckAdaptiveOptions(CLI::App const &app, AdaptiveArguments const &argument
     }
 }
 
-AdaptiveCells RefineAdaptively(AdaptiveArguments const &arguments,
-                               FarExt::TopologyRefiner const &refiner, std::string const &input,
-                               Mesh *mesh) {
-    AdaptiveCells result;
-    AdaptiveStatistics &statistics = result.statistics;
+AdaptiveRefinement::AdaptiveRefinement(Mesh const &mesh, std::string const &output, bool isKept)
+    : _mesh(mesh), _isKept(isKept) {
+    if (!output.empty()) {
+        _writer.emplace(mesh, output);
+    }
+}
+
+void AdaptiveRefinement::Refine(AdaptiveArguments const &arguments,
+                                FarExt::TopologyRefiner const &refiner, std::string const &input) {
     FarExt::Status status;
     BfrExt::SurfaceFactoryCache cache;
     auto const factory = SurfaceFactory::Create(
@@ -365,10 +183,10 @@ AdaptiveCells RefineAdaptively(AdaptiveArguments const &arguments,
         }
         ++numSurfaces;
     }
-    statistics.types = std::int64_t(cache.GetNumTypes());
-    statistics.hits = numSurfaces - statistics.types;
+    _statistics.types = std::int64_t(cache.GetNumTypes());
+    _statistics.hits = numSurfaces - _statistics.types;
 
-    BfrExt::View const view = makeView(arguments, mesh->positions);
+    BfrExt::View const view = makeView(arguments, _mesh.positions);
     if (!view.IsValid()) {
         throw FileError(input,
                         "the camera of --adaptive sees nothing: eye and target are one place, "
@@ -376,50 +194,62 @@ AdaptiveCells RefineAdaptively(AdaptiveArguments const &arguments,
     }
     BfrExt::View::Counts counts;
     CellForest const forest =
-        view.MakeForest<float>(*factory, mesh->positions.data(), 3, nullptr, &counts);
-    statistics.outside = counts.outside;
-    statistics.backFacing = counts.backFacing;
-    statistics.facesByLevel.assign(std::size_t(arguments.maxLevel) + 1, 0);
+        view.MakeForest<float>(*factory, _mesh.positions.data(), 3, nullptr, &counts);
+    _statistics.outside = counts.outside;
+    _statistics.backFacing = counts.backFacing;
+    _statistics.facesByLevel.assign(std::size_t(arguments.maxLevel) + 1, 0);
+    _statistics.channelValues.assign(_mesh.channels.size(), 0);
 
-    Cells const cells(refiner, forest);
-    mesh->positions = cells.EvaluatePoints(
-        [&](int face, Surface<float> *faceSurface) {
-            factory->InitVertexSurface(face, faceSurface);
-        },
-        mesh->positions, 3);
-    setProperties(cells, *factory, mesh);
-    for (std::size_t channel = 0; channel < mesh->channels.size(); ++channel) {
-        FVarChannel &values = mesh->channels[channel];
-        setChannel(cells,
-                   cells.Evaluate(
-                       [&](int face, Surface<float> *faceSurface) {
-                           factory->InitFaceVaryingSurface(face, faceSurface, int(channel));
-                       },
-                       values.values, values.width),
-                   &values);
-        statistics.channelValues.push_back(values.GetNumValues());
+    CellPieces pieces(*factory, forest, _mesh, input);
+    while (pieces.MakeNext()) {
+        take(pieces.GetPiece(), pieces.GetFaceLevels());
     }
-    setFaces(cells, numFaces, mesh, &result);
-    statistics.facesOfMaxLevel = statistics.facesByLevel.back();
-    statistics.maxLevel = arguments.maxLevel;
-    statistics.pixelError = arguments.pixelError;
-    while (statistics.facesByLevel.size() > 1 && statistics.facesByLevel.back() == 0) {
-        statistics.facesByLevel.pop_back();
+    _front = pieces.TakeFront();
+    _statistics.points += _front.GetNumVertices();
+    _statistics.bytes += std::int64_t(sizeof(float) * _front.positions.size());
+    _kept.positions.insert(_kept.positions.begin(), _front.positions.begin(),
+                           _isKept ? _front.positions.end() : _front.positions.begin());
+    _statistics.facesOfMaxLevel = _statistics.facesByLevel.back();
+    _statistics.maxLevel = arguments.maxLevel;
+    _statistics.pixelError = arguments.pixelError;
+    while (_statistics.facesByLevel.size() > 1 && _statistics.facesByLevel.back() == 0) {
+        _statistics.facesByLevel.pop_back();
     }
-    statistics.faces = mesh->GetNumFaces();
-    statistics.points = mesh->GetNumVertices();
-    statistics.bytes =
-        std::int64_t(sizeof(float) * mesh->positions.size() +
-                     sizeof(int) * (mesh->faceSizes.size() + mesh->faceVertices.size()));
     BfrExt::Camera const &camera = view.GetCamera();
     for (int k = 0; k < 3; ++k) {
-        result.camera.eye[k] = camera.eye[k];
-        result.camera.target[k] = camera.target[k];
+        _camera.eye[k] = camera.eye[k];
+        _camera.target[k] = camera.target[k];
     }
-    result.camera.fieldOfView = arguments.fieldOfView;
-    result.camera.width = camera.width;
-    result.camera.height = camera.height;
-    return result;
+    _camera.fieldOfView = arguments.fieldOfView;
+    _camera.width = camera.width;
+    _camera.height = camera.height;
+}
+
+void AdaptiveRefinement::take(Mesh const &piece, std::vector<int> const &faceLevels) {
+    for (int const level : faceLevels) {
+        ++_statistics.facesByLevel[std::size_t(level)];
+    }
+    for (std::size_t channel = 0; channel < piece.channels.size(); ++channel) {
+        _statistics.channelValues[channel] += piece.channels[channel].GetNumValues();
+    }
+    _statistics.faces += piece.GetNumFaces();
+    _statistics.points += piece.GetNumVertices();
+    _statistics.bytes +=
+        std::int64_t(sizeof(float) * piece.positions.size() +
+                     sizeof(int) * (piece.faceSizes.size() + piece.faceVertices.size()));
+    if (_writer) {
+        _writer->Add(piece);
+    }
+    if (_isKept) {
+        auto const append = [](auto &to, auto const &from) {
+            to.insert(to.end(), from.begin(), from.end());
+        };
+        append(_kept.positions, piece.positions);
+        append(_kept.faceSizes, piece.faceSizes);
+        append(_kept.faceVertices, piece.faceVertices);
+        append(_kept.baseFaces, piece.baseFaces);
+        append(_faceLevels, faceLevels);
+    }
 }
 
 } // namespace OpenSubdivHex::Tools

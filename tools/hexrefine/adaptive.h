@@ -3,7 +3,7 @@
 #define OPENSUBDIVHEX_TOOLS_ADAPTIVE_H
 
 #include "far_ext/topologyRefiner.h"
-#include "tools/mesh/mesh.h"
+#include "tools/mesh/pieceWriter.h"
 
 #include <cstdint>
 #include <optional>
@@ -58,22 +58,49 @@ struct AdaptiveCamera {
     int height;
 };
 
-/// What RefineAdaptively() tells of what it made.
-struct AdaptiveCells {
-    AdaptiveStatistics statistics;
-    AdaptiveCamera camera;
-    std::vector<int> faceLevels;
-};
-
-/// \brief Replaces the faces of \p mesh by the cells that are refined for a camera, and its values by
-/// those at the vertices of cells.
+/// \brief The cells of a mesh that are refined for a camera: they are written piece by piece as they are
+/// made, and kept for a picture alone.
 ///
 /// Vertices are on the limit surface.  Properties of vertices are interpolated linearly, as in
 /// refinement.  A value of a channel is one for each vertex and each side of a seam.  Holes are left
-/// out.  Throws FileError, naming \p input, where a face has no surface.
-AdaptiveCells RefineAdaptively(AdaptiveArguments const &arguments,
-                               FarExt::TopologyRefiner const &refiner, std::string const &input,
-                               Mesh *mesh);
+/// out.
+class AdaptiveRefinement {
+public:
+    /// \param mesh    that is refined, with what the file is to have; it must live as long
+    /// \param output  the file, which Write() puts in its place; empty: none
+    /// \param isKept  whether the cells are kept
+    AdaptiveRefinement(Mesh const &mesh, std::string const &output, bool isKept);
+
+    /// Throws FileError, naming \p input, where a face has no surface.
+    void Refine(AdaptiveArguments const &arguments, FarExt::TopologyRefiner const &refiner,
+                std::string const &input);
+    AdaptiveStatistics const &GetStatistics() const { return _statistics; }
+    AdaptiveCamera const &GetCamera() const { return _camera; }
+
+    /// @name Cells that are kept
+    /// @{
+
+    /// Positions, and faces with their base faces.
+    Mesh const &GetMesh() const { return _kept; }
+    /// By face.
+    std::vector<int> const &GetFaceLevels() const { return _faceLevels; }
+    /// @}
+
+    /// Puts the file in its place.
+    void Write() { _writer->Commit(_front); }
+
+private:
+    void take(Mesh const &piece, std::vector<int> const &faceLevels);
+
+    Mesh const &_mesh;
+    bool const _isKept;
+    std::optional<PieceWriter> _writer;
+    AdaptiveStatistics _statistics;
+    AdaptiveCamera _camera{};
+    Mesh _front; // vertices that come first
+    Mesh _kept;
+    std::vector<int> _faceLevels;
+};
 
 } // namespace OpenSubdivHex::Tools
 

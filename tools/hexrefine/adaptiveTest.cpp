@@ -109,6 +109,34 @@ TEST_F(HexrefineAdaptive, KeepsMaterialsAndSeams) {
     EXPECT_NE(kept.out.find(values), std::string::npos) << kept.out;
 }
 
+// Each label is a piece of its own, of a mesh that is the same.
+TEST_F(HexrefineAdaptive, PiecesAreThoseOfTheWhole) {
+    std::string const corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\n"
+                                "v 1 -1 1\nv 1 1 1\nv -1 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+    char const *const faces[] = {"4 3 2 1", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"};
+    auto const makeCube = [&](std::string const &name, bool hasLabels) {
+        std::string text = corners;
+        for (std::string const face : faces) {
+            text += hasLabels ? "usemtl of" + std::to_string(face[0] - '0') + face[2] + "\n" : "";
+            text += "f";
+            for (std::size_t i = 0; i < 4; ++i) {
+                text += std::string(" ") + face[2 * i] + "/" + std::to_string(i + 1);
+            }
+            text += "\n";
+        }
+        return makeFile(name, text);
+    };
+    Mesh const whole = refine(makeCube("whole.obj", false), "--mask smooth", "one.obj");
+    Mesh const pieces = refine(makeCube("pieces.obj", true), "--mask smooth", "many.obj");
+    EXPECT_EQ(pieces.labels.size(), 6u);
+    EXPECT_EQ(pieces.positions, whole.positions);
+    EXPECT_EQ(pieces.faceSizes, whole.faceSizes);
+    EXPECT_EQ(pieces.faceVertices, whole.faceVertices);
+    ASSERT_EQ(pieces.channels.size(), 1u);
+    EXPECT_EQ(pieces.channels[0].values, whole.channels[0].values);
+    EXPECT_EQ(pieces.channels[0].faceValues, whole.channels[0].faceValues);
+}
+
 TEST_F(HexrefineAdaptive, TellsWhereTheLastLevelEnds) {
     std::string const cube = makeCubeFile() + " --adaptive --mask smooth ";
     std::string const note = "may be further than 0.5 pixels";

@@ -586,13 +586,13 @@ void run(Arguments const &arguments) {
         statistics.holes = CountHoles(*refiner);
         statistics.channels = CountChannels(*refiner, mesh);
 
-        AdaptiveCells cells;
+        std::optional<AdaptiveRefinement> cells;
         if (isAdaptive) {
             milliseconds.evaluate = measure(progress, "evaluating", [&] {
-                cells = RefineAdaptively(arguments.adaptive, *refiner, arguments.input, &mesh);
-                statistics.adaptive = cells.statistics;
+                cells.emplace(mesh, arguments.output, !arguments.png.empty());
+                cells->Refine(arguments.adaptive, *refiner, arguments.input);
+                statistics.adaptive = cells->GetStatistics();
             });
-            NormalizeNormals(&mesh);
         } else if (arguments.level > 0) {
             evaluate(arguments, *refiner, &mesh, progress, &statistics);
         }
@@ -609,10 +609,10 @@ void run(Arguments const &arguments) {
             milliseconds.render = measure(progress, "rendering", [&] {
                 if (isAdaptive) {
                     try {
-                        WriteCellPicture(
-                            mesh, cells.camera,
-                            FindCellRegions(arguments.pngColors, regions, mesh, cells.faceLevels),
-                            arguments.png);
+                        WriteCellPicture(cells->GetMesh(), cells->GetCamera(),
+                                         FindCellRegions(arguments.pngColors, regions,
+                                                         cells->GetMesh(), cells->GetFaceLevels()),
+                                         arguments.png);
                     } catch (std::bad_alloc const &) {
                         throw FileError(arguments.png, "not enough memory for a picture of " +
                                                            arguments.adaptive.resolution +
@@ -630,15 +630,17 @@ void run(Arguments const &arguments) {
                     copyFacesWithNormals(arguments, lastLevel, *sides, std::move(normals), &mesh);
                 } else if (arguments.isSeparate) {
                     CopySeparateFaces(lastLevel, nullptr, &mesh);
-                } else if (isAdaptive) {
-                    SortFacesByLabel(&mesh);
-                } else {
+                } else if (!isAdaptive) {
                     CopyFaces(lastLevel, &mesh);
                 }
-                if (mesh.faceSizes.empty()) {
+                if (isAdaptive ? cells->GetStatistics().faces == 0 : mesh.faceSizes.empty()) {
                     throw FileError(arguments.input, "all faces are holes, none is left to write");
                 }
-                WriteMesh(mesh, arguments.output);
+                if (isAdaptive) {
+                    cells->Write();
+                } else {
+                    WriteMesh(mesh, arguments.output);
+                }
             });
         }
     }

@@ -9,24 +9,27 @@
 
 namespace OpenSubdivHex::Tools {
 
-void CheckFinite(Mesh const &mesh, std::string const &path, std::string const &place) {
+void CheckFinite(Mesh const &mesh, std::string const &path, std::string const &place,
+                 MeshStart const &start) {
     auto const check = [&](char const *name, char const *number, std::vector<float> const &values,
-                           int width) {
+                           int width, std::int64_t first) {
         auto const bad = std::find_if(values.begin(), values.end(),
                                       [](float value) { return !std::isfinite(value); });
         if (bad != values.end()) {
             throw FileError(path, place + name + " " +
-                                      std::to_string((bad - values.begin()) / width) + " has a " +
-                                      number + " that is not a finite number");
+                                      std::to_string(first + (bad - values.begin()) / width) +
+                                      " has a " + number + " that is not a finite number");
         }
     };
-    check("vertex", "coordinate", mesh.positions, 3);
+    check("vertex", "coordinate", mesh.positions, 3, start.vertex);
     for (VertexProperty const &property : mesh.vertexProperties) {
-        check("vertex", property.name.c_str(), property.values, 1);
+        check("vertex", property.name.c_str(), property.values, 1, start.vertex);
     }
-    for (FVarChannel const &channel : mesh.channels) {
+    for (std::size_t i = 0; i < mesh.channels.size(); ++i) {
+        FVarChannel const &channel = mesh.channels[i];
         bool const isUv = channel.kind == FVarKind::Uv;
-        check(isUv ? "texture coordinate" : "normal", "part", channel.values, channel.width);
+        check(isUv ? "texture coordinate" : "normal", "part", channel.values, channel.width,
+              start.values.empty() ? 0 : start.values[i]);
     }
 }
 

@@ -106,12 +106,12 @@ std::FILE *openUnnamed(std::string const &path) {
     std::error_code error;
     fs::path const folder = fs::absolute(path, error).parent_path();
     int const file = fs::is_directory(kOpenFiles, error)
-                         ? open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666)
+                         ? open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666)
                          : -1;
     if (file >= 0) {
         flock(file, LOCK_EX);
     }
-    return file < 0 ? nullptr : fdopen(file, "wb");
+    return file < 0 ? nullptr : fdopen(file, "w+b");
 }
 
 /// Whether the file got the name, which nobody may have; else errno tells why.
@@ -236,6 +236,17 @@ void OutputFile::Commit() {
 
 void OutputFile::refuse() const {
     throw FileError(_path, std::string("cannot be written: ") + std::strerror(errno));
+}
+
+std::FILE *OpenScratchFile(std::string const &path) {
+    std::FILE *file = openUnnamed(followLinks(path));
+    if (!file) {
+        file = std::tmpfile();
+    }
+    if (!file) {
+        throw FileError(path, std::string("cannot be prepared: ") + std::strerror(errno));
+    }
+    return file;
 }
 
 bool IsSameOutput(std::string const &path, std::string const &otherPath) {

@@ -47,6 +47,10 @@ private:
     int _handle = -1; ///< of the file when it is closed: it keeps the lock, and can give the name
 };
 
+/// \brief Opens a file for what is written and read again before \p path is written: it has no name, lies
+/// on the same disk where that knows such files, and is gone when it is closed.  Throws FileError.
+std::FILE *OpenScratchFile(std::string const &path);
+
 /// \brief Whether what is written to one path replaces what is written to the other, however they
 /// are spelled and whatever links they have; the files need not be there.  False for devices.
 bool IsSameOutput(std::string const &path, std::string const &otherPath);
