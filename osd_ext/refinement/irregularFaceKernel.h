@@ -160,8 +160,6 @@ void refineIrregularFaces(IrregularFaceMask const &mask, PlainFaceQuads const &p
         return refine(std::integral_constant<int, 4>());
     case 5:
         return refine(std::integral_constant<int, 5>());
-    case 6:
-        return refine(std::integral_constant<int, 6>());
     default:
         return refine(std::integral_constant<int, IrregularFaceMask::kNumPatterns>());
     }

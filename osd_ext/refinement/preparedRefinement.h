@@ -49,13 +49,12 @@ struct IrregularFaceMask {
     static constexpr unsigned kBehind = 0b110011;
     static constexpr unsigned kBefore = 0b100111;
     static constexpr unsigned kAll = 0b111111;
-    static constexpr int kNumPatterns = 7;
+    static constexpr int kNumPatterns = 6;
     /// The places of nearly all irregular faces, for which there are kernels.
     static constexpr unsigned kPatterns[kNumPatterns][kSize] = {
         {kAtFour, kBehind, kPlain, kPlain, kPlain, kBefore},
         {kAtSix, kBehind, kPlain, kPlain, kPlain, kBefore},
-        {kAll, 0b011011, 0b101101, kAll, 0b011011, 0b101101},
-        {kAtFour, 0b010011, kPlain, kPlain, kPlain, 0b100101},
+        {kAtFour, 0b011011, 0b101101, kAtFour, 0b011011, 0b101101},
         {kPlain, kAll, kAll, kPlain, kPlain, kPlain},
         {kPlain, kPlain, kPlain, kPlain, kAll, kAll},
         {kAtSix, kBehind, kBefore, kAtSix, kBehind, kBefore}};
