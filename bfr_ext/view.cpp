@@ -155,16 +155,20 @@ private:
         if (_geometry.IsOutside(values.GetValues())) {
             return CellVisibility::Outside;
         }
-        return isBackFacing(values, kStepsAhead) ? CellVisibility::BackFacing
-                                                 : CellVisibility::Visible;
+        return isBackFacing(values, SlopeBounds::kMaxSteps) ? CellVisibility::BackFacing
+                                                            : CellVisibility::Visible;
     }
 
     // Whether the cell faces away, or all cells do that some steps make of it.
     bool isBackFacing(CellValues const &values, int numSteps) {
-        if (areSlopesBackFacing(values)) {
+        SlopeBounds const &bounds = SlopeBounds::Find(values.GetType());
+        if (bounds.GetNumSteps() > numSteps || !areCornersBackFacing(values)) {
+            return false;
+        }
+        if (bounds.Exist() && areSlopesBackFacing(values, bounds)) {
             return true;
         }
-        if (numSteps == 0 || !areCornersBackFacing(values)) {
+        if (numSteps == 0) {
             return false;
         }
         std::vector<CellValues> &children = _partsAhead[std::size_t(numSteps) - 1];
@@ -198,11 +202,7 @@ private:
     // With m the unit normal of the slopes, all normals are m + s w, with w of length 1 at most in their
     // plane.  With c the mean of the points and r how far they are from it, (m + s w) . (eye - p) is at
     // most m . (eye - c) - m . (p - c) + s (|part of eye - c in the plane| + r).
-    bool areSlopesBackFacing(CellValues const &values) const {
-        SlopeBounds const &bounds = SlopeBounds::Find(values.GetType());
-        if (!bounds.Exist()) {
-            return false;
-        }
+    bool areSlopesBackFacing(CellValues const &values, SlopeBounds const &bounds) const {
         std::vector<double> const &points = values.GetValues();
         SlopeBounds::Normals const normals = bounds.GetNormals(points);
         Vector3 center = {};
@@ -242,9 +242,6 @@ private:
                !_flatness.IsFlat(values, corners, fraction * _options.GetFlatness() / pixels);
     }
 
-    // How many steps on cells are looked at for whether they face away.
-    static constexpr int kStepsAhead = 4;
-
     ViewGeometry const &_geometry;
     View::Options const &_options;
     CellTree const *const _previous;
@@ -252,7 +249,7 @@ private:
     std::vector<CellVisibility> *const _visibility;
     std::vector<std::vector<CellValues>>
         _cells; // by level: the children of the cell that is looked at
-    std::array<std::vector<CellValues>, kStepsAhead> _partsAhead;
+    std::array<std::vector<CellValues>, SlopeBounds::kMaxSteps> _partsAhead;
     Flatness _flatness;
 };
 

@@ -28,41 +28,36 @@ CellBounds::CellBounds(CellType const &type) {
                    });
 }
 
-// A sum of numbers is the limit and the sum of what they exceed it by; so it is largest where those that
-// exceed it most weigh as much as they may.
+// A sum of numbers is the limit and the sum of what they exceed it by.  It is largest where those that
+// exceed it most weigh as much as they may, all others nothing: with t what the least of them exceeds
+// it by, it is t and the sum of what those exceed t by.  For any other t, that is larger: so it is a bound, and
+// some steps of bisection make it a close one.
 double CellBounds::getExcess(std::vector<double> const &numbers, double limit, double sign) const {
-    double excess = 0;
-    double sumOfWeights = 0;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        double const beyond = sign * (numbers[i] - limit);
-        excess += beyond > 0 ? beyond * _weights[i] : 0;
-        sumOfWeights += beyond > 0 ? _weights[i] : 0;
+    constexpr int kBisections = 5;
+    double largest = 0;
+    for (double const number : numbers) {
+        largest = std::max(largest, sign * (number - limit));
     }
-    if (sumOfWeights <= 1) {
-        return excess;
-    }
-    struct Point {
-        double beyond;
-        double weight;
-    };
-    std::vector<Point> points;
-    points.reserve(numbers.size());
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        double const beyond = sign * (numbers[i] - limit);
-        if (beyond > 0) {
-            points.push_back({beyond, _weights[i]});
+    double result = largest;
+    double least = 0;
+    double t = 0;
+    for (int i = 0; i <= kBisections && largest > 0; ++i) {
+        double sum = 0;
+        double weight = 0;
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            double const beyond = sign * (numbers[k] - limit) - t;
+            sum += _weights[k] * std::max(beyond, 0.0);
+            weight += beyond > 0 ? _weights[k] : 0;
         }
+        result = std::min(result, t + sum);
+        if (weight > 1) {
+            least = t;
+        } else {
+            largest = t; // none is left where t is the limit itself
+        }
+        t = (least + largest) / 2;
     }
-    std::sort(points.begin(), points.end(),
-              [](Point const &a, Point const &b) { return a.beyond > b.beyond; });
-    excess = 0;
-    double rest = 1;
-    for (Point const &point : points) {
-        double const weight = std::min(rest, point.weight);
-        excess += weight * point.beyond;
-        rest -= weight;
-    }
-    return excess;
+    return result;
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slopeBounds.h"
 
+#include "latticeBounds.h"
 #include "latticePlaces.h"
 #include "pointRows.h"
 
@@ -23,6 +24,28 @@ double sumAbsolute(Row const &row) {
                            [](double sum, double a) { return sum + std::abs(a); });
 }
 
+bool isBounded(CellType const &type) {
+    return type.HasBoundedCurvature() && LatticeBounds::Find(type).Exist();
+}
+
+// How many steps on all cells are bounded, or a larger number than a limit.
+int countSteps(CellType const &type, int limit) {
+    if (isBounded(type)) {
+        return 0;
+    }
+    if (limit == 0) {
+        return 1;
+    }
+    int result = 0;
+    for (CellType::Child const &child : type.GetChildren()) {
+        result = std::max(result, 1 + countSteps(*child.type, limit - 1));
+        if (result > limit) {
+            break;
+        }
+    }
+    return result;
+}
+
 void takeLargest(Row const &row, Row &largest) {
     std::transform(row.begin(), row.end(), largest.begin(), largest.begin(),
                    [](double a, double b) { return std::max(std::abs(a), b); });
@@ -43,13 +66,11 @@ SlopeBounds const &SlopeBounds::Find(CellType const &type) {
 }
 
 SlopeBounds::SlopeBounds(CellType const &type) {
-    if (!type.HasBoundedCurvature()) {
+    if (!isBounded(type)) {
+        _numSteps = type.HasBoundedCurvature() ? countSteps(type, kMaxSteps) : kMaxSteps + 1;
         return;
     }
     _places = FindLatticePlaces(type);
-    if (_places.empty()) {
-        return;
-    }
     fitSlopes();
     std::vector<Descendant> descendants;
     ForDescendants(type, PointRows(type), kSteps, [&](CellType const &, PointRows const &points) {

@@ -34,8 +34,12 @@ public:
     /// Those of a type, which are found once.
     static SlopeBounds const &Find(CellType const &type);
 
-    /// Whether there are any: else nothing else may be asked for.
+    /// Whether there are any: else there are no normals.
     bool Exist() const { return !_changes.empty(); }
+    /// \brief How many steps on all cells have bounds, if that is kMaxSteps at most; else a larger number,
+    /// as of all cells at an irregular vertex.
+    int GetNumSteps() const { return _numSteps; }
+    static constexpr int kMaxSteps = 3;
 
     /// \brief A unit vector, and the largest length of what normals of the surface have besides, in the
     /// plane across from it, where they have length 1 along it; infinite where nothing is known.
@@ -62,6 +66,7 @@ private:
     void close(std::vector<Descendant> const &descendants);
     void narrow(std::vector<Descendant> const &descendants);
 
+    int _numSteps = 0;
     std::vector<Pair> _places;      // of points, where there are bounds
     Pair _center = {};              // the mean of the places
     std::vector<double> _slopes[2]; // of A, as sums of points

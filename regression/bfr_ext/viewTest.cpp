@@ -7,6 +7,7 @@
 #include "bfr_ext/cell/flatness.h"
 #include "bfr_ext/cell/slopeBounds.h"
 #include "bfr_ext/surfaceFactory.h"
+#include "bfr_ext/surfaceFactoryCache.h"
 #include "bfr_ext/view.h"
 #include "far_ext/executor.h"
 #include "far_ext/limit/cellPatch.h"
@@ -21,6 +22,7 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <random>
 
 namespace OpenSubdivHex::Regression {
@@ -361,56 +363,113 @@ TEST(View, SharpEdgesAreCloseToTheirCurves) {
     EXPECT_GT(numPoints, 20);
 }
 
+namespace {
+
+/// A point of the surface, and the cells that have it: from child to child, from a base face on.
+struct PointInCells {
+    static constexpr int kNumSteps = 6;
+
+    int face;
+    std::array<int, kNumSteps> children;
+    SurfacePoint surface;
+
+    /// The last of these cells that a tree has.
+    int FindLeaf(CellTree const &tree) const {
+        int cell = 0;
+        for (int step = 0; tree.IsRefined(cell); ++step) {
+            cell = tree.GetFirstChild(cell) + children[std::size_t(step)];
+        }
+        return cell;
+    }
+};
+
+/// Appends corners of cells of a face that are some random steps on.
+void addRandomPoints(CellValues const &base, int face, int numCells, std::mt19937 &random,
+                     std::vector<PointInCells> &points) {
+    std::array<CellValues, PointInCells::kNumSteps> cells;
+    for (int i = 0; i < numCells; ++i) {
+        PointInCells point = {face, {}, {}};
+        CellValues const *parent = &base;
+        for (std::size_t step = 0; step < cells.size(); ++step) {
+            auto const numChildren = unsigned(parent->GetType().GetChildren().size());
+            point.children[step] = int(random() % numChildren);
+            cells[step].SetChild(*parent, point.children[step]);
+            parent = &cells[step];
+        }
+        for (int corner = 0; corner < parent->GetType().GetNumCorners(); ++corner) {
+            SurfacePoint &surface = point.surface;
+            parent->EvaluateCorner(corner, surface.p.data());
+            parent->EvaluateCorner(corner, surface.du.data(), surface.dv.data());
+            points.push_back(point);
+        }
+    }
+}
+
+} // namespace
+
 TEST(View, NothingThatIsSeenIsCulled) {
+    constexpr int kNumViews = 100;
+    constexpr int kMaxFaces = 2;
+    constexpr int kCellsOfFace = 40;
     std::mt19937 random(5);
-    long numOutside = 0;
-    long numBackFacing = 0;
-    long numSeen = 0;
-    for (Shape const &shape : getShapes()) {
+    std::array<long, 3> numCells = {}; // by what is known of them
+    long numCulledPoints = 0;
+    BfrExt::SurfaceFactoryCache cache;
+    auto const options = BfrExt::SurfaceFactory::Options().SetExternalCache(&cache);
+    std::vector<Shape> shapes = GetManifoldShapes();
+    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
+    for (Shape const &shape : shapes) {
         SCOPED_TRACE(shape.name);
         auto const refiner = makeRefiner(shape);
+        auto const factory = BfrExt::SurfaceFactory::Create(*refiner, options);
         BaseCells cells(*refiner, shape.positions);
-        SurfaceSet<double> const surfaces(*refiner, shape.positions);
-        for (int round = 0; round < 13; ++round) {
+        std::map<int, Surface<double>> surfaces;
+        std::vector<PointInCells> points;
+        for (int i = 0; i < kMaxFaces; ++i) {
+            int const face = int(random() % unsigned(shape.GetNumFaces()));
+            Surface<double> surface;
+            if (surfaces.count(face) == 0 && factory->InitVertexSurface(face, &surface)) {
+                surfaces[face] = surface;
+                addRandomPoints(cells.Make(face), face, kCellsOfFace, random, points);
+            }
+        }
+        for (int round = 0; round < kNumViews; ++round) {
             Camera const camera = makeRandomCamera(shape.positions, random);
             Picture const picture(camera);
-            View const view(camera,
-                            View::Options().SetFlatness(0.3).SetMaxLevel(5).SetCulling(true));
-            for (int face = 0; face < refiner->GetLevel(0).GetNumFaces(); ++face) {
-                Surface<double> const &surface = surfaces[face];
+            View const view(camera, View::Options().SetFlatness(2).SetMaxLevel(3).SetCulling(true));
+            std::map<int, CellTree> trees;
+            std::map<int, std::vector<CellVisibility>> visibilities;
+            for (auto const &[face, surface] : surfaces) {
                 std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
                 surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
-                std::vector<CellVisibility> visibility;
+                std::vector<CellVisibility> &visibility = visibilities[face];
                 CellTree const tree =
                     view.MakeTree(surface, control.data(), 3, nullptr, &visibility);
                 ASSERT_EQ(int(visibility.size()), tree.GetNumCells());
-                forLeaves(tree, 0, cells.Make(face), [&](int cell, CellValues const &values) {
-                    CellVisibility const found = visibility[std::size_t(cell)];
-                    numSeen += found == CellVisibility::Visible;
-                    numOutside += found == CellVisibility::Outside;
-                    numBackFacing += found == CellVisibility::BackFacing;
-                    if (found == CellVisibility::Visible) {
-                        return;
-                    }
-                    forDescendants(values, 2, [&](CellValues const &part) {
-                        for (int i = 0; i < part.GetType().GetNumCorners(); ++i) {
-                            SurfacePoint point;
-                            part.EvaluateCorner(i, point.p.data());
-                            part.EvaluateCorner(i, point.du.data(), point.dv.data());
-                            Vector3 const toEye = Subtract(toVector(camera.eye), point.p);
-                            ASSERT_FALSE(dot(Cross(point.du, point.dv), toEye) > 0 &&
-                                         picture.HasPoint(point.p))
-                                << "face " << face << ", cell " << cell;
-                        }
-                    });
-                });
+                for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
+                    numCells[std::size_t(visibility[std::size_t(cell)])] += !tree.IsRefined(cell);
+                }
+                trees.emplace(face, tree);
+            }
+            for (PointInCells const &point : points) {
+                int const cell = point.FindLeaf(trees.at(point.face));
+                if (visibilities[point.face][std::size_t(cell)] == CellVisibility::Visible) {
+                    continue;
+                }
+                ++numCulledPoints;
+                SurfacePoint const &surface = point.surface;
+                Vector3 const toEye = Subtract(toVector(camera.eye), surface.p);
+                ASSERT_FALSE(dot(Cross(surface.du, surface.dv), toEye) > 0 &&
+                             picture.HasPoint(surface.p))
+                    << "face " << point.face << ", cell " << cell << ", view " << round;
             }
         }
     }
-    std::cout << numSeen << " cells are not culled, " << numOutside << " outside, " << numBackFacing
-              << " facing away\n";
-    EXPECT_GT(numOutside, 1000);
-    EXPECT_GT(numBackFacing, 100);
+    std::cout << shapes.size() << " shapes: " << numCells[0] << " cells are not culled, "
+              << numCells[1] << " outside, " << numCells[2] << " facing away; " << numCulledPoints
+              << " points in these\n";
+    EXPECT_GT(numCells[1], 10000);
+    EXPECT_GT(numCells[2], 1000);
 }
 
 // Where points lie by chance, normals differ as much as they can.
