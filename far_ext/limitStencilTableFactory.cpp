@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitStencilTableFactory.h"
 
-#include "stencilTableFactory.h"
-
 #include "far_ext/limit/limitMultiplier.h"
 #include "far_ext/limit/regularFaces.h"
+#include "far_ext/stencil/levelStencils.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
 
@@ -19,12 +18,12 @@ namespace OpenSubdivHex::FarExt {
 using Far::Index;
 using internal::FaceLimitMaskFinder;
 using internal::Level;
+using internal::LevelStencils;
 using internal::LimitMask;
 using internal::LimitRow;
 using internal::LimitRows;
 using internal::RegularFace;
 using internal::RegularFaces;
-using internal::SourceStencils;
 
 LimitSides::LimitSides(TopologyLevel const &level) : _numVertices(level.GetNumVertices()) {
     internal::Level const &topology = level.GetLevel();
@@ -260,29 +259,24 @@ class TableBuilder {
 
 public:
     TableBuilder(PointRows const &rows, std::vector<RowGroup> const &groups,
-                 SourceStencils const &stencils, Index numSources, Index numIndices,
-                 bool hasDerivatives)
-        : _rows(rows), _groups(groups), _stencils(stencils), _numSources(numSources),
-          _numIndices(numIndices), _hasDerivatives(hasDerivatives),
-          _table(new WritableLimitTable<REAL>(numIndices)) {}
+                 LevelStencils const *stencils, int level, Index numIndices, bool hasDerivatives)
+        : _rows(rows), _groups(groups), _stencils(stencils), _level(level),
+          _firstSource(stencils ? stencils->GetFirst(level) : 0), _numIndices(numIndices),
+          _hasDerivatives(hasDerivatives), _table(new WritableLimitTable<REAL>(numIndices)) {}
 
     /// The rows of the regular faces in groups, if there are any.
     void SetRegularRows(internal::MeshLevels const &mesh,
                         std::vector<RegularFaces::OfLevel> const &regularLevels) {
-        Index firstSource = 0;
         for (std::size_t i = 0; i < regularLevels.size(); ++i) {
-            bool const isLast = i + 1 == regularLevels.size();
             for (bool const isOwn : {false, true}) {
-                RegularRows regular = {
-                    &mesh.levels[i], isLast ? _stencils.GetNumBefore() : firstSource, {}};
+                RegularRows regular = {&mesh.levels[i], _stencils->GetFirst(int(i)), {}};
                 addRows(RegularKind{int(i), isOwn}.GetSet(regularLevels), regular);
                 _regularRows.push_back(std::move(regular));
             }
-            firstSource += mesh.levels[i].numVertices;
         }
     }
 
-    Status Build(int level) {
+    Status Build() {
         std::vector<int> &sizes = _table->GetRowSizes();
         auto const numRows = std::size_t(_rows.GetNumRows());
         internal::ResizeLarge(sizes, numRows);
@@ -300,8 +294,8 @@ public:
         std::int64_t const numWeights =
             std::accumulate(sizes.begin(), sizes.end(), std::int64_t(0));
         if (numWeights > std::numeric_limits<Index>::max()) {
-            return Status(StatusCode::TooLarge, ComponentType::Level, level,
-                          "the limit stencils of level " + std::to_string(level) + " would have " +
+            return Status(StatusCode::TooLarge, ComponentType::Level, _level,
+                          "the limit stencils of level " + std::to_string(_level) + " would have " +
                               std::to_string(numWeights) +
                               " weights, more than Far's 32-bit offsets reach");
         }
@@ -359,7 +353,7 @@ private:
     // Adds the rows of all kinds of faces of a set: some have fewer corners.
     void addRows(RegularFaces::Set const &set, RegularRows &regular) const {
         FaceRows const rows(set.mask);
-        Multiplier multiplier(_stencils, FaceRows::kNumFaceSources, 0, _hasDerivatives);
+        Multiplier multiplier(_stencils, 0, _hasDerivatives);
         for (RegularFace const &face : set.faces) {
             if (regular.ofCorners.count(face.corners) > 0) {
                 continue;
@@ -395,7 +389,7 @@ private:
         }
         for (Index row = group.first; row < _groups[number + 1].first; ++row) {
             if (!group.face || !group.face->HasCorner(row - group.first)) {
-                state.multiplier.AddRow(_rows.GetRow(row, state.scratch), _stencils.GetNumBefore());
+                state.multiplier.AddRow(_rows.GetRow(row, state.scratch), _firstSource);
                 *next++ = row;
             }
         }
@@ -407,8 +401,7 @@ private:
         internal::ParallelForRange(
             getNumGroups(),
             [&] {
-                return State{
-                    Multiplier(_stencils, _numSources, _numIndices, _hasDerivatives), {}, {}};
+                return State{Multiplier(_stencils, _numIndices, _hasDerivatives), {}, {}};
             },
             [&](State &state, Index begin, Index end) {
                 for (Index group = begin; group < end; ++group) {
@@ -424,8 +417,9 @@ private:
     PointRows const &_rows;
     std::vector<RowGroup> const &_groups;
     std::vector<RegularRows> _regularRows; // by level, of F-vertices and own ones
-    SourceStencils const _stencils;
-    Index const _numSources;
+    LevelStencils const *const _stencils;
+    int const _level;
+    Index const _firstSource; // that of vertex 0 of the level
     Index const _numIndices;
     bool const _hasDerivatives;
     std::unique_ptr<WritableLimitTable<REAL>> _table;
@@ -503,35 +497,21 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
 
     std::vector<RegularFaces::OfLevel> const noLevels;
     auto const &regularLevels = regularFaces ? regularFaces->GetLevels() : noLevels;
-    // Those of the last level have its own vertices alone.
-    bool const hasRegular = std::any_of(
-        regularLevels.begin(),
-        regularLevels.empty() ? regularLevels.end() : regularLevels.end() - 1,
-        [](RegularFaces::OfLevel const &ofLevel) {
-            return !ofLevel.fVertices.faces.empty() || !ofLevel.ownVertices.faces.empty();
-        });
-    std::unique_ptr<Far::StencilTableReal<double> const>
-        tables[2]; // of the levels before, the last
-    for (int i = hasRegular ? 0 : 1; i < 2 && hasStencils; ++i) {
-        bool const isLast = i == 1;
-        StencilTableFactoryReal<double>::Options ofTable;
-        ofTable.generateControlVerts = !isLast;
-        ofTable.generateIntermediateLevels = !isLast;
-        ofTable.maxLevel = isLast ? options.level : options.level - 1;
-        tables[i] = StencilTableFactoryReal<double>::Create(refiner, ofTable, status);
-        if (!tables[i]) {
+    std::optional<LevelStencils> stencils;
+    if (hasStencils) {
+        stencils.emplace(refiner.GetHierarchy(), schemeOptions, options.level);
+        if (!internal::Report(stencils->Form(), status)) {
             return nullptr;
         }
     }
-    SourceStencils const stencils(tables[0].get(), tables[1].get());
     std::vector<RowGroup> const groups =
         makeGroups(mesh, options.level, options.generateVertices ? level.numVertices : 0,
                    Index(rows.GetNumRows()), regularLevels);
-    TableBuilder<REAL> builder(rows, groups, stencils, stencils.GetNumBefore() + level.numVertices,
+    TableBuilder<REAL> builder(rows, groups, stencils ? &*stencils : nullptr, options.level,
                                refiner.GetLevel(hasStencils ? 0 : options.level).GetNumVertices(),
                                options.generate1stDerivatives);
     builder.SetRegularRows(mesh, regularLevels);
-    if (!internal::Report(builder.Build(options.level), status)) {
+    if (!internal::Report(builder.Build(), status)) {
         return nullptr;
     }
     return builder.TakeTable();

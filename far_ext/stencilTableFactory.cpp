@@ -12,10 +12,10 @@ namespace OpenSubdivHex::FarExt {
 
 using Far::ConstIndexArray;
 using Far::Index;
+using internal::SpareStencils;
 using internal::StencilPlaces;
 using internal::StencilPlan;
 using internal::StencilSelection;
-using internal::Support;
 using internal::SymbolicTable;
 
 namespace {
@@ -45,13 +45,6 @@ struct KeptRows {
     std::vector<Index> indices;           // of each source
 };
 
-// What is needed of the stencils of a level to make the next, beside what is in the table.
-template <typename REAL>
-struct SpareRows {
-    internal::Buffer<Index> offsets;
-    internal::Buffer<REAL> weights;
-};
-
 // Fills an empty table; of all that is made, it has the kept rows, or all when there are none.
 template <typename REAL>
 class TableFiller {
@@ -61,14 +54,15 @@ public:
 
     void Fill() {
         fillControlRows();
-        SpareRows<REAL> pSpare;
+        SpareStencils<REAL> pSpare;
         StencilPlaces<REAL> pPlaces{};
         for (int level = _plan.firstBuilt; level <= _plan.lastLevel; ++level) {
             bool const isStored = level >= _plan.firstStored;
-            SpareRows<REAL> spare;
-            StencilPlaces<REAL> const places = !isStored ? placeUnstored(level, spare)
-                                               : _kept   ? placeKept(level, spare)
-                                                         : placeAll(level);
+            SpareStencils<REAL> spare;
+            StencilPlaces<REAL> const places =
+                !isStored ? spare.Place(_symbolic.GetSupports(level).OfVertices())
+                : _kept   ? placeKept(level, spare)
+                          : placeAll(level);
             internal::StencilMultiplier<REAL>(
                 _symbolic.GetRows(level), _symbolic.GetParentSupports(level),
                 _symbolic.GetSupports(level), _plan.HasParentStencils(level) ? &pPlaces : nullptr,
@@ -108,19 +102,7 @@ private:
         return {offsets, _table.GetRowWeights(), _table.GetRowIndices(), nullptr, nullptr};
     }
 
-    StencilPlaces<REAL> placeUnstored(int level, SpareRows<REAL> &spare) const {
-        std::vector<Support> const &supports = _symbolic.GetSupports(level).OfVertices();
-        spare.offsets.Resize(supports.size());
-        Index numSpare = 0;
-        for (std::size_t row = 0; row < supports.size(); ++row) {
-            spare.offsets[row] = ~numSpare;
-            numSpare += supports[row].size();
-        }
-        spare.weights.Resize(numSpare);
-        return {spare.offsets.data(), nullptr, nullptr, nullptr, spare.weights.data()};
-    }
-
-    StencilPlaces<REAL> placeKept(int level, SpareRows<REAL> &spare) {
+    StencilPlaces<REAL> placeKept(int level, SpareStencils<REAL> &spare) {
         Index const numRows = _symbolic.GetRows(level).GetNumRows();
         int const *const sizes = _symbolic.GetSizes(level);
         spare.offsets.Resize(numRows);

@@ -2,7 +2,6 @@
 #include "limitMultiplier.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -19,71 +18,51 @@ void beginRound(std::vector<ENTRY> &entries, unsigned &round) {
     }
 }
 
-// Whole vectors of sums, so that loops over them have no rest.
+// As many sums as are formed at once, in registers.
 constexpr int kVector = 8;
 
-int roundUp(int size) { return (size + kVector - 1) / kVector * kVector; }
-
-// sums[s][i] += the sum of factors[s][k] rows[k][i], in the order of k.
-template <int NUM_SUMS, int NUM_ROWS, typename REAL>
-void addProducts(REAL const (&factors)[NUM_SUMS][NUM_ROWS], REAL const *const (&rows)[NUM_ROWS],
-                 int size, REAL *const (&sums)[NUM_SUMS]) {
-    // Clang warns where it cannot make vectors of the loop.
-#if defined(_OPENMP) && !defined(__clang__)
-#pragma omp simd
-#endif
-    for (int i = 0; i < size; ++i) {
-        for (int s = 0; s < NUM_SUMS; ++s) {
-            REAL sum = sums[s][i];
-            for (int k = 0; k < NUM_ROWS; ++k) {
-                sum += factors[s][k] * rows[k][i];
-            }
-            sums[s][i] = sum;
-        }
-    }
-}
+int getStride(int numColumns) { return std::max(numColumns, kVector); }
 
 } // namespace
 
 template <typename REAL>
 void LimitMultiplier<REAL>::Clear() {
-    _firstTerms.clear();
-    _numTerms = 0;
+    _shared = nullptr;
+    _rows.clear();
     _sources.clear();
-    beginRound(_numberOfSource, _round);
+    _numberOfSource.Clear();
 }
 
 template <typename REAL>
 void LimitMultiplier<REAL>::AddRow(LimitRow const &row, Index firstSource) {
-    auto const rowBit = RowBits(1u << _firstTerms.size());
-    _firstTerms.push_back(_numTerms);
-    auto const numTerms = std::size_t(_numTerms) + std::size_t(row.size);
+    auto const rowBit = RowBits(1u << GetNumRows());
+    int const begin = _rows.empty() ? 0 : _rows.back().end;
+    std::size_t const numTerms = std::size_t(begin) + std::size_t(row.size);
     if (_terms.size() < numTerms) {
         _terms.resize(2 * numTerms);
     }
-    Term *term = _terms.data() + _numTerms;
+    Term *term = _terms.data() + begin;
     for (int i = 0; i < row.size; ++i) {
         bool const isUsed = _hasDerivatives ? !row.IsNothing(i) : row.weights[i] != 0;
         if (!isUsed) {
             continue;
         }
         Index const source = firstSource + row.sources[i];
-        Entry &number = _numberOfSource[std::size_t(source)];
-        if (number.round != _round) {
-            number = {_round, int(_sources.size())};
+        Index const number = _numberOfSource.FindOrSet(source, Index(_sources.size()));
+        if (number == Index(_sources.size())) {
             _sources.push_back({source, 0});
         }
-        _sources[std::size_t(number.value)].rows |= rowBit;
-        *term++ = {number.value, {REAL(row.weights[i]), REAL(row.du[i]), REAL(row.dv[i])}};
+        _sources[std::size_t(number)].rows |= rowBit;
+        *term++ = {number, {REAL(row.weights[i]), REAL(row.du[i]), REAL(row.dv[i])}};
     }
-    _numTerms = int(term - _terms.data());
+    _rows.push_back({begin, int(term - _terms.data())});
 }
 
 template <typename REAL>
 auto LimitMultiplier<REAL>::ShareRows() const -> SharedRows {
     SharedRows rows;
-    rows._firstTerms = _firstTerms;
-    rows._terms.assign(_terms.begin(), _terms.begin() + _numTerms);
+    rows._rows = _rows;
+    rows._terms.assign(_terms.begin(), _terms.begin() + (_rows.empty() ? 0 : _rows.back().end));
     rows._sources = _sources;
     return rows;
 }
@@ -91,49 +70,67 @@ auto LimitMultiplier<REAL>::ShareRows() const -> SharedRows {
 template <typename REAL>
 void LimitMultiplier<REAL>::SetRows(SharedRows const &rows, Index const *sources, Index firstSource,
                                     bool isAll) {
-    _firstTerms = rows._firstTerms;
-    _numTerms = int(rows._terms.size());
-    if (_terms.size() < rows._terms.size()) {
-        _terms.resize(rows._terms.size());
-    }
-    std::copy(rows._terms.begin(), rows._terms.end(), _terms.begin());
+    _shared = &rows;
+    _rows.clear();
     _sources = rows._sources;
     for (Source &source : _sources) {
         source.index = firstSource + sources[source.index];
+        Prefetch(&_stencils->Get(source.index), 1);
     }
     if (!isAll) {
-        beginRound(_numberOfSource, _round);
+        _numberOfSource.Clear();
         for (std::size_t i = 0; i < _sources.size(); ++i) {
-            _numberOfSource[std::size_t(_sources[i].index)] = {_round, int(i)};
+            _numberOfSource.FindOrSet(_sources[i].index, Index(i));
         }
     }
-}
-
-template <typename REAL>
-auto LimitMultiplier<REAL>::getList(Source const &source) const -> List {
-    if (_stencils.IsEmpty()) {
-        return {&source.index, 1, source.rows};
-    }
-    SourceStencils::Stencil const stencil = _stencils.Get(source.index);
-    return {stencil.indices, stencil.size, source.rows};
 }
 
 template <typename REAL>
 auto LimitMultiplier<REAL>::FindColumns() -> Columns {
+    if (!_stencils) {
+        findSourceColumns();
+        return {_columns.data(), _rowsOfColumns.data(), int(_columns.size())};
+    }
     findLists();
     makeUnion();
     auto const numColumns = int(_columns.size());
-    for (int i = 0; i < numColumns; ++i) {
-        _columnOfIndex[std::size_t(_columns[std::size_t(i)])].value = i;
-    }
-    _rowsOfColumns.assign(_columns.size(), 0);
+    numberColumns(_columns.data(), numColumns);
+    RowBits ofAll = 0; // rows that are known to have all columns
     for (List const &list : _lists) {
-        for (int i = 0; i < list.size; ++i) {
-            int const column = _columnOfIndex[std::size_t(list.indices[i])].value;
-            _rowsOfColumns[std::size_t(column)] |= list.rows;
+        ofAll |= list.support.size() == numColumns ? list.rows : RowBits(0);
+    }
+    _rowsOfColumns.assign(_columns.size(), ofAll);
+    for (List const &list : _lists) {
+        if ((list.rows & ~ofAll) != 0) {
+            for (Index const index : list.support) {
+                int const column = _columnOfIndex[std::size_t(index)].value;
+                _rowsOfColumns[std::size_t(column)] |= list.rows;
+            }
         }
     }
     return {_columns.data(), _rowsOfColumns.data(), numColumns};
+}
+
+template <typename REAL>
+void LimitMultiplier<REAL>::findSourceColumns() {
+    _columns.clear();
+    for (Source const &source : _sources) {
+        _columns.push_back(source.index);
+    }
+    std::sort(_columns.begin(), _columns.end());
+    numberColumns(_columns.data(), int(_columns.size()));
+    _rowsOfColumns.resize(_columns.size());
+    for (Source const &source : _sources) {
+        int const column = _columnOfIndex[std::size_t(source.index)].value;
+        _rowsOfColumns[std::size_t(column)] = source.rows;
+    }
+}
+
+template <typename REAL>
+void LimitMultiplier<REAL>::numberColumns(Index const *columns, int numColumns) {
+    for (int i = 0; i < numColumns; ++i) {
+        _columnOfIndex[std::size_t(columns[i])].value = i;
+    }
 }
 
 // Those of all sources; one that is among the last ones is not added again.
@@ -141,136 +138,144 @@ template <typename REAL>
 void LimitMultiplier<REAL>::findLists() {
     constexpr int kNumCompared = 16;
     _lists.clear();
-    for (Source const &source : _sources) {
-        List const list = getList(source);
-        auto const isSame = [&](List const &known) {
-            return known.size == list.size && known.indices[0] == list.indices[0] &&
-                   std::memcmp(known.indices, list.indices,
-                               std::size_t(list.size) * sizeof(Index)) == 0;
-        };
-        auto const end = _stencils.IsEmpty()
-                             ? _lists.rbegin()
-                             : _lists.rbegin() + std::min<std::ptrdiff_t>(
-                                                     kNumCompared, std::ptrdiff_t(_lists.size()));
-        auto const known = std::find_if(_lists.rbegin(), end, isSame);
-        if (known != end) {
-            known->rows |= list.rows;
-        } else {
-            _lists.push_back(list);
+    _listOfSource.resize(_sources.size());
+    for (int source = 0; source < int(_sources.size()); ++source) {
+        Support const support = getStencil(source).support;
+        auto list = int(_lists.size()) - 1;
+        int const end = std::max(list - kNumCompared, -1);
+        while (list > end && !(_lists[std::size_t(list)].support == support)) {
+            --list;
         }
+        if (list == end) {
+            list = int(_lists.size());
+            _lists.push_back({support, 0, 0});
+        }
+        _lists[std::size_t(list)].rows |= _sources[std::size_t(source)].rows;
+        _listOfSource[std::size_t(source)] = list;
     }
 }
 
 template <typename REAL>
 void LimitMultiplier<REAL>::makeUnion() {
-    List const largest = *std::max_element(
-        _lists.begin(), _lists.end(), [](List const &a, List const &b) { return a.size < b.size; });
+    Support const largest =
+        std::max_element(_lists.begin(), _lists.end(), [](List const &a, List const &b) {
+            return a.support.size() < b.support.size();
+        })->support;
     beginRound(_columnOfIndex, _columnRound);
     _added.clear();
-    for (int i = 0; i < largest.size; ++i) {
-        _columnOfIndex[std::size_t(largest.indices[i])].round = _columnRound;
+    for (Index const index : largest) {
+        _columnOfIndex[std::size_t(index)].round = _columnRound;
     }
     for (List const &list : _lists) {
-        for (int i = 0; i < list.size; ++i) {
-            Entry &column = _columnOfIndex[std::size_t(list.indices[i])];
+        for (Index const index : list.support) {
+            Entry &column = _columnOfIndex[std::size_t(index)];
             if (column.round != _columnRound) {
                 column.round = _columnRound;
-                _added.push_back(list.indices[i]);
+                _added.push_back(index);
             }
         }
     }
     std::sort(_added.begin(), _added.end());
-    _columns.resize(std::size_t(largest.size) + _added.size());
-    std::merge(largest.indices, largest.indices + largest.size, _added.begin(), _added.end(),
-               _columns.begin());
+    _columns.resize(std::size_t(largest.size()) + _added.size());
+    std::merge(largest.begin(), largest.end(), _added.begin(), _added.end(), _columns.begin());
 }
 
 // The difference of each source to the first one, by column.
 template <typename REAL>
-void LimitMultiplier<REAL>::makeDense(Columns const &columns) {
-    auto const numColumns = std::size_t(columns.size);
-    auto const getWeights = [&](Source const &source) {
-        return _stencils.Get(source.index).weights;
-    };
-    auto const getColumn = [&](Index index) {
-        return std::size_t(_columnOfIndex[std::size_t(index)].value);
-    };
-    _reference.assign(numColumns, 0.0);
-    List const first = getList(_sources.front());
-    for (int k = 0; k < first.size; ++k) {
-        _reference[getColumn(first.indices[k])] = getWeights(_sources.front())[k];
+void LimitMultiplier<REAL>::findDifferences(Columns const &columns) {
+    for (int source = 0; source < int(_sources.size()); ++source) {
+        LevelStencils::Stencil const &stencil = getStencil(source);
+        Prefetch(stencil.weights, std::size_t(stencil.support.size()) * sizeof(double));
     }
-    _negative.resize(numColumns);
+    findLists();
+    _positions.clear();
+    for (List &list : _lists) {
+        list.firstPosition = int(_positions.size());
+        for (Index const index : list.support) {
+            _positions.push_back(_columnOfIndex[std::size_t(index)].value);
+        }
+    }
+    auto const getPositions = [this](int source) {
+        List const &list = _lists[std::size_t(_listOfSource[std::size_t(source)])];
+        return _positions.data() + list.firstPosition;
+    };
+    auto const stride = std::size_t(getStride(columns.size));
+    _reference.assign(stride, 0.0);
+    LevelStencils::Stencil const &first = getStencil(0);
+    for (int k = 0; k < first.support.size(); ++k) {
+        _reference[std::size_t(getPositions(0)[k])] = first.weights[k];
+    }
+    _negative.resize(stride);
     std::transform(_reference.begin(), _reference.end(), _negative.begin(),
                    [](double weight) { return REAL(-weight); });
-    auto const stride = std::size_t(roundUp(columns.size));
-    _dense.resize(_sources.size() * stride);
-    REAL *dense = _dense.data();
-    for (Source const &source : _sources) {
-        List const list = getList(source);
-        double const *const weights = getWeights(source);
-        if (list.size == columns.size) {
-            for (std::size_t k = 0; k < numColumns; ++k) {
-                dense[k] = REAL(weights[k] - _reference[k]);
+    _differences.resize(_sources.size() * stride);
+    REAL *differences = _differences.data();
+    double const *const reference = _reference.data();
+    for (int source = 0; source < int(_sources.size()); ++source, differences += stride) {
+        LevelStencils::Stencil const &stencil = getStencil(source);
+        int const size = stencil.support.size();
+        if (size == int(stride)) {
+            for (int k = 0; k < size; ++k) {
+                differences[k] = REAL(stencil.weights[k] - reference[k]);
             }
-        } else {
-            std::copy(_negative.begin(), _negative.end(), dense);
-            for (int k = 0; k < list.size; ++k) {
-                std::size_t const column = getColumn(list.indices[k]);
-                dense[column] = REAL(weights[k] - _reference[column]);
-            }
+            continue;
         }
-        dense += stride;
+        std::copy(_negative.begin(), _negative.end(), differences);
+        int const *const positions = getPositions(source);
+        for (int k = 0; k < size; ++k) {
+            differences[positions[k]] = REAL(stencil.weights[k] - reference[positions[k]]);
+        }
     }
 }
 
 // Of the vertices themselves: a term has one column.
 template <typename REAL>
-void LimitMultiplier<REAL>::scatterTerms(int row, int numColumns) {
+void LimitMultiplier<REAL>::scatterTerms(Term const *begin, Term const *end, int numColumns) {
     std::fill(_sums.begin(), _sums.end(), REAL(0));
-    for (Term const *term = getTerms(row); term != getTerms(row + 1); ++term) {
+    for (Term const *term = begin; term != end; ++term) {
         Index const index = _sources[std::size_t(term->source)].index;
         REAL *const sums = _sums.data() + _columnOfIndex[std::size_t(index)].value;
         for (int sum = 0; sum < kNumSums; ++sum) {
-            sums[sum * std::ptrdiff_t(roundUp(numColumns))] += term->factors[sum];
+            sums[sum * std::ptrdiff_t(getStride(numColumns))] += term->factors[sum];
         }
     }
 }
 
-// Some terms at a time: sums are read and written less often.
+// Some columns at a time, of which the last may be among those before, too.
 template <typename REAL>
 template <int NUM_SUMS>
-void LimitMultiplier<REAL>::sumTerms(int row, int numColumns) {
-    constexpr int kTerms = 4;
-    int const stride = roundUp(numColumns);
-    std::transform(_reference.begin(), _reference.end(), _sums.begin(),
-                   [](double weight) { return REAL(weight); });
-    std::fill(_sums.begin() + stride, _sums.end(), REAL(0));
-    REAL *const sums[] = {_sums.data(), _sums.data() + stride, _sums.data() + 2 * stride};
-    REAL *summed[NUM_SUMS];
-    std::copy_n(sums, NUM_SUMS, summed);
-    Term const *const end = getTerms(row + 1);
-    for (Term const *term = getTerms(row); term < end; term += kTerms) {
-        REAL const *differences[kTerms];
-        REAL factors[NUM_SUMS][kTerms];
-        for (int i = 0; i < kTerms; ++i) {
-            // Nothing of the first one again, where there are no more.
-            bool const isTerm = term + i < end;
-            Term const &taken = term[isTerm ? i : 0];
-            differences[i] = _dense.data() + taken.source * std::ptrdiff_t(stride);
+void LimitMultiplier<REAL>::sumTerms(Term const *begin, Term const *end, int numColumns,
+                                     REAL *const *sums) const {
+    std::ptrdiff_t const stride = getStride(numColumns);
+    std::ptrdiff_t const last = stride - kVector;
+    for (std::ptrdiff_t column = 0;; column = std::min(column + kVector, last)) {
+        REAL results[NUM_SUMS][kVector] = {};
+        for (int k = 0; k < kVector; ++k) {
+            results[0][k] = REAL(_reference[std::size_t(column + k)]);
+        }
+        for (Term const *term = begin; term != end; ++term) {
+            REAL const *const differences = _differences.data() + term->source * stride + column;
             for (int sum = 0; sum < NUM_SUMS; ++sum) {
-                factors[sum][i] = isTerm ? taken.factors[sum] : 0;
+                for (int k = 0; k < kVector; ++k) {
+                    results[sum][k] += term->factors[sum] * differences[k];
+                }
             }
         }
-        addProducts(factors, differences, stride, summed);
+        for (int sum = 0; sum < NUM_SUMS; ++sum) {
+            std::copy_n(results[sum], kVector, sums[sum] + column);
+        }
+        if (column == last) {
+            return;
+        }
     }
 }
 
+// The columns that a row has.
 template <typename REAL>
 void LimitMultiplier<REAL>::write(int row, Columns const &columns, Place const &place) const {
     REAL const *const weights = _sums.data();
-    REAL const *const du = weights + roundUp(columns.size);
-    REAL const *const dv = du + roundUp(columns.size);
+    REAL const *const du = weights + getStride(columns.size);
+    REAL const *const dv = du + getStride(columns.size);
     int entry = 0;
     for (int column = 0; column < columns.size; ++column) {
         if (!(columns.rows[column] >> row & 1)) {
@@ -288,22 +293,44 @@ void LimitMultiplier<REAL>::write(int row, Columns const &columns, Place const &
 
 template <typename REAL>
 void LimitMultiplier<REAL>::Fill(Columns const &columns, Place const *places) {
+    numberColumns(columns.indices, columns.size);
+    int const stride = getStride(columns.size);
+    _sums.resize(kNumSums * std::size_t(stride));
+    if (_stencils) {
+        findDifferences(columns);
+    }
+    auto ofAll = RowBits(columns.size >= kVector ? ~0u : 0u); // rows that are summed up in place
     for (int i = 0; i < columns.size; ++i) {
-        _columnOfIndex[std::size_t(columns.indices[i])].value = i;
+        ofAll &= columns.rows[i];
     }
-    _sums.resize(kNumSums * std::size_t(roundUp(columns.size)));
-    if (!_stencils.IsEmpty()) {
-        makeDense(columns);
-    }
+    int const numShared = getNumShared();
     for (int row = 0; row < GetNumRows(); ++row) {
-        if (_stencils.IsEmpty()) {
-            scatterTerms(row, columns.size);
-        } else if (_hasDerivatives) {
-            sumTerms<kNumSums>(row, columns.size);
-        } else {
-            sumTerms<1>(row, columns.size);
+        bool const isShared = row < numShared;
+        std::vector<Term> const &ofRows = isShared ? _shared->_terms : _terms;
+        RowTerms const terms =
+            isShared ? _shared->_rows[std::size_t(row)] : _rows[std::size_t(row - numShared)];
+        Term const *const begin = ofRows.data() + terms.begin;
+        Term const *const end = ofRows.data() + terms.end;
+        Place const &place = places[row];
+        if (!_stencils) {
+            scatterTerms(begin, end, columns.size);
+            write(row, columns, place);
+            continue;
         }
-        write(row, columns, places[row]);
+        bool const isInPlace = (ofAll >> row & 1) != 0;
+        REAL *const inPlace[] = {place.weights, place.duWeights, place.dvWeights};
+        REAL *const apart[] = {_sums.data(), _sums.data() + stride, _sums.data() + 2 * stride};
+        REAL *const *const sums = isInPlace ? inPlace : apart;
+        if (_hasDerivatives) {
+            sumTerms<kNumSums>(begin, end, columns.size, sums);
+        } else {
+            sumTerms<1>(begin, end, columns.size, sums);
+        }
+        if (isInPlace) {
+            std::copy_n(columns.indices, columns.size, place.indices);
+        } else {
+            write(row, columns, place);
+        }
     }
 }
 

@@ -4,7 +4,8 @@
 
 #include "limitRows.h"
 
-#include <opensubdiv/far/stencilTable.h>
+#include "far_ext/stencil/levelStencils.h"
+#include "far_ext/vtr/indexSet.h"
 
 #include <vector>
 
@@ -13,53 +14,8 @@ namespace OpenSubdivHex::FarExt::internal {
 /// Rows that a LimitMultiplier has at most.
 inline constexpr int kMaxLimitRows = 8;
 
-/// \brief The stencils of sources: those of the levels before one, level by level from the control
-/// vertices on, then those of the vertices of the level.  Either table may be null.
-class SourceStencils {
-public:
-    using Table = Far::StencilTableReal<double>;
-
-    struct Stencil {
-        Far::Index const *indices;
-        double const *weights;
-        int size;
-    };
-
-    SourceStencils(Table const *before, Table const *last)
-        : _tables{getArrays(before), getArrays(last)},
-          _numBefore(before ? before->GetNumStencils() : 0), _isEmpty(!before && !last) {}
-
-    bool IsEmpty() const { return _isEmpty; }
-    Far::Index GetNumBefore() const { return _numBefore; }
-    Stencil Get(Far::Index source) const {
-        bool const isBefore = source < _numBefore;
-        Arrays const &table = _tables[isBefore ? 0 : 1];
-        Far::Index const row = isBefore ? source : source - _numBefore;
-        Far::Index const offset = table.offsets[row];
-        return {table.indices + offset, table.weights + offset, table.sizes[row]};
-    }
-
-private:
-    struct Arrays {
-        int const *sizes;
-        Far::Index const *offsets;
-        Far::Index const *indices;
-        double const *weights;
-    };
-    static Arrays getArrays(Table const *table) {
-        return table ? Arrays{table->GetSizes().data(), table->GetOffsets().data(),
-                              table->GetControlIndices().data(), table->GetWeights().data()}
-                     : Arrays{};
-    }
-
-    Arrays _tables[2];
-    Far::Index _numBefore;
-    bool _isEmpty;
-};
-
 /// \brief Multiplies limit rows by the stencils of their sources, some rows at a time that are near
 /// one another: these have most sources in common, and sources mostly have the same indices.
-/// Without stencils, sources are the indices.
 ///
 /// Tables are made in two passes, the first of which finds the indices of all rows.  Each thread has
 /// a multiplier.  Sums are formed in an order that the rows fix, of the differences to the stencil of
@@ -79,14 +35,12 @@ public:
         int size;
     };
 
-    /// \param stencils        of the sources
-    /// \param numSources      more than any source
+    /// \param stencils        of the sources; null where these are the indices
     /// \param numIndices      more than any index
     /// \param hasDerivatives  whether those are wanted
-    LimitMultiplier(SourceStencils const &stencils, Index numSources, Index numIndices,
-                    bool hasDerivatives)
+    LimitMultiplier(LevelStencils const *stencils, Index numIndices, bool hasDerivatives)
         : _stencils(stencils), _hasDerivatives(hasDerivatives),
-          _numberOfSource(std::size_t(numSources)), _columnOfIndex(std::size_t(numIndices)) {}
+          _columnOfIndex(std::size_t(numIndices)) {}
 
     /// \brief Rows that are added again and again, each time with other sources.
     class SharedRows;
@@ -101,9 +55,10 @@ public:
     SharedRows ShareRows() const;
     /// Forgets all rows and adds those, source number i being \p firstSource + \p sources[i].
     ///
+    /// \param rows   are referred to until the next Clear() or SetRows()
     /// \param isAll  whether no other will be added, until Clear()
     void SetRows(SharedRows const &rows, Index const *sources, Index firstSource, bool isAll);
-    int GetNumRows() const { return int(_firstTerms.size()); }
+    int GetNumRows() const { return getNumShared() + int(_rows.size()); }
 
     /// Valid until the next call.
     Columns FindColumns();
@@ -130,49 +85,57 @@ private:
         int source;
         REAL factors[kNumSums];
     };
+    // The terms of a row.
+    struct RowTerms {
+        int begin;
+        int end;
+    };
     struct Source {
         Index index;
         RowBits rows;
     };
-    // The indices of a source's stencil, ascending.
+    // What sources have in common, and the rows that have any of these.
     struct List {
-        Index const *indices;
-        int size;
+        Support support;
         RowBits rows;
+        int firstPosition;
     };
 
-    Term const *getTerms(int row) const {
-        return _terms.data() + (row < GetNumRows() ? _firstTerms[std::size_t(row)] : _numTerms);
+    int getNumShared() const { return _shared ? int(_shared->_rows.size()) : 0; }
+    LevelStencils::Stencil const &getStencil(int source) const {
+        return _stencils->Get(_sources[std::size_t(source)].index);
     }
-    List getList(Source const &source) const;
+    void findSourceColumns();
     void findLists();
     void makeUnion();
-    void makeDense(Columns const &columns);
-    void scatterTerms(int row, int numColumns);
+    void numberColumns(Index const *columns, int numColumns);
+    void findDifferences(Columns const &columns);
+    void scatterTerms(Term const *begin, Term const *end, int numColumns);
     template <int NUM_SUMS>
-    void sumTerms(int row, int numColumns);
+    void sumTerms(Term const *begin, Term const *end, int numColumns, REAL *const *sums) const;
     void write(int row, Columns const &columns, Place const &place) const;
 
-    SourceStencils const _stencils;
+    LevelStencils const *const _stencils;
     bool const _hasDerivatives;
 
-    std::vector<int> _firstTerms; // by row
-    std::vector<Term> _terms;     // of all rows in turn, and room for more
-    int _numTerms = 0;
+    SharedRows const *_shared = nullptr; // the first rows
+    std::vector<RowTerms> _rows;         // the others
+    std::vector<Term> _terms;            // of these in turn, and room for more
     std::vector<Source> _sources;
-    std::vector<Entry> _numberOfSource; // among the sources of the rows
-    unsigned _round = 0;
+    IndexMap _numberOfSource; // among the sources of the rows
 
     std::vector<List> _lists;
+    std::vector<int> _listOfSource;
     std::vector<Index> _columns;
     std::vector<Index> _added; // to the largest list
     std::vector<RowBits> _rowsOfColumns;
     std::vector<Entry> _columnOfIndex;
     unsigned _columnRound = 0;
 
+    std::vector<int> _positions;    // of the indices of lists among the columns, list by list
     std::vector<double> _reference; // weights of the first source by column
     std::vector<REAL> _negative;    // the differences of nothing to it
-    std::vector<REAL> _dense;       // differences of all sources to it, one after the other
+    std::vector<REAL> _differences; // of all sources to it, one after the other
     std::vector<REAL> _sums;        // of a row by column: points, then derivatives
 };
 
@@ -180,7 +143,7 @@ template <typename REAL>
 class LimitMultiplier<REAL>::SharedRows {
     friend class LimitMultiplier;
 
-    std::vector<int> _firstTerms;
+    std::vector<RowTerms> _rows;
     std::vector<Term> _terms;
     std::vector<Source> _sources;
 };

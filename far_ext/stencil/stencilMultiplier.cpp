@@ -83,6 +83,18 @@ void multiplyFace(WEIGHTS const &weights, REAL const *const *parents, int width,
 } // namespace
 
 template <typename REAL>
+StencilPlaces<REAL> SpareStencils<REAL>::Place(std::vector<Support> const &supports) {
+    offsets.Resize(supports.size());
+    Index numWeights = 0;
+    for (std::size_t row = 0; row < supports.size(); ++row) {
+        offsets[row] = ~numWeights;
+        numWeights += supports[row].size();
+    }
+    weights.Resize(std::size_t(numWeights));
+    return {offsets.data(), nullptr, nullptr, nullptr, weights.data()};
+}
+
+template <typename REAL>
 void StencilMultiplier<REAL>::Fill(Index numSources) const {
     auto const makeScratch = [numSources] { return Scratch(numSources); };
     constexpr Index kRange = RowSupports::kRange;
@@ -271,6 +283,8 @@ void StencilMultiplier<REAL>::fillVVertex(Index vVertex, Scratch &scratch) const
     storeIndices(vVertex, support);
 }
 
+template struct SpareStencils<float>;
+template struct SpareStencils<double>;
 template class StencilMultiplier<float>;
 template class StencilMultiplier<double>;
 

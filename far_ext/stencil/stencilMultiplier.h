@@ -25,6 +25,18 @@ struct StencilPlaces {
     REAL *spareWeights;
 };
 
+/// \brief Memory for stencils of a refinement's rows that no table has.
+template <typename REAL>
+struct SpareStencils {
+    using Index = Far::Index;
+
+    /// Takes memory for all rows, which have these supports, and says where they are to be.
+    StencilPlaces<REAL> Place(std::vector<Support> const &supports);
+
+    Buffer<Index> offsets;
+    Buffer<REAL> weights;
+};
+
 /// \brief Multiplies the rows of a refinement by the stencils of its parent's vertices, which gives
 /// those of the vertices that it makes.
 ///
@@ -81,6 +93,8 @@ private:
     StencilPlaces<REAL> const _stencils;
 };
 
+extern template struct SpareStencils<float>;
+extern template struct SpareStencils<double>;
 extern template class StencilMultiplier<float>;
 extern template class StencilMultiplier<double>;
 

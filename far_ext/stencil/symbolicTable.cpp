@@ -71,7 +71,7 @@ Status SymbolicTable::Form() {
         }
         _supports.emplace_back(GetRows(level), hasParents ? &GetRows(level - 1) : nullptr,
                                GetParentSupports(level), GetNumSources(level),
-                               _plan.factorize && level < _plan.lastLevel,
+                               _plan.factorize && (level < _plan.lastLevel || !isStored),
                                isStored ? nextSize : nullptr);
         std::int64_t const numLevelWeights = _supports.back().GetNumWeights();
         if (isStored) {

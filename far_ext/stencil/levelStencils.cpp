@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "levelStencils.h"
+
+#include "far_ext/vtr/parallel.h"
+
+#include <string>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+using Far::Index;
+
+namespace {
+
+constexpr double kOne = 1;
+
+// That of a table which stores no level.
+StencilPlan makePlan(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
+                     int lastLevel) {
+    return {hierarchy, schemeOptions, -1, Interpolation::Vertex, true, lastLevel, lastLevel + 1, 1,
+            0};
+}
+
+} // namespace
+
+LevelStencils::LevelStencils(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
+                             int lastLevel)
+    : _plan(makePlan(hierarchy, schemeOptions, lastLevel)), _symbolic(_plan),
+      _levels(std::size_t(lastLevel)) {}
+
+Status LevelStencils::Form() {
+    Status status = _symbolic.Form();
+    if (!status.IsOk()) {
+        return status;
+    }
+    std::int64_t numStencils = 0;
+    for (int level = 0; level <= _plan.lastLevel; ++level) {
+        _firsts.push_back(Index(numStencils));
+        numStencils += _plan.GetNumVertices(level);
+        if (numStencils > std::numeric_limits<Index>::max()) {
+            return Status(StatusCode::TooLarge, ComponentType::Level, level,
+                          "levels 0 to " + std::to_string(level) + " have " +
+                              std::to_string(numStencils) +
+                              " vertices, more than 32-bit indices reach");
+        }
+    }
+    _stencils.Resize(std::size_t(numStencils));
+    addLevel(0, _symbolic.GetParentSupports(1), nullptr);
+    StencilPlaces<double> pPlaces{};
+    for (int level = 1; level <= _plan.lastLevel; ++level) {
+        RowSupports const &supports = _symbolic.GetSupports(level);
+        StencilPlaces<double> const places =
+            _levels[std::size_t(level) - 1].Place(supports.OfVertices());
+        StencilMultiplier<double>(_symbolic.GetRows(level), _symbolic.GetParentSupports(level),
+                                  supports, level > 1 ? &pPlaces : nullptr, places)
+            .Fill(_symbolic.GetNumSources(level));
+        addLevel(level, supports, &places);
+        pPlaces = places;
+    }
+    return Status();
+}
+
+// Those of control vertices are nowhere else.
+void LevelStencils::addLevel(int level, RowSupports const &supports,
+                             StencilPlaces<double> const *places) {
+    Stencil *const stencils = _stencils.data() + GetFirst(level);
+    ParallelFor(_plan.GetNumVertices(level), [&](Index vert) {
+        stencils[vert] = {supports.OfVertices()[std::size_t(vert)],
+                          places ? places->GetWeights(vert) : &kOne};
+    });
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

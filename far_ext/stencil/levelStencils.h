@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_STENCIL_LEVEL_STENCILS_H
+#define OPENSUBDIVHEX_FAR_EXT_STENCIL_LEVEL_STENCILS_H
+
+#include "stencilMultiplier.h"
+#include "symbolicTable.h"
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief The stencils of all vertices of a mesh up to a level, in double: what further tables are made
+/// of.  Unlike those of a table, stencils share lists of indices.
+class LevelStencils {
+public:
+    using Index = Far::Index;
+
+    struct Stencil {
+        Support support; ///< control vertices
+        double const *weights;
+    };
+
+    /// \param hierarchy  is referred to
+    /// \param lastLevel  1 or more
+    LevelStencils(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions, int lastLevel);
+
+    /// Makes all stencils, or says what is too large.
+    Status Form();
+
+    /// The number of a level's first stencil: they are in turn, from the control vertices on.
+    Index GetFirst(int level) const { return _firsts[std::size_t(level)]; }
+    Stencil const &Get(Index number) const { return _stencils[std::size_t(number)]; }
+
+private:
+    void addLevel(int level, RowSupports const &supports, StencilPlaces<double> const *places);
+
+    StencilPlan const _plan;
+    SymbolicTable _symbolic;
+    std::vector<SpareStencils<double>> _levels;
+    std::vector<Index> _firsts;
+    Buffer<Stencil> _stencils;
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif
