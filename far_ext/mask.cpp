@@ -123,23 +123,6 @@ struct IrregularWeights {
 
 constexpr double kAtNeighborOfFour[4] = {14 / 32.0, 4 / 32.0, 9 / 32.0, 5 / 32.0};
 
-// The first levels of quads, where points are uneven: what F-vertices at a vertex among quads and
-// beside a quad are made of.  regression/analysis/searchQuadMasks.cpp finds them.  At the first
-// level all corners beside a neighbor of the vertex are beside a quad, too.
-struct UnevenWeights {
-    double atVertex[4];   // as in IrregularWeights
-    double atNeighbor[4]; // as in IrregularWeights
-    double besideQuad[6];
-};
-constexpr int kNumUnevenSteps = kNumStepsToConstantMasks - 1;
-constexpr UnevenWeights kUnevenWeights[kNumUnevenSteps] = {
-    {{24 / 128.0, 45 / 128.0, 7 / 128.0, 0},
-     {kAtNeighborOfFour[0], kAtNeighborOfFour[1], kAtNeighborOfFour[2], kAtNeighborOfFour[3]},
-     {9 / 16.0, 3 / 16.0, 0, 1 / 16.0, 3 / 16.0, 0}},
-    {{46 / 128.0, 41 / 128.0, 0, 0},
-     {76 / 128.0, 4 / 128.0, 18 / 128.0, 30 / 128.0},
-     {63 / 128.0, 29 / 128.0, 5 / 128.0, 6 / 128.0, 16 / 128.0, 9 / 128.0}}};
-
 // The share of a vertex with many faces that goes along its edges; see the header.
 constexpr double kMaxSpokeShare = 0.77;
 
@@ -195,28 +178,82 @@ IrregularWeights findWeights(int numFaces) {
             1 - share * c * c};
 }
 
+// The first levels, where points are uneven: what F-vertices around a vertex with four faces are made
+// of, as in IrregularVertexMask, in parts of a whole.
+struct FirstAround {
+    int atVertex[6];
+    int atNeighbor[6];
+};
+constexpr double kPartsAmongQuads = 256;
+constexpr FirstAround kAmongQuads[] = {
+    {{52, 87, 15, 0, 15, 87}, {112, 72, 0, 0, 40, 32}},
+    {{96, 74, 0, 12, 0, 74}, {128, 25, 33, 0, 31, 39}},
+    {{82, 69, 18, 0, 18, 69}, {99, 78, 0, 0, 42, 37}},
+};
+constexpr double kPartsAmongOthers = 64;
+constexpr FirstAround kAmongOthers[] = {
+    {{22, 16, 5, 0, 5, 16}, {29, 14, 0, 7, 5, 9}},
+    {{22, 14, 7, 0, 7, 14}, {28, 13, 0, 9, 0, 14}},
+};
+
+// The same in quads and beside them, as in QuadMask; regression/analysis/searchQuadMasks.cpp finds these
+// and those among quads.  After the first step all corners beside a neighbor of a vertex among quads are
+// at a quad, and nothing else is.
+struct FirstOfQuads {
+    int inQuad[4];
+    int numRows;
+    int beside[QuadMask::kNumRows][6];
+};
+constexpr FirstOfQuads kFirstOfQuads[kNumStepsToConstantMasks - 1] = {
+    {{139, 45, 27, 45}, 1, {{137, 58, 0, 14, 47, 0}}},
+    {{126, 56, 18, 56}, 2, {{137, 63, 0, 22, 21, 13}, {97, 46, 21, 0, 33, 59}}},
+    {{144, 48, 16, 48}, 1, {{142, 68, 0, 9, 37, 0}}},
+};
+
+template <int SIZE>
+void setParts(int const (&parts)[SIZE], double whole, double (&weights)[SIZE]) {
+    std::transform(parts, parts + SIZE, weights, [whole](int part) { return part / whole; });
+}
+
+template <std::size_t NUM_STEPS>
+void setFirstAround(FirstAround const (&levels)[NUM_STEPS], double whole, int numSteps,
+                    IrregularVertexMask &mask) {
+    if (std::size_t(numSteps) <= NUM_STEPS) {
+        setParts(levels[numSteps - 1].atVertex, whole, mask.atVertex);
+        setParts(levels[numSteps - 1].atNeighbor, whole, mask.atNeighbor);
+    }
+}
+
 } // namespace
 
 IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps, bool isAmongQuads) {
-    IrregularWeights weights = findWeights(numFaces);
-    if (isAmongQuads && numSteps <= kNumUnevenSteps) {
-        UnevenWeights const &uneven = kUnevenWeights[numSteps - 1];
-        std::copy_n(uneven.atVertex, 4, weights.atVertex);
-        std::copy_n(uneven.atNeighbor, 4, weights.atNeighbor);
-    }
+    IrregularWeights const weights = findWeights(numFaces);
     auto const [self, side, next, opposite] = weights.atVertex;
     auto const [n, v, a, m] = weights.atNeighbor;
-    return {{self, side, next, opposite, next, side},
-            {n, a, 0, 0, m, v},
-            {1 - weights.ofFaces, weights.ofFaces / numFaces}};
+    IrregularVertexMask mask = {{self, side, next, opposite, next, side},
+                                {n, a, 0, 0, m, v},
+                                {1 - weights.ofFaces, weights.ofFaces / numFaces}};
+    if (isAmongQuads) {
+        setFirstAround(kAmongQuads, kPartsAmongQuads, numSteps, mask);
+    } else if (numFaces == 4) {
+        setFirstAround(kAmongOthers, kPartsAmongOthers, numSteps, mask);
+    }
+    return mask;
 }
 
-bool ComputeQuadNeighborMask(int numSteps, double *weights) {
-    if (numSteps > kNumUnevenSteps) {
-        return false;
+QuadMask ComputeQuadMask(int numSteps) {
+    QuadMask mask = {};
+    if (numSteps < 1 || numSteps >= kNumStepsToConstantMasks) {
+        ComputeFaceVertexMask(FaceMask::Smooth, Interpolation::Vertex, 4, mask.inQuad);
+        return mask;
     }
-    std::copy_n(kUnevenWeights[numSteps - 1].besideQuad, 6, weights);
-    return true;
+    FirstOfQuads const &first = kFirstOfQuads[numSteps - 1];
+    mask.numRows = first.numRows;
+    setParts(first.inQuad, kPartsAmongQuads, mask.inQuad);
+    for (int i = 0; i < first.numRows; ++i) {
+        setParts(first.beside[i], kPartsAmongQuads, mask.beside[i]);
+    }
+    return mask;
 }
 
 } // namespace OpenSubdivHex::FarExt

@@ -20,8 +20,8 @@ namespace OpenSubdivHex::FarExt {
 /// Abd El-Latif 2005, section 3).  Cosine is Doo and Sabin's of 1978.  Smooth has eigenvalues
 /// 1, 1/2, 1/2, 1/4, 1/4, 1/8 ...; for n < 5 it is Cosine.
 ///
-/// Smooth has masks of its own besides where hexagons meet what is not of the hexagonal lattice:
-/// see ComputeIrregularVertexMask() and ComputeQuadNeighborMask().
+/// Smooth has masks of its own besides where hexagons meet what is not of the hexagonal lattice, and
+/// in quads of the first levels: see ComputeIrregularVertexMask() and ComputeQuadMask().
 enum class FaceMask {
     Average, ///< the paper's: tangent planes, unbounded curvature
     Cosine,  ///< Doo and Sabin's: bounded curvature at vertices with three faces
@@ -120,9 +120,9 @@ inline constexpr int kMinIrregularFaces = 4;
 /// \brief The faces of a vertex among quads, which all have been quads when hexagonal steps began.
 inline constexpr int kNumFacesAmongQuads = 4;
 
-/// \brief The hexagonal steps from which on the masks of irregular vertices and beside quads do not
-/// change any more.
-inline constexpr int kNumStepsToConstantMasks = 3;
+/// \brief The hexagonal steps from which on the masks of irregular vertices, of quads and beside quads do
+/// not change any more.
+inline constexpr int kNumStepsToConstantMasks = 4;
 
 /// \brief The masks of Smooth around an irregular vertex V, where four hexagons or more meet.
 ///
@@ -138,8 +138,7 @@ struct IrregularVertexMask {
 /// \brief Returns the masks around a vertex inside the mesh with \p numFaces hexagons,
 /// kMinIrregularFaces or more, after \p numSteps hexagonal steps, 1 or more.
 ///
-/// \param isAmongQuads  whether all of its faces, kNumFacesAmongQuads, were quads before these steps;
-///                      \p numSteps matters only then
+/// \param isAmongQuads  whether all of its faces, kNumFacesAmongQuads, were quads before these steps
 ///
 /// With the mask of all hexagons curvature would grow there from level to level without bound, by
 /// 1.14 with 4 faces and 1.32 with 6.  These keep the square of the sub-dominant eigenvalue as the
@@ -152,24 +151,37 @@ struct IrregularVertexMask {
 ///     (x - 2 c1 C)(x^2 - nA^2) = 2 a2 (x (nN + nM D) + nA C (nN + nM))
 ///
 /// where atVertex is (a, c1, a2, 0, a2, c1).  x = lambda at w = 1 and x = lambda^2 at w = 2 give c1
-/// and a2, and the same for w = 0 the weight of V'.  Among quads the points of the first two levels
-/// are uneven, and the F-vertices have other weights there, which make surfaces more even: they were
-/// found by a search (see docs/guide/masks.md), and have no bearing on the limit of curvature.
+/// and a2, and the same for w = 0 the weight of V'.
+///
+/// Around a vertex with four faces the points of the first levels are uneven, and the F-vertices have
+/// other weights there, which make surfaces more even: three steps long among quads, two where a face
+/// was none.  Searches found them (see docs/guide/masks.md); they have no bearing on the limit of
+/// curvature.
 OPENSUBDIVHEX_API IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps,
                                                                  bool isAmongQuads = false);
 
-/// \brief Writes the six weights with which Smooth makes the F-vertex of a hexagon at an end of an
-/// edge that it shares with a quad, for the vertices from there on around the hexagon, along that
-/// edge first.
+/// \brief The masks of Smooth in quads, and in hexagons that share an edge with one.
 ///
-/// At the first level they are (9, 3, 0, 1, 3, 0)/16: so bowl and saddles shrink alike around a quad,
-/// to 1/4 in a step, where linear functions shrink to 1/2.  Those of the second level were found by a
-/// search.
+/// Weights are in the order that the vertices have from the one whose F-vertex is made, on the way
+/// around the face.
+struct QuadMask {
+    static constexpr int kNumRows = 2; ///< the most
+
+    double inQuad[4]; ///< of the F-vertices of the quad
+    /// The rows of \c beside that there are: 0 where all hexagons have the same mask.
+    int numRows;
+    /// Of the F-vertex of a hexagon at an end of the shared edge, along that edge first; and at a vertex
+    /// that is one edge away from it, away from it first.
+    double beside[kNumRows][6];
+};
+
+/// \brief Returns the masks in quads and beside them, after \p numSteps hexagonal steps.
 ///
-/// \param numSteps  hexagonal steps that made the level, 1 or more
-/// \return  whether there are such weights at this level: after three steps and more hexagons beside
-///          quads are like others, and the weights are not written
-OPENSUBDIVHEX_API bool ComputeQuadNeighborMask(int numSteps, double *weights);
+/// They are those of ComputeFaceVertexMask() before the first step, and from kNumStepsToConstantMasks
+/// steps on.  In between the points of quads are uneven, and a search found weights that make surfaces
+/// more even, as those around vertices among quads.  Only after two steps
+/// there is the second row.  Weights are not negative, linear functions are kept.
+OPENSUBDIVHEX_API QuadMask ComputeQuadMask(int numSteps);
 
 } // namespace OpenSubdivHex::FarExt
 

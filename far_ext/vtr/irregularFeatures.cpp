@@ -40,14 +40,19 @@ struct Side {
 };
 constexpr Side kSides[] = {{kEFaceSideA, kVertexA, kQuadA}, {kEFaceSideB, kVertexB, kQuadB}};
 
-// Calls add(side, local, kind) for the irregular corners of a face, in any order.
+// Calls add(side, local, kind) for the irregular corners of a face, in any order.  There are numRows rows
+// beside quads; the second is for corners that are not at the quad, where nothing else is irregular.
 template <typename ADD>
-void forEachCorner(Mark mark, ADD const &add) {
+void forEachCorner(Mark mark, int numRows, ADD const &add) {
     for (Side const &side : kSides) {
         int const atQuad = side.places.fFaceEdge;
         if (mark & side.quad) {
             add(side, atQuad, IrregularCorner::kAlongQuad);
             add(side, atQuad + 1, IrregularCorner::kBehindQuad);
+        }
+        if (mark == side.quad && numRows == QuadMask::kNumRows) {
+            add(side, atQuad + 2, IrregularCorner::kOneBehindQuad);
+            add(side, atQuad + 5, IrregularCorner::kOneBeforeQuad);
         }
     }
     for (Side const &side : kSides) {
@@ -71,14 +76,14 @@ class IrregularFinder {
 public:
     IrregularFinder(Refinement const &refinement, Level &level)
         : _refinement(refinement), _level(level),
-          _endVert(std::min(level.numVertsOfAnyValence, level.numVVertices)) {}
+          _endVert(std::min(level.numVertsOfAnyValence, level.numVVertices)),
+          _numRows(ComputeQuadMask(level.numHexagonalSteps).numRows) {}
 
     void Find() {
         findVertices();
         _marks.resize(std::size_t(_level.numFaces - _level.numVFaces - _level.numFFaces));
         markFacesOfVertices();
-        double weights[kHexagon];
-        if (ComputeQuadNeighborMask(_level.numHexagonalSteps, weights)) {
+        if (_numRows > 0) {
             markFacesBesideQuads();
         }
         findCorners();
@@ -104,6 +109,7 @@ private:
     Refinement const &_refinement;
     Level &_level;
     Index const _endVert; // of those that may be irregular
+    int const _numRows;   // beside quads
     Buffer<Vertex> _vertices;
     std::vector<Mark> _marks; // by E-face
 };
@@ -129,7 +135,7 @@ auto IrregularFinder::findVertex(Index vert) const -> Vertex {
     Vertex const result = {smoothPart(sharpness), isAmongQuads(vert)};
     // The next level learns from this one what was among quads.
     bool const matters =
-        result.weight > 0 || (result.isAmongQuads && _level.numHexagonalSteps == 1 &&
+        result.weight > 0 || (result.isAmongQuads && _level.numHexagonalSteps < kNumStepsToConstantMasks - 1 &&
                               !Sdc::Crease::IsInfinite(sharpness));
     return matters ? result : kNone;
 }
@@ -212,8 +218,9 @@ void IrregularFinder::findCorners() {
     std::vector<std::size_t> const firsts =
         ParallelSums<std::size_t>(count, [&](Index begin, Index end) {
             std::size_t size = 0;
-            forEachMarked(begin, end, [&size](Index, Mark mark) {
-                forEachCorner(mark, [&size](Side const &, int, IrregularCorner::Kind) { ++size; });
+            forEachMarked(begin, end, [&](Index, Mark mark) {
+                forEachCorner(mark, _numRows,
+                              [&size](Side const &, int, IrregularCorner::Kind) { ++size; });
             });
             return size;
         });
@@ -231,11 +238,9 @@ IrregularCorner *IrregularFinder::writeCorners(Index face, Mark mark, IrregularC
     float const besideQuad = smoothPart(_level.GetDiagonalSharpness(face));
     IrregularCorner found[kHexagon];
     unsigned places = 0;
-    forEachCorner(mark, [&](Side const &side, int local, IrregularCorner::Kind kind) {
+    forEachCorner(mark, _numRows, [&](Side const &side, int local, IrregularCorner::Kind kind) {
         local %= kHexagon;
-        bool const isAtQuad =
-            kind == IrregularCorner::kAlongQuad || kind == IrregularCorner::kBehindQuad;
-        if (isAtQuad) {
+        if (IrregularCorner::IsAtQuad(kind)) {
             found[local] = {first + local, 0, besideQuad, kind};
         } else {
             Index const vert = _level.faceVerts[first + side.places.startVertex];

@@ -64,12 +64,15 @@ struct IrregularCorner {
         kBeforeVertex,       ///< the vertex behind it in the face
         kAlongQuad,          ///< the face across the edge from it
         kBehindQuad,         ///< the face across the edge to it
+        kOneBeforeQuad,      ///< the face across the next edge but one
+        kOneBehindQuad,      ///< the face across the last edge but one
         // As the first three, of a vertex all four faces of which were quads.
         kAtVertexAmongQuads,
         kBehindVertexAmongQuads,
         kBeforeVertexAmongQuads
     };
     static bool IsAmongQuads(Kind kind) { return kind >= kAtVertexAmongQuads; }
+    static bool IsAtQuad(Kind kind) { return kind >= kAlongQuad && kind <= kOneBehindQuad; }
     /// The same of a vertex among quads, of one of the first three.
     static Kind AmongQuads(Kind kind) { return Kind(kind + kAtVertexAmongQuads); }
     Far::Index corner;

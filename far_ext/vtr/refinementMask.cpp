@@ -10,7 +10,8 @@ namespace OpenSubdivHex::FarExt::internal {
 
 RefinementMask::RefinementMask(Level const &parent, HexSchemeOptions schemeOptions,
                                Interpolation interpolation)
-    : _level(parent), _faceMask(schemeOptions.faceMask), _interpolation(interpolation) {
+    : _level(parent), _faceMask(schemeOptions.faceMask), _interpolation(interpolation),
+      _quadMask(ComputeQuadMask(parent.numHexagonalSteps)) {
     StepType const step = schemeOptions.GetStepOfLevel(parent.depth + 1);
     bool const isHexagonal = step == StepType::Hexagonal;
     _hasSharpFaces = isHexagonal && _level.HasSharpFaces();
@@ -27,6 +28,9 @@ RefinementMask::RefinementMask(Level const &parent, HexSchemeOptions schemeOptio
         mask.resize(2 * std::size_t(size));
         if (step == StepType::TriHex) {
             ComputeTriHexMask(size, mask.data());
+        } else if (isHexagonal && _faceMask == FaceMask::Smooth && size == kQuadSize &&
+                   interpolation == Interpolation::Vertex) {
+            std::copy_n(_quadMask.inQuad, kQuadSize, mask.data());
         } else {
             ComputeFaceVertexMask(_faceMask, interpolation, size, mask.data());
         }
@@ -54,9 +58,7 @@ RefinementMask::RefinementMask(Level const &parent, HexSchemeOptions schemeOptio
 void RefinementMask::findIrregularMasks() {
     Index last = 0; // most are of the same size
     for (IrregularCorner const &irregular : _level.irregularCorners) {
-        if (irregular.numFaces == 0) {
-            _hasQuads = true;
-        } else if (irregular.numFaces != last) {
+        if (irregular.numFaces > 0 && irregular.numFaces != last) {
             last = irregular.numFaces;
             auto const place = findMask(last);
             if (place == _irregularMasks.end() || place->first != last) {
@@ -67,9 +69,6 @@ void RefinementMask::findIrregularMasks() {
     }
     _maskAmongQuads =
         ComputeIrregularVertexMask(kNumFacesAmongQuads, _level.numHexagonalSteps, true);
-    if (_hasQuads) {
-        ComputeQuadNeighborMask(_level.numHexagonalSteps, _quadNeighborWeights);
-    }
     findIrregularTypes();
 }
 
@@ -200,21 +199,38 @@ void RefinementMask::addSharpWeights(Index face, int corner, std::vector<double>
     }
 }
 
+// The mask of a corner, and whether its weights go around the face backwards.
+auto RefinementMask::findCornerMask(IrregularCorner const &irregular) const -> CornerMask {
+    auto const getVertexMask = [&]() -> IrregularVertexMask const & {
+        return IrregularCorner::IsAmongQuads(irregular.kind) ? _maskAmongQuads
+                                                             : getIrregularMask(irregular.numFaces);
+    };
+    switch (irregular.kind) {
+    case IrregularCorner::kAtVertex:
+    case IrregularCorner::kAtVertexAmongQuads:
+        return {getVertexMask().atVertex, false};
+    case IrregularCorner::kBehindVertex:
+    case IrregularCorner::kBehindVertexAmongQuads:
+        return {getVertexMask().atNeighbor, false};
+    case IrregularCorner::kBeforeVertex:
+    case IrregularCorner::kBeforeVertexAmongQuads:
+        return {getVertexMask().atNeighbor, true};
+    case IrregularCorner::kAlongQuad:
+        return {_quadMask.beside[0], false};
+    case IrregularCorner::kBehindQuad:
+        return {_quadMask.beside[0], true};
+    case IrregularCorner::kOneBehindQuad:
+        return {_quadMask.beside[1], false};
+    case IrregularCorner::kOneBeforeQuad:
+        return {_quadMask.beside[1], true};
+    }
+    return {nullptr, false};
+}
+
 // The corner is number \p corner of its face, whose weights these are so far.
 void RefinementMask::addIrregularWeights(IrregularCorner const &irregular, int corner,
                                          double *weights) const {
-    double const *mask = _quadNeighborWeights;
-    if (irregular.numFaces > 0) {
-        IrregularVertexMask const &masks = IrregularCorner::IsAmongQuads(irregular.kind)
-                                               ? _maskAmongQuads
-                                               : getIrregularMask(irregular.numFaces);
-        bool const isAtVertex = irregular.kind == IrregularCorner::kAtVertex ||
-                                irregular.kind == IrregularCorner::kAtVertexAmongQuads;
-        mask = isAtVertex ? masks.atVertex : masks.atNeighbor;
-    }
-    bool const isBackwards = irregular.kind == IrregularCorner::kBeforeVertex ||
-                             irregular.kind == IrregularCorner::kBeforeVertexAmongQuads ||
-                             irregular.kind == IrregularCorner::kBehindQuad;
+    auto const [mask, isBackwards] = findCornerMask(irregular);
     for (int j = 0; j < kHexagonSize; ++j) {
         int const place = (corner + (isBackwards ? kHexagonSize - j : j)) % kHexagonSize;
         weights[place] += irregular.weight * (mask[j] - weights[place]);

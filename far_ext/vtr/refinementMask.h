@@ -114,12 +114,18 @@ private:
     bool isSharp(Index face) const;
     double const *sharpWeights(Index face, int corner, std::vector<double> &scratch) const;
     void addSharpWeights(Index face, int corner, std::vector<double> &weights) const;
+    struct CornerMask {
+        double const *weights;
+        bool isBackwards;
+    };
+    CornerMask findCornerMask(IrregularCorner const &irregular) const;
     void addIrregularWeights(IrregularCorner const &irregular, int corner, double *weights) const;
 
     /// The irregular corners of a hexagon, by place: the rest of IrregularCorner; -1 faces at others.
     using CornersOfType =
         std::array<std::tuple<Index, float, IrregularCorner::Kind>, HexIndexing::kNumEFaceCorners>;
     static constexpr int kHexagonSize = HexIndexing::kNumEFaceCorners;
+    static constexpr int kQuadSize = 4;
     static constexpr int kPlainType = -1;
     using IrregularMasks = std::vector<std::pair<Index, IrregularVertexMask>>;
     struct IrregularCornersOfFace {
@@ -151,8 +157,7 @@ private:
 
     IrregularMasks _irregularMasks; ///< by number of faces
     IrregularVertexMask _maskAmongQuads;
-    bool _hasQuads = false; ///< with masks beside them
-    double _quadNeighborWeights[HexIndexing::kNumEFaceCorners];
+    QuadMask _quadMask;
     std::vector<int> _irregularTypes; ///< by face; empty without irregular ones
     std::vector<IrregularFace> _irregularFaces;
     std::vector<IrregularFaceWeights> _irregularWeights; ///< by type

@@ -160,6 +160,12 @@ void refineIrregularFaces(IrregularFaceMask const &mask, PlainFaceQuads const &p
         return refine(std::integral_constant<int, 4>());
     case 5:
         return refine(std::integral_constant<int, 5>());
+    case 6:
+        return refine(std::integral_constant<int, 6>());
+    case 7:
+        return refine(std::integral_constant<int, 7>());
+    case 8:
+        return refine(std::integral_constant<int, 8>());
     default:
         return refine(std::integral_constant<int, IrregularFaceMask::kNumPatterns>());
     }

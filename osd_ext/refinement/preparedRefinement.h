@@ -48,15 +48,24 @@ struct IrregularFaceMask {
     /// Behind and before a vertex.
     static constexpr unsigned kBehind = 0b110011;
     static constexpr unsigned kBefore = 0b100111;
-    static constexpr unsigned kAll = 0b111111;
-    static constexpr int kNumPatterns = 6;
+    /// Along a quad and behind it, but for the second level.
+    static constexpr unsigned kAlong = 0b011011;
+    static constexpr unsigned kAlongBack = 0b101101;
+    /// At a vertex among quads, along a quad and behind it, in the second level.
+    static constexpr unsigned kSecondAtFour = 0b101011;
+    static constexpr unsigned kSecondAlong = 0b111011;
+    static constexpr unsigned kSecondAlongBack = 0b101111;
+    static constexpr int kNumPatterns = 9;
     /// The places of nearly all irregular faces, for which there are kernels.
     static constexpr unsigned kPatterns[kNumPatterns][kSize] = {
         {kAtFour, kBehind, kPlain, kPlain, kPlain, kBefore},
         {kAtSix, kBehind, kPlain, kPlain, kPlain, kBefore},
-        {kAtFour, 0b011011, 0b101101, kAtFour, 0b011011, 0b101101},
-        {kPlain, kAll, kAll, kPlain, kPlain, kPlain},
-        {kPlain, kPlain, kPlain, kPlain, kAll, kAll},
+        {kAtFour, kAlong, kAlongBack, kAtFour, kAlong, kAlongBack},
+        {kSecondAtFour, kAtFour, kPlain, kPlain, kPlain, kAtFour},
+        {kAtFour, kSecondAlong, kSecondAlongBack, kAtFour, kPlain, kPlain},
+        {kAtFour, kPlain, kPlain, kAtFour, kSecondAlong, kSecondAlongBack},
+        {kPlain, kAlong, kAlongBack, kPlain, kPlain, kPlain},
+        {kPlain, kPlain, kPlain, kPlain, kAlong, kAlongBack},
         {kAtSix, kBehind, kBefore, kAtSix, kBehind, kBefore}};
 };
 

@@ -160,21 +160,25 @@ double MeasureTorusUnevenness(PolygonMesh const &mesh, int numU) {
     return measure(mesh, FindTorusSector(mesh, numU));
 }
 
-std::vector<double> MeasureTorusStrips(PolygonMesh const &mesh, int numU, double line,
-                                       double rowWidth, int numStrips) {
+VertexGroups FindTorusStrip(PolygonMesh const &mesh, int numU, double line, double rowWidth,
+                            int strip) {
     constexpr double kMargin = 0.125;
     double const kept = (2 + std::cos(2 * kPi / numU)) / 3; // of the radius, at vertices
     double const radius = kTorusRadius + kTubeRadius * std::cos(2 * kPi * line);
     line = std::atan2(kTubeRadius * std::sin(2 * kPi * line), kept * radius - kTorusRadius) /
            (2 * kPi);
-    std::vector<double> result(std::size_t(numStrips), 0.0);
+    return findInSector(mesh, numU, [&](double angle) {
+        double const turns = angle - line;
+        double const rows = (turns - std::round(turns)) / rowWidth;
+        return rows >= std::max(double(strip), kMargin) && rows < strip + 1;
+    });
+}
+
+std::vector<double> MeasureTorusStrips(PolygonMesh const &mesh, int numU, double line,
+                                       double rowWidth, int numStrips) {
+    std::vector<double> result;
     for (int strip = 0; strip < numStrips; ++strip) {
-        auto const isInside = [&](double angle) {
-            double const turns = angle - line;
-            double const rows = (turns - std::round(turns)) / rowWidth;
-            return rows >= std::max(double(strip), kMargin) && rows < strip + 1;
-        };
-        result[std::size_t(strip)] = measure(mesh, findInSector(mesh, numU, isInside));
+        result.push_back(measure(mesh, FindTorusStrip(mesh, numU, line, rowWidth, strip)));
     }
     return result;
 }

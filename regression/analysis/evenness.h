@@ -37,6 +37,10 @@ struct VertexGroups {
 /// Those of a refined MakeTorus(numU, ...) that MeasureTorusUnevenness looks at.
 VertexGroups FindTorusSector(PolygonMesh const &mesh, int numU);
 
+/// Those beside a line around the axis that MeasureTorusStrips() looks at in its strip \p strip.
+VertexGroups FindTorusStrip(PolygonMesh const &mesh, int numU, double line, double rowWidth,
+                            int strip);
+
 /// \brief Within the parallels of a refined MakeTorus(numU, ...): over one of the \p numU sectors
 /// that look alike, in groups of the same angle around the tube, 128 to a turn.
 double MeasureTorusUnevenness(PolygonMesh const &mesh, int numU);

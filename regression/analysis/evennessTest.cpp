@@ -109,10 +109,10 @@ TEST(Evenness, ToriOfQuads) {
         double catmark;
     };
     for (Row const &row :
-         {Row{14, 8, 0.0856, 0.0050}, Row{20, 10, 0.0950, 0.0044}, Row{9, 6, 0.0880, 0.0075}}) {
+         {Row{14, 8, 0.0477, 0.0050}, Row{20, 10, 0.0557, 0.0044}, Row{9, 6, 0.0482, 0.0075}}) {
         SCOPED_TRACE(row.numU);
         HexSchemeOptions const smooth{FaceMask::Smooth};
-        EXPECT_LT(row.smooth, 0.1);
+        EXPECT_LT(row.smooth, 0.06);
         EXPECT_NEAR(measureTorus(row.numU, row.numV, TorusFaces::Quads, smooth), row.smooth,
                     kDigits);
         EXPECT_NEAR(measureTorus(row.numU, row.numV, TorusFaces::Quads, Sdc::SCHEME_CATMARK),
@@ -125,7 +125,7 @@ TEST(Evenness, OneMaskForAllHexagons) {
     Shape const torus = MakeTorus(14, 8, TorusFaces::Quads);
     double const uneven = MeasureTorusUnevenness(RefineWithOneMask(torus, kLevel).back().mesh, 14);
     EXPECT_GT(uneven,
-              2 * measureTorus(14, 8, TorusFaces::Quads, HexSchemeOptions{FaceMask::Smooth}));
+              3.5 * measureTorus(14, 8, TorusFaces::Quads, HexSchemeOptions{FaceMask::Smooth}));
     // Where nothing is irregular, it is Smooth.
     Shape const dodecahedron = GetShape("dodecahedron");
     PolygonMesh const expected =
@@ -141,7 +141,7 @@ TEST(Evenness, Triangles) {
     AnyScheme const smooth = HexSchemeOptions{FaceMask::Smooth};
     EXPECT_NEAR(measureTorus(14, 8, TorusFaces::Triangles, smooth), 0.7984, kDigits);
     EXPECT_NEAR(measureTorus(14, 8, TorusFaces::Triangles, Sdc::SCHEME_LOOP), 0.0082, kDigits);
-    double const ofSmooth[] = {0.4892, 0.2991, 0.3788};
+    double const ofSmooth[] = {0.4892, 0.2192, 0.3788};
     double const ofLoop[] = {0.3866, 0.1558, 0.0602};
     std::vector<Shape> const shapes = MakeTrianglePlatonics();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -160,7 +160,7 @@ TEST(Evenness, TrianglesTruncatedFirst) {
     AnyScheme const truncate = HexSchemeOptions{FaceMask::Smooth, FarExt::SchemeType::Hexagonal,
                                                 FarExt::FirstStep::Truncate};
     EXPECT_LT(measureTorus(14, 8, TorusFaces::Triangles, truncate), 0.027);
-    double const bounds[] = {0.27, 0.117, 0.047};
+    double const bounds[] = {0.27, 0.111, 0.047};
     std::vector<Shape> const shapes = MakeTrianglePlatonics();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         SCOPED_TRACE(shapes[i].name);
@@ -181,9 +181,9 @@ TEST(Evenness, QuadsBesideLines) {
         std::array<double, 2> crease;
         std::array<double, 2> border;
     };
-    for (Row const &row : {Row{14, 8, {0.0748, 0.0435}, {0.0791, 0.1124}},
-                           Row{20, 10, {0.0613, 0.0425}, {0.0618, 0.0816}},
-                           Row{9, 6, {0.0994, 0.0638}, {0.1681, 0.2342}}}) {
+    for (Row const &row : {Row{14, 8, {0.0722, 0.0239}, {0.0754, 0.0619}},
+                           Row{20, 10, {0.0579, 0.0246}, {0.0552, 0.0452}},
+                           Row{9, 6, {0.0959, 0.0316}, {0.1385, 0.1234}}}) {
         SCOPED_TRACE(row.numU);
         HexSchemeOptions const smooth{FaceMask::Smooth};
         Strips const strips = measureStrips(row.numU, row.numV, TorusFaces::Quads, smooth);

@@ -14,6 +14,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -30,62 +31,131 @@ using FarExt::internal::Level;
 using FarExt::internal::RefinementMask;
 using Position = PositionReal<double>;
 
+constexpr int kQuad = 4;
 constexpr int kHexagon = 6;
-constexpr int kNumSearchedLevels = 2;
-
-struct HexagonWeights {
-    double atVertex[kHexagon];
-    double atNeighbor[kHexagon];
-    double besideQuad[kHexagon];
-};
+constexpr int kNumSearchedLevels = FarExt::kNumStepsToConstantMasks - 1;
 
 /// Of one of the first levels, from 1 on.
-HexagonWeights spread(QuadWeights const &weights, int level) {
-    auto const setAtVertex = [](double side, double next, double(&at)[kHexagon]) {
-        double const values[] = {1 - 2 * side - 2 * next, side, next, 0, next, side};
-        std::copy(std::begin(values), std::end(values), at);
-    };
-    HexagonWeights result{};
-    if (level == 1) {
-        setAtVertex(weights[0], weights[1], result.atVertex);
-        // No corner at a neighbor of a vertex among quads but is beside a quad.
-        FarExt::ComputeQuadNeighborMask(1, result.besideQuad);
-        return result;
+struct LevelWeights {
+    double inQuad[kQuad];
+    double atVertex[kHexagon];
+    double atNeighbor[kHexagon];
+    double besideQuad[FarExt::QuadMask::kNumRows][kHexagon];
+};
+
+LevelWeights getWeights(int level, bool isAmongQuads, FarExt::QuadMask const &quad) {
+    IrregularVertexMask const vertex =
+        FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads, level, isAmongQuads);
+    LevelWeights result;
+    std::copy_n(quad.inQuad, kQuad, result.inQuad);
+    std::copy_n(vertex.atVertex, kHexagon, result.atVertex);
+    std::copy_n(vertex.atNeighbor, kHexagon, result.atNeighbor);
+    for (int i = 0; i < FarExt::QuadMask::kNumRows; ++i) {
+        FarExt::ComputeFaceVertexMask(FaceMask::Smooth, FarExt::Interpolation::Vertex, kHexagon,
+                                      result.besideQuad[i]);
+        if (i < quad.numRows) {
+            std::copy_n(quad.beside[i], kHexagon, result.besideQuad[i]);
+        }
     }
-    setAtVertex(weights[2], weights[3], result.atVertex);
-    double const atNeighbor[] = {weights[4], weights[5], 0,
-                                 0,          weights[6], 1 - weights.segment<3>(4).sum()};
-    std::copy(std::begin(atNeighbor), std::end(atNeighbor), result.atNeighbor);
-    result.besideQuad[0] = 1 - weights.tail<5>().sum();
-    std::copy_n(weights.data() + 7, 5, result.besideQuad + 1);
     return result;
 }
 
-/// The mask of an irregular corner, from the corner on; null of one that is not searched for.
-double const *findMask(HexagonWeights const &weights, IrregularCorner const &irregular) {
-    switch (irregular.kind) {
-    case IrregularCorner::kAtVertexAmongQuads:
-        return weights.atVertex;
-    case IrregularCorner::kBehindVertexAmongQuads:
-    case IrregularCorner::kBeforeVertexAmongQuads:
-        return weights.atNeighbor;
-    case IrregularCorner::kAlongQuad:
-    case IrregularCorner::kBehindQuad:
-        return weights.besideQuad;
-    default:
-        return nullptr;
+/// Calls function(weights, size, free, isSymmetric) for the masks of a level that are searched for: the
+/// places of the free weights, or of one of each two in a symmetric mask.
+template <typename FUNCTION>
+void forEachMask(int level, LevelWeights &weights, FUNCTION const &function) {
+    using Places = std::vector<int>;
+    bool const isFirst = level == 1;
+    bool const isSecond = level == 2;
+    function(weights.atVertex, kHexagon, isSecond ? Places{1, 3} : Places{1, 2}, true);
+    function(weights.besideQuad[0], kHexagon, isSecond ? Places{1, 3, 4, 5} : Places{1, 3, 4},
+             false);
+    if (!isFirst) { // at a neighbor all corners are beside a quad, too, after the first step
+        function(weights.atNeighbor, kHexagon, isSecond ? Places{1, 2, 4, 5} : Places{1, 4, 5},
+                 false);
+    }
+    if (isSecond) {
+        function(weights.besideQuad[1], kHexagon, Places{1, 2, 4, 5}, false);
+    }
+    if (isFirst || isSecond) {
+        function(weights.inQuad, kQuad, Places{1, 2}, true);
     }
 }
 
-bool isBackwards(IrregularCorner::Kind kind) {
-    return kind == IrregularCorner::kBeforeVertexAmongQuads || kind == IrregularCorner::kBehindQuad;
+using SearchedLevels = std::array<LevelWeights, kNumSearchedLevels>;
+
+QuadWeights gather(SearchedLevels levels) {
+    std::vector<double> values;
+    for (int level = 1; level <= kNumSearchedLevels; ++level) {
+        forEachMask(level, levels[std::size_t(level) - 1],
+                    [&](double const *mask, int, std::vector<int> const &places, bool) {
+                        for (int place : places) {
+                            values.push_back(mask[place]);
+                        }
+                    });
+    }
+    return Eigen::Map<QuadWeights const>(values.data(), Eigen::Index(values.size()));
+}
+
+SearchedLevels getShippedLevels() {
+    SearchedLevels levels;
+    for (int level = 1; level <= kNumSearchedLevels; ++level) {
+        levels[std::size_t(level) - 1] = getWeights(level, true, FarExt::ComputeQuadMask(level));
+    }
+    return levels;
+}
+
+SearchedLevels spread(QuadWeights const &weights) {
+    SearchedLevels levels = getShippedLevels();
+    double const *next = weights.data();
+    for (int level = 1; level <= kNumSearchedLevels; ++level) {
+        forEachMask(level, levels[std::size_t(level) - 1],
+                    [&](double *mask, int size, std::vector<int> const &places, bool isSymmetric) {
+                        std::fill_n(mask, size, 0.0);
+                        for (int place : places) {
+                            mask[place] = *next++;
+                            if (isSymmetric) {
+                                mask[size - place] = mask[place];
+                            }
+                        }
+                        mask[0] = 1 - std::accumulate(mask + 1, mask + size, 0.0);
+                    });
+    }
+    return levels;
+}
+
+/// The mask of an irregular corner, from the corner on, and whether it goes backwards; null of one that
+/// is not searched for.
+struct CornerWeights {
+    double const *weights;
+    bool isBackwards;
+};
+CornerWeights findMask(LevelWeights const &weights, IrregularCorner const &irregular) {
+    switch (irregular.kind) {
+    case IrregularCorner::kAtVertexAmongQuads:
+        return {weights.atVertex, false};
+    case IrregularCorner::kBehindVertexAmongQuads:
+        return {weights.atNeighbor, false};
+    case IrregularCorner::kBeforeVertexAmongQuads:
+        return {weights.atNeighbor, true};
+    case IrregularCorner::kAlongQuad:
+        return {weights.besideQuad[0], false};
+    case IrregularCorner::kBehindQuad:
+        return {weights.besideQuad[0], true};
+    case IrregularCorner::kOneBehindQuad:
+        return {weights.besideQuad[1], false};
+    case IrregularCorner::kOneBeforeQuad:
+        return {weights.besideQuad[1], true};
+    default:
+        return {nullptr, false};
+    }
 }
 
 /// Quads of a plane around a vertex, lifted by very little to a quadratic form, or to x y.
-Shape makeLifted(double xx, double xy, double yy) {
+Shape makeLifted(int valence, double xx, double xy, double yy) {
     constexpr int kNumRings = 3;
     constexpr double kHeight = 1e-3; // so that slopes do not matter
-    Shape shape = MakeVertexDisk(Tiling::Quads, 4, kNumRings);
+    Shape shape = MakeVertexDisk(Tiling::Quads, valence, kNumRings);
     for (std::size_t i = 0; i < shape.positions.size(); i += 3) {
         double const x = shape.positions[i];
         double const y = shape.positions[i + 1];
@@ -103,7 +173,7 @@ public:
         : _name(std::move(name)), _curvature(curvature), _weight(weight) {
         HexSchemeOptions const options{FaceMask::Smooth};
         _refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(),
-                                                          OpenSubdiv::Sdc::Options(), {options});
+                                                          getBoundaryOptions(), {options});
         FarExt::TopologyRefiner::UniformOptions uniformOptions(level);
         uniformOptions.fullTopologyInLastLevel = true;
         if (!_refiner || !_refiner->RefineUniform(uniformOptions)) {
@@ -120,13 +190,23 @@ public:
     }
 
     void LookAtSector(int numU) { _chosen = FindTorusSector(_mesh, numU); }
+    void LookAtRow(int numU, int numV, int row) {
+        _chosen = FindTorusStrip(_mesh, numU, 1.0 / numV, 1.0 / numV, row);
+    }
+    /// In rings, each half as far out as the one before.
     void LookAtCenter() {
+        constexpr int kLastRing = 3;
         for (int vertex = 0; vertex < _mesh.GetNumVertices(); ++vertex) {
-            if (_mesh.positions[vertex].head<2>().norm() < 1) {
+            double const distance = _mesh.positions[vertex].head<2>().norm();
+            if (distance < 1) {
+                int ring = 0;
+                while (ring < kLastRing && distance <= std::ldexp(0.5, -ring)) {
+                    ++ring;
+                }
                 _chosen.vertices.push_back(vertex);
+                _chosen.groups.push_back(ring);
             }
         }
-        _chosen.groups.assign(_chosen.vertices.size(), 0);
     }
 
     Eigen::VectorXd Measure(QuadWeights const &weights) {
@@ -140,28 +220,37 @@ public:
     Entry GetEntry() const { return {_name, _unevenness}; }
 
 private:
+    static OpenSubdiv::Sdc::Options getBoundaryOptions() {
+        OpenSubdiv::Sdc::Options options;
+        options.SetVtxBoundaryInterpolation(OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        return options;
+    }
     FarExt::internal::MeshLevels const &getLevels() const { return _refiner->GetHierarchy().mesh; }
 
     void refine(QuadWeights const &weights) {
         std::vector<Position> points = _base;
         std::vector<double> scratch;
+        SearchedLevels const searched = spread(weights);
         for (std::size_t depth = 0; depth < _masks.size(); ++depth) {
             Level const &parent = getLevels().levels[depth];
-            bool const isSearched = depth > 0 && depth <= kNumSearchedLevels;
-            HexagonWeights const searched =
-                isSearched ? spread(weights, int(depth)) : HexagonWeights{};
+            LevelWeights const *const ofLevel =
+                depth > 0 && depth <= searched.size() ? &searched[depth - 1] : nullptr;
             double turned[kHexagon];
             auto const getWeights = [&](int face, int i) -> double const * {
                 int const corner = parent.faceFirstCorner[std::size_t(face)] + i;
+                int const size = parent.GetFaceSize(face);
                 auto const irregular = parent.GetIrregularCorners(corner, corner + 1);
-                double const *const mask =
-                    isSearched && !irregular.empty() ? findMask(searched, irregular[0]) : nullptr;
-                if (!mask) {
+                CornerWeights mask = {nullptr, false};
+                if (ofLevel && size == kQuad && !parent.IsHalfFace(face)) {
+                    mask.weights = ofLevel->inQuad;
+                } else if (ofLevel && !irregular.empty() && irregular[0].weight == 1) {
+                    mask = findMask(*ofLevel, irregular[0]);
+                }
+                if (!mask.weights) {
                     return _masks[depth].GetFaceVertexWeights(face, i, scratch);
                 }
-                for (int j = 0; j < kHexagon; ++j) {
-                    turned[(i + (isBackwards(irregular[0].kind) ? kHexagon - j : j)) % kHexagon] =
-                        mask[j];
+                for (int j = 0; j < size; ++j) {
+                    turned[(i + (mask.isBackwards ? size - j : j)) % size] = mask.weights[j];
                 }
                 return turned;
             };
@@ -186,20 +275,37 @@ private:
 };
 
 QuadJudge::QuadJudge(int level) {
+    constexpr double kOfBorder = 0.4;
     constexpr double kOfPlane = 0.2;
-    for (auto const &[numU, numV] : {std::pair(14, 8), {20, 10}, {9, 6}}) {
-        _surfaces.push_back(std::make_unique<Surface>(
-            "torus " + std::to_string(numU) + " x " + std::to_string(numV),
-            MakeTorus(numU, numV, TorusFaces::Quads), level, Curvature::Mean, 1));
-        _surfaces.back()->LookAtSector(numU);
-    }
-    auto const addLifted = [&](char const *name, Shape const &shape, Curvature curvature) {
-        _surfaces.push_back(std::make_unique<Surface>(name, shape, level, curvature, kOfPlane));
-        _surfaces.back()->LookAtCenter();
+    constexpr double kOfIrregular = 0.1;
+    std::array<std::pair<int, int>, 3> const sizes = {{{14, 8}, {20, 10}, {9, 6}}};
+    auto const add = [&](std::string const &name, Shape const &shape, Curvature curvature,
+                         double weight) -> Surface & {
+        _surfaces.push_back(std::make_unique<Surface>(name, shape, level, curvature, weight));
+        return *_surfaces.back();
     };
-    addLifted("x^2 + y^2", makeLifted(1, 0, 1), Curvature::Mean);
-    addLifted("x^2 - y^2", makeLifted(1, 0, -1), Curvature::Gaussian);
-    addLifted("2 x y", makeLifted(0, 2, 0), Curvature::Gaussian);
+    for (auto const &[numU, numV] : sizes) {
+        std::string const size = std::to_string(numU) + " x " + std::to_string(numV);
+        add("torus " + size, MakeTorus(numU, numV, TorusFaces::Quads), Curvature::Mean, 1)
+            .LookAtSector(numU);
+        for (int row : {0, 1}) {
+            add("row " + std::to_string(row) + " of " + size,
+                MakeOpenTorus(numU, numV, TorusFaces::Quads), Curvature::Mean, kOfBorder)
+                .LookAtRow(numU, numV, row);
+        }
+    }
+    for (int valence : {4, 3, 5}) {
+        bool const isRegular = valence == 4;
+        double const weight = isRegular ? kOfPlane : kOfIrregular;
+        std::string const around = " at " + std::to_string(valence);
+        add("bowl" + around, makeLifted(valence, 1, 0, 1), Curvature::Mean, weight).LookAtCenter();
+        add("saddle" + around, makeLifted(valence, 1, 0, -1), Curvature::Gaussian, weight)
+            .LookAtCenter();
+        if (isRegular) {
+            add("saddle 2xy" + around, makeLifted(valence, 0, 2, 0), Curvature::Gaussian, weight)
+                .LookAtCenter();
+        }
+    }
 }
 
 QuadJudge::~QuadJudge() = default;
@@ -211,12 +317,14 @@ Eigen::VectorXd QuadJudge::Measure(QuadWeights const &weights) {
         Eigen::VectorXd const deviations = surface->Measure(weights);
         values.insert(values.end(), deviations.begin(), deviations.end());
     }
+    SearchedLevels levels = spread(weights);
     for (int level = 1; level <= kNumSearchedLevels; ++level) {
-        HexagonWeights const all = spread(weights, level);
-        for (auto const &mask : {all.atVertex, all.atNeighbor, all.besideQuad}) {
-            std::transform(mask, mask + kHexagon, std::back_inserter(values),
-                           [](double weight) { return kOfNegative * std::min(0.0, weight); });
-        }
+        forEachMask(level, levels[std::size_t(level) - 1],
+                    [&](double const *mask, int size, std::vector<int> const &, bool) {
+                        std::transform(
+                            mask, mask + size, std::back_inserter(values),
+                            [](double weight) { return kOfNegative * std::min(0.0, weight); });
+                    });
     }
     return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
 }
@@ -229,33 +337,17 @@ std::vector<QuadJudge::Entry> QuadJudge::GetEntries() const {
     return entries;
 }
 
-QuadWeights GetShippedQuadWeights() {
-    IrregularVertexMask const first =
-        FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads, 1, true);
-    IrregularVertexMask const second =
-        FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads, 2, true);
-    double besideQuad[kHexagon];
-    FarExt::ComputeQuadNeighborMask(2, besideQuad);
-    QuadWeights result;
-    result << first.atVertex[1], first.atVertex[2], second.atVertex[1], second.atVertex[2],
-        second.atNeighbor[0], second.atNeighbor[1], second.atNeighbor[4],
-        Eigen::Map<Eigen::Matrix<double, 5, 1> const>(besideQuad + 1);
-    return result;
-}
+QuadWeights GetShippedQuadWeights() { return gather(getShippedLevels()); }
 
 QuadWeights GetPlainQuadWeights() {
-    IrregularVertexMask const plain =
-        FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads, 1);
-    double face[kHexagon];
-    FarExt::ComputeFaceVertexMask(FaceMask::Smooth, FarExt::Interpolation::Vertex, kHexagon, face);
-    QuadWeights result;
-    result << plain.atVertex[1], plain.atVertex[2], plain.atVertex[1], plain.atVertex[2],
-        plain.atNeighbor[0], plain.atNeighbor[1], plain.atNeighbor[4],
-        Eigen::Map<Eigen::Matrix<double, 5, 1> const>(face + 1);
-    return result;
+    SearchedLevels levels;
+    int const later = FarExt::kNumStepsToConstantMasks;
+    levels.fill(getWeights(later, false, FarExt::ComputeQuadMask(later)));
+    return gather(levels);
 }
 
-QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judge) {
+QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judge,
+                              int firstFree) {
     constexpr double kDifference = 1e-5;
     constexpr double kLargestChange = 0.1;
     constexpr double kLeastGain = 1e-4;
@@ -264,8 +356,8 @@ QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judg
     double damping = 1e-3;
     Eigen::VectorXd values = judge.Measure(weights);
     for (int step = 0; step < maxSteps; ++step) {
-        Eigen::MatrixXd derivatives(values.size(), weights.size());
-        for (Eigen::Index i = 0; i < weights.size(); ++i) {
+        Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(values.size(), weights.size());
+        for (Eigen::Index i = firstFree; i < weights.size(); ++i) {
             QuadWeights changed = weights;
             changed[i] += kDifference;
             derivatives.col(i) = (judge.Measure(changed) - values) / kDifference;
@@ -279,7 +371,7 @@ QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judg
             damped.diagonal().array() += damping;
             QuadWeights right = -slope;
             for (Eigen::Index i = 0; i < weights.size(); ++i) {
-                if (weights[i] <= 0 && slope[i] > 0) { // stays at 0
+                if (i < firstFree || (weights[i] <= 0 && slope[i] > 0)) { // stays, or stays at 0
                     damped.row(i).setZero();
                     damped.col(i).setZero();
                     damped(i, i) = 1;
@@ -305,9 +397,23 @@ QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judg
     return weights;
 }
 
-QuadWeights RoundQuadWeights(QuadWeights const &weights) {
-    constexpr double kParts = 128;
-    return (kParts * weights).array().round() / kParts;
+QuadWeights RoundQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judge) {
+    constexpr double kParts = 256;
+    SearchedLevels levels = spread(weights);
+    Eigen::Index next = 0;
+    for (int level = 1; level <= kNumSearchedLevels; ++level) {
+        Eigen::Index const first = next;
+        forEachMask(level, levels[std::size_t(level) - 1],
+                    [&](double const *, int, std::vector<int> const &places, bool) {
+                        next += Eigen::Index(places.size());
+                    });
+        auto ofLevel = weights.segment(first, next - first);
+        ofLevel = (kParts * ofLevel).array().round() / kParts;
+        if (next < weights.size()) {
+            weights = SearchQuadWeights(weights, maxSteps, judge, int(next));
+        }
+    }
+    return weights;
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -12,27 +12,25 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// \brief The free weights of FaceMask::Smooth at the first two levels of quads: those of
-/// FarExt::ComputeIrregularVertexMask() for a vertex among quads and of
-/// FarExt::ComputeQuadNeighborMask() that follow from nothing.
+/// \brief The free weights of FaceMask::Smooth at the first levels of quads: some of those of
+/// FarExt::ComputeIrregularVertexMask() for a vertex among quads and of FarExt::ComputeQuadMask().
 ///
-/// In their order: at level 1 c1 and a2 of the F-vertex at the vertex; at level 2 the same, the
-/// weights of N, A and M in that at N, and the second to the last beside a quad.  The others are 0,
-/// or what is left to 1; those beside a quad at level 1 keep curvature bounded there, and V' has the
-/// weight that it has at all levels.
-using QuadWeights = Eigen::Matrix<double, 12, 1>;
+/// The others are 0, the same on both sides of a symmetric mask, or what is left to 1; those of V' are
+/// what they are at all levels.
+using QuadWeights = Eigen::VectorXd;
 
 /// Those that the library has.
 QuadWeights GetShippedQuadWeights();
 
-/// The masks of all hexagons and of vertices that are not among quads: where a search begins.
+/// The masks of later levels, but for what is not free in those of the first: where a search begins.
 QuadWeights GetPlainQuadWeights();
 
 /// \brief What a search makes small: how uneven curvature is on surfaces of quads, as a function of
 /// their weights.
 ///
-/// Mean curvature along the parallels of three tori; and, as a small part, Gaussian curvature of two
-/// saddles and mean curvature of a bowl, of which quads of a plane are the control points.
+/// Mean curvature along the parallels of three tori; and, as smaller parts, of the first two rows beside
+/// the border of the same tori without a row, and of bowls, and Gaussian curvature of saddles, whose control
+/// points are quads of a plane with three, four and five around the vertex in the middle.
 class QuadJudge {
 public:
     /// \param level  at which surfaces are judged, 3 or more
@@ -60,11 +58,16 @@ private:
 /// \brief Weights for which the norm of what \p judge measures is smaller than for \p weights: by
 /// Levenberg and Marquardt's method, with weights kept from falling below 0.
 ///
-/// \param maxSteps  it ends before where steps gain nothing
-QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judge);
+/// \param maxSteps   it ends before where steps gain nothing
+/// \param firstFree  those before it stay as they are
+QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judge,
+                              int firstFree = 0);
 
-/// Rounded to 128ths.
-QuadWeights RoundQuadWeights(QuadWeights const &weights);
+/// \brief Rounded to 256ths, level after level: those of the next are searched for again when one is
+/// rounded.
+///
+/// \param maxSteps  as of SearchQuadWeights()
+QuadWeights RoundQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judge);
 
 } // namespace OpenSubdivHex::Regression
 

@@ -21,7 +21,10 @@ TEST(QuadMaskSearch, JudgesTheLibrary) {
     PolygonMesh const torus =
         RefineSurface(MakeTorus(14, 8, TorusFaces::Quads), smooth, kLevel).back().mesh;
     EXPECT_NEAR(judge.GetEntries()[0].unevenness, MeasureTorusUnevenness(torus, 14), 1e-12);
-    EXPECT_EQ(RoundQuadWeights(GetShippedQuadWeights()), GetShippedQuadWeights());
+    // Those of the library are rounded: none is searched for again.
+    EXPECT_EQ(RoundQuadWeights(GetShippedQuadWeights(), 0, judge), GetShippedQuadWeights());
+    constexpr int kNumWeights = 31;
+    EXPECT_EQ(GetShippedQuadWeights().size(), kNumWeights);
 }
 
 TEST(QuadMaskSearch, GoesDownhill) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Searches for the weights of FaceMask::Smooth at the first levels of quads, and shows them beside
-// those that the library has.  Takes a minute or two.
+// those that the library has.  Takes some minutes.
 #include "quadMaskSearch.h"
 
 #include <cstdio>
@@ -13,9 +13,9 @@ namespace {
 
 void print(char const *title, QuadWeights const &weights, QuadJudge &judge) {
     double const norm = judge.Measure(weights).norm();
-    std::printf("%s, %.5f\n   128ths:", title, norm);
+    std::printf("%s, %.5f\n   256ths:", title, norm);
     for (double weight : weights) {
-        std::printf(" %.2f", 128 * weight);
+        std::printf(" %.2f", 256 * weight);
     }
     std::printf("\n  ");
     for (QuadJudge::Entry const &entry : judge.GetEntries()) {
@@ -39,7 +39,7 @@ int main(int argc, char **argv) {
     print("where the search begins", plain, judge);
     QuadWeights const found = SearchQuadWeights(plain, kMaxSteps, judge);
     print("found", found, judge);
-    print("rounded", RoundQuadWeights(found), judge);
+    print("rounded", RoundQuadWeights(found, kMaxSteps, judge), judge);
     print("in the library", GetShippedQuadWeights(), judge);
     return 0;
 }

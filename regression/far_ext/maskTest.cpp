@@ -181,7 +181,8 @@ void expectSameAround(FarExt::IrregularVertexMask const &mask,
 
 } // namespace
 
-// Smooth around irregular vertices: averages of what is there, the same at all levels.
+// Smooth around irregular vertices: averages of what is there, the same at all levels but for the first
+// two of vertices with four faces.
 TEST(Mask, IrregularVertices) {
     for (int numFaces = FarExt::kMinIrregularFaces; numFaces <= 400; ++numFaces) {
         for (int numSteps = 1; numSteps <= 5; ++numSteps) {
@@ -196,31 +197,36 @@ TEST(Mask, IrregularVertices) {
             EXPECT_NEAR(mask.vertex.vertexWeight + numFaces * mask.vertex.faceWeight, 1, 1e-15);
             EXPECT_GE(mask.vertex.vertexWeight, 0);
             EXPECT_GE(mask.vertex.faceWeight, 0);
-            expectSameAround(mask, FarExt::ComputeIrregularVertexMask(numFaces, 1));
+            if (numFaces > FarExt::kNumFacesAmongQuads || numSteps >= 3) {
+                expectSameAround(mask, FarExt::ComputeIrregularVertexMask(numFaces, 6));
+            }
         }
     }
 }
 
-// Among quads F-vertices have other weights, until three steps are done.
+// Around four faces F-vertices have other weights in the first levels.
 TEST(Mask, IrregularVerticesAmongQuads) {
     auto const compute = [](int numSteps, bool isAmongQuads) {
         return FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads, numSteps,
                                                   isAmongQuads);
     };
-    for (int numSteps : {1, 2}) {
-        auto const mask = compute(numSteps, true);
-        auto const other = compute(numSteps, false);
-        for (auto const &weights : {mask.atVertex, mask.atNeighbor}) {
-            EXPECT_EQ(std::accumulate(weights, weights + 6, 0.0), 1);
-            EXPECT_GE(*std::min_element(weights, weights + 6), 0);
+    constexpr int kLast = FarExt::kNumStepsToConstantMasks;
+    auto const last = compute(kLast, false);
+    for (bool isAmongQuads : {false, true}) {
+        for (int numSteps = 1; numSteps < (isAmongQuads ? kLast : kLast - 1); ++numSteps) {
+            auto const mask = compute(numSteps, isAmongQuads);
+            for (auto const &weights : {mask.atVertex, mask.atNeighbor}) {
+                EXPECT_EQ(std::accumulate(weights, weights + 6, 0.0), 1);
+                EXPECT_GE(*std::min_element(weights, weights + 6), 0);
+            }
+            EXPECT_EQ(mask.atVertex[1], mask.atVertex[5]);
+            EXPECT_EQ(mask.atVertex[2], mask.atVertex[4]);
+            EXPECT_GT(std::abs(mask.atVertex[1] - last.atVertex[1]), 0.01);
+            EXPECT_EQ(mask.vertex.faceWeight, last.vertex.faceWeight);
         }
-        EXPECT_EQ(mask.atVertex[1], mask.atVertex[5]);
-        EXPECT_EQ(mask.atVertex[2], mask.atVertex[4]);
-        EXPECT_GT(std::abs(mask.atVertex[0] - other.atVertex[0]), 0.05);
-        EXPECT_EQ(mask.vertex.faceWeight, other.vertex.faceWeight);
+        expectSameAround(compute(kLast, isAmongQuads), last);
+        expectSameAround(compute(kLast + 1, isAmongQuads), last);
     }
-    expectSameAround(compute(FarExt::kNumStepsToConstantMasks, true), compute(1, false));
-    expectSameAround(compute(FarExt::kNumStepsToConstantMasks + 1, true), compute(1, false));
 }
 
 // To the digits of the derivation: a, c1, a2 at the vertex, the weight of the faces in V'.
@@ -247,21 +253,26 @@ TEST(Mask, IrregularVerticesByFaces) {
     }
 }
 
-TEST(Mask, BesideQuads) {
-    double weights[6];
-    for (int numSteps : {1, 2}) {
-        ASSERT_TRUE(FarExt::ComputeQuadNeighborMask(numSteps, weights));
-        EXPECT_EQ(std::accumulate(weights, weights + 6, 0.0), 1);
-        EXPECT_GE(*std::min_element(weights, weights + 6), 0);
+// In quads and beside them, averages of what is there; before the first steps and behind them the masks
+// of all faces.
+TEST(Mask, Quads) {
+    std::vector<double> const plain = faceMask(FaceMask::Smooth, 4);
+    int const numRows[] = {0, 1, 2, 1, 0, 0};
+    for (int numSteps = 0; numSteps <= FarExt::kNumStepsToConstantMasks + 1; ++numSteps) {
+        SCOPED_TRACE(numSteps);
+        FarExt::QuadMask const mask = FarExt::ComputeQuadMask(numSteps);
+        EXPECT_EQ(mask.numRows, numRows[numSteps]);
+        EXPECT_EQ(std::accumulate(mask.inQuad, mask.inQuad + 4, 0.0), 1);
+        EXPECT_GE(*std::min_element(mask.inQuad, mask.inQuad + 4), 0);
+        EXPECT_EQ(mask.inQuad[1], mask.inQuad[3]);
+        bool const isPlain = numSteps != 1 && numSteps != 2;
+        EXPECT_EQ(std::equal(plain.begin(), plain.end(), mask.inQuad), isPlain);
+        for (int i = 0; i < mask.numRows; ++i) {
+            double const *const row = mask.beside[i];
+            EXPECT_EQ(std::accumulate(row, row + 6, 0.0), 1);
+            EXPECT_GE(*std::min_element(row, row + 6), 0);
+        }
     }
-    // A step takes x^2 - y^2 on the far side of the hexagons to w3 + w4, and the bowl to half of w2 + w5
-    // more: 1/4, as the quad's own mask takes xy.
-    ASSERT_TRUE(FarExt::ComputeQuadNeighborMask(1, weights));
-    EXPECT_EQ(weights[3] + weights[4], 0.25);
-    EXPECT_EQ(weights[2] + weights[5], 0);
-    double untouched = 7;
-    EXPECT_FALSE(FarExt::ComputeQuadNeighborMask(3, &untouched));
-    EXPECT_EQ(untouched, 7);
 }
 
 TEST(Mask, HalfFaceByHand) {

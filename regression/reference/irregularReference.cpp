@@ -90,21 +90,42 @@ void setWeightsOfN(double const (&in32nds)[6], IrregularRule &rule) {
     }
 }
 
-/// Among quads, the first two levels: the new points have other weights, in 128ths of V, N, A, B, C
-/// and M; V' stays.
-void setWeightsAmongQuads(int numSteps, IrregularRule &rule) {
-    double const ofV[2][6] = {{24, 45, 7, 0, 7, 45}, {46, 41, 0, 0, 0, 41}};
-    double const ofN[6] = {4, 76, 18, 0, 0, 30};
+/// The first levels of a vertex with four faces: the new points have other weights, of V, N, A, B, C and
+/// M, among quads in 256ths and else in 64ths; V' stays.
+void setFirstWeights(int numSteps, bool isAmongQuads, IrregularRule &rule) {
+    struct Parts {
+        double ofV[6];
+        double ofN[6];
+    };
+    static std::vector<Parts> const kAmongQuads = {
+        {{52, 87, 15, 0, 15, 87}, {32, 112, 72, 0, 0, 40}},
+        {{96, 74, 0, 12, 0, 74}, {39, 128, 25, 33, 0, 31}},
+        {{82, 69, 18, 0, 18, 69}, {37, 99, 78, 0, 0, 42}},
+    };
+    static std::vector<Parts> const kAmongOthers = {{{22, 16, 5, 0, 5, 16}, {9, 29, 14, 0, 7, 5}},
+                                                    {{22, 14, 7, 0, 7, 14}, {14, 28, 13, 0, 9, 0}}};
+    std::vector<Parts> const &levels = isAmongQuads ? kAmongQuads : kAmongOthers;
+    if (numSteps > int(levels.size())) {
+        return;
+    }
+    Parts const &parts = levels[numSteps - 1];
     for (int i = 0; i < 6; ++i) {
-        rule.ofV[i] = ofV[numSteps - 1][i] / 128;
-        if (numSteps == 2) {
-            rule.ofN[i] = ofN[i] / 128;
-        }
+        rule.ofV[i] = parts.ofV[i] / (isAmongQuads ? 256 : 64);
+        rule.ofN[i] = parts.ofN[i] / (isAmongQuads ? 256 : 64);
     }
 }
 
-/// Weights in 128ths by distance around the hexagon, along the edge to the quad first.
-double const kWeightsBesideQuad[2][6] = {{72, 24, 0, 8, 24, 0}, {63, 29, 5, 6, 16, 9}};
+/// Weights in 256ths: of a quad by distance around it; of a hexagon beside it, for the new points at an end
+/// of the edge that they share, along that edge first, and one edge away, away from it first.
+struct QuadParts {
+    double inQuad[4];
+    std::vector<std::array<double, 6>> beside;
+};
+std::vector<QuadParts> const kQuadParts = {
+    {{139, 45, 27, 45}, {{137, 58, 0, 14, 47, 0}}},
+    {{126, 56, 18, 56}, {{137, 63, 0, 22, 21, 13}, {97, 46, 21, 0, 33, 59}}},
+    {{144, 48, 16, 48}, {{142, 68, 0, 9, 37, 0}}},
+};
 
 } // namespace
 
@@ -113,9 +134,7 @@ IrregularRule MakeIrregularRule(int numFaces, int numSteps, bool isAmongQuads) {
     if (numFaces == 4) {
         setWeightsOfN({4, 14, 9, 0, 0, 5}, rule);
         balance(4, 4.0 / 7, rule);
-        if (isAmongQuads && numSteps <= 2) {
-            setWeightsAmongQuads(numSteps, rule);
-        }
+        setFirstWeights(numSteps, isAmongQuads, rule);
         return rule;
     }
     setWeightsOfN({4, 15, 8, 0, 0, 5}, rule);
@@ -145,12 +164,31 @@ Point NewIrregularPoint(IrregularRule const &rule, std::vector<Point> const &fac
 
 std::optional<Point> NewPointBesideQuad(int numSteps, std::vector<Point> const &face, int i,
                                         int edge) {
-    if (numSteps > 2) {
+    if (numSteps < 1 || numSteps > int(kQuadParts.size())) {
         return {};
     }
+    // Seen from the edge: its ends are 0 and 1, and 2 and 5 are one edge away.
+    int const place = (i - edge + 6) % 6;
+    auto const &rows = kQuadParts[numSteps - 1].beside;
+    std::size_t const row = place == 0 || place == 1 ? 0 : place == 2 || place == 5 ? 1 : 2;
+    if (row >= rows.size()) {
+        return {};
+    }
+    bool const isMirrored = place == 1 || place == 5;
     Point sum = Point::Zero(face[0].size());
     for (int j = 0; j < 6; ++j) {
-        sum += kWeightsBesideQuad[numSteps - 1][j] / 128 * face[(i + (i == edge ? j : 6 - j)) % 6];
+        sum += rows[row][j] / 256 * face[(i + (isMirrored ? 6 - j : j)) % 6];
+    }
+    return sum;
+}
+
+Point NewPointOfQuad(int numSteps, std::vector<Point> const &face, int i) {
+    double const plain[4] = {144, 48, 16, 48};
+    bool const isFirst = numSteps >= 1 && numSteps <= int(kQuadParts.size());
+    double const *const parts = isFirst ? kQuadParts[numSteps - 1].inQuad : plain;
+    Point sum = Point::Zero(face[0].size());
+    for (int j = 0; j < 4; ++j) {
+        sum += parts[j] / 256 * face[(i + j) % 4];
     }
     return sum;
 }

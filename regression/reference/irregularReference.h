@@ -33,11 +33,14 @@ Eigen::RowVectorXd NewIrregularPoint(IrregularRule const &rule,
                                      int vertex);
 
 /// \brief The new point beside corner \p i of a hexagon that has a quad across the edge from corner
-/// \p edge, i or the one before, to the next.
+/// \p edge to the next.
 ///
 /// \return  nothing where the level has no such rule
 std::optional<Eigen::RowVectorXd>
 NewPointBesideQuad(int numSteps, std::vector<Eigen::RowVectorXd> const &face, int i, int edge);
+
+/// The new point beside corner \p i of a quad.
+Eigen::RowVectorXd NewPointOfQuad(int numSteps, std::vector<Eigen::RowVectorXd> const &face, int i);
 
 } // namespace OpenSubdivHex::Regression
 

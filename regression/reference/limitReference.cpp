@@ -15,7 +15,7 @@ using namespace TaggedRules;
 namespace {
 
 /// Steps from which on the rules are the same for ever.
-constexpr int kLastRule = 3;
+constexpr int kLastRule = 4;
 
 int bitsOf(float number) {
     int bits = 0;

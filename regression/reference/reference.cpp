@@ -138,16 +138,25 @@ bool isBesideQuad(ReferenceMesh const &mesh, HalfedgeHandle corner) {
     return mesh.numSteps > 0 && mesh.valence(face) == 4 && !mesh.is_boundary(face);
 }
 
-/// The rules of Smooth for hexagons that are beside a quad, or have an irregular vertex; quads come
-/// first.
+/// The rules of Smooth for quads, and for hexagons that are beside a quad or have an irregular vertex: an
+/// edge to a quad comes first, quads further away last.
 std::optional<Point> irregularPoint(ReferenceMesh const &mesh,
                                     std::vector<HalfedgeHandle> const &corners,
                                     std::vector<Point> const &points, int i) {
+    if (corners.size() == 4) {
+        return NewPointOfQuad(mesh.numSteps, points, i);
+    }
     if (corners.size() != 6) {
         return {};
     }
-    for (int edge : {i, (i + 5) % 6}) {
+    std::vector<int> edges; // to quads
+    for (int edge = 0; edge < 6; ++edge) {
         if (isBesideQuad(mesh, corners[edge])) {
+            edges.push_back(edge);
+        }
+    }
+    for (int edge : edges) {
+        if (edge == i || edge == (i + 5) % 6) {
             if (auto const point = NewPointBesideQuad(mesh.numSteps, points, i, edge)) {
                 return point;
             }
@@ -159,7 +168,8 @@ std::optional<Point> irregularPoint(ReferenceMesh const &mesh,
             return NewIrregularPoint(makeRule(mesh, vertex, numFaces), points, i, corner);
         }
     }
-    return {};
+    return edges.size() == 1 ? NewPointBesideQuad(mesh.numSteps, points, i, edges[0])
+                             : std::optional<Point>();
 }
 
 /// Stage 1: a new point at each corner of each face, from the points of that face alone.

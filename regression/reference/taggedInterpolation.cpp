@@ -135,13 +135,20 @@ public:
         if (_mesh.numHexagonalSteps == 0 || !isMadeForEdge(corners[0].face)) {
             return plain;
         }
-        for (int edge : {i, (i + 5) % 6}) {
+        auto const blend = [&](Point const &point) {
+            double const share = std::max(0.0, 1 - sharpness);
+            return share > 0 ? Point(share * point + (1 - share) * plain) : plain;
+        };
+        std::vector<int> edges; // to quads
+        for (int edge = 0; edge < 6; ++edge) {
             if (isQuad(across(corners[edge]))) {
-                double const share = std::max(0.0, 1 - sharpness);
-                if (auto const point =
-                        NewPointBesideQuad(_mesh.numHexagonalSteps, hexagon, i, edge)) {
-                    return share > 0 ? Point(share * *point + (1 - share) * plain) : plain;
-                }
+                edges.push_back(edge);
+            }
+        }
+        for (int edge : edges) {
+            auto const point = NewPointBesideQuad(_mesh.numHexagonalSteps, hexagon, i, edge);
+            if (point && (edge == i || edge == (i + 5) % 6)) {
+                return blend(*point);
             }
         }
         for (int corner : {i, (i + 1) % 6, (i + 5) % 6}) {
@@ -151,6 +158,12 @@ public:
                     vertex.numFaces, _mesh.numHexagonalSteps, vertex.isAmongQuads);
                 return vertex.share * NewIrregularPoint(rule, hexagon, i, corner) +
                        (1 - vertex.share) * plain;
+            }
+        }
+        if (edges.size() == 1) {
+            if (auto const point =
+                    NewPointBesideQuad(_mesh.numHexagonalSteps, hexagon, i, edges[0])) {
+                return blend(*point);
             }
         }
         return plain;
@@ -229,7 +242,11 @@ private:
         }
         if (!face.isHalf) {
             std::vector<Point> const points = pointsOf(face.vertices);
-            Point const plain = towards * vertex + (1 - towards) * maskPoint(points, corner.place);
+            bool const isQuad = hasIrregularRules() && points.size() == 4;
+            Point const smooth =
+                isQuad ? NewPointOfQuad(_mesh.numHexagonalSteps, points, corner.place)
+                       : maskPoint(points, corner.place);
+            Point const plain = towards * vertex + (1 - towards) * smooth;
             if (!hasIrregularRules() || points.size() != 6) {
                 return plain;
             }
