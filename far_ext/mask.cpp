@@ -121,8 +121,6 @@ struct IrregularWeights {
     double ofFaces;       // of the mean of the F-vertices, in V'
 };
 
-constexpr double kAtNeighborOfFour[4] = {14 / 32.0, 4 / 32.0, 9 / 32.0, 5 / 32.0};
-
 // The share of a vertex with many faces that goes along its edges; see the header.
 constexpr double kMaxSpokeShare = 0.77;
 
@@ -163,6 +161,7 @@ IrregularWeights solveWeights(int numFaces, double lambda, double const atNeighb
 }
 
 IrregularWeights findWeights(int numFaces) {
+    constexpr double kAtNeighborOfFour[4] = {14 / 32.0, 4 / 32.0, 9 / 32.0, 5 / 32.0};
     constexpr double kAtNeighbor[4] = {15 / 32.0, 4 / 32.0, 8 / 32.0, 5 / 32.0};
     constexpr double kLambda = 4 / 7.0;
     if (numFaces == 4) {

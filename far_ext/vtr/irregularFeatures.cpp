@@ -135,8 +135,9 @@ auto IrregularFinder::findVertex(Index vert) const -> Vertex {
     Vertex const result = {smoothPart(sharpness), isAmongQuads(vert)};
     // The next level learns from this one what was among quads.
     bool const matters =
-        result.weight > 0 || (result.isAmongQuads && _level.numHexagonalSteps < kNumStepsToConstantMasks - 1 &&
-                              !Sdc::Crease::IsInfinite(sharpness));
+        result.weight > 0 ||
+        (result.isAmongQuads && _level.numHexagonalSteps < kNumStepsToConstantMasks - 1 &&
+         !Sdc::Crease::IsInfinite(sharpness));
     return matters ? result : kNone;
 }
 

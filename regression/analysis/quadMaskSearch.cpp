@@ -346,8 +346,7 @@ QuadWeights GetPlainQuadWeights() {
     return gather(levels);
 }
 
-QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judge,
-                              int firstFree) {
+QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judge, int firstFree) {
     constexpr double kDifference = 1e-5;
     constexpr double kLargestChange = 0.1;
     constexpr double kLeastGain = 1e-4;

@@ -243,9 +243,9 @@ private:
         if (!face.isHalf) {
             std::vector<Point> const points = pointsOf(face.vertices);
             bool const isQuad = hasIrregularRules() && points.size() == 4;
-            Point const smooth =
-                isQuad ? NewPointOfQuad(_mesh.numHexagonalSteps, points, corner.place)
-                       : maskPoint(points, corner.place);
+            Point const smooth = isQuad
+                                     ? NewPointOfQuad(_mesh.numHexagonalSteps, points, corner.place)
+                                     : maskPoint(points, corner.place);
             Point const plain = towards * vertex + (1 - towards) * smooth;
             if (!hasIrregularRules() || points.size() != 6) {
                 return plain;
