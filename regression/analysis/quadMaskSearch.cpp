@@ -67,12 +67,13 @@ void forEachMask(int level, LevelWeights &weights, FUNCTION const &function) {
     using Places = std::vector<int>;
     bool const isFirst = level == 1;
     bool const isSecond = level == 2;
-    function(weights.atVertex, kHexagon, isSecond ? Places{1, 3} : Places{1, 2}, true);
-    function(weights.besideQuad[0], kHexagon, isSecond ? Places{1, 3, 4, 5} : Places{1, 3, 4},
-             false);
+    Places const atVertex = isSecond ? Places{1, 3} : Places{1, 2};
+    function(weights.atVertex, kHexagon, atVertex, true);
+    Places const besideQuad = isSecond ? Places{1, 3, 4, 5} : Places{1, 3, 4};
+    function(weights.besideQuad[0], kHexagon, besideQuad, false);
     if (!isFirst) { // at a neighbor all corners are beside a quad, too, after the first step
-        function(weights.atNeighbor, kHexagon, isSecond ? Places{1, 2, 4, 5} : Places{1, 4, 5},
-                 false);
+        Places const atNeighbor = isSecond ? Places{1, 2, 4, 5} : Places{1, 4, 5};
+        function(weights.atNeighbor, kHexagon, atNeighbor, false);
     }
     if (isSecond) {
         function(weights.besideQuad[1], kHexagon, Places{1, 2, 4, 5}, false);
