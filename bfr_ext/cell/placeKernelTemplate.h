@@ -5,6 +5,7 @@
 #include "mirrorMatrix.h"
 
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 // Included by one source file for each set of instructions, which must not share what the compiler
@@ -170,6 +171,31 @@ private:
     }
 };
 
+/// Calls function(number, component) for all components: three at a time, where so many are left, each from
+/// component on, and then one at a time.  The number is an integral constant.
+template <typename FUNCTION>
+void forComponents(std::size_t numComponents, FUNCTION const &function) {
+    std::size_t component = 0;
+    for (; component + 3 <= numComponents; component += 3) {
+        function(std::integral_constant<std::size_t, 3>(), component);
+    }
+    for (; component < numComponents; ++component) {
+        function(std::integral_constant<std::size_t, 1>(), component);
+    }
+}
+
+/// Four numbers in place of which come their sums with the signs that symmetries give: image i has sign -1
+/// in part k where i and k have an odd number of bits in common.
+template <typename NUMBER>
+void mirrorFour(NUMBER (&numbers)[4]) {
+    NUMBER const sums[2] = {numbers[0] + numbers[1], numbers[2] + numbers[3]};
+    NUMBER const differences[2] = {numbers[0] - numbers[1], numbers[2] - numbers[3]};
+    numbers[0] = sums[0] + sums[1];
+    numbers[1] = differences[0] + differences[1];
+    numbers[2] = sums[0] - sums[1];
+    numbers[3] = differences[0] - differences[1];
+}
+
 /// Sums of the places of a matrix, block by block.
 template <std::size_t BYTES, typename REAL>
 class BlockSums {
@@ -192,13 +218,9 @@ public:
                 }
                 _count = std::size_t(row[-1].row) + 1 - _begin;
             }
-            std::size_t component = 0;
-            for (; component + 3 <= _sums.size; component += 3) {
-                formComponents<3>(component, firstRow, row);
-            }
-            for (; component < _sums.size; ++component) {
-                formComponents<1>(component, firstRow, row);
-            }
+            forComponents(_sums.size, [&](auto number, std::size_t component) {
+                this->template formComponents<number()>(component, firstRow, row);
+            });
         }
     }
 
@@ -251,13 +273,9 @@ public:
         : _matrix(matrix), _sums(sums) {}
 
     void Form() {
-        std::size_t component = 0;
-        for (; component + 3 <= _sums.size; component += 3) {
-            formComponents<3>(component);
-        }
-        for (; component < _sums.size; ++component) {
-            formComponents<1>(component);
-        }
+        forComponents(_sums.size, [&](auto number, std::size_t component) {
+            this->template formComponents<number()>(component);
+        });
     }
 
 private:
@@ -367,14 +385,12 @@ private:
                     getSum(0)[k] = getPoint(0)[k] + getPoint(1)[k];
                     getSum(1)[k] = getPoint(0)[k] - getPoint(1)[k];
                 } else {
-                    REAL const sums[2] = {getPoint(0)[k] + getPoint(1)[k],
-                                          getPoint(2)[k] + getPoint(3)[k]};
-                    REAL const differences[2] = {getPoint(0)[k] - getPoint(1)[k],
-                                                 getPoint(2)[k] - getPoint(3)[k]};
-                    getSum(0)[k] = sums[0] + sums[1];
-                    getSum(1)[k] = differences[0] + differences[1];
-                    getSum(2)[k] = sums[0] - sums[1];
-                    getSum(3)[k] = differences[0] - differences[1];
+                    REAL numbers[4] = {getPoint(0)[k], getPoint(1)[k], getPoint(2)[k],
+                                       getPoint(3)[k]};
+                    mirrorFour(numbers);
+                    for (std::size_t i = 0; i < 4; ++i) {
+                        getSum(i)[k] = numbers[i];
+                    }
                 }
             }
         }
@@ -402,14 +418,11 @@ private:
                 numbers[i] = reinterpret_cast<InMemory *>(_numbers[i][k]);
             }
             for (std::size_t i = 0; i < width / Tiles::kSize; ++i) {
-                Lanes const ofParts[4] = {numbers[0][i], numbers[1][i], numbers[2][i],
-                                          numbers[3][i]};
-                Lanes const sums[2] = {ofParts[0] + ofParts[1], ofParts[2] + ofParts[3]};
-                Lanes const differences[2] = {ofParts[0] - ofParts[1], ofParts[2] - ofParts[3]};
-                numbers[0][i] = sums[0] + sums[1];
-                numbers[1][i] = differences[0] + differences[1];
-                numbers[2][i] = sums[0] - sums[1];
-                numbers[3][i] = differences[0] - differences[1];
+                Lanes ofParts[4] = {numbers[0][i], numbers[1][i], numbers[2][i], numbers[3][i]};
+                mirrorFour(ofParts);
+                for (std::size_t image = 0; image < 4; ++image) {
+                    numbers[image][i] = ofParts[image];
+                }
             }
         }
     }
@@ -430,13 +443,9 @@ public:
         : _matrix(matrix), _sums(sums) {}
 
     void Form() {
-        std::size_t component = 0;
-        for (; component + 3 <= _sums.size; component += 3) {
-            formComponents<3>(component);
-        }
-        for (; component < _sums.size; ++component) {
-            formComponents<1>(component);
-        }
+        forComponents(_sums.size, [&](auto number, std::size_t component) {
+            this->template formComponents<number()>(component);
+        });
     }
 
 private:
