@@ -53,7 +53,7 @@ ExpectedSizes::ExpectedSizes(Level const &level)
 void ExpectedSizes::CountFans(Level const &level) {
     for (Far::Index vert = 0; vert < level.numVertices; ++vert) {
         ForEachFan(level, vert, [&](VertexFan const &fan) {
-            std::int64_t const size = fan.end - fan.begin;
+            std::int64_t const size = fan.GetSize();
             closedVertices += fan.isClosed ? 1 : 0;
             closedCorners += fan.isClosed ? size : 0;
             digons += fan.isClosed && size == 2 ? 1 : 0;

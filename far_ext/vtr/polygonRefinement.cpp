@@ -42,8 +42,8 @@ PolygonRefiner::PolygonRefiner(Level const &parent, PolygonRules rules, Sdc::Opt
     markEndEdges();
     countEdges();
     countSpokes();
-    Counts const &vertices = _vertexCounts.back();
-    Counts const &edges = _edgeCounts.back();
+    ChildCounts const &vertices = _vertexCounts.back();
+    ChildCounts const &edges = _edgeCounts.back();
     _sizes.vertices = vertices.vertices + _parent.numCorners;
     _sizes.edges = _parent.numCorners + _spokeCounts.back().edges + edges.edges;
     _sizes.faces = _parent.numFaces + edges.faces + vertices.faces;
@@ -85,7 +85,7 @@ void PolygonRefiner::forEachVFace(Index pVert, bool hasVVertex, ADD_VFACE addVFa
         return;
     }
     ForEachFan(_parent, pVert, [&](VertexFan const &fan) {
-        Index const size = fan.end - fan.begin;
+        Index const size = fan.GetSize();
         if (hasVVertex) {
             forEachRunOfQuads(fan, [&](Index begin, Index count) {
                 addVFace(VFace{fan, begin, count, hasVVertex});
@@ -101,7 +101,7 @@ void PolygonRefiner::forEachVFace(Index pVert, bool hasVVertex, ADD_VFACE addVFa
 // Calls function(begin, count) for the maximal runs of count faces with quads between them.
 template <typename FUNCTION>
 void PolygonRefiner::forEachRunOfQuads(VertexFan const &fan, FUNCTION function) const {
-    Index const size = fan.end - fan.begin;
+    Index const size = fan.GetSize();
     auto const getInEdge = [this](Index k) {
         Index const corner = _parent.GetVertexCorner(k);
         return _parent.faceEdges[_parent.GetPrevCorner(_parent.vertFaces[k], corner)];
@@ -114,14 +114,13 @@ void PolygonRefiner::forEachRunOfQuads(VertexFan const &fan, FUNCTION function) 
     }
     Index count = 1;
     for (Index i = 0; i < size; ++i) {
-        Index const k = start + i < fan.end ? start + i : start + i - size;
+        Index const k = fan.Advance(start, i);
         if (isQuad(getInEdge(k))) {
             ++count;
             continue;
         }
         if (count > 1) {
-            Index const begin = start + i - count + 1;
-            function(begin < fan.end ? begin : begin - size, count);
+            function(fan.Advance(start, i - count + 1), count);
         }
         count = 1;
     }
@@ -142,8 +141,8 @@ void PolygonRefiner::forEachSpoke(Index beginFace, Index endFace, FUNCTION funct
 }
 
 void PolygonRefiner::countVertices() {
-    _vertexCounts = ParallelSums<Counts>(_parent.numVertices, [this](Index begin, Index end) {
-        Counts counts;
+    _vertexCounts = ParallelSums<ChildCounts>(_parent.numVertices, [this](Index begin, Index end) {
+        ChildCounts counts;
         for (Index pVert = begin; pVert < end; ++pVert) {
             bool const hasVVertex = makesVVertex(pVert);
             counts.vertices += hasVVertex ? 1 : 0;
@@ -209,8 +208,8 @@ void PolygonRefiner::markEndEdges() {
 }
 
 void PolygonRefiner::countEdges() {
-    _edgeCounts = ParallelSums<Counts>(_parent.numEdges, [this](Index begin, Index end) {
-        Counts counts;
+    _edgeCounts = ParallelSums<ChildCounts>(_parent.numEdges, [this](Index begin, Index end) {
+        ChildCounts counts;
         for (Index pEdge = begin; pEdge < end; ++pEdge) {
             std::size_t const first = getFirstEnd(pEdge);
             int const numEnds =
@@ -228,8 +227,8 @@ void PolygonRefiner::countEdges() {
 }
 
 void PolygonRefiner::countSpokes() {
-    _spokeCounts = ParallelSums<Counts>(_parent.numFaces, [this](Index begin, Index end) {
-        Counts counts;
+    _spokeCounts = ParallelSums<ChildCounts>(_parent.numFaces, [this](Index begin, Index end) {
+        ChildCounts counts;
         forEachSpoke(begin, end, [&](Index) { ++counts.edges; });
         return counts;
     });
@@ -252,18 +251,8 @@ void PolygonRefiner::relate(Refinement &refinement) const {
     refinement.vertChildVerts.Resize(0);
     refinement.vVertexParents.Resize(0);
     if (_vertexCounts.back().vertices != _parent.numVertices) {
-        refinement.vertChildVerts.Resize(std::size_t(_parent.numVertices));
-        refinement.vVertexParents.Resize(std::size_t(_vertexCounts.back().vertices));
-        ParallelForRange(_parent.numVertices, [&](Index begin, Index end) {
-            Index cVert = Index(_vertexCounts[std::size_t(begin / kParallelRange)].vertices);
-            for (Index pVert = begin; pVert < end; ++pVert) {
-                bool const isMade = makesVVertex(pVert);
-                refinement.vertChildVerts[std::size_t(pVert)] = isMade ? cVert : Far::INDEX_INVALID;
-                if (isMade) {
-                    refinement.vVertexParents[std::size_t(cVert++)] = pVert;
-                }
-            }
-        });
+        NumberVVertices(
+            _vertexCounts, [this](Index pVert) { return makesVVertex(pVert); }, refinement);
     }
     refinement.edgeChildFaces.Resize(std::size_t(_parent.numEdges));
     ParallelForRange(_parent.numEdges, [&](Index begin, Index end) {
@@ -382,7 +371,7 @@ void PolygonRefiner::Builder<FULL>::fillFFaces() {
 template <bool FULL>
 void PolygonRefiner::Builder<FULL>::fillEFaces() {
     ParallelForRange(_p.numEdges, [this](Index begin, Index end) {
-        Counts const &before = _refiner._edgeCounts[std::size_t(begin / kParallelRange)];
+        ChildCounts const &before = _refiner._edgeCounts[std::size_t(begin / kParallelRange)];
         Place place = {_p.numFaces + Index(before.faces), _p.numCorners + Index(before.corners)};
         for (Index pEdge = begin; pEdge < end; ++pEdge) {
             if (_refiner.makesEFace(pEdge)) {
@@ -427,7 +416,7 @@ void PolygonRefiner::Builder<FULL>::fillEFace(Index pEdge, Place &place) {
 template <bool FULL>
 void PolygonRefiner::Builder<FULL>::fillVFaces() {
     ParallelForRange(_p.numVertices, [this](Index begin, Index end) {
-        Counts const &before = _refiner._vertexCounts[std::size_t(begin / kParallelRange)];
+        ChildCounts const &before = _refiner._vertexCounts[std::size_t(begin / kParallelRange)];
         Place place = {_c.numFaces - _c.numVFaces + Index(before.faces),
                        _p.numCorners + Index(_refiner._edgeCounts.back().corners + before.corners)};
         for (Index pVert = begin; pVert < end; ++pVert) {
@@ -441,11 +430,7 @@ void PolygonRefiner::Builder<FULL>::fillVFaces() {
 
 template <bool FULL>
 void PolygonRefiner::Builder<FULL>::fillVFace(Index pVert, VFace const &vFace, Place &place) {
-    auto const positionAt = [&](Index i) {
-        Index const k = vFace.begin + i;
-        return k < vFace.fan.end ? k : k - (vFace.fan.end - vFace.fan.begin);
-    };
-    auto const cornerAt = [&](Index i) { return _p.GetVertexCorner(positionAt(i)); };
+    auto const cornerAt = [&](Index i) { return _p.GetVertexCorner(vFace.GetPosition(i)); };
     // The edge across that between a face and the one before it.
     auto const edgeTo = [&](Index i) -> EdgeSide {
         if (!FULL) {
@@ -468,7 +453,7 @@ void PolygonRefiner::Builder<FULL>::fillVFace(Index pVert, VFace const &vFace, P
     } else if (_refiner.isTriHex()) {
         // Of each face the F-vertices of two corners, and the edge of the F-face between them.
         auto const cornerBefore = [&](Index i) {
-            return _p.GetPrevCorner(_p.vertFaces[positionAt(i)], cornerAt(i));
+            return _p.GetPrevCorner(_p.vertFaces[vFace.GetPosition(i)], cornerAt(i));
         };
         for (Index i = 1; i <= vFace.count; ++i) {
             addCorner(place, fVertex(cornerBefore(i - 1)), edgeTo(i));

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_VTR_POLYGON_REFINEMENT_H
 #define OPENSUBDIVHEX_FAR_EXT_VTR_POLYGON_REFINEMENT_H
 
+#include "childCounts.h"
 #include "far_ext/hexSchemeOptions.h"
 #include "refinement.h"
 #include "vertexFan.h"
@@ -59,35 +60,11 @@ private:
     template <bool FULL>
     class Builder;
 
-    /// What components of the parent make.
-    struct Counts {
-        Counts &operator+=(Counts const &other) {
-            vertices += other.vertices;
-            edges += other.edges;
-            faces += other.faces;
-            corners += other.corners;
-            digons += other.digons;
-            return *this;
-        }
-
-        std::int64_t vertices = 0;
-        std::int64_t edges = 0;
-        std::int64_t faces = 0;
-        std::int64_t corners = 0;
-        std::int64_t digons = 0;
-    };
     /// Two ends of edges, as positions in _endEdges, at a vertex with two faces: the quads there
     /// share the edge of the first, which has the lower position.
     struct Digon {
         std::size_t end;
         std::size_t joinedEnd;
-    };
-    /// The faces around a vertex that a V-face joins: part of a fan, or all of it.
-    struct VFace {
-        VertexFan fan;
-        Index begin; ///< position in Level::vertFaces; the end of the fan leads to its begin
-        Index count;
-        bool hasVVertex; ///< in the polygon too
     };
 
     bool isHexagonal() const { return _rules.step == StepType::Hexagonal; }
@@ -124,9 +101,9 @@ private:
     LevelSizes _sizes{};
 
     // What the ranges of components before a range make, by range.
-    std::vector<Counts> _vertexCounts; ///< V-vertices, V-faces and digons
-    std::vector<Counts> _edgeCounts;   ///< edges of _endEdges, E-faces
-    std::vector<Counts> _spokeCounts;  ///< spokes, by range of faces
+    std::vector<ChildCounts> _vertexCounts; ///< V-vertices, V-faces and digons
+    std::vector<ChildCounts> _edgeCounts;   ///< edges of _endEdges, E-faces
+    std::vector<ChildCounts> _spokeCounts;  ///< spokes, by range of faces
 
     /// By edge and end: the edge that joins the F-vertices of its faces there; in tri-hex one for
     /// both ends; of a boundary edge, first, the one that stays on the boundary.

@@ -35,7 +35,7 @@ public:
         }
         bool const isSharp =
             _mesh.IsNonManifold(vert) || Crease::IsSharp(_mesh.GetVertexSharpness(vert));
-        bool const isWhole = isDart && !isSharp && fan.end - fan.begin != 2;
+        bool const isWhole = isDart && !isSharp && fan.GetSize() != 2;
         for (Index k = fan.begin; k < fan.end; ++k) {
             Index const corner = _mesh.GetVertexCorner(k);
             bool const isEndCut = numCuts < 2 ? !isWhole : isCut(_mesh.faceEdges[corner]);
@@ -113,28 +113,28 @@ EndCuts GetEndCutsOfChannel(Level const &mesh, EndCuts const &cuts, FVarLevel co
 
 TruncationRefiner::TruncationRefiner(Level const &parent, EndCuts cuts, Sdc::Options sdcOptions)
     : _parent(parent), _cuts(std::move(cuts)), _sdcOptions(sdcOptions) {
-    _vertexCounts = ParallelSums<Counts>(_parent.numVertices, [this](Index begin, Index end) {
-        Counts counts;
+    _vertexCounts = ParallelSums<ChildCounts>(_parent.numVertices, [this](Index begin, Index end) {
+        ChildCounts counts;
         for (Index pVert = begin; pVert < end; ++pVert) {
             counts.vertices += isCut(pVert) ? 1 : 0;
             forEachVFace(pVert, [&](VFace const &vFace) {
                 ++counts.faces;
-                counts.corners += vFace.count + (vFace.isWedge ? 2 : 0);
+                counts.corners += vFace.count + (vFace.hasVVertex ? 2 : 0);
             });
         }
         return counts;
     });
-    _edgeCounts = ParallelSums<Counts>(_parent.numEdges, [this](Index begin, Index end) {
-        Counts counts;
+    _edgeCounts = ParallelSums<ChildCounts>(_parent.numEdges, [this](Index begin, Index end) {
+        ChildCounts counts;
         for (std::size_t edgeEnd = 2 * std::size_t(begin); edgeEnd < 2 * std::size_t(end);
              ++edgeEnd) {
-            counts.spokes += _cuts[edgeEnd];
+            counts.edges += _cuts[edgeEnd];
         }
         return counts;
     });
-    Counts const &vertices = _vertexCounts.back();
+    ChildCounts const &vertices = _vertexCounts.back();
     _sizes.vertices = vertices.vertices + _parent.numCorners + _parent.GetNumBoundaries();
-    _sizes.edges = std::int64_t(_parent.numCorners) + _parent.numEdges + _edgeCounts.back().spokes;
+    _sizes.edges = std::int64_t(_parent.numCorners) + _parent.numEdges + _edgeCounts.back().edges;
     _sizes.faces = _parent.numFaces + vertices.faces;
     _sizes.corners = 2 * std::int64_t(_parent.numCorners) + vertices.corners;
     // The middle of a boundary, and a spoke at each end.
@@ -166,17 +166,15 @@ void TruncationRefiner::forEachVFace(Index pVert, FUNCTION function) const {
         while (start < fan.end && !beginsWedge(start)) {
             ++start;
         }
-        Index const size = fan.end - fan.begin;
+        Index const size = fan.GetSize();
         if (start == fan.end) {
             function(VFace{fan, fan.begin, size, false});
             return;
         }
         Index begin = 0; // of the wedge, seen from the start
         for (Index i = 1; i <= size; ++i) {
-            Index const k = start + i < fan.end ? start + i : start + i - size;
-            if (i == size || beginsWedge(k)) {
-                Index const first = start + begin < fan.end ? start + begin : start + begin - size;
-                function(VFace{fan, first, i - begin, true});
+            if (i == size || beginsWedge(fan.Advance(start, i))) {
+                function(VFace{fan, fan.Advance(start, begin), i - begin, true});
                 begin = i;
             }
         }
@@ -187,18 +185,8 @@ void TruncationRefiner::relate(Refinement &refinement) const {
     refinement.isTruncation = true;
     refinement.edgeChildFaces.Resize(std::size_t(_parent.numEdges));
     std::fill_n(refinement.edgeChildFaces.data(), _parent.numEdges, Far::INDEX_INVALID);
-    refinement.vertChildVerts.Resize(std::size_t(_parent.numVertices));
-    refinement.vVertexParents.Resize(std::size_t(_vertexCounts.back().vertices));
-    ParallelForRange(_parent.numVertices, [&](Index begin, Index end) {
-        Index cVert = Index(_vertexCounts[std::size_t(begin / kParallelRange)].vertices);
-        for (Index pVert = begin; pVert < end; ++pVert) {
-            bool const isMade = isCut(pVert);
-            refinement.vertChildVerts[std::size_t(pVert)] = isMade ? cVert : Far::INDEX_INVALID;
-            if (isMade) {
-                refinement.vVertexParents[std::size_t(cVert++)] = pVert;
-            }
-        }
-    });
+    NumberVVertices(
+        _vertexCounts, [this](Index pVert) { return isCut(pVert); }, refinement);
 }
 
 // Fills the faces of a child and, for FULL, the sides of its edges: in this order those across the
@@ -248,8 +236,8 @@ private:
     void numberSpokes() {
         _spokes.Resize(2 * std::size_t(_p.numEdges));
         ParallelForRange(_p.numEdges, [this](Index begin, Index end) {
-            Counts const &before = _refiner._edgeCounts[std::size_t(begin / kParallelRange)];
-            Index cEdge = _p.numCorners + _p.numEdges + Index(before.spokes);
+            ChildCounts const &before = _refiner._edgeCounts[std::size_t(begin / kParallelRange)];
+            Index cEdge = _p.numCorners + _p.numEdges + Index(before.edges);
             for (std::size_t i = 2 * std::size_t(begin); i < 2 * std::size_t(end); ++i) {
                 _spokes[i] = _refiner._cuts[i] ? cEdge++ : Far::INDEX_INVALID;
             }
@@ -274,7 +262,7 @@ private:
     }
     void fillVFaces() {
         ParallelForRange(_p.numVertices, [this](Index begin, Index end) {
-            Counts const &before = _refiner._vertexCounts[std::size_t(begin / kParallelRange)];
+            ChildCounts const &before = _refiner._vertexCounts[std::size_t(begin / kParallelRange)];
             Place place = {_p.numFaces + Index(before.faces),
                            2 * _p.numCorners + Index(before.corners)};
             for (Index pVert = begin; pVert < end; ++pVert) {
@@ -284,18 +272,14 @@ private:
         });
     }
     void fillVFace(Index pVert, VFace const &vFace, Place &place) {
-        auto const positionAt = [&](Index i) {
-            Index const k = vFace.begin + i;
-            return k < vFace.fan.end ? k : k - (vFace.fan.end - vFace.fan.begin);
-        };
-        auto const cornerAt = [&](Index i) { return _p.GetVertexCorner(positionAt(i)); };
+        auto const cornerAt = [&](Index i) { return _p.GetVertexCorner(vFace.GetPosition(i)); };
         Index const first = cornerAt(0);
         beginFace(place);
         for (Index i = 1; i < vFace.count; ++i) {
             addCorner(place, fVertex(cornerAt(i)), cornerEdge(cornerAt(i), kSecond));
         }
-        if (vFace.isWedge) {
-            Index const last = getInCorner(_p, positionAt(vFace.count - 1));
+        if (vFace.hasVVertex) {
+            Index const last = getInCorner(_p, vFace.GetPosition(vFace.count - 1));
             addCorner(place, farVertex(last), spoke(FindEdgeEnd(_p, last) ^ 1u, kSecond));
             addCorner(place, _refinement.GetVertexChildVertex(pVert),
                       spoke(FindEdgeEnd(_p, first), kFirst));

@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_VTR_TRUNCATION_REFINEMENT_H
 
 #include "baseLevel.h"
+#include "childCounts.h"
 #include "hierarchy.h"
 #include "vertexFan.h"
 
@@ -46,29 +47,6 @@ private:
     template <bool FULL>
     class Builder;
 
-    /// What components of the parent make.
-    struct Counts {
-        Counts &operator+=(Counts const &other) {
-            vertices += other.vertices;
-            faces += other.faces;
-            corners += other.corners;
-            spokes += other.spokes;
-            return *this;
-        }
-
-        std::int64_t vertices = 0;
-        std::int64_t faces = 0;
-        std::int64_t corners = 0;
-        std::int64_t spokes = 0;
-    };
-    /// The faces around a vertex that a V-face is made for: a fan, or a wedge of one.
-    struct VFace {
-        VertexFan fan;
-        Index begin; ///< position in Level::vertFaces; the end of the fan leads to its begin
-        Index count;
-        bool isWedge;
-    };
-
     bool isCut(Index pVert) const;
     template <typename FUNCTION>
     void forEachVFace(Index pVert, FUNCTION function) const;
@@ -79,8 +57,8 @@ private:
     Sdc::Options const _sdcOptions;
     LevelSizes _sizes{};
     // What the ranges of components before a range make, by range.
-    std::vector<Counts> _vertexCounts;
-    std::vector<Counts> _edgeCounts;
+    std::vector<ChildCounts> _vertexCounts; ///< V-vertices and V-faces
+    std::vector<ChildCounts> _edgeCounts;   ///< spokes
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

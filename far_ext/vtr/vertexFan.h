@@ -12,6 +12,25 @@ struct VertexFan {
     Far::Index begin; ///< positions in Level::vertFaces
     Far::Index end;
     bool isClosed;
+
+    Far::Index GetSize() const { return end - begin; }
+    /// The position \p count places on from \p position, which leads from the last to the first once at
+    /// the most.
+    Far::Index Advance(Far::Index position, Far::Index count) const {
+        Far::Index const k = position + count;
+        return k < end ? k : k - GetSize();
+    }
+};
+
+/// The faces around a vertex that a V-face joins: all of a fan, or part of it.
+struct VFace {
+    VertexFan fan;
+    Far::Index begin; ///< position in Level::vertFaces
+    Far::Index count;
+    bool hasVVertex; ///< in the polygon too
+
+    /// The position of its face \p i.
+    Far::Index GetPosition(Far::Index i) const { return fan.Advance(begin, i); }
 };
 
 /// Calls function(fan) for the fans of a vertex, in their order.
