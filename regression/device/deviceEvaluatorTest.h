@@ -60,12 +60,6 @@ MakeRefiner(Shape const &shape, int level, Sdc::Options::VtxBoundaryInterpolatio
     return refiner;
 }
 
-inline std::vector<Shape> GetShapesAndFeatureShapes() {
-    std::vector<Shape> shapes = GetShapes();
-    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
-    return shapes;
-}
-
 /// Names tests after what runs the kernels.
 struct KindName {
     template <class KIND>
@@ -203,7 +197,7 @@ protected:
 TYPED_TEST_SUITE_P(DeviceEvaluator);
 
 TYPED_TEST_P(DeviceEvaluator, GivesTheValuesOfTheCpu) {
-    for (Shape const &shape : GetShapesAndFeatureShapes()) {
+    for (Shape const &shape : GetAllShapes()) {
         for (auto boundary :
              {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
             SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
@@ -219,7 +213,7 @@ TYPED_TEST_P(DeviceEvaluator, GivesTheValuesOfTheCpu) {
 }
 
 TYPED_TEST_P(DeviceEvaluator, GivesTheLimitOfTheCpu) {
-    for (Shape const &shape : GetShapesAndFeatureShapes()) {
+    for (Shape const &shape : GetAllShapes()) {
         if (shape.GetNumFaces() > 100) {
             continue;
         }
@@ -428,7 +422,7 @@ TYPED_TEST_P(DeviceEvaluator, IsEvaluatedInPlace) {
 TYPED_TEST_P(DeviceEvaluator, GivesTheBitsOfTheKernelsOnTheProcessor) {
     constexpr int kLength = 3;
     Osd::BufferDescriptor const desc(0, kLength, kLength);
-    for (Shape const &shape : GetShapesAndFeatureShapes()) {
+    for (Shape const &shape : GetAllShapes()) {
         if (shape.GetNumFaces() > 100) {
             continue;
         }
@@ -467,7 +461,7 @@ TYPED_TEST_P(DeviceEvaluator, MakesTheTrianglesOfTheCpu) {
     options.cutCreases = OsdExt::CreaseCuts::None;
     options.drawHoles = true;
     options.vertexOffset = 5;
-    for (Shape const &shape : GetShapesAndFeatureShapes()) {
+    for (Shape const &shape : GetAllShapes()) {
         if (shape.GetNumFaces() > 100) {
             continue;
         }

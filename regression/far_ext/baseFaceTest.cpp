@@ -27,16 +27,10 @@ using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
 using Polygon = ReferencePolygon;
 
-std::vector<Shape> getAllShapes() {
-    std::vector<Shape> shapes = GetShapes();
-    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
-    return shapes;
-}
-
 /// Calls check(shape, refiner) for all shapes and boundary rules.
 template <typename CHECK>
 void forEachRefiner(int maxLevel, double maxCorners, CHECK const &check) {
-    for (Shape const &shape : getAllShapes()) {
+    for (Shape const &shape : GetAllShapes()) {
         for (auto boundary : kBoundaries) {
             SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
             Sdc::Options options;

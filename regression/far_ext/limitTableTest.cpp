@@ -130,17 +130,15 @@ void expectSameLimits(Shape const &shape, ReferenceMask mask, Sdc::Options const
 } // namespace
 
 TEST(LimitTable, OfTheLevelIsThatOfControlVertices) {
-    for (auto const *shapes : {&GetShapes(), &GetFeatureShapes()}) {
-        for (Shape const &shape : *shapes) {
-            if (shape.GetNumCorners() > 80) {
-                continue;
-            }
-            for (auto boundary : kBoundaries) {
-                SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
-                Sdc::Options options;
-                options.SetVtxBoundaryInterpolation(boundary);
-                ASSERT_NO_FATAL_FAILURE(expectSameLimits(shape, ReferenceMask::Smooth, options, 2));
-            }
+    for (Shape const &shape : GetAllShapes()) {
+        if (shape.GetNumCorners() > 80) {
+            continue;
+        }
+        for (auto boundary : kBoundaries) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
+            Sdc::Options options;
+            options.SetVtxBoundaryInterpolation(boundary);
+            ASSERT_NO_FATAL_FAILURE(expectSameLimits(shape, ReferenceMask::Smooth, options, 2));
         }
     }
 }

@@ -68,18 +68,16 @@ Sdc::Options makeOptions(Sdc::Options::VtxBoundaryInterpolation boundary,
 /// boundary rule and both creasing methods.
 template <typename CHECK>
 void forEachShape(int maxCorners, CHECK const &check) {
-    for (auto const *shapes : {&GetShapes(), &GetFeatureShapes()}) {
-        for (Shape const &shape : *shapes) {
-            if (shape.GetNumCorners() > maxCorners) {
-                continue;
-            }
-            for (auto boundary : kBoundaries) {
-                SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
-                ASSERT_NO_FATAL_FAILURE(check(shape, makeOptions(boundary)));
-                if (!shape.creaseSharpness.empty()) {
-                    ASSERT_NO_FATAL_FAILURE(
-                        check(shape, makeOptions(boundary, Sdc::Options::CREASE_CHAIKIN)));
-                }
+    for (Shape const &shape : GetAllShapes()) {
+        if (shape.GetNumCorners() > maxCorners) {
+            continue;
+        }
+        for (auto boundary : kBoundaries) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
+            ASSERT_NO_FATAL_FAILURE(check(shape, makeOptions(boundary)));
+            if (!shape.creaseSharpness.empty()) {
+                ASSERT_NO_FATAL_FAILURE(
+                    check(shape, makeOptions(boundary, Sdc::Options::CREASE_CHAIKIN)));
             }
         }
     }

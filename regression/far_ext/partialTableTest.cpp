@@ -24,17 +24,11 @@ using IndexArray = Far::ConstIndexArray;
 template <typename REAL>
 using Factory = FarExt::StencilTableFactoryReal<REAL>;
 
-std::vector<Shape> getAllShapes() {
-    std::vector<Shape> shapes = GetShapes();
-    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
-    return shapes;
-}
-
 /// Calls check(shape, refiner) for all shapes and all ways to refine them, to \p maxLevel at most
 /// and while the last level has at most \p maxCorners.
 template <typename CHECK>
 void forEachRefiner(int maxLevel, double maxCorners, CHECK const &check) {
-    for (Shape const &shape : getAllShapes()) {
+    for (Shape const &shape : GetAllShapes()) {
         int const level = GetTestLevel(shape, maxLevel, maxCorners);
         for (auto boundary :
              {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {

@@ -37,9 +37,7 @@ std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, ReferenceMask
 /// Calls check(shape, options) for all shapes, boundary rules and, with creases, creasing methods.
 template <typename CHECK>
 void forEach(CHECK const &check) {
-    std::vector<Shape> shapes = GetShapes();
-    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
-    for (Shape const &shape : shapes) {
+    for (Shape const &shape : GetAllShapes()) {
         for (auto boundary : kBoundaries) {
             for (auto method : {Sdc::Options::CREASE_UNIFORM, Sdc::Options::CREASE_CHAIKIN}) {
                 if (shape.creaseSharpness.empty() && method != Sdc::Options::CREASE_UNIFORM) {
@@ -251,9 +249,7 @@ TEST(Truncation, ReproducesLinearFunctions) {
 }
 
 TEST(Truncation, KeepsLabelsApart) {
-    std::vector<Shape> shapes = GetShapes();
-    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
-    for (Shape const &shape : shapes) {
+    for (Shape const &shape : GetAllShapes()) {
         SCOPED_TRACE(shape.name);
         auto const refiner = createRefiner(shape, ReferenceMask::Smooth, 0);
         TopologyRefiner::UniformOptions options(GetTestLevel(shape, 3, 6000));

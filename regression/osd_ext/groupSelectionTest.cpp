@@ -130,19 +130,17 @@ TEST(GroupSelection, MakesTheSameBits) {
     std::mt19937 random(5);
     int numParts = 0;
     int numLevels = 0;
-    for (auto const *shapes : {&GetShapes(), &GetFeatureShapes()}) {
-        for (Shape const &shape : *shapes) {
-            if (shape.GetNumCorners() > 60) {
-                continue;
-            }
-            for (auto firstStep : {FarExt::FirstStep::None, FarExt::FirstStep::Truncate}) {
-                SCOPED_TRACE(testing::Message() << shape.name << ", step " << int(firstStep));
-                auto const refiner = createRefiner(shape, firstStep, 4);
-                numParts += expectParts(*refiner, random);
-                numLevels += refiner->GetMaxLevel();
-                if (HasFailure()) {
-                    return;
-                }
+    for (Shape const &shape : GetAllShapes()) {
+        if (shape.GetNumCorners() > 60) {
+            continue;
+        }
+        for (auto firstStep : {FarExt::FirstStep::None, FarExt::FirstStep::Truncate}) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", step " << int(firstStep));
+            auto const refiner = createRefiner(shape, firstStep, 4);
+            numParts += expectParts(*refiner, random);
+            numLevels += refiner->GetMaxLevel();
+            if (HasFailure()) {
+                return;
             }
         }
     }

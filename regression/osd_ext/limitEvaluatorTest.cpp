@@ -131,15 +131,13 @@ void expectLimits(TopologyRefiner const &refiner, int length, int gap = 2) {
 } // namespace
 
 TEST(LimitEvaluator, IsThatOfLimitStencilTables) {
-    for (auto const *shapes : {&GetShapes(), &GetFeatureShapes()}) {
-        for (Shape const &shape : *shapes) {
-            if (shape.GetNumCorners() > 60) {
-                continue;
-            }
-            for (auto boundary : kBoundaries) {
-                SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
-                ASSERT_NO_FATAL_FAILURE(expectLimits(*createRefiner(shape, 2, true, boundary), 3));
-            }
+    for (Shape const &shape : GetAllShapes()) {
+        if (shape.GetNumCorners() > 60) {
+            continue;
+        }
+        for (auto boundary : kBoundaries) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
+            ASSERT_NO_FATAL_FAILURE(expectLimits(*createRefiner(shape, 2, true, boundary), 3));
         }
     }
 }

@@ -39,9 +39,7 @@ Far::ConstIndexArray toArray(std::vector<int> const &labels) {
 } // namespace
 
 TEST(PolygonIndices, AllOptionsOfAllShapes) {
-    std::vector<Shape> shapes = GetShapes();
-    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
-    for (Shape const &shape : shapes) {
+    for (Shape const &shape : GetAllShapes()) {
         Sdc::Options sdcOptions;
         sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
         auto const refiner = refine(shape, GetTestLevel(shape, 3, 4000), sdcOptions);

@@ -183,9 +183,7 @@ void expectScales(TopologyRefiner const &refiner, FarExt::StencilMode mode, int 
 /// Calls check(shape, options) for every shape and boundary rule.
 template <class CHECK>
 void forEachShape(CHECK const &check) {
-    std::vector<Shape> shapes = GetShapes();
-    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
-    for (Shape const &shape : shapes) {
+    for (Shape const &shape : GetAllShapes()) {
         for (auto boundary : kBoundaries) {
             SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);
             Sdc::Options options;

@@ -107,9 +107,7 @@ void expectTiles(Shape const &shape, Sdc::Options sdcOptions,
 }
 
 TEST(TileMap, KnowsWhichVerticesLieInside) {
-    std::vector<Shape> shapes = GetShapes();
-    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
-    for (Shape const &shape : shapes) {
+    for (Shape const &shape : GetAllShapes()) {
         for (auto boundary :
              {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}) {
             SCOPED_TRACE(testing::Message() << shape.name << ", boundary " << boundary);

@@ -504,6 +504,15 @@ std::vector<Shape> const &GetFeatureShapes() {
     return shapes;
 }
 
+std::vector<Shape> const &GetAllShapes() {
+    static std::vector<Shape> const shapes = [] {
+        std::vector<Shape> result = GetShapes();
+        result.insert(result.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
+        return result;
+    }();
+    return shapes;
+}
+
 Shape const &GetFeatureShape(std::string const &name) {
     for (Shape const &shape : GetFeatureShapes()) {
         if (shape.name == name) {

@@ -20,6 +20,9 @@ Shape MakeTiling(Tiling tiling, int numX, int numY);
 /// that their arithmetic is exact.  No two faces run an edge in the same direction.
 std::vector<Shape> const &GetFeatureShapes();
 
+/// GetShapes(), and behind them GetFeatureShapes().
+std::vector<Shape> const &GetAllShapes();
+
 /// The shape of that name; throws std::out_of_range if there is none.
 Shape const &GetFeatureShape(std::string const &name);
 
