@@ -126,9 +126,10 @@ void selectFaces(PreparedRefinement const &prepared, Marks const &isNeeded,
     result.plainFaces = selectItems(prepared.plainFaces, [&](FaceRun const &run, auto add) {
         auto const isFaceNeeded = [&](Index face) { return isMarked(isNeeded, face); };
         forEachPart(run, isFaceNeeded, [&](Index begin, Index end) {
-            auto const first =
-                std::upper_bound(irregular.begin(), irregular.end(), begin,
-                                 [](Index face, IrregularRun const &a) { return face < a.end; });
+            auto const first = std::upper_bound(
+                irregular.begin(), irregular.end(),
+                prepared.parent->faceFirstCorner[std::size_t(begin)],
+                [](Index corner, IrregularRun const &a) { return corner < a.end; });
             add(FaceRun{begin, end, Index(first - irregular.begin())});
         });
     });

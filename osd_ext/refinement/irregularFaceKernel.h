@@ -4,6 +4,7 @@
 
 #include "elementAccess.h"
 
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 
@@ -116,59 +117,23 @@ OPENSUBDIVHEX_INLINE VALUE sumIrregularRow(IrregularFace<VALUE> const &face) {
     }
 }
 
-// The faces of a run, whose vertices and first corner these are.
 template <class ACCESS, int PATTERN, int... I>
-void refineFacesOfPattern(IrregularFaceMask const &mask, PlainFaceQuads const &plain,
-                          Elements<float const> const src, Far::Index const *verts,
-                          Far::Index numFaces, Elements<float> const dst, Far::Index corner,
-                          std::integer_sequence<int, I...>) {
-    constexpr int kSize = sizeof...(I);
-    for (Far::Index i = 0; i < numFaces; ++i, verts += kSize, corner += kSize) {
-        decltype(ACCESS::Load(src, 0)) const v[] = {ACCESS::Load(src, verts[I])...};
-        IrregularFace<std::remove_const_t<std::remove_reference_t<decltype(v[0])>>> const face = {
-            mask, plain, v, plain.all * (v[0] + v[1] + v[2] + v[3] + v[4] + v[5])};
-        auto const refine = [&](auto local) {
-            if constexpr (local + 1 < kSize) {
-                ACCESS::Store(dst, corner + local, sumIrregularRow<PATTERN, local>(face));
-            } else {
-                ACCESS::StoreExactly(dst, corner + local, sumIrregularRow<PATTERN, local>(face));
-            }
-        };
-        (refine(std::integral_constant<int, I>()), ...);
-    }
-}
-
-template <class ACCESS>
-void refineIrregularFaces(IrregularFaceMask const &mask, PlainFaceQuads const &plain,
-                          Elements<float const> const &src, Far::Index const *verts,
-                          Far::Index numFaces, Elements<float> const &dst, Far::Index corner) {
-    auto const refine = [&](auto pattern) {
-        refineFacesOfPattern<ACCESS, pattern>(
-            mask, plain, src, verts, numFaces, dst, corner,
-            std::make_integer_sequence<int, IrregularFaceMask::kSize>());
+OPENSUBDIVHEX_INLINE void
+refineIrregularFace(IrregularFaceMask const &mask, PlainFaceQuads const &plain,
+                    Elements<float const> const src, Elements<float> const dst,
+                    Far::Index const *verts, std::ptrdiff_t corner,
+                    std::integer_sequence<int, I...>) {
+    decltype(ACCESS::Load(src, 0)) const v[] = {ACCESS::Load(src, verts[I])...};
+    IrregularFace<std::remove_const_t<std::remove_reference_t<decltype(v[0])>>> const face = {
+        mask, plain, v, plain.all * (v[0] + v[1] + v[2] + v[3] + v[4] + v[5])};
+    auto const refine = [&](auto local) {
+        if constexpr (local + 1 < int(sizeof...(I))) {
+            ACCESS::Store(dst, corner + local, sumIrregularRow<PATTERN, local>(face));
+        } else {
+            ACCESS::StoreExactly(dst, corner + local, sumIrregularRow<PATTERN, local>(face));
+        }
     };
-    switch (mask.pattern) {
-    case 0:
-        return refine(std::integral_constant<int, 0>());
-    case 1:
-        return refine(std::integral_constant<int, 1>());
-    case 2:
-        return refine(std::integral_constant<int, 2>());
-    case 3:
-        return refine(std::integral_constant<int, 3>());
-    case 4:
-        return refine(std::integral_constant<int, 4>());
-    case 5:
-        return refine(std::integral_constant<int, 5>());
-    case 6:
-        return refine(std::integral_constant<int, 6>());
-    case 7:
-        return refine(std::integral_constant<int, 7>());
-    case 8:
-        return refine(std::integral_constant<int, 8>());
-    default:
-        return refine(std::integral_constant<int, IrregularFaceMask::kNumPatterns>());
-    }
+    (refine(std::integral_constant<int, I>()), ...);
 }
 
 } // namespace

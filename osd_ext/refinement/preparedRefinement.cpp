@@ -96,9 +96,10 @@ private:
 class IrregularLister {
 public:
     // faces: all of the level, ascending
-    IrregularLister(std::vector<RefinementMask::IrregularFace> const &faces,
+    IrregularLister(Level const &level, std::vector<RefinementMask::IrregularFace> const &faces,
                     std::vector<IrregularRun> &runs)
-        : _next(faces.begin()), _end(faces.end()), _runs(runs) {}
+        : _firstCorners(level.faceFirstCorner.data()), _next(faces.begin()), _end(faces.end()),
+          _runs(runs) {}
 
     void Add(Index begin, Index end) {
         while (_next != _end && _next->face < begin) {
@@ -106,33 +107,36 @@ public:
         }
         std::size_t const numBefore = _runs.size();
         for (; _next != _end && _next->face < end; ++_next) {
-            bool const goesOn = _runs.size() > numBefore && _runs.back().end == _next->face &&
+            Index const corner = _firstCorners[_next->face];
+            Index const endCorner = _firstCorners[_next->face + 1];
+            bool const goesOn = _runs.size() > numBefore && _runs.back().end == corner &&
                                 _runs.back().mask == _next->type;
             if (goesOn) {
-                ++_runs.back().end;
+                _runs.back().end = endCorner;
             } else {
-                _runs.push_back({_next->face, _next->face + 1, _next->type});
+                _runs.push_back({corner, endCorner, _next->type});
             }
         }
     }
 
 private:
+    Index const *const _firstCorners;
     std::vector<RefinementMask::IrregularFace>::const_iterator _next;
     std::vector<RefinementMask::IrregularFace>::const_iterator const _end;
     std::vector<IrregularRun> &_runs;
 };
 
 // The runs of all groups, which know their irregular faces.
-Groups<FaceRun> addIrregular(Groups<IndexRun> const &runs,
+Groups<FaceRun> addIrregular(Level const &level, Groups<IndexRun> const &runs,
                              std::vector<IrregularRun> const &irregular) {
     Groups<FaceRun> result;
     result.firsts = runs.firsts;
     result.items.Resize(runs.items.size());
     std::transform(
         runs.items.begin(), runs.items.end(), result.items.data(), [&](IndexRun const &run) {
-            auto const first =
-                std::lower_bound(irregular.begin(), irregular.end(), run.begin,
-                                 [](IrregularRun const &a, Index face) { return a.begin < face; });
+            auto const first = std::lower_bound(
+                irregular.begin(), irregular.end(), level.faceFirstCorner[std::size_t(run.begin)],
+                [](IrregularRun const &a, Index corner) { return a.begin < corner; });
             return FaceRun{run.begin, run.end, Index(first - irregular.begin())};
         });
     return result;
@@ -245,7 +249,7 @@ void makeFaces(RefinementMask const &mask, Level const &parent,
         }
     };
     FaceRunMaker plain(parent);
-    IrregularLister irregular(mask.GetIrregularFaces(), prepared.irregularFaces);
+    IrregularLister irregular(parent, mask.GetIrregularFaces(), prepared.irregularFaces);
     for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
         Group const group = groupOfTile[run.tile];
         ForEachRun(
@@ -257,8 +261,9 @@ void makeFaces(RefinementMask const &mask, Level const &parent,
             [&](Index face, Index) { addWeighted(face, group); });
     }
     prepared.weightedFaces = makeGroups(weighted, groupOfWeighted, prepared.numTiles);
-    prepared.irregularFaces.push_back({parent.numFaces, parent.numFaces, -1});
-    prepared.plainFaces = addIrregular(plain.Take(prepared.numTiles), prepared.irregularFaces);
+    prepared.irregularFaces.push_back({parent.numCorners, parent.numCorners, -1});
+    prepared.plainFaces =
+        addIrregular(parent, plain.Take(prepared.numTiles), prepared.irregularFaces);
 }
 
 WeightedVertex makeWeightedVertex(RefinementMask const &mask, Refinement const &refinement,
@@ -454,13 +459,12 @@ private:
     Level const *_levelOfOlderVertices = nullptr;
 };
 
-// Rows that are as those of plain hexagons are left to their mask, where it has no opposite weight.
-IrregularFaceMask makeIrregularMask(RefinementMask::IrregularFaceWeights const &type,
-                                    PlainFaceMask const &plain) {
+// Rows that are as those of plain hexagons are left to their mask.
+IrregularFaceMask makeIrregularMask(RefinementMask::IrregularFaceWeights const &type) {
     constexpr int kSize = IrregularFaceMask::kSize;
     IrregularFaceMask mask;
     for (int i = 0; i < kSize; ++i) {
-        bool const isPlain = !type.areIrregular[i] && plain.opposite == 0;
+        bool const isPlain = !type.areIrregular[i];
         mask.places[i] = isPlain ? IrregularFaceMask::kPlain : 0;
         for (int j = 0; j < kSize; ++j) {
             double const weight = type.weights[i][(i + j) % kSize];
@@ -480,8 +484,7 @@ IrregularFaceMask makeIrregularMask(RefinementMask::IrregularFaceWeights const &
 
 void addIrregularMasks(RefinementMask const &mask, PlainMasks &masks) {
     for (RefinementMask::IrregularFaceWeights const &type : mask.GetIrregularTypes()) {
-        masks.irregularFaces.push_back(
-            makeIrregularMask(type, masks.faces[IrregularFaceMask::kSize]));
+        masks.irregularFaces.push_back(makeIrregularMask(type));
     }
     for (auto const &[numFaces, irregular] : mask.GetIrregularMasks()) {
         masks.irregularVertices.resize(std::size_t(numFaces) + 1);

@@ -30,7 +30,8 @@ struct PlainFaceMask {
 /// The mask of faces of \p size sides whose corner 0 has \p weights.
 PlainFaceMask MakePlainFaceMask(double const *weights, int size);
 
-/// \brief The weights of an irregular face, a hexagon: a row for each corner.
+/// \brief The weights of an irregular face, a hexagon: a row for each corner.  Only Smooth has such
+/// faces, whose plain hexagons have no opposite weight.
 struct IrregularFaceMask {
     static constexpr int kSize = 6;
 
@@ -93,8 +94,8 @@ struct WeightedFace {
     std::size_t firstWeight; ///< position in faceWeights
 };
 
-/// \brief Irregular faces [begin, end), hexagons of one type.  It may reach beyond the run of plain
-/// faces that it is in, where not all faces are refined.
+/// \brief Irregular faces, hexagons of one type that follow one another: their corners [begin, end).
+/// It may reach beyond the run of plain faces that it is in, where not all faces are refined.
 struct IrregularRun {
     Far::Index begin;
     Far::Index end;

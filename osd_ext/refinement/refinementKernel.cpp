@@ -45,7 +45,7 @@ struct ConsecutiveVertices {
 // A plain face of 3 to 6 sides.
 template <class ACCESS, int SIZE, bool HAS_OPPOSITE, class VERTICES>
 inline void refineUnrolledFace(PlainFaceQuads const &mask, Elements<float const> const &src,
-                               VERTICES verts, Elements<float> const &dst, Index corner) {
+                               VERTICES verts, Elements<float> const &dst, std::ptrdiff_t corner) {
     decltype(ACCESS::Load(src, 0)) v[SIZE];
     for (int i = 0; i < SIZE; ++i) {
         v[i] = ACCESS::Load(src, verts[i]);
@@ -111,48 +111,124 @@ void refineWeightedFace(float const *weights, std::ptrdiff_t rowStride,
     }
 }
 
-// Plain faces of 3 to 6 sides.
+// Faces of 3 to 6 sides, whose corners follow one another.
 template <class ACCESS, int SIZE, bool HAS_OPPOSITE>
-void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMask,
-                         FaceRun const &run) {
-    PlainFaceQuads const mask(faceMask);
-    Elements<float const> const src = task.src;
-    Elements<float> const dst = task.FVertices();
-    Level const &parent = *task.refinement->parent;
-    Index corner = parent.faceFirstCorner[std::size_t(run.begin)];
-    if (run.begin < GetNumFFaces(parent)) {
-        Index const end = parent.faceFirstCorner[std::size_t(run.end)];
-        HexIndexing const indexing = task.refinement->before->ChildIndexing();
-        for (; corner < end; corner += SIZE) {
+struct UnrolledFaces {
+    static constexpr bool kMayBeIrregular = SIZE == IrregularFaceMask::kSize && !HAS_OPPOSITE;
+
+    // F-faces, from corner begin to end - 1.
+    OPENSUBDIVHEX_INLINE void RefineFFaces(Index begin, Index end,
+                                           HexIndexing const indexing) const {
+        for (Index corner = begin; corner < end; corner += SIZE) {
             prefetchAhead(ACCESS::At(dst, corner));
             refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(
                 mask, src, ConsecutiveVertices{indexing.GetCornerChildVertex(corner)}, dst, corner);
         }
-        return;
     }
-    Index const *verts = parent.faceVerts.data() + corner;
-    IrregularRun const *irregular = task.refinement->irregularFaces.data() + run.firstIrregular;
-    for (Index face = run.begin;;) {
-        Index const end = std::min(run.end, irregular->begin);
-        for (; face < end; ++face, corner += SIZE, verts += SIZE) {
-            prefetchAhead(verts);
+
+    OPENSUBDIVHEX_INLINE void RefinePlain(std::ptrdiff_t begin, std::ptrdiff_t end) const {
+        for (std::ptrdiff_t corner = begin; corner != end; corner += SIZE) {
+            prefetchAhead(verts + corner);
             prefetchAhead(ACCESS::At(dst, corner));
-            refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(mask, src, verts, dst, corner);
+            refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(mask, src, verts + corner, dst, corner);
         }
-        if (face == run.end) {
-            break;
+    }
+
+    // What is left of the faces when all before an irregular one are done.
+    struct Rest {
+        Index corner;
+        IrregularRun const *irregular;
+    };
+
+    // Irregular faces of one type, with the plain ones between them and behind, until there is another
+    // type, or end.  A face at an irregular vertex stands alone: going on from one to the next takes a
+    // fifth of its instructions.
+    template <int PATTERN>
+    static Rest RefineType(UnrolledFaces const faces, IrregularFaceMask const &irregularMask,
+                           Rest rest, Index end) {
+        int const type = rest.irregular->mask;
+        do {
+            std::ptrdiff_t const irregularEnd = std::min(rest.irregular->end, end);
+            for (std::ptrdiff_t corner = rest.corner; corner != irregularEnd; corner += SIZE) {
+                refineIrregularFace<ACCESS, PATTERN>(
+                    irregularMask, faces.mask, faces.src, faces.dst, faces.verts + corner, corner,
+                    std::make_integer_sequence<int, IrregularFaceMask::kSize>());
+            }
+            ++rest.irregular;
+            rest.corner = std::min(rest.irregular->begin, end);
+            faces.RefinePlain(irregularEnd, rest.corner);
+        } while (rest.corner != end && rest.irregular->mask == type);
+        return rest;
+    }
+
+    // From corner begin to end - 1; irregular are the first that end behind begin, masks are by type.
+    void RefineAny(IrregularFaceMask const *masks, IrregularRun const *irregular, Index begin,
+                   Index end) const {
+        Rest rest = {std::clamp(irregular->begin, begin, end), irregular};
+        RefinePlain(begin, rest.corner);
+        while (rest.corner != end) {
+            IrregularFaceMask const &irregularMask = masks[rest.irregular->mask];
+            auto const refine = [&](auto pattern) {
+                rest = RefineType<pattern>(*this, irregularMask, rest, end);
+            };
+            switch (irregularMask.pattern) {
+            case 0:
+                refine(std::integral_constant<int, 0>());
+                break;
+            case 1:
+                refine(std::integral_constant<int, 1>());
+                break;
+            case 2:
+                refine(std::integral_constant<int, 2>());
+                break;
+            case 3:
+                refine(std::integral_constant<int, 3>());
+                break;
+            case 4:
+                refine(std::integral_constant<int, 4>());
+                break;
+            case 5:
+                refine(std::integral_constant<int, 5>());
+                break;
+            case 6:
+                refine(std::integral_constant<int, 6>());
+                break;
+            case 7:
+                refine(std::integral_constant<int, 7>());
+                break;
+            case 8:
+                refine(std::integral_constant<int, 8>());
+                break;
+            default:
+                refine(std::integral_constant<int, IrregularFaceMask::kNumPatterns>());
+            }
         }
-        if constexpr (SIZE == IrregularFaceMask::kSize) {
-            Index const irregularEnd = std::min(run.end, irregular->end);
-            Index const numFaces = irregularEnd - face;
-            refineIrregularFaces<ACCESS>(
-                task.refinement->masks.irregularFaces[std::size_t(irregular->mask)], mask, src,
-                verts, numFaces, dst, corner);
-            corner += SIZE * numFaces;
-            verts += std::ptrdiff_t(SIZE) * numFaces;
-            face = irregularEnd;
-            ++irregular;
-        }
+    }
+
+    PlainFaceQuads mask;
+    Elements<float const> src;
+    Elements<float> dst;
+    Index const *verts; // by corner
+};
+
+// Plain faces of 3 to 6 sides.
+template <class ACCESS, int SIZE, bool HAS_OPPOSITE>
+void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMask,
+                         FaceRun const &run) {
+    PreparedRefinement const &refinement = *task.refinement;
+    Level const &parent = *refinement.parent;
+    using Faces = UnrolledFaces<ACCESS, SIZE, HAS_OPPOSITE>;
+    Faces const faces = {PlainFaceQuads(faceMask), task.src, task.FVertices(),
+                         parent.faceVerts.data()};
+    Index const begin = parent.faceFirstCorner[std::size_t(run.begin)];
+    Index const end = parent.faceFirstCorner[std::size_t(run.end)];
+    if (run.begin < GetNumFFaces(parent)) {
+        faces.RefineFFaces(begin, end, refinement.before->ChildIndexing());
+    } else if constexpr (Faces::kMayBeIrregular) {
+        faces.RefineAny(refinement.masks.irregularFaces.data(),
+                        refinement.irregularFaces.data() + run.firstIrregular, begin, end);
+    } else {
+        faces.RefinePlain(begin, end);
     }
 }
 

@@ -46,6 +46,9 @@ TEST(IrregularKernel, KnowsQuadsAndTriangles) {
             for (IrregularFaceMask const &mask : prepared.masks.irregularFaces) {
                 EXPECT_LT(mask.pattern, IrregularFaceMask::kNumPatterns);
             }
+            if (level > 0) {
+                EXPECT_EQ(prepared.masks.faces[IrregularFaceMask::kSize].opposite, 0);
+            }
         }
     }
 }
