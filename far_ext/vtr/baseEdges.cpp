@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "baseEdges.h"
 
+#include "indexSet.h"
 #include "parallel.h"
 
 #include <algorithm>
@@ -37,33 +38,31 @@ struct NewSide {
     Index corner;
 };
 
-// Keys that are compared with another all at once.
+// Vertices that are compared with one all at once.
 template <int SIZE>
 class Keys {
 public:
+    // All of SIZE are read.
     explicit Keys(Index const *keys) {
 #if defined(__SSE2__) || defined(_M_X64)
-        // One by one, since what was just written cannot be read four at a time at once.
-        for (int i = 0; i < kNumFours; ++i, keys += 4) {
-            _fours[i] = _mm_set_epi32(keys[3], keys[2], keys[1], keys[0]);
+        for (int i = 0; i < SIZE / 4; ++i) {
+            _fours[i] = _mm_loadu_si128(reinterpret_cast<__m128i const *>(keys) + i);
         }
 #else
-        std::copy_n(keys, kCapacity, _keys);
+        std::copy_n(keys, SIZE, _keys);
 #endif
     }
-
-    static constexpr int kCapacity = (SIZE + 3) / 4 * 4; // all of them are read
 
     // A bit for each key that equals another one.
     unsigned FindEqual(Index key) const {
 #if defined(__SSE2__) || defined(_M_X64)
         __m128i const wanted = _mm_set1_epi32(key);
         auto const isEqual = [&](int i) { return _mm_cmpeq_epi32(_fours[i], wanted); };
-        if constexpr (kNumFours == 1) {
+        if constexpr (SIZE == 4) {
             return unsigned(_mm_movemask_ps(_mm_castsi128_ps(isEqual(0))));
         } else {
             unsigned result = 0;
-            for (int i = 0; i < kNumFours; i += 2) {
+            for (int i = 0; i < SIZE / 4; i += 2) {
                 __m128i const eight = _mm_packs_epi32(isEqual(i), isEqual(i + 1));
                 result |= unsigned(_mm_movemask_epi8(_mm_packs_epi16(eight, _mm_setzero_si128())))
                           << 4 * i;
@@ -72,7 +71,7 @@ public:
         }
 #else
         unsigned result = 0;
-        for (int i = 0; i < kCapacity; ++i) {
+        for (int i = 0; i < SIZE; ++i) {
             result |= unsigned(_keys[i] == key) << i;
         }
         return result;
@@ -80,12 +79,11 @@ public:
     }
 
 private:
+    static_assert((SIZE == 4 || SIZE % 8 == 0) && SIZE <= kMaxFacesAtOnce);
 #if defined(__SSE2__) || defined(_M_X64)
-    static constexpr int kNumFours = kCapacity / 4;
-    static_assert(kNumFours == 1 || kNumFours % 2 == 0);
-    __m128i _fours[kNumFours];
+    __m128i _fours[SIZE / 4];
 #else
-    Index _keys[kCapacity];
+    Index _keys[SIZE];
 #endif
 };
 
@@ -111,17 +109,20 @@ class MateFinder {
 public:
     MateFinder(PLACES places, Level &level, Corners &corners)
         : _places(places), _level(level), _faceVerts(level.faceVerts.data()), _corners(corners),
-          _ofVerts(corners.ofVerts.data()), _mates(corners.mates.data()),
-          _vertFirstFace(level.vertFirstFace.data()), _vertFaces(level.vertFaces.data()),
-          _vertFaceLocals(level.vertFaceLocals.data()) {}
+          _ofVerts(corners.ofVerts.data()), _nextVerts(corners.nextVerts.data()),
+          _prevVerts(corners.prevVerts.data()), _mates(corners.mates.data()),
+          _vertFirstFace(level.vertFirstFace.data()), _orderedCorners(level.vertFaces.data()) {}
 
-    // All of them; gives the sides of edges that come apart.
-    std::vector<NewSide> Find() {
-        _corners.oddVerts = ParallelSelect(
+    // All of them, with what faces have several times; gives the sides of edges that come apart.
+    std::vector<NewSide> Find(std::vector<Index> const &repeatedVerts) {
+        std::vector<Index> &oddVerts = _corners.oddVerts;
+        oddVerts = ParallelSelect(
             _level.numVertices,
             [finder = MateFinder(*this)](Index vert) { return !finder.findMates(vert); },
             kShortParallelRange);
-        for (Index vert : _corners.oddVerts) {
+        oddVerts.insert(oddVerts.end(), repeatedVerts.begin(), repeatedVerts.end());
+        SortUnique(oddVerts);
+        for (Index vert : oddVerts) {
             findMatesOfAny(vert);
         }
         return std::move(_apartSides);
@@ -131,34 +132,33 @@ private:
     bool findMates(Index vert) const;
     template <int NUM_FACES>
     bool findMatesOf(Index first) const {
-        return findMatesOfFew<NUM_FACES>(first, std::integral_constant<int, NUM_FACES>());
+        return findMatesOfFew<(NUM_FACES + 3) / 4 * 4>(first,
+                                                       std::integral_constant<int, NUM_FACES>());
     }
     template <int SIZE, typename NUM_FACES>
     bool findMatesOfFew(Index first, NUM_FACES numFaces) const;
+    template <int SIZE>
+    bool findMatesOfOpen(Index first, int numFaces, int start) const;
     void findMatesOfAny(Index vert);
     void findMatesOfEdge(HalfEdge const *begin, HalfEdge const *end, Index vert);
-    void setFace(Index place, Index corner) const {
-        Index const face = _places.GetFace(corner);
-        _vertFaces[place] = face;
-        _vertFaceLocals[place] = _places.GetLocal(face, corner);
-    }
 
     PLACES const _places;
     Level const &_level;
     Index const *const _faceVerts;
     Corners &_corners;
     Index const *const _ofVerts;
+    Index const *const _nextVerts;
+    Index const *const _prevVerts;
     Index *const _mates;
     Index const *const _vertFirstFace;
-    Index *const _vertFaces;
-    LocalIndex *const _vertFaceLocals;
+    Index *const _orderedCorners;
     std::vector<NewSide> _apartSides;
     std::vector<HalfEdge> _halfEdges; // of the vertex that is looked at
 };
 
 // Finds the mates of the corners of a vertex, and the order of its faces; false where an edge comes
 // apart, or there are several fans, or many faces.  Usual numbers of faces are constants to the
-// compiler, which then keeps all in registers (benchmark base level/triangle is 1.1 times as fast).
+// compiler (benchmark base level is 1.03 times as fast).
 template <typename PLACES>
 inline bool MateFinder<PLACES>::findMates(Index vert) const {
     Index const first = _vertFirstFace[vert];
@@ -179,68 +179,72 @@ inline bool MateFinder<PLACES>::findMates(Index vert) const {
     case 8:
         return findMatesOf<8>(first);
     default:
-        return numFaces <= 16 && findMatesOfFew<16>(first, numFaces);
+        return numFaces <= kMaxFacesAtOnce && findMatesOfFew<kMaxFacesAtOnce>(first, numFaces);
     }
 }
 
+// The face before another comes back along the edge that this leaves along.
 template <typename PLACES>
 template <int SIZE, typename NUM_FACES>
 inline bool MateFinder<PLACES>::findMatesOfFew(Index first, NUM_FACES numFaces) const {
-    // The vertices to which the faces leave, and from which they come back; no vertex behind these.
-    Index corners[SIZE];
-    Index outs[SIZE];
-    Index ins[Keys<SIZE>::kCapacity];
-    Index prevs[SIZE + 1]; // corners
-    unsigned odd = 0;
-    Index lastFace = Far::INDEX_INVALID;
-    for (int i = 0; i < numFaces; ++i) {
-        Index const corner = _ofVerts[first + i];
-        Index const face = _places.GetFace(corner);
-        corners[i] = corner;
-        prevs[i] = _places.GetPrev(face, corner);
-        outs[i] = _faceVerts[_places.GetNext(face, corner)];
-        ins[i] = _faceVerts[prevs[i]];
-        odd |= unsigned(face == lastFace); // has the vertex twice
-        lastFace = face;
-    }
-    for (int i = numFaces; i < Keys<SIZE>::kCapacity; ++i) {
-        ins[i] = Far::INDEX_INVALID;
-    }
-    prevs[SIZE] = kNoMate;
-    // The face before each around the vertex, which comes back where that leaves; SIZE for none.
-    Keys<SIZE> const keys(ins);
-    unsigned before[SIZE];
-    unsigned matched = 0; // of those that come back
-    for (int i = 0; i < numFaces; ++i) {
-        unsigned const matches = keys.FindEqual(outs[i]);
-        odd |= (matches & (matches - 1)) | (matches & (matched | 1u << i));
-        matched |= matches;
-        before[i] = findLowestBit(matches | 1u << SIZE);
-        _mates[corners[i]] = prevs[before[i]];
-    }
+    Index const *const corners = _ofVerts + first;
+    Index const *const nextVerts = _nextVerts + first;
+    Keys<SIZE> const prevVerts(_prevVerts + first);
     unsigned const all = (1u << numFaces) - 1;
-    unsigned const last = all & ~matched;
-    // Where two faces leave along edges without others, these may be one edge; so where they come
-    // back.
-    if ((odd | (last & (last - 1))) != 0) {
-        return false;
+    unsigned sum = 0;
+    int before[SIZE]; // by face of the vertex
+    for (int face = 0; face < numFaces; ++face) {
+        unsigned const matches = prevVerts.FindEqual(nextVerts[face]) & all;
+        if (matches == 0) {
+            return findMatesOfOpen<SIZE>(first, numFaces, face);
+        }
+        sum += matches;
+        before[face] = findLowestBit(matches);
+        _mates[corners[face]] = corners[before[face]];
     }
-    // From the last face back to the first.
-    unsigned face = last == 0 ? before[0] : findLowestBit(last);
-    unsigned ordered = 0;
-    for (int i = numFaces; i-- > 0 && face != SIZE;) {
-        setFace(first + i, corners[face]);
-        ordered |= 1u << face;
+    unsigned met = 0;
+    int face = 0;
+    for (int i = numFaces; i-- > 0;) {
         face = before[face];
+        met |= 1u << face;
+        _orderedCorners[first + i] = corners[face];
     }
-    return ordered == all;
+    // The sum is larger where an edge has further faces.  One face alone has come back to itself.
+    return met == all && sum == all && numFaces > 1;
+}
+
+// The same where a fan begins with a face of the vertex: from this on, counter-clockwise.
+template <typename PLACES>
+template <int SIZE>
+bool MateFinder<PLACES>::findMatesOfOpen(Index first, int numFaces, int start) const {
+    Index const *const corners = _ofVerts + first;
+    Index const *const prevVerts = _prevVerts + first;
+    Keys<SIZE> const nextVerts(_nextVerts + first);
+    unsigned const all = (1u << numFaces) - 1;
+    Index mate = kNoMate;
+    int face = start;
+    for (int i = 0;; ++i) {
+        Index const corner = corners[face];
+        _orderedCorners[first + i] = corner;
+        _mates[corner] = mate;
+        mate = corner;
+        unsigned const matches = nextVerts.FindEqual(prevVerts[face]) & all;
+        if (matches == 0 || i + 1 == numFaces) {
+            // Had a face been met twice, there would be one behind the last.
+            return matches == 0 && i + 1 == numFaces;
+        }
+        if ((matches & (matches - 1)) != 0) {
+            return false;
+        }
+        face = findLowestBit(matches);
+    }
 }
 
 template <typename PLACES>
 void MateFinder<PLACES>::findMatesOfAny(Index vert) {
     _halfEdges.clear();
     for (Index i = _vertFirstFace[vert]; i < _vertFirstFace[vert + 1]; ++i) {
-        setFace(i, _ofVerts[i]);
+        _orderedCorners[i] = _ofVerts[i];
     }
     for (Index i = _level.vertFirstFace[vert]; i < _level.vertFirstFace[vert + 1]; ++i) {
         Index const corner = _corners.ofVerts[i];
@@ -272,8 +276,10 @@ void MateFinder<PLACES>::findMatesOfEdge(HalfEdge const *begin, HalfEdge const *
     }
     if (!isDegenerate && end - begin == 2 && leaves(begin[0]) != leaves(begin[1]) &&
         _places.GetFace(begin[0].corner) != _places.GetFace(begin[1].corner)) {
-        _mates[begin[0].corner] = begin[1].corner;
-        _mates[begin[1].corner] = begin[0].corner;
+        for (int i = 0; i < 2; ++i) {
+            Index const other = begin[1 - i].corner;
+            _mates[begin[i].corner] = _places.GetNext(_places.GetFace(other), other);
+        }
         return;
     }
     Index lastFace = Far::INDEX_INVALID; // of the edge that begins with the first half
@@ -329,15 +335,16 @@ private:
         Index const *const mates = _corners.mates.data();
         auto edge = Index(_firstEdges[range]);
         for (Index corner = begin; corner < end; ++corner) {
-            Index other = mates[corner];
-            if (other <= corner) {
+            Index const mate = mates[corner];
+            if (mate <= corner) {
                 continue;
             }
-            if (!IsCorner(other)) {
-                other = other == kNoMate ? _boundary : kSharpBoundaryA;
+            if (IsCorner(mate)) {
+                writer.WriteBeforeMate(edge++, corner, mate);
+            } else {
                 _boundaryEdges[range].push_back(edge);
+                writer.Write(edge++, corner, mate == kNoMate ? _boundary : kSharpBoundaryA);
             }
-            writer.Write(edge++, corner, other);
         }
     }
 
@@ -461,11 +468,13 @@ Status numberEdges(PLACES const &places, BoundaryKind boundary,
 
 } // namespace
 
-Status BuildLevelOfFaces(BoundaryKind boundary, Level &level, std::vector<Index> &fanned) {
+Status BuildLevelOfFaces(BoundaryKind boundary, std::vector<Index> const &repeatedVerts,
+                         Level &level, std::vector<Index> &fanned) {
     Corners corners;
-    FindCorners(level, corners);
+    FindCorners(level, corners, true);
     Status status = WithPlaces(level, corners, [&](auto const &places) {
-        std::vector<NewSide> const apartSides = MateFinder(places, level, corners).Find();
+        std::vector<NewSide> const apartSides =
+            MateFinder(places, level, corners).Find(repeatedVerts);
         return numberEdges(places, boundary, apartSides, corners, level);
     });
     if (status.IsOk()) {

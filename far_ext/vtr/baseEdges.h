@@ -21,10 +21,12 @@ struct ApartSide {
 /// the same two vertices are sides of one edge, but for those of a face that has one already, and
 /// of degenerate edges: each of these begins an edge.  INDEXING.md says what comes apart.
 ///
-/// \param boundary  the kind of edges with one face
-/// \param fanned    gets the vertices with several fans, ascending
-/// \return          a Status that may have warnings; TooLarge with too many edges
-Status BuildLevelOfFaces(BoundaryKind boundary, Level &level, std::vector<Far::Index> &fanned);
+/// \param boundary       the kind of edges with one face
+/// \param repeatedVerts  those that a face has several times, ascending
+/// \param fanned         gets the vertices with several fans, ascending
+/// \return               a Status that may have warnings; TooLarge with too many edges
+Status BuildLevelOfFaces(BoundaryKind boundary, std::vector<Far::Index> const &repeatedVerts,
+                         Level &level, std::vector<Far::Index> &fanned);
 
 /// \brief The same where the base has edges already.
 ///

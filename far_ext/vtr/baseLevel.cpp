@@ -24,9 +24,11 @@ void buildEdges(EdgeSidesArray edges, Corners &corners, Level &level) {
             Index const corner = edges[edge].corners[0];
             Index const other = edges[edge].corners[1];
             writer.Write(edge, corner, other);
-            mates[corner] = other < 0 ? Index(kNoMate) : other;
-            if (other >= 0) {
-                mates[other] = corner;
+            if (other < 0) {
+                mates[corner] = kNoMate;
+            } else {
+                mates[corner] = places.GetNext(places.GetFace(other), other);
+                mates[other] = places.GetNext(places.GetFace(corner), corner);
             }
         });
     });
@@ -59,9 +61,8 @@ public:
     std::vector<Index> BuildOrdered(std::vector<Index> const &oddVerts) {
         ParallelForRange(_level.numVertices, [this](Index begin, Index end) {
             VertexBuilder const builder = *this;
-            for (Index vert = begin; vert < end; ++vert) {
-                builder.addEdges(vert);
-            }
+            builder.addEdges(begin, end);
+            builder.findFaces(_vertFirstFace[begin], _vertFirstFace[end]);
         });
         std::vector<Index> fanned;
         for (Index vert : oddVerts) {
@@ -80,7 +81,8 @@ private:
         Index edge;
     };
 
-    void addEdges(Index vert) const;
+    void addEdges(Index begin, Index end) const;
+    void findFaces(Index begin, Index end) const;
     bool fillFan(Index vert) const;
     void fillFans(Index vert) const;
     Index findStart(Index corner) const;
@@ -118,13 +120,15 @@ Index VertexBuilder<PLACES>::addFaces(Index vert, Index start, Position &positio
         _vertEdges[next.edge] = edge;
         _vertEdgeLocals[next.edge++] = LocalIndex(_edgeVerts[edge][0] != vert);
         Index const prev = _places.GetPrev(face, corner);
-        corner = _mates[prev];
-        if (corner == start) {
-            break;
-        }
-        if (!IsCorner(corner)) {
+        Index const mate = _mates[prev];
+        if (!IsCorner(mate)) {
+            corner = mate;
             _vertEdges[next.edge] = _faceEdges[prev];
             _vertEdgeLocals[next.edge++] = 1;
+            break;
+        }
+        corner = _places.GetPrev(_places.GetFace(mate), mate);
+        if (corner == start) {
             break;
         }
     }
@@ -141,27 +145,48 @@ Index VertexBuilder<PLACES>::findStart(Index corner) const {
         if (!IsCorner(mate)) {
             return start;
         }
-        start = _places.GetNext(_places.GetFace(mate), mate);
+        start = mate;
         if (start == corner) {
             return start;
         }
     }
 }
 
-// Adds the edges of a fan whose faces are in order.
+// Adds the edges of vertices that have one fan each, in order, whose corners are in vertFaces.
 template <typename PLACES>
-inline void VertexBuilder<PLACES>::addEdges(Index vert) const {
-    Index const end = _vertFirstFace[vert + 1];
-    Index next = _vertFirstEdge[vert];
-    Index corner = Far::INDEX_INVALID;
-    for (Index i = _vertFirstFace[vert]; i < end; ++i) {
-        corner = _places.GetFirst(_vertFaces[i]) + _vertFaceLocals[i];
-        _vertEdges[next] = _faceEdges[corner];
-        _vertEdgeLocals[next++] = LocalIndex(_mates[corner] < corner);
+void VertexBuilder<PLACES>::addEdges(Index begin, Index end) const {
+    Index const *const corners = _vertFaces;
+    Index place = _vertFirstFace[begin];
+    for (Index vert = begin; vert < end; ++vert) {
+        // Up to a vertex with an edge more than faces, all edges are at the place of a face.
+        Index const shift = _vertFirstEdge[vert] - _vertFirstFace[vert];
+        while (vert + 1 < end && _vertFirstEdge[vert + 1] - _vertFirstFace[vert + 1] == shift) {
+            ++vert;
+        }
+        for (Index const last = _vertFirstFace[vert + 1]; place < last; ++place) {
+            Index const corner = corners[place];
+            _vertEdges[place + shift] = _faceEdges[corner];
+            _vertEdgeLocals[place + shift] = LocalIndex(_mates[corner] < corner);
+        }
+        if (Index const next = place + shift; next < _vertFirstEdge[vert + 1]) {
+            Index const corner = corners[place - 1];
+            _vertEdges[next] = _faceEdges[_places.GetPrev(_places.GetFace(corner), corner)];
+            _vertEdgeLocals[next] = 1;
+        }
     }
-    if (next < _vertFirstEdge[vert + 1]) {
-        _vertEdges[next] = _faceEdges[_places.GetPrev(_vertFaces[end - 1], corner)];
-        _vertEdgeLocals[next] = 1;
+}
+
+// Makes faces of corners in vertFaces.
+template <typename PLACES>
+void VertexBuilder<PLACES>::findFaces(Index begin, Index end) const {
+    PLACES const places = _places;
+    Index *const faces = _vertFaces;
+    LocalIndex *const locals = _vertFaceLocals;
+    for (Index place = begin; place < end; ++place) {
+        Index const corner = faces[place];
+        Index const face = places.GetFace(corner);
+        faces[place] = face;
+        locals[place] = places.GetLocal(face, corner);
     }
 }
 
@@ -250,7 +275,7 @@ void findHalfFaces(Level &level) {
 std::vector<Index> BuildBaseLevel(EdgeSidesArray edges, Level &level) {
     FindFaceSizes(level);
     Corners corners;
-    FindCorners(level, corners);
+    FindCorners(level, corners, false);
     buildEdges(edges, corners, level);
     return FinishBaseLevel(corners, level);
 }

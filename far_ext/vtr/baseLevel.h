@@ -26,7 +26,7 @@ std::vector<Far::Index> BuildBaseLevel(OpenSubdiv::Vtr::ConstArray<EdgeSides> ed
 /// with boundaryEdges, and from \p corners.
 std::vector<Far::Index> FinishBaseLevel(Corners const &corners, Level &level);
 
-/// The same where vertFaces and vertFaceLocals are there, in order but at corners.oddVerts, and the first
+/// The same where vertFaces has the corners of the faces, in order but at corners.oddVerts, and the first
 /// side of each edge is at the lower corner.
 std::vector<Far::Index> FinishOrderedLevel(Corners const &corners, Level &level);
 

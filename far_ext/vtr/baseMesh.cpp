@@ -211,7 +211,7 @@ Status BaseMesh::CheckFaces() {
 }
 
 Status BaseMesh::CompleteTopology() {
-    Status status = BuildLevelOfFaces(getBoundary(), *_level, _fannedVerts);
+    Status status = BuildLevelOfFaces(getBoundary(), _repeatedVerts, *_level, _fannedVerts);
     return checkValences(std::move(status));
 }
 

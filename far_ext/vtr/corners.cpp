@@ -11,25 +11,36 @@ namespace {
 
 using Far::Index;
 
-// A counting sort of corners by vertex, in pieces of consecutive corners.  Each piece counts the
+// A counting sort of corners by vertex, in pieces of consecutive faces.  Each piece counts the
 // corners of the vertices that it has, so that it knows where its own corners go once all have
 // counted.  Where vertices that are near have numbers that are, the counts of all pieces together
 // are at most some times the vertices; else one piece has all corners.
 class CornerSorter {
 public:
-    CornerSorter(Level &level, Buffer<Index> &ofVerts) : _level(level), _ofVerts(ofVerts) {}
+    CornerSorter(Level &level, Corners &corners) : _level(level), _sorted(corners) {}
 
-    void Sort() {
+    void Sort(bool findsNeighbors) {
         ResizeCorners(_level);
-        _ofVerts.Resize(_level.numCorners);
+        auto const numCorners = std::size_t(_level.numCorners);
+        _sorted.ofVerts.Resize(numCorners);
         makePieces();
         forEachPiece([this](Piece &piece) { count(piece); });
         addCounts();
-        forEachPiece([this](Piece &piece) { place(piece); });
+        if (!findsNeighbors) {
+            forEachPiece([this](Piece &piece) { place(piece); });
+            return;
+        }
+        _sorted.nextVerts.Resize(numCorners + kMaxFacesAtOnce);
+        _sorted.prevVerts.Resize(numCorners + kMaxFacesAtOnce);
+        WithPlaces(_level, _sorted, [this](auto const &places) {
+            forEachPiece([&](Piece &piece) { placeWithNeighbors(places, piece); });
+        });
     }
 
 private:
     struct Piece {
+        Index beginFace;
+        Index endFace;
         Index begin; // of the corners
         Index end;
         Index beginVert; // of a range that has all of their vertices
@@ -61,9 +72,11 @@ private:
     void count(Piece &piece) const;
     void addCounts();
     void place(Piece &piece);
+    template <typename PLACES>
+    void placeWithNeighbors(PLACES places, Piece &piece);
 
     Level &_level;
-    Buffer<Index> &_ofVerts;
+    Corners &_sorted;
     std::vector<Piece> _pieces;
     Buffer<Index> _counts;
 };
@@ -71,12 +84,19 @@ private:
 void CornerSorter::makePieces() {
     constexpr Index kMaxPieces = 64;
     constexpr Index kPieceCorners = Index(1) << 12;
-    Index const numPieces = std::clamp(_level.numCorners / kPieceCorners, Index(1), kMaxPieces);
-    auto const place = [&](Index piece) {
-        return Index(std::int64_t(_level.numCorners) * piece / numPieces);
+    Index numPieces = std::min({_level.numCorners / kPieceCorners, kMaxPieces, _level.numFaces});
+    if (numPieces <= kMaxRangesAlone) {
+        numPieces = 1;
+    }
+    auto const addPiece = [this](Index beginFace, Index endFace) {
+        _pieces.push_back({beginFace, endFace, _level.faceFirstCorner[beginFace],
+                           _level.faceFirstCorner[endFace], 0, _level.numVertices, nullptr});
+    };
+    auto const findFace = [&](Index piece) {
+        return Index(std::int64_t(_level.numFaces) * piece / numPieces);
     };
     for (Index i = 0; i < numPieces; ++i) {
-        _pieces.push_back({place(i), place(i + 1), 0, _level.numVertices, nullptr});
+        addPiece(findFace(i), findFace(i + 1));
     }
     if (numPieces > 1) {
         forEachPiece([this](Piece &piece) { findVertices(piece); });
@@ -89,7 +109,8 @@ void CornerSorter::makePieces() {
         return result;
     };
     if (getNumCounts() > 3 * std::size_t(_level.numVertices)) {
-        _pieces.assign(1, {0, _level.numCorners, 0, _level.numVertices, nullptr});
+        _pieces.clear();
+        addPiece(0, _level.numFaces);
     }
     _counts.Resize(getNumCounts());
     Index *counts = _counts.data();
@@ -159,9 +180,34 @@ void CornerSorter::place(Piece &piece) {
     Index const *const verts = _level.faceVerts.data();
     Index const beginVert = piece.beginVert;
     Index *const next = piece.counts;
-    Index *const ofVerts = _ofVerts.data();
+    Index *const ofVerts = _sorted.ofVerts.data();
     for (Index corner = piece.begin; corner < piece.end; ++corner) {
         ofVerts[next[verts[corner] - beginVert]++] = corner;
+    }
+}
+
+template <typename PLACES>
+void CornerSorter::placeWithNeighbors(PLACES places, Piece &piece) {
+    Index const *const verts = _level.faceVerts.data();
+    Index const beginVert = piece.beginVert;
+    Index *const next = piece.counts;
+    Index *const ofVerts = _sorted.ofVerts.data();
+    Index *const nextVerts = _sorted.nextVerts.data();
+    Index *const prevVerts = _sorted.prevVerts.data();
+    for (Index face = piece.beginFace; face < piece.endFace; ++face) {
+        Index const first = places.GetFirst(face);
+        Index const size = places.GetFirst(face + 1) - first;
+        Index prevVert = verts[first + size - 1];
+        Index vert = verts[first];
+        for (Index i = 0; i < size; ++i) {
+            Index const nextVert = verts[first + (i + 1 < size ? i + 1 : 0)];
+            Index const place = next[vert - beginVert]++;
+            ofVerts[place] = first + i;
+            nextVerts[place] = nextVert;
+            prevVerts[place] = prevVert;
+            prevVert = vert;
+            vert = nextVert;
+        }
     }
 }
 
@@ -189,8 +235,8 @@ void ResizeEdges(std::size_t numEdges, Level &level) {
     });
 }
 
-void FindCorners(Level &level, Corners &corners) {
-    CornerSorter(level, corners.ofVerts).Sort();
+void FindCorners(Level &level, Corners &corners, bool findsNeighbors) {
+    CornerSorter(level, corners).Sort(findsNeighbors);
     corners.mates.Resize(level.numCorners);
     bool const isUniform = level.faceSizes.size() == 1 && level.faceSizes[0] <= 4;
     if (isUniform) {

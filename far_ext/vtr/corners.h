@@ -8,8 +8,8 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief In place of the corner at the other side of an edge.  All are above any corner, so that the
-/// first side of an edge is that whose mate is above it.
+/// \brief In place of a mate.  All are above any corner, so that the first side of an edge is that whose
+/// mate is above it.
 enum MateMark : Far::Index {
     kBeginsEdge = std::numeric_limits<Far::Index>::max() - 1, ///< the edge comes apart
     kNoMate = std::numeric_limits<Far::Index>::max()          ///< the edge has one side
@@ -18,13 +18,22 @@ enum MateMark : Far::Index {
 /// Another than the first side of an edge that comes apart; below any corner.
 constexpr Far::Index kJoinsEdge = -1;
 
+/// Mates are found for this many faces of a vertex at once.
+constexpr int kMaxFacesAtOnce = 16;
+
 inline bool IsCorner(Far::Index mate) { return 0 <= mate && mate < kBeginsEdge; }
 
 /// \brief What level 0 is derived from, by corner; not kept.
 struct Corners {
     Buffer<Far::Index> faces;   ///< by corner; empty where all faces have one size, 3 or 4
     Buffer<Far::Index> ofVerts; ///< those of each vertex, ascending, at the places of vertFirstFace
-    Buffer<Far::Index> mates;   ///< by corner, the corner where the edge's other side begins
+    /// The vertices behind and before each corner in its face, at the places of ofVerts, with any
+    /// kMaxFacesAtOnce entries behind the last; empty where mates are known.
+    Buffer<Far::Index> nextVerts;
+    Buffer<Far::Index> prevVerts;
+    /// By corner, that of the same vertex in the face on the other side of the edge that begins there.
+    /// That face is another one.
+    Buffer<Far::Index> mates;
     /// Vertices whose faces may have any order, where those of all others have theirs; ascending.
     std::vector<Far::Index> oddVerts;
 };
@@ -100,21 +109,36 @@ public:
     /// place of that.
     void Write(Index edge, Index corner, Index other) const {
         Index const face = _places.GetFace(corner);
-        Far::LocalIndex const local = _places.GetLocal(face, corner);
-        _edgeVerts[edge] = {_faceVerts[corner], _faceVerts[_places.GetNext(face, corner)]};
-        _faceEdges[corner] = edge;
         if (other < 0) {
-            _edgeFaces[edge] = {face, other};
-            _edgeFaceLocals[edge] = {local, 0};
+            writeFirst(edge, face, corner, _faceVerts[_places.GetNext(face, corner)]);
+            _edgeFaces[edge][1] = other;
+            _edgeFaceLocals[edge][1] = 0;
         } else {
-            Index const otherFace = _places.GetFace(other);
-            _edgeFaces[edge] = {face, otherFace};
-            _edgeFaceLocals[edge] = {local, _places.GetLocal(otherFace, other)};
-            _faceEdges[other] = edge;
+            writeFirst(edge, face, corner, _faceVerts[other]);
+            writeSecond(edge, _places.GetFace(other), other);
         }
+    }
+    /// One whose other side ends at \p mate.
+    void WriteBeforeMate(Index edge, Index corner, Index mate) const {
+        Index const otherFace = _places.GetFace(mate);
+        Index const other = _places.GetPrev(otherFace, mate);
+        writeFirst(edge, _places.GetFace(corner), corner, _faceVerts[other]);
+        writeSecond(edge, otherFace, other);
     }
 
 private:
+    void writeFirst(Index edge, Index face, Index corner, Index endVert) const {
+        _edgeVerts[edge] = {_faceVerts[corner], endVert};
+        _edgeFaces[edge][0] = face;
+        _edgeFaceLocals[edge][0] = _places.GetLocal(face, corner);
+        _faceEdges[corner] = edge;
+    }
+    void writeSecond(Index edge, Index face, Index corner) const {
+        _edgeFaces[edge][1] = face;
+        _edgeFaceLocals[edge][1] = _places.GetLocal(face, corner);
+        _faceEdges[corner] = edge;
+    }
+
     PLACES const _places;
     Index const *const _faceVerts;
     IndexPair *const _edgeVerts;
@@ -134,7 +158,9 @@ void ResizeEdges(std::size_t numEdges, Level &level);
 ///
 /// The level has its faces: numVertices, numFaces, numCorners, faceFirstCorner, faceVerts and
 /// faceSizes.
-void FindCorners(Level &level, Corners &corners);
+///
+/// \param findsNeighbors  whether to find nextVerts and prevVerts, too
+void FindCorners(Level &level, Corners &corners, bool findsNeighbors);
 
 } // namespace OpenSubdivHex::FarExt::internal
 
