@@ -77,7 +77,7 @@ bool CellForest::IsMatched(Index face) const {
     return true;
 }
 
-Tessellation CellForest::GetTessellation(Index face, Tessellation::Options options) const {
+std::vector<Polyline> CellForest::GetFacePolylines(Index face) const {
     Level const &level = _refiner->GetHierarchy().mesh.levels[0];
     std::vector<Polyline> edges;
     for (int local = 0; local < level.GetFaceSize(face); ++local) {
@@ -85,7 +85,11 @@ Tessellation CellForest::GetTessellation(Index face, Tessellation::Options optio
             GetPolyline(level.faceEdges[level.faceFirstCorner[face] + local]);
         edges.push_back(isReversed(face, local) ? polyline.GetReversed() : polyline);
     }
-    return Tessellation(GetTree(face), edges.data(), options);
+    return edges;
+}
+
+Tessellation CellForest::GetTessellation(Index face, Tessellation::Options options) const {
+    return Tessellation(GetTree(face), GetFacePolylines(face).data(), options);
 }
 
 int CellForest::GetBoundaryPoints(Index face, int points[]) const {

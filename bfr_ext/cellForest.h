@@ -48,6 +48,8 @@ public:
     bool IsMatched(Index face) const;
     /// The polyline of an edge, in its own direction.
     Polyline const &GetPolyline(Index edge) const { return _polylines[std::size_t(edge)]; }
+    /// Those of the edges of a face, in the direction of the face.
+    std::vector<Polyline> GetFacePolylines(Index face) const;
     /// The tessellation of a face.
     Tessellation GetTessellation(Index face,
                                  Tessellation::Options options = Tessellation::Options()) const;

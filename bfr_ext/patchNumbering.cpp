@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchNumbering.h"
 
+#include "cell/faceSections.h"
+
 #include <algorithm>
 #include <map>
 
@@ -29,6 +31,122 @@ struct PatchCounts {
 };
 
 } // namespace
+
+/// \brief Numbers of what the sections of a face have, from the first of the face on.
+class PatchNumbering::SectionNumbers {
+public:
+    /// \param makeTessellation  of a section, which is forgotten again
+    template <typename MAKE>
+    SectionNumbers(internal::FaceSections const &sections, MAKE const &makeTessellation);
+
+    /// The first point inside of a section; of their number: the points inside of the face.
+    Number GetFirstPoint(int section) const { return _firstPoint[std::size_t(section)]; }
+    Number GetFirstFacet(int section) const { return _firstFacet[std::size_t(section)]; }
+    Number GetFirstFacetVertex(int section) const {
+        return _firstFacetVertex[std::size_t(section)];
+    }
+    int GetMaxFacetSize() const { return _maxFacetSize; }
+    int GetNumSections() const { return int(_firstPoint.size()) - 1; }
+
+    /// \brief A vertex of a section or, behind it, what lies inside of an edge.
+    struct Item {
+        int edge;      ///< of the face, on which it lies; -1 inside
+        int edgePoint; ///< on an edge of the face: its first point, -1 being the vertex of the face
+        Number point;  ///< inside: the first point, in the direction of the section
+        bool isOwn;    ///< whether it belongs to the section, among those of the face
+        bool isBackwards;
+    };
+    /// The items of a section: two for each of its edges.
+    Item const *GetItems(int section) const {
+        return _items.data() + _firstItem[std::size_t(section)];
+    }
+
+private:
+    int _maxFacetSize = 0;
+    std::vector<Number> _firstPoint;
+    std::vector<Number> _firstFacet = {0};
+    std::vector<Number> _firstFacetVertex = {0};
+    std::vector<std::size_t> _firstItem;
+    std::vector<Item> _items;
+};
+
+template <typename MAKE>
+PatchNumbering::SectionNumbers::SectionNumbers(internal::FaceSections const &sections,
+                                               MAKE const &makeTessellation) {
+    using internal::CellMesh;
+    std::vector<CellMesh::Vertex> const &verts = sections.GetVertices();
+    // Vertices inside, in the order of the first sections that have them.
+    Number next = 0;
+    std::vector<Number> pointOfVertex(verts.size(), -1);
+    std::vector<bool> isTaken(verts.size());
+    for (int section = 0; section < sections.GetNumSections(); ++section) {
+        std::vector<int> const polygon = sections.GetPolygon(section);
+        _firstItem.push_back(_items.size());
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            auto const vert = std::size_t(polygon[i]);
+            CellMesh::Vertex const &start = verts[vert];
+            CellMesh::Vertex const &end = verts[std::size_t(polygon[(i + 1) % polygon.size()])];
+            Item item = {-1, 0, 0, !isTaken[vert], false};
+            isTaken[vert] = true;
+            Item edge = {-1, 0, -1, true, false};
+            if (sections.IsOnEdge(start)) {
+                item.edge = start.sector;
+                item.edgePoint =
+                    start.b == 0
+                        ? -1
+                        : sections.CountPointsBefore(start.sector, sections.GetPlaceOnEdge(start));
+                if (sections.AreOnEdge(start, end)) {
+                    edge.edge = start.sector;
+                    edge.edgePoint = item.edgePoint + 1;
+                }
+            } else {
+                if (item.isOwn) {
+                    pointOfVertex[vert] = next++;
+                }
+                item.point = pointOfVertex[vert];
+            }
+            _items.push_back(item);
+            _items.push_back(edge);
+        }
+    }
+    // Edges inside, by their vertices: the second section has them backwards.
+    std::map<std::pair<int, int>, Number> firstPointOfEdge;
+    std::vector<int> numInteriorPoints;
+    for (int section = 0; section < sections.GetNumSections(); ++section) {
+        Tessellation const tessellation = makeTessellation(section);
+        PatchCounts const counts(tessellation);
+        _firstFacet.push_back(_firstFacet.back() + counts.numFacets);
+        _firstFacetVertex.push_back(_firstFacetVertex.back() + counts.numFacetVertices);
+        _maxFacetSize = std::max(_maxFacetSize, counts.maxFacetSize);
+        numInteriorPoints.push_back(counts.numInteriorPoints);
+        std::vector<int> const polygon = sections.GetPolygon(section);
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            Item &edge = _items[_firstItem[std::size_t(section)] + 2 * i + 1];
+            if (edge.edge >= 0) {
+                continue;
+            }
+            int const start = polygon[i];
+            int const end = polygon[(i + 1) % polygon.size()];
+            int const count = tessellation.GetNumEdgeCoords(int(i));
+            auto const other = firstPointOfEdge.find({end, start});
+            if (other != firstPointOfEdge.end()) {
+                edge.point = other->second + count - 1;
+                edge.isOwn = false;
+                edge.isBackwards = true;
+                firstPointOfEdge.erase(other);
+            } else {
+                edge.point = next;
+                firstPointOfEdge.emplace(std::make_pair(start, end), next);
+                next += count;
+            }
+        }
+    }
+    for (int const count : numInteriorPoints) {
+        _firstPoint.push_back(next);
+        next += count;
+    }
+    _firstPoint.push_back(next);
+}
 
 template <typename REAL>
 std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &stream,
@@ -64,9 +182,17 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
         }
         next += numEdgePoints[level];
     }
+    numbering->_firstPointOfEdge.push_back(next);
     numbering->_firstFacet.push_back(0);
     numbering->_firstFacetVertex.push_back(0);
     std::map<std::vector<int>, PatchCounts> counts;
+    std::map<std::vector<int>, std::shared_ptr<SectionNumbers const>> sectionsOfLevels;
+    auto const makeSections = [&](Index face) {
+        auto const sections = stream.makeSections(face);
+        Tessellation::Options const options = stream.GetOptions().GetTessellationOptions();
+        return std::make_shared<SectionNumbers const>(
+            *sections, [&](int section) { return Tessellation(*sections, section, options); });
+    };
     std::vector<int> levels;
     for (Index face = 0; face < base.GetNumFaces(); ++face) {
         numbering->_firstPointOfFace.push_back(next);
@@ -79,10 +205,23 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
                 numFacetVertices = patch.numFacetVertices;
                 numbering->_maxFacetSize = std::max(numbering->_maxFacetSize, patch.maxFacetSize);
             };
-            if (stream.GetForest()) {
+            stream.getLevels(face, levels);
+            if (stream.isCut(face, levels)) {
+                std::shared_ptr<SectionNumbers const> forest;
+                auto &sections = stream.GetForest() ? forest : sectionsOfLevels[levels];
+                if (!sections) {
+                    sections = makeSections(face);
+                }
+                int const numSections = sections->GetNumSections();
+                next += sections->GetFirstPoint(numSections);
+                numFacets = sections->GetFirstFacet(numSections);
+                numFacetVertices = sections->GetFirstFacetVertex(numSections);
+                numbering->_maxFacetSize =
+                    std::max(numbering->_maxFacetSize, sections->GetMaxFacetSize());
+                numbering->_sections.emplace(face, sections);
+            } else if (stream.GetForest()) {
                 add(PatchCounts(stream.MakeTessellation(face)));
             } else {
-                stream.getLevels(face, levels);
                 auto found = counts.find(levels);
                 if (found == counts.end()) {
                     found =
@@ -112,36 +251,93 @@ Far::Index PatchNumbering::findOwner(Far::ConstIndexArray faces) const {
     return found == faces.end() ? Far::INDEX_INVALID : *found;
 }
 
+PatchNumbering::SectionNumbers const *PatchNumbering::findSections(Index face) const {
+    auto const found = _sections.find(face);
+    return found == _sections.end() ? nullptr : found->second.get();
+}
+
+PatchNumbering::Number PatchNumbering::GetFirstFacet(Index face, int section) const {
+    SectionNumbers const *const sections = findSections(face);
+    return GetFirstFacet(face) + (sections ? sections->GetFirstFacet(section) : 0);
+}
+
+PatchNumbering::Number PatchNumbering::GetFirstFacetVertex(Index face, int section) const {
+    SectionNumbers const *const sections = findSections(face);
+    return GetFirstFacetVertex(face) + (sections ? sections->GetFirstFacetVertex(section) : 0);
+}
+
+// A face may have a vertex, or an edge, twice: then it belongs to the first place.
+bool PatchNumbering::isVertexOwn(Index face, int local) const {
+    TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
+    Far::ConstIndexArray const verts = base.GetFaceVertices(face);
+    auto const *const begin = verts.begin();
+    return std::find(begin, begin + local, verts[local]) == begin + local &&
+           findOwner(base.GetVertexFaces(verts[local])) == face;
+}
+
+// Points first ... first + count - 1 of an edge, counted in the direction of the face.
+PatchNumbering::Run PatchNumbering::makeEdgeRun(Index face, int local, int place, int first,
+                                                int count) const {
+    TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
+    Far::ConstIndexArray const edges = base.GetFaceEdges(face);
+    Index const edge = edges[local];
+    Far::ConstIndexArray const edgeFaces = base.GetEdgeFaces(edge);
+    bool const isForward = edgeFaces[0] == face && base.GetEdgeFaceLocalIndices(edge)[0] == local;
+    auto const *const begin = edges.begin();
+    bool const isFirst = std::find(begin, begin + local, edge) == begin + local;
+    Number const point = isForward ? _firstPointOfEdge[std::size_t(edge)] + first
+                                   : _firstPointOfEdge[std::size_t(edge) + 1] - 1 - first;
+    return {place, count, isForward ? 1 : -1, point, isFirst && findOwner(edgeFaces) == face};
+}
+
 void PatchNumbering::GetRuns(Index face, Tessellation const &tessellation,
                              std::vector<Run> &runs) const {
     runs.clear();
-    TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
-    Far::ConstIndexArray const verts = base.GetFaceVertices(face);
-    Far::ConstIndexArray const edges = base.GetFaceEdges(face);
+    Far::ConstIndexArray const verts = _factory.GetMesh().GetLevel(0).GetFaceVertices(face);
+    Number const firstPoint = _firstPointOfFace[std::size_t(face)];
+    SectionNumbers const *const sections = findSections(face);
+    SectionNumbers::Item const *item =
+        sections ? sections->GetItems(tessellation.GetSection()) : nullptr;
     int place = 0;
-    for (int i = 0; i < verts.size(); ++i) {
-        // A face may have a vertex, or an edge, twice: then it belongs to the first place.
-        bool const isFirst =
-            std::find(verts.begin(), verts.begin() + i, verts[i]) == verts.begin() + i;
-        runs.push_back({place, 1, 1, _pointOfVertex[std::size_t(verts[i])],
-                        isFirst && findOwner(base.GetVertexFaces(verts[i])) == face});
-        ++place;
+    auto const addVertex = [&](int local) {
+        runs.push_back(
+            {place, 1, 1, _pointOfVertex[std::size_t(verts[local])], isVertexOwn(face, local)});
+    };
+    for (int i = 0; i < tessellation.GetNumEdges(); ++i) {
         int const count = tessellation.GetNumEdgeCoords(i);
-        if (count == 0) {
+        if (!sections) {
+            addVertex(i);
+            ++place;
+            if (count > 0) {
+                runs.push_back(makeEdgeRun(face, i, place, 0, count));
+            }
+            place += count;
             continue;
         }
-        Far::ConstIndexArray const edgeFaces = base.GetEdgeFaces(edges[i]);
-        bool const isForward =
-            edgeFaces[0] == face && base.GetEdgeFaceLocalIndices(edges[i])[0] == i;
-        bool const isFirstEdge =
-            std::find(edges.begin(), edges.begin() + i, edges[i]) == edges.begin() + i;
-        Number const first = _firstPointOfEdge[std::size_t(edges[i])];
-        runs.push_back({place, count, isForward ? 1 : -1, isForward ? first : first + count - 1,
-                        isFirstEdge && findOwner(edgeFaces) == face});
-        place += count;
+        // The vertex, then what lies inside of the edge.
+        for (int const length : {1, count}) {
+            if (length == 0) {
+                ++item;
+                continue;
+            }
+            if (item->edge < 0) {
+                runs.push_back({place, length, item->isBackwards ? -1 : 1, firstPoint + item->point,
+                                item->isOwn});
+            } else {
+                if (item->edgePoint < 0) {
+                    addVertex(item->edge);
+                } else {
+                    runs.push_back(makeEdgeRun(face, item->edge, place, item->edgePoint, length));
+                }
+                runs.back().isOwn = runs.back().isOwn && item->isOwn;
+            }
+            place += length;
+            ++item;
+        }
     }
-    runs.push_back({place, tessellation.GetNumInteriorCoords(), 1,
-                    _firstPointOfFace[std::size_t(face)], true});
+    runs.push_back(
+        {place, tessellation.GetNumInteriorCoords(), 1,
+         firstPoint + (sections ? sections->GetFirstPoint(tessellation.GetSection()) : 0), true});
 }
 
 void PatchNumbering::GetPoints(Index face, Tessellation const &tessellation,

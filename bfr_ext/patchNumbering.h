@@ -5,6 +5,7 @@
 #include "patchStream.h"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -18,11 +19,16 @@ namespace OpenSubdivHex::BfrExt {
 /// the order of their tessellation.  Facets are in the order of faces.  Base vertices and edges without
 /// a patch, in holes alone, have no points.
 ///
-/// Each shared point *belongs* to one patch, that of the first face around which is no hole: who writes
-/// the points that belong to its patches, and no others, writes all of them once.
+/// Faces that come in sections have the vertices of these first, then the points inside of their edges, then
+/// those inside of sections, section by section, as their facets are.  So the numbers of such faces depend
+/// on PatchStream::Options::SetMaxMemory().
 ///
-/// It takes some numbers for each component of the base mesh.  Nothing is changed after construction:
-/// several threads may use it.  std::bad_alloc passes through.
+/// Each shared point *belongs* to one patch, that of the first face around which is no hole, and of its
+/// first section there: who writes the points that belong to its patches, and no others, writes all of
+/// them once.
+///
+/// It takes some numbers for each component of the base mesh, and for each section.  Nothing is changed
+/// after construction: several threads may use it.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API PatchNumbering {
 public:
     /// A component of the base mesh.
@@ -53,6 +59,10 @@ public:
     Number GetFirstFacetVertex(Index face) const { return _firstFacetVertex[std::size_t(face)]; }
     /// The first point inside of a face.
     Number GetFirstInteriorPoint(Index face) const { return _firstPointOfFace[std::size_t(face)]; }
+    /// The first facet of a patch: of a face, or of one of its sections.
+    Number GetFirstFacet(Index face, int section) const;
+    /// The sum of the sizes of the facets of all patches before, in the same order.
+    Number GetFirstFacetVertex(Index face, int section) const;
 
     /// \brief Places of a patch, one after the other, whose points follow one another.
     struct Run {
@@ -65,24 +75,30 @@ public:
     /// \brief Lists the runs of a patch: all of its places, in their order.
     ///
     /// \param face          the base face
-    /// \param tessellation  its tessellation in the stream
+    /// \param tessellation  its tessellation in the stream, or that of a section
     /// \param runs          is replaced
     void GetRuns(Index face, Tessellation const &tessellation, std::vector<Run> &runs) const;
     /// Writes the point of each place of a patch: tessellation.GetNumCoords() numbers.
     void GetPoints(Index face, Tessellation const &tessellation, Number points[]) const;
 
 private:
+    class SectionNumbers;
+
     explicit PatchNumbering(SurfaceFactory const &factory) : _factory(factory) {}
 
     Index findOwner(Far::ConstIndexArray faces) const;
+    bool isVertexOwn(Index face, int local) const;
+    Run makeEdgeRun(Index face, int local, int place, int first, int count) const;
+    SectionNumbers const *findSections(Index face) const;
 
     SurfaceFactory const &_factory;
     int _maxFacetSize = 0;
     std::vector<Number> _pointOfVertex;
-    std::vector<Number> _firstPointOfEdge;
+    std::vector<Number> _firstPointOfEdge; // by edge; then their end
     std::vector<Number> _firstPointOfFace;
     std::vector<Number> _firstFacet;
     std::vector<Number> _firstFacetVertex;
+    std::map<Index, std::shared_ptr<SectionNumbers const>> _sections; // of faces that come in some
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchStream.h"
 
-#include "cell/cellPlan.h"
+#include "stream/patchPlans.h"
+#include "stream/streamTypes.h"
 
 #include "far_ext/threads.h"
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
 #include <atomic>
-#include <list>
-#include <map>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <unordered_set>
 
@@ -21,211 +19,6 @@ namespace OpenSubdivHex::BfrExt {
 using FarExt::ComponentType;
 using FarExt::Status;
 using FarExt::StatusCode;
-
-namespace internal {
-
-/// What plans are made for.
-struct PlanOptions {
-    Tessellation::Options tessellation;
-    bool hasDerivatives;
-};
-
-/// \brief What patches with the same levels have in common: their tessellation, with the cells its places
-/// lie in.
-struct PatchPlan {
-    PatchPlan(std::vector<int> const &levels, PlanOptions const &options)
-        : tessellation(Parameterization(int(levels.size()) - 1), int(levels.size()), levels.data(),
-                       options.tessellation),
-          hasDerivatives(options.hasDerivatives) {}
-
-    /// Memory, in bytes.
-    std::size_t GetSize() const {
-        return kBytesOfPlan + std::size_t(tessellation.GetNumCoords()) * kBytesOfCoord +
-               std::size_t(tessellation.GetNumFacetVertices()) * sizeof(int) +
-               std::size_t(tessellation.GetNumFacets()) * 2 * sizeof(int) +
-               tessellation.getCellPlan().GetSize() +
-               (hasDerivatives ? tessellation.getCellPlan(true).GetSize() : 0);
-    }
-
-    /// \brief About what it takes in memory to make the plan of some levels, with the plan itself.
-    ///
-    /// The cells in which the levels of edges take part are counted as if they had that of the inside;
-    /// derivatives on an edge follow cells that are there for one or two of its points alone.
-    static std::size_t GetSizeOfMaking(std::vector<int> const &levels, bool hasDerivatives) {
-        // Bytes for each place, of triangles: of the plan, and of what the tessellation is made of.
-        std::size_t const bytes =
-            kBytesOfCoord + 8 * sizeof(int) + 2 * sizeof(int) + (hasDerivatives ? 300 : 160);
-        std::size_t const bytesOnEdge = bytes + (hasDerivatives ? 700 : 0);
-        std::size_t const numCells = (std::size_t(1) << (2 * levels.back())) / 3;
-        std::size_t size = kBytesOfPlan + (levels.size() - 1) * (numCells + 2) * bytes;
-        for (std::size_t edge = 0; edge + 1 < levels.size(); ++edge) {
-            size += ((std::size_t(2) << levels[edge]) / 3 + 1) * bytesOnEdge;
-        }
-        return size;
-    }
-
-    Tessellation const tessellation;
-    bool const hasDerivatives;
-
-private:
-    // Its place, and its u and v.
-    static constexpr std::size_t kBytesOfCoord = sizeof(LeafPlaces::Place) + 2 * sizeof(double);
-    // What it has besides arrays of its own, and what the heap keeps of these.
-    static constexpr std::size_t kBytesOfPlan = 2048;
-};
-
-/// \brief The plans that have been asked for.  Where they come to take too much memory, those that nobody
-/// uses are forgotten, beginning with the one that was not asked for longest.  Any number of threads may
-/// use it.
-class PatchPlans {
-public:
-    PatchPlans(PlanOptions const &options, std::size_t maxMemory)
-        : _options(options), _maxMemory(maxMemory) {}
-
-    std::size_t GetMaxMemory() const { return _maxMemory; }
-    /// PatchPlan::GetSizeOfMaking().
-    std::size_t GetSizeOfMaking(std::vector<int> const &levels) const {
-        return PatchPlan::GetSizeOfMaking(levels, _options.hasDerivatives);
-    }
-
-    /// \brief Finds the plan of some levels, or makes it.
-    ///
-    /// Threads that want a plan wait for it, since it takes memory to make one.
-    std::shared_ptr<PatchPlan const> Find(std::vector<int> const &levels) {
-        std::lock_guard<std::mutex> const lock(_mutex);
-        auto const found = _places.find(levels);
-        if (found != _places.end()) {
-            _plans.splice(_plans.begin(), _plans, found->second);
-            return _plans.front().plan;
-        }
-        makeRoom(GetSizeOfMaking(levels));
-        auto plan = std::make_shared<PatchPlan const>(levels, _options);
-        std::size_t const size = plan->GetSize();
-        _plans.push_front({levels, std::move(plan), size});
-        try {
-            _places.emplace(levels, _plans.begin());
-        } catch (...) {
-            _plans.pop_front();
-            throw;
-        }
-        _memory += size;
-        return _plans.front().plan;
-    }
-
-    /// Forgets what is too much.
-    void Trim() {
-        std::lock_guard<std::mutex> const lock(_mutex);
-        makeRoom(0);
-    }
-
-private:
-    struct Entry {
-        std::vector<int> levels;
-        std::shared_ptr<PatchPlan const> plan;
-        std::size_t size;
-    };
-
-    // For something of this size, as far as plans are not in use.
-    void makeRoom(std::size_t size) {
-        for (auto entry = _plans.end(); entry != _plans.begin() && _memory + size > _maxMemory;) {
-            --entry;
-            // It is given away under the lock alone, so that nobody can begin to use it meanwhile.
-            if (entry->plan.use_count() == 1) {
-                _memory -= entry->size;
-                _places.erase(entry->levels);
-                entry = _plans.erase(entry);
-            }
-        }
-    }
-
-    PlanOptions const _options;
-    std::size_t const _maxMemory;
-    std::size_t _memory = 0;
-    std::mutex _mutex;
-    std::list<Entry> _plans; // the one that was asked for last comes first
-    std::map<std::vector<int>, std::list<Entry>::iterator> _places;
-};
-
-/// \brief Adds up what plans take in memory, each counted once, until it is more than there is.  Any
-/// number of threads may add to it, each by a Counter of its own.
-class PlanMemory {
-public:
-    explicit PlanMemory(PatchPlans const &plans) : _plans(plans) {}
-
-    /// Whether all plans that were added have room.
-    bool HasRoom() const { return _hasRoom; }
-
-    /// Adds the plans that it is told of, and remembers them, so that few have to be looked up together.
-    class Counter {
-    public:
-        explicit Counter(PlanMemory &memory) : _memory(memory) {}
-
-        void Add(std::vector<int> const &levels) {
-            if (levels == _last || !_memory.HasRoom()) {
-                return;
-            }
-            _last = levels;
-            if (_known.insert(levels).second) {
-                _memory.add(levels);
-            }
-        }
-
-    private:
-        PlanMemory &_memory;
-        std::vector<int> _last;
-        std::set<std::vector<int>> _known;
-    };
-
-private:
-    void add(std::vector<int> const &levels) {
-        std::lock_guard<std::mutex> const lock(_mutex);
-        if (_known.insert(levels).second) {
-            _memory += _plans.GetSizeOfMaking(levels);
-            _hasRoom = _memory <= _plans.GetMaxMemory();
-        }
-    }
-
-    PatchPlans const &_plans;
-    std::size_t _memory = 0;
-    std::atomic<bool> _hasRoom{true};
-    std::mutex _mutex;
-    std::set<std::vector<int>> _known;
-};
-
-/// \brief A factory with a cache of its own, made anew when the cache has too many types.  Any number of
-/// threads may use it.
-class StreamTypes {
-public:
-    StreamTypes(SurfaceFactory const &factory, std::size_t maxTypes)
-        : _mesh(factory.GetMesh()), _maxTypes(maxTypes) {}
-
-    /// The factory to make some surfaces with, which lives as long as it is held.
-    std::shared_ptr<SurfaceFactory const> Get() {
-        std::lock_guard<std::mutex> const lock(_mutex);
-        if (!_generation || _generation->cache.GetNumTypes() > _maxTypes) {
-            _generation.reset();
-            _generation = std::make_shared<Generation>(_mesh);
-        }
-        return std::shared_ptr<SurfaceFactory const>(_generation, _generation->factory.get());
-    }
-
-private:
-    struct Generation {
-        explicit Generation(FarExt::TopologyRefiner const &mesh)
-            : factory(SurfaceFactory::Create(
-                  mesh, SurfaceFactory::Options().SetExternalCache(&cache), nullptr)) {}
-
-        SurfaceFactoryCache cache;
-        std::unique_ptr<SurfaceFactory> factory; // of a mesh that has been found to have surfaces
-    };
-
-    FarExt::TopologyRefiner const &_mesh;
-    std::size_t const _maxTypes;
-    std::mutex _mutex;
-    std::shared_ptr<Generation> _generation;
-};
-
-} // namespace internal
 
 namespace {
 
@@ -245,17 +38,19 @@ public:
           _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _results(values.size()),
           _resultStarts(values.size()) {}
 
-    /// \brief Makes the patch of a face that is no hole.
+    /// \brief Makes the patch of a face that is no hole, or of one of its sections.
     ///
+    /// \param section  -1: of the face as a whole
     /// \return  false where the sink ended the stream, or a face has no surface, as status says
-    bool Run(Index face, Status *status) {
+    bool Run(Index face, int section, Status *status) {
         if (_stream._types && _numPatches++ % kFacesOfFactory == 0) {
             _surface.Clear();
             _ownFactory.reset();
             _ownFactory = _stream._types->Get();
             _factory = _ownFactory.get();
         }
-        Tessellation const &tessellation = findTessellation(face);
+        Tessellation const &tessellation =
+            section < 0 ? findTessellation(face) : findTessellation(face, section);
         if (!evaluatePoints(face, tessellation, status) ||
             !evaluateValues(face, tessellation, status)) {
             return false;
@@ -278,6 +73,25 @@ private:
             _plan = _stream._plans->Find(_levels);
             _planLevels = _levels;
         }
+        return _plan->tessellation;
+    }
+
+    Tessellation const &findTessellation(Index face, int section) {
+        _tessellation.reset();
+        _plan.reset();
+        _stream.getLevels(face, _levels);
+        if (_stream._forest ? _sectionsFace != face
+                            : !_sections || _sections->GetLevels() != _levels) {
+            _sections.reset();
+            _sections = _stream.makeSections(face);
+            _sectionsFace = face;
+        }
+        if (_stream._forest) {
+            return _tessellation.emplace(
+                Tessellation(*_sections, section, _stream._options.GetTessellationOptions()));
+        }
+        _plan = _stream._plans->Find(*_sections, section);
+        _planLevels.clear();
         return _plan->tessellation;
     }
 
@@ -341,6 +155,8 @@ private:
     std::vector<int> _levels;
     std::vector<int> _planLevels;
     std::shared_ptr<internal::PatchPlan const> _plan;
+    std::unique_ptr<internal::FaceSections const> _sections; // of the last face that came in some
+    Index _sectionsFace = Far::INDEX_INVALID;
     Surface<REAL> _surface;
     std::vector<REAL> _controlPoints;
     std::vector<REAL> _points;
@@ -377,23 +193,87 @@ std::shared_ptr<internal::StreamTypes> PatchStream<REAL>::makeTypes() const {
                : std::make_shared<internal::StreamTypes>(_factory, _options.GetMaxTypes());
 }
 
-// The levels of the edges, then that of the inside.
+// The levels of the edges, then that of the inside; none of a forest.
 template <typename REAL>
 void PatchStream<REAL>::getLevels(Index face, std::vector<int> &levels) const {
     levels.clear();
+    if (_forest) {
+        return;
+    }
     for (Index const edge : _factory.GetMesh().GetLevel(0).GetFaceEdges(face)) {
         levels.push_back(_levels.GetEdgeLevel(edge));
     }
     levels.push_back(_levels.GetFaceLevel(face));
 }
 
+// Whether a face comes in sections.
+template <typename REAL>
+bool PatchStream<REAL>::isCut(Index face, std::vector<int> const &levels) const {
+    return _forest ? _plans->IsCut(_forest->GetTree(face)) : _plans->IsCut(levels);
+}
+
+// Those of a face that comes in sections.
+template <typename REAL>
+std::unique_ptr<internal::FaceSections const> PatchStream<REAL>::makeSections(Index face) const {
+    using internal::FaceSections;
+    int const maxLeaves = _plans->GetMaxLeaves();
+    if (_forest) {
+        return std::make_unique<FaceSections const>(_forest->GetTree(face),
+                                                    _forest->GetFacePolylines(face), maxLeaves);
+    }
+    std::vector<int> levels;
+    getLevels(face, levels);
+    return std::make_unique<FaceSections const>(levels, maxLeaves);
+}
+
+/// \brief Some faces that are no holes, and what patches they have: those of faces in sections stand section
+/// by section, so that faces with the same levels have each of them side by side.
+template <typename REAL>
+struct PatchStream<REAL>::Batch {
+    /// Faces that follow one another, whole or with the same sections.
+    struct Group {
+        std::size_t firstFace;
+        std::size_t numFaces;
+        int numSections; ///< 0: whole
+        Index firstPatch;
+    };
+    struct PatchOfFace {
+        Index face;
+        int section; ///< -1: whole
+    };
+
+    void Add(Index face, int numSections, bool isOfLastGroup) {
+        if (!isOfLastGroup) {
+            groups.push_back({faces.size(), 0, numSections, numPatches});
+        }
+        faces.push_back(face);
+        ++groups.back().numFaces;
+        numPatches += std::max(numSections, 1);
+    }
+
+    PatchOfFace Get(Index patch) const {
+        auto const group = std::upper_bound(groups.begin(), groups.end(), patch,
+                                            [](Index number, Group const &other) {
+                                                return number < other.firstPatch;
+                                            }) -
+                           1;
+        auto const place = std::size_t(patch - group->firstPatch);
+        return {faces[group->firstFace + place % group->numFaces],
+                group->numSections == 0 ? -1 : int(place / group->numFaces)};
+    }
+
+    std::vector<Index> faces;
+    std::vector<Group> groups;
+    Index numPatches = 0;
+};
+
 // Takes the next faces that are no holes, of a stream whose plans do not all fit in memory; where not all
 // of theirs do, faces with the same levels stand side by side.
 template <typename REAL>
-Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace,
-                                        std::vector<Index> &faces) const {
+Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace, Batch &batch) const {
     constexpr std::size_t kMinNumFaces = 1024;
     constexpr std::size_t kShareOfMemory = 16;
+    constexpr double kMaxLeaves = 1 << 30;
     struct LevelsOfFace {
         std::size_t hash;
         Index face;
@@ -404,11 +284,18 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace,
     std::vector<int> levels;
     std::unordered_set<std::size_t> hashes;
     std::size_t memory = 0;
-    for (; beginFace < endFace && order.size() < numFaces; ++beginFace) {
+    double numLeaves = 0; // at least as many as patches
+    for (; beginFace < endFace && order.size() < numFaces && numLeaves < kMaxLeaves; ++beginFace) {
         if (_factory.GetMesh().GetLevel(0).IsFaceHole(beginFace)) {
             continue;
         }
+        if (_forest) {
+            order.push_back({0, beginFace});
+            numLeaves += _forest->GetTree(beginFace).GetNumLeaves();
+            continue;
+        }
         getLevels(beginFace, levels);
+        numLeaves += internal::FaceSections::CountLeaves(levels);
         std::size_t hash = 0;
         for (int const level : levels) {
             hash = (hash ^ std::size_t(level + 1)) * 0x9e3779b97f4a7c15;
@@ -424,11 +311,39 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace,
             return a.hash != b.hash ? a.hash < b.hash : a.face < b.face;
         });
     }
-    faces.clear();
+    batch = {};
+    std::vector<int> lastLevels;
+    bool isLastCut = false;
+    int numSections = 0;
     for (LevelsOfFace const &levelsOfFace : order) {
-        faces.push_back(levelsOfFace.face);
+        getLevels(levelsOfFace.face, levels);
+        bool isOfLastGroup = !_forest && !batch.groups.empty() && levels == lastLevels;
+        if (!isOfLastGroup) {
+            bool const isFaceCut = isCut(levelsOfFace.face, levels);
+            isOfLastGroup = !batch.groups.empty() && !isFaceCut && !isLastCut;
+            numSections = isFaceCut ? makeSections(levelsOfFace.face)->GetNumSections() : 0;
+            isLastCut = isFaceCut;
+            lastLevels = levels;
+        }
+        batch.Add(levelsOfFace.face, numSections, isOfLastGroup);
     }
     return beginFace;
+}
+
+template <typename REAL>
+int PatchStream<REAL>::GetNumSections(Index face) const {
+    std::vector<int> levels;
+    getLevels(face, levels);
+    return isCut(face, levels) ? makeSections(face)->GetNumSections() : 1;
+}
+
+template <typename REAL>
+Tessellation PatchStream<REAL>::MakeTessellation(Index face, int section) const {
+    std::vector<int> levels;
+    getLevels(face, levels);
+    return isCut(face, levels)
+               ? Tessellation(*makeSections(face), section, _options.GetTessellationOptions())
+               : MakeTessellation(face);
 }
 
 template <typename REAL>
@@ -490,6 +405,8 @@ Status PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKe
             }
             if (!_forest) {
                 checker.counter.Add(checker.levels);
+            } else if (_plans->IsCut(_forest->GetTree(face))) {
+                memory.SetCut();
             }
         }
     };
@@ -571,8 +488,9 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
     std::atomic<bool> isEnded(false);
     std::mutex mutex;
     Index const length = std::min(std::max((endFace - beginFace) / kNumRangesWanted, 1), kMaxRange);
-    // Hands out the patches of faces getFace(0) ... getFace(count - 1), where they are no holes.
-    auto const run = [&](Index count, auto const &getFace) {
+    // Hands out patches getPatch(0) ... getPatch(count - 1), where their faces are no holes.
+    auto const run = [&](Index count, auto const &getPatch) {
+        using PatchOfFace = typename Batch::PatchOfFace;
         FarExt::TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
         FarExt::internal::ParallelForRange(
             count,
@@ -582,7 +500,9 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
             [&](std::unique_ptr<Worker> &worker, Index begin, Index end) {
                 Status workerStatus;
                 for (Index i = begin; i < end && !isEnded; ++i) {
-                    if (base.IsFaceHole(getFace(i)) || worker->Run(getFace(i), &workerStatus)) {
+                    PatchOfFace const patch = getPatch(i);
+                    if (base.IsFaceHole(patch.face) ||
+                        worker->Run(patch.face, patch.section, &workerStatus)) {
                         continue;
                     }
                     isEnded = true;
@@ -595,12 +515,14 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
             length);
     };
     if (arePlansKept) {
-        run(endFace - beginFace, [&](Index i) { return beginFace + i; });
+        run(endFace - beginFace, [&](Index i) {
+            return typename Batch::PatchOfFace{beginFace + i, -1};
+        });
     }
-    std::vector<Index> faces;
+    Batch batch;
     while (!arePlansKept && beginFace < endFace && !isEnded) {
-        beginFace = takeFaces(beginFace, endFace, faces);
-        run(Index(faces.size()), [&](Index i) { return faces[std::size_t(i)]; });
+        beginFace = takeFaces(beginFace, endFace, batch);
+        run(batch.numPatches, [&](Index i) { return batch.Get(i); });
     }
     _plans->Trim();
     FarExt::internal::Report(result, status);

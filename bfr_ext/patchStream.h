@@ -15,6 +15,7 @@ namespace OpenSubdivHex::BfrExt {
 class PatchNumbering;
 
 namespace internal {
+class FaceSections;
 class PatchPlans;
 class StreamTypes;
 } // namespace internal
@@ -53,12 +54,17 @@ private:
 /// its tessellation, and the points of that; with them derivatives, and values of varying and
 /// face-varying data, where they are asked for.
 ///
+/// A face whose tessellation would take more memory than a fourth of that has a patch for each of its
+/// *sections* (Tessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as
+/// faces do, and the points are those that the face has as a whole, to the bit; so are the facets, but that
+/// of polygons, hexagons between two sections come in two halves.
+///
 ///  - Two patches that share an edge have the same points there, to the bit, as those of
 ///    Surface::Evaluate() of a tessellation have, with the exceptions said there.
 ///  - With a CellForest, patches have the tessellations of its trees: each is made with its patch and
 ///    forgotten with it.
-///  - A patch depends on its face alone, to the bit: not on the number of threads, nor on which others
-///    the call makes.  So processes may share the faces of a mesh.
+///  - A patch depends on its face and the options alone, to the bit: not on the number of threads, nor on
+///    which others the call makes.  So processes may share the faces of a mesh.
 ///  - Points inside of a face are those of Surface::Evaluate() up to rounding.
 ///
 /// Several threads may call Run() of one stream at once.  std::bad_alloc passes through.
@@ -70,7 +76,7 @@ public:
     /// The size of points and the distance from one to the next.
     using PointDescriptor = typename Surface<REAL>::PointDescriptor;
 
-    /// \brief What a sink gets of one base face; it is there during the call.
+    /// \brief What a sink gets of one base face, or of a section of it; it is there during the call.
     struct Patch {
         Index face;                       ///< the base face
         Tessellation const &tessellation; ///< the places of the points, and the facets between them
@@ -127,8 +133,12 @@ public:
         /// make them.
         ///
         /// Patches with the same levels share one.  Where not all of them fit, those patches come one
-        /// behind the other, and few tessellations are made twice.  Each thread has one patch, whatever
-        /// its size: with what it takes to make it, about 300 bytes for each of its points.
+        /// behind the other, and few tessellations are made twice.
+        ///
+        /// A thread has one patch at a time, and its points.  What it takes to make its tessellation is a
+        /// fourth of these bytes at most, or 3 megabytes where that is more (4 with derivatives): about 300
+        /// for each point.  Faces that take more come in sections.  What cannot be cut is a single cell: it
+        /// has all points that finer edges of the face, or cells beside it, have on its sides.
         ///
         /// Besides there is what all faces that look alike have in common, in the cache (SetMaxTypes()).
         Options &SetMaxMemory(std::size_t bytes) {
@@ -207,8 +217,12 @@ public:
              std::vector<Values> const &values, Index beginFace, Index endFace, Sink const &sink,
              FarExt::Status *status = nullptr) const;
 
-    /// The tessellation that the patch of a face has, which is in range and has valid levels or trees.
+    /// How many patches a face has, which is in range and has valid levels or trees: 1, or its sections.
+    int GetNumSections(Index face) const;
+    /// The tessellation of such a face as a whole, whatever memory that takes.
     Tessellation MakeTessellation(Index face) const;
+    /// That of a section, 0 ... GetNumSections(face) - 1: those that the patches of the face have.
+    Tessellation MakeTessellation(Index face, int section) const;
 
     /// The factory that was given.
     SurfaceFactory const &GetFactory() const { return _factory; }
@@ -222,6 +236,7 @@ public:
 private:
     friend class PatchNumbering;
     class Worker;
+    struct Batch;
 
     std::shared_ptr<internal::PatchPlans> makePlans() const;
     std::shared_ptr<internal::StreamTypes> makeTypes() const;
@@ -230,7 +245,9 @@ private:
     FarExt::Status checkLevels(Index face, std::vector<int> const &levels) const;
     FarExt::Status checkTree(Index face) const;
     void getLevels(Index face, std::vector<int> &levels) const;
-    Index takeFaces(Index beginFace, Index endFace, std::vector<Index> &faces) const;
+    bool isCut(Index face, std::vector<int> const &levels) const;
+    std::unique_ptr<internal::FaceSections const> makeSections(Index face) const;
+    Index takeFaces(Index beginFace, Index endFace, Batch &batch) const;
 
     SurfaceFactory const &_factory;
     PatchLevels const _levels;

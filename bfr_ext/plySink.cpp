@@ -60,10 +60,10 @@ std::uint64_t PlySink<REAL>::getPointOffset(PatchNumbering::Number point) const 
 }
 
 template <typename REAL>
-std::uint64_t PlySink<REAL>::getFacetOffset(Far::Index face) const {
+std::uint64_t PlySink<REAL>::getFacetOffset(Far::Index face, int section) const {
     return getPointOffset(_numbering.GetNumPoints()) +
-           std::uint64_t(_numbering.GetFirstFacet(face)) * _countSize +
-           std::uint64_t(_numbering.GetFirstFacetVertex(face)) * kIndexSize;
+           std::uint64_t(_numbering.GetFirstFacet(face, section)) * _countSize +
+           std::uint64_t(_numbering.GetFirstFacetVertex(face, section)) * kIndexSize;
 }
 
 template <typename REAL>
@@ -143,7 +143,8 @@ bool PlySink<REAL>::writeFacets(typename PatchStream<REAL>::Patch const &patch,
         }
         facet += stride == 0 ? size : stride;
     }
-    return _write(getFacetOffset(patch.face), bytes.data(), bytes.size());
+    return _write(getFacetOffset(patch.face, tessellation.GetSection()), bytes.data(),
+                  bytes.size());
 }
 
 template class PlySink<float>;

@@ -49,7 +49,7 @@ private:
     PlySink(PatchNumbering const &numbering, Write write);
 
     std::uint64_t getPointOffset(PatchNumbering::Number point) const;
-    std::uint64_t getFacetOffset(Far::Index face) const;
+    std::uint64_t getFacetOffset(Far::Index face, int section) const;
     bool writePoints(typename PatchStream<REAL>::Patch const &patch,
                      std::vector<PatchNumbering::Run> const &runs) const;
     bool writeFacets(typename PatchStream<REAL>::Patch const &patch,

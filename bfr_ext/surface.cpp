@@ -54,6 +54,16 @@ void bound(int numPoints, REAL const *points, Far::Index const *indices,
 // The place of a vertex on the border.
 std::vector<double> makeVertex() { return {0.0}; }
 
+// The places inside of an edge of a level, from its start on; they are the same from its end.
+std::vector<double> makeEdgePoints(int level) {
+    Polyline const polyline(level);
+    std::vector<double> points(static_cast<std::size_t>(polyline.GetNumPoints()));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        points[i] = polyline.GetParameter(int(i));
+    }
+    return points;
+}
+
 // The stencils of places on the border, which makePoints() gives when they are first asked for.
 template <typename REAL, typename MAKE>
 internal::PlaceMatrix<REAL> const &getBorderMatrix(CellType const &type, internal::PatternOf of,
@@ -201,7 +211,8 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
                                        nullptr, result, resultDesc.stride});
     };
     // Few types, and few levels, have matrices of a face: others go by cells.
-    if (_type->IsInLattice() && tessellation.IsUniform() && levels[0] <= kLastLevelOfMatrices) {
+    if (_type->IsInLattice() && tessellation.IsUniform() && levels[0] <= kLastLevelOfMatrices &&
+        !tessellation._section) {
         sumUp(getPattern(PatternOf::Face).matrices[0],
               results[0] + std::ptrdiff_t(numBorderPlaces) * resultDesc.stride);
         if (results[1]) {
@@ -296,85 +307,152 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
     evaluateBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
 }
 
-// The places inside of an edge, from its start on; they are the same from its end.
-template <typename REAL>
-std::vector<double> Surface<REAL>::makeEdgePoints(Tessellation const &tessellation, int edge) {
-    auto const numPlaces = static_cast<std::size_t>(tessellation.GetNumEdgeCoords(edge));
-    std::vector<double> points(numPlaces);
-    auto place = tessellation._places.begin() + tessellation._firstEdgeCoords[std::size_t(edge)];
-    for (double &point : points) {
-        point = (++place)->end;
-    }
-    return points;
-}
-
 // Edges are evaluated in their own direction, by what all faces at an edge of this level share.
+template <typename REAL>
+class Surface<REAL>::FaceBorder {
+public:
+    FaceBorder(Surface const &surface, REAL const *controlPoints, PointDescriptor const &pointDesc)
+        : _type(*surface._type), _turns(surface.getTurns()),
+          _numEdges(std::size_t(surface.GetFaceSize())),
+          _border(_type.IsInLattice() ? nullptr : &_type.GetBorder(_turns)) {
+        // What it has taken of memory is kept for the next face.
+        static thread_local Evaluator evaluator;
+        _evaluator = &evaluator;
+        evaluator.SetPoints(controlPoints, pointDesc.stride, pointDesc.size);
+        if (_border) {
+            evaluator.FormSums(*_border);
+        }
+    }
+
+    void EvaluateVertex(std::size_t vert, REAL *result) const {
+        if (_border) {
+            _evaluator->EvaluateVertex(vert, result);
+            return;
+        }
+        CellType::BorderItem const &item = _type.GetBorderItem(_turns, _numEdges + vert);
+        _evaluator->Evaluate(
+            item, getBorderMatrix<REAL>(*item.type, internal::PatternOf::Border, 0, makeVertex),
+            result, 0);
+    }
+    /// The points inside of an edge that has a level, in the direction of the face.
+    void EvaluateEdge(std::size_t edge, int level, int numPoints, REAL *results,
+                      std::ptrdiff_t stride) const {
+        Edge const item = getEdge(edge);
+        evaluate(edge, item,
+                 getBorderMatrix<REAL>(*item.type, internal::PatternOf::Border, level,
+                                       [&] { return makeEdgePoints(level); }),
+                 item.isReversed ? results + std::ptrdiff_t(numPoints - 1) * stride : results,
+                 item.isReversed ? -stride : stride);
+    }
+    /// A point of an edge.  Those of polylines are found one by one, since they have few in common.
+    ///
+    /// \param place  what the start and the end of the edge weigh
+    void EvaluatePoint(std::size_t edge, internal::Pair const &place, REAL *result) const {
+        Edge const item = getEdge(edge);
+        double const point = place[item.isReversed ? 0 : 1];
+        evaluate(edge, item,
+                 getBorderMatrix<REAL>(*item.type, internal::PatternOf::BorderPlace,
+                                       int(point * Polyline::kLength),
+                                       [&] { return std::vector<double>(1, point); }),
+                 result, 0);
+    }
+
+private:
+    using Evaluator = internal::BorderEvaluator<REAL>;
+
+    struct Edge {
+        CellType::BorderItem const *item; // of a face in a lattice
+        CellType const *type;
+        bool isReversed;
+    };
+
+    Edge getEdge(std::size_t edge) const {
+        if (_border) {
+            return {nullptr, _border->edges[edge].type, _border->edges[edge].isReversed};
+        }
+        CellType::BorderItem const &item = _type.GetBorderItem(_turns, edge);
+        return {&item, &Evaluator::GetType(item), item.isReversed};
+    }
+
+    void evaluate(std::size_t edge, Edge const &item, internal::PlaceMatrix<REAL> const &matrix,
+                  REAL *results, std::ptrdiff_t stride) const {
+        if (_border) {
+            _evaluator->EvaluateEdge(_border->edges[edge], matrix, results, stride);
+        } else {
+            _evaluator->Evaluate(*item.item, matrix, results, stride);
+        }
+    }
+
+    CellType const &_type;
+    int const *const _turns;
+    std::size_t const _numEdges;
+    CellType::Border const *const _border; // null of a face in a lattice
+    Evaluator *_evaluator = nullptr;
+};
+
 template <typename REAL>
 void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const controlPoints[],
                                    PointDescriptor const &pointDesc, REAL p[],
                                    PointDescriptor const &resultDesc) const {
-    using internal::PatternOf;
-    using Evaluator = internal::BorderEvaluator<REAL>;
-    using Matrix = internal::PlaceMatrix<REAL>;
+    if (tessellation._section) {
+        evaluateSectionBorder(tessellation, controlPoints, pointDesc, p, resultDesc);
+        return;
+    }
     if (_type->IsInLattice() && tessellation.IsUniform()) {
         evaluateLatticeBorder(tessellation, controlPoints, pointDesc, p, resultDesc);
         return;
     }
-    static thread_local Evaluator evaluator;
-    evaluator.SetPoints(controlPoints, pointDesc.stride, pointDesc.size);
-    CellType::Border const *const border =
-        _type->IsInLattice() ? nullptr : &_type->GetBorder(getTurns());
-    if (border) {
-        evaluator.FormSums(*border);
-    }
-    auto const numEdges = std::size_t(GetFaceSize());
-    for (std::size_t edge = 0; edge < numEdges; ++edge) {
+    FaceBorder const border(*this, controlPoints, pointDesc);
+    auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
+    for (std::size_t edge = 0; edge < std::size_t(GetFaceSize()); ++edge) {
         int const first = tessellation._firstEdgeCoords[edge];
-        REAL *const vertexResult = p + std::ptrdiff_t(first) * resultDesc.stride;
-        if (border) {
-            evaluator.EvaluateVertex(edge, vertexResult);
-        } else {
-            CellType::BorderItem const &item = _type->GetBorderItem(getTurns(), numEdges + edge);
-            evaluator.Evaluate(item,
-                               getBorderMatrix<REAL>(*item.type, PatternOf::Border, 0, makeVertex),
-                               vertexResult, 0);
-        }
-
+        border.EvaluateVertex(edge, getResult(first));
         int const numPlaces = tessellation.GetNumEdgeCoords(int(edge));
-        if (numPlaces == 0) {
-            continue;
-        }
-        CellType::BorderItem const *const item =
-            border ? nullptr : &_type->GetBorderItem(getTurns(), edge);
-        CellType const &type = border ? *border->edges[edge].type : Evaluator::GetType(*item);
-        bool const isReversed = border ? border->edges[edge].isReversed : item->isReversed;
-        auto const evaluate = [&](Matrix const &matrix, int place, std::ptrdiff_t stride) {
-            REAL *const results = p + std::ptrdiff_t(place) * resultDesc.stride;
-            if (border) {
-                evaluator.EvaluateEdge(border->edges[edge], matrix, results, stride);
-            } else {
-                evaluator.Evaluate(*item, matrix, results, stride);
-            }
-        };
-        auto const getPlace = [&](int i) { return first + (isReversed ? numPlaces - i : i + 1); };
-        auto const getPoint = [&](int i) {
-            Tessellation::SectorCoords const &place =
-                tessellation._places[std::size_t(getPlace(i))];
-            return isReversed ? place.start : place.end;
-        };
         if (tessellation._tree) {
-            // Points of polylines are found one by one, since they have few in common.
-            for (int i = 0; i < numPlaces; ++i) {
-                Matrix const &matrix = getBorderMatrix<REAL>(
-                    type, PatternOf::BorderPlace, int(getPoint(i) * Polyline::kLength),
-                    [&] { return std::vector<double>(1, getPoint(i)); });
-                evaluate(matrix, getPlace(i), 0);
+            for (int place = first + 1; place <= first + numPlaces; ++place) {
+                Tessellation::SectorCoords const &coords = tessellation._places[std::size_t(place)];
+                border.EvaluatePoint(edge, {coords.start, coords.end}, getResult(place));
             }
-            continue;
+        } else if (numPlaces > 0) {
+            border.EvaluateEdge(edge, tessellation._levels[edge], numPlaces, getResult(first + 1),
+                                resultDesc.stride);
         }
-        evaluate(getBorderMatrix<REAL>(type, PatternOf::Border, tessellation._levels[edge],
-                                       [&] { return makeEdgePoints(tessellation, int(edge)); }),
-                 getPlace(0), isReversed ? -resultDesc.stride : resultDesc.stride);
+    }
+}
+
+// Those on the border of the face, to the bit as all points of the face are evaluated.
+template <typename REAL>
+void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
+                                          REAL const controlPoints[],
+                                          PointDescriptor const &pointDesc, REAL p[],
+                                          PointDescriptor const &resultDesc) const {
+    FaceBorder const border(*this, controlPoints, pointDesc);
+    auto const size = std::size_t(pointDesc.size);
+    int evaluatedEdge = -1;
+    std::vector<REAL> edgePoints;
+    for (Tessellation::BorderRun const &run : tessellation._section->border) {
+        auto const edge = std::size_t(run.edge);
+        for (int i = 0; i < run.count; ++i) {
+            int const place = run.place + i;
+            REAL *const result = p + std::ptrdiff_t(place) * resultDesc.stride;
+            if (run.index + i < 0) {
+                border.EvaluateVertex(edge, result);
+                continue;
+            }
+            if (tessellation._tree) {
+                Tessellation::SectorCoords const &coords = tessellation._places[std::size_t(place)];
+                border.EvaluatePoint(edge, {coords.start, coords.end}, result);
+                continue;
+            }
+            if (run.edge != evaluatedEdge) {
+                int const level = tessellation._levels[edge];
+                int const numPoints = Polyline(level).GetNumPoints();
+                edgePoints.resize(std::size_t(numPoints) * size);
+                border.EvaluateEdge(edge, level, numPoints, edgePoints.data(), pointDesc.size);
+                evaluatedEdge = run.edge;
+            }
+            std::copy_n(&edgePoints[std::size_t(run.index + i) * size], size, result);
+        }
     }
 }
 
@@ -414,7 +492,7 @@ void Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
                        item.isReversed ? -resultDesc.stride : resultDesc.stride};
     }
     evaluate(getBorderMatrix<REAL>(*getItem(0).type, PatternOf::Border, tessellation._levels[0],
-                                   [&] { return makeEdgePoints(tessellation, 0); }));
+                                   [&] { return makeEdgePoints(tessellation._levels[0]); }));
 }
 
 template <typename REAL>

@@ -204,6 +204,7 @@ public:
 private:
     friend class SurfaceFactory;
     friend class View;
+    class FaceBorder;
 
     internal::BasePoint findPoint(REAL const uv[2]) const;
     bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
@@ -221,7 +222,9 @@ private:
     void evaluateLatticeBorder(Tessellation const &tessellation, REAL const controlPoints[],
                                PointDescriptor const &pointDesc, REAL p[],
                                PointDescriptor const &resultDesc) const;
-    static std::vector<double> makeEdgePoints(Tessellation const &tessellation, int edge);
+    void evaluateSectionBorder(Tessellation const &tessellation, REAL const controlPoints[],
+                               PointDescriptor const &pointDesc, REAL p[],
+                               PointDescriptor const &resultDesc) const;
 
     // By edge and then by vertex, how the face has what it shares with its neighbours.
     int const *getTurns() const { return _points.data() + _numControlPoints; }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tessellation.h"
 
-#include "cell/cellMesh.h"
 #include "cell/cellPlan.h"
+#include "cell/faceSections.h"
 
 #include "far_ext/vtr/basePolygon.h"
 
@@ -119,6 +119,37 @@ Tessellation::Tessellation(CellTree const &tree, Polyline const edges[], Options
     setCells(mesh);
 }
 
+Tessellation::Tessellation(internal::FaceSections const &sections, int section,
+                           Options const &options) {
+    if (!setOptions(options)) {
+        return;
+    }
+    int const size = sections.GetFaceSize();
+    _parameterization = Parameterization(size);
+    _section = std::make_shared<Section>(Section{section, sections.GetNumSections(), {}});
+    internal::CellShape shape = {};
+    CellTree tree = sections.MakeTree(section, &shape);
+    // Those that it has a side on.
+    std::vector<Polyline> edges(static_cast<std::size_t>(size));
+    std::vector<int> const polygon = sections.GetPolygon(section);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        CellMesh::Vertex const &start = sections.GetVertices()[std::size_t(polygon[i])];
+        CellMesh::Vertex const &end =
+            sections.GetVertices()[std::size_t(polygon[(i + 1) % polygon.size()])];
+        if (sections.AreOnEdge(start, end)) {
+            edges[std::size_t(start.sector)] = sections.GetEdge(start.sector);
+        }
+    }
+    CellMesh const mesh(tree, edges.data(), shape);
+    _levels = sections.GetLevels();
+    if (_levels.empty()) {
+        _tree = std::make_shared<Tree>(Tree{tree, std::move(edges), {}});
+    } else {
+        _cellPlan = std::make_shared<LazyCellPlan>();
+    }
+    setSection(mesh, sections);
+}
+
 bool Tessellation::setOptions(Options const &options) {
     int const facetSize = options.GetFacetSize();
     int const facetStride = options.GetFacetStride() == 0 ? facetSize : options.GetFacetStride();
@@ -165,54 +196,36 @@ struct Tessellation::LazyCellPlan {
     std::unique_ptr<internal::CellPlan const> plans[2];
 };
 
-// Points on the border are made apart, derivatives are not.
 internal::CellPlan const &Tessellation::getCellPlan(bool isOfDerivatives) const {
     using internal::CellPlan;
     std::unique_ptr<CellPlan const> &plan = _cellPlan->plans[isOfDerivatives ? 1 : 0];
     std::call_once(_cellPlan->once[isOfDerivatives ? 1 : 0], [&] {
-        int const first = isOfDerivatives ? 0 : GetNumBoundaryCoords();
         int const level =
             isOfDerivatives ? *std::max_element(_levels.begin(), _levels.end()) : _levels.back();
         std::vector<internal::LeafPlaces::Place> places;
-        places.reserve(std::size_t(GetNumCoords() - first));
-        std::for_each(_places.begin() + first, _places.end(), [&](SectorCoords const &place) {
+        places.reserve(_places.size());
+        for (SectorCoords const &place : _places) {
             places.push_back({place.sector, {place.start, place.end}});
-        });
-        plan = std::make_unique<CellPlan const>(GetFaceSize(), level, places, first,
+        }
+        plan = std::make_unique<CellPlan const>(GetFaceSize(), level, places,
                                                 isOfDerivatives ? CellPlan::Use::Derivatives
                                                                 : CellPlan::Use::Points);
     });
     return *plan;
 }
 
-// Returns the places of the mesh's vertices.
-std::vector<int> Tessellation::addPlaces(CellMesh const &mesh) {
+// Takes the vertices of the mesh in an order, those of the boundary first, and returns their places.
+std::vector<int> Tessellation::setPlaces(CellMesh const &mesh, std::vector<int> const &order) {
     std::vector<CellMesh::Vertex> const &verts = mesh.GetVertices();
     std::vector<int> places(verts.size(), kInvalid);
-    std::vector<int> order;
-    order.reserve(verts.size());
-    auto const addVertex = [&](int vert) {
-        places[std::size_t(vert)] = int(order.size());
-        order.push_back(vert);
-    };
-    for (int edge = 0; edge < GetFaceSize(); ++edge) {
-        std::vector<int> const edgeVerts = mesh.GetEdgeVertices(edge);
-        _firstEdgeCoords.push_back(int(order.size()));
-        std::for_each(edgeVerts.begin(), edgeVerts.end() - 1, addVertex);
-    }
-    _firstEdgeCoords.push_back(int(order.size()));
-    for (std::size_t vert = 0; vert < verts.size(); ++vert) {
-        if (places[vert] == kInvalid) {
-            addVertex(int(vert));
-        }
-    }
     FarExt::internal::BasePolygon const polygon(GetFaceSize());
     _coords.resize(2 * order.size());
     _places.reserve(order.size());
     for (std::size_t place = 0; place < order.size(); ++place) {
         CellMesh::Vertex const &vert = verts[std::size_t(order[place])];
-        double const start = std::ldexp(double(vert.a), -CellMesh::kBits);
-        double const end = std::ldexp(double(vert.b), -CellMesh::kBits);
+        places[std::size_t(order[place])] = int(place);
+        double const start = std::ldexp(double(vert.a), -internal::CellShape::kBits);
+        double const end = std::ldexp(double(vert.b), -internal::CellShape::kBits);
         polygon.Write(vert.sector, {start, end}, &_coords[2 * place]);
         _places.push_back({vert.sector, start, end});
         if (_tree && vert.cell >= 0) {
@@ -228,8 +241,78 @@ std::vector<int> Tessellation::addPlaces(CellMesh const &mesh) {
     return places;
 }
 
+// All that the mesh has.
 void Tessellation::setCells(CellMesh const &mesh) {
-    std::vector<int> const places = addPlaces(mesh);
+    std::size_t const numVerts = mesh.GetVertices().size();
+    std::vector<bool> isOnBoundary(numVerts);
+    std::vector<int> order;
+    order.reserve(numVerts);
+    for (int edge = 0; edge < GetFaceSize(); ++edge) {
+        std::vector<int> const edgeVerts = mesh.GetEdgeVertices(edge);
+        _firstEdgeCoords.push_back(int(order.size()));
+        order.insert(order.end(), edgeVerts.begin(), edgeVerts.end() - 1);
+    }
+    _firstEdgeCoords.push_back(int(order.size()));
+    for (int const vert : order) {
+        isOnBoundary[std::size_t(vert)] = true;
+    }
+    for (std::size_t vert = 0; vert < numVerts; ++vert) {
+        if (!isOnBoundary[vert]) {
+            order.push_back(int(vert));
+        }
+    }
+    setFacets(mesh, setPlaces(mesh, order));
+}
+
+// What the polygons of a section have: the mesh has more beside it.
+void Tessellation::setSection(CellMesh const &mesh, internal::FaceSections const &sections) {
+    std::vector<int> const polygon = sections.GetPolygon(_section->number);
+    std::vector<int> order;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        CellMesh::Vertex const &start = sections.GetVertices()[std::size_t(polygon[i])];
+        CellMesh::Vertex const &end =
+            sections.GetVertices()[std::size_t(polygon[(i + 1) % polygon.size()])];
+        int const first = int(order.size());
+        _firstEdgeCoords.push_back(first);
+        order.push_back(mesh.Find(start.sector, {start.a, start.b}));
+        // Of two vertices in different sectors, one lies on the line between these.
+        int const size = GetFaceSize();
+        if (start.sector == end.sector) {
+            mesh.AppendBetween(start.sector, {start.a, start.b}, {end.a, end.b}, order);
+        } else if (end.b == 0 && end.sector == (start.sector + 1) % size) {
+            mesh.AppendBetween(start.sector, {start.a, start.b}, {0, end.a}, order);
+        } else {
+            mesh.AppendBetween(end.sector, {0, start.a}, {end.a, end.b}, order);
+        }
+        if (!sections.IsOnEdge(start)) {
+            continue;
+        }
+        int const before =
+            start.b == 0
+                ? 0
+                : 1 + sections.CountPointsBefore(start.sector, sections.GetPlaceOnEdge(start));
+        int const count = sections.AreOnEdge(start, end) ? int(order.size()) - first : 1;
+        _section->border.push_back({start.sector, before - 1, count, first});
+    }
+    _firstEdgeCoords.push_back(int(order.size()));
+    std::vector<bool> isInside(mesh.GetVertices().size());
+    mesh.ForEachCell([&](CellMesh::Polygon &cell) {
+        for (int const vert : cell.verts) {
+            isInside[std::size_t(vert)] = true;
+        }
+    });
+    for (int const vert : order) {
+        isInside[std::size_t(vert)] = false;
+    }
+    for (std::size_t vert = 0; vert < isInside.size(); ++vert) {
+        if (isInside[vert]) {
+            order.push_back(int(vert));
+        }
+    }
+    setFacets(mesh, setPlaces(mesh, order));
+}
+
+void Tessellation::setFacets(CellMesh const &mesh, std::vector<int> const &places) {
     auto const addFacet = [&](int const *facet, int numVerts, int level) {
         _facetIndices.insert(_facetIndices.end(), facet, facet + numVerts);
         _firstFacetIndices.push_back(int(_facetIndices.size()));

@@ -5,6 +5,7 @@
 #include "cellTree.h"
 #include "parameterization.h"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace OpenSubdivHex::BfrExt {
 namespace internal {
 class CellMesh;
 class CellPlan;
+class FaceSections;
 struct PatchPlan;
 } // namespace internal
 
@@ -29,6 +31,11 @@ struct PatchPlan;
 /// Where a cell meets smaller ones, or an edge of a finer level, it has their points in its own sides.
 /// So neighbours fit whatever their levels and trees are, as long as both take the same level, or
 /// Polyline, for the edge that they share: there are no gaps, and no more facets than are asked for.
+///
+/// A PatchStream cuts faces that are too large for its memory into *sections*, whose tessellations are
+/// parts of that of the face: with the same places and facets, but that hexagons which two sections have
+/// come in two halves, as those that two faces have.  A section is a polygon in the parameter plane of the
+/// face, and fits to others as a face does to its neighbours.
 ///
 /// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API Tessellation {
@@ -111,9 +118,17 @@ public:
     /// Whether all of them are the same; not of a tree.
     bool IsUniform() const;
 
+    /// How many sections the face is cut into: 1 if it is not.
+    int GetNumSections() const { return _section ? _section->count : 1; }
+    /// Which of them this is.
+    int GetSection() const { return _section ? _section->number : 0; }
+    /// Edges of the boundary: those of the face, or of the section.  Each edge of a section lies on an
+    /// edge of the face, or is that of one other section, too, with the same places.
+    int GetNumEdges() const { return std::max(int(_firstEdgeCoords.size()) - 1, 0); }
+
     /// @name Coordinates
-    /// Those of the boundary come first, from vertex 0 on around the face: each vertex and then the
-    /// inner points of the edge behind it.
+    /// Those of the boundary come first, from vertex 0 on around the face, or the section: each vertex and
+    /// then the inner points of the edge behind it.
     /// @{
 
     /// All places.
@@ -147,7 +162,7 @@ public:
     int GetInteriorCoords(REAL coordTuples[]) const {
         return writeCoords(GetNumBoundaryCoords(), GetNumCoords(), coordTuples);
     }
-    /// Writes that of a vertex of the face.
+    /// Writes that of a vertex of the boundary.
     template <typename REAL>
     int GetVertexCoord(int vertex, REAL coord[]) const {
         int const place = _firstEdgeCoords[std::size_t(vertex)];
@@ -197,7 +212,25 @@ public:
 private:
     template <typename REAL>
     friend class Surface;
+    template <typename REAL>
+    friend class PatchStream;
+    friend class PatchNumbering;
     friend struct internal::PatchPlan;
+
+    // Places on an edge of the face that follow one another in a section: from point number index of the
+    // edge on, -1 being its vertex.
+    struct BorderRun {
+        int edge;
+        int index;
+        int count;
+        int place;
+    };
+    // What the tessellation of a section has besides.
+    struct Section {
+        int number;
+        int count; // of the face
+        std::vector<BorderRun> border;
+    };
 
     // The sector of an edge, and what the places of its start and its end weigh beside the centre.
     struct SectorCoords {
@@ -219,6 +252,9 @@ private:
         std::vector<CellCorner> corners; // of all places that are corners, ascending by cell
     };
 
+    // That of a section of a face.
+    Tessellation(internal::FaceSections const &sections, int section, Options const &options);
+
     // Which cells the places inside lie in, made when it is first asked for; of levels.
     struct LazyCellPlan;
     internal::CellPlan const &getCellPlan(bool isOfDerivatives = false) const;
@@ -227,7 +263,9 @@ private:
                     Options const &options);
     bool setOptions(Options const &options);
     void setCells(internal::CellMesh const &mesh);
-    std::vector<int> addPlaces(internal::CellMesh const &mesh);
+    void setSection(internal::CellMesh const &mesh, internal::FaceSections const &sections);
+    std::vector<int> setPlaces(internal::CellMesh const &mesh, std::vector<int> const &order);
+    void setFacets(internal::CellMesh const &mesh, std::vector<int> const &places);
     template <typename FUNCTION>
     void transform(int facetTuples[], FUNCTION function) const;
 
@@ -244,8 +282,9 @@ private:
     int _facetSize = 3;
     int _facetStride = 3;
     int _coordStride = 2;
-    std::vector<int> _levels;    // of edges, then of the inside; none of a tree
-    std::shared_ptr<Tree> _tree; // null of levels
+    std::vector<int> _levels;          // of edges, then of the inside; none of a tree
+    std::shared_ptr<Tree> _tree;       // null of levels
+    std::shared_ptr<Section> _section; // null of a face
     std::shared_ptr<LazyCellPlan> _cellPlan;
     std::vector<double> _coords;         // two of each place
     std::vector<SectorCoords> _places;   // the same, exactly

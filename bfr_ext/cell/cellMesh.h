@@ -2,10 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_MESH_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_MESH_H
 
-#include "bfr_ext/cellTree.h"
+#include "cellShape.h"
 
-#include <array>
-#include <cstdint>
 #include <functional>
 #include <unordered_map>
 #include <vector>
@@ -14,9 +12,8 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 /// \brief A base face cut into the cells of a tree that are not refined further, in its parameter plane.
 ///
-/// All lines are straight there: half cells are trapezoids, and what an edge becomes lies on it.  So a
-/// place is enough to know a vertex by, and cells that meet smaller ones find their vertices on their
-/// own sides.
+/// A place is enough to know a vertex by, and cells that meet smaller ones find their vertices on their own
+/// sides.
 class CellMesh {
 public:
     /// A vertex: its sector and the coordinates a and b there, in units of 2^-kBits.  On the line from
@@ -29,16 +26,25 @@ public:
         int cell;
         int corner;
     };
-    static constexpr int kBits = Polyline::kLastLevel + 2;
+    using Place = CellShape::Place;
 
-    /// \param tree   must live as long
-    /// \param edges  by edge of the face, in its direction; with all points that the tree has there
-    CellMesh(CellTree const &tree, Polyline const edges[]);
+    /// \param tree     must live as long
+    /// \param edges    by edge of the face, in its direction; with all points that the tree has there
+    /// \param section  the cell whose polygons are asked for, with what is in it
+    CellMesh(CellTree const &tree, Polyline const edges[],
+             CellShape const &section = CellShape::MakeFace());
 
     /// Vertices of coarser levels come first.
     std::vector<Vertex> const &GetVertices() const { return _verts; }
     /// The vertices of an edge of the face, from its first corner to its second.
     std::vector<int> GetEdgeVertices(int edge) const;
+    /// The vertex at a place of a sector, or -1.
+    int Find(int sector, Place const &place) const;
+    /// Appends the vertices between two places of a side of a cell.
+    void AppendBetween(int sector, Place const &start, Place const &end,
+                       std::vector<int> &verts) const;
+    /// The polygon of a cell that is not refined, with the vertices that others have on its sides.
+    std::vector<int> GetPolygon(CellShape const &cell) const;
 
     /// A cell, or two halves of a hexagon: vertices, counter-clockwise, and the level.
     struct Polygon {
@@ -52,36 +58,24 @@ public:
     std::vector<Polygon> GetMergedPolygons() const;
 
 private:
-    using Place = std::array<std::int32_t, 2>;
-    struct Cell {
-        int number;
-        int level;
-        bool isWhole;
-        int sector;                   // of half cells
-        std::int32_t scale;           // of whole ones: how far their corners are from the centre
-        std::array<Place, 4> corners; // of half cells, in their sector
-    };
     struct Hash {
         std::size_t operator()(std::array<std::int32_t, 3> const &key) const;
     };
 
     static std::array<std::int32_t, 3> getKey(int faceSize, int sector, Place const &place);
-    int find(int sector, Place const &place) const;
     void add(int sector, Place const &place, int cell, int corner);
-    void addInside(Cell const &cell);
-    Cell getChild(Cell const &parent, int child) const;
+    void addInside(CellShape const &cell);
     template <typename FUNCTION>
-    void visit(Cell const &cell, int level, FUNCTION const &function) const;
+    void visit(CellShape const &cell, int level, FUNCTION const &function) const;
     template <typename FUNCTION>
-    void forEachCellByLevel(FUNCTION const &function) const;
-    void setPolygon(Cell const &cell, Polygon &polygon) const;
-    void appendSide(int sector, Place const &start, Place const &end, bool isLong,
-                    std::vector<int> &verts) const;
-    void appendSides(Cell const &cell, int first, int count, std::vector<int> &polygon) const;
+    void forEachCellByLevel(CellShape const &root, FUNCTION const &function) const;
+    void setPolygon(CellShape const &cell, Polygon &polygon) const;
+    void appendSides(CellShape const &cell, int first, int count, std::vector<int> &polygon) const;
 
     CellTree const &_tree;
     int const _faceSize;
     int const _maxLevel;
+    CellShape const _section;
     std::vector<Vertex> _verts;
     std::unordered_map<std::array<std::int32_t, 3>, int, Hash> _numbers;
 };

@@ -98,18 +98,20 @@ void LeafPlaces::refineHalf(int sector, std::array<Pair, 4> const &corners, int 
     }
 }
 
-CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, int first,
-                   Use use)
+CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use)
     : _faceSize(faceSize) {
     _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}});
     for (std::size_t i = 0; i < places.size(); ++i) {
         LeafPlaces::Place place = places[i];
+        if (use == Use::Points && place.coords[0] + place.coords[1] == 1) {
+            continue;
+        }
         BasePoint const base = MakeBasePoint(faceSize, place.sector, place.coords);
         Pair toCoords[2] = {base.toCoords[0], base.toCoords[1]};
         std::size_t node = 0;
         bool isCorner = false;
         while (!_nodes[node].leaf) {
-            isCorner = use == Use::Derivatives && addCorner(node, place, toCoords, first + int(i));
+            isCorner = use == Use::Derivatives && addCorner(node, place, toCoords, int(i));
             if (isCorner) {
                 break;
             }
@@ -129,7 +131,7 @@ CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const
         if (!leaf.isWhole) {
             place.sector = 0;
         }
-        leaf.rows.push_back({int(leaf.leaf->Find(place)), first + int(i)});
+        leaf.rows.push_back({int(leaf.leaf->Find(place)), int(i)});
     }
     for (Node &node : _nodes) {
         std::sort(node.rows.begin(), node.rows.end(),

@@ -86,9 +86,8 @@ public:
     enum class Use { Points, Derivatives };
 
     /// \param level   that of the places, at most
-    /// \param places  from place number \p first on; for points those inside of the face
-    CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, int first,
-             Use use);
+    /// \param places  of points, those on the border of the face are made apart
+    CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use);
 
     /// Node 0 is the face.
     Node const &operator[](std::size_t node) const { return _nodes[node]; }

@@ -41,12 +41,17 @@ public:
 
     FarExt::TopologyLevel const &GetBase() const { return _refiner->GetLevel(0); }
 
+    FarExt::TopologyRefiner const &GetRefiner() const { return *_refiner; }
+
     /// What a new stream takes.
-    Usage Measure(PatchLevels const &levels, PatchStream<float>::Options const &options) const {
+    ///
+    /// \param source  PatchLevels, or a CellForest
+    template <typename SOURCE>
+    Usage Measure(SOURCE const &source, PatchStream<float>::Options const &options) const {
         std::atomic<long> count(0);
         std::atomic<long> maxCount(0);
         auto const run = [&] {
-            PatchStream<float> const stream(*_factory, levels, options);
+            PatchStream<float> const stream(*_factory, source, options);
             ResetPeakBytes();
             long const before = CountLiveBytes();
             EXPECT_TRUE(
@@ -102,6 +107,38 @@ TEST(StreamMemoryTest, IsWhatWasAskedFor) {
                         << numThreads << " threads" << (hasDerivatives ? ", derivatives" : "");
                 }
             }
+        }
+    }
+}
+
+// Faces that take 25 times as much memory as there is, or 6 times, come in sections.
+TEST(StreamMemoryTest, DoesNotDependOnTheSizeOfFaces) {
+    Subject const subject(GetShape("polygon4"));
+    struct Case {
+        int level;
+        bool hasTree;
+        bool hasDerivatives;
+        long minNumPoints;
+    };
+    for (Case const &testCase : {Case{9, false, false, 349525}, Case{9, true, false, 349525},
+                                 Case{8, false, true, 87381}, Case{8, true, true, 87381}}) {
+        BfrExt::CellForest forest(subject.GetRefiner());
+        forest.SetTree(0, BfrExt::CellTree(4, testCase.level));
+        forest.MatchEdges();
+        PatchStream<float>::Options options;
+        options.SetDerivatives(testCase.hasDerivatives);
+        for (int const numThreads : {1, 2}) {
+            ThreadsScope const threads(numThreads);
+            Usage const usage = testCase.hasTree
+                                    ? subject.Measure(forest, options)
+                                    : subject.Measure(PatchLevels(testCase.level), options);
+            EXPECT_GE(usage.numPoints, testCase.minNumPoints);
+            long const numbers = (testCase.hasDerivatives ? 9 : 3) * usage.maxPoints;
+            EXPECT_LE(usage.bytes,
+                      long(options.GetMaxMemory()) + numThreads * numbers * long(sizeof(float)))
+                << "level " << testCase.level << ", " << numThreads << " threads"
+                << (testCase.hasDerivatives ? ", derivatives" : "")
+                << (testCase.hasTree ? ", a tree" : "");
         }
     }
 }

@@ -21,7 +21,20 @@ inline BfrExt::CellTree MakeRandomTree(int faceSize, std::mt19937 &random) {
     return tree;
 }
 
-/// Such a tree for each face.
+/// A tree with cells enough to come in sections, of all levels from 4 to 9, side by side.
+inline BfrExt::CellTree MakeLargeTree(int faceSize, unsigned seed) {
+    std::mt19937 random(seed);
+    BfrExt::CellTree tree(faceSize, 4);
+    for (int cell = 0; cell < tree.GetNumCells() && tree.GetNumLeaves() < 20000; ++cell) {
+        int const level = tree.GetLevel(cell);
+        if (level >= 4 && level < 9 && random() % 100 < (level < 6 ? 75 : 60)) {
+            tree.Refine(cell);
+        }
+    }
+    return tree;
+}
+
+/// A random tree for each face.
 inline BfrExt::CellForest MakeRandomForest(FarExt::TopologyRefiner const &refiner, unsigned seed) {
     std::mt19937 random(seed);
     BfrExt::CellForest forest(refiner);

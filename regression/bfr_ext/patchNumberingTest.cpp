@@ -17,6 +17,7 @@
 #include <mutex>
 #include <set>
 #include <sstream>
+#include <string>
 
 namespace OpenSubdivHex::Regression {
 
@@ -43,12 +44,39 @@ PatchStream<double>::Options getOptions(int facetSize) {
         Tessellation::Options().SetFacetSize(facetSize));
 }
 
+/// What the faces of a stream are: as they come by chance, or with faces 0 and 1 so fine that they come in
+/// sections.
+enum class Size { Small, InSections };
+
+RandomPatchLevels makeLevels(FarExt::TopologyLevel const &base, unsigned seed, Size size) {
+    RandomPatchLevels levels(base, 4, seed);
+    for (int face = 0; size == Size::InSections && face < 2; ++face) {
+        levels.faces[std::size_t(face)] = 7;
+        // Edges as fine as the face, coarser and finer.
+        levels.edges[std::size_t(base.GetFaceEdges(face)[0])] = 7;
+        levels.edges[std::size_t(base.GetFaceEdges(face)[1])] = 5;
+        levels.edges[std::size_t(base.GetFaceEdges(face)[2])] = 9;
+    }
+    return levels;
+}
+
+BfrExt::CellForest makeForest(FarExt::TopologyRefiner const &refiner, unsigned seed, Size size) {
+    BfrExt::CellForest forest = MakeRandomForest(refiner, seed);
+    for (int face = 0; size == Size::InSections && face < 2; ++face) {
+        forest.SetTree(face, MakeLargeTree(forest.GetTree(face).GetFaceSize(), seed));
+    }
+    forest.MatchEdges();
+    return forest;
+}
+
 /// A stream, joined by the numbers of its points.
 struct Joined {
-    Joined(Shape const &shape, unsigned seed, int facetSize, bool hasTrees = false)
+    Joined(Shape const &shape, unsigned seed, int facetSize, bool hasTrees = false,
+           Size size = Size::Small)
         : refiner(CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly())),
-          factory(SurfaceFactory::Create(*refiner)), levels(refiner->GetLevel(0), 4, seed),
-          forest(MakeRandomForest(*refiner, seed)),
+          factory(SurfaceFactory::Create(*refiner)),
+          levels(makeLevels(refiner->GetLevel(0), seed, size)),
+          forest(makeForest(*refiner, seed, size)),
           stream(hasTrees ? PatchStream<double>(*factory, forest, getOptions(facetSize))
                           : PatchStream<double>(*factory, levels.Get(), getOptions(facetSize))),
           numbering(PatchNumbering::Create(stream)) {
@@ -93,10 +121,16 @@ struct Joined {
                                             : sizes.size() * std::size_t(stride));
         tessellation.GetFacets(facets.data());
         auto facet = facets.begin();
-        EXPECT_EQ(numbering->GetFirstFacet(patch.face + 1) - numbering->GetFirstFacet(patch.face),
-                  Number(sizes.size()));
+        int const section = tessellation.GetSection();
+        EXPECT_EQ(tessellation.GetNumSections(), stream.GetNumSections(patch.face));
+        numSections += tessellation.GetNumSections() == 1 ? 0 : 1;
+        Number number = numbering->GetFirstFacet(patch.face, section);
+        if (section + 1 == tessellation.GetNumSections()) {
+            EXPECT_EQ(numbering->GetFirstFacet(patch.face + 1), number + Number(sizes.size()));
+        }
         for (int const size : sizes) {
-            std::vector<Number> &polygon = polygons[{patch.face, int(facet - facets.begin())}];
+            EXPECT_EQ(polygons.count(number), 0);
+            std::vector<Number> &polygon = polygons[number++];
             for (int i = 0; i < size; ++i) {
                 polygon.push_back(numbers[std::size_t(facet[i])]);
             }
@@ -112,7 +146,8 @@ struct Joined {
     std::unique_ptr<PatchNumbering> numbering;
     std::map<Number, Point> points;
     std::set<Number> owned;
-    std::map<std::pair<int, int>, std::vector<Number>> polygons; // by face and place in it
+    std::map<Number, std::vector<Number>> polygons;
+    int numSections = 0;
 };
 
 /// A file in memory, of which every byte is written once.
@@ -188,15 +223,24 @@ TEST(PatchNumberingTest, SharedPointsHaveOneNumberAndOneOwner) {
     for (char const *const name : {"mixedSharpnessQuads", "bowTieOfFans", "creasedBall"}) {
         shapes.push_back(&GetFeatureShape(name));
     }
+    std::set<std::string> const shapesInSections = {"cube", "prism5", "bowTieOfFans",
+                                                    "creasedBall"};
+    int numInSections = 0;
     for (Shape const *const shape : shapes) {
         SCOPED_TRACE(shape->name);
-        for (int const facetSize : {0, 3}) {
-            Joined const joined(*shape, 9, facetSize);
+        bool const isInSections = shapesInSections.count(shape->name) > 0;
+        numInSections += isInSections ? 1 : 0;
+        for (int round = 0; round < (isInSections ? 4 : 2); ++round) {
+            int const facetSize = std::array<int, 4>{0, 3, 3, 0}[std::size_t(round)];
+            Joined const joined(*shape, 9, facetSize, round == 3,
+                                round >= 2 ? Size::InSections : Size::Small);
+            ASSERT_EQ(joined.numSections > 4, round >= 2);
             ASSERT_EQ(Number(joined.points.size()), joined.numbering->GetNumPoints());
             ASSERT_EQ(joined.points.begin()->first, 0);
             ASSERT_EQ(joined.points.rbegin()->first, joined.numbering->GetNumPoints() - 1);
             ASSERT_EQ(joined.owned.size(), joined.points.size());
             ASSERT_EQ(Number(joined.polygons.size()), joined.numbering->GetNumFacets());
+            ASSERT_EQ(joined.polygons.rbegin()->first + 1, joined.numbering->GetNumFacets());
             // Neighbours fit: every side of a facet has another against it, but on borders.
             std::map<std::pair<Number, Number>, int> sides;
             for (auto const &[key, polygon] : joined.polygons) {
@@ -211,6 +255,7 @@ TEST(PatchNumberingTest, SharedPointsHaveOneNumberAndOneOwner) {
             }
         }
     }
+    EXPECT_EQ(numInSections, int(shapesInSections.size()));
 }
 
 TEST(PatchNumberingTest, HolesHaveNoPoints) {
@@ -223,10 +268,12 @@ TEST(PatchNumberingTest, HolesHaveNoPoints) {
 }
 
 TEST(PlySinkTest, AnyThreadsAndSharesWriteEveryByteOnce) {
-    for (int const round : {0, 1, 2, 3}) {
-        int const facetSize = std::array<int, 4>{0, 3, 4, 0}[std::size_t(round)];
+    for (int const round : {0, 1, 2, 3, 4, 5}) {
+        int const facetSize = std::array<int, 6>{0, 3, 4, 0, 3, 4}[std::size_t(round)];
         Shape const &shape = GetFeatureShape("mixedSharpnessQuads");
-        Joined const joined(shape, 4, facetSize, round == 3);
+        Joined const joined(shape, 4, facetSize, round == 3 || round == 5,
+                            round < 4 ? Size::Small : Size::InSections);
+        ASSERT_EQ(joined.numSections > 4, round >= 4);
         std::string first;
         for (int const numShares : {1, 3}) {
             for (int const numThreads : {1, 2, 3}) {

@@ -28,7 +28,7 @@ using FarExt::StatusCode;
 
 namespace {
 
-/// What a stream hands out, by face.
+/// What a stream hands out, by face and section.
 template <typename REAL>
 class Collection {
 public:
@@ -37,15 +37,16 @@ public:
             std::size_t const count =
                 std::size_t(patch.tessellation.GetNumCoords()) * std::size_t(patch.pointSize);
             std::lock_guard<std::mutex> const lock(_mutex);
-            EXPECT_TRUE(
-                patches.emplace(patch.face, std::vector<REAL>(patch.points, patch.points + count))
-                    .second)
+            EXPECT_TRUE(patches
+                            .emplace(std::make_pair(patch.face, patch.tessellation.GetSection()),
+                                     std::vector<REAL>(patch.points, patch.points + count))
+                            .second)
                 << "face " << patch.face << " comes twice";
             return true;
         };
     }
 
-    std::map<int, std::vector<REAL>> patches;
+    std::map<std::pair<int, int>, std::vector<REAL>> patches;
 
 private:
     std::mutex _mutex;
@@ -68,30 +69,34 @@ void expectSurfaces(Shape const &shape, ReferenceMask mask, int numLevels, doubl
     PatchStream<REAL> const stream(*factory, levels.Get());
     Collection<REAL> collection;
     ASSERT_TRUE(stream.Run(positions.data(), 3, collection.GetSink()));
+    std::size_t numPatches = 0;
     for (int face = 0; face < base.GetNumFaces(); ++face) {
-        auto const found = collection.patches.find(face);
-        ASSERT_EQ(found == collection.patches.end(), base.IsFaceHole(face)) << "face " << face;
-        if (found == collection.patches.end()) {
-            continue;
-        }
-        Surface<REAL> surface;
-        ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
-        std::vector<REAL> control(3 * std::size_t(surface.GetNumControlPoints()));
-        surface.GatherControlPoints(positions.data(), 3, control.data(), 3);
-        Tessellation const tessellation = stream.MakeTessellation(face);
-        std::vector<REAL> points(3 * std::size_t(tessellation.GetNumCoords()));
-        surface.Evaluate(tessellation, control.data(), 3, points.data(), 3);
-        ASSERT_EQ(found->second.size(), points.size());
-        auto const numBoundary = 3 * std::size_t(tessellation.GetNumBoundaryCoords());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            if (i < numBoundary) {
-                ASSERT_EQ(found->second[i], points[i]) << "face " << face << ", number " << i;
-            } else {
-                ASSERT_NEAR(found->second[i], points[i], tolerance)
-                    << "face " << face << ", number " << i;
+        ASSERT_EQ(collection.patches.count({face, 0}), base.IsFaceHole(face) ? 0 : 1)
+            << "face " << face;
+        for (int section = 0; !base.IsFaceHole(face) && section < stream.GetNumSections(face);
+             ++section) {
+            std::vector<REAL> const &found = collection.patches.at({face, section});
+            ++numPatches;
+            Surface<REAL> surface;
+            ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
+            std::vector<REAL> control(3 * std::size_t(surface.GetNumControlPoints()));
+            surface.GatherControlPoints(positions.data(), 3, control.data(), 3);
+            Tessellation const tessellation = stream.MakeTessellation(face, section);
+            std::vector<REAL> points(3 * std::size_t(tessellation.GetNumCoords()));
+            surface.Evaluate(tessellation, control.data(), 3, points.data(), 3);
+            ASSERT_EQ(found.size(), points.size());
+            auto const numBoundary = 3 * std::size_t(tessellation.GetNumBoundaryCoords());
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                if (i < numBoundary) {
+                    ASSERT_EQ(found[i], points[i]) << "face " << face << ", number " << i;
+                } else {
+                    ASSERT_NEAR(found[i], points[i], tolerance)
+                        << "face " << face << ", number " << i;
+                }
             }
         }
     }
+    EXPECT_EQ(numPatches, collection.patches.size());
 }
 
 } // namespace
@@ -115,7 +120,7 @@ TEST(PatchStreamTest, PatchesDoNotDependOnThreadsMemoryAndShares) {
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly());
     RandomPatchLevels const levels(refiner->GetLevel(0), 7, 3);
     std::vector<float> const positions(shape.positions.begin(), shape.positions.end());
-    std::map<int, std::vector<float>> expected;
+    std::map<std::pair<int, int>, std::vector<float>> expected;
     for (int const numThreads : {1, 2, 3}) {
         ThreadsScope const threads(numThreads);
         for (std::size_t const memory :

@@ -251,6 +251,7 @@ SharedScene PatchScene::Patches::make(unsigned primitive, std::int64_t *numTrian
     FarExt::ExecutorScope const alone(nullptr, 1);
     SharedScene scene(rtcNewScene(_device.get()), Release());
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+    // Of a large face, several sections.
     auto const sink = [&](BfrExt::PatchStream<float>::Patch const &patch) {
         RTCGeometry const geometry = rtcNewGeometry(_device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
         auto const numPoints = std::size_t(patch.tessellation.GetNumCoords());
@@ -266,7 +267,7 @@ SharedScene PatchScene::Patches::make(unsigned primitive, std::int64_t *numTrian
             rtcAttachGeometry(scene.get(), geometry);
         }
         rtcReleaseGeometry(geometry);
-        *numTriangles = std::int64_t(numFacets);
+        *numTriangles += std::int64_t(numFacets);
         return points && triangles;
     };
     int const face = _faces[primitive];

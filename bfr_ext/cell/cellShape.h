@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_SHAPE_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_SHAPE_H
+
+#include "bfr_ext/cellTree.h"
+
+#include <array>
+#include <cstdint>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief Where a cell of a tree lies in the parameter plane of its base face.
+///
+/// All lines are straight there: half cells are trapezoids, and what an edge becomes lies on it.
+struct CellShape {
+    /// The coordinates a and b in a sector, in units of 2^-kBits: what the start and the end of the edge
+    /// weigh beside the centre.
+    using Place = std::array<std::int32_t, 2>;
+    static constexpr int kBits = Polyline::kLastLevel + 2;
+    static constexpr std::int32_t kOne = std::int32_t(1) << kBits;
+
+    /// That of the base face.
+    static CellShape MakeFace() { return {0, 0, true, 0, kOne, {}}; }
+
+    /// That of a child, of a cell that \p tree has refined.
+    CellShape GetChild(CellTree const &tree, int child) const;
+
+    /// Whether a half cell has a point in common with another cell.
+    ///
+    /// \param other  has not that cell inside of it, nor lies inside of that
+    bool Touches(int faceSize, CellShape const &other) const;
+
+    int number; ///< in the tree
+    int level;
+    bool isWhole;
+    int sector;                   ///< of half cells
+    std::int32_t scale;           ///< of whole ones: how far their corners are from the centre
+    std::array<Place, 4> corners; ///< of half cells, in their sector
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "faceSections.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief How many cells of levels that are not refined lie in a cell of each level and kind.
+class FaceSections::LeafCounts {
+public:
+    LeafCounts(int edgeLevel, int level) {
+        for (int l = level; l >= 0; --l) {
+            auto const i = std::size_t(l);
+            _inside[i] = std::ldexp(1.0, 2 * (level - l));
+            _alongEdge[i] = l < std::min(level, edgeLevel)
+                                ? _alongEdge[i + 1] + 2 * _atEdge[i + 1] + _inside[i + 1]
+                                : 1;
+            _atEdge[i] = l < level ? _alongEdge[i + 1] + 3 * _inside[i + 1] : 1;
+        }
+    }
+
+    /// \param borderSide  CellTree::GetBorderSide()
+    double Get(int level, int borderSide) const {
+        return (borderSide < 0    ? _inside
+                : borderSide == 0 ? _alongEdge
+                                  : _atEdge)[std::size_t(level)];
+    }
+
+private:
+    using Counts = std::array<double, std::size_t(CellTree::kLastLevel) + 2>;
+
+    Counts _inside = {};
+    Counts _alongEdge = {}; // with the long edge on an edge of the face
+    Counts _atEdge = {};    // with another side there
+};
+
+double FaceSections::CountLeaves(std::vector<int> const &levels) {
+    int const level = levels.back();
+    if (level == 0) {
+        return 1;
+    }
+    auto const numEdges = double(levels.size() - 1);
+    double count = 1 + numEdges * (std::ldexp(1.0, 2 * (level - 1)) - 1) / 3;
+    std::for_each(levels.begin(), levels.end() - 1,
+                  [&](int edgeLevel) { count += LeafCounts(edgeLevel, level).Get(1, 0); });
+    return count;
+}
+
+FaceSections::FaceSections(std::vector<int> const &levels, int maxLeaves)
+    : _levels(levels), _tree(nullptr), _cells(int(levels.size()) - 1) {
+    int const level = levels.back();
+    std::map<int, LeafCounts> counts;
+    std::for_each(levels.begin(), levels.end() - 1, [&](int edgeLevel) {
+        counts.emplace(edgeLevel, LeafCounts(edgeLevel, level));
+        if (_polylines.count(edgeLevel) == 0) {
+            _polylines.emplace(edgeLevel, Polyline(edgeLevel));
+        }
+    });
+    cut(maxLeaves, [&](int cell, int) {
+        if (_cells.IsWhole(cell)) {
+            int const left = level - _cells.GetLevel(cell);
+            return cell == 0 ? CountLeaves(levels)
+                             : 1 + GetFaceSize() * (std::ldexp(1.0, 2 * left) - 1) / 3;
+        }
+        return counts.at(levels[std::size_t(_cells.GetSector(cell))])
+            .Get(_cells.GetLevel(cell), _cells.GetBorderSide(cell));
+    });
+}
+
+FaceSections::FaceSections(CellTree const &tree, std::vector<Polyline> edges, int maxLeaves)
+    : _tree(&tree), _edges(std::move(edges)), _cells(tree.GetFaceSize()) {
+    // No further than it has to be known.
+    auto const count = [&](auto const &self, int cell, int most) -> int {
+        int const first = tree.GetFirstChild(cell);
+        if (first == 0) {
+            return 1;
+        }
+        int result = 0;
+        for (int i = 0; i < tree.GetNumChildren(cell) && result <= most; ++i) {
+            result += self(self, first + i, most - result);
+        }
+        return result;
+    };
+    cut(maxLeaves, [&](int, int wholeCell) { return double(count(count, wholeCell, maxLeaves)); });
+}
+
+// Refines the coarse tree where count(cell, cell of the whole tree) is too much.
+template <typename COUNT>
+void FaceSections::cut(int maxLeaves, COUNT const &count) {
+    struct Cell {
+        CellShape shape;
+        int wholeCell;
+    };
+    std::vector<Cell> cells = {{CellShape::MakeFace(), 0}};
+    _parents = {-1};
+    while (!cells.empty()) {
+        std::vector<Cell> children;
+        for (Cell const &cell : cells) {
+            int const number = cell.shape.number;
+            if (!isRefined(_cells, number, cell.wholeCell) ||
+                count(number, cell.wholeCell) <= double(maxLeaves)) {
+                _sections.push_back(cell.shape);
+                continue;
+            }
+            _cells.Refine(number);
+            for (int i = 0; i < _cells.GetNumChildren(number); ++i) {
+                children.push_back(
+                    {cell.shape.GetChild(_cells, i), getWholeChild(cell.wholeCell, i)});
+                _parents.push_back(number);
+            }
+        }
+        cells = std::move(children);
+    }
+    std::vector<Polyline> edges(static_cast<std::size_t>(GetFaceSize()));
+    for (std::size_t edge = 0; edge < edges.size(); ++edge) {
+        edges[edge] = _cells.GetEdgePolyline(int(edge));
+    }
+    _mesh = std::make_unique<CellMesh const>(_cells, edges.data());
+}
+
+bool FaceSections::isRefined(CellTree const &tree, int cell, int wholeCell) const {
+    if (_tree) {
+        return _tree->IsRefined(wholeCell);
+    }
+    // As CellTree refines cells of levels.
+    int const level = _levels.back();
+    int const last = tree.GetBorderSide(cell) == 0
+                         ? std::min(level, _levels[std::size_t(tree.GetSector(cell))])
+                         : level;
+    return tree.GetLevel(cell) < last;
+}
+
+int FaceSections::getWholeChild(int wholeCell, int child) const {
+    return _tree ? _tree->GetFirstChild(wholeCell) + child : 0;
+}
+
+CellTree FaceSections::MakeTree(int section, CellShape *shape) const {
+    // The cells that have it, from the face on: which child of the one before each is.
+    std::vector<int> path;
+    CellShape const &own = _sections[std::size_t(section)];
+    for (int cell = own.number; cell > 0; cell = _parents[std::size_t(cell)]) {
+        path.push_back(cell - _cells.GetFirstChild(_parents[std::size_t(cell)]));
+    }
+    std::reverse(path.begin(), path.end());
+    CellTree tree(GetFaceSize());
+    auto const visit = [&](auto const &self, CellShape const &cell, int wholeCell, bool hasSection,
+                           bool isInside) -> void {
+        bool const isSection = hasSection && std::size_t(cell.level) == path.size();
+        if (isSection) {
+            *shape = cell;
+        }
+        bool const isOther = !hasSection && !isInside;
+        if (!isRefined(tree, cell.number, wholeCell) ||
+            (isOther && !(own.isWhole ? cell.Touches(GetFaceSize(), own)
+                                      : own.Touches(GetFaceSize(), cell)))) {
+            return;
+        }
+        tree.Refine(cell.number);
+        for (int i = 0; i < tree.GetNumChildren(cell.number); ++i) {
+            bool const isOnPath = hasSection && !isSection && path[std::size_t(cell.level)] == i;
+            self(self, cell.GetChild(tree, i), getWholeChild(wholeCell, i), isOnPath,
+                 isInside || isSection);
+        }
+    };
+    visit(visit, CellShape::MakeFace(), 0, true, false);
+    return tree;
+}
+
+bool FaceSections::AreOnEdge(CellMesh::Vertex const &start, CellMesh::Vertex const &end) const {
+    return IsOnEdge(start) && IsOnEdge(end) &&
+           (end.sector == start.sector ||
+            (end.sector == (start.sector + 1) % GetFaceSize() && end.b == 0));
+}
+
+int FaceSections::CountPointsBefore(int edge, Polyline::Place place) const {
+    std::vector<Polyline::Place> const &places = GetEdge(edge).GetPlaces();
+    return int(std::lower_bound(places.begin(), places.end(), place) - places.begin());
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_FACE_SECTIONS_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_FACE_SECTIONS_H
+
+#include "cellMesh.h"
+
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief A base face whose cells are too many to be made at once, cut into *sections*: cells with all
+/// that they are refined to, each of which is tessellated by itself.
+///
+/// The sections are the cells of a coarse tree, whose mesh tells which vertices they share and where they
+/// meet: each side of a section's polygon in that mesh is that of one other section, too, or lies on an
+/// edge of the face.
+class FaceSections {
+public:
+    /// \param levels     of the edges, then of the inside
+    /// \param maxLeaves  cells of a section that are not refined, where it can be cut
+    FaceSections(std::vector<int> const &levels, int maxLeaves);
+    /// \param tree   must live as long
+    /// \param edges  by edge of the face, in its direction; with all points that the tree has there
+    FaceSections(CellTree const &tree, std::vector<Polyline> edges, int maxLeaves);
+
+    FaceSections(FaceSections const &) = delete;
+    FaceSections &operator=(FaceSections const &) = delete;
+
+    /// How many cells of levels are not refined.
+    static double CountLeaves(std::vector<int> const &levels);
+
+    int GetFaceSize() const { return _cells.GetFaceSize(); }
+    int GetNumSections() const { return int(_sections.size()); }
+    /// Of edges, then of the inside; none of a tree.
+    std::vector<int> const &GetLevels() const { return _levels; }
+    /// The points of an edge of the face.
+    Polyline const &GetEdge(int edge) const {
+        return _levels.empty() ? _edges[std::size_t(edge)]
+                               : _polylines.at(_levels[std::size_t(edge)]);
+    }
+
+    /// The vertices of the sections.
+    std::vector<CellMesh::Vertex> const &GetVertices() const { return _mesh->GetVertices(); }
+    /// Those of a section, counter-clockwise, with those that others have on its sides.
+    std::vector<int> GetPolygon(int section) const {
+        return _mesh->GetPolygon(_sections[std::size_t(section)]);
+    }
+    /// \brief The tree of the face as far as it tells what a section has: what is in the section, and all
+    /// cells that have a point in common with it.
+    ///
+    /// \param shape  of the section in that tree
+    CellTree MakeTree(int section, CellShape *shape) const;
+
+    /// Whether a vertex lies on an edge of the face, or is one of the face: on edge vertex.sector.
+    static bool IsOnEdge(CellMesh::Vertex const &vertex) {
+        return vertex.a + vertex.b == CellShape::kOne;
+    }
+    /// Where on that edge.
+    static Polyline::Place GetPlaceOnEdge(CellMesh::Vertex const &vertex) {
+        return Polyline::Place(vertex.b / (CellShape::kOne / Polyline::kLength));
+    }
+    /// Whether the line from one vertex to the next of a polygon lies on an edge of the face: that of the
+    /// first.
+    bool AreOnEdge(CellMesh::Vertex const &start, CellMesh::Vertex const &end) const;
+    /// The points of an edge before a place.
+    int CountPointsBefore(int edge, Polyline::Place place) const;
+
+private:
+    class LeafCounts;
+
+    template <typename COUNT>
+    void cut(int maxLeaves, COUNT const &count);
+    bool isRefined(CellTree const &tree, int cell, int wholeCell) const;
+    int getWholeChild(int wholeCell, int child) const;
+
+    std::vector<int> const _levels;
+    CellTree const *const _tree; // null of levels
+    std::vector<Polyline> const _edges;
+    std::map<int, Polyline> _polylines; // by level
+    CellTree _cells;
+    std::vector<int> _parents; // by cell of these
+    std::vector<CellShape> _sections;
+    std::unique_ptr<CellMesh const> _mesh;
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_STREAM_PATCH_PLANS_H
+#define OPENSUBDIVHEX_BFR_EXT_STREAM_PATCH_PLANS_H
+
+#include "bfr_ext/cell/cellPlan.h"
+#include "bfr_ext/cell/faceSections.h"
+#include "bfr_ext/tessellation.h"
+
+#include <atomic>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// What plans are made for.
+struct PlanOptions {
+    Tessellation::Options tessellation;
+    bool hasDerivatives;
+};
+
+/// \brief What patches with the same levels have in common: their tessellation, with the cells its places
+/// lie in.
+struct PatchPlan {
+    PatchPlan(std::vector<int> const &levels, PlanOptions const &options)
+        : tessellation(Parameterization(int(levels.size()) - 1), int(levels.size()), levels.data(),
+                       options.tessellation),
+          hasDerivatives(options.hasDerivatives) {}
+    PatchPlan(FaceSections const &sections, int section, PlanOptions const &options)
+        : tessellation(sections, section, options.tessellation),
+          hasDerivatives(options.hasDerivatives) {}
+
+    /// Memory, in bytes.
+    std::size_t GetSize() const {
+        return kBytesOfPlan + std::size_t(tessellation.GetNumCoords()) * kBytesOfCoord +
+               std::size_t(tessellation.GetNumFacetVertices()) * sizeof(int) +
+               std::size_t(tessellation.GetNumFacets()) * 2 * sizeof(int) +
+               tessellation.getCellPlan().GetSize() +
+               (hasDerivatives ? tessellation.getCellPlan(true).GetSize() : 0);
+    }
+
+    /// \brief About what it takes in memory to make the plan of some levels, with the plan itself.
+    ///
+    /// The cells in which the levels of edges take part are counted as if they had that of the inside;
+    /// derivatives on an edge follow cells that are there for one or two of its points alone.
+    static std::size_t GetSizeOfMaking(std::vector<int> const &levels, bool hasDerivatives) {
+        std::size_t const bytes = GetBytesOfPlace(hasDerivatives);
+        std::size_t const bytesOnEdge = bytes + (hasDerivatives ? 700 : 0);
+        std::size_t const numCells = (std::size_t(1) << (2 * levels.back())) / 3;
+        std::size_t size = kBytesOfPlan + (levels.size() - 1) * (numCells + 2) * bytes;
+        for (std::size_t edge = 0; edge + 1 < levels.size(); ++edge) {
+            size += ((std::size_t(2) << levels[edge]) / 3 + 1) * bytesOnEdge;
+        }
+        return size;
+    }
+
+    /// The same for each place, of triangles: of the plan, and of what the tessellation is made of.
+    static constexpr std::size_t GetBytesOfPlace(bool hasDerivatives) {
+        return kBytesOfCoord + 8 * sizeof(int) + 2 * sizeof(int) + (hasDerivatives ? 300 : 160);
+    }
+
+    Tessellation const tessellation;
+    bool const hasDerivatives;
+
+private:
+    // Its place, and its u and v.
+    static constexpr std::size_t kBytesOfCoord = sizeof(LeafPlaces::Place) + 2 * sizeof(double);
+    // What it has besides arrays of its own, and what the heap keeps of these.
+    static constexpr std::size_t kBytesOfPlan = 2048;
+};
+
+/// \brief The plans that have been asked for.  Where they come to take too much memory, those that nobody
+/// uses are forgotten, beginning with the one that was not asked for longest.  Any number of threads may
+/// use it.
+class PatchPlans {
+public:
+    PatchPlans(PlanOptions const &options, std::size_t maxMemory)
+        : _options(options), _maxMemory(maxMemory) {}
+
+    std::size_t GetMaxMemory() const { return _maxMemory; }
+    /// PatchPlan::GetSizeOfMaking().
+    std::size_t GetSizeOfMaking(std::vector<int> const &levels) const {
+        return PatchPlan::GetSizeOfMaking(levels, _options.hasDerivatives);
+    }
+
+    /// Whether a face that takes so much and has so many cells comes in sections.
+    bool IsCut(double size, double numLeaves) const {
+        return numLeaves > kMaxLeavesOfFace && size > double(_maxMemory) / 4;
+    }
+    /// The same for a face with levels.
+    bool IsCut(std::vector<int> const &levels) const {
+        return IsCut(double(GetSizeOfMaking(levels)), FaceSections::CountLeaves(levels));
+    }
+    /// The same for a face with a tree.
+    bool IsCut(CellTree const &tree) const {
+        double const numLeaves = tree.GetNumLeaves();
+        return IsCut(numLeaves * double(PatchPlan::GetBytesOfPlace(_options.hasDerivatives)),
+                     numLeaves);
+    }
+    /// How many cells a section has at most.
+    int GetMaxLeaves() const {
+        std::size_t const wanted =
+            _maxMemory / 8 / PatchPlan::GetBytesOfPlace(_options.hasDerivatives);
+        return int(std::min(std::max(wanted, kMinLeaves), kMaxLeaves));
+    }
+
+    /// \brief Finds the plan of some levels, or makes it.
+    ///
+    /// Threads that want a plan wait for it, since it takes memory to make one.
+    std::shared_ptr<PatchPlan const> Find(std::vector<int> const &levels) {
+        return find(levels, GetSizeOfMaking(levels),
+                    [&] { return std::make_shared<PatchPlan const>(levels, _options); });
+    }
+    /// That of a section.
+    std::shared_ptr<PatchPlan const> Find(FaceSections const &sections, int section) {
+        std::vector<int> key = sections.GetLevels();
+        key.push_back(-1 - section);
+        std::size_t const bytes = PatchPlan::GetBytesOfPlace(_options.hasDerivatives);
+        return find(key, std::size_t(GetMaxLeaves()) * bytes,
+                    [&] { return std::make_shared<PatchPlan const>(sections, section, _options); });
+    }
+
+    /// Forgets what is too much.
+    void Trim() {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        makeRoom(0);
+    }
+
+private:
+    // Faces of up to so many cells are never cut: so those whose points are made by matrices of the whole
+    // face are not.
+    static constexpr double kMaxLeavesOfFace = 8192;
+    static constexpr std::size_t kMinLeaves = 4096;
+    static constexpr std::size_t kMaxLeaves = std::size_t(1) << 24;
+
+    struct Entry {
+        std::vector<int> key;
+        std::shared_ptr<PatchPlan const> plan;
+        std::size_t size;
+    };
+
+    // A key is the levels, and behind them -1 - section.
+    template <typename MAKE>
+    std::shared_ptr<PatchPlan const> find(std::vector<int> const &key, std::size_t sizeOfMaking,
+                                          MAKE const &make) {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        auto const found = _places.find(key);
+        if (found != _places.end()) {
+            _plans.splice(_plans.begin(), _plans, found->second);
+            return _plans.front().plan;
+        }
+        makeRoom(sizeOfMaking);
+        std::shared_ptr<PatchPlan const> plan = make();
+        std::size_t const size = plan->GetSize();
+        _plans.push_front({key, std::move(plan), size});
+        try {
+            _places.emplace(key, _plans.begin());
+        } catch (...) {
+            _plans.pop_front();
+            throw;
+        }
+        _memory += size;
+        return _plans.front().plan;
+    }
+
+    // For something of this size, as far as plans are not in use.
+    void makeRoom(std::size_t size) {
+        for (auto entry = _plans.end(); entry != _plans.begin() && _memory + size > _maxMemory;) {
+            --entry;
+            // It is given away under the lock alone, so that nobody can begin to use it meanwhile.
+            if (entry->plan.use_count() == 1) {
+                _memory -= entry->size;
+                _places.erase(entry->key);
+                entry = _plans.erase(entry);
+            }
+        }
+    }
+
+    PlanOptions const _options;
+    std::size_t const _maxMemory;
+    std::size_t _memory = 0;
+    std::mutex _mutex;
+    std::list<Entry> _plans; // the one that was asked for last comes first
+    std::map<std::vector<int>, std::list<Entry>::iterator> _places;
+};
+
+/// \brief Adds up what plans take in memory, each counted once, until it is more than there is.  Any
+/// number of threads may add to it, each by a Counter of its own.
+class PlanMemory {
+public:
+    explicit PlanMemory(PatchPlans const &plans) : _plans(plans) {}
+
+    /// Whether all plans that were added have room.
+    bool HasRoom() const { return _hasRoom; }
+
+    /// Whether a face comes in sections, so that its plan is never kept as a whole.
+    void SetCut() { _hasRoom = false; }
+
+    /// Adds the plans that it is told of, and remembers them, so that few have to be looked up together.
+    class Counter {
+    public:
+        explicit Counter(PlanMemory &memory) : _memory(memory) {}
+
+        void Add(std::vector<int> const &levels) {
+            if (levels == _last || !_memory.HasRoom()) {
+                return;
+            }
+            _last = levels;
+            if (_known.insert(levels).second) {
+                _memory.add(levels);
+            }
+        }
+
+    private:
+        PlanMemory &_memory;
+        std::vector<int> _last;
+        std::set<std::vector<int>> _known;
+    };
+
+private:
+    void add(std::vector<int> const &levels) {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        if (_known.insert(levels).second) {
+            _memory += _plans.GetSizeOfMaking(levels);
+            if (_memory > _plans.GetMaxMemory() || _plans.IsCut(levels)) {
+                _hasRoom = false;
+            }
+        }
+    }
+
+    PatchPlans const &_plans;
+    std::size_t _memory = 0;
+    std::atomic<bool> _hasRoom{true};
+    std::mutex _mutex;
+    std::set<std::vector<int>> _known;
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif
