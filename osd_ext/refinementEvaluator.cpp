@@ -286,7 +286,8 @@ void RefinementEvaluator::Impl::EvaluateLimit(Source values,
         copyElements(values, length, numElements[0], nullptr, 1, {_controlValues.data(), length});
         values = {_controlValues.data(), length};
     }
-    int const last = limit.IsNeeded(level) ? level : level - 1;
+    Source const controlValues = values;
+    int const last = limit.GetLastLevel();
     resizeScratch(length, last);
     for (int made = 0; made <= last; ++made) {
         if (made > 0) {
@@ -300,6 +301,7 @@ void RefinementEvaluator::Impl::EvaluateLimit(Source values,
         }
         limit.Evaluate(made, values, level > 0, length, outputs);
     }
+    limit.EvaluateLattice(controlValues, length, outputs);
     for (Destination const &output : outputs) {
         undoScale(scale, output, length, numElements[std::size_t(level)]);
     }

@@ -279,8 +279,12 @@ void RegularFaceRows::GetFaceSources(Level const &level, RegularFace const &face
     }
 }
 
-RegularFaces::RegularFaces(MeshLevels const &mesh, int level)
-    : _mesh(mesh), _level(level), _levels(std::size_t(level) + 1) {
+RegularFaces::RegularFaces(MeshLevels const &mesh, int level, std::vector<unsigned char> isMade)
+    : _mesh(mesh), _level(level), _isMade(std::move(isMade)), _levels(std::size_t(level) + 1) {
+    if (!_isMade.empty() &&
+        std::all_of(_isMade.begin(), _isMade.end(), [](unsigned char mark) { return mark != 0; })) {
+        return;
+    }
     // Vertices keep their index in hexagonal steps.
     int first = level;
     while (first > 0 && mesh.levels[std::size_t(first)].isHexagonal) {
@@ -306,10 +310,16 @@ RegularFaces::RegularFaces(MeshLevels const &mesh, int level)
     listOthers();
 }
 
-// Those of a level, unless there is no sample of them.
+// Those of a level that make anything, unless there is no sample of them.
 void RegularFaces::setFaces(int level, std::vector<RegularFace> faces, Index firstVertex,
                             Set &set) const {
     set.firstVertex = firstVertex;
+    if (!_isMade.empty()) {
+        faces.erase(std::remove_if(
+                        faces.begin(), faces.end(),
+                        [&](RegularFace const &face) { return makesNothing(face, firstVertex); }),
+                    faces.end());
+    }
     for (std::size_t i = 0; i < faces.size(); ++i) {
         for (int corner = 0; corner < kSize; ++corner) {
             if (faces[i].HasCorner(corner) &&
@@ -323,6 +333,16 @@ void RegularFaces::setFaces(int level, std::vector<RegularFace> faces, Index fir
     }
 }
 
+bool RegularFaces::makesNothing(RegularFace const &face, Index firstVertex) const {
+    auto const isMade = _isMade.begin() + firstVertex + face.firstCorner;
+    for (int corner = 0; corner < kSize; ++corner) {
+        if (face.HasCorner(corner) && !isMade[corner]) {
+            return false;
+        }
+    }
+    return true;
+}
+
 void RegularFaces::listOthers() {
     Marks isMade(std::size_t(_mesh.levels[std::size_t(_level)].numVertices), 0);
     for (OfLevel const &level : _levels) {
@@ -334,6 +354,9 @@ void RegularFaces::listOthers() {
                 }
             }
         }
+    }
+    for (std::size_t vert = 0; vert < _isMade.size(); ++vert) {
+        isMade[vert] |= _isMade[vert];
     }
     _others = ParallelSelect(Index(isMade.size()),
                              [&](Index vert) { return isMade[std::size_t(vert)] == 0; });

@@ -105,7 +105,10 @@ public:
     };
 
     /// Finds the faces of \p level, one for which CheckLimitLevel() is well, and of all before.
-    RegularFaces(MeshLevels const &mesh, int level);
+    ///
+    /// \param isMade  a mark for each vertex of the level whose limit nobody wants, as it is made
+    ///                otherwise; empty where there is none
+    RegularFaces(MeshLevels const &mesh, int level, std::vector<unsigned char> isMade = {});
 
     /// \brief Finds the masks of all levels, and the rows that the other vertices of the level need:
     /// what GetOthers() lists.
@@ -121,6 +124,7 @@ public:
 
 private:
     void setFaces(int level, std::vector<RegularFace> faces, Index firstVertex, Set &set) const;
+    bool makesNothing(RegularFace const &face, Index firstVertex) const;
     void listOthers();
     std::optional<RegularFaceMask> findMask(int level, Set const &set,
                                             HexSchemeOptions const &schemeOptions,
@@ -128,6 +132,7 @@ private:
 
     MeshLevels const &_mesh;
     int const _level;
+    std::vector<unsigned char> const _isMade;
     std::vector<OfLevel> _levels;
     std::vector<Index> _others;
 };

@@ -157,6 +157,7 @@ void forEachRange(TASK const &task, Index count, Index range, EVALUATE evaluate)
 
 constexpr Index kSumRange = 2048;
 constexpr Index kGroupRange = 128;
+constexpr Index kLatticeOutputs = 16384; ///< of a range, the more the fewer groups
 
 } // namespace
 
@@ -248,6 +249,12 @@ void EvaluateLimit(RegularLimitTask const &task, Index numGroups) {
 
 void EvaluateLimit(VertexLimitTask const &task, Index numGroups) {
     forEachRange(task, numGroups, kGroupRange, getKernel().evaluateVertices);
+}
+
+void EvaluateLimit(LatticeTask const &task, Index numGroups) {
+    int const numOutputs =
+        RegularFaceGroup::kSize * task.faceSize * (2 * task.numPairs + task.numAxes);
+    forEachRange(task, numGroups, 1 + kLatticeOutputs / numOutputs, getKernel().evaluateLattice);
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -161,6 +161,20 @@ struct VertexLimitTask : LimitTask {
     float const *weights;
 };
 
+/// \brief The limit in lattice faces of one size, RegularFaceGroup::kSize of them at a time: outputs are by
+/// vertex.
+struct LatticeTask : LimitTask {
+    static constexpr int kNumDerivatives = 4; ///< weights of derivatives in terms of others
+
+    int faceSize;
+    int numPairs; ///< orbits of outputs, these first
+    int numAxes;
+    std::uint32_t const
+        *places; ///< by group, those of all sources of its faces, as in RegularFaceGroup
+    Far::Index const *verts; ///< by group, those of all outputs
+    float const *weights;    ///< those of LatticeLimit
+};
+
 /// \brief The kernels of one SimdLevel; all are instances of limitKernelTemplate.h.
 struct LimitKernel {
     /// Writes sums [begin, end).
@@ -169,6 +183,8 @@ struct LimitKernel {
     void (*evaluateFaces)(RegularLimitTask const &task, Far::Index begin, Far::Index end);
     /// Writes the outputs of groups [begin, end).
     void (*evaluateVertices)(VertexLimitTask const &task, Far::Index begin, Far::Index end);
+    /// The same.
+    void (*evaluateLattice)(LatticeTask const &task, Far::Index begin, Far::Index end);
 };
 
 extern LimitKernel const kLimitKernelPortable;
@@ -181,6 +197,7 @@ extern LimitKernel const kLimitKernelAvx512;
 void SumFaces(RegularLimitTask const &task, Far::Index numSums);
 void EvaluateLimit(RegularLimitTask const &task, Far::Index numGroups);
 void EvaluateLimit(VertexLimitTask const &task, Far::Index numGroups);
+void EvaluateLimit(LatticeTask const &task, Far::Index numGroups);
 /// @}
 
 } // namespace OpenSubdivHex::OsdExt::internal

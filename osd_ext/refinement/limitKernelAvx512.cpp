@@ -33,10 +33,10 @@ struct Avx512Faces {
     }
     template <int WIDTH>
     static OPENSUBDIVHEX_INLINE void Store(float *const *places, Vector vector) {
-        StoreFloats<WIDTH>(places[0], Quad(_mm512_castps512_ps128(vector)));
-        StoreFloats<WIDTH>(places[1], Quad(_mm512_extractf32x4_ps(vector, 1)));
-        StoreFloats<WIDTH>(places[2], Quad(_mm512_extractf32x4_ps(vector, 2)));
-        StoreFloats<WIDTH>(places[3], Quad(_mm512_extractf32x4_ps(vector, 3)));
+        store<WIDTH>(places[0], _mm512_castps512_ps128(vector));
+        store<WIDTH>(places[1], _mm512_extractf32x4_ps(vector, 1));
+        store<WIDTH>(places[2], _mm512_extractf32x4_ps(vector, 2));
+        store<WIDTH>(places[3], _mm512_extractf32x4_ps(vector, 3));
     }
     template <bool IS_EXACT>
     static OPENSUBDIVHEX_INLINE void StorePairs(float *const *places, Vector first, Vector second) {
@@ -53,6 +53,15 @@ private:
     static OPENSUBDIVHEX_INLINE __m256 loadPair(float const *const *places) {
         return _mm256_insertf128_ps(_mm256_castps128_ps256(__m128(LoadFloats<WIDTH>(places[0]))),
                                     __m128(LoadFloats<WIDTH>(places[1])), 1);
+    }
+    template <int WIDTH>
+    static OPENSUBDIVHEX_INLINE void store(float *place, __m128 quad) {
+        if constexpr (WIDTH == kPoint) {
+            constexpr __mmask8 kOnePoint = 0x7;
+            _mm_mask_storeu_ps(place, kOnePoint, quad);
+        } else {
+            StoreFloats<WIDTH>(place, Quad(quad));
+        }
     }
     // Eight floats of each of two faces.
     template <bool IS_EXACT>

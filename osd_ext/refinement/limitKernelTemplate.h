@@ -7,9 +7,8 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_LIMIT_KERNEL_TEMPLATE_H
 #define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_LIMIT_KERNEL_TEMPLATE_H
 
-#include "limitKernel.h"
-
-#include "osd_ext/simd/quad.h"
+#include "latticeKernelTemplate.h"
+#include "limitAccess.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,28 +20,6 @@ namespace {
 using FarExt::internal::kRegularFaceSize;
 
 constexpr int kHalf = kRegularFaceSize / 2;
-constexpr int kPoint = RegularFaceGroup::kPointStride;
-
-/// How elements of WIDTH floats are read and written.  A quad of three packed floats takes in the
-/// first of the next element.
-template <int WIDTH, bool IS_PACKED>
-struct LimitAccess {
-    static constexpr int kWidth = WIDTH;
-    static constexpr bool kIsPoints = IS_PACKED && WIDTH == RegularFaceGroup::kPointStride;
-    static constexpr int kReach = kIsPoints ? kQuad : WIDTH;
-
-    /// The element at a place in points, or sums, that are \p pointStride floats apart.
-    static OPENSUBDIVHEX_INLINE float const *AtPlace(Elements<float const> const &elements,
-                                                     std::uint32_t place, int pointStride) {
-        return elements.data +
-               (kIsPoints ? place
-                          : std::ptrdiff_t(place / unsigned(pointStride)) * elements.stride);
-    }
-    template <class FLOAT>
-    static OPENSUBDIVHEX_INLINE FLOAT *At(Elements<FLOAT> const &elements, std::ptrdiff_t i) {
-        return elements.data + i * (kIsPoints ? WIDTH : elements.stride);
-    }
-};
 
 /// \brief Of what a vertex of a regular face has around it, the frequencies: six values x_i, one for
 /// each corner, are a sum of waves around the face.
@@ -61,14 +38,6 @@ struct FaceWaves {
     T sine2;
     T alternating;
 };
-
-/// sum += weight value
-template <class SIMD>
-OPENSUBDIVHEX_INLINE void addProduct(typename SIMD::Vector &sum,
-                                     typename SIMD::Vector const &weight,
-                                     typename SIMD::Vector const &value) {
-    sum = SIMD::MultiplyAdd(weight, value, sum);
-}
 
 template <class SIMD>
 OPENSUBDIVHEX_INLINE FaceWaves<SIMD>
@@ -399,32 +368,6 @@ void evaluateVertices(VertexLimitTask const &task, Far::Index begin, Far::Index 
     }
 }
 
-/// Elements of any length, up to four floats at a time: calls function(task, access) for them.
-template <class TASK, typename FUNCTION>
-OPENSUBDIVHEX_INLINE void forEachQuad(TASK task, FUNCTION const &function) {
-    bool isPacked = task.isReadBehind && task.values.stride == task.length;
-    for (int i = 0; i < task.numOutputs; ++i) {
-        isPacked = isPacked && task.outputs[i].stride == task.length;
-    }
-    if (isPacked && task.length == RegularFaceGroup::kPointStride) {
-        return function(task, LimitAccess<RegularFaceGroup::kPointStride, true>());
-    }
-    while (task.length > kQuad) {
-        function(task, LimitAccess<kQuad, false>());
-        task.Skip(kQuad);
-    }
-    switch (task.length) {
-    case 1:
-        return function(task, LimitAccess<1, false>());
-    case 2:
-        return function(task, LimitAccess<2, false>());
-    case 3:
-        return function(task, LimitAccess<3, false>());
-    default:
-        return function(task, LimitAccess<kQuad, false>());
-    }
-}
-
 /// The kernels for a SIMD level.
 template <class SIMD>
 struct LimitKernels {
@@ -455,8 +398,23 @@ struct LimitKernels {
             }
         });
     }
+    static void EvaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
+        forEachQuad(task, [=](LatticeTask const &part, auto access) {
+            using Access = decltype(access);
+            constexpr int kMax = LimitTask::kMaxOutputs;
+            bool const hasDerivatives = part.numOutputs > 1;
+            if (part.faceSize == 3) {
+                hasDerivatives ? evaluateLattice<SIMD, Access, 3, kMax>(part, begin, end)
+                               : evaluateLattice<SIMD, Access, 3, 1>(part, begin, end);
+            } else {
+                hasDerivatives ? evaluateLattice<SIMD, Access, 4, kMax>(part, begin, end)
+                               : evaluateLattice<SIMD, Access, 4, 1>(part, begin, end);
+            }
+        });
+    }
 
-    static constexpr LimitKernel kKernel = {SumFaces, EvaluateFaces, EvaluateVertices};
+    static constexpr LimitKernel kKernel = {SumFaces, EvaluateFaces, EvaluateVertices,
+                                            EvaluateLattice};
 };
 
 } // namespace

@@ -10,6 +10,8 @@ namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
 using FarExt::Status;
+using FarExt::internal::LatticeFaces;
+using FarExt::internal::LatticePatch;
 using FarExt::internal::LimitRow;
 using FarExt::internal::LimitRows;
 using FarExt::internal::PlainNeighborhoodGatherer;
@@ -26,6 +28,10 @@ constexpr Index kRange = 256;
 // the cache, and enough for groups to be full.
 constexpr std::size_t kWindow = 8192;
 
+// Sources of a row that are gathered again.
+constexpr int kMaxSources =
+    std::max(LatticePatch::kMaxPlaces, PlainNeighborhoodGatherer::kNumRegular);
+
 // Sets the places of a group's sources.
 void setPlaces(VertexGroup const &group, int member, LimitRow const &row, std::uint32_t *places) {
     std::uint32_t *place = places + group.firstPlace + member;
@@ -38,8 +44,15 @@ void setPlaces(VertexGroup const &group, int member, LimitRow const &row, std::u
 
 Status PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
                               FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows) {
-    RegularFaces regularFaces(mesh, rows.GetLevel().depth);
-    Status result = regularFaces.FindMasks(schemeOptions, rows);
+    int const last = rows.GetLevel().depth;
+    LatticeFaces latticeFaces(mesh, last);
+    Status result = latticeFaces.FindMasks(schemeOptions, rows);
+    if (!result.IsOk()) {
+        return result;
+    }
+    _lattice.Prepare(latticeFaces);
+    RegularFaces regularFaces(mesh, last, latticeFaces.GetMarks());
+    result = regularFaces.FindMasks(schemeOptions, rows);
     if (!result.IsOk()) {
         return result;
     }
@@ -49,11 +62,20 @@ Status PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
         LevelLimit &ofLevel = _levels.emplace_back();
         ofLevel.level = &mesh.levels[i];
         prepareFaces(levels[i], ofLevel);
-        if (i + 1 < levels.size()) {
+        if (int(i) < last) {
+            std::vector<Index> verts = regularVertices.GetVertices(int(i));
+            std::vector<Index> const &ofLattice = latticeFaces.GetVertices();
+            auto const isOfLattice = [&](Index vert) {
+                return i == 0 && std::binary_search(ofLattice.begin(), ofLattice.end(), vert);
+            };
+            if (i == 0) {
+                verts.insert(verts.end(), ofLattice.begin(), ofLattice.end());
+            }
             prepareVertices(
-                regularVertices.GetVertices(int(i)),
+                verts,
                 [&](Index vert, Index *sources) {
-                    return regularVertices.GetRow(int(i), vert, sources);
+                    return isOfLattice(vert) ? latticeFaces.GetRow(vert, sources)
+                                             : regularVertices.GetRow(int(i), vert, sources);
                 },
                 ofLevel);
         } else {
@@ -94,7 +116,7 @@ void PreparedLimit::prepareFaces(RegularFaces::OfLevel const &faces, LevelLimit 
     }
 }
 
-// readRow(vert, sources) gives the row of a vertex, with room for the sources of a regular one.
+// readRow(vert, sources) gives the row of a vertex, with room for kMaxSources sources.
 template <typename READ_ROW>
 void PreparedLimit::prepareVertices(std::vector<Index> const &verts, READ_ROW readRow,
                                     LevelLimit &result) {
@@ -106,7 +128,7 @@ void PreparedLimit::prepareVertices(std::vector<Index> const &verts, READ_ROW re
     std::vector<Other> others;
     others.reserve(verts.size());
     std::unordered_map<double const *, std::size_t> firstWeights; // of the types, by their weights
-    Index sources[PlainNeighborhoodGatherer::kNumRegular];
+    Index sources[kMaxSources];
     for (Index const vert : verts) {
         LimitRow const row = readRow(vert, sources);
         // The sides of a vertex share the weights of its point.
@@ -141,7 +163,7 @@ void PreparedLimit::prepareVertices(std::vector<Index> const &verts, READ_ROW re
     FarExt::internal::ParallelForRange(
         Index(result.vertexGroups.size()), [] { return FarExt::internal::Nothing(); },
         [&](FarExt::internal::Nothing, Index begin, Index end) {
-            Index ofVertex[PlainNeighborhoodGatherer::kNumRegular];
+            Index ofVertex[kMaxSources];
             for (Index i = begin; i < end; ++i) {
                 VertexGroup const &group = result.vertexGroups[std::size_t(i)];
                 for (int k = 0; k < VertexGroup::kSize; ++k) {
@@ -182,15 +204,34 @@ std::vector<unsigned char> PreparedLimit::FindSources(Index numVertices) const {
     return isSource;
 }
 
+int PreparedLimit::GetLastLevel() const {
+    int level = int(_levels.size()) - 1;
+    while (level > 0 && !IsNeeded(level)) {
+        --level;
+    }
+    return level;
+}
+
+LimitTask PreparedLimit::makeTask(Elements<float const> values, bool isReadBehind, int length,
+                                  Outputs const &outputs) {
+    LimitTask task;
+    task.length = length;
+    task.values = values;
+    task.isReadBehind = isReadBehind;
+    task.numOutputs = int(outputs.size());
+    std::copy(outputs.begin(), outputs.end(), task.outputs);
+    return task;
+}
+
+void PreparedLimit::EvaluateLattice(Elements<float const> values, int length,
+                                    Outputs const &outputs) const {
+    _lattice.Evaluate(makeTask(values, true, length, outputs));
+}
+
 void PreparedLimit::Evaluate(int level, Elements<float const> values, bool isReadBehind, int length,
                              Outputs const &outputs) {
     LevelLimit const &ofLevel = _levels[std::size_t(level)];
-    LimitTask common;
-    common.length = length;
-    common.values = values;
-    common.isReadBehind = isReadBehind;
-    common.numOutputs = int(outputs.size());
-    std::copy(outputs.begin(), outputs.end(), common.outputs);
+    LimitTask const common = makeTask(values, isReadBehind, length, outputs);
     if (!ofLevel.sets.empty()) {
         evaluateFaces(ofLevel, common);
     }

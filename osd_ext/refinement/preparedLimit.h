@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_PREPARED_LIMIT_H
 #define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_PREPARED_LIMIT_H
 
+#include "latticeLimit.h"
 #include "limitKernel.h"
 
 #include "far_ext/limit/limitRows.h"
@@ -15,8 +16,9 @@ namespace OpenSubdivHex::OsdExt::internal {
 
 /// \brief The limit of a level prepared for evaluation.
 ///
-/// Most vertices are F-vertices of regular faces of a level before: their limit is made from the values
-/// of the level of their face, so that a frame needs no values of the last level for them.  Nearly all
+/// Vertices in lattice faces are made from level 0.  Else most are F-vertices of regular faces of a level
+/// before: their limit is made from the values of the level of their face, so that a frame needs no
+/// values of the last level for them.  Nearly all
 /// else are vertices of F-faces, of the level or of one before.  What is kept for them is the faces.
 /// The others are stencils of vertices, of the first level in which they are regular or else of the
 /// last one, whose weights are those of their type: so what a frame reads is mostly indices.
@@ -38,11 +40,20 @@ public:
     /// \param isReadBehind  whether one float may be read behind the last of them
     void Evaluate(int level, Elements<float const> values, bool isReadBehind, int length,
                   Outputs const &outputs);
+    /// \brief Writes the outputs of vertices that follow from level 0 and none between, behind those that
+    /// Evaluate() writes.
+    ///
+    /// \param values  of level 0, of which one float may be read behind the last
+    void EvaluateLattice(Elements<float const> values, int length, Outputs const &outputs) const;
+
     /// Whether the limit of any vertex follows from a level.
     bool IsNeeded(int level) const {
         LevelLimit const &ofLevel = _levels[std::size_t(level)];
-        return !ofLevel.sets.empty() || !ofLevel.vertexGroups.empty();
+        return !ofLevel.sets.empty() || !ofLevel.vertexGroups.empty() ||
+               (level == 0 && !_lattice.IsEmpty());
     }
+    /// The last level that is needed.
+    int GetLastLevel() const;
 
     /// A mark for each of the \p numVertices vertices of the last level, whether outputs depend on
     /// it; empty if none do.
@@ -72,6 +83,10 @@ private:
                          LevelLimit &result);
     void evaluateFaces(LevelLimit const &ofLevel, LimitTask const &common);
 
+    static LimitTask makeTask(Elements<float const> values, bool isReadBehind, int length,
+                              Outputs const &outputs);
+
+    LatticeLimit _lattice;
     std::vector<LevelLimit> _levels;
     FarExt::internal::Buffer<float> _sums; // of faces of a level
 

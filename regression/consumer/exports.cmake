@@ -5,7 +5,8 @@
 # Checks that a shared library exports its public API, of which public is a part of a mangled name,
 # and of what is internal no more than the inline code of public headers and other layers call.
 set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report SortUnique
-  RefinementMask TruncationMask LimitRows RegularFaces RegularFaceMask RegularFaceRows RegularVertices CheckLimitLevel
+  RefinementMask TruncationMask LimitRows LatticePatch LatticeFaces RegularFaces RegularFaceMask RegularFaceRows RegularVertices
+  CheckLimitLevel
   PrimvarRows PrimvarLimitRows
   FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
   FindCornerLimits PatchRefinement MarkFeatures StepRowBack MakePlainBaseCell IndexMap

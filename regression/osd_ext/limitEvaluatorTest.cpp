@@ -8,6 +8,7 @@
 #include "osd_ext/simdLevel.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
 
 #include <opensubdiv/osd/cpuVertexBuffer.h>
 
@@ -179,47 +180,79 @@ TEST(LimitEvaluator, TakesRegularFacesOfAnyMask) {
     }
 }
 
+// Faces of a lattice make all vertices in them from level 0; beside them are those near a sharp vertex.
+TEST(LimitEvaluator, TakesLatticeFacesOfAnyLengthAndSimdLevel) {
+    auto const saved = OsdExt::GetSimdLevel();
+    for (TorusFaces const faces : {TorusFaces::Quads, TorusFaces::Triangles}) {
+        Shape shape = MakeTorus(9, 8, faces);
+        for (bool const isSharp : {false, true}) {
+            if (isSharp) {
+                shape.cornerVertices = {30};
+                shape.cornerSharpness = {1.5f};
+            }
+            auto const refiner = createRefiner(shape, 3);
+            for (auto simdLevel : {OsdExt::SimdLevel::Portable, OsdExt::SimdLevel::Avx2,
+                                   OsdExt::SimdLevel::Avx512}) {
+                if (simdLevel > OsdExt::GetMaxSimdLevel()) {
+                    continue;
+                }
+                SCOPED_TRACE(testing::Message() << shape.name << ", sharp " << isSharp
+                                                << ", SIMD level " << int(simdLevel));
+                OsdExt::SetSimdLevel(simdLevel);
+                ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, 3, 0));
+                ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, isSharp ? 3 : 6));
+            }
+        }
+    }
+    OsdExt::SetSimdLevel(saved);
+}
+
 // Up to half of the largest float: sums of such values are larger.
 TEST(LimitEvaluator, LargeValuesAreAsSmallOnes) {
-    auto const refiner = createRefiner(GetShape("hexTorus"), 3);
-    auto const evaluator = RefinementEvaluator::Create(*refiner);
-    constexpr float kFactor = 0x1p127f;
-    Osd::BufferDescriptor const desc(0, 3, 3);
-    std::vector<float> base = makeValues(3 * evaluator->GetNumElements(0));
-    auto const evaluate = [&] {
-        std::vector<float> points(std::size_t(3 * evaluator->GetNumElements(3)));
-        EXPECT_TRUE(evaluator->EvaluateLimit(base.data(), desc, points.data(), desc, 3));
-        return points;
-    };
-    std::vector<float> const small = evaluate();
-    for (float &value : base) {
-        value *= kFactor;
-    }
-    std::vector<float> const large = evaluate();
-    for (std::size_t i = 0; i < small.size(); ++i) {
-        ASSERT_EQ(large[i], small[i] * kFactor) << "float " << i;
+    for (Shape const &shape : {GetShape("hexTorus"), MakeTorus(7, 6, TorusFaces::Quads),
+                               MakeTorus(7, 6, TorusFaces::Triangles)}) {
+        auto const refiner = createRefiner(shape, 3);
+        auto const evaluator = RefinementEvaluator::Create(*refiner);
+        constexpr float kFactor = 0x1p127f;
+        Osd::BufferDescriptor const desc(0, 3, 3);
+        std::vector<float> base = makeValues(3 * evaluator->GetNumElements(0));
+        auto const evaluate = [&] {
+            std::vector<float> points(std::size_t(3 * evaluator->GetNumElements(3)));
+            EXPECT_TRUE(evaluator->EvaluateLimit(base.data(), desc, points.data(), desc, 3));
+            return points;
+        };
+        std::vector<float> const small = evaluate();
+        for (float &value : base) {
+            value *= kFactor;
+        }
+        std::vector<float> const large = evaluate();
+        for (std::size_t i = 0; i < small.size(); ++i) {
+            ASSERT_EQ(large[i], small[i] * kFactor) << "float " << i;
+        }
     }
 }
 
 TEST(LimitEvaluator, SameBitsForAnyNumberOfThreads) {
-    auto const refiner = createRefiner(GetShape("dodecahedron"), 5);
-    auto const evaluate = [&](int numThreads) {
-        FarExt::SetNumThreads(numThreads);
-        auto const evaluator = RefinementEvaluator::Create(*refiner);
-        int const count = 3 * evaluator->GetNumElements(5);
-        std::vector<float> const base = makeValues(3 * evaluator->GetNumElements(0));
-        std::vector<float> result(std::size_t(3 * count));
-        Osd::BufferDescriptor const desc(0, 3, 3);
-        EXPECT_TRUE(evaluator->EvaluateLimit(base.data(), desc, result.data(), desc,
-                                             result.data() + count, desc, result.data() + 2 * count,
-                                             desc, 5));
-        return result;
-    };
-    std::vector<float> const expected = evaluate(1);
-    for (int numThreads : {2, 3, 8}) {
-        EXPECT_EQ(evaluate(numThreads), expected) << numThreads << " threads";
+    for (Shape const &shape : {GetShape("dodecahedron"), MakeTorus(13, 12, TorusFaces::Quads)}) {
+        auto const refiner = createRefiner(shape, 5);
+        auto const evaluate = [&](int numThreads) {
+            FarExt::SetNumThreads(numThreads);
+            auto const evaluator = RefinementEvaluator::Create(*refiner);
+            int const count = 3 * evaluator->GetNumElements(5);
+            std::vector<float> const base = makeValues(3 * evaluator->GetNumElements(0));
+            std::vector<float> result(std::size_t(3 * count));
+            Osd::BufferDescriptor const desc(0, 3, 3);
+            EXPECT_TRUE(evaluator->EvaluateLimit(base.data(), desc, result.data(), desc,
+                                                 result.data() + count, desc,
+                                                 result.data() + 2 * count, desc, 5));
+            return result;
+        };
+        std::vector<float> const expected = evaluate(1);
+        for (int numThreads : {2, 3, 8}) {
+            EXPECT_EQ(evaluate(numThreads), expected) << numThreads << " threads";
+        }
+        FarExt::SetNumThreads(0);
     }
-    FarExt::SetNumThreads(0);
 }
 
 TEST(LimitEvaluator, RefusesBadArgumentsAndWritesNothing) {

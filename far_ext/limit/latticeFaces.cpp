@@ -1,0 +1,553 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "latticeFaces.h"
+
+#include "far_ext/vtr/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+#include <utility>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+using Far::Index;
+
+namespace {
+
+using Point = LatticePatch::Point;
+using PatchWeights = std::vector<LimitWeights>; // by place
+
+constexpr double kTolerance = 1e-9; ///< of weights, as RegularFaces has it
+constexpr Index kRange = 64;        ///< of faces, which take some microseconds each
+constexpr double kSamePoint = 1e-6; ///< in a plane where edges of level 0 are 1 long
+
+bool areEqual(PatchWeights const &a, PatchWeights const &b) {
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        for (std::size_t k = 0; k < a[i].size(); ++k) {
+            if (!(std::abs(a[i][k] - b[i][k]) < kTolerance)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// \brief The rows of vertices of all levels in terms of a patch of level 0, each found once from those
+/// of the level before.
+class PatchRows {
+public:
+    PatchRows(MeshLevels const &mesh, HexSchemeOptions const &schemeOptions, int level,
+              Index const *verts, int numPlaces)
+        : _mesh(mesh), _rows(std::size_t(level) + 1), _numPlaces(std::size_t(numPlaces)) {
+        for (int i = 0; i < level; ++i) {
+            _masks.emplace_back(mesh.levels[std::size_t(i)], schemeOptions, Interpolation::Vertex);
+        }
+        for (std::size_t place = 0; place < _numPlaces; ++place) {
+            Row row(_numPlaces, 0);
+            row[place] = 1;
+            _rows[0].emplace(verts[place], std::move(row));
+        }
+    }
+
+    /// That of a limit row; nothing where it depends on other vertices.
+    PatchWeights Find(LimitRow const &ofLimit) {
+        PatchWeights weights(_numPlaces, LimitWeights());
+        for (int i = 0; i < ofLimit.size; ++i) {
+            Row const &row = findRow(_rows.size() - 1, ofLimit.sources[i]);
+            for (std::size_t place = 0; place < _numPlaces; ++place) {
+                weights[place][0] += ofLimit.weights[i] * row[place];
+                weights[place][1] += ofLimit.du[i] * row[place];
+                weights[place][2] += ofLimit.dv[i] * row[place];
+            }
+        }
+        return _isComplete ? weights : PatchWeights();
+    }
+
+private:
+    using Row = std::vector<double>;
+
+    void add(Row &sum, double weight, Row const &row) const {
+        for (std::size_t place = 0; place < _numPlaces; ++place) {
+            sum[place] += weight * row[place];
+        }
+    }
+
+    Row const &findRow(std::size_t level, Index vert) {
+        auto const found = _rows[level].find(vert);
+        if (found != _rows[level].end()) {
+            return found->second;
+        }
+        Row row(_numPlaces, 0);
+        if (level == 0) {
+            _isComplete = false;
+        } else if (vert < _mesh.levels[level].numVVertices) {
+            addVVertex(level, vert, row);
+        } else {
+            addFVertex(level, _mesh.refinements[level - 1].GetChildVertexCorner(vert), row);
+        }
+        return _rows[level].emplace(vert, std::move(row)).first->second;
+    }
+
+    void addVVertex(std::size_t level, Index vert, Row &row) {
+        Refinement const &refinement = _mesh.refinements[level - 1];
+        Index const pVert = refinement.GetVVertexParent(vert);
+        RefinementMask::VertexMask const mask = _masks[level - 1].GetVertexMask(pVert);
+        for (int i = 0; i < mask.numSources; ++i) {
+            add(row, mask.weights[i], findRow(level - 1, mask.sources[i]));
+        }
+        Level const &parent = *refinement.parent;
+        for (Index k = parent.vertFirstFace[pVert]; k < parent.vertFirstFace[pVert + 1]; ++k) {
+            Index const fVert = refinement.GetCornerChildVertex(parent.GetVertexCorner(k));
+            add(row, mask.faceWeight, findRow(level, fVert));
+        }
+    }
+
+    void addFVertex(std::size_t level, Index corner, Row &row) {
+        Level const &parent = _mesh.levels[level - 1];
+        Index const face = parent.FindFaceOfCorner(corner);
+        Index const first = parent.faceFirstCorner[face];
+        std::vector<double> scratch;
+        double const *const weights =
+            _masks[level - 1].GetFaceVertexWeights(face, corner - first, scratch);
+        for (int i = 0; i < parent.GetFaceSize(face); ++i) {
+            add(row, weights[i], findRow(level - 1, parent.faceVerts[first + i]));
+        }
+    }
+
+    MeshLevels const &_mesh;
+    std::vector<std::unordered_map<Index, Row>> _rows; // by level and vertex
+    std::size_t const _numPlaces;
+    std::vector<RefinementMask> _masks;
+    bool _isComplete = true;
+};
+
+/// Numbers of points that are near to given ones.
+class PointFinder {
+public:
+    explicit PointFinder(std::vector<Point> const &points) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            _sorted.push_back({points[i], int(i)});
+        }
+        std::sort(_sorted.begin(), _sorted.end(), [](Numbered const &a, Numbered const &b) {
+            return a.point.real() < b.point.real();
+        });
+    }
+
+    /// -1 where there is none.
+    int Find(Point point) const {
+        auto next = std::lower_bound(
+            _sorted.begin(), _sorted.end(), point.real() - kSamePoint,
+            [](Numbered const &numbered, double x) { return numbered.point.real() < x; });
+        for (; next != _sorted.end() && next->point.real() < point.real() + kSamePoint; ++next) {
+            if (std::abs(next->point - point) < kSamePoint) {
+                return next->number;
+            }
+        }
+        return -1;
+    }
+
+private:
+    struct Numbered {
+        Point point;
+        int number;
+    };
+    std::vector<Numbered> _sorted;
+};
+
+/// Where a derivative, or the point, of a row leads in the plane of the patch.
+Point findPoint(LatticePatch const &patch, PatchWeights const &weights, std::size_t sum) {
+    Point result = 0;
+    for (std::size_t place = 0; place < weights.size(); ++place) {
+        result += weights[place][sum] * patch.GetPoints()[place];
+    }
+    return result;
+}
+
+/// Two directions in the plane in terms of two others.
+void solve(Point const (&directions)[2], Point const (&others)[2], double (&result)[2][2]) {
+    double const area = std::imag(std::conj(others[0]) * others[1]);
+    for (int i = 0; i < 2; ++i) {
+        result[i][0] = std::imag(std::conj(directions[i]) * others[1]) / area;
+        result[i][1] = std::imag(std::conj(others[0]) * directions[i]) / area;
+    }
+}
+
+/// Whether what is along the axis is the same in the mirror, and what is across changes its sign.
+bool isMirrorSymmetric(LatticePatch const &patch, PatchWeights const &weights) {
+    PatchWeights mirrored(weights.size());
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        LimitWeights const &of = weights[i];
+        mirrored[std::size_t(patch.MirrorPlace(int(i)))] = {of[0], of[1], -of[2]};
+    }
+    return areEqual(mirrored, weights);
+}
+
+/// With other derivatives, factors[i] being the i-th in terms of those that there are.
+PatchWeights combine(PatchWeights weights, double const (&factors)[2][2]) {
+    for (LimitWeights &ofPlace : weights) {
+        ofPlace = {ofPlace[0], factors[0][0] * ofPlace[1] + factors[0][1] * ofPlace[2],
+                   factors[1][0] * ofPlace[1] + factors[1][1] * ofPlace[2]};
+    }
+    return weights;
+}
+
+} // namespace
+
+/// The first face of a set, and what is found for it.
+struct LatticeFaces::Sample {
+    std::vector<int> numbers; ///< by output of forEachOutput(), among those that differ
+    std::vector<Index> verts; ///< that differ
+    std::vector<PatchWeights> weights;
+
+    std::vector<int> order; ///< by output of a set, its number
+};
+
+LatticeFaces::LatticeFaces(MeshLevels const &mesh, int level) : _mesh(mesh), _level(level) {
+    for (int i = 1; i <= level; ++i) {
+        if (!mesh.levels[std::size_t(i)].isHexagonal) {
+            return;
+        }
+    }
+    if (level > 0) {
+        findFaces(3);
+        findFaces(4);
+    }
+}
+
+void LatticeFaces::findFaces(int faceSize) {
+    Level const &level = _mesh.levels[0];
+    LatticePatch const patch(faceSize);
+    std::vector<VertexMark> const marks = MarkFeatures(level);
+    auto const isOfLattice = [&](Index vert) {
+        Far::ConstIndexArray const faces = level.GetVertexFaces(vert);
+        return faces.size() == patch.GetValence() &&
+               (marks.empty() || marks[std::size_t(vert)] != VertexMark::Feature) &&
+               std::all_of(faces.begin(), faces.end(),
+                           [&](Index face) { return level.GetFaceSize(face) == faceSize; });
+    };
+    std::vector<unsigned char> isVertexOfLattice(std::size_t(level.numVertices));
+    ParallelFor(level.numVertices,
+                [&](Index vert) { isVertexOfLattice[std::size_t(vert)] = isOfLattice(vert); });
+    auto const gather = [&](Index face, Index *verts) {
+        return level.GetFaceSize(face) == faceSize &&
+               patch.Gather(
+                   level, face,
+                   [&](Index vert) { return isVertexOfLattice[std::size_t(vert)] != 0; }, verts);
+    };
+    std::vector<Index> faces = ParallelSelect(
+        level.numFaces,
+        [&](Index face) {
+            Index verts[LatticePatch::kMaxPlaces];
+            return gather(face, verts);
+        },
+        kRange);
+    if (faces.empty()) {
+        return;
+    }
+    Set &set = _sets.emplace_back(Set{patch, std::move(faces), {}, {}, 0, {}, {}, {}});
+    auto const numPlaces = std::size_t(patch.GetNumPlaces());
+    set.sources.Resize(set.faces.size() * numPlaces);
+    ParallelFor(Index(set.faces.size()), [&](Index i) {
+        gather(set.faces[std::size_t(i)], set.sources.data() + std::size_t(i) * numPlaces);
+    });
+}
+
+// Calls function(vert) for the vertices of the level that lie in a face of level 0, in an order that
+// begins at its first corner; for some twice.
+template <typename FUNCTION>
+void LatticeFaces::forEachOutput(Index face, FUNCTION function) const {
+    for (int i = 0; i < _level; ++i) {
+        Level const &level = _mesh.levels[std::size_t(i)];
+        Refinement const &refinement = _mesh.refinements[std::size_t(i)];
+        Index const first = level.faceFirstCorner[face];
+        for (Index corner = first; corner < level.faceFirstCorner[face + 1]; ++corner) {
+            function(refinement.GetCornerChildVertex(corner));
+            Index const edge = level.faceEdges[corner];
+            int const side = level.GetSideCorner(edge, 0) == corner ? 0 : 1;
+            forEachOutputOfHalf(i + 1, refinement.GetEdgeChildFace(edge), side, function);
+        }
+    }
+}
+
+// The same for what is made in half a hexagon of a level, of one side of its parent edge.
+template <typename FUNCTION>
+void LatticeFaces::forEachOutputOfHalf(int level, Index face, int side, FUNCTION &function) const {
+    EFaceSide const &places = side == 0 ? kEFaceSideA : kEFaceSideB;
+    for (int i = level; i < _level; ++i) {
+        Level const &ofFace = _mesh.levels[std::size_t(i)];
+        Refinement const &refinement = _mesh.refinements[std::size_t(i)];
+        Index const first = ofFace.faceFirstCorner[face];
+        for (Index const local :
+             {places.startVertex, places.endVertex, places.startFVertex, places.endFVertex}) {
+            function(refinement.GetCornerChildVertex(first + local));
+        }
+        for (Index const local : {places.startSpoke, places.fFaceEdge, places.endSpoke}) {
+            Index const edge = ofFace.faceEdges[first + local];
+            int const sideOfEdge = ofFace.GetSideCorner(edge, 0) == first + local ? 0 : 1;
+            forEachOutputOfHalf(i + 1, refinement.GetEdgeChildFace(edge), sideOfEdge, function);
+        }
+    }
+}
+
+Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows) {
+    std::vector<Sample> samples(_sets.size());
+    std::vector<Index> verts;
+    for (std::size_t i = 0; i < _sets.size(); ++i) {
+        std::unordered_map<Index, int> numbers;
+        Sample &sample = samples[i];
+        forEachOutput(_sets[i].faces.front(), [&](Index vert) {
+            auto const [found, isNew] = numbers.emplace(vert, int(sample.verts.size()));
+            if (isNew) {
+                sample.verts.push_back(vert);
+            }
+            sample.numbers.push_back(found->second);
+        });
+        verts.insert(verts.end(), sample.verts.begin(), sample.verts.end());
+    }
+    std::vector<Index> ofSets(_sets.size(), Far::INDEX_INVALID); // a vertex of level 0 for each
+    for (Index vert = 0; vert < _mesh.levels[0].numVertices && !_sets.empty(); ++vert) {
+        if (Set const *const set = findPlace(vert).set) {
+            Index &ofSet = ofSets[std::size_t(set - _sets.data())];
+            if (ofSet < 0) {
+                ofSet = vert;
+                verts.push_back(vert);
+            }
+        }
+    }
+    std::sort(verts.begin(), verts.end());
+    verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
+    Status status = _sets.empty() ? Status() : rows.Find(verts);
+    if (!status.IsOk()) {
+        return status;
+    }
+    std::vector<Set> sets;
+    for (std::size_t i = 0; i < _sets.size(); ++i) {
+        Set &set = _sets[i];
+        PatchRows patchRows(_mesh, schemeOptions, _level, set.sources.data(),
+                            set.patch.GetNumPlaces());
+        Index sources[PlainNeighborhoodGatherer::kNumRegular];
+        for (Index const vert : samples[i].verts) {
+            samples[i].weights.push_back(patchRows.Find(rows.GetRow(vert, 0, sources)));
+        }
+        if (ofSets[i] >= 0) {
+            setVertexMask(schemeOptions, rows, ofSets[i], set);
+        }
+        if (setOrbits(samples[i], set)) {
+            setOutputs(samples[i], set);
+            sets.push_back(std::move(set));
+        }
+    }
+    _sets = std::move(sets);
+    setVertices();
+    return status;
+}
+
+// The face that begins at a vertex with the first of its edges.
+LatticeFaces::VertexPlace LatticeFaces::findPlace(Index vert) const {
+    Level const &level = _mesh.levels[0];
+    Far::ConstIndexArray const edges = level.GetVertexEdges(vert);
+    if (edges.empty()) {
+        return {nullptr, 0, 0};
+    }
+    int const side = level.edgeVerts[edges[0]][0] == vert ? 0 : 1;
+    Index const face = level.edgeFaces[edges[0]][side];
+    for (Set const &set : _sets) {
+        auto const found = std::lower_bound(set.faces.begin(), set.faces.end(), face);
+        if (found != set.faces.end() && *found == face) {
+            return {&set, std::size_t(found - set.faces.begin()),
+                    level.GetSideCorner(edges[0], side) - level.faceFirstCorner[face]};
+        }
+    }
+    return {nullptr, 0, 0};
+}
+
+void LatticeFaces::setVertexMask(HexSchemeOptions const &schemeOptions, LimitRows const &rows,
+                                 Index vert, Set &set) const {
+    Index sources[LatticePatch::kMaxPlaces];
+    VertexPlace const place = findPlace(vert);
+    getSources(place, sources);
+    Index regularSources[PlainNeighborhoodGatherer::kNumRegular];
+    PatchWeights const weights =
+        PatchRows(_mesh, schemeOptions, _level, sources, set.patch.GetNumPlaces())
+            .Find(rows.GetRow(vert, 0, regularSources));
+    LimitMask::Tangents tangents;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        LimitWeights const &ofPlace = weights[i];
+        if (ofPlace[0] != 0 || ofPlace[1] != 0 || ofPlace[2] != 0) {
+            set.vertexPlaces.push_back(int(i));
+            set.vertexMask.weights.push_back(ofPlace[0]);
+            tangents.du.push_back(ofPlace[1]);
+            tangents.dv.push_back(ofPlace[2]);
+        }
+    }
+    set.vertexMask.sides.push_back(std::move(tangents));
+}
+
+// The sources of a face, turned so that a vertex is at its first corner.
+void LatticeFaces::getSources(VertexPlace const &of, Index *sources) {
+    LatticePatch const &patch = of.set->patch;
+    Index const *const ofFace =
+        of.set->sources.data() + of.face * std::size_t(patch.GetNumPlaces());
+    for (int place = 0; place < patch.GetNumPlaces(); ++place) {
+        sources[place] = ofFace[patch.TurnPlace(place, of.corner)];
+    }
+}
+
+// Whether there are orbits, which make the rows of all outputs.
+bool LatticeFaces::setOrbits(Sample &sample, Set &set) {
+    LatticePatch const &patch = set.patch;
+    int const faceSize = patch.GetFaceSize();
+    std::vector<Point> points;
+    for (PatchWeights const &weights : sample.weights) {
+        if (weights.empty()) {
+            return false;
+        }
+        points.push_back(findPoint(patch, weights, 0));
+    }
+    PointFinder const finder(points);
+    std::vector<unsigned char> isFound(points.size(), 0);
+    std::vector<Orbit> axes;
+    std::vector<int> ofAxes;
+    // Adds the vertices that one, or its mirror image, comes to as the face turns, if they have its
+    // weights: those of derivatives in terms of its own.
+    auto const addTurns = [&](PatchWeights const &first, Point point, bool isMirrored,
+                              double const(&derivatives)[2][2], std::vector<int> &numbers) {
+        for (int turns = 0; turns < faceSize; ++turns) {
+            int const number = finder.Find(patch.Turn(point, turns));
+            if (number < 0) {
+                return false;
+            }
+            PatchWeights turned(first.size());
+            for (int place = 0; place < patch.GetNumPlaces(); ++place) {
+                int const to =
+                    patch.TurnPlace(isMirrored ? patch.MirrorPlace(place) : place, turns);
+                turned[std::size_t(to)] = first[std::size_t(place)];
+            }
+            if (!areEqual(combine(std::move(turned), derivatives),
+                          sample.weights[std::size_t(number)])) {
+                return false;
+            }
+            isFound[std::size_t(number)] = 1;
+            numbers.push_back(number);
+        }
+        return true;
+    };
+    constexpr double kSame[2][2] = {{1, 0}, {0, 1}};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (isFound[i]) {
+            continue;
+        }
+        int first = int(i);
+        bool isPair = true;
+        for (int turns = 0; turns < faceSize; ++turns) {
+            Point const turned = patch.Turn(points[i], turns);
+            if (std::abs(turned.imag()) < kSamePoint && (isPair || turned.real() > 0)) {
+                first = finder.Find(turned);
+                isPair = false;
+            }
+        }
+        if (first < 0) {
+            return false;
+        }
+        Point const point = points[std::size_t(first)];
+        PatchWeights const &weights = sample.weights[std::size_t(first)];
+        Point const directions[2] = {findPoint(patch, weights, 1), findPoint(patch, weights, 2)};
+        Orbit orbit = {isPair, weights, {}};
+        if (isPair) {
+            int const mirrored = finder.Find(std::conj(point));
+            if (mirrored < 0) {
+                return false;
+            }
+            PatchWeights const &ofImage = sample.weights[std::size_t(mirrored)];
+            solve({findPoint(patch, ofImage, 1), findPoint(patch, ofImage, 2)},
+                  {std::conj(directions[0]), std::conj(directions[1])}, orbit.derivatives);
+            if (!addTurns(weights, point, false, kSame, sample.order) ||
+                !addTurns(weights, std::conj(point), true, orbit.derivatives, sample.order)) {
+                return false;
+            }
+            set.orbits.push_back(std::move(orbit));
+        } else {
+            // Along and across, as long as du and dv.
+            double const length =
+                std::sqrt(std::abs(std::imag(std::conj(directions[0]) * directions[1])));
+            Point const axis[2] = {length, Point(0, length)};
+            double ofAxis[2][2];
+            solve(axis, directions, ofAxis);
+            solve(directions, axis, orbit.derivatives);
+            orbit.weights = combine(weights, ofAxis);
+            if (!addTurns(orbit.weights, point, false, orbit.derivatives, ofAxes) ||
+                !isMirrorSymmetric(patch, orbit.weights)) {
+                return false;
+            }
+            axes.push_back(std::move(orbit));
+        }
+    }
+    sample.order.insert(sample.order.end(), ofAxes.begin(), ofAxes.end());
+    set.orbits.insert(set.orbits.end(), axes.begin(), axes.end());
+    set.numOutputs = int(sample.order.size());
+    return !axes.empty();
+}
+
+void LatticeFaces::setOutputs(Sample const &sample, Set &set) {
+    // By number, the places among the outputs.
+    std::vector<std::vector<int>> places(sample.verts.size());
+    for (std::size_t i = 0; i < sample.order.size(); ++i) {
+        places[std::size_t(sample.order[i])].push_back(int(i));
+    }
+    auto const numOutputs = std::size_t(set.numOutputs);
+    set.outputs.Resize(set.faces.size() * numOutputs);
+    ParallelForRange(
+        Index(set.faces.size()), [] { return Nothing(); },
+        [&](Nothing, Index begin, Index end) {
+            for (Index i = begin; i < end; ++i) {
+                Index *const outputs = set.outputs.data() + std::size_t(i) * numOutputs;
+                auto number = sample.numbers.begin();
+                forEachOutput(set.faces[std::size_t(i)], [&](Index vert) {
+                    for (int const place : places[std::size_t(*number)]) {
+                        outputs[place] = vert;
+                    }
+                    ++number;
+                });
+            }
+        },
+        kRange);
+    // In the order of the faces, whatever the threads.
+    _marks.resize(std::size_t(_mesh.levels[std::size_t(_level)].numVertices), 0);
+    std::size_t const inside = numOutputs - std::size_t(set.patch.GetFaceSize());
+    for (std::size_t i = 0; i < set.faces.size(); ++i) {
+        Index *const outputs = set.outputs.data() + i * numOutputs;
+        for (std::size_t k = 0; k < inside; ++k) {
+            unsigned char &mark = _marks[std::size_t(outputs[k])];
+            outputs[k] = mark ? outputs[inside] : outputs[k];
+            mark = 1;
+        }
+        for (std::size_t k = inside; k < numOutputs; ++k) {
+            _marks[std::size_t(outputs[k])] = 1;
+        }
+    }
+}
+
+void LatticeFaces::setVertices() {
+    for (Index vert = 0; vert < _mesh.levels[0].numVertices && !_sets.empty(); ++vert) {
+        Set const *const set = findPlace(vert).set;
+        if (set && !set->vertexPlaces.empty()) {
+            _verts.push_back(vert);
+            _marks[std::size_t(vert)] = 1;
+        }
+    }
+}
+
+LimitRow LatticeFaces::GetRow(Index vert, Index sources[LatticePatch::kMaxPlaces]) const {
+    VertexPlace const place = findPlace(vert);
+    Index ofFace[LatticePatch::kMaxPlaces];
+    getSources(place, ofFace);
+    Set const &set = *place.set;
+    for (std::size_t i = 0; i < set.vertexPlaces.size(); ++i) {
+        sources[i] = ofFace[set.vertexPlaces[i]];
+    }
+    LimitMask::Tangents const &tangents = set.vertexMask.sides[0];
+    return {int(set.vertexPlaces.size()), sources, set.vertexMask.weights.data(),
+            tangents.du.data(), tangents.dv.data()};
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_LATTICE_LIMIT_H
+#define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_LATTICE_LIMIT_H
+
+#include "limitKernel.h"
+
+#include "far_ext/limit/latticeFaces.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace OpenSubdivHex::OsdExt::internal {
+
+/// \brief The limit in the lattice faces of level 0 prepared for evaluation.
+///
+/// A face is evaluated by its symmetries: its sources are taken apart into waves around it, which the
+/// weights of a vertex multiply by a number each, and with one row of weights all vertices of an orbit
+/// are made, six of triangles and eight of quads.
+class LatticeLimit {
+public:
+    void Prepare(FarExt::internal::LatticeFaces const &faces);
+    bool IsEmpty() const { return _sets.empty(); }
+
+    /// Writes the outputs of the vertices in all faces, from the values of level 0.
+    void Evaluate(LimitTask const &common) const;
+
+private:
+    struct Set {
+        int faceSize;
+        int numPairs;
+        int numAxes;
+        Far::Index numGroups;
+        FarExt::internal::Buffer<std::uint32_t> places;
+        FarExt::internal::Buffer<Far::Index> verts;
+        std::vector<float> weights;
+    };
+
+    std::vector<Set> _sets;
+};
+
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif

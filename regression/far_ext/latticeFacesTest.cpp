@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which faces of level 0 lie in a regular lattice, and that what they make is the limit of all vertices
+// in them.
+#include "far_ext/limit/latticeFaces.h"
+#include "far_ext/topologyRefinerFactory.h"
+#include "far_ext/vtr/hierarchy.h"
+#include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::TopologyRefiner;
+using FarExt::internal::LatticeFaces;
+using FarExt::internal::LatticePatch;
+using FarExt::internal::LimitRow;
+using FarExt::internal::LimitRows;
+using FarExt::internal::LimitWeights;
+using FarExt::internal::SteppedRow;
+
+namespace {
+
+std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, int level,
+                                               FarExt::HexSchemeOptions const &schemeOptions = {}) {
+    FarExt::TopologyRefinerFactory::Options options;
+    options.schemeOptions = schemeOptions;
+    Sdc::Options sdcOptions;
+    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    auto refiner =
+        FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(), sdcOptions, options);
+    TopologyRefiner::UniformOptions uniformOptions(level);
+    uniformOptions.fullTopologyInLastLevel = true;
+    if (!refiner || !refiner->RefineUniform(uniformOptions)) {
+        throw std::runtime_error("not refined");
+    }
+    return refiner;
+}
+
+LimitRows makeRows(TopologyRefiner const &refiner) {
+    auto const &level = refiner.GetHierarchy().mesh.levels[std::size_t(refiner.GetMaxLevel())];
+    return {level, refiner.GetSchemeOptions(), refiner.GetHexSchemeOptions()};
+}
+
+LatticeFaces findFaces(TopologyRefiner const &refiner) {
+    LatticeFaces faces(refiner.GetHierarchy().mesh, refiner.GetMaxLevel());
+    LimitRows rows = makeRows(refiner);
+    if (!faces.FindMasks(refiner.GetHexSchemeOptions(), rows).IsOk()) {
+        throw std::runtime_error("no masks");
+    }
+    return faces;
+}
+
+std::size_t countFaces(LatticeFaces const &faces) {
+    std::size_t count = 0;
+    for (LatticeFaces::Set const &set : faces.GetSets()) {
+        count += set.faces.size();
+    }
+    return count;
+}
+
+/// The limit at vertices of the last level, from that level, as rows in terms of level 0.
+class Expected {
+public:
+    explicit Expected(TopologyRefiner const &refiner)
+        : _refiner(refiner), _rows(makeRows(refiner)) {
+        EXPECT_TRUE(_rows.Find().IsOk());
+    }
+
+    /// What is left of that of a vertex without \p row is nothing.
+    void Expect(Far::Index vert, SteppedRow const &row) const {
+        Far::Index sources[FarExt::internal::PlainNeighborhoodGatherer::kNumRegular];
+        SteppedRow left = FarExt::internal::StepRowBack(
+            _refiner.GetHierarchy().mesh, _refiner.GetHexSchemeOptions(),
+            _rows.GetRow(vert, 0, sources), _refiner.GetMaxLevel(), 0);
+        for (auto const &[source, weights] : row) {
+            for (std::size_t i = 0; i < weights.size(); ++i) {
+                left[source][i] -= weights[i];
+            }
+        }
+        for (auto const &[source, weights] : left) {
+            for (double const weight : weights) {
+                ASSERT_NEAR(weight, 0, 1e-8) << "vertex " << vert << ", source " << source;
+            }
+        }
+    }
+
+private:
+    TopologyRefiner const &_refiner;
+    LimitRows _rows;
+};
+
+/// The row of an output: number \p corner of an orbit, or of the mirror images in it.
+SteppedRow makeRow(LatticePatch const &patch, LatticeFaces::Orbit const &orbit, int corner,
+                   bool isImage, Far::Index const *sources) {
+    SteppedRow row;
+    for (int place = 0; place < patch.GetNumPlaces(); ++place) {
+        LimitWeights const &from = orbit.weights[std::size_t(place)];
+        LimitWeights weights = from;
+        for (std::size_t i = 0; i < 2 && (isImage || !orbit.isPair); ++i) {
+            weights[1 + i] = orbit.derivatives[i][0] * from[1] + orbit.derivatives[i][1] * from[2];
+        }
+        int const turned = patch.TurnPlace(isImage ? patch.MirrorPlace(place) : place, corner);
+        row[sources[turned]] = weights;
+    }
+    return row;
+}
+
+// Compares all rows, and counts what makes each vertex.
+void expectRows(TopologyRefiner const &refiner, LatticeFaces const &faces) {
+    Expected const expected(refiner);
+    std::vector<int> made(std::size_t(refiner.GetLevel(refiner.GetMaxLevel()).GetNumVertices()), 0);
+    for (LatticeFaces::Set const &set : faces.GetSets()) {
+        int const faceSize = set.patch.GetFaceSize();
+        ASSERT_TRUE(
+            std::is_sorted(set.orbits.begin(), set.orbits.end(), [](auto const &a, auto const &b) {
+                return int(a.isPair) > int(b.isPair);
+            }));
+        for (std::size_t face = 0; face < set.faces.size(); ++face) {
+            Far::Index const *const sources =
+                set.sources.data() + face * std::size_t(set.patch.GetNumPlaces());
+            Far::Index const *const outputs =
+                set.outputs.data() + face * std::size_t(set.numOutputs);
+            Far::Index const inside = outputs[set.numOutputs - faceSize];
+            Far::Index const *next = outputs;
+            for (LatticeFaces::Orbit const &orbit : set.orbits) {
+                for (bool const isImage : {false, true}) {
+                    for (int corner = 0; corner < faceSize && (orbit.isPair || !isImage);
+                         ++corner, ++next) {
+                        bool const isFilling =
+                            *next == inside && next != outputs + set.numOutputs - faceSize;
+                        if (!isFilling) {
+                            ++made[std::size_t(*next)];
+                            ASSERT_NO_FATAL_FAILURE(expected.Expect(
+                                *next, makeRow(set.patch, orbit, corner, isImage, sources)));
+                        }
+                    }
+                }
+            }
+            ASSERT_EQ(next, outputs + set.numOutputs);
+        }
+    }
+    for (Far::Index const vert : faces.GetVertices()) {
+        ++made[std::size_t(vert)];
+        Far::Index sources[LatticePatch::kMaxPlaces];
+        LimitRow const of = faces.GetRow(vert, sources);
+        SteppedRow row;
+        for (int i = 0; i < of.size; ++i) {
+            row[of.sources[i]] = {of.weights[i], of.du[i], of.dv[i]};
+        }
+        ASSERT_NO_FATAL_FAILURE(expected.Expect(vert, row));
+    }
+    ASSERT_EQ(faces.GetMarks().size(), made.size());
+    for (std::size_t vert = 0; vert < made.size(); ++vert) {
+        ASSERT_EQ(made[vert], int(faces.GetMarks()[vert])) << "vertex " << vert;
+    }
+}
+
+constexpr FarExt::FaceMask kMasks[] = {FarExt::FaceMask::Average, FarExt::FaceMask::Cosine,
+                                       FarExt::FaceMask::Smooth};
+
+FarExt::HexSchemeOptions makeOptions(FarExt::FaceMask mask) {
+    FarExt::HexSchemeOptions options;
+    options.faceMask = mask;
+    return options;
+}
+
+} // namespace
+
+TEST(LatticePatch, HasOrbitsOfTheSymmetriesOfItsFace) {
+    for (int faceSize : {3, 4}) {
+        LatticePatch const patch(faceSize);
+        EXPECT_EQ(patch.GetNumPlaces(), faceSize == 3 ? 27 : 32);
+        EXPECT_EQ(patch.GetNumAxes(), faceSize == 3 ? FarExt::internal::LatticeOrbits<3>::kNumAxes
+                                                    : FarExt::internal::LatticeOrbits<4>::kNumAxes);
+        EXPECT_EQ(patch.GetNumPairs(), faceSize == 3
+                                           ? FarExt::internal::LatticeOrbits<3>::kNumPairs
+                                           : FarExt::internal::LatticeOrbits<4>::kNumPairs);
+        auto const &points = patch.GetPoints();
+        for (int place = 0; place < patch.GetNumPlaces(); ++place) {
+            LatticePatch::Point const point = points[std::size_t(place)];
+            EXPECT_NEAR(std::abs(points[std::size_t(patch.MirrorPlace(place))] - std::conj(point)),
+                        0, 1e-12);
+            for (int corners = 0; corners < faceSize; ++corners) {
+                LatticePatch::Point const turned =
+                    points[std::size_t(patch.TurnPlace(place, corners))];
+                EXPECT_NEAR(std::abs(turned - patch.Turn(point, corners)), 0, 1e-12);
+            }
+        }
+    }
+}
+
+// Every vertex of the level is made once, whatever the level and the mask.
+TEST(LatticeFaces, MakeAllOfARegularTorus) {
+    for (TorusFaces const kind : {TorusFaces::Quads, TorusFaces::Triangles}) {
+        for (FarExt::FaceMask const mask : kMasks) {
+            for (int level = 1; level <= 3; ++level) {
+                SCOPED_TRACE(testing::Message() << "mask " << int(mask) << ", level " << level);
+                Shape const shape = MakeTorus(7, 6, kind);
+                auto const refiner = createRefiner(shape, level, makeOptions(mask));
+                LatticeFaces const faces = findFaces(*refiner);
+                EXPECT_EQ(countFaces(faces), std::size_t(shape.GetNumFaces()));
+                ASSERT_NO_FATAL_FAILURE(expectRows(*refiner, faces));
+                std::vector<unsigned char> const &marks = faces.GetMarks();
+                EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), std::ptrdiff_t(marks.size()));
+            }
+        }
+    }
+}
+
+// Around a sharp vertex faces have other limits: of a lattice of quads those with the vertex among the
+// 32 that they depend on, six by six but for the corners.
+TEST(LatticeFaces, LeaveWhatIsNearAFeature) {
+    Shape shape = MakeTorus(12, 11, TorusFaces::Quads);
+    shape.cornerVertices = {5 * 11 + 4};
+    shape.cornerSharpness = {1.5f};
+    auto const refiner = createRefiner(shape, 2, makeOptions(FarExt::FaceMask::Smooth));
+    LatticeFaces const faces = findFaces(*refiner);
+    EXPECT_EQ(countFaces(faces), 12u * 11 - 32);
+    expectRows(*refiner, faces);
+}
+
+TEST(LatticeFaces, LeaveWhatIsNearAHole) {
+    Shape shape = MakeTorus(14, 12, TorusFaces::Triangles);
+    shape.faceSizes.pop_back();
+    shape.faceVertices.resize(shape.faceVertices.size() - 3);
+    auto const refiner = createRefiner(shape, 2, makeOptions(FarExt::FaceMask::Smooth));
+    LatticeFaces const faces = findFaces(*refiner);
+    EXPECT_GT(countFaces(faces), 100u);
+    EXPECT_LT(countFaces(faces), 28u * 12 - 27);
+    expectRows(*refiner, faces);
+}
+
+// Other lattices, one too small for what a face depends on, level 0 itself, and levels behind another
+// step.
+TEST(LatticeFaces, AreThereForNoOtherMesh) {
+    EXPECT_EQ(countFaces(findFaces(*createRefiner(GetShape("hexTorus"), 2))), 0u);
+    EXPECT_EQ(countFaces(findFaces(*createRefiner(GetShape("icosahedron"), 2))), 0u);
+    EXPECT_EQ(countFaces(findFaces(*createRefiner(MakeTorus(5, 9, TorusFaces::Quads), 1))), 0u);
+    Shape const torus = MakeTorus(9, 8, TorusFaces::Triangles);
+    EXPECT_EQ(countFaces(findFaces(*createRefiner(torus, 0))), 0u);
+    FarExt::HexSchemeOptions options;
+    options.firstStep = FarExt::FirstStep::Truncate;
+    EXPECT_EQ(countFaces(findFaces(*createRefiner(torus, 2, options))), 0u);
+}
+
+} // namespace OpenSubdivHex::Regression
