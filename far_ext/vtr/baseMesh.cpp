@@ -413,7 +413,9 @@ Status BaseMesh::followVertex(Index vert, int channel, Index const *faceValues,
 Status BaseMesh::AddChannel(Index numValues, Buffer<Index> faceValues,
                             Sdc::Options::FVarLinearInterpolation interpolation) {
     int const channel = int(_hierarchy->channels.size());
-    std::vector<float> sharpness = FindValueSharpness(*_level, faceValues.data(), interpolation);
+    std::vector<Index> const seams = FindSeams(*_level, faceValues.data());
+    std::vector<float> sharpness =
+        FindValueSharpness(*_level, faceValues.data(), seams, interpolation);
     for (Index vert : _level->nonManifoldVerts) {
         if (interpolation == Sdc::Options::FVAR_LINEAR_ALL) {
             break;
@@ -425,7 +427,7 @@ Status BaseMesh::AddChannel(Index numValues, Buffer<Index> faceValues,
     }
     Sdc::Options options = _sdcOptions;
     options.SetFVarLinearInterpolation(interpolation);
-    BuildFVarChannel(*_level, numValues, std::move(faceValues), sharpness, options,
+    BuildFVarChannel(*_level, numValues, std::move(faceValues), seams, sharpness, options,
                      _hierarchy->channels.emplace_back());
     return Status();
 }

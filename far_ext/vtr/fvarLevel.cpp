@@ -16,22 +16,10 @@ namespace {
 
 using Far::Index;
 
-// The edges of the mesh whose sides differ in a value, ascending.
-std::vector<Index> findSeams(Level const &mesh, Buffer<Index> const &faceValues) {
-    return ParallelSelect(mesh.numEdges, [&](Index edge) {
-        Index const corner0 = mesh.GetSideCorner(edge, 0);
-        Index const corner1 = mesh.GetSideCorner(edge, 1);
-        return corner1 >= 0 &&
-               (faceValues[corner0] !=
-                    faceValues[mesh.GetNextCorner(mesh.edgeFaces[edge][1], corner1)] ||
-                faceValues[corner1] !=
-                    faceValues[mesh.GetNextCorner(mesh.edgeFaces[edge][0], corner0)]);
-    });
-}
-
 // The edges of the value mesh: a seam falls into two, of which the second follow all edges.
-std::vector<EdgeSides> cutSeams(Level const &mesh, std::vector<Index> const &seams) {
-    std::vector<EdgeSides> result(std::size_t(mesh.numEdges) + seams.size());
+Buffer<EdgeSides> cutSeams(Level const &mesh, std::vector<Index> const &seams) {
+    Buffer<EdgeSides> result;
+    result.Resize(std::size_t(mesh.numEdges) + seams.size());
     ParallelFor(mesh.numEdges, [&](Index edge) {
         result[edge] = {{mesh.GetSideCorner(edge, 0), mesh.GetSideCorner(edge, 1)}};
     });
@@ -43,18 +31,12 @@ std::vector<EdgeSides> cutSeams(Level const &mesh, std::vector<Index> const &sea
     return result;
 }
 
-// Gives every fan of faces around a vertex of the value mesh a vertex of its own: the first keeps
-// the index, others are appended.
-void splitFans(std::vector<EdgeSides> const &edges, Level &level, FVarChannel &channel) {
-    auto const hasFurtherFans = [&](Index vert) {
-        bool result = false;
-        ForEachFan(level, vert, [&](VertexFan const &fan) {
-            result = result || fan.begin != level.vertFirstFace[vert];
-        });
-        return result;
-    };
+// Builds the value mesh, and gives every fan of faces around a vertex a vertex of its own: the first
+// keeps the index, others are appended.
+void buildLevel(Buffer<EdgeSides> const &edges, Level &level, FVarChannel &channel) {
+    auto const build = [&] { return BuildBaseLevel({edges.data(), Index(edges.size())}, level); };
     std::vector<Index> furtherValues; // of the vertices that are appended
-    for (Index vert : ParallelSelect(channel.numValues, hasFurtherFans)) {
+    for (Index vert : build()) {
         ForEachFan(level, vert, [&](VertexFan const &fan) {
             if (fan.begin == level.vertFirstFace[vert]) {
                 return;
@@ -74,7 +56,7 @@ void splitFans(std::vector<EdgeSides> const &edges, Level &level, FVarChannel &c
     });
     if (!furtherValues.empty()) {
         level.numVertices = numVertices;
-        BuildBaseLevel({edges.data(), Index(edges.size())}, level);
+        build();
     }
 }
 
@@ -96,24 +78,59 @@ void findNonManifoldVertices(Level const &mesh, Level &level) {
     SortUnique(level.nonManifoldVerts);
 }
 
-bool meetsFreeBoundary(Level const &level, Index vert, bool &meetsSharp) {
+bool meetsFreeAndSharpBoundary(Level const &level, Index vert) {
     bool meetsFree = false;
-    meetsSharp = false;
-    for (Index i = level.vertFirstEdge[vert]; i < level.vertFirstEdge[vert + 1]; ++i) {
-        Index const edge = level.vertEdges[i];
+    bool meetsSharp = false;
+    for (Index edge : level.GetVertexEdges(vert)) {
         if (level.IsBoundary(edge)) {
             bool const isFree = level.edgeFaces[edge][1] == kFreeBoundary;
             (isFree ? meetsFree : meetsSharp) = true;
         }
     }
-    return meetsFree;
+    return meetsFree && meetsSharp;
+}
+
+// Gives values the greatest sharpness that they have at a corner.
+void findVertexSharpness(std::vector<float> const &sharpness, Level &level) {
+    level.vertSharpness.Resize(level.numVertices);
+    std::fill_n(level.vertSharpness.data(), level.numVertices,
+                float(Sdc::Crease::SHARPNESS_SMOOTH));
+    for (Index corner : ParallelSelect(level.numCorners, [values = sharpness.data()](Index corner) {
+             return Sdc::Crease::IsSharp(values[corner]);
+         })) {
+        float &ofVertex = level.vertSharpness[level.faceVerts[corner]];
+        ofVertex = std::max(ofVertex, sharpness[corner]);
+    }
+    // Where a seam meets a boundary that follows the paper's rule no curve goes on: a corner.
+    if (level.numFreeBoundaries == 0) {
+        return;
+    }
+    for (Index edge : level.boundaryEdges) {
+        for (Index vert : level.edgeVerts[edge]) {
+            if (meetsFreeAndSharpBoundary(level, vert)) {
+                level.vertSharpness[vert] = Sdc::Crease::SHARPNESS_INFINITE;
+            }
+        }
+    }
 }
 
 } // namespace
 
+std::vector<Index> FindSeams(Level const &mesh, Index const *faceValues) {
+    return ParallelSelect(mesh.numEdges, [&](Index edge) {
+        Index const corner0 = mesh.GetSideCorner(edge, 0);
+        Index const corner1 = mesh.GetSideCorner(edge, 1);
+        return corner1 >= 0 &&
+               (faceValues[corner0] !=
+                    faceValues[mesh.GetNextCorner(mesh.edgeFaces[edge][1], corner1)] ||
+                faceValues[corner1] !=
+                    faceValues[mesh.GetNextCorner(mesh.edgeFaces[edge][0], corner0)]);
+    });
+}
+
 void BuildFVarChannel(Level const &mesh, Index numValues, Buffer<Index> faceValues,
-                      std::vector<float> const &sharpness, Sdc::Options sdcOptions,
-                      FVarChannel &channel) {
+                      std::vector<Index> const &seams, std::vector<float> const &sharpness,
+                      Sdc::Options sdcOptions, FVarChannel &channel) {
     Level &level = channel.values.levels.emplace_back();
     FVarLevel &fvarLevel = channel.levels.emplace_back();
     channel.numValues = numValues;
@@ -127,10 +144,7 @@ void BuildFVarChannel(Level const &mesh, Index numValues, Buffer<Index> faceValu
     level.numCorners = mesh.numCorners;
     level.faceFirstCorner.Assign(mesh.faceFirstCorner);
     level.faceVerts.Assign(faceValues);
-    std::vector<Index> const seams = findSeams(mesh, faceValues);
-    std::vector<EdgeSides> const edges = cutSeams(mesh, seams);
-    BuildBaseLevel({edges.data(), Index(edges.size())}, level);
-    splitFans(edges, level, channel);
+    buildLevel(cutSeams(mesh, seams), level, channel);
     findNonManifoldVertices(mesh, level);
 
     // The tags of the mesh; a seam is sharp without one.
@@ -142,18 +156,7 @@ void BuildFVarChannel(Level const &mesh, Index numValues, Buffer<Index> faceValu
                 level.IsBoundary(edge) ? 0 : mesh.GetEdgeSharpness(meshEdge);
         });
     }
-    level.vertSharpness.Resize(level.numVertices);
-    ParallelFor(level.numVertices, [&](Index vert) {
-        float vertSharpness = Sdc::Crease::SHARPNESS_SMOOTH;
-        for (Index i = level.vertFirstFace[vert]; i < level.vertFirstFace[vert + 1]; ++i) {
-            vertSharpness = std::max(vertSharpness, sharpness[level.GetVertexCorner(i)]);
-        }
-        // Where a seam meets a boundary that follows the paper's rule no curve goes on: a corner.
-        bool meetsSharp;
-        level.vertSharpness[vert] = meetsFreeBoundary(level, vert, meetsSharp) && meetsSharp
-                                        ? Sdc::Crease::SHARPNESS_INFINITE
-                                        : vertSharpness;
-    });
+    findVertexSharpness(sharpness, level);
     ComputeSharpMasks(sdcOptions, level);
     channel.faceValues = std::move(faceValues);
 }

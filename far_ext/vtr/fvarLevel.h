@@ -49,14 +49,20 @@ struct FVarLevel {
 
 struct FVarChannel;
 
+/// \brief The edges of \p mesh whose sides differ in a value, ascending.
+///
+/// \param faceValues  value of each corner of the mesh
+std::vector<Far::Index> FindSeams(Level const &mesh, Far::Index const *faceValues);
+
 /// \brief Makes level 0 of a channel of \p mesh, a level 0.
 ///
 /// \param faceValues     value of each corner of the mesh
+/// \param seams          of FindSeams()
 /// \param sharpness      of the value of each corner, the same around a vertex for the same value:
 ///                       infinite for one that is to stay, else that of the vertex
 void BuildFVarChannel(Level const &mesh, Far::Index numValues, Buffer<Far::Index> faceValues,
-                      std::vector<float> const &sharpness, Sdc::Options sdcOptions,
-                      FVarChannel &channel);
+                      std::vector<Far::Index> const &seams, std::vector<float> const &sharpness,
+                      Sdc::Options sdcOptions, FVarChannel &channel);
 
 /// \brief Relates \p cLevel, of a channel whose value mesh was refined by \p values as the mesh was
 /// by \p mesh, to the mesh.

@@ -99,8 +99,8 @@ Status IndexFailure(Index index, int count, ComponentType component, std::string
 }
 
 Status CheckValues(Index const *values, Index numCorners, Index numValues, int channel) {
-    std::vector<Index> const wrong = ParallelSelect(numCorners, [&](Index corner) {
-        return values[corner] < 0 || values[corner] >= numValues;
+    std::vector<Index> const wrong = ParallelSelect(numCorners, [values, numValues](Index corner) {
+        return unsigned(values[corner]) >= unsigned(numValues);
     });
     return wrong.empty() ? Status()
                          : IndexFailure(values[wrong[0]], numValues, ComponentType::None,

@@ -3,6 +3,7 @@
 
 #include "far_ext/mask.h"
 #include "indexSet.h"
+#include "parallel.h"
 #include "truncationMask.h"
 #include "vertexFan.h"
 
@@ -24,11 +25,17 @@ struct SharpEdges {
     std::vector<float> sharpness;
 
     int GetSize() const { return int(neighbors.size()); }
+    void Clear() {
+        neighbors.clear();
+        isLong.clear();
+        sharpness.clear();
+    }
 };
 
-// At a non-manifold vertex several fans may end in the same line, which counts once.
-SharpEdges gatherSharpEdges(Level const &level, Index vert) {
-    SharpEdges result;
+// At a non-manifold vertex several fans may end in the same line, which counts once.  Uses the memory
+// of the fan.
+void gatherSharpEdges(Level const &level, Index vert, FanItems &fanItems, SharpEdges &result) {
+    result.Clear();
     bool const isNonManifold =
         std::binary_search(level.nonManifoldVerts.begin(), level.nonManifoldVerts.end(), vert);
     std::vector<Index> lines;
@@ -41,11 +48,10 @@ SharpEdges gatherSharpEdges(Level const &level, Index vert) {
         lines.push_back(line);
         return isKnown;
     };
-    FanItems items;
     ForEachFan(level, vert, [&](VertexFan const &fan) {
-        GatherFanItems(level, fan, items);
-        auto begin = items.items.begin();
-        auto end = items.items.end();
+        GatherFanItems(level, fan, fanItems);
+        auto begin = fanItems.items.begin();
+        auto end = fanItems.items.end();
         if (!fan.isClosed) {
             Index const lastCorner = level.GetVertexCorner(fan.end - 1);
             begin += isRepeated(level.faceEdges[level.GetVertexCorner(fan.begin)]);
@@ -60,7 +66,6 @@ SharpEdges gatherSharpEdges(Level const &level, Index vert) {
             }
         }
     });
-    return result;
 }
 
 // The vertices that may need a rule of their own, ascending.
@@ -199,25 +204,72 @@ void addSectorCorners(Level const &level, SharpnessLayer layer, FanItems &fan,
     }
 }
 
-// Adds the corners of wide sectors at a vertex where sharp edges meet.
-void addSectorCorners(Level const &level, Index vert, std::vector<SectorCorner> &result) {
+// The masks of one sharp vertex after the other.
+class SharpMaskFinder {
+public:
+    SharpMaskFinder(Level const &level, Sdc::Options sdcOptions)
+        : _level(level), _creasing(sdcOptions) {}
+
+    // Those of a vertex that may need a rule of its own.
+    SharpVertex Find(Index vert);
+    // Adds the corners of wide sectors at a vertex where sharp edges meet.
+    void AddSectorCorners(Index vert, std::vector<SectorCorner> &result);
+
+private:
+    Level const &_level;
+    Crease const _creasing;
+    // What is found at a vertex, in memory that stays.
+    FanItems _fan;
+    SharpEdges _edges;
+    std::vector<float> _childSharpness;
+    std::vector<float> _layers;
+};
+
+SharpVertex SharpMaskFinder::Find(Index vert) {
+    int const numFaces = _level.GetNumVertexFaces(vert);
+    float const vertSharpness = _level.GetVertexSharpness(vert);
+    gatherSharpEdges(_level, vert, _fan, _edges);
+    float const *const sharpness = _edges.sharpness.data();
+    Crease::Rule const rule =
+        _creasing.DetermineVertexVertexRule(vertSharpness, _edges.GetSize(), sharpness);
+    SharpVertex const mask = maskOfRule(_creasing, rule, vert, numFaces, _edges, _edges.sharpness);
+
+    float const childVertSharpness = _creasing.SubdivideVertexSharpness(vertSharpness);
+    _childSharpness.resize(_edges.sharpness.size());
+    _creasing.SubdivideEdgeSharpnessesAroundVertex(_edges.GetSize(), sharpness,
+                                                   _childSharpness.data());
+    Crease::Rule const childRule = _creasing.DetermineVertexVertexRule(
+        childVertSharpness, _edges.GetSize(), _childSharpness.data());
+    if (childRule == rule) {
+        return mask;
+    }
+    float const weight = _creasing.ComputeFractionalWeightAtVertex(
+        vertSharpness, childVertSharpness, _edges.GetSize(), sharpness, _childSharpness.data());
+    return blend(mask, maskOfRule(_creasing, childRule, vert, numFaces, _edges, _childSharpness),
+                 weight);
+}
+
+void SharpMaskFinder::AddSectorCorners(Index vert, std::vector<SectorCorner> &result) {
+    if (_level.GetNumVertexFaces(vert) < kMinShrunkSector) {
+        return;
+    }
     // Of each fan, since a sector may lie between two ends of a fan on the same line.
-    std::vector<float> sharpness;
-    ForEachFanItems(level, vert, [&](FanItems const &fan) {
+    _layers.clear();
+    ForEachFanItems(_level, vert, _fan, [this](FanItems const &fan) {
         for (RingItem const &item : fan.items) {
             if (isSharp(item)) {
-                sharpness.push_back(std::min(1.0f, item.sharpness));
+                _layers.push_back(std::min(1.0f, item.sharpness));
             }
         }
     });
-    std::sort(sharpness.begin(), sharpness.end());
+    std::sort(_layers.begin(), _layers.end());
     float lower = 0;
     // The sharpest edge of all is alone in its layer.
-    for (int i = 0; i + 1 < int(sharpness.size()); ++i) {
-        if (sharpness[i] > lower) {
-            SharpnessLayer const layer = {lower, sharpness[i]};
-            ForEachFanItems(level, vert,
-                            [&](FanItems &fan) { addSectorCorners(level, layer, fan, result); });
+    for (int i = 0; i + 1 < int(_layers.size()); ++i) {
+        if (_layers[i] > lower) {
+            SharpnessLayer const layer = {lower, _layers[i]};
+            ForEachFanItems(_level, vert, _fan,
+                            [&](FanItems &fan) { addSectorCorners(_level, layer, fan, result); });
             lower = layer.upper;
         }
     }
@@ -226,36 +278,33 @@ void addSectorCorners(Level const &level, Index vert, std::vector<SectorCorner> 
 } // namespace
 
 void ComputeSharpMasks(Sdc::Options sdcOptions, Level &level) {
-    Crease const creasing(sdcOptions);
-    std::vector<float> childSharpness;
+    constexpr Index kRange = 256; // of vertices, which take some hundred nanoseconds each
+    struct Masks {
+        std::vector<SharpVertex> verts;
+        std::vector<SectorCorner> corners;
+    };
+    std::vector<Index> const verts = findSharpVertices(level);
+    std::vector<Masks> masksOfRanges(
+        std::size_t(GetNumParallelRanges(Index(verts.size()), kRange)));
+    ParallelForRange(
+        Index(verts.size()), [&] { return SharpMaskFinder(level, sdcOptions); },
+        [&](SharpMaskFinder &finder, Index begin, Index end) {
+            Masks &masks = masksOfRanges[std::size_t(begin / kRange)];
+            for (Index i = begin; i < end; ++i) {
+                SharpVertex const mask = finder.Find(verts[i]);
+                if (mask.rule != Crease::RULE_SMOOTH) {
+                    masks.verts.push_back(mask);
+                }
+                finder.AddSectorCorners(verts[i], masks.corners);
+            }
+        },
+        kRange);
     level.sharpVerts.clear();
     level.sectorCorners.clear();
-    for (Index vert : findSharpVertices(level)) {
-        int const numFaces = level.vertFirstFace[vert + 1] - level.vertFirstFace[vert];
-        float const vertSharpness = level.GetVertexSharpness(vert);
-        SharpEdges const edges = gatherSharpEdges(level, vert);
-        addSectorCorners(level, vert, level.sectorCorners);
-        Crease::Rule const rule = creasing.DetermineVertexVertexRule(vertSharpness, edges.GetSize(),
-                                                                     edges.sharpness.data());
-        SharpVertex mask = maskOfRule(creasing, rule, vert, numFaces, edges, edges.sharpness);
-
-        float const childVertSharpness = creasing.SubdivideVertexSharpness(vertSharpness);
-        childSharpness.resize(edges.sharpness.size());
-        creasing.SubdivideEdgeSharpnessesAroundVertex(edges.GetSize(), edges.sharpness.data(),
-                                                      childSharpness.data());
-        Crease::Rule const childRule = creasing.DetermineVertexVertexRule(
-            childVertSharpness, edges.GetSize(), childSharpness.data());
-        if (childRule != rule) {
-            float const weight = creasing.ComputeFractionalWeightAtVertex(
-                vertSharpness, childVertSharpness, edges.GetSize(), edges.sharpness.data(),
-                childSharpness.data());
-            mask =
-                blend(mask, maskOfRule(creasing, childRule, vert, numFaces, edges, childSharpness),
-                      weight);
-        }
-        if (mask.rule != Crease::RULE_SMOOTH) {
-            level.sharpVerts.push_back(mask);
-        }
+    for (Masks const &masks : masksOfRanges) {
+        level.sharpVerts.insert(level.sharpVerts.end(), masks.verts.begin(), masks.verts.end());
+        level.sectorCorners.insert(level.sectorCorners.end(), masks.corners.begin(),
+                                   masks.corners.end());
     }
     std::stable_sort(
         level.sectorCorners.begin(), level.sectorCorners.end(),
@@ -275,7 +324,9 @@ public:
         if (_creasing.IsUniform()) {
             return Along(sharpness);
         }
-        SharpEdges const edges = gatherSharpEdges(_level, vert);
+        FanItems fan;
+        SharpEdges edges;
+        gatherSharpEdges(_level, vert, fan, edges);
         return _creasing.SubdivideEdgeSharpnessAtVertex(sharpness, edges.GetSize(),
                                                         edges.sharpness.data());
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "valueSharpness.h"
 
+#include "indexSet.h"
 #include "parallel.h"
 
 #include <algorithm>
@@ -244,17 +245,37 @@ void VertexValues::SetSharpness(Index vert, std::vector<float> &sharpness) {
     }
 }
 
+// The vertices whose values may have a sharpness, ascending.
+std::vector<Index> findVertices(Level const &mesh, std::vector<Index> const &seams) {
+    std::vector<Index> result = mesh.nonManifoldVerts;
+    auto const addEnds = [&](auto const &edges) {
+        for (Index edge : edges) {
+            result.insert(result.end(), mesh.edgeVerts[edge].begin(), mesh.edgeVerts[edge].end());
+        }
+    };
+    addEnds(seams);
+    addEnds(mesh.boundaryEdges);
+    std::vector<Index> const sharp =
+        ParallelSelect(Index(mesh.vertSharpness.size()),
+                       [&](Index vert) { return Crease::IsSharp(mesh.vertSharpness[vert]); });
+    result.insert(result.end(), sharp.begin(), sharp.end());
+    SortUnique(result, mesh.numVertices);
+    return result;
+}
+
 } // namespace
 
 std::vector<float> FindValueSharpness(Level const &mesh, Index const *faceValues,
+                                      std::vector<Index> const &seams,
                                       Interpolation interpolation) {
     std::vector<float> sharpness(mesh.numCorners, 0.0f);
     if (interpolation != Sdc::Options::FVAR_LINEAR_ALL) {
+        std::vector<Index> const verts = findVertices(mesh, seams);
         ParallelForRange(
-            mesh.numVertices, [&] { return VertexValues(mesh, faceValues, interpolation); },
+            Index(verts.size()), [&] { return VertexValues(mesh, faceValues, interpolation); },
             [&](VertexValues &values, Index begin, Index end) {
-                for (Index vert = begin; vert < end; ++vert) {
-                    values.SetSharpness(vert, sharpness);
+                for (Index i = begin; i < end; ++i) {
+                    values.SetSharpness(verts[std::size_t(i)], sharpness);
                 }
             });
     }

@@ -15,9 +15,11 @@ namespace OpenSubdivHex::FarExt::internal {
 ///
 /// \param mesh        level 0, with its tags
 /// \param faceValues  by corner
+/// \param seams       edges of the mesh, of FindSeams()
 /// \return            by corner, the sharpness of its value: infinite for one that stays, 0 for one
 ///                    that follows its seam, else that of the vertex
 std::vector<float> FindValueSharpness(Level const &mesh, Far::Index const *faceValues,
+                                      std::vector<Far::Index> const &seams,
                                       Sdc::Options::FVarLinearInterpolation interpolation);
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -77,14 +77,20 @@ struct FanItems {
 
 void GatherFanItems(Level const &level, VertexFan const &fan, FanItems &result);
 
-/// Calls function(fanItems) for the fans of a vertex, in their order.
+/// Calls function(items) for the fans of a vertex, in their order; \p items keeps its memory.
 template <typename FUNCTION>
-void ForEachFanItems(Level const &level, Far::Index vert, FUNCTION function) {
-    FanItems items;
+void ForEachFanItems(Level const &level, Far::Index vert, FanItems &items, FUNCTION function) {
     ForEachFan(level, vert, [&](VertexFan const &fan) {
         GatherFanItems(level, fan, items);
         function(items);
     });
+}
+
+/// The same with items of its own.
+template <typename FUNCTION>
+void ForEachFanItems(Level const &level, Far::Index vert, FUNCTION function) {
+    FanItems items;
+    ForEachFanItems(level, vert, items, function);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal
