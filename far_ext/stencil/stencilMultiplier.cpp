@@ -49,9 +49,9 @@ struct PlainWeights {
 // Those of a face with a row for each corner.
 template <int SIZE>
 struct OwnWeights {
-    double operator()(int i, int j) const { return weights[i][(i + j) % SIZE]; }
+    double operator()(int i, int j) const { return rows[i][(i + j) % SIZE]; }
 
-    double weights[SIZE][SIZE];
+    double const (*rows)[SIZE];
 };
 
 // The F-vertices of a face: its rows of weights times the rows of its vertices.  The weight of the
@@ -210,10 +210,14 @@ void StencilMultiplier<REAL>::multiply(Index face, Scratch &scratch) const {
         }
     }
     if (width >= kVector && !isPlain && size == kHexagon) {
-        OwnWeights<kHexagon> weights;
-        for (int i = 0; i < kHexagon; ++i) {
-            std::copy_n(_rows.GetFaceVertexWeights(face, i, scratch.mask), kHexagon,
-                        weights.weights[i]);
+        double own[kHexagon][kHexagon];
+        OwnWeights<kHexagon> weights = {own};
+        if (auto const *const irregular = _rows.FindIrregularWeights(face)) {
+            weights.rows = irregular->weights;
+        } else {
+            for (int i = 0; i < kHexagon; ++i) {
+                std::copy_n(_rows.GetFaceVertexWeights(face, i, scratch.mask), kHexagon, own[i]);
+            }
         }
         return multiplyFace<kHexagon>(weights, parents, width, rows);
     }

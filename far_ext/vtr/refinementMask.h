@@ -83,6 +83,11 @@ public:
             areIrregular[HexIndexing::kNumEFaceCorners]; ///< the corners; others have plain weights
     };
     std::vector<IrregularFaceWeights> const &GetIrregularTypes() const { return _irregularWeights; }
+    /// Those of a face, or null where it is not irregular or something is sharp.
+    IrregularFaceWeights const *FindIrregularWeights(Index face) const {
+        bool const isSmooth = IsIrregular(face) && !(_hasSharpFaces && isSharp(face));
+        return isSmooth ? &_irregularWeights[std::size_t(getType(face))] : nullptr;
+    }
     /// Ascending.
     OpenSubdiv::Vtr::ConstArray<IrregularVertex> GetIrregularVertices() const {
         std::size_t const size = _hasIrregular ? _level.irregularVerts.size() : 0;

@@ -94,6 +94,9 @@ public:
     double const *GetPlainFaceWeights(int faceSize) const {
         return _mask.GetPlainFaceWeights(faceSize);
     }
+    RefinementMask::IrregularFaceWeights const *FindIrregularWeights(Index face) const {
+        return _mask.FindIrregularWeights(faceId(face));
+    }
     double const *GetFaceVertexWeights(Index face, int corner, std::vector<double> &scratch) const {
         return _mask.GetFaceVertexWeights(faceId(face), corner, scratch);
     }
