@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Curvature of the curves that sharp borders become, which depend on their vertices alone.
+#include "surfaceLevels.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+namespace {
+
+using Eigen::Vector3d;
+using FarExt::FaceMask;
+using FarExt::FirstStep;
+using FarExt::HexSchemeOptions;
+using FarExt::SchemeType;
+namespace Sdc = OpenSubdiv::Sdc;
+
+constexpr int kNumSides = 9;
+
+/// One face, of vertices at equal angles on a circle.
+Shape makePolygon() {
+    Shape shape;
+    shape.name = "polygon";
+    shape.closed = false;
+    shape.faceSizes = {kNumSides};
+    shape.faceVertices.resize(kNumSides);
+    std::iota(shape.faceVertices.begin(), shape.faceVertices.end(), 0);
+    for (int i = 0; i < kNumSides; ++i) {
+        double const angle = 2 * std::acos(-1.0) * i / kNumSides;
+        shape.positions.insert(shape.positions.end(), {std::cos(angle), std::sin(angle), 0});
+    }
+    return shape;
+}
+
+/// The border of a mesh that has one, from vertex 0 on.
+std::vector<Vector3d> findBorder(PolygonMesh const &mesh) {
+    std::set<std::pair<int, int>> sides;
+    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+        int const size = mesh.GetFaceSize(face);
+        for (int i = 0; i < size; ++i) {
+            sides.emplace(mesh.GetFaceVertex(face, i), mesh.GetFaceVertex(face, (i + 1) % size));
+        }
+    }
+    std::vector<int> next(mesh.positions.size(), -1);
+    for (auto const &[start, end] : sides) {
+        if (sides.count({end, start}) == 0) {
+            next[std::size_t(start)] = end;
+        }
+    }
+    std::vector<Vector3d> points;
+    int vertex = 0;
+    do {
+        points.push_back(mesh.positions[std::size_t(vertex)]);
+        vertex = next[std::size_t(vertex)];
+    } while (vertex > 0);
+    EXPECT_EQ(vertex, 0);
+    return points;
+}
+
+/// By point of a closed line: one over the radius of the circle through it and those beside it.
+std::vector<double> measureCurvatures(std::vector<Vector3d> const &points) {
+    std::size_t const size = points.size();
+    std::vector<double> result(size);
+    for (std::size_t i = 0; i < size; ++i) {
+        Vector3d const a = points[i] - points[(i + size - 1) % size];
+        Vector3d const b = points[(i + 1) % size] - points[i];
+        result[i] = 2 * a.cross(b).norm() / (a.norm() * b.norm() * (a + b).norm());
+    }
+    return result;
+}
+
+std::vector<std::vector<double>> measureBorder(HexSchemeOptions const &scheme, int maxLevel) {
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    std::vector<std::vector<double>> result;
+    for (SurfaceLevel const &level :
+         RefineSurface(makePolygon(), scheme, maxLevel, MeshCenter(), options)) {
+        result.push_back(measureCurvatures(findBorder(level.mesh)));
+    }
+    return result;
+}
+
+} // namespace
+
+// Curvature tends to a limit, but at the vertices of the base: these are the last ones where two short
+// edges meet.  There a step of two levels has the eigenvalue 3/32, and 1/16 would bound curvature.
+TEST(Curve, CurvatureGrowsAtVerticesOfTheBaseAlone) {
+    constexpr int kMaxLevel = 7;
+    constexpr double kGrowth = 16 * 3 / 32.0;
+    HexSchemeOptions const truncated{FaceMask::Smooth, SchemeType::Hexagonal, FirstStep::Truncate};
+    for (HexSchemeOptions const &scheme :
+         {HexSchemeOptions{FaceMask::Average}, HexSchemeOptions{FaceMask::Smooth}, truncated}) {
+        SCOPED_TRACE(int(scheme.firstStep));
+        auto const levels = measureBorder(scheme, kMaxLevel);
+        std::vector<double> const &last = levels[kMaxLevel];
+        std::vector<double> const &before = levels[kMaxLevel - 2];
+        EXPECT_NEAR(last[0], kGrowth * before[0], 0.02 * last[0]);
+        auto const getAmongEdge = [](std::vector<double> const &curvatures) {
+            return curvatures[curvatures.size() / 2 / kNumSides];
+        };
+        EXPECT_NEAR(getAmongEdge(last), getAmongEdge(before), 0.02 * getAmongEdge(last));
+    }
+}
+
+} // namespace OpenSubdivHex::Regression
