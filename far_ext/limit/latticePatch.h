@@ -9,21 +9,15 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief How many orbits there are among the vertices of a LatticePatch.
+/// \brief How many orbits there are among the vertices of a LatticePatch, or among the nearest of them,
+/// which are enough where farther ones weigh nothing, as with FaceMask::Smooth.
 ///
 /// An *orbit* is what becomes of one place as the face turns, one for each corner.  A mirror that keeps
 /// corner 0 keeps an orbit on an *axis*, and exchanges the two of a *pair*.
-template <int FACE_SIZE>
-struct LatticeOrbits;
-template <>
-struct LatticeOrbits<3> {
-    static constexpr int kNumAxes = 3;
-    static constexpr int kNumPairs = 3;
-};
-template <>
-struct LatticeOrbits<4> {
-    static constexpr int kNumAxes = 2;
-    static constexpr int kNumPairs = 3;
+template <int FACE_SIZE, bool IS_COMPACT>
+struct LatticeOrbits {
+    static constexpr int kNumAxes = FACE_SIZE == 3 && !IS_COMPACT ? 3 : 2;
+    static constexpr int kNumPairs = IS_COMPACT ? 1 : 3;
 };
 
 /// \brief What the surface of a face depends on in the regular lattice of triangles, six at a vertex,

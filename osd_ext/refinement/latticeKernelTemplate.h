@@ -85,10 +85,10 @@ OPENSUBDIVHEX_INLINE void findMirroredValues(LatticeWaves<SIMD> const &waves,
 /// Of the two orbits of a pair these are their sum, which is like an orbit on an axis, and their
 /// difference, which changes its sign in the mirror: its waves are turned by a quarter, so that one
 /// weight stands for cosine and sine.
-template <class SIMD, int FACE_SIZE>
+template <class SIMD, int FACE_SIZE, bool IS_COMPACT>
 struct LatticeSources {
     using T = typename SIMD::Vector;
-    using Orbits = FarExt::internal::LatticeOrbits<FACE_SIZE>;
+    using Orbits = FarExt::internal::LatticeOrbits<FACE_SIZE, IS_COMPACT>;
     static constexpr int kNumSums = Orbits::kNumAxes + Orbits::kNumPairs;
     static constexpr int kNumDifferences = Orbits::kNumPairs;
     static constexpr int kSize = kNumSums + kNumDifferences;
@@ -112,12 +112,12 @@ OPENSUBDIVHEX_INLINE void loadOrbit(Elements<float const> const &values,
     }
 }
 
-template <class SIMD, class ACCESS, int FACE_SIZE>
+template <class SIMD, class ACCESS, int FACE_SIZE, bool IS_COMPACT>
 OPENSUBDIVHEX_INLINE void loadSources(Elements<float const> const &values,
                                       std::uint32_t const *places,
-                                      LatticeSources<SIMD, FACE_SIZE> &result) {
+                                      LatticeSources<SIMD, FACE_SIZE, IS_COMPACT> &result) {
     using Vector = typename SIMD::Vector;
-    using Sources = LatticeSources<SIMD, FACE_SIZE>;
+    using Sources = LatticeSources<SIMD, FACE_SIZE, IS_COMPACT>;
     constexpr int kStride = FACE_SIZE * RegularFaceGroup::kSize;
     auto const set = [&](int i, LatticeWaves<SIMD> const &waves) {
         result.mean[i] = waves.mean;
@@ -219,10 +219,10 @@ storeOrbit(Elements<float> const (&outputs)[NUM_OUTPUTS], Far::Index const *vert
 
 /// \brief Makes the values of orbits, by output: sums the waves of the sources with the weights of an
 /// orbit, and joins the sums to values.
-template <class SIMD, int FACE_SIZE, int NUM_OUTPUTS>
+template <class SIMD, int FACE_SIZE, bool IS_COMPACT, int NUM_OUTPUTS>
 struct LatticeKernel {
     using Vector = typename SIMD::Vector;
-    using Sources = LatticeSources<SIMD, FACE_SIZE>;
+    using Sources = LatticeSources<SIMD, FACE_SIZE, IS_COMPACT>;
     using Values = Vector[NUM_OUTPUTS][FACE_SIZE];
     static constexpr int kMaxOutputs = LimitTask::kMaxOutputs;
     static constexpr bool kAlternates = FACE_SIZE % 2 == 0;
@@ -323,9 +323,10 @@ private:
     }
 };
 
-template <class SIMD, class ACCESS, int FACE_SIZE, int NUM_OUTPUTS>
+template <class SIMD, class ACCESS, int FACE_SIZE, bool IS_COMPACT, int NUM_OUTPUTS>
 void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
-    using Kernel = LatticeKernel<SIMD, FACE_SIZE, NUM_OUTPUTS>;
+    using Kernel = LatticeKernel<SIMD, FACE_SIZE, IS_COMPACT, NUM_OUTPUTS>;
+    using Sources = LatticeSources<SIMD, FACE_SIZE, IS_COMPACT>;
     constexpr int kGroup = RegularFaceGroup::kSize;
     constexpr int kNumDerivatives = LatticeTask::kNumDerivatives;
     Elements<float const> const values = task.values;
@@ -333,15 +334,13 @@ void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) 
     for (int i = 0; i < NUM_OUTPUTS; ++i) {
         outputs[i] = task.outputs[i];
     }
-    std::ptrdiff_t const numPlaces =
-        std::ptrdiff_t(kGroup) * FACE_SIZE * LatticeSources<SIMD, FACE_SIZE>::kSize;
+    std::ptrdiff_t const numPlaces = std::ptrdiff_t(kGroup) * FACE_SIZE * Sources::kSize;
     std::ptrdiff_t const numVerts =
         std::ptrdiff_t(kGroup) * FACE_SIZE * (2 * task.numPairs + task.numAxes);
     for (Far::Index group = begin; group < end; ++group) {
         for (int first = 0; first < kGroup; first += SIMD::kNumFaces) {
-            LatticeSources<SIMD, FACE_SIZE> sources;
-            loadSources<SIMD, ACCESS, FACE_SIZE>(values, task.places + group * numPlaces + first,
-                                                 sources);
+            Sources sources;
+            loadSources<SIMD, ACCESS>(values, task.places + group * numPlaces + first, sources);
             Far::Index const *verts = task.verts + group * numVerts + first;
             float const *weights = task.weights;
             typename Kernel::Values x;

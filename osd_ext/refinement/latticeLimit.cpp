@@ -7,13 +7,15 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <numeric>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
 using FarExt::internal::Buffer;
 using FarExt::internal::LatticeFaces;
-using FarExt::internal::LatticePatch;
+using FarExt::internal::LatticeOrbits;
+using FarExt::internal::LimitWeights;
 
 namespace {
 
@@ -21,11 +23,61 @@ constexpr double kPi = 3.14159265358979323846;
 
 using Complex = std::complex<double>;
 
+/// The orbits of sources that are read, by their numbers; of a pair that of the first.
+struct SourceOrbits {
+    std::vector<int> axes;
+    std::vector<int> pairs;
+    bool isCompact = false;
+};
+
+// Whether any output depends on an orbit of sources.
+bool isUsed(LatticeFaces::Set const &set, int orbit) {
+    constexpr double kNothing = 1e-12;
+    int const size = set.patch.GetFaceSize();
+    return std::any_of(set.orbits.begin(), set.orbits.end(), [&](LatticeFaces::Orbit const &of) {
+        auto const first = of.weights.begin() + std::ptrdiff_t(orbit) * size;
+        return std::any_of(first, first + size, [](LimitWeights const &weights) {
+            return std::any_of(weights.begin(), weights.end(),
+                               [](double weight) { return std::abs(weight) > kNothing; });
+        });
+    });
+}
+
+// Keeps some orbits, those that are used first, and says whether these are all that are.
+template <typename IS_USED>
+bool keepUsed(std::vector<int> &orbits, int count, IS_USED isOrbitUsed) {
+    auto const numUsed =
+        std::stable_partition(orbits.begin(), orbits.end(), isOrbitUsed) - orbits.begin();
+    orbits.resize(std::size_t(count));
+    return numUsed <= count;
+}
+
+// Those of a compact patch if no others are used, else all.
+SourceOrbits findSourceOrbits(LatticeFaces::Set const &set) {
+    SourceOrbits all;
+    for (int i = 0; i < set.patch.GetNumAxes(); ++i) {
+        all.axes.push_back(i);
+    }
+    for (int i = 0; i < set.patch.GetNumPairs(); ++i) {
+        all.pairs.push_back(set.patch.GetNumAxes() + 2 * i);
+    }
+    using OfCompact = LatticeOrbits<3, true>; // quads have as many
+    SourceOrbits compact = all;
+    bool const areEnough = keepUsed(compact.axes, OfCompact::kNumAxes,
+                                    [&](int orbit) { return isUsed(set, orbit); }) &&
+                           keepUsed(compact.pairs, OfCompact::kNumPairs, [&](int orbit) {
+                               return isUsed(set, orbit) || isUsed(set, orbit + 1);
+                           });
+    compact.isCompact = true;
+    return areEnough ? compact : all;
+}
+
 /// The rows of one output of an orbit, taken apart as LatticeSources are.
 class RowWaves {
 public:
-    RowWaves(LatticePatch const &patch, LatticeFaces::Orbit const &orbit, std::size_t sum)
-        : _patch(patch), _orbit(orbit), _sum(sum) {}
+    RowWaves(SourceOrbits const &sources, int faceSize, LatticeFaces::Orbit const &orbit,
+             std::size_t sum)
+        : _sources(sources), _faceSize(faceSize), _orbit(orbit), _sum(sum) {}
 
     /// For the part that is the same in the mirror, the waves of a frequency of all orbits on axes and
     /// sums, then of all differences.
@@ -45,12 +97,11 @@ public:
 
 private:
     Complex findWave(int orbit, int frequency) const {
-        int const size = _patch.GetFaceSize();
-        FarExt::internal::LimitWeights const *weights =
-            _orbit.weights.data() + std::ptrdiff_t(orbit) * size;
+        LimitWeights const *weights = _orbit.weights.data() + std::ptrdiff_t(orbit) * _faceSize;
         Complex result = 0;
-        for (int i = 0; i < size; ++i, ++weights) {
-            result += (*weights)[_sum] * std::polar(1.0 / size, 2 * kPi * frequency * i / size);
+        for (int i = 0; i < _faceSize; ++i, ++weights) {
+            double const angle = 2 * kPi * frequency * i / _faceSize;
+            result += (*weights)[_sum] * std::polar(1.0 / _faceSize, angle);
         }
         return result;
     }
@@ -60,12 +111,11 @@ private:
     std::vector<double> find(int frequency, COMBINE combine) const {
         std::vector<double> sums;
         std::vector<double> differences;
-        for (int i = 0; i < _patch.GetNumAxes(); ++i) {
-            Complex const wave = findWave(i, frequency);
+        for (int const orbit : _sources.axes) {
+            Complex const wave = findWave(orbit, frequency);
             sums.push_back(combine(wave, wave)[0]);
         }
-        for (int i = 0; i < _patch.GetNumPairs(); ++i) {
-            int const orbit = _patch.GetNumAxes() + 2 * i;
+        for (int const orbit : _sources.pairs) {
             auto const weights =
                 combine(findWave(orbit, frequency), findWave(orbit + 1, frequency));
             sums.push_back(weights[0]);
@@ -75,7 +125,8 @@ private:
         return sums;
     }
 
-    LatticePatch const &_patch;
+    SourceOrbits const &_sources;
+    int _faceSize;
     LatticeFaces::Orbit const &_orbit;
     std::size_t _sum;
 };
@@ -91,11 +142,13 @@ void addRows(std::vector<std::vector<double>> const &rows, int begin, int end, d
 }
 
 // Weights in the order in which LatticeKernel reads them.
-void addOrbit(LatticePatch const &patch, LatticeFaces::Orbit const &orbit,
+void addOrbit(SourceOrbits const &sources, int faceSize, LatticeFaces::Orbit const &orbit,
               std::vector<float> &weights) {
-    int const numSums = patch.GetNumAxes() + patch.GetNumPairs();
-    int const size = numSums + patch.GetNumPairs();
-    RowWaves const rows[] = {{patch, orbit, 0}, {patch, orbit, 1}, {patch, orbit, 2}};
+    auto const numSums = int(sources.axes.size() + sources.pairs.size());
+    int const size = numSums + int(sources.pairs.size());
+    RowWaves const rows[] = {{sources, faceSize, orbit, 0},
+                             {sources, faceSize, orbit, 1},
+                             {sources, faceSize, orbit, 2}};
     // Frequencies of one wave: what is even there has sums alone, and what is odd differences.
     auto const addSingle = [&](int frequency) {
         std::vector<std::vector<double>> even;
@@ -113,8 +166,8 @@ void addOrbit(LatticePatch const &patch, LatticeFaces::Orbit const &orbit,
         addRows(odd, numSums, size, 1, weights);
     };
     addSingle(0);
-    if (patch.GetFaceSize() % 2 == 0) {
-        addSingle(patch.GetFaceSize() / 2);
+    if (faceSize % 2 == 0) {
+        addSingle(faceSize / 2);
     }
     std::vector<std::vector<double>> ofWaves;
     for (int i = 0; i < LimitTask::kMaxOutputs; ++i) {
@@ -132,20 +185,22 @@ void addOrbit(LatticePatch const &patch, LatticeFaces::Orbit const &orbit,
     }
 }
 
-// Entries of all faces, count for each, as entries of groups of faces: of each entry those of all
-// faces, the last of which fills the last group up.
+// Some of the entries of all faces, which have count each, as entries of groups of faces: of each entry
+// those of all faces, the last of which fills the last group up.
 template <typename T, typename CONVERT>
-void group(Buffer<Index> const &entries, int count, Buffer<T> &result, CONVERT convert) {
+void group(Buffer<Index> const &entries, int count, std::vector<int> const &some, Buffer<T> &result,
+           CONVERT convert) {
     constexpr std::size_t kSize = RegularFaceGroup::kSize;
     std::size_t const numFaces = entries.size() / std::size_t(count);
     std::size_t const numGroups = (numFaces + kSize - 1) / kSize;
-    result.Resize(numGroups * kSize * std::size_t(count));
+    result.Resize(numGroups * kSize * some.size());
     FarExt::internal::ParallelFor(Index(numGroups), [&](Index i) {
         std::size_t const first = std::size_t(i) * kSize;
-        T *next = result.data() + first * std::size_t(count);
-        for (std::size_t k = 0; k < std::size_t(count); ++k) {
+        T *next = result.data() + first * some.size();
+        for (int const k : some) {
             for (std::size_t face = first; face < first + kSize; ++face) {
-                *next++ = convert(entries[std::min(face, numFaces - 1) * std::size_t(count) + k]);
+                *next++ = convert(
+                    entries[std::min(face, numFaces - 1) * std::size_t(count) + std::size_t(k)]);
             }
         }
     });
@@ -162,12 +217,29 @@ void LatticeLimit::Prepare(LatticeFaces const &faces) {
         set.numAxes = int(of.orbits.size()) - set.numPairs;
         constexpr Index kSize = RegularFaceGroup::kSize;
         set.numGroups = (Index(of.faces.size()) + kSize - 1) / kSize;
-        group(of.sources, of.patch.GetNumPlaces(), set.places, [](Index vert) {
+        SourceOrbits const sources = findSourceOrbits(of);
+        set.isCompact = sources.isCompact;
+        std::vector<int> places;
+        auto const addPlaces = [&](int orbit) {
+            for (int i = 0; i < set.faceSize; ++i) {
+                places.push_back(orbit * set.faceSize + i);
+            }
+        };
+        for (int const orbit : sources.axes) {
+            addPlaces(orbit);
+        }
+        for (int const orbit : sources.pairs) {
+            addPlaces(orbit);
+            addPlaces(orbit + 1);
+        }
+        group(of.sources, of.patch.GetNumPlaces(), places, set.places, [](Index vert) {
             return std::uint32_t(vert) * std::uint32_t(RegularFaceGroup::kPointStride);
         });
-        group(of.outputs, of.numOutputs, set.verts, [](Index vert) { return vert; });
+        std::vector<int> outputs(std::size_t(of.numOutputs));
+        std::iota(outputs.begin(), outputs.end(), 0);
+        group(of.outputs, of.numOutputs, outputs, set.verts, [](Index vert) { return vert; });
         for (LatticeFaces::Orbit const &orbit : of.orbits) {
-            addOrbit(of.patch, orbit, set.weights);
+            addOrbit(sources, set.faceSize, orbit, set.weights);
         }
     }
 }
@@ -177,6 +249,7 @@ void LatticeLimit::Evaluate(LimitTask const &common) const {
         LatticeTask task;
         static_cast<LimitTask &>(task) = common;
         task.faceSize = set.faceSize;
+        task.isCompact = set.isCompact;
         task.numPairs = set.numPairs;
         task.numAxes = set.numAxes;
         task.places = set.places.data();

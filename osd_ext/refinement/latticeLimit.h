@@ -27,6 +27,7 @@ public:
 private:
     struct Set {
         int faceSize;
+        bool isCompact;
         int numPairs;
         int numAxes;
         Far::Index numGroups;

@@ -167,7 +167,8 @@ struct LatticeTask : LimitTask {
     static constexpr int kNumDerivatives = 4; ///< weights of derivatives in terms of others
 
     int faceSize;
-    int numPairs; ///< orbits of outputs, these first
+    bool isCompact; ///< of sources, whether there are as many orbits as LatticeOrbits says for that
+    int numPairs;   ///< orbits of outputs, these first
     int numAxes;
     std::uint32_t const
         *places; ///< by group, those of all sources of its faces, as in RegularFaceGroup

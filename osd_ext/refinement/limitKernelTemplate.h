@@ -401,20 +401,29 @@ struct LimitKernels {
     static void EvaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
         forEachQuad(task, [=](LatticeTask const &part, auto access) {
             using Access = decltype(access);
-            constexpr int kMax = LimitTask::kMaxOutputs;
-            bool const hasDerivatives = part.numOutputs > 1;
             if (part.faceSize == 3) {
-                hasDerivatives ? evaluateLattice<SIMD, Access, 3, kMax>(part, begin, end)
-                               : evaluateLattice<SIMD, Access, 3, 1>(part, begin, end);
+                part.isCompact ? evaluateLattice<Access, 3, true>(part, begin, end)
+                               : evaluateLattice<Access, 3, false>(part, begin, end);
             } else {
-                hasDerivatives ? evaluateLattice<SIMD, Access, 4, kMax>(part, begin, end)
-                               : evaluateLattice<SIMD, Access, 4, 1>(part, begin, end);
+                part.isCompact ? evaluateLattice<Access, 4, true>(part, begin, end)
+                               : evaluateLattice<Access, 4, false>(part, begin, end);
             }
         });
     }
 
     static constexpr LimitKernel kKernel = {SumFaces, EvaluateFaces, EvaluateVertices,
                                             EvaluateLattice};
+
+private:
+    template <class ACCESS, int FACE_SIZE, bool IS_COMPACT>
+    static void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
+        if (task.numOutputs > 1) {
+            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, IS_COMPACT, LimitTask::kMaxOutputs>(
+                task, begin, end);
+        } else {
+            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, IS_COMPACT, 1>(task, begin, end);
+        }
+    }
 };
 
 } // namespace

@@ -177,11 +177,11 @@ TEST(LatticePatch, HasOrbitsOfTheSymmetriesOfItsFace) {
     for (int faceSize : {3, 4}) {
         LatticePatch const patch(faceSize);
         EXPECT_EQ(patch.GetNumPlaces(), faceSize == 3 ? 27 : 32);
-        EXPECT_EQ(patch.GetNumAxes(), faceSize == 3 ? FarExt::internal::LatticeOrbits<3>::kNumAxes
-                                                    : FarExt::internal::LatticeOrbits<4>::kNumAxes);
-        EXPECT_EQ(patch.GetNumPairs(), faceSize == 3
-                                           ? FarExt::internal::LatticeOrbits<3>::kNumPairs
-                                           : FarExt::internal::LatticeOrbits<4>::kNumPairs);
+        bool const isTriangle = faceSize == 3;
+        using OfTriangle = FarExt::internal::LatticeOrbits<3, false>;
+        using OfQuad = FarExt::internal::LatticeOrbits<4, false>;
+        EXPECT_EQ(patch.GetNumAxes(), isTriangle ? OfTriangle::kNumAxes : OfQuad::kNumAxes);
+        EXPECT_EQ(patch.GetNumPairs(), isTriangle ? OfTriangle::kNumPairs : OfQuad::kNumPairs);
         auto const &points = patch.GetPoints();
         for (int place = 0; place < patch.GetNumPlaces(); ++place) {
             LatticePatch::Point const point = points[std::size_t(place)];

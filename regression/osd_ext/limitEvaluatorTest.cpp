@@ -190,7 +190,10 @@ TEST(LimitEvaluator, TakesLatticeFacesOfAnyLengthAndSimdLevel) {
                 shape.cornerVertices = {30};
                 shape.cornerSharpness = {1.5f};
             }
-            auto const refiner = createRefiner(shape, 3);
+            // With Smooth vertices depend on fewer.
+            auto const refiner =
+                createRefiner(shape, 3, true, Sdc::Options::VTX_BOUNDARY_NONE,
+                              isSharp ? FarExt::FaceMask::Smooth : FarExt::FaceMask::Average);
             for (auto simdLevel : {OsdExt::SimdLevel::Portable, OsdExt::SimdLevel::Avx2,
                                    OsdExt::SimdLevel::Avx512}) {
                 if (simdLevel > OsdExt::GetMaxSimdLevel()) {
