@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface.h"
 
+#include "cell/borderEvaluator.h"
 #include "cell/cellPattern.h"
 #include "cell/cellValues.h"
 #include "cell/patchEvaluator.h"
@@ -13,6 +14,14 @@ namespace OpenSubdivHex::BfrExt {
 
 internal::CellType const &internal::BaseType::operator*() const {
     return _type ? *_type : _plain->Get();
+}
+
+bool internal::BaseType::IsInLattice() const {
+    return _type ? _type->IsInLattice() : _plain->IsInLattice();
+}
+
+internal::PlainFaceType const *internal::BaseType::GetPlain() const {
+    return _plain && !_plain->IsInLattice() ? _plain : nullptr;
 }
 
 namespace {
@@ -49,29 +58,6 @@ void bound(int numPoints, REAL const *points, Far::Index const *indices,
             maxExtent[k] = i == 0 ? point[k] : std::max(maxExtent[k], point[k]);
         }
     }
-}
-
-// The place of a vertex on the border.
-std::vector<double> makeVertex() { return {0.0}; }
-
-// The places inside of an edge of a level, from its start on; they are the same from its end.
-std::vector<double> makeEdgePoints(int level) {
-    Polyline const polyline(level);
-    std::vector<double> points(static_cast<std::size_t>(polyline.GetNumPoints()));
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        points[i] = polyline.GetParameter(int(i));
-    }
-    return points;
-}
-
-// The stencils of places on the border, which makePoints() gives when they are first asked for.
-template <typename REAL, typename MAKE>
-internal::PlaceMatrix<REAL> const &getBorderMatrix(CellType const &type, internal::PatternOf of,
-                                                   int key, MAKE const &makePoints) {
-    using internal::PatternTable;
-    return type.GetPatterns().template Get<internal::PlaceMatrix<REAL>>(
-        PatternTable::GetKind<REAL>(of), &key, &key + 1,
-        [&] { return internal::BorderEvaluator<REAL>::MakeMatrix(type, makePoints()); });
 }
 
 template <typename REAL>
@@ -171,13 +157,35 @@ bool Surface<REAL>::evaluateOnBorder(internal::BasePoint const &point, REAL cons
     if (!point.IsOnBorder()) {
         return false;
     }
-    internal::BorderPlace const place = internal::FindBorderPlace(*_type, getTurns(), point);
-    using Evaluator = internal::BorderEvaluator<REAL>;
-    Evaluator evaluator;
-    evaluator.SetPoints(controlPoints, pointDesc.stride, pointDesc.size);
-    evaluator.Evaluate(*place.item,
-                       Evaluator::MakeMatrix(Evaluator::GetType(*place.item), {place.point}), p, 0);
+    auto const sector = std::size_t(point.sector);
+    auto const numEdges = std::size_t(GetFaceSize());
+    useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
+        if (point.coords[1] == 0 || point.coords[0] == 0) {
+            border.EvaluateVertex(point.coords[1] == 0 ? sector : (sector + 1) % numEdges, p);
+        } else {
+            border.EvaluatePoint(sector, point.coords, p);
+        }
+    });
     return true;
+}
+
+// Calls function(evaluator) for the border of the face.
+template <typename REAL>
+template <typename FUNCTION>
+void Surface<REAL>::useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
+                              FUNCTION const &function) const {
+    // What they have taken of memory is kept for the next face, here and below.
+    static thread_local internal::BorderEvaluator<REAL> border;
+    if (internal::PlainFaceType const *const plain = _type.GetPlain()) {
+        static thread_local internal::RingValues<REAL> values;
+        values.Set(plain->GetRings().GetRings(), std::size_t(_numControlPoints), nullptr,
+                   controlPoints, pointDesc.stride, std::size_t(pointDesc.size));
+        border.SetFace(*plain, values, getTurns(), controlPoints, pointDesc.stride);
+    } else {
+        border.SetFace(*_type, getTurns(), controlPoints, pointDesc.stride,
+                       std::size_t(pointDesc.size));
+    }
+    function(border);
 }
 
 // The levels say which pattern it is.
@@ -210,6 +218,22 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
                                        nullptr, result, resultDesc.stride});
     };
+    static thread_local internal::PatchEvaluator<REAL> evaluator;
+    if (internal::PlainFaceType const *const plain = _type.GetPlain()) {
+        static thread_local internal::RingValues<REAL> values;
+        static thread_local internal::BorderEvaluator<REAL> border;
+        values.Set(plain->GetRings().GetRings(), std::size_t(_numControlPoints), nullptr,
+                   controlPoints, pointDesc.stride, std::size_t(pointDesc.size));
+        evaluator.Evaluate(*plain, values, tessellation.getCellPlan(), results[0],
+                           resultDesc.stride);
+        if (results[1]) {
+            evaluator.EvaluateDerivatives(*plain, values, tessellation.getCellPlan(true),
+                                          results[1], results[2], resultDesc.stride);
+        }
+        border.SetFace(*plain, values, getTurns(), controlPoints, pointDesc.stride);
+        evaluateBorder(tessellation, border, results[0], resultDesc);
+        return;
+    }
     // Few types, and few levels, have matrices of a face: others go by cells.
     if (_type->IsInLattice() && tessellation.IsUniform() && levels[0] <= kLastLevelOfMatrices &&
         !tessellation._section) {
@@ -221,8 +245,6 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
             sumUp(pattern.matrices[1], results[2]);
         }
     } else {
-        // What it has taken of memory is kept for the next face, here and below.
-        static thread_local internal::PatchEvaluator<REAL> evaluator;
         if (!_type->IsInLattice()) {
             // Mostly no other face has the same, so that it would be waited for.
             _type->GetStep().Prefetch();
@@ -236,7 +258,13 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
                                           resultDesc.stride);
         }
     }
-    evaluateBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
+    if (_type->IsInLattice() && tessellation.IsUniform() && !tessellation._section) {
+        evaluateLatticeBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
+        return;
+    }
+    useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
+        evaluateBorder(tessellation, border, results[0], resultDesc);
+    });
 }
 
 // The control points are refined along the tree, as far as cells have corners that are asked for.
@@ -304,118 +332,32 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
             sumTo(stencil.GetDvWeights(), 2);
         }
     }
-    evaluateBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
+    useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
+        evaluateBorder(tessellation, border, results[0], resultDesc);
+    });
 }
 
-// Edges are evaluated in their own direction, by what all faces at an edge of this level share.
 template <typename REAL>
-class Surface<REAL>::FaceBorder {
-public:
-    FaceBorder(Surface const &surface, REAL const *controlPoints, PointDescriptor const &pointDesc)
-        : _type(*surface._type), _turns(surface.getTurns()),
-          _numEdges(std::size_t(surface.GetFaceSize())),
-          _border(_type.IsInLattice() ? nullptr : &_type.GetBorder(_turns)) {
-        // What it has taken of memory is kept for the next face.
-        static thread_local Evaluator evaluator;
-        _evaluator = &evaluator;
-        evaluator.SetPoints(controlPoints, pointDesc.stride, pointDesc.size);
-        if (_border) {
-            evaluator.FormSums(*_border);
-        }
-    }
-
-    void EvaluateVertex(std::size_t vert, REAL *result) const {
-        if (_border) {
-            _evaluator->EvaluateVertex(vert, result);
-            return;
-        }
-        CellType::BorderItem const &item = _type.GetBorderItem(_turns, _numEdges + vert);
-        _evaluator->Evaluate(
-            item, getBorderMatrix<REAL>(*item.type, internal::PatternOf::Border, 0, makeVertex),
-            result, 0);
-    }
-    /// The points inside of an edge that has a level, in the direction of the face.
-    void EvaluateEdge(std::size_t edge, int level, int numPoints, REAL *results,
-                      std::ptrdiff_t stride) const {
-        Edge const item = getEdge(edge);
-        evaluate(edge, item,
-                 getBorderMatrix<REAL>(*item.type, internal::PatternOf::Border, level,
-                                       [&] { return makeEdgePoints(level); }),
-                 item.isReversed ? results + std::ptrdiff_t(numPoints - 1) * stride : results,
-                 item.isReversed ? -stride : stride);
-    }
-    /// A point of an edge.  Those of polylines are found one by one, since they have few in common.
-    ///
-    /// \param place  what the start and the end of the edge weigh
-    void EvaluatePoint(std::size_t edge, internal::Pair const &place, REAL *result) const {
-        Edge const item = getEdge(edge);
-        double const point = place[item.isReversed ? 0 : 1];
-        evaluate(edge, item,
-                 getBorderMatrix<REAL>(*item.type, internal::PatternOf::BorderPlace,
-                                       int(point * Polyline::kLength),
-                                       [&] { return std::vector<double>(1, point); }),
-                 result, 0);
-    }
-
-private:
-    using Evaluator = internal::BorderEvaluator<REAL>;
-
-    struct Edge {
-        CellType::BorderItem const *item; // of a face in a lattice
-        CellType const *type;
-        bool isReversed;
-    };
-
-    Edge getEdge(std::size_t edge) const {
-        if (_border) {
-            return {nullptr, _border->edges[edge].type, _border->edges[edge].isReversed};
-        }
-        CellType::BorderItem const &item = _type.GetBorderItem(_turns, edge);
-        return {&item, &Evaluator::GetType(item), item.isReversed};
-    }
-
-    void evaluate(std::size_t edge, Edge const &item, internal::PlaceMatrix<REAL> const &matrix,
-                  REAL *results, std::ptrdiff_t stride) const {
-        if (_border) {
-            _evaluator->EvaluateEdge(_border->edges[edge], matrix, results, stride);
-        } else {
-            _evaluator->Evaluate(*item.item, matrix, results, stride);
-        }
-    }
-
-    CellType const &_type;
-    int const *const _turns;
-    std::size_t const _numEdges;
-    CellType::Border const *const _border; // null of a face in a lattice
-    Evaluator *_evaluator = nullptr;
-};
-
-template <typename REAL>
-void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const controlPoints[],
-                                   PointDescriptor const &pointDesc, REAL p[],
+void Surface<REAL>::evaluateBorder(Tessellation const &tessellation,
+                                   internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                    PointDescriptor const &resultDesc) const {
     if (tessellation._section) {
-        evaluateSectionBorder(tessellation, controlPoints, pointDesc, p, resultDesc);
+        evaluateSectionBorder(tessellation, evaluator, p, resultDesc);
         return;
     }
-    if (_type->IsInLattice() && tessellation.IsUniform()) {
-        evaluateLatticeBorder(tessellation, controlPoints, pointDesc, p, resultDesc);
-        return;
-    }
-    FaceBorder const border(*this, controlPoints, pointDesc);
     auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
     for (std::size_t edge = 0; edge < std::size_t(GetFaceSize()); ++edge) {
         int const first = tessellation._firstEdgeCoords[edge];
-        border.EvaluateVertex(edge, getResult(first));
+        evaluator.EvaluateVertex(edge, getResult(first));
         int const numPlaces = tessellation.GetNumEdgeCoords(int(edge));
         if (tessellation._tree) {
             for (int place = first + 1; place <= first + numPlaces; ++place) {
                 Tessellation::SectorCoords const &coords = tessellation._places[std::size_t(place)];
-                border.EvaluatePoint(edge, {coords.start, coords.end}, getResult(place));
+                evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, getResult(place));
             }
         } else if (numPlaces > 0) {
-            border.EvaluateEdge(edge, tessellation._levels[edge], numPlaces, getResult(first + 1),
-                                resultDesc.stride);
+            evaluator.EvaluateEdge(edge, tessellation._levels[edge], numPlaces,
+                                   getResult(first + 1), resultDesc.stride);
         }
     }
 }
@@ -423,11 +365,9 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation, REAL const 
 // Those on the border of the face, to the bit as all points of the face are evaluated.
 template <typename REAL>
 void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
-                                          REAL const controlPoints[],
-                                          PointDescriptor const &pointDesc, REAL p[],
+                                          internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                           PointDescriptor const &resultDesc) const {
-    FaceBorder const border(*this, controlPoints, pointDesc);
-    auto const size = std::size_t(pointDesc.size);
+    std::size_t const size = evaluator.GetSize();
     int evaluatedEdge = -1;
     std::vector<REAL> edgePoints;
     for (Tessellation::BorderRun const &run : tessellation._section->border) {
@@ -436,19 +376,20 @@ void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
             int const place = run.place + i;
             REAL *const result = p + std::ptrdiff_t(place) * resultDesc.stride;
             if (run.index + i < 0) {
-                border.EvaluateVertex(edge, result);
+                evaluator.EvaluateVertex(edge, result);
                 continue;
             }
             if (tessellation._tree) {
                 Tessellation::SectorCoords const &coords = tessellation._places[std::size_t(place)];
-                border.EvaluatePoint(edge, {coords.start, coords.end}, result);
+                evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, result);
                 continue;
             }
             if (run.edge != evaluatedEdge) {
                 int const level = tessellation._levels[edge];
                 int const numPoints = Polyline(level).GetNumPoints();
                 edgePoints.resize(std::size_t(numPoints) * size);
-                border.EvaluateEdge(edge, level, numPoints, edgePoints.data(), pointDesc.size);
+                evaluator.EvaluateEdge(edge, level, numPoints, edgePoints.data(),
+                                       std::ptrdiff_t(size));
                 evaluatedEdge = run.edge;
             }
             std::copy_n(&edgePoints[std::size_t(run.index + i) * size], size, result);
@@ -462,7 +403,6 @@ void Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
                                           REAL const controlPoints[],
                                           PointDescriptor const &pointDesc, REAL p[],
                                           PointDescriptor const &resultDesc) const {
-    using internal::PatternOf;
     using Item = typename internal::ItemSums<REAL>::Item;
     CellType::LatticeBorder const &border = _type->GetLatticeBorder();
     auto const numEdges = std::size_t(GetFaceSize());
@@ -479,7 +419,8 @@ void Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
         items[edge] = {getItem(numEdges + edge).points.data(),
                        getResult(tessellation._firstEdgeCoords[edge]), 0};
     }
-    evaluate(getBorderMatrix<REAL>(*getItem(numEdges).type, PatternOf::Border, 0, makeVertex));
+    using Evaluator = internal::BorderEvaluator<REAL>;
+    evaluate(Evaluator::GetVertexMatrix(*getItem(numEdges).type));
     int const numPlaces = tessellation.GetNumEdgeCoords(0);
     if (numPlaces == 0) {
         return;
@@ -491,8 +432,7 @@ void Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
                        getResult(item.isReversed ? first + numPlaces : first + 1),
                        item.isReversed ? -resultDesc.stride : resultDesc.stride};
     }
-    evaluate(getBorderMatrix<REAL>(*getItem(0).type, PatternOf::Border, tessellation._levels[0],
-                                   [&] { return makeEdgePoints(tessellation._levels[0]); }));
+    evaluate(Evaluator::GetLatticeMatrix(*getItem(0).type, tessellation._levels[0]));
 }
 
 template <typename REAL>

@@ -19,6 +19,8 @@ namespace internal {
 class CellType;
 class CellTypes;
 class PlainFaceType;
+template <typename REAL>
+class BorderEvaluator;
 struct BasePoint;
 
 /// The type of a base face: that of a plain one, or one that was made at once.
@@ -31,6 +33,9 @@ public:
     explicit operator bool() const { return _type || _plain; }
     CellType const &operator*() const;
     CellType const *operator->() const { return &**this; }
+    bool IsInLattice() const;
+    /// That of a plain face that is not in a lattice, whose CellType need not be made; null of others.
+    PlainFaceType const *GetPlain() const;
 
 private:
     CellType const *_type = nullptr;
@@ -204,8 +209,6 @@ public:
 private:
     friend class SurfaceFactory;
     friend class View;
-    class FaceBorder;
-
     internal::BasePoint findPoint(REAL const uv[2]) const;
     bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
                           PointDescriptor const &pointDesc, REAL p[]) const;
@@ -215,15 +218,17 @@ private:
     void evaluateTree(Tessellation const &tessellation, REAL const controlPoints[],
                       PointDescriptor const &pointDesc, REAL *const results[3],
                       PointDescriptor const &resultDesc) const;
-    void evaluateBorder(Tessellation const &tessellation, REAL const controlPoints[],
-                        PointDescriptor const &pointDesc, REAL p[],
+    template <typename FUNCTION>
+    void useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
+                   FUNCTION const &function) const;
+    void evaluateBorder(Tessellation const &tessellation,
+                        internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                         PointDescriptor const &resultDesc) const;
-
     void evaluateLatticeBorder(Tessellation const &tessellation, REAL const controlPoints[],
                                PointDescriptor const &pointDesc, REAL p[],
                                PointDescriptor const &resultDesc) const;
-    void evaluateSectionBorder(Tessellation const &tessellation, REAL const controlPoints[],
-                               PointDescriptor const &pointDesc, REAL p[],
+    void evaluateSectionBorder(Tessellation const &tessellation,
+                               internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                PointDescriptor const &resultDesc) const;
 
     // By edge and then by vertex, how the face has what it shares with its neighbours.

@@ -49,15 +49,23 @@ LeafPlaces::Key LeafPlaces::getKey(Place const &place) const {
     return {place.sector, place.coords[0], place.coords[1]};
 }
 
+// Rows that are wanted are mostly the first ones: of what is not inside, cells have the last side most.
 int LeafPlaces::findGroup(Pair const &coords) {
+    enum Group { kInside, kLastSide, kFirstCorner, kFirstSide, kSecondSide, kThirdSide, kCorners };
     double const x = coords[0];
     double const h = coords[1];
-    for (int i = 0; i < 4; ++i) {
-        if (coords == HalfCell::kCorners[i]) {
-            return 5 + i;
-        }
+    auto const *const corner =
+        std::find(std::begin(HalfCell::kCorners), std::end(HalfCell::kCorners), coords);
+    if (corner != std::end(HalfCell::kCorners)) {
+        return corner == std::begin(HalfCell::kCorners) ? kFirstCorner : kCorners;
     }
-    return h == 0 ? 1 : x == 1 - 0.5 * h ? 2 : h == 0.5 ? 3 : x == 0.5 * h ? 4 : 0;
+    if (h == 0) {
+        return kFirstSide;
+    }
+    if (h == 0.5) {
+        return kThirdSide;
+    }
+    return x == 0.5 * h ? kLastSide : x == 1 - 0.5 * h ? kSecondSide : kInside;
 }
 
 void LeafPlaces::add(Place const &place) {

@@ -13,7 +13,7 @@
 namespace OpenSubdivHex::BfrExt::internal {
 
 /// \brief The places of the vertices that a cell has some steps on: those inside of it first, then those
-/// on each of its sides, and its corners, since other cells may have these.
+/// on its sides and its corners, since other cells may have these.
 class LeafPlaces {
 public:
     /// A place in a cell; of no matter in half cells: the sector.

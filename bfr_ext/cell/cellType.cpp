@@ -3,6 +3,7 @@
 
 #include "halfCell.h"
 #include "plainFace.h"
+#include "ringCell.h"
 
 #include <algorithm>
 #include <cmath>
@@ -258,8 +259,10 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
         for (std::size_t i = 0; i < patches.size(); ++i) {
             std::vector<int> points = patches[i].patch.sources;
             points.shrink_to_fit();
+            std::shared_ptr<RingItem const> rings =
+                RingItem::Make(patches[i], _types.GetRingCells(_rules));
             items.push_back({&_types.Find(std::move(patches[i]), _rules), std::move(points),
-                             i < numEdges && turns[i] == 1});
+                             i < numEdges && turns[i] == 1, std::move(rings)});
         }
         for (std::size_t i = 0; i < items.size(); ++i) {
             if (i != item) {
@@ -301,27 +304,27 @@ CellType::Border const &CellType::GetBorder(int const *turns) const {
             });
             sums.firsts.push_back(int(sums.verts.size()));
         };
-        for (std::size_t vert = 0; vert < numEdges; ++vert) {
-            BorderItem const &item = GetBorderItem(turns, numEdges + vert);
+        for (std::size_t i = 0; i < 2 * numEdges; ++i) {
+            BorderItem const &item = GetBorderItem(turns, i);
+            border.items.push_back({&item, nullptr, sums.firsts.size() - 1});
+            if (item.rings || item.type->IsInLattice()) {
+                continue;
+            }
+            if (i < numEdges) {
+                Child const &longEdge = item.type->GetChildren()[0];
+                border.items.back().type = longEdge.type;
+                for (std::size_t row = 0; row < longEdge.step.GetNumRows(); ++row) {
+                    addRow(item, [&](auto const &add) { longEdge.step.ForEachEntry(row, add); });
+                }
+                continue;
+            }
+            border.items.back().type = item.type;
             Vector const &weights = item.type->GetCornerPoints()[0];
             addRow(item, [&](auto const &add) {
                 for (std::size_t point = 0; point < weights.size(); ++point) {
                     add(point, weights[point]);
                 }
             });
-        }
-        for (std::size_t edge = 0; edge < numEdges; ++edge) {
-            BorderItem const &item = GetBorderItem(turns, edge);
-            if (item.type->IsInLattice()) {
-                border.edges.push_back({item.type, item.points.data(), 0, item.isReversed});
-                continue;
-            }
-            Child const &longEdge = item.type->GetChildren()[0];
-            border.edges.push_back(
-                {longEdge.type, nullptr, sums.firsts.size() - 1, item.isReversed});
-            for (std::size_t row = 0; row < longEdge.step.GetNumRows(); ++row) {
-                addRow(item, [&](auto const &add) { longEdge.step.ForEachEntry(row, add); });
-            }
         }
         border.sums = StepMatrix(sums);
         return border;
@@ -384,6 +387,15 @@ PlainFaceTypes &CellTypes::GetPlainFaces(CellRules const &rules) {
         types = std::make_unique<PlainFaceTypes>(*this, rules);
     }
     return *types;
+}
+
+RingCells &CellTypes::GetRingCells(CellRules const &rules) {
+    std::lock_guard<std::shared_mutex> const lock(_mutex);
+    std::unique_ptr<RingCells> &cells = _ringCells[getKey(rules)];
+    if (!cells) {
+        cells = std::make_unique<RingCells>(*this, rules);
+    }
+    return *cells;
 }
 
 std::size_t CellTypes::GetSize() const {

@@ -18,6 +18,8 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 class CellTypes;
 class PlainFaceTypes;
+class RingCells;
+struct RingItem;
 
 /// What besides its patch tells the surface of a cell.
 struct CellRules {
@@ -91,7 +93,8 @@ public:
     struct BorderItem {
         CellType const *type;
         std::vector<int> points;
-        bool isReversed; ///< whether the edge runs against the face
+        bool isReversed;                       ///< whether the edge runs against the face
+        std::shared_ptr<RingItem const> rings; ///< null where it has none
     };
     /// \brief Of a base face, which neighbours have the same of: an edge, or behind these a vertex.
     ///
@@ -106,16 +109,15 @@ public:
     };
     LatticeBorder const &GetLatticeBorder() const;
     /// \brief All of these together, with the sums of the face's points that the border is made of, in
-    /// the order in which the items have their points: first the surface at the vertices, then the
-    /// points of the long edges that edges become in the first step, but for edges in a lattice.
+    /// the order in which the items have their points: the points of the long edges that edges become in
+    /// the first step, and the surface at the vertices, but for items in a lattice or with rings.
     struct Border {
-        struct Edge {
-            CellType const *type; ///< of the long edge, or of an edge in a lattice
-            int const *points;    ///< of an edge in a lattice: its points; else null
-            std::size_t firstSum; ///< else that of its long edge's points
-            bool isReversed;      ///< as in its item
+        struct Item {
+            BorderItem const *item;
+            CellType const *type; ///< of the long edge; null where there are no sums
+            std::size_t firstSum; ///< of the surface at the vertex or of the long edge's points
         };
-        std::vector<Edge> edges;
+        std::vector<Item> items; ///< by edge and then by vertex
         StepMatrix sums;
     };
     /// As GetBorderItem(), of a face that is not in a lattice: few have the same.
@@ -155,6 +157,8 @@ public:
     CellType const &Find(FarExt::internal::CellPatch &&cell, CellRules const &rules);
     /// The types of plain base faces with some rules.
     PlainFaceTypes &GetPlainFaces(CellRules const &rules);
+    /// What the first step makes of plain faces with some rules.
+    RingCells &GetRingCells(CellRules const &rules);
     /// Calls function(finder), which no other thread uses then, for the limit masks of \p rules.
     template <typename FUNCTION>
     auto UseMasks(CellRules const &rules, FUNCTION function) {
@@ -180,6 +184,7 @@ private:
     mutable std::shared_mutex _mutex;
     std::unordered_map<Key, std::unique_ptr<CellType>> _types;
     std::unordered_map<Key, std::unique_ptr<PlainFaceTypes>> _plainFaces;
+    std::unordered_map<Key, std::unique_ptr<RingCells>> _ringCells;
     std::mutex _masksMutex;
     int _numMaskUses = 0;
     std::unordered_map<Key, std::unique_ptr<FarExt::internal::LimitMaskFinder>> _masks;

@@ -8,27 +8,49 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
-// Makes matrices of a leaf, which set(stencil, row, place) fills.
-template <typename REAL, std::size_t COUNT, typename SET>
-std::array<PlaceMatrix<REAL>, COUNT> makeMatrices(CellType const &type, LeafPlaces const &places,
-                                                  SET const &set) {
+// A leaf: a cell of some type, of whose rings its points may be those.
+struct Leaf {
+    CellType const &type;
+    RingCell const *ringCell;
+    LeafPlaces const &places;
+
+    // What is a sum of the points of the type, as one of those of the rings.
+    std::vector<double> const &Order(std::vector<double> const &weights,
+                                     std::vector<double> &scratch) const {
+        if (!ringCell) {
+            return weights;
+        }
+        ringCell->Order(weights, scratch);
+        return scratch;
+    }
+};
+
+// Makes matrices of a leaf, the rows of which find(stencil, place) finds, and getRow(stencil, i) gives.
+template <typename REAL, std::size_t COUNT, typename FIND, typename GET>
+std::array<PlaceMatrix<REAL>, COUNT> makeMatrices(Leaf const &leaf, FIND const &find,
+                                                  GET const &getRow) {
     std::array<PlaceMatrix<REAL>, COUNT> matrices;
-    matrices.fill(PlaceMatrix<REAL>(places.GetSize(), std::size_t(type.GetNumPoints())));
-    CellStencil stencil(type);
-    for (std::size_t row = 0; row < places.GetSize(); ++row) {
-        set(stencil, row, places[row], matrices);
+    matrices.fill(PlaceMatrix<REAL>(leaf.places.GetSize(), std::size_t(leaf.type.GetNumPoints())));
+    CellStencil stencil(leaf.type);
+    std::vector<double> scratch;
+    for (std::size_t row = 0; row < leaf.places.GetSize(); ++row) {
+        find(stencil, leaf.places[row]);
+        for (std::size_t i = 0; i < COUNT; ++i) {
+            matrices[i].Set(row, leaf.Order(getRow(stencil, i), scratch));
+        }
     }
     return matrices;
 }
 
 // What a leaf is evaluated with, made when it is first asked for: its points, or derivatives.
-template <typename REAL, std::size_t COUNT, typename SET>
-std::array<PlaceMatrix<REAL>, COUNT> const &getMatrices(PatternOf of, CellType const &type,
-                                                        LeafPlaces const &places, SET const &set) {
-    int const numSteps = places.GetNumSteps();
-    return type.GetPatterns().Get<std::array<PlaceMatrix<REAL>, COUNT>>(
+template <typename REAL, std::size_t COUNT, typename FIND, typename GET>
+std::array<PlaceMatrix<REAL>, COUNT> const &getMatrices(PatternOf of, Leaf const &leaf,
+                                                        FIND const &find, GET const &getRow) {
+    int const numSteps = leaf.places.GetNumSteps();
+    PatternTable &patterns = leaf.ringCell ? leaf.ringCell->GetPatterns() : leaf.type.GetPatterns();
+    return patterns.Get<std::array<PlaceMatrix<REAL>, COUNT>>(
         PatternTable::GetKind<REAL>(of), &numSteps, &numSteps + 1,
-        [&] { return makeMatrices<REAL, COUNT>(type, places, set); });
+        [&] { return makeMatrices<REAL, COUNT>(leaf, find, getRow); });
 }
 
 } // namespace
@@ -85,7 +107,7 @@ void PatchEvaluator<REAL>::descend(CellType const &type, CellPlan const &plan, s
         std::vector<REAL> &childPoints = getPoints(2 * depth + 2, link.step.GetNumRows());
         link.step.CopyPoints(points.data(), _paddedSize, childPoints.data());
         if (child.leaf) {
-            evaluateLeaf(*link.type, child, childPoints.data());
+            evaluateLeaf(*link.type, nullptr, child, childPoints.data(), nullptr);
         } else {
             descend(*link.type, plan, next, depth + 1);
         }
@@ -93,31 +115,86 @@ void PatchEvaluator<REAL>::descend(CellType const &type, CellPlan const &plan, s
 }
 
 template <typename REAL>
-void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, CellPlan::Node const &leaf,
-                                        REAL const *points) {
+void PatchEvaluator<REAL>::Evaluate(PlainFaceType const &type, RingValues<REAL> const &values,
+                                    CellPlan const &plan, REAL *results,
+                                    std::ptrdiff_t resultStride) {
+    _results = results;
+    _resultStride = resultStride;
+    evaluate(type, values, plan);
+}
+
+template <typename REAL>
+void PatchEvaluator<REAL>::EvaluateDerivatives(PlainFaceType const &type,
+                                               RingValues<REAL> const &values, CellPlan const &plan,
+                                               REAL *du, REAL *dv, std::ptrdiff_t resultStride) {
+    _results = nullptr;
+    _derivatives[0] = du;
+    _derivatives[1] = dv;
+    _resultStride = resultStride;
+    evaluate(type, values, plan);
+}
+
+template <typename REAL>
+void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> const &values,
+                                    CellPlan const &plan) {
+    _size = values.GetSize();
+    _paddedSize = values.GetPaddedSize();
+    if (!plan[0].corners.empty()) {
+        evaluateCorners(type.Get(), plan[0], values.GetControlPoints());
+    }
+    FaceRings const &face = type.GetRings();
+    for (std::size_t const next : plan[0].children) {
+        CellPlan::Node const &child = plan[next];
+        RingCell const &cell = face.GetChild(child.child);
+        std::vector<int> const &columns = cell.GetColumns();
+        _indices.resize(columns.size());
+        face.FindChildIndices(child.child, _indices.data());
+        if (child.leaf) {
+            evaluateLeaf(cell.GetType(), &cell, child, values.GetPoints(), _indices.data());
+            continue;
+        }
+        std::vector<REAL> &points = getPoints(2, columns.size());
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            std::copy_n(values.GetPoints() + std::size_t(_indices[i]) * _paddedSize, _paddedSize,
+                        &points[std::size_t(columns[i]) * _paddedSize]);
+        }
+        descend(cell.GetType(), plan, next, 1);
+    }
+}
+
+// The points are those of the type, or of the rings that it is told as a cell of.
+template <typename REAL>
+void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ringCell,
+                                        CellPlan::Node const &leaf, REAL const *points,
+                                        int const *indices) {
+    Leaf const ofLeaf = {type, ringCell, *leaf.leaf};
     auto const sumUp = [&](PlaceMatrix<REAL> const &matrix, REAL *results) {
-        SumUpPlaces(matrix, {points, std::ptrdiff_t(_paddedSize), _size, nullptr, results,
+        SumUpPlaces(matrix, {points, std::ptrdiff_t(_paddedSize), _size, indices, results,
                              _resultStride, leaf.rows.data(), leaf.rows.size()});
     };
+    using Place = LeafPlaces::Place;
     if (_results) {
-        sumUp(getMatrices<REAL, 1>(PatternOf::Leaf, type, *leaf.leaf,
-                                   [](CellStencil &stencil, std::size_t row,
-                                      LeafPlaces::Place const &place, auto &matrices) {
-                                       stencil.Find({place.sector, place.coords, {}}, false);
-                                       matrices[0].Set(row, stencil.GetWeights());
-                                   })[0],
+        sumUp(getMatrices<REAL, 1>(
+                  PatternOf::Leaf, ofLeaf,
+                  [](CellStencil &stencil, Place const &place) {
+                      stencil.Find({place.sector, place.coords, {}}, false);
+                  },
+                  [](CellStencil const &stencil, std::size_t) -> std::vector<double> const & {
+                      return stencil.GetWeights();
+                  })[0],
               _results);
         return;
     }
     auto const &matrices = getMatrices<REAL, 2>(
-        PatternOf::LeafDerivatives, type, *leaf.leaf,
-        [&](CellStencil &stencil, std::size_t row, LeafPlaces::Place const &place, auto &results) {
+        PatternOf::LeafDerivatives, ofLeaf,
+        [&](CellStencil &stencil, Place const &place) {
             stencil.Find(type.IsWhole()
                              ? MakeBasePoint(type.GetNumCorners(), place.sector, place.coords)
                              : BasePoint{place.sector, place.coords, {{1, 0}, {0, 1}}},
                          true);
-            results[0].Set(row, stencil.GetDuWeights());
-            results[1].Set(row, stencil.GetDvWeights());
+        },
+        [](CellStencil const &stencil, std::size_t i) -> std::vector<double> const & {
+            return i == 0 ? stencil.GetDuWeights() : stencil.GetDvWeights();
         });
     sumUp(matrices[0], _derivatives[0]);
     sumUp(matrices[1], _derivatives[1]);

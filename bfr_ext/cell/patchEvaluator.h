@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_EVALUATOR_H
 
 #include "cellPlan.h"
+#include "plainFace.h"
 
 #include <deque>
 #include <vector>
@@ -29,18 +30,29 @@ public:
                              REAL const *controlPoints, std::ptrdiff_t stride, REAL *du, REAL *dv,
                              std::ptrdiff_t resultStride);
 
+    /// @name The same of plain faces, from the points of their rings
+    /// @{
+    void Evaluate(PlainFaceType const &type, RingValues<REAL> const &values, CellPlan const &plan,
+                  REAL *results, std::ptrdiff_t resultStride);
+    void EvaluateDerivatives(PlainFaceType const &type, RingValues<REAL> const &values,
+                             CellPlan const &plan, REAL *du, REAL *dv, std::ptrdiff_t resultStride);
+    /// @}
+
 private:
     void evaluate(CellType const &type, CellPlan const &plan, int size, REAL const *controlPoints,
                   std::ptrdiff_t stride);
+    void evaluate(PlainFaceType const &type, RingValues<REAL> const &values, CellPlan const &plan);
     void descend(CellType const &type, CellPlan const &plan, std::size_t node, std::size_t depth);
-    void evaluateLeaf(CellType const &type, CellPlan::Node const &leaf, REAL const *points);
+    void evaluateLeaf(CellType const &type, RingCell const *ringCell, CellPlan::Node const &leaf,
+                      REAL const *points, int const *indices);
     void evaluateCorners(CellType const &type, CellPlan::Node const &cell, REAL const *points);
     std::vector<REAL> &getPoints(std::size_t place, std::size_t numPoints);
 
     std::size_t _size = 0; // of a point
     std::size_t _paddedSize = 0;
     std::deque<std::vector<REAL>> _points; // by depth, of a cell and of its children
-    REAL *_results = nullptr;              // points
+    std::vector<int> _indices;
+    REAL *_results = nullptr; // points
     REAL *_derivatives[2] = {};
     std::ptrdiff_t _resultStride = 0;
 };

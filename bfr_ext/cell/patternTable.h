@@ -20,6 +20,8 @@ enum class PatternOf {
     BorderPlace,
     Leaf,
     LeafDerivatives,
+    CornerWeights,
+    RingCell,
     CellBounds,
     LatticeBounds,
     SlopeBounds

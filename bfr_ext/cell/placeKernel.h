@@ -4,12 +4,32 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <new>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
 template <typename REAL>
 class MirrorMatrix;
+
+/// Memory that begins where a register of any machine may: those that lie across two lines of the cache
+/// would be read in twice the time.
+template <typename T>
+struct RegisterAllocator {
+    using value_type = T;
+    static constexpr std::align_val_t kAlignment{64};
+
+    RegisterAllocator() = default;
+    template <typename OTHER>
+    RegisterAllocator(RegisterAllocator<OTHER> const &) {}
+
+    T *allocate(std::size_t size) {
+        return static_cast<T *>(::operator new(size * sizeof(T), kAlignment));
+    }
+    void deallocate(T *array, std::size_t) { ::operator delete(array, kAlignment); }
+    friend bool operator==(RegisterAllocator const &, RegisterAllocator const &) { return true; }
+    friend bool operator!=(RegisterAllocator const &, RegisterAllocator const &) { return false; }
+};
 
 /// \brief The stencils of places as a dense matrix.
 ///
@@ -49,7 +69,7 @@ public:
 private:
     std::size_t _numPlaces = 0;
     std::size_t _numPoints = 0;
-    std::vector<REAL> _weights;
+    std::vector<REAL, RegisterAllocator<REAL>> _weights;
 };
 
 /// Which row of a matrix is that of which place of a face.

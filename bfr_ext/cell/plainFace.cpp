@@ -36,6 +36,14 @@ Far::Index getNextVertex(Level const &level, Far::Index place) {
     return level.faceVerts[next < level.faceFirstCorner[face + 1] ? next : first];
 }
 
+// Whether the faces of a key are a piece of a regular lattice.
+bool isInLattice(PlainFaceKey const &key, int numVerts) {
+    std::uint8_t const *const numFaces = key.GetBytes() + 1;
+    int const valence = CellType::GetLatticeValence(key.GetBytes()[0]); // 0 where sizes differ
+    return std::all_of(numFaces, numFaces + numVerts,
+                       [&](int number) { return number == valence; });
+}
+
 // A patch that grows from a face, the faces of one vertex at a time, no vertices being the same but where
 // that follows from their numbers of faces: all that its boundary has, counter-clockwise.
 class GrowingPatch {
@@ -167,11 +175,24 @@ std::size_t PlainFaceKey::GetHash() const {
 
 PlainFaceType::PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, Patch patch)
     : hash(key.GetHash()), _types(types), _key(key.GetBytes(), key.GetBytes() + key.GetSize()),
-      _patch(std::move(patch)) {}
+      _patch(std::move(patch)), _isInLattice(isInLattice(key, _patch.numVerts)) {}
+
+PlainFaceType::~PlainFaceType() { delete _rings.load(); }
 
 bool PlainFaceType::HasKey(PlainFaceKey const &key) const {
     return key.GetSize() == _key.size() &&
            std::memcmp(key.GetBytes(), _key.data(), _key.size()) == 0;
+}
+
+// Of threads that do so at once the first one makes it for all.
+FaceRings const &PlainFaceType::makeRings() const {
+    auto rings =
+        std::make_unique<FaceRings const>(makeCell(), _types._types.GetRingCells(_types._rules));
+    FaceRings const *expected = nullptr;
+    if (_rings.compare_exchange_strong(expected, rings.get(), std::memory_order_acq_rel)) {
+        return *rings.release();
+    }
+    return *expected;
 }
 
 // Threads that do so at once find the same.

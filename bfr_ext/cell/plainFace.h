@@ -4,6 +4,7 @@
 
 #include "cellType.h"
 #include "entryTable.h"
+#include "ringCell.h"
 
 #include "far_ext/limit/plainNeighborhood.h"
 
@@ -59,6 +60,9 @@ public:
     };
 
     PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, Patch patch);
+    ~PlainFaceType();
+    PlainFaceType(PlainFaceType const &) = delete;
+    PlainFaceType &operator=(PlainFaceType const &) = delete;
 
     std::size_t const hash; ///< of the key
 
@@ -71,14 +75,24 @@ public:
         CellType const *const type = _type.load(std::memory_order_acquire);
         return type ? *type : make();
     }
+    bool IsInLattice() const { return _isInLattice; }
+    /// What evaluates tessellations of those that are not in a lattice, and is made in a fraction of the
+    /// time and memory.
+    FaceRings const &GetRings() const {
+        FaceRings const *const rings = _rings.load(std::memory_order_acquire);
+        return rings ? *rings : makeRings();
+    }
 
 private:
     CellType const &make() const;
+    FaceRings const &makeRings() const;
     FarExt::internal::CellPatch makeCell() const;
 
     PlainFaceTypes &_types;
     std::vector<std::uint8_t> const _key;
     Patch const _patch;
+    bool const _isInLattice;
+    mutable std::atomic<FaceRings const *> _rings{nullptr};
     mutable std::atomic<CellType const *> _type{nullptr};
 };
 

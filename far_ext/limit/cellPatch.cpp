@@ -191,6 +191,7 @@ public:
             addSpoke(_cell.locals[1]);
             break;
         case CellKind::Vertex:
+            addVVertex();
             break;
         }
         return std::move(_children);
@@ -228,6 +229,17 @@ private:
         int const end = HasHalves(_child.GetFaceSize(face)) ? kDiagonalEnd : 1;
         CellPatch &child = add(CellKind::LongEdge);
         child.locals = {isStart ? 0 : end, isStart ? end : 0};
+        gather(_gatherer, _child, face, child);
+    }
+
+    // From the E-face of the edge that begins there in face 0.
+    void addVVertex() {
+        int const local = _cell.locals[0];
+        Index const face = _refinement.GetEdgeChildFace(_parent.faceEdges[local]);
+        Index const vert = _refinement.GetVertexChildVertex(_parent.faceVerts[local]);
+        Far::ConstIndexArray const verts = _child.GetFaceVertices(face);
+        CellPatch &child = add(CellKind::Vertex);
+        child.locals = {int(std::find(verts.begin(), verts.end(), vert) - verts.begin())};
         gather(_gatherer, _child, face, child);
     }
 

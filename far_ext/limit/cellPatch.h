@@ -16,7 +16,7 @@ enum class CellKind {
     Half,     ///< half of a hexagon, or a half face
     Edge,     ///< an edge that runs along an edge of level 0
     LongEdge, ///< the same across a hexagon, or along a half face
-    Vertex    ///< a vertex of level 0
+    Vertex    ///< a vertex of level 0, or its V-vertex
 };
 
 /// \brief A cell, with the patch that all of the surface in it depends on.
@@ -71,7 +71,7 @@ struct CellRefinement {
 /// and behind corners 1 to 3 of a half cell.
 ///
 /// Of an edge it is the long edge from end to end; of a long edge the edge from its start, the long
-/// edge in its middle and the edge from its end.
+/// edge in its middle and the edge from its end; of a vertex it is the V-vertex.
 OPENSUBDIVHEX_API CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
                                             HexSchemeOptions const &schemeOptions,
                                             Interpolation interpolation);

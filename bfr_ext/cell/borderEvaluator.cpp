@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "borderEvaluator.h"
+
+#include "bfr_ext/polyline.h"
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+namespace {
+
+// The places inside of an edge of a level, from its start on; they are the same from its end.
+std::vector<double> makeEdgePoints(int level) {
+    Polyline const polyline(level);
+    std::vector<double> points(static_cast<std::size_t>(polyline.GetNumPoints()));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        points[i] = polyline.GetParameter(int(i));
+    }
+    return points;
+}
+
+} // namespace
+
+template <typename REAL>
+void BorderEvaluator<REAL>::SetFace(CellType const &type, int const *turns, REAL const *points,
+                                    std::ptrdiff_t stride, std::size_t size) {
+    _type = &type;
+    _plain = nullptr;
+    _turns = turns;
+    _numEdges = std::size_t(type.GetNumCorners());
+    _points = points;
+    _stride = stride;
+    _size = size;
+    _paddedSize = StepMatrix::GetPaddedSize(size);
+    _border = nullptr;
+    _edge = {};
+    if (type.IsInLattice()) {
+        return; // with all of its border
+    }
+    _border = &type.GetBorder(turns);
+    std::size_t const numPoints = _border->sums.GetNumParentPoints();
+    _paddedPoints.resize(numPoints * _paddedSize);
+    for (std::size_t i = 0; i < numPoints; ++i) {
+        StepMatrix::Pad(points + std::ptrdiff_t(i) * stride, size, &_paddedPoints[i * _paddedSize]);
+    }
+    _sums.resize(_border->sums.GetNumRows() * _paddedSize);
+    _border->sums.Apply(_paddedPoints.data(), _paddedSize, _sums.data());
+}
+
+template <typename REAL>
+void BorderEvaluator<REAL>::SetFace(PlainFaceType const &type, RingValues<REAL> &values,
+                                    int const *turns, REAL const *points, std::ptrdiff_t stride) {
+    _type = nullptr;
+    _plain = &type;
+    _values = &values;
+    _turns = turns;
+    _numEdges = type.GetRings().GetRings().GetRings().size();
+    _points = points;
+    _stride = stride;
+    _size = values.GetSize();
+    _paddedSize = values.GetPaddedSize();
+    _border = nullptr;
+    _edge = {};
+}
+
+template <typename REAL>
+void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
+    int const turn = _turns[_numEdges + vert];
+    if (_plain) {
+        FaceRings const &face = _plain->GetRings();
+        if (RingCell const *const cell = face.GetVVertex(int(vert), turn)) {
+            int const numFaces = face.GetRings().GetRings()[vert].GetNumFaces();
+            _values->EvaluateVertex(*cell, int(vert), turn == 0 ? 0 : numFaces - turn, result);
+            return;
+        }
+    }
+    CellType::BorderItem const &item = getType().GetBorderItem(_turns, _numEdges + vert);
+    if (item.type->IsInLattice()) {
+        SumUpPlaces(GetVertexMatrix(*item.type),
+                    {_points, _stride, _size, item.points.data(), result, 0});
+    } else if (item.rings) {
+        _vertexValues.Set(item.rings->rings, item.points.size(), item.points.data(), _points,
+                          _stride, _size);
+        _vertexValues.EvaluateVertex(*item.rings->cell, 0, 0, result);
+    } else {
+        std::copy_n(&_sums[_border->items[_numEdges + vert].firstSum * _paddedSize], _size, result);
+    }
+}
+
+template <typename REAL>
+void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
+    if (_edge.type && edge == _edgeNumber) {
+        return;
+    }
+    _edgeNumber = edge;
+    _isReversed = _turns[edge] == 1;
+    if (_plain) {
+        FaceRings const &face = _plain->GetRings();
+        if (RingCell const *const cell = face.GetLongEdge(int(edge), _isReversed)) {
+            _indices.resize(cell->GetColumns().size());
+            face.FindLongEdgeIndices(int(edge), _isReversed, _indices.data());
+            _edge = {&cell->GetType(), cell, _values->GetPoints(), std::ptrdiff_t(_paddedSize),
+                     _indices.data()};
+            return;
+        }
+    }
+    CellType::BorderItem const &item = getType().GetBorderItem(_turns, edge);
+    if (item.type->IsInLattice()) {
+        _edge = {item.type, nullptr, _points, _stride, item.points.data()};
+    } else if (item.rings) {
+        _edgeValues.Set(item.rings->rings, item.points.size(), item.points.data(), _points, _stride,
+                        _size);
+        RingCell const &cell = *item.rings->cell;
+        VertexRings const &rings = item.rings->rings;
+        _indices.resize(cell.GetColumns().size());
+        cell.FindIndices(
+            rings.GetCenter(0, 0), [&](int ring) { return rings.GetBlock(ring, 0); },
+            _indices.data());
+        _edge = {&cell.GetType(), &cell, _edgeValues.GetPoints(), std::ptrdiff_t(_paddedSize),
+                 _indices.data()};
+    } else {
+        CellType::Border::Item const &sums = _border->items[edge];
+        _edge = {sums.type, nullptr, &_sums[sums.firstSum * _paddedSize],
+                 std::ptrdiff_t(_paddedSize), nullptr};
+    }
+}
+
+template <typename REAL>
+void BorderEvaluator<REAL>::EvaluateEdge(std::size_t edge, int level, int numPoints, REAL *results,
+                                         std::ptrdiff_t stride) {
+    setEdge(edge);
+    sumUp(getMatrix(*_edge.type, _edge.cell, PatternOf::Border, level,
+                    [&] { return makeEdgePoints(level); }),
+          _isReversed ? results + std::ptrdiff_t(numPoints - 1) * stride : results,
+          _isReversed ? -stride : stride);
+}
+
+template <typename REAL>
+void BorderEvaluator<REAL>::EvaluatePoint(std::size_t edge, Pair const &place, REAL *result) {
+    setEdge(edge);
+    sumUp(makeMatrix(*_edge.type, _edge.cell, {place[_isReversed ? 0 : 1]}), result, 0);
+}
+
+// They are kept one by one, since polylines have few in common.
+template <typename REAL>
+void BorderEvaluator<REAL>::EvaluateKeptPoint(std::size_t edge, Pair const &place, REAL *result) {
+    setEdge(edge);
+    double const point = place[_isReversed ? 0 : 1];
+    sumUp(getMatrix(*_edge.type, _edge.cell, PatternOf::BorderPlace, int(point * Polyline::kLength),
+                    [&] { return std::vector<double>(1, point); }),
+          result, 0);
+}
+
+template <typename REAL>
+PlaceMatrix<REAL> const &BorderEvaluator<REAL>::GetLatticeMatrix(CellType const &type, int level) {
+    return getMatrix(type, nullptr, PatternOf::Border, level,
+                     [&] { return makeEdgePoints(level); });
+}
+
+template <typename REAL>
+PlaceMatrix<REAL> BorderEvaluator<REAL>::makeMatrix(CellType const &type, RingCell const *cell,
+                                                    std::vector<double> const &points) {
+    PlaceMatrix<REAL> matrix(points.size(), std::size_t(type.GetNumPoints()));
+    BorderStencil stencil;
+    std::vector<double> ordered;
+    for (std::size_t place = 0; place < points.size(); ++place) {
+        stencil.Find(type, points[place]);
+        if (cell) {
+            cell->Order(stencil.GetWeights(), ordered);
+        }
+        matrix.Set(place, cell ? ordered : stencil.GetWeights());
+    }
+    return matrix;
+}
+
+template <typename REAL>
+PlaceMatrix<REAL> const &BorderEvaluator<REAL>::GetVertexMatrix(CellType const &type) {
+    return type.GetPatterns().template Get<PlaceMatrix<REAL>>(
+        PatternTable::GetKind<REAL>(PatternOf::Border), nullptr, nullptr, [&] {
+            PlaceMatrix<REAL> matrix(1, std::size_t(type.GetNumPoints()));
+            matrix.Set(0, type.GetCornerPoints()[0]);
+            return matrix;
+        });
+}
+
+template class BorderEvaluator<float>;
+template class BorderEvaluator<double>;
+
+} // namespace OpenSubdivHex::BfrExt::internal

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_BORDER_EVALUATOR_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_BORDER_EVALUATOR_H
+
+#include "cellStencil.h"
+#include "placeKernel.h"
+#include "plainFace.h"
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief Evaluates what lies on the border of a base face, of which all faces that share it form the
+/// same sums.
+///
+/// In a regular lattice edges and vertices have sums of their own points.  Where they are plain, long
+/// edges and V-vertices have sums of rings.  Other edges have sums for the long edge that they become in
+/// the first step, too: long edges have far fewer types than edges.
+template <typename REAL>
+class BorderEvaluator {
+public:
+    /// \brief Sets the face, whose points are \p size numbers, \p stride numbers apart.
+    ///
+    /// \param turns  those of FindBaseCellTurns()
+    void SetFace(CellType const &type, int const *turns, REAL const *points, std::ptrdiff_t stride,
+                 std::size_t size);
+    /// The same of a plain one that is not in a lattice.
+    /// \param values  of its rings
+    void SetFace(PlainFaceType const &type, RingValues<REAL> &values, int const *turns,
+                 REAL const *points, std::ptrdiff_t stride);
+
+    /// Writes the point of a vertex.
+    void EvaluateVertex(std::size_t vert, REAL *result);
+
+    /// Writes the points inside of an edge that has a level, in the direction of the face.
+    void EvaluateEdge(std::size_t edge, int level, int numPoints, REAL *results,
+                      std::ptrdiff_t stride);
+    /// \brief Writes a point of an edge.
+    ///
+    /// \param place  what the start and the end of the edge weigh
+    void EvaluatePoint(std::size_t edge, Pair const &place, REAL *result);
+    /// The same, to the bit, of a place of a polyline, the stencil of which is kept.
+    void EvaluateKeptPoint(std::size_t edge, Pair const &place, REAL *result);
+
+    /// Numbers of a point.
+    std::size_t GetSize() const { return _size; }
+
+    /// @name The stencils of an edge with a level and of a vertex in a lattice, in terms of their points
+    /// @{
+    static PlaceMatrix<REAL> const &GetLatticeMatrix(CellType const &type, int level);
+    static PlaceMatrix<REAL> const &GetVertexMatrix(CellType const &type);
+    /// @}
+
+private:
+    // What the places of an edge are sums of.
+    struct Sources {
+        CellType const *type;
+        RingCell const *cell; // null: the points of the type
+        REAL const *points;
+        std::ptrdiff_t stride;
+        int const *indices;
+    };
+
+    static PlaceMatrix<REAL> makeMatrix(CellType const &type, RingCell const *cell,
+                                        std::vector<double> const &points);
+    // Those that makePoints() gives, when they are first asked for with a key.
+    template <typename MAKE>
+    static PlaceMatrix<REAL> const &getMatrix(CellType const &type, RingCell const *cell,
+                                              PatternOf of, int key, MAKE const &makePoints) {
+        PatternTable &patterns = cell ? cell->GetPatterns() : type.GetPatterns();
+        return patterns.template Get<PlaceMatrix<REAL>>(
+            PatternTable::GetKind<REAL>(of), &key, &key + 1,
+            [&] { return makeMatrix(type, cell, makePoints()); });
+    }
+    CellType const &getType() const { return _plain ? _plain->Get() : *_type; }
+    void setEdge(std::size_t edge);
+    void sumUp(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t resultStride) const {
+        SumUpPlaces(matrix,
+                    {_edge.points, _edge.stride, _size, _edge.indices, results, resultStride});
+    }
+
+    CellType const *_type = nullptr;
+    PlainFaceType const *_plain = nullptr;
+    RingValues<REAL> *_values = nullptr; // of this
+    int const *_turns = nullptr;
+    std::size_t _numEdges = 0;
+    REAL const *_points = nullptr;
+    std::ptrdiff_t _stride = 0;
+    std::size_t _size = 0;
+    std::size_t _paddedSize = 0;
+    CellType::Border const *_border = nullptr;
+    std::vector<REAL> _paddedPoints;
+    std::vector<REAL> _sums; // of the border
+    // Of the edge that was last asked for, if any.
+    std::size_t _edgeNumber = 0;
+    Sources _edge = {};
+    bool _isReversed = false;
+    std::vector<int> _indices;
+    RingValues<REAL> _edgeValues; // of its own rings
+    RingValues<REAL> _vertexValues;
+};
+
+extern template class BorderEvaluator<float>;
+extern template class BorderEvaluator<double>;
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

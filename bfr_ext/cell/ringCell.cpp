@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ringCell.h"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <optional>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+using FarExt::internal::CellKind;
+using FarExt::internal::CellPatch;
+using FarExt::internal::CellRefinement;
+
+namespace {
+
+using Cell = std::pair<CellPatch, std::vector<RingLayout>>;
+
+// The place of the vertex of a ring; others are behind the begin of the block of face 0.
+constexpr int kCenter = -1;
+
+// Those of the face that a patch is made for come first.
+std::vector<int> getCorners(int numCorners) {
+    std::vector<int> corners(static_cast<std::size_t>(numCorners));
+    std::iota(corners.begin(), corners.end(), 0);
+    return corners;
+}
+
+CellRefinement refine(CellPatch const &cell, CellRules const &rules) {
+    return RefineCell(cell, rules.sdcOptions, rules.schemeOptions, rules.interpolation);
+}
+
+// What the first step makes of an edge or a vertex.
+Cell makeItemCell(CellPatch const &item, CellRules const &rules) {
+    return {std::move(refine(item, rules).children[0]), FindRingLayouts(item.patch, item.locals)};
+}
+
+CellKind getChildKind(CellKind kind) { return kind == CellKind::Edge ? CellKind::LongEdge : kind; }
+
+} // namespace
+
+// Most points are in several rings.  What is in the first two is taken from there, and the rest from where
+// its place is the least, which does not depend on the numbers of faces in these rings.
+RingCell::RingCell(CellType const &type, std::vector<Far::Index> const &sources,
+                   std::vector<RingLayout> const &rings)
+    : _type(type) {
+    constexpr int kNumFirstRings = 2;
+    struct Column {
+        int ring;
+        int place;
+        int point;
+    };
+    std::vector<Column> columns;
+    for (std::size_t point = 0; point < sources.size(); ++point) {
+        int const vert = sources[point];
+        Column column = {-1, 0, int(point)};
+        if (vert == rings[0].center) {
+            column = {0, kCenter, int(point)};
+        }
+        for (int ring = 0; ring < int(rings.size()); ++ring) {
+            std::vector<int> const &verts = rings[std::size_t(ring)].verts;
+            int const place = int(std::find(verts.begin(), verts.end(), vert) - verts.begin());
+            if (place < int(verts.size()) &&
+                (column.ring < 0 || (column.ring >= kNumFirstRings && place < column.place))) {
+                column = {ring, place, int(point)};
+            }
+        }
+        assert(column.ring >= 0);
+        columns.push_back(column);
+    }
+    std::sort(columns.begin(), columns.end(), [](Column const &a, Column const &b) {
+        return std::make_pair(a.ring, a.place) < std::make_pair(b.ring, b.place);
+    });
+    assert(columns[0].place == kCenter);
+    for (Column const &column : columns) {
+        _columns.push_back(column.point);
+        _ends.resize(std::size_t(column.ring) + 1, _places.size());
+        if (column.place != kCenter) {
+            _places.push_back(column.place);
+            ++_ends.back();
+        }
+    }
+}
+
+void RingCell::Order(std::vector<double> const &weights, std::vector<double> &result) const {
+    result.resize(_columns.size());
+    for (std::size_t column = 0; column < _columns.size(); ++column) {
+        result[column] = weights[std::size_t(_columns[column])];
+    }
+}
+
+template <typename REAL>
+std::vector<REAL> const &RingCell::GetCornerWeights() const {
+    return _patterns.Get<std::vector<REAL>>(
+        PatternTable::GetKind<REAL>(PatternOf::CornerWeights), nullptr, nullptr, [&] {
+            std::vector<double> ordered;
+            Order(_type.GetCornerPoints()[0], ordered);
+            return std::vector<REAL>(ordered.begin(), ordered.end());
+        });
+}
+
+// Sizes of faces and, where their masks depend on these, what neighbours have; and the vertices, by when
+// they occur first.
+std::vector<int> RingCells::getKey(std::vector<RingLayout> const &rings) const {
+    std::vector<int> key;
+    int numVerts = 0;
+    for (RingLayout const &ring : rings) {
+        numVerts = std::max(numVerts, 1 + *std::max_element(ring.verts.begin(), ring.verts.end()));
+    }
+    constexpr int kNone = -1;
+    std::vector<int> numbers(std::size_t(numVerts), kNone);
+    int next = 0;
+    auto const addVertex = [&](int vert) {
+        int &number = numbers[std::size_t(vert)];
+        number = number == kNone ? next++ : number;
+        key.push_back(number);
+    };
+    for (RingLayout const &ring : rings) {
+        key.push_back(int(ring.faceSizes.size()));
+        key.insert(key.end(), ring.faceSizes.begin(), ring.faceSizes.end());
+        if (!hasPlainMasks()) {
+            key.insert(key.end(), ring.neighbors.begin(), ring.neighbors.end());
+        }
+        addVertex(ring.center);
+        std::for_each(ring.verts.begin(), ring.verts.end(), addVertex);
+    }
+    return key;
+}
+
+std::vector<int> RingCell::GetKey() const {
+    std::vector<int> key(_columns);
+    key.insert(key.end(), _places.begin(), _places.end());
+    key.insert(key.end(), _ends.begin(), _ends.end());
+    return key;
+}
+
+// What differs in rings alone that the cell does not depend on is the same.
+RingCell const &RingCells::find(CellType const &type, std::vector<Far::Index> const &sources,
+                                std::vector<RingLayout> const &rings) {
+    auto cell = std::make_unique<RingCell const>(type, sources, rings);
+    std::vector<int> const key = cell->GetKey();
+    constexpr int kKind = PatternTable::GetKind<double>(PatternOf::RingCell);
+    return *type.GetPatterns().Get<std::unique_ptr<RingCell const>>(
+        kKind, key.data(), key.data() + key.size(), [&] { return std::move(cell); });
+}
+
+bool RingCells::AreFacesAlike(RingLayout const &ring) const {
+    auto const areSame = [](std::vector<int> const &numbers) {
+        return std::all_of(numbers.begin(), numbers.end(),
+                           [&](int number) { return number == numbers[0]; });
+    };
+    return areSame(ring.faceSizes) && (hasPlainMasks() || areSame(ring.neighbors));
+}
+
+std::shared_ptr<RingItem const> RingItem::Make(CellPatch const &patch, RingCells &cells) {
+    auto item = std::make_shared<RingItem>();
+    if (!item->rings.Init(patch.patch, patch.locals, cells.GetRules())) {
+        return nullptr;
+    }
+    auto const &rings = item->rings.GetRings();
+    if (std::all_of(rings.begin(), rings.end(),
+                    [](VertexRings::Ring const &ring) { return ring.isInLattice; })) {
+        return nullptr;
+    }
+    item->cell = &cells.Find(getChildKind(patch.kind), FindRingLayouts(patch.patch, patch.locals),
+                             [&] { return makeItemCell(patch, cells.GetRules()); });
+    return item;
+}
+
+// Finds the cells of a face.
+class FaceRings::Maker {
+public:
+    Maker(FaceRings &face, CellPatch const &cell, RingCells &cells)
+        : _face(face), _cell(cell), _cells(cells), _numEdges(cell.GetNumCorners()),
+          _layouts(FindRingLayouts(cell.patch, getCorners(_numEdges))) {}
+
+    void FindCells() {
+        _face._children.push_back(&findChild(CellKind::Whole, _layouts, 0, 0));
+        for (int edge = 0; edge < _numEdges; ++edge) {
+            _face._children.push_back(&findChild(CellKind::Half,
+                                                 {getLayout(edge), getLayout(edge + 1)},
+                                                 std::size_t(edge) + 1, edge));
+        }
+        for (int edge = 0; edge < _numEdges; ++edge) {
+            bool const isInLattice = getRing(edge).isInLattice && getRing(edge + 1).isInLattice;
+            for (int const isReversed : {0, 1}) {
+                _face._longEdges.push_back(
+                    isInLattice ? nullptr
+                                : &findItem(CellKind::LongEdge,
+                                            {getLayout(edge + isReversed).From(isReversed),
+                                             getLayout(edge + 1 - isReversed).From(-isReversed)},
+                                            edge, isReversed));
+            }
+        }
+        for (int vert = 0; vert < _numEdges; ++vert) {
+            addVVertices(vert);
+        }
+        _face._firstVVertices.push_back(_face._vVertices.size());
+    }
+
+private:
+    VertexRings::Ring const &getRing(int vert) const {
+        return _face._rings.GetRings()[std::size_t(vert % _numEdges)];
+    }
+    RingLayout const &getLayout(int vert) const { return _layouts[std::size_t(vert % _numEdges)]; }
+
+    RingCell const &findChild(CellKind kind, std::vector<RingLayout> const &rings,
+                              std::size_t child, int firstRing) {
+        return _cells.Find(kind, rings, [&] {
+            if (!_refinement) {
+                _refinement = refine(_cell, _cells.GetRules());
+            }
+            std::vector<RingLayout> layouts = _layouts;
+            std::rotate(layouts.begin(), layouts.begin() + firstRing, layouts.end());
+            return Cell{_refinement->children[child], layouts};
+        });
+    }
+
+    // Of an edge or, behind these, of a vertex.
+    RingCell const &findItem(CellKind kind, std::vector<RingLayout> const &rings, int item,
+                             int turn) {
+        return _cells.Find(kind, rings, [&] {
+            std::vector<int> turns(2 * std::size_t(_numEdges));
+            turns[std::size_t(item)] = turn;
+            return makeItemCell(GatherBorder(_cell, turns.data())[std::size_t(item)],
+                                _cells.GetRules());
+        });
+    }
+
+    // Rings that look alike from all faces have the same.
+    void addVVertices(int vert) {
+        VertexRings::Ring const &ring = getRing(vert);
+        bool const areAlike = _cells.AreFacesAlike(getLayout(vert));
+        _face._firstVVertices.push_back(_face._vVertices.size());
+        for (int turn = 0; turn < (areAlike || ring.isInLattice ? 1 : ring.GetNumFaces()); ++turn) {
+            _face._vVertices.push_back(ring.isInLattice ? nullptr
+                                                        : &findItem(CellKind::Vertex,
+                                                                    {getLayout(vert).From(-turn)},
+                                                                    _numEdges + vert, turn));
+        }
+    }
+
+    FaceRings &_face;
+    CellPatch const &_cell;
+    RingCells &_cells;
+    int const _numEdges;
+    std::vector<RingLayout> const _layouts;
+    std::optional<CellRefinement> _refinement;
+};
+
+FaceRings::FaceRings(CellPatch const &cell, RingCells &cells) {
+    bool const isPlain =
+        _rings.Init(cell.patch, getCorners(cell.GetNumCorners()), cells.GetRules());
+    assert(isPlain);
+    static_cast<void>(isPlain);
+    Maker(*this, cell, cells).FindCells();
+}
+
+void FaceRings::FindChildIndices(std::size_t child, int *indices) const {
+    int const numRings = int(_rings.GetRings().size());
+    int const first = child == 0 ? 0 : int(child) - 1;
+    auto const getBlock = [&](int ring) {
+        int const own = first + ring;
+        return _rings.GetBlock(own < numRings ? own : own - numRings, 0);
+    };
+    _children[child]->FindIndices(_rings.GetCenter(first, 0), getBlock, indices);
+}
+
+// The face to the left of the edge is the first of both rings: this one, or that across the edge.
+void FaceRings::FindLongEdgeIndices(int edge, bool isReversed, int *indices) const {
+    int const next = edge + 1 < int(_rings.GetRings().size()) ? edge + 1 : 0;
+    int const start = isReversed ? next : edge;
+    int const first = isReversed ? 1 : 0;
+    int const end = isReversed ? edge : next;
+    auto const getBlock = [&](int ring) {
+        return ring == 0 ? _rings.GetBlock(start, first) : _rings.GetBlock(end, -first);
+    };
+    GetLongEdge(edge, isReversed)->FindIndices(_rings.GetCenter(start, first), getBlock, indices);
+}
+
+template <typename REAL>
+void RingValues<REAL>::Set(VertexRings const &rings, std::size_t numPoints, int const *indices,
+                           REAL const *points, std::ptrdiff_t stride, std::size_t size) {
+    _rings = &rings;
+    _size = size;
+    _paddedSize = StepMatrix::GetPaddedSize(size);
+    auto const grow = [](std::vector<REAL> &numbers, std::size_t count) {
+        numbers.resize(std::max(numbers.size(), count));
+    };
+    grow(_controlPoints, numPoints * _paddedSize);
+    grow(_points, rings.GetNumPoints() * _paddedSize);
+    grow(_center, _paddedSize);
+    REAL *to = _controlPoints.data();
+    for (std::size_t i = 0; i < numPoints; ++i, to += _paddedSize) {
+        std::ptrdiff_t const point = indices ? indices[i] : std::ptrdiff_t(i);
+        StepMatrix::Pad(points + point * stride, size, to);
+    }
+    rings.Apply(_controlPoints.data(), _paddedSize, _points.data());
+}
+
+template <typename REAL>
+void RingValues<REAL>::EvaluateVertex(RingCell const &vVertex, int ring, int firstFace,
+                                      REAL *result) {
+    std::vector<REAL> const &weights = vVertex.GetCornerWeights<REAL>();
+    VertexRings::Ring const &ofRing = _rings->GetRings()[std::size_t(ring)];
+    _rings->ApplyCenter(ring, firstFace, _controlPoints.data(), _points.data(), _paddedSize,
+                        _center.data());
+    REAL const *const begin = &_points[_rings->GetBlock(ring, 0) * _paddedSize];
+    std::size_t numPoints = 0;
+    std::size_t first = 0;
+    for (int face = 0; face < ofRing.GetNumFaces(); ++face) {
+        first += face < firstFace ? ofRing.GetBlockSize(face) : 0;
+        numPoints += ofRing.GetBlockSize(face);
+    }
+    assert(weights.size() == 1 + numPoints);
+    constexpr std::size_t kLanes = StepMatrix::kPadding;
+    for (std::size_t lane = 0; lane < _size; lane += kLanes) {
+        REAL sums[kLanes];
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            sums[i] = weights[0] * _center[lane + i];
+        }
+        REAL const *weight = &weights[1];
+        auto const add = [&](std::size_t from, std::size_t to) {
+            REAL const *point = begin + from * _paddedSize + lane;
+            for (; from < to; ++from, point += _paddedSize, ++weight) {
+                for (std::size_t i = 0; i < kLanes; ++i) {
+                    sums[i] += *weight * point[i];
+                }
+            }
+        };
+        add(first, numPoints);
+        add(0, first);
+        std::copy_n(sums, std::min(kLanes, _size - lane), result + lane);
+    }
+}
+
+template class RingValues<float>;
+template class RingValues<double>;
+
+} // namespace OpenSubdivHex::BfrExt::internal

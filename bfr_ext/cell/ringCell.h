@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_RING_CELL_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_RING_CELL_H
+
+#include "vertexRings.h"
+
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief What the first step makes of a plain base face: one of its cells, or the long edge of one of its
+/// edges, or one of its V-vertices, the points of which are points of rings.
+///
+/// What these are the rings tell, and so the sizes of some faces: there are far fewer of them than types of
+/// base faces.
+class RingCell {
+public:
+    /// \param sources  by point of the type, the vertex of the level that the step makes
+    /// \param rings    which have all of these, the first one its vertex
+    RingCell(CellType const &type, std::vector<Far::Index> const &sources,
+             std::vector<RingLayout> const &rings);
+
+    CellType const &GetType() const { return _type; }
+    /// All that a cell is but its type.
+    std::vector<int> GetKey() const;
+    /// By *column*, a point of the type, in the order in which rings have them.
+    std::vector<int> const &GetColumns() const { return _columns; }
+    /// \brief Writes by column which of the points of rings it is.
+    ///
+    /// \param center    the point of the first ring's vertex
+    /// \param getBlock  gives by ring the first point of the block of its face 0
+    template <typename GET>
+    void FindIndices(std::size_t center, GET const &getBlock, int *indices) const {
+        *indices++ = int(center);
+        int const *place = _places.data();
+        for (std::size_t ring = 0; ring < _ends.size(); ++ring) {
+            int const block = int(getBlock(int(ring)));
+            for (int const *const end = _places.data() + _ends[ring]; place != end; ++place) {
+                *indices++ = block + *place;
+            }
+        }
+    }
+    /// Weights by column from those by point of the type.
+    void Order(std::vector<double> const &weights, std::vector<double> &result) const;
+    /// By column the weights of the surface at the first corner.
+    template <typename REAL>
+    std::vector<REAL> const &GetCornerWeights() const;
+
+    /// What has been made of it.
+    PatternTable &GetPatterns() const { return _patterns; }
+
+private:
+    CellType const &_type;
+    std::vector<int> _columns;
+    std::vector<int> _places;       // by column but the first, behind the block of face 0
+    std::vector<std::size_t> _ends; // by ring, of columns
+    mutable PatternTable _patterns;
+};
+
+/// The cells of plain base faces with some rules.  Any number of threads may use it.
+class RingCells {
+public:
+    RingCells(CellTypes &types, CellRules const &rules) : _types(types), _rules(rules) {}
+
+    CellRules const &GetRules() const { return _rules; }
+
+    /// \brief Finds a cell by its kind and the rings that tell what it is.
+    ///
+    /// \param make  gives the cell and, in vertices of the same level, the rings that have its points
+    template <typename MAKE>
+    RingCell const &Find(FarExt::internal::CellKind kind, std::vector<RingLayout> const &rings,
+                         MAKE const &make) {
+        std::vector<int> const key = getKey(rings);
+        return *_found.Get<RingCell const *>(
+            int(kind), key.data(), key.data() + key.size(), [&]() -> RingCell const * {
+                auto [cell, layouts] = make();
+                std::vector<Far::Index> const sources = cell.patch.sources;
+                return &find(_types.Find(std::move(cell), _rules), sources, layouts);
+            });
+    }
+
+    /// Whether a ring is the same from all of its faces on.
+    bool AreFacesAlike(RingLayout const &ring) const;
+
+private:
+    // Whether the number of faces at neighbours is of no matter.
+    bool hasPlainMasks() const { return _rules.schemeOptions.faceMask != FarExt::FaceMask::Smooth; }
+    std::vector<int> getKey(std::vector<RingLayout> const &rings) const;
+
+    static RingCell const &find(CellType const &type, std::vector<Far::Index> const &sources,
+                                std::vector<RingLayout> const &rings);
+
+    CellTypes &_types;
+    CellRules const _rules;
+    PatternTable _found; // pointers, by kind and rings
+};
+
+/// \brief An edge or a vertex of a base face that has rings of its own, since the face itself is not plain or
+/// not asked for them.
+struct RingItem {
+    VertexRings rings; ///< of the start of the edge and of its end, or of the vertex
+    RingCell const *cell;
+
+    /// Null where the edge or vertex is in a lattice, or not plain.
+    static std::shared_ptr<RingItem const> Make(FarExt::internal::CellPatch const &patch,
+                                                RingCells &cells);
+};
+
+/// A plain base face that is not in a lattice, with its rings: those of its vertices in turn, each from
+/// the face on.
+class FaceRings {
+public:
+    /// \param cell  the face with its patch
+    FaceRings(FarExt::internal::CellPatch const &cell, RingCells &cells);
+
+    VertexRings const &GetRings() const { return _rings; }
+    /// A child of the face, in the order of RefineCell().
+    RingCell const &GetChild(std::size_t child) const { return *_children[child]; }
+    /// Writes the indices of a child.
+    void FindChildIndices(std::size_t child, int *indices) const;
+
+    /// The long edge of an edge, which may run against the face; null where it is in a lattice.
+    RingCell const *GetLongEdge(int edge, bool isReversed) const {
+        return _longEdges[2 * std::size_t(edge) + (isReversed ? 1 : 0)];
+    }
+    /// Writes the indices of a long edge.
+    void FindLongEdgeIndices(int edge, bool isReversed, int *indices) const;
+
+    /// The V-vertex of a vertex with so many faces before this one; null where it is in a lattice.
+    RingCell const *GetVVertex(int vert, int turn) const {
+        auto const first = _firstVVertices[std::size_t(vert)];
+        std::size_t const numTurns = _firstVVertices[std::size_t(vert) + 1] - first;
+        return _vVertices[first + (numTurns == 1 ? 0 : std::size_t(turn))];
+    }
+
+private:
+    class Maker;
+
+    VertexRings _rings;
+    std::vector<RingCell const *> _children;
+    std::vector<RingCell const *> _longEdges; // by edge, as the face runs and against it
+    std::vector<RingCell const *> _vVertices; // by vertex, of any turn, or by turn
+    std::vector<std::size_t> _firstVVertices;
+};
+
+/// The points of rings, evaluated.
+template <typename REAL>
+class RingValues {
+public:
+    /// \param indices  which points those of the rings are, or null: all in turn
+    /// \param size     numbers of a point; they are \p stride numbers apart
+    void Set(VertexRings const &rings, std::size_t numPoints, int const *indices,
+             REAL const *points, std::ptrdiff_t stride, std::size_t size);
+
+    std::size_t GetSize() const { return _size; }
+    /// From one point to the next.
+    std::size_t GetPaddedSize() const { return _paddedSize; }
+    REAL const *GetControlPoints() const { return _controlPoints.data(); }
+    /// Those of the rings.
+    REAL const *GetPoints() const { return _points.data(); }
+    /// Writes the point of the surface at a vertex, whose first face is \p firstFace of its ring.
+    void EvaluateVertex(RingCell const &vVertex, int ring, int firstFace, REAL *result);
+
+private:
+    VertexRings const *_rings = nullptr;
+    std::size_t _size = 0;
+    std::size_t _paddedSize = 0;
+    std::vector<REAL> _controlPoints;
+    std::vector<REAL> _points;
+    std::vector<REAL> _center;
+};
+
+extern template class RingValues<float>;
+extern template class RingValues<double>;
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

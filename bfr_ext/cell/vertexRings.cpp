@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vertexRings.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+using FarExt::VertexVertexMask;
+using FarExt::internal::LimitPatch;
+
+namespace {
+
+constexpr std::size_t kLanes = StepMatrix::kPadding;
+
+// The corners of a patch, as far as rings need to know them.
+class PatchCorners {
+public:
+    explicit PatchCorners(LimitPatch const &patch) : _patch(patch) {
+        int first = 0;
+        for (int const size : patch.faceSizes) {
+            _firsts.insert(_firsts.end(), std::size_t(size), first);
+            _sizes.insert(_sizes.end(), std::size_t(size), size);
+            first += size;
+        }
+    }
+
+    int GetFaceSize(int corner) const { return _sizes[std::size_t(corner)]; }
+    int GetVertex(int corner) const { return _patch.faceVerts[std::size_t(corner)]; }
+    // So many places further on in the face.
+    int GetNext(int corner, int numPlaces) const {
+        int const first = _firsts[std::size_t(corner)];
+        return first + (corner - first + numPlaces) % GetFaceSize(corner);
+    }
+    int GetBefore(int corner) const { return GetNext(corner, GetFaceSize(corner) - 1); }
+
+    // The corners at the vertex of one, counter-clockwise from that on; none where it has a boundary.
+    std::vector<int> FindRing(int first) const {
+        std::vector<int> ring;
+        int corner = first;
+        do {
+            ring.push_back(corner);
+            corner = _patch.otherCorners[std::size_t(GetBefore(corner))];
+            if (corner < 0 || ring.size() == _sizes.size()) {
+                return {};
+            }
+        } while (corner != first);
+        return ring;
+    }
+
+private:
+    LimitPatch const &_patch;
+    // By corner, of its face: the first corner, and the size.
+    std::vector<int> _firsts;
+    std::vector<int> _sizes;
+};
+
+// Whether no masks are made by anything but sizes of faces and numbers of faces around vertices.
+bool hasFeatures(LimitPatch const &patch) {
+    auto const hasTags = [](auto const &tags) {
+        return std::any_of(tags.begin(), tags.end(), [](float tag) { return tag != 0; });
+    };
+    return hasTags(patch.edgeSharpness) || hasTags(patch.diagonalSharpness) ||
+           hasTags(patch.vertSharpness) || !patch.nonManifoldVerts.empty() ||
+           !patch.lineCorners.empty() || !patch.sharpVerts.empty() ||
+           !patch.sectorCorners.empty() || !patch.irregularCorners.empty() ||
+           !patch.irregularVerts.empty() || patch.numHexagonalSteps != 0;
+}
+
+// Some numbers of a point, which are computed with at once.
+template <typename REAL>
+struct Lanes {
+    static Lanes Load(REAL const *from) {
+        Lanes result;
+        std::copy_n(from, kLanes, result.values);
+        return result;
+    }
+    void Store(REAL *to) const { std::copy_n(values, kLanes, to); }
+
+    Lanes operator+(Lanes const &other) const {
+        Lanes result;
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            result.values[i] = values[i] + other.values[i];
+        }
+        return result;
+    }
+    Lanes operator*(REAL factor) const {
+        Lanes result;
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            result.values[i] = values[i] * factor;
+        }
+        return result;
+    }
+
+    REAL values[kLanes];
+};
+
+} // namespace
+
+std::size_t VertexRings::Ring::GetNumPoints() const {
+    std::size_t size = 2 + GetBlockSize(-1) + GetBlockSize(0);
+    for (int face = 0; face < GetNumFaces(); ++face) {
+        size += GetBlockSize(face);
+    }
+    return size;
+}
+
+// Writes the program of the rings of a patch.
+class VertexRings::Builder {
+public:
+    Builder(VertexRings &rings, LimitPatch const &patch, CellRules const &rules)
+        : _rings(rings), _corners(patch), _rules(rules) {}
+
+    bool Add(int firstCorner) {
+        std::vector<int> const corners = _corners.FindRing(firstCorner);
+        if (corners.empty()) {
+            return false;
+        }
+        Ring ring = {{}, _rings._numPoints, false};
+        _latticeSize = _corners.GetFaceSize(firstCorner);
+        _isInLattice = isRegular(corners);
+        VertexVertexMask const mask = getVertexMask(corners);
+        add(_corners.GetVertex(firstCorner));
+        add(int(corners.size()));
+        add(findWeight(mask.vertexWeight));
+        add(findWeight(mask.faceWeight));
+        // The neighbour where a face begins is the last corner of the face before.
+        int before = corners.back();
+        for (int const corner : corners) {
+            int const size = _corners.GetFaceSize(corner);
+            ring.faceSizes.push_back(size);
+            add(size);
+            add(findMask(size));
+            for (int i = 1; i < size; ++i) {
+                add(_corners.GetVertex(_corners.GetNext(corner, i)));
+            }
+            if (!addNeighbor(_corners.GetBefore(before))) {
+                return false;
+            }
+            before = corner;
+        }
+        ring.isInLattice = _isInLattice;
+        _rings._numPoints += ring.GetNumPoints();
+        _rings._rings.push_back(std::move(ring));
+        return _isInRange;
+    }
+
+private:
+    struct Run {
+        double weight;
+        std::vector<int> points;
+    };
+
+    void add(int number) {
+        _isInRange = _isInRange && number <= int(std::numeric_limits<Number>::max());
+        _rings._program.push_back(Number(number));
+    }
+
+    // Whether so many faces meet at a vertex as in a lattice, all of them of its size.
+    bool isRegular(std::vector<int> const &corners) const {
+        return int(corners.size()) == CellType::GetLatticeValence(_latticeSize) &&
+               std::all_of(corners.begin(), corners.end(), [&](int corner) {
+                   return _corners.GetFaceSize(corner) == _latticeSize;
+               });
+    }
+
+    VertexVertexMask getVertexMask(std::vector<int> const &corners) const {
+        return FarExt::ComputeVertexVertexMask(_rules.interpolation, int(corners.size()));
+    }
+
+    // The first of the weights of a face's mask.
+    int findMask(int size) {
+        for (auto const &[other, first] : _masks) {
+            if (other == size) {
+                return first;
+            }
+        }
+        int const first = int(_rings._weights.size());
+        _rings._weights.resize(_rings._weights.size() + std::size_t(size));
+        FarExt::ComputeFaceVertexMask(_rules.schemeOptions.faceMask, _rules.interpolation, size,
+                                      &_rings._weights[std::size_t(first)]);
+        _masks.emplace_back(size, first);
+        return first;
+    }
+    int findWeight(double weight) {
+        auto const found = std::find(_rings._weights.begin(), _rings._weights.end(), weight);
+        if (found == _rings._weights.end()) {
+            _rings._weights.push_back(weight);
+            return int(_rings._weights.size()) - 1;
+        }
+        return int(found - _rings._weights.begin());
+    }
+
+    // A V-vertex in terms of the patch: first its own weight, and then runs of points that have the same
+    // weight, those at the vertex of the ring first.
+    bool addNeighbor(int firstCorner) {
+        std::vector<int> const corners = _corners.FindRing(firstCorner);
+        if (corners.empty()) {
+            return false;
+        }
+        _isInLattice = _isInLattice && isRegular(corners);
+        VertexVertexMask const mask = getVertexMask(corners);
+        auto const getWeight = [&](int corner, int place) {
+            auto const first = std::size_t(findMask(_corners.GetFaceSize(corner)));
+            return mask.faceWeight * _rings._weights[first + std::size_t(place)];
+        };
+        double ownWeight = mask.vertexWeight;
+        std::vector<Run> runs;
+        auto const addPoint = [&](int corner, double weight) {
+            auto run = std::find_if(runs.begin(), runs.end(),
+                                    [&](Run const &other) { return other.weight == weight; });
+            if (run == runs.end()) {
+                run = runs.insert(runs.end(), {weight, {}});
+            }
+            run->points.push_back(_corners.GetVertex(corner));
+        };
+        int before = corners.back();
+        for (int const corner : corners) {
+            ownWeight += getWeight(corner, 0);
+            addPoint(_corners.GetNext(corner, 1),
+                     getWeight(corner, 1) + getWeight(before, _corners.GetFaceSize(before) - 1));
+            for (int i = 2; i + 1 < _corners.GetFaceSize(corner); ++i) {
+                addPoint(_corners.GetNext(corner, i), getWeight(corner, i));
+            }
+            before = corner;
+        }
+        add(findWeight(ownWeight));
+        add(int(runs.size()));
+        for (Run const &run : runs) {
+            add(findWeight(run.weight));
+            add(int(run.points.size()));
+            std::for_each(run.points.begin(), run.points.end(), [&](int point) { add(point); });
+        }
+        return true;
+    }
+
+    VertexRings &_rings;
+    PatchCorners const _corners;
+    CellRules const &_rules;
+    std::vector<std::pair<int, int>> _masks; // by size, the first of its weights
+    bool _isInRange = true;
+    // Of the ring that is added: the size of its first face, and whether it is in a lattice so far.
+    int _latticeSize = 0;
+    bool _isInLattice = false;
+};
+
+bool VertexRings::Init(LimitPatch const &patch, std::vector<int> const &corners,
+                       CellRules const &rules) {
+    if (hasFeatures(patch)) {
+        return false;
+    }
+    Builder builder(*this, patch, rules);
+    for (int const corner : corners) {
+        if (_program.size() > std::size_t(std::numeric_limits<Number>::max())) {
+            return false;
+        }
+        _firsts.push_back(Number(_program.size()));
+        if (!builder.Add(corner)) {
+            return false;
+        }
+    }
+    _floatWeights.assign(_weights.begin(), _weights.end());
+    _firsts.shrink_to_fit();
+    _program.shrink_to_fit();
+    _weights.shrink_to_fit();
+    return true;
+}
+
+template <>
+double const *VertexRings::getWeights() const {
+    return _weights.data();
+}
+template <>
+float const *VertexRings::getWeights() const {
+    return _floatWeights.data();
+}
+
+// Writes the block of a face, and returns where the program goes on.
+template <std::size_t PADDED_SIZE, typename REAL>
+VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL const *weights,
+                                                  REAL const *center, REAL const *points,
+                                                  std::size_t paddedSize, REAL *result) {
+    std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
+    constexpr std::size_t kTriangle = 3;
+    std::size_t const faceSize = program[0];
+    REAL const *const mask = weights + program[1];
+    Number const *const verts = program + 2; // behind that which has the ring
+    Number const *const row = verts + (faceSize - 1);
+    std::size_t const numRuns = row[1];
+    Number const *end = row + 2;
+    for (std::size_t first = 0; first < stride; first += kLanes) {
+        auto const load = [&](std::size_t point) {
+            return Lanes<REAL>::Load(points + point * stride + first);
+        };
+        auto const store = [&](Lanes<REAL> const &sum, std::size_t place) {
+            sum.Store(result + place * stride + first);
+        };
+        Lanes<REAL> sum = load(verts[0]) * weights[row[0]];
+        Number const *run = row + 2;
+        for (std::size_t i = 0; i < numRuns; ++i) {
+            std::size_t const numPoints = run[1];
+            Number const *const ofRun = run + 2;
+            Lanes<REAL> ofPoints = load(ofRun[0]);
+            for (std::size_t k = 1; k < numPoints; ++k) {
+                ofPoints = ofPoints + load(ofRun[k]);
+            }
+            sum = sum + ofPoints * weights[run[0]];
+            run = ofRun + numPoints;
+        }
+        end = run;
+        store(sum, 0);
+        Lanes<REAL> const x = Lanes<REAL>::Load(center + first);
+        if (faceSize == kTriangle) {
+            Lanes<REAL> const y = load(verts[0]);
+            Lanes<REAL> const z = load(verts[1]);
+            store(x * mask[0] + (y + z) * mask[1], 1);
+            store(y * mask[0] + (z + x) * mask[1], 2);
+            store(z * mask[0] + (x + y) * mask[1], 3);
+            continue;
+        }
+        auto const getVertex = [&](std::size_t place) {
+            std::size_t const corner = place < faceSize ? place : place - faceSize;
+            return corner == 0 ? x : load(verts[corner - 1]);
+        };
+        // Masks are symmetrical.
+        for (std::size_t corner = 0; corner < faceSize; ++corner) {
+            Lanes<REAL> ofCorner = getVertex(corner) * mask[0];
+            std::size_t i = 1;
+            for (; 2 * i < faceSize; ++i) {
+                ofCorner =
+                    ofCorner + (getVertex(corner + i) + getVertex(corner + faceSize - i)) * mask[i];
+            }
+            if (2 * i == faceSize) {
+                ofCorner = ofCorner + getVertex(corner + i) * mask[i];
+            }
+            store(ofCorner, 1 + corner);
+        }
+    }
+    return end;
+}
+
+// Writes the V-vertex of a ring, from one of its faces on.
+template <std::size_t PADDED_SIZE, typename REAL>
+void VertexRings::applyCenter(Ring const &ring, int firstFace, REAL vertexWeight, REAL faceWeight,
+                              REAL const *center, REAL const *blocks, std::size_t paddedSize,
+                              REAL *result) {
+    std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
+    int const numFaces = ring.GetNumFaces();
+    for (std::size_t first = 0; first < stride; first += kLanes) {
+        REAL const *block = blocks + first;
+        for (int face = 0; face < firstFace; ++face) {
+            block += ring.GetBlockSize(face) * stride;
+        }
+        Lanes<REAL> sum = Lanes<REAL>::Load(block + stride);
+        for (int i = firstFace + 1; i < firstFace + numFaces; ++i) {
+            block += ring.GetBlockSize(i - 1 < numFaces ? i - 1 : i - 1 - numFaces) * stride;
+            if (i == numFaces) {
+                block = blocks + first;
+            }
+            sum = sum + Lanes<REAL>::Load(block + stride);
+        }
+        (Lanes<REAL>::Load(center + first) * vertexWeight + sum * faceWeight).Store(result + first);
+    }
+}
+
+template <std::size_t PADDED_SIZE, typename REAL>
+void VertexRings::apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
+    std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
+    REAL const *const weights = getWeights<REAL>();
+    Number const *program = _program.data();
+    for (Ring const &ring : _rings) {
+        REAL const *const center = points + program[0] * stride;
+        REAL const vertexWeight = weights[program[2]];
+        REAL const faceWeight = weights[program[3]];
+        program += kHeaderSize;
+        REAL *const centers = result + ring.firstPoint * stride;
+        REAL *const copyOfLast = centers + 2 * stride;
+        REAL *const blocks = copyOfLast + ring.GetBlockSize(-1) * stride;
+        REAL *block = blocks;
+        REAL *last = blocks;
+        for (int const size : ring.faceSizes) {
+            last = block;
+            program = applyFace<PADDED_SIZE>(program, weights, center, points, paddedSize, block);
+            block += (1 + std::size_t(size)) * stride;
+        }
+        std::copy_n(last, ring.GetBlockSize(-1) * stride, copyOfLast);
+        std::copy_n(blocks, ring.GetBlockSize(0) * stride, block);
+        for (int i = 0; i < 2; ++i) {
+            applyCenter<PADDED_SIZE>(ring, i, vertexWeight, faceWeight, center, blocks, paddedSize,
+                                     centers + std::size_t(i) * stride);
+        }
+    }
+}
+
+template <typename REAL>
+void VertexRings::Apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
+    if (paddedSize == kLanes) {
+        apply<kLanes>(points, paddedSize, result);
+    } else {
+        apply<0>(points, paddedSize, result);
+    }
+}
+
+template <typename REAL>
+void VertexRings::ApplyCenter(int ring, int firstFace, REAL const *points, REAL const *rings,
+                              std::size_t paddedSize, REAL *result) const {
+    REAL const *const weights = getWeights<REAL>();
+    Number const *const program = &_program[_firsts[std::size_t(ring)]];
+    applyCenter<0>(_rings[std::size_t(ring)], firstFace, weights[program[2]], weights[program[3]],
+                   points + program[0] * paddedSize, rings + GetBlock(ring, 0) * paddedSize,
+                   paddedSize, result);
+}
+
+template void VertexRings::Apply(float const *, std::size_t, float *) const;
+template void VertexRings::Apply(double const *, std::size_t, double *) const;
+template void VertexRings::ApplyCenter(int, int, float const *, float const *, std::size_t,
+                                       float *) const;
+template void VertexRings::ApplyCenter(int, int, double const *, double const *, std::size_t,
+                                       double *) const;
+
+RingLayout RingLayout::From(int firstFace) const {
+    int const numFaces = int(faceSizes.size());
+    firstFace = (firstFace + numFaces) % numFaces;
+    int first = 0;
+    for (int face = 0; face < firstFace; ++face) {
+        first += 1 + faceSizes[std::size_t(face)];
+    }
+    RingLayout result = *this;
+    auto const rotate = [](std::vector<int> &numbers, int begin) {
+        std::rotate(numbers.begin(), numbers.begin() + begin, numbers.end());
+    };
+    rotate(result.faceSizes, firstFace);
+    rotate(result.verts, first);
+    rotate(result.neighbors, firstFace);
+    return result;
+}
+
+std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int> const &corners) {
+    constexpr int kQuad = 4;
+    PatchCorners const ofPatch(patch);
+    int const numVerts = int(patch.sources.size());
+    std::vector<RingLayout> layouts;
+    for (int const firstCorner : corners) {
+        RingLayout layout = {ofPatch.GetVertex(firstCorner), {}, {}, {}};
+        for (int const corner : ofPatch.FindRing(firstCorner)) {
+            int const size = ofPatch.GetFaceSize(corner);
+            int const neighbor = ofPatch.GetNext(corner, 1);
+            layout.faceSizes.push_back(size);
+            layout.verts.push_back(ofPatch.GetVertex(neighbor));
+            for (int i = 0; i < size; ++i) {
+                layout.verts.push_back(numVerts + ofPatch.GetNext(corner, i));
+            }
+            std::vector<int> const ofNeighbor = ofPatch.FindRing(neighbor);
+            int const numFaces = int(ofNeighbor.size());
+            bool const isAmongQuads =
+                numFaces == kQuad && std::all_of(ofNeighbor.begin(), ofNeighbor.end(), [&](int c) {
+                    return ofPatch.GetFaceSize(c) == kQuad;
+                });
+            layout.neighbors.push_back(isAmongQuads ? -numFaces : numFaces);
+        }
+        layouts.push_back(std::move(layout));
+    }
+    return layouts;
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal

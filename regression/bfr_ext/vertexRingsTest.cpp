@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The first step by rings of plain faces, against steps of their patches.
+#include "bfr_ext/cell/plainFace.h"
+#include "far_ext/vtr/hierarchy.h"
+#include "regression/far_ext/referenceMatch.h"
+#include "regression/shapes/meshOperations.h"
+#include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace OpenSubdivHex::Regression {
+
+using BfrExt::internal::CellRules;
+using BfrExt::internal::CellType;
+using BfrExt::internal::CellTypes;
+using BfrExt::internal::FaceRings;
+using BfrExt::internal::PlainFaceGatherer;
+using BfrExt::internal::PlainFaceType;
+using BfrExt::internal::RingCell;
+using BfrExt::internal::RingItem;
+using BfrExt::internal::RingValues;
+using BfrExt::internal::StepMatrix;
+
+namespace {
+
+constexpr std::size_t kSize = 5; // of points, which is more than is computed with at once
+
+/// Points of a mesh by chance.
+std::vector<double> makePoints(int numVertices) {
+    std::mt19937 random;
+    std::uniform_real_distribution<double> between(-1, 1);
+    std::vector<double> points(kSize * std::size_t(numVertices));
+    std::generate(points.begin(), points.end(), [&] { return between(random); });
+    return points;
+}
+
+/// Some points of an array, in an order.
+std::vector<double> pick(std::vector<double> const &points, std::size_t stride,
+                         std::vector<int> const &indices) {
+    std::vector<double> result;
+    for (int const index : indices) {
+        auto const first = points.begin() + std::ptrdiff_t(std::size_t(index) * stride);
+        result.insert(result.end(), first, first + std::ptrdiff_t(kSize));
+    }
+    return result;
+}
+
+/// The same of what rings have, by point of the cell's type.
+std::vector<double> pickCell(RingCell const &cell, RingValues<double> const &values,
+                             std::vector<int> const &indices) {
+    std::vector<int> ofType(indices.size());
+    for (std::size_t column = 0; column < indices.size(); ++column) {
+        ofType[std::size_t(cell.GetColumns()[column])] = indices[column];
+    }
+    std::size_t const stride = values.GetPaddedSize();
+    std::size_t const last = std::size_t(*std::max_element(indices.begin(), indices.end()));
+    return pick({values.GetPoints(), values.GetPoints() + (last + 1) * stride}, stride, ofType);
+}
+
+/// What a step makes of points of a type, by point of a child.
+std::vector<double> stepTo(CellType const &type, std::size_t child,
+                           std::vector<double> const &points) {
+    std::size_t const padded = StepMatrix::GetPaddedSize(kSize);
+    std::vector<double> own(std::size_t(type.GetNumPoints()) * padded);
+    for (std::size_t i = 0; i < std::size_t(type.GetNumPoints()); ++i) {
+        std::copy_n(&points[i * kSize], kSize, &own[i * padded]);
+    }
+    std::vector<double> ofStep(type.GetStep().GetNumRows() * padded);
+    type.GetStep().Apply(own.data(), padded, ofStep.data());
+    CellType::Child const &to = type.GetChildren()[child];
+    std::vector<double> ofChild(to.step.GetNumRows() * padded);
+    to.step.CopyPoints(ofStep.data(), padded, ofChild.data());
+    std::vector<int> all(to.step.GetNumRows());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        all[i] = int(i);
+    }
+    return pick(ofChild, padded, all);
+}
+
+void expectNear(std::vector<double> const &points, std::vector<double> const &expected) {
+    ASSERT_EQ(points.size(), expected.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        ASSERT_NEAR(points[i], expected[i], 1e-14) << "number " << i;
+    }
+}
+
+/// Expects that rings have the points of all cells of plain faces, and that what has rings of its own gets
+/// the same from all faces, to the bit.
+class Rings {
+public:
+    explicit Rings(CellRules const &rules) : _rules(rules) {}
+
+    /// \return  how many faces have rings
+    int Expect(Shape const &shape) {
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);
+        FarExt::internal::Level const &level = refiner->GetHierarchy().mesh.levels[0];
+        auto const marks = FarExt::internal::MarkFeatures(level);
+        std::vector<double> const points = makePoints(level.numVertices);
+        PlainFaceGatherer gatherer;
+        int numFaces = 0;
+        for (int face = 0; face < level.numFaces && !testing::Test::HasFailure(); ++face) {
+            SCOPED_TRACE(face);
+            std::vector<Far::Index> indices;
+            PlainFaceType const *const plain =
+                gatherer.Find(_types.GetPlainFaces(_rules), level, marks, face, indices);
+            if (!plain || plain->IsInLattice()) {
+                continue;
+            }
+            ++numFaces;
+            int const numPoints = plain->GetNumPoints();
+            std::vector<int> const turns(indices.begin() + numPoints, indices.end());
+            indices.resize(std::size_t(numPoints));
+            expectFace(*plain, turns, pick(points, kSize, indices));
+        }
+        return numFaces;
+    }
+
+private:
+    void expectFace(PlainFaceType const &plain, std::vector<int> const &turns,
+                    std::vector<double> const &points) {
+        FaceRings const &face = plain.GetRings();
+        CellType const &type = plain.Get();
+        RingValues<double> values;
+        values.Set(face.GetRings(), std::size_t(type.GetNumPoints()), nullptr, points.data(), kSize,
+                   kSize);
+        std::vector<int> indices;
+        for (std::size_t child = 0; child < type.GetChildren().size(); ++child) {
+            RingCell const &cell = face.GetChild(child);
+            ASSERT_EQ(&cell.GetType(), type.GetChildren()[child].type) << "child " << child;
+            indices.resize(cell.GetColumns().size());
+            face.FindChildIndices(child, indices.data());
+            expectNear(pickCell(cell, values, indices), stepTo(type, child, points));
+        }
+        int const numEdges = type.GetNumCorners();
+        for (int edge = 0; edge < numEdges; ++edge) {
+            expectEdge(type, face, edge, turns, values, points);
+        }
+        for (int vert = 0; vert < numEdges; ++vert) {
+            expectVertex(type, face, vert, turns, values, points);
+        }
+    }
+
+    void expectEdge(CellType const &type, FaceRings const &face, int edge,
+                    std::vector<int> const &turns, RingValues<double> const &values,
+                    std::vector<double> const &points) {
+        CellType::BorderItem const &item = type.GetBorderItem(turns.data(), std::size_t(edge));
+        RingCell const *const cell = face.GetLongEdge(edge, item.isReversed);
+        ASSERT_EQ(item.type->IsInLattice(), cell == nullptr) << "edge " << edge;
+        ASSERT_EQ(item.rings == nullptr, cell == nullptr) << "edge " << edge;
+        if (!cell) {
+            return;
+        }
+        ASSERT_EQ(cell, item.rings->cell);
+        std::vector<int> indices(cell->GetColumns().size());
+        face.FindLongEdgeIndices(edge, item.isReversed, indices.data());
+        std::vector<double> const ofFace = pickCell(*cell, values, indices);
+        RingValues<double> ownValues;
+        ownValues.Set(item.rings->rings, item.points.size(), item.points.data(), points.data(),
+                      kSize, kSize);
+        cell->FindIndices(
+            item.rings->rings.GetCenter(0, 0),
+            [&](int ring) { return item.rings->rings.GetBlock(ring, 0); }, indices.data());
+        EXPECT_EQ(ofFace, pickCell(*cell, ownValues, indices)) << "edge " << edge;
+        expectNear(ofFace, stepTo(*item.type, 0, pick(points, kSize, item.points)));
+    }
+
+    void expectVertex(CellType const &type, FaceRings const &face, int vert,
+                      std::vector<int> const &turns, RingValues<double> &values,
+                      std::vector<double> const &points) {
+        auto const place = std::size_t(type.GetNumCorners()) + std::size_t(vert);
+        CellType::BorderItem const &item = type.GetBorderItem(turns.data(), place);
+        RingCell const *const cell = face.GetVVertex(vert, turns[place]);
+        ASSERT_EQ(item.type->IsInLattice(), cell == nullptr) << "vertex " << vert;
+        ASSERT_EQ(item.rings == nullptr, cell == nullptr) << "vertex " << vert;
+        if (!cell) {
+            return;
+        }
+        ASSERT_EQ(cell, item.rings->cell);
+        int const numFaces = face.GetRings().GetRings()[std::size_t(vert)].GetNumFaces();
+        std::vector<double> ofFace(kSize);
+        values.EvaluateVertex(*cell, vert, (numFaces - turns[place]) % numFaces, ofFace.data());
+        RingValues<double> ownValues;
+        ownValues.Set(item.rings->rings, item.points.size(), item.points.data(), points.data(),
+                      kSize, kSize);
+        std::vector<double> own(kSize);
+        ownValues.EvaluateVertex(*cell, 0, 0, own.data());
+        EXPECT_EQ(ofFace, own) << "vertex " << vert;
+        std::vector<double> expected(kSize);
+        std::vector<double> const &weights = type.GetCornerPoints()[std::size_t(vert)];
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            for (std::size_t k = 0; k < kSize; ++k) {
+                expected[k] += weights[i] * points[i * kSize + k];
+            }
+        }
+        expectNear(ofFace, expected);
+    }
+
+    CellRules const _rules;
+    CellTypes _types;
+};
+
+class VertexRingsTest : public testing::TestWithParam<FarExt::FaceMask> {
+protected:
+    CellRules makeRules() const {
+        CellRules rules;
+        rules.schemeOptions.faceMask = GetParam();
+        return rules;
+    }
+};
+
+} // namespace
+
+TEST_P(VertexRingsTest, HaveThePointsOfTheFirstStep) {
+    Rings rings(makeRules());
+    int numFaces = 0;
+    for (Shape const &shape : GetShapes()) {
+        SCOPED_TRACE(shape.name);
+        numFaces += shape.GetNumFaces() < 1000 ? rings.Expect(shape) : 0;
+    }
+    EXPECT_GT(numFaces, 100);
+    Shape const triangles = MakeTorus(9, 8, TorusFaces::IrregularTriangles);
+    EXPECT_GT(rings.Expect(triangles), 0);
+    EXPECT_GT(rings.Expect(MakeDual("dual", triangles)), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Masks, VertexRingsTest,
+                         testing::Values(FarExt::FaceMask::Average, FarExt::FaceMask::Smooth));
+
+} // namespace OpenSubdivHex::Regression
