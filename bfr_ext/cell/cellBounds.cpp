@@ -14,7 +14,12 @@ CellBounds const &CellBounds::Find(CellType const &type) {
 
 CellBounds::CellBounds(CellType const &type) {
     constexpr int kSteps = 2;
+    constexpr int kMaxPoints = 128;
     _weights.assign(std::size_t(type.GetNumPoints()), 0.0);
+    if (type.GetNumPoints() > kMaxPoints) {
+        boundByStep(type.GetStep());
+        return;
+    }
     // The last step is looked at for all children together, which share points.
     ForDescendants(type, PointRows(type), kSteps - 1,
                    [&](CellType const &child, PointRows const &points) {
@@ -26,6 +31,19 @@ CellBounds::CellBounds(CellType const &type) {
                            }
                        }
                    });
+}
+
+// By the points one step on, whose rows have few entries: dense rows beside a face of some hundred vertices
+// would take minutes.
+void CellBounds::boundByStep(StepMatrix const &step) {
+    std::vector<double> row(_weights.size());
+    for (std::size_t i = 0; i < step.GetNumRows(); ++i) {
+        step.ForEachEntry(i, [&](std::size_t point, double weight) { row[point] += weight; });
+        step.ForEachEntry(i, [&](std::size_t point, double) {
+            _weights[point] = std::max(_weights[point], row[point]);
+        });
+        step.ForEachEntry(i, [&](std::size_t point, double) { row[point] = 0; });
+    }
 }
 
 // A sum of numbers is the limit and the sum of what they exceed it by.  It is largest where those that

@@ -13,7 +13,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// A place of a cell is a sum of the points, with weights that are not negative and add up to 1.  A step
 /// makes points of a child of them with such weights, too, and so do some steps: a place in the cell is a
 /// sum of the points of the cell two steps on that has it.  So no weight of a place is larger than the
-/// largest that these points have.
+/// largest that these points have.  Where a cell has very many points, one step has to do.
 class CellBounds {
 public:
     explicit CellBounds(CellType const &type);
@@ -32,6 +32,7 @@ public:
     }
 
 private:
+    void boundByStep(StepMatrix const &step);
     double getExcess(std::vector<double> const &numbers, double limit, double sign) const;
 
     std::vector<double> _weights; // by point
