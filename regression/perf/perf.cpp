@@ -78,6 +78,7 @@ void run(Suite::Options const &options, std::string const &command, Paths const 
     AddTableFreeBenchmarks(suite);
     AddLimitBenchmarks(suite);
     AddSurfaceBenchmarks(suite);
+    AddViewBenchmarks(suite);
     AddDrawingBenchmarks(suite);
     AddGrowthBenchmarks(suite);
     AddBusyBenchmarks(suite);

@@ -82,6 +82,12 @@ std::vector<Row> const &GetRows() {
                           "Bfr::RefinerSurfaceFactory", 3, 10});
         result.push_back({"surface-warm", "making surfaces, full cache, per face, 1 thread",
                           "Bfr::RefinerSurfaceFactory", 5, 10});
+        result.push_back(
+            {"surface-evaluation-cold",
+             "making and evaluating surfaces, empty cache, level 3, per point, 1 thread",
+             "Bfr::Surface::Evaluate, the same", 1, 3});
+        result.push_back({"view", "surfaces for a camera, with their points, 1 thread",
+                          "own, uniform level that is as close", 1, 4});
         result.push_back({"polygons-1", "polygons with their base faces, per corner, 1 thread",
                           "loop over Far::TopologyLevel", 0.5, 1});
         result.push_back({"polygons-2", "polygons with their base faces, per corner, 2 threads",

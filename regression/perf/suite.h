@@ -85,6 +85,7 @@ void AddEvaluationBenchmarks(Suite &suite);
 void AddTableFreeBenchmarks(Suite &suite);
 void AddLimitBenchmarks(Suite &suite);
 void AddSurfaceBenchmarks(Suite &suite);
+void AddViewBenchmarks(Suite &suite);
 void AddDrawingBenchmarks(Suite &suite);
 void AddGrowthBenchmarks(Suite &suite);
 void AddBusyBenchmarks(Suite &suite);

@@ -2,7 +2,7 @@
 //
 // Surfaces of faces against Bfr's of Catmull-Clark or, of triangles, Loop: nanoseconds per point of a
 // tessellation of every face, without and with first derivatives, and per surface that is made, with
-// a cache that is empty or full.
+// a cache that is empty or full; and per point of surfaces that are made and evaluated for the first time.
 #include "makers.h"
 #include "suite.h"
 
@@ -23,6 +23,7 @@ namespace {
 namespace Bfr = OpenSubdiv::Bfr;
 
 constexpr int kLevel = 4;
+constexpr int kColdLevel = 3;
 
 using OwnSurface = BfrExt::Surface<float>;
 using PeerSurface = Bfr::Surface<float>;
@@ -156,6 +157,22 @@ double evaluateStream(BfrExt::PatchStream<float> const &stream, Workspace &works
     return double(numPoints);
 }
 
+/// The room that all faces have enough of.
+void takeRoom(OwnSurfaces const &own, PeerSurfaces const &peer, int numPlaces,
+              Workspace &workspace) {
+    std::size_t numPoints = 0;
+    for (OwnSurface const &surface : own.surfaces) {
+        numPoints = std::max(numPoints, std::size_t(surface.GetNumControlPoints()));
+    }
+    for (PeerSurface const &surface : peer.surfaces) {
+        numPoints = std::max(numPoints, std::size_t(surface.GetNumPatchPoints()));
+    }
+    workspace.gathered.resize(3 * numPoints);
+    for (std::vector<float> &result : workspace.results) {
+        result.resize(3 * 2 * std::size_t(numPlaces));
+    }
+}
+
 /// \param evaluate  gives the number of points that it makes
 template <typename EVALUATE>
 Contestant makePointContestant(std::string const &name, std::shared_ptr<Workspace> const &workspace,
@@ -186,18 +203,10 @@ Contest makePointContest(BenchMesh const &mesh, bool isRegular) {
     auto const tessellation =
         std::make_shared<BfrExt::Tessellation>(own->surfaces[0].GetParameterization(), kLevel);
     int const numPlaces = tessellation->GetNumCoords();
-    std::size_t numPoints = 0;
     for (OwnSurface const &surface : own->surfaces) {
         Require(surface.GetFaceSize() == tessellation->GetFaceSize(), "faces of several sizes");
-        numPoints = std::max(numPoints, std::size_t(surface.GetNumControlPoints()));
     }
-    for (PeerSurface const &surface : peer->surfaces) {
-        numPoints = std::max(numPoints, std::size_t(surface.GetNumPatchPoints()));
-    }
-    workspace->gathered.resize(3 * numPoints);
-    for (std::vector<float> &result : workspace->results) {
-        result.resize(3 * 2 * std::size_t(numPlaces));
-    }
+    takeRoom(*own, *peer, numPlaces, *workspace);
     Contest contest;
     for (bool const hasDerivatives : {false, true}) {
         std::string const suffix = hasDerivatives ? ", derivatives" : "";
@@ -232,6 +241,38 @@ Contest makePointContest(BenchMesh const &mesh, bool isRegular) {
         contest.pairings.push_back({"surface-stencils", 0, {6}});
         contest.pairings.push_back({"stream-stencils", 4, {6}});
     }
+    return contest;
+}
+
+/// Factories that have found nothing, the surfaces of all faces, and the points of a tessellation of each.
+Contest makeColdContest(BenchMesh const &mesh) {
+    auto const workspace = std::make_shared<Workspace>(mesh);
+    auto const own = std::make_shared<OwnSurfaces>();
+    auto const peer = std::make_shared<PeerSurfaces>();
+    auto const initOwn = [=] {
+        own->factory = BfrExt::SurfaceFactory::Create(*workspace->refiner);
+        own->Init(workspace->GetNumFaces());
+    };
+    auto const initPeer = [=] {
+        peer->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*workspace->peerRefiner);
+        peer->Init(workspace->GetNumFaces());
+    };
+    initOwn();
+    initPeer();
+    auto const tessellation =
+        std::make_shared<BfrExt::Tessellation>(own->surfaces[0].GetParameterization(), kColdLevel);
+    int const numPlaces = tessellation->GetNumCoords();
+    takeRoom(*own, *peer, numPlaces, *workspace);
+    Contest contest;
+    contest.contestants.push_back(makePointContestant("BfrExt::Surface, cold", workspace, [=] {
+        initOwn();
+        return evaluateOwn(*own, *tessellation, false, *workspace);
+    }));
+    contest.contestants.push_back(makePointContestant("Bfr::Surface, cold", workspace, [=] {
+        initPeer();
+        return evaluatePeer(*peer, numPlaces, false, *workspace);
+    }));
+    contest.pairings = {{"surface-evaluation-cold", 0, {1}}};
     return contest;
 }
 
@@ -285,6 +326,11 @@ void AddSurfaceBenchmarks(Suite &suite) {
         for (Memory memory : {Memory::Default, Memory::Warm}) {
             suite.AddContest({"making surfaces", "surface", mesh, memory},
                              [=] { return makeInitContest(mesh); });
+            // Types of irregular meshes take seconds to make, wherever memory comes from.
+            if (isRegular || memory == Memory::Default) {
+                suite.AddContest({"surfaces, level 3, empty cache", "point", mesh, memory},
+                                 [=] { return makeColdContest(mesh); });
+            }
         }
     };
     for (BenchMesh const &mesh : suite.GetMeshes()) {
