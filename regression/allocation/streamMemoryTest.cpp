@@ -111,7 +111,7 @@ TEST(StreamMemoryTest, IsWhatWasAskedFor) {
     }
 }
 
-// Faces that take 25 times as much memory as there is, or 6 times, come in sections.
+// Faces that take many times as much memory as there is come in sections.
 TEST(StreamMemoryTest, DoesNotDependOnTheSizeOfFaces) {
     Subject const subject(GetShape("polygon4"));
     struct Case {
