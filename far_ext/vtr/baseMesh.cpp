@@ -70,22 +70,32 @@ unsigned findRepeated(Index const *verts) {
     return result;
 }
 
-// The same for faces that follow one another; not 0 for a face of many vertices, too.
+// The same for quads that follow one another: compilers look at the corners of one at a time.
+unsigned findRepeatedInQuads(Index const *verts, Index numFaces) {
+    constexpr int kSize = 4;
+    unsigned results[kSize] = {};
+    for (Index face = 0; face < numFaces; ++face, verts += kSize) {
+        for (int i = 0; i < kSize; ++i) {
+            results[i] |= unsigned(verts[i] == verts[(i + 1) % kSize]) |
+                          unsigned(verts[i] == verts[(i + 2) % kSize]);
+        }
+    }
+    return results[0] | results[1] | results[2] | results[3];
+}
+
+// The same for any faces that follow one another; not 0 for a face of many vertices, too.
 unsigned findRepeated(Level const &level, Index begin, Index end) {
     Index const *verts = level.faceVerts.data() + level.faceFirstCorner[begin];
     unsigned result = 0;
-    auto const findInAll = [&](auto size) {
-        for (Index face = begin; face < end; ++face, verts += size) {
-            result |= findRepeated<size>(verts);
-        }
-        return result;
-    };
     int const size = level.faceSizes.size() == 1 ? level.faceSizes[0] : 0;
     if (size == 3) {
-        return findInAll(std::integral_constant<int, 3>());
+        for (Index face = begin; face < end; ++face, verts += 3) {
+            result |= findRepeated<3>(verts);
+        }
+        return result;
     }
     if (size == 4) {
-        return findInAll(std::integral_constant<int, 4>());
+        return findRepeatedInQuads(verts, end - begin);
     }
     for (Index face = begin; face < end; ++face) {
         int const faceSize = level.GetFaceSize(face);
