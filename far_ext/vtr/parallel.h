@@ -163,7 +163,11 @@ std::vector<Far::Index> ParallelSelect(Far::Index count, PREDICATE predicate,
     auto const select = [&](Nothing, Far::Index begin, Far::Index end) {
         std::vector<Far::Index> &ofRange = selected[begin / length];
         for (Far::Index i = begin; i < end; ++i) {
-            if (predicate(i)) {
+            // A loop that writes nothing, through which compilers keep what the predicate looks at.
+            while (i < end && !predicate(i)) {
+                ++i;
+            }
+            if (i < end) {
                 ofRange.push_back(i);
             }
         }
