@@ -191,14 +191,12 @@ inline bool MateFinder<PLACES>::findMatesOfFew(Index first, NUM_FACES numFaces) 
     Index const *const nextVerts = _nextVerts + first;
     Keys<SIZE> const prevVerts(_prevVerts + first);
     unsigned const all = (1u << numFaces) - 1;
-    unsigned sum = 0;
     int before[SIZE]; // by face of the vertex
     for (int face = 0; face < numFaces; ++face) {
         unsigned const matches = prevVerts.FindEqual(nextVerts[face]) & all;
         if (matches == 0) {
             return findMatesOfOpen<SIZE>(first, numFaces, face);
         }
-        sum += matches;
         before[face] = findLowestBit(matches);
         _mates[corners[face]] = corners[before[face]];
     }
@@ -209,8 +207,9 @@ inline bool MateFinder<PLACES>::findMatesOfFew(Index first, NUM_FACES numFaces) 
         met |= 1u << face;
         _orderedCorners[first + i] = corners[face];
     }
-    // The sum is larger where an edge has further faces.  One face alone has come back to itself.
-    return met == all && sum == all && numFaces > 1;
+    // No edge has further faces: two that leave along one edge would have the same face before them,
+    // and two that come back along one would leave one of them without a face behind it.
+    return met == all && numFaces > 1; // one face alone has come back to itself
 }
 
 // The same where a fan begins with a face of the vertex: from this on, counter-clockwise.
