@@ -9,25 +9,25 @@ namespace OpenSubdivHex::BfrExt {
 
 using FarExt::internal::Level;
 
-CellForest::CellForest(FarExt::TopologyRefiner const &refiner) : _refiner(&refiner) {
-    FarExt::TopologyLevel const &base = refiner.GetLevel(0);
-    for (Index face = 0; face < base.GetNumFaces(); ++face) {
-        _trees.emplace_back(base.GetFaceVertices(face).size());
+CellForest::CellForest(FarExt::TopologyRefiner const &refiner)
+    : _level(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel())) {
+    for (Index face = 0; face < _level.GetNumFaces(); ++face) {
+        _trees.emplace_back(_level.GetFaceVertices(face).size());
     }
-    _edges.resize(std::size_t(base.GetNumEdges()));
+    _edges.resize(std::size_t(_level.GetNumEdges()));
     _polylines = _edges;
-    _firstPoints.assign(_polylines.size() + 1, base.GetNumVertices());
+    _firstPoints.assign(_polylines.size() + 1, _level.GetNumVertices());
 }
 
 // Whether the edge runs against the face.
 bool CellForest::isReversed(Index face, int local) const {
-    Level const &level = _refiner->GetHierarchy().mesh.levels[0];
+    Level const &level = _level.GetLevel();
     Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
     return level.edgeFaces[edge][0] != face || level.edgeFaceLocals[edge][0] != local;
 }
 
 void CellForest::MatchEdges() {
-    Level const &level = _refiner->GetHierarchy().mesh.levels[0];
+    Level const &level = _level.GetLevel();
     _polylines = _edges;
     for (Index face = 0; face < GetNumFaces(); ++face) {
         for (int local = 0; local < level.GetFaceSize(face); ++local) {
@@ -61,7 +61,7 @@ void CellForest::MatchEdges() {
 }
 
 bool CellForest::IsMatched(Index face) const {
-    Level const &level = _refiner->GetHierarchy().mesh.levels[0];
+    Level const &level = _level.GetLevel();
     CellTree const &tree = GetTree(face);
     if (tree.GetFaceSize() != level.GetFaceSize(face)) {
         return false;
@@ -78,7 +78,7 @@ bool CellForest::IsMatched(Index face) const {
 }
 
 std::vector<Polyline> CellForest::GetFacePolylines(Index face) const {
-    Level const &level = _refiner->GetHierarchy().mesh.levels[0];
+    Level const &level = _level.GetLevel();
     std::vector<Polyline> edges;
     for (int local = 0; local < level.GetFaceSize(face); ++local) {
         Polyline const &polyline =
@@ -93,7 +93,7 @@ Tessellation CellForest::GetTessellation(Index face, Tessellation::Options optio
 }
 
 int CellForest::GetBoundaryPoints(Index face, int points[]) const {
-    Level const &level = _refiner->GetHierarchy().mesh.levels[0];
+    Level const &level = _level.GetLevel();
     int numPoints = 0;
     for (int local = 0; local < level.GetFaceSize(face); ++local) {
         Index const corner = level.faceFirstCorner[face] + local;

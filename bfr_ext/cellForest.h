@@ -28,10 +28,13 @@ public:
     /// A face or an edge of the base mesh.
     using Index = Far::Index;
 
-    /// No face is refined.  Of the refiner, to which it refers, it needs level 0.
+    /// \brief No face is refined.
+    ///
+    /// Base faces are those of the surface level (SurfaceFactory::GetLevel()), to which it refers and
+    /// which the refiner has.
     explicit CellForest(FarExt::TopologyRefiner const &refiner);
 
-    /// Faces of the base mesh.
+    /// Faces of that level.
     int GetNumFaces() const { return int(_trees.size()); }
     /// Sets the tree of a face, which has the vertices of that.
     void SetTree(Index face, CellTree tree) { _trees[std::size_t(face)] = std::move(tree); }
@@ -66,7 +69,7 @@ public:
 private:
     bool isReversed(Index face, int local) const;
 
-    FarExt::TopologyRefiner const *_refiner;
+    FarExt::TopologyLevel _level;
     std::vector<CellTree> _trees;
     std::vector<Polyline> _edges;     // what was set
     std::vector<Polyline> _polylines; // the same with the points of faces

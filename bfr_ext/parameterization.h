@@ -10,7 +10,7 @@ namespace OpenSubdivHex::BfrExt {
 ///
 /// There the face is a regular polygon with sides 1 long, counter-clockwise, whose edge 0 runs from
 /// (0, 0) to (1, 0): of a quad the unit square.  So it is in one piece, whatever its size, and there
-/// are no sub-faces.  These are the coordinates of FarExt::TopologyLevel::GetFaceBaseCoords(), which
+/// are no sub-faces.  These are the coordinates of FarExt::TopologyLevel::GetFaceSurfaceCoords(), which
 /// says where the vertices of all levels lie.
 class OPENSUBDIVHEX_API Parameterization {
 public:

@@ -156,7 +156,7 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
         return nullptr;
     }
     std::unique_ptr<PatchNumbering> numbering(new PatchNumbering(stream.GetFactory()));
-    TopologyLevel const &base = stream.GetFactory().GetMesh().GetLevel(0);
+    TopologyLevel const &base = stream.GetFactory().GetLevel();
     Number next = 0;
     for (Index vert = 0; vert < base.GetNumVertices(); ++vert) {
         numbering->_pointOfVertex.push_back(next);
@@ -245,7 +245,7 @@ template std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<doub
 
 // The first of the faces that is no hole.
 Far::Index PatchNumbering::findOwner(Far::ConstIndexArray faces) const {
-    TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
+    TopologyLevel const &base = _factory.GetLevel();
     auto const found = std::find_if(faces.begin(), faces.end(),
                                     [&](Index face) { return !base.IsFaceHole(face); });
     return found == faces.end() ? Far::INDEX_INVALID : *found;
@@ -268,7 +268,7 @@ PatchNumbering::Number PatchNumbering::GetFirstFacetVertex(Index face, int secti
 
 // A face may have a vertex, or an edge, twice: then it belongs to the first place.
 bool PatchNumbering::isVertexOwn(Index face, int local) const {
-    TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
+    TopologyLevel const &base = _factory.GetLevel();
     Far::ConstIndexArray const verts = base.GetFaceVertices(face);
     auto const *const begin = verts.begin();
     return std::find(begin, begin + local, verts[local]) == begin + local &&
@@ -278,7 +278,7 @@ bool PatchNumbering::isVertexOwn(Index face, int local) const {
 // Points first ... first + count - 1 of an edge, counted in the direction of the face.
 PatchNumbering::Run PatchNumbering::makeEdgeRun(Index face, int local, int place, int first,
                                                 int count) const {
-    TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
+    TopologyLevel const &base = _factory.GetLevel();
     Far::ConstIndexArray const edges = base.GetFaceEdges(face);
     Index const edge = edges[local];
     Far::ConstIndexArray const edgeFaces = base.GetEdgeFaces(edge);
@@ -293,7 +293,7 @@ PatchNumbering::Run PatchNumbering::makeEdgeRun(Index face, int local, int place
 void PatchNumbering::GetRuns(Index face, Tessellation const &tessellation,
                              std::vector<Run> &runs) const {
     runs.clear();
-    Far::ConstIndexArray const verts = _factory.GetMesh().GetLevel(0).GetFaceVertices(face);
+    Far::ConstIndexArray const verts = _factory.GetLevel().GetFaceVertices(face);
     Number const firstPoint = _firstPointOfFace[std::size_t(face)];
     SectionNumbers const *const sections = findSections(face);
     SectionNumbers::Item const *item =

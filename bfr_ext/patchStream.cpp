@@ -200,7 +200,7 @@ void PatchStream<REAL>::getLevels(Index face, std::vector<int> &levels) const {
     if (_forest) {
         return;
     }
-    for (Index const edge : _factory.GetMesh().GetLevel(0).GetFaceEdges(face)) {
+    for (Index const edge : _factory.GetLevel().GetFaceEdges(face)) {
         levels.push_back(_levels.GetEdgeLevel(edge));
     }
     levels.push_back(_levels.GetFaceLevel(face));
@@ -286,7 +286,7 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace, Batch &b
     std::size_t memory = 0;
     double numLeaves = 0; // at least as many as patches
     for (; beginFace < endFace && order.size() < numFaces && numLeaves < kMaxLeaves; ++beginFace) {
-        if (_factory.GetMesh().GetLevel(0).IsFaceHole(beginFace)) {
+        if (_factory.GetLevel().IsFaceHole(beginFace)) {
             continue;
         }
         if (_forest) {
@@ -360,7 +360,7 @@ Tessellation PatchStream<REAL>::MakeTessellation(Index face) const {
 // Of several faces that are wrong, the first is told of, whoever finds it.
 template <typename REAL>
 Status PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKept) const {
-    FarExt::TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
+    FarExt::TopologyLevel const &base = _factory.GetLevel();
     if (beginFace < 0 || endFace < beginFace || endFace > base.GetNumFaces()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
                                          "faces " + std::to_string(beginFace) + " to " +
@@ -462,7 +462,7 @@ Status PatchStream<REAL>::checkLevels(Index face, std::vector<int> const &levels
     if (bad == levels.end()) {
         return Status();
     }
-    Index const edge = _factory.GetMesh().GetLevel(0).GetFaceEdges(face)[int(bad - levels.begin())];
+    Index const edge = _factory.GetLevel().GetFaceEdges(face)[int(bad - levels.begin())];
     return refuse(*bad, ComponentType::Edge, "edge", edge);
 }
 
@@ -491,7 +491,7 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
     // Hands out patches getPatch(0) ... getPatch(count - 1), where their faces are no holes.
     auto const run = [&](Index count, auto const &getPatch) {
         using PatchOfFace = typename Batch::PatchOfFace;
-        FarExt::TopologyLevel const &base = _factory.GetMesh().GetLevel(0);
+        FarExt::TopologyLevel const &base = _factory.GetLevel();
         FarExt::internal::ParallelForRange(
             count,
             [&] {

@@ -23,7 +23,7 @@ class StreamTypes;
 /// \brief How fine the patches of a stream are: a level of refinement for the inside of each base face
 /// and one for each edge of the base mesh, 0 ... Tessellation::kLastLevel.
 ///
-/// An edge is named by its number in level 0, whichever face asks: so neighbours fit.
+/// An edge is named by its number in SurfaceFactory::GetLevel(), whichever face asks: so neighbours fit.
 class PatchLevels {
 public:
     /// Gives the level of a face, or of an edge.  Called by any thread, by several at once.
@@ -94,7 +94,7 @@ public:
         /// No channel: varying data.
         static constexpr int kVarying = -1;
 
-        REAL const *values;     ///< of the base mesh, by vertex or by value of the channel
+        REAL const *values;     ///< of GetLevel(), by vertex or by value of the channel
         PointDescriptor desc;   ///< their size, and the distance from one to the next
         int channel = kVarying; ///< of face-varying data
     };
@@ -189,7 +189,7 @@ public:
 
     /// \brief Hands the patches of all faces to a sink.
     ///
-    /// \param meshPoints     of level 0
+    /// \param meshPoints     of SurfaceFactory::GetLevel()
     /// \param meshPointDesc  their size, and the distance from one to the next
     /// \param sink           takes patches
     /// \param status         where Run() gives false without a failure, it is Ok: the sink ended it

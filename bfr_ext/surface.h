@@ -45,13 +45,13 @@ private:
 
 /// \brief The limit surface of a base face, as Bfr::Surface: a function of u and v.
 ///
-/// It depends on the *control points* of a face, which are vertices of the base mesh (or values of a
+/// It depends on the *control points* of a face, which are vertices of its level (or values of a
 /// face-varying channel) around it: the faces at its vertices and at their neighbours have them.  All
 /// that is evaluated is a weighted sum of these, and the weights of points are not negative: the hull
 /// of the control points contains the surface.
 ///
 /// The scheme is no spline: its surface has no polynomials.
-///  - At the places of vertices of any level (see FarExt::TopologyLevel::GetFaceBaseCoords()) a point
+///  - At the places of vertices of any level (see FarExt::TopologyLevel::GetFaceSurfaceCoords()) a point
 ///    is exact, as in a limit stencil table.
 ///  - Elsewhere the cells, faces and halves of hexagons, that have the place are followed level by
 ///    level until the surface between the corners of one is bilinear: 16 levels, which leaves less

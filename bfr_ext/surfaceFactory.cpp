@@ -39,7 +39,8 @@ internal::CellRules getRules(FarExt::TopologyRefiner const &refiner, Interpolati
 } // namespace
 
 SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options)
-    : _refiner(refiner), _options(options),
+    : _refiner(refiner), _level(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel())),
+      _numRefinements(refiner.GetNumRefinements()), _options(options),
       _types(options.GetExternalCache() ? options.GetExternalCache()->_types
                                         : std::make_shared<internal::CellTypes>()) {
     for (Interpolation const interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
@@ -48,7 +49,8 @@ SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options o
     }
     FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
     for (int channel = -1; channel < refiner.GetNumFVarChannels(); ++channel) {
-        _marks.push_back(FarExt::internal::MarkFeatures(hierarchy.GetMesh(channel).levels[0]));
+        _marks.push_back(FarExt::internal::MarkFeatures(
+            hierarchy.GetMesh(channel).levels[std::size_t(_level.GetDepth())]));
     }
 }
 
@@ -56,8 +58,14 @@ SurfaceFactory::~SurfaceFactory() = default;
 
 std::unique_ptr<SurfaceFactory> SurfaceFactory::Create(FarExt::TopologyRefiner const &refiner,
                                                        Options options, Status *status) {
+    FarExt::HexSchemeOptions const schemeOptions = refiner.GetHexSchemeOptions();
+    int const level = schemeOptions.GetSurfaceLevel();
     Status const result =
-        FarExt::internal::CheckLimitLevel(refiner.GetHierarchy(), refiner.GetHexSchemeOptions(), 0);
+        level <= refiner.GetMaxLevel()
+            ? FarExt::internal::CheckLimitLevel(refiner.GetHierarchy(), schemeOptions, level)
+            : Status(StatusCode::InvalidArgument, ComponentType::Level, level,
+                     "the refiner is not refined to level " + std::to_string(level) +
+                         ", whose faces have the surfaces behind a first step");
     if (!FarExt::internal::Report(result, status)) {
         return nullptr;
     }
@@ -65,16 +73,21 @@ std::unique_ptr<SurfaceFactory> SurfaceFactory::Create(FarExt::TopologyRefiner c
 }
 
 Status SurfaceFactory::checkIsFace(Index face) const {
-    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
-    if (0 <= face && face < level.numFaces && level.GetHoles(face) != FarExt::internal::kHole) {
+    // Level 0 stays.
+    if (_level.GetDepth() > 0 && _refiner.GetNumRefinements() != _numRefinements) {
+        return FarExt::internal::Failure(
+            StatusCode::InvalidArgument,
+            "the refiner has refined again since the factory was made");
+    }
+    bool const isFace = 0 <= face && face < GetNumFaces();
+    if (isFace && _level.GetLevel().GetHoles(face) != FarExt::internal::kHole) {
         return Status();
     }
     std::string const name = "face " + std::to_string(face);
     return Status(StatusCode::InvalidArgument, ComponentType::Face, face,
-                  0 <= face && face < level.numFaces
-                      ? name + " is a hole, which has no surface"
-                      : name + " is not one of the " + std::to_string(level.numFaces) +
-                            " faces of the base mesh");
+                  isFace ? name + " is a hole, which has no surface"
+                         : name + " is not one of the " + std::to_string(GetNumFaces()) +
+                               " faces of level " + std::to_string(_level.GetDepth()));
 }
 
 Status SurfaceFactory::checkFace(Index face) const {
@@ -82,9 +95,8 @@ Status SurfaceFactory::checkFace(Index face) const {
     if (!result.IsOk()) {
         return result;
     }
-    Level const &level = _refiner.GetHierarchy().mesh.levels[0];
-    for (Index const vert : level.GetFaceVertices(face)) {
-        if (isAtFreeBoundary(level, vert)) {
+    for (Index const vert : _level.GetFaceVertices(face)) {
+        if (isAtFreeBoundary(_level.GetLevel(), vert)) {
             return Status(StatusCode::Unsupported, ComponentType::Face, face,
                           "face " + std::to_string(face) + " has vertex " + std::to_string(vert) +
                               " on a boundary that VTX_BOUNDARY_NONE leaves without a limit");
@@ -98,7 +110,7 @@ bool SurfaceFactory::FaceHasLimitSurface(Index face, Status *status) const {
 }
 
 Parameterization SurfaceFactory::GetFaceParameterization(Index face) const {
-    return Parameterization(_refiner.GetHierarchy().mesh.levels[0].GetFaceSize(face));
+    return Parameterization(_level.GetLevel().GetFaceSize(face));
 }
 
 // The type of a face that is not plain, from all of its patch; null, and a status, where it has no limit.
@@ -142,8 +154,9 @@ bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
     FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();
     FVarChannel const *const values =
         channel < 0 ? nullptr : &hierarchy.channels[std::size_t(channel)];
-    Level const &level = hierarchy.GetMesh(channel).levels[0];
-    Index const levelFace = values ? values->levels[0].valueFaces[face] : face;
+    auto const depth = std::size_t(_level.GetDepth());
+    Level const &level = hierarchy.GetMesh(channel).levels[depth];
+    Index const levelFace = values ? values->levels[depth].valueFaces[face] : face;
     // What it has taken of memory is kept for the next face.
     static thread_local internal::PlainFaceGatherer gatherer;
     if (internal::PlainFaceType const *const plain =
@@ -163,7 +176,8 @@ bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
     int const size = level.GetFaceSize(levelFace);
     surface->_numControlPoints = int(surface->_points.size()) - 2 * size;
     surface->_parameterization = Parameterization(size);
-    if (values) {
+    // Vertices of the value mesh of a later level are its values.
+    if (values && depth == 0) {
         std::for_each_n(surface->_points.begin(), surface->_numControlPoints,
                         [&](Index &point) { point = values->valuesOfVertices[point]; });
     }

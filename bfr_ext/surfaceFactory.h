@@ -27,6 +27,13 @@ class PlainFaceTypes;
 /// levels.  Sharpness, corners, boundaries, non-manifold parts and face-varying seams are as in
 /// refinement.
 ///
+/// **Behind a first step** (FarExt::FirstStep) level 1 takes the place of level 0: base faces, edges and
+/// vertices in BfrExt are then those of this *surface level*
+/// (FarExt::HexSchemeOptions::GetSurfaceLevel()), GetLevel() says which, and control points are its
+/// vertices and values.  The refiner has to be refined so far, with full topology, and stays as it is;
+/// its evaluators make the control points.  FarExt::TopologyLevel::GetFaceBaseFace() leads from faces of
+/// GetLevel() to those of level 0, with their materials.
+///
 /// Two kinds of faces have no surface: holes, and with VTX_BOUNDARY_NONE those at a boundary, where
 /// the border of every level lies elsewhere.
 ///
@@ -67,8 +74,9 @@ public:
 
     /// \brief Makes a factory for \p refiner, which must live as long.
     ///
-    /// \return  null on failure: Unsupported where level 0 is not refined by hexagonal steps, which
-    ///          alone have limits
+    /// \return  null on failure: Unsupported where levels are not made by hexagonal steps, which alone
+    ///          have limits; InvalidArgument where the surface level is not there, or lacks full
+    ///          topology (FarExt::TopologyRefiner::UniformOptions)
     static std::unique_ptr<SurfaceFactory> Create(FarExt::TopologyRefiner const &refiner,
                                                   Options options,
                                                   FarExt::Status *status = nullptr);
@@ -84,14 +92,17 @@ public:
 
     /// The refiner that was given.
     FarExt::TopologyRefiner const &GetMesh() const { return _refiner; }
-    /// Faces of level 0.
-    int GetNumFaces() const { return _refiner.GetLevel(0).GetNumFaces(); }
+    /// The surface level, whose faces have the surfaces: level 0, or level 1 behind a first step.
+    FarExt::TopologyLevel const &GetLevel() const { return _level; }
+    /// Faces of that level.
+    int GetNumFaces() const { return _level.GetNumFaces(); }
     /// Face-varying channels.
     int GetNumFVarChannels() const { return _refiner.GetNumFVarChannels(); }
 
     /// \brief Whether a face has a surface.
     ///
-    /// \param status  says why not: InvalidArgument for a face out of range and for a hole,
+    /// \param status  says why not: InvalidArgument for a face out of range and for a hole, and behind
+    ///                a first step for a refiner that has refined again since the factory was made;
     ///                Unsupported for a face at a boundary with VTX_BOUNDARY_NONE
     bool FaceHasLimitSurface(Index face, FarExt::Status *status = nullptr) const;
     /// The parameter plane of a face, which is in range.
@@ -104,7 +115,7 @@ public:
     ///          (FarExt::LimitStencilTableFactoryReal)
     /// @{
 
-    /// For vertex data, whose control points are vertices of level 0.
+    /// For vertex data, whose control points are vertices of GetLevel().
     template <typename REAL>
     bool InitVertexSurface(Index face, Surface<REAL> *surface,
                            FarExt::Status *status = nullptr) const;
@@ -112,7 +123,7 @@ public:
     template <typename REAL>
     bool InitVaryingSurface(Index face, Surface<REAL> *surface,
                             FarExt::Status *status = nullptr) const;
-    /// For face-varying data of a channel, whose control points are values of level 0.
+    /// For face-varying data of a channel, whose control points are values of GetLevel().
     template <typename REAL>
     bool InitFaceVaryingSurface(Index face, Surface<REAL> *surface, FVarID channel,
                                 FarExt::Status *status = nullptr) const;
@@ -137,6 +148,8 @@ private:
               FarExt::Status *status) const;
 
     FarExt::TopologyRefiner const &_refiner;
+    FarExt::TopologyLevel const _level;
+    int const _numRefinements; // of the refiner, when the factory was made
     Options const _options;
     std::shared_ptr<internal::CellTypes> _types;
     // Of the vertices of the mesh, and of the value mesh of each channel; empty where all are plain.

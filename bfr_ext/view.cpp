@@ -394,8 +394,8 @@ CellForest View::MakeForest(SurfaceFactory const &factory, REAL const meshPoints
                             typename Surface<REAL>::PointDescriptor const &pointDesc,
                             CellForest const *previous, Counts *counts) const {
     using FarExt::internal::Level;
-    FarExt::TopologyLevel const base = factory.GetMesh().GetLevel(0);
-    Level const &level = factory.GetMesh().GetHierarchy().mesh.levels[0];
+    FarExt::TopologyLevel const base = factory.GetLevel();
+    Level const &level = factory.GetLevel().GetLevel();
     CellForest forest(factory.GetMesh());
     std::vector<std::vector<CellVisibility>> visibility(std::size_t(forest.GetNumFaces()));
     struct State {

@@ -59,6 +59,11 @@ struct HexSchemeOptions {
     bool IsHexagonal() const {
         return schemeType == SchemeType::Hexagonal && firstStep == FirstStep::None;
     }
+    /// \brief The *surface level*, at which hexagonal steps begin: 0, or 1 behind a first step.
+    ///
+    /// It is the first that has limits, and its faces are those of BfrExt::SurfaceFactory.  Of no
+    /// meaning where schemeType is not Hexagonal.
+    int GetSurfaceLevel() const { return firstStep == FirstStep::None ? 0 : 1; }
     /// The step that makes level \p level, 1 or more.
     StepType GetStepOfLevel(int level) const {
         if (level == 1 && firstStep != FirstStep::None) {

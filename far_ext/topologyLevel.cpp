@@ -275,11 +275,25 @@ bool TopologyLevel::IsFaceBaseSplit(Index f) const {
 }
 
 bool TopologyLevel::GetFaceBaseCoords(Index f, int half, float *uv) const {
-    return internal::FindBaseCoords(_hierarchy->mesh, _depth, {f, half}, uv);
+    return internal::FindBaseCoords(_hierarchy->mesh, 0, _depth, {f, half}, uv);
 }
 
 bool TopologyLevel::GetFaceBaseCoords(Index f, int half, double *uv) const {
-    return internal::FindBaseCoords(_hierarchy->mesh, _depth, {f, half}, uv);
+    return internal::FindBaseCoords(_hierarchy->mesh, 0, _depth, {f, half}, uv);
+}
+
+Index TopologyLevel::GetFaceSurfaceFace(Index f, int half) const {
+    return internal::FindBaseFace(_hierarchy->mesh, _hierarchy->surfaceLevel, _depth, {f, half});
+}
+
+bool TopologyLevel::GetFaceSurfaceCoords(Index f, int half, float *uv) const {
+    return internal::FindBaseCoords(_hierarchy->mesh, _hierarchy->surfaceLevel, _depth, {f, half},
+                                    uv);
+}
+
+bool TopologyLevel::GetFaceSurfaceCoords(Index f, int half, double *uv) const {
+    return internal::FindBaseCoords(_hierarchy->mesh, _hierarchy->surfaceLevel, _depth, {f, half},
+                                    uv);
 }
 
 auto TopologyLevel::GetFaceChildFaces(Index f) const -> ChildFaceArray {

@@ -260,6 +260,23 @@ public:
     /// \copydoc GetFaceBaseCoords(Index, int, float *) const
     bool GetFaceBaseCoords(Index f, int half, double *uv) const;
 
+    /// \brief The face of the surface level (HexSchemeOptions::GetSurfaceLevel()) that the face lies
+    /// in: a BfrExt::SurfaceFactory has its surface.  Without a first step that is the base face.
+    ///
+    /// \param half  0 or 1, as in kHexagonHalves; both are the same for a face in one such face
+    /// \return      INDEX_INVALID before the surface level, and where not all steps behind it are
+    ///              hexagonal
+    Index GetFaceSurfaceFace(Index f, int half = 0) const;
+    /// \brief As GetFaceBaseCoords(), in the parameter plane of that face: where its surface has the
+    /// limits of the face's vertices.
+    ///
+    /// \param half  of a face that lies in two, the half that is meant
+    /// \param uv    gets u and v of each vertex, as there
+    /// \return      false, and \p uv is not written, where there is no such face
+    bool GetFaceSurfaceCoords(Index f, int half, float *uv) const;
+    /// \copydoc GetFaceSurfaceCoords(Index, int, float *) const
+    bool GetFaceSurfaceCoords(Index f, int half, double *uv) const;
+
     /// The parent face of an F-face; for an E-face, the first face of its parent edge; for a
     /// V-face, that of its last F-vertex.
     Index GetFaceParentFace(Index f) const;

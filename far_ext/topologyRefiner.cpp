@@ -51,6 +51,7 @@ Status checkSizes(int refinementLevel, CHECK check) {
 TopologyRefiner::TopologyRefiner(std::unique_ptr<Hierarchy> base, Sdc::Options sdcOptions,
                                  HexSchemeOptions schemeOptions)
     : _hierarchy(std::move(base)), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions) {
+    _hierarchy->surfaceLevel = schemeOptions.GetSurfaceLevel();
     _levels.emplace_back(*_hierarchy, 0);
 }
 
@@ -110,8 +111,7 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
             rules.faceLabels = labels;
             bool const isLast = level == refinementLevel;
             levelStatus = refiner.AddLevel(rules, !isLast || options.fullTopologyInLastLevel);
-            if (level == 1 && !isLast && _schemeOptions.firstStep != FirstStep::None &&
-                levelStatus.IsOk()) {
+            if (level == _schemeOptions.GetSurfaceLevel() && !isLast && levelStatus.IsOk()) {
                 // All sizes are known by now, of borders and cut polygons too.
                 levelStatus = refiner.CheckSizes(_schemeOptions, labels, refinementLevel);
             }

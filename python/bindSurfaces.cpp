@@ -225,8 +225,14 @@ public:
 
     bool HasLimitSurface(int face) const {
         checkFace(face);
-        return _refiner->Read(
-            [&](FarExt::TopologyRefiner const &) { return _factory->FaceHasLimitSurface(face); });
+        FarExt::Status status;
+        bool const hasSurface = _refiner->Read([&](FarExt::TopologyRefiner const &) {
+            return _factory->FaceHasLimitSurface(face, &status);
+        });
+        if (status.GetComponentType() != FarExt::ComponentType::Face) {
+            RaiseUnlessOk(status); // the refiner is no longer what it was
+        }
+        return hasSurface;
     }
     FaceSurface MakeVertexSurface(int face) const {
         return make(face, countVertices(), [&](auto *surface, FarExt::Status *status) {
@@ -240,8 +246,8 @@ public:
     }
     FaceSurface MakeFaceVaryingSurface(int face, int channel) const {
         CheckIndex(channel, _factory->GetNumFVarChannels(), "channel");
-        int const numValues = _refiner->Read([&](FarExt::TopologyRefiner const &refiner) {
-            return refiner.GetLevel(0).GetNumFVarValues(channel);
+        int const numValues = _refiner->Read([&](FarExt::TopologyRefiner const &) {
+            return _factory->GetLevel().GetNumFVarValues(channel);
         });
         return make(face, numValues, [&](auto *surface, FarExt::Status *status) {
             _factory->InitFaceVaryingSurface(face, surface, channel, status);
@@ -250,11 +256,7 @@ public:
 
 private:
     void checkFace(int face) const { CheckIndex(face, _factory->GetNumFaces(), "face"); }
-    int countVertices() const {
-        return _refiner->Read([](FarExt::TopologyRefiner const &refiner) {
-            return refiner.GetLevel(0).GetNumVertices();
-        });
-    }
+    int countVertices() const { return _factory->GetLevel().GetNumVertices(); }
     template <typename INIT>
     FaceSurface make(int face, int numMeshPoints, INIT const &init) const {
         checkFace(face);
@@ -329,7 +331,11 @@ void BindSurfaces(py::module_ &module) {
         module, "SurfaceFactory",
         "SurfaceFactory(refiner)\n\n"
         "Makes the limit surfaces of the faces of level 0, for which the refiner need not be\n"
-        "refined.  Raises StatusError where level 1 is not made by a hexagonal step.")
+        "refined.  Behind a first step they are those of level 1: the refiner has to be refined "
+        "to\n"
+        "it with full topology, and not again, and points are those of level 1.  Raises "
+        "StatusError\n"
+        "where it is not, and where levels are not made by hexagonal steps.")
         .def(py::init<std::shared_ptr<Refiner>>(), py::arg("refiner").none(false))
         .def("has_limit_surface", &FaceSurfaceFactory::HasLimitSurface,
              "has_limit_surface(face)\n\nFalse for holes and, with boundary 'none', for faces at "

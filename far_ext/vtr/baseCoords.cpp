@@ -41,14 +41,14 @@ struct PlacedCell {
     Quad quad{};
 };
 
-PlacedCell place(MeshLevels const &mesh, int depth, Cell cell) {
-    if (depth == 0) {
+PlacedCell place(MeshLevels const &mesh, int baseDepth, int depth, Cell cell) {
+    if (depth == baseDepth) {
         return {cell.face};
     }
     Refinement const &refinement = mesh.refinements[std::size_t(depth) - 1];
     Level const &parent = *refinement.parent;
     Cell const pCell = refinement.GetParentCell(cell);
-    PlacedCell placed = place(mesh, depth - 1, pCell);
+    PlacedCell placed = place(mesh, baseDepth, depth - 1, pCell);
     bool const isWhole = placed.sector < 0;
     SectorPoint const center = isWhole ? SectorPoint() : placed.quad.GetCenter();
     if (cell.face < refinement.child->numFFaces) {
@@ -75,17 +75,35 @@ PlacedCell place(MeshLevels const &mesh, int depth, Cell cell) {
     return placed;
 }
 
-} // namespace
-
-template <typename REAL>
-bool FindBaseCoords(MeshLevels const &mesh, int depth, Cell cell, REAL *uv) {
-    for (int level = 1; level <= depth; ++level) {
+// Whether hexagonal steps alone lead from one level to another.
+bool areHexagonal(MeshLevels const &mesh, int baseDepth, int depth) {
+    for (int level = baseDepth + 1; level <= depth; ++level) {
         if (!mesh.levels[std::size_t(level)].isHexagonal) {
             return false;
         }
     }
-    PlacedCell const placed = place(mesh, depth, cell);
-    BasePolygon const polygon(mesh.levels[0].GetFaceSize(placed.baseFace));
+    return depth >= baseDepth;
+}
+
+} // namespace
+
+Index FindBaseFace(MeshLevels const &mesh, int baseDepth, int depth, Cell cell) {
+    if (!areHexagonal(mesh, baseDepth, depth)) {
+        return Far::INDEX_INVALID;
+    }
+    for (; depth > baseDepth; --depth) {
+        cell = mesh.refinements[std::size_t(depth) - 1].GetParentCell(cell);
+    }
+    return cell.face;
+}
+
+template <typename REAL>
+bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell, REAL *uv) {
+    if (!areHexagonal(mesh, baseDepth, depth)) {
+        return false;
+    }
+    PlacedCell const placed = place(mesh, baseDepth, depth, cell);
+    BasePolygon const polygon(mesh.levels[std::size_t(baseDepth)].GetFaceSize(placed.baseFace));
     if (placed.sector < 0) {
         for (int i = 0; i < polygon.GetSize(); ++i) {
             polygon.Write(i, {placed.scale, 0}, uv + 2 * i);
@@ -98,7 +116,7 @@ bool FindBaseCoords(MeshLevels const &mesh, int depth, Cell cell, REAL *uv) {
         }
     };
     if (HasHalves(mesh.levels[std::size_t(depth)].GetFaceSize(cell.face))) {
-        PlacedCell const other = place(mesh, depth, {cell.face, 1 - cell.half});
+        PlacedCell const other = place(mesh, baseDepth, depth, {cell.face, 1 - cell.half});
         if (other.baseFace == placed.baseFace) {
             write(placed, kHexagonHalves[cell.half]);
             write(other, kHexagonHalves[1 - cell.half]);
@@ -109,7 +127,7 @@ bool FindBaseCoords(MeshLevels const &mesh, int depth, Cell cell, REAL *uv) {
     return true;
 }
 
-template bool FindBaseCoords(MeshLevels const &, int, Cell, float *);
-template bool FindBaseCoords(MeshLevels const &, int, Cell, double *);
+template bool FindBaseCoords(MeshLevels const &, int, int, Cell, float *);
+template bool FindBaseCoords(MeshLevels const &, int, int, Cell, double *);
 
 } // namespace OpenSubdivHex::FarExt::internal

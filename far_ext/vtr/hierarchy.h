@@ -36,6 +36,7 @@ struct Hierarchy {
     MeshLevels mesh;
     std::deque<FVarChannel> channels;
     int numLevels = 1;
+    int surfaceLevel = 0; ///< HexSchemeOptions::GetSurfaceLevel()
 
     /// That of the vertices, or the value mesh of a \p channel of 0 or more.
     MeshLevels const &GetMesh(int channel) const {

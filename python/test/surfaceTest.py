@@ -40,6 +40,32 @@ def test_vertices_of_a_level_are_points_of_surfaces(factory, dtype):
     assert found > 300
 
 
+@pytest.mark.parametrize("first_step", ["tri_hex", "truncate"])
+def test_surfaces_behind_a_first_step_are_those_of_level_1(first_step):
+    refiner = make_refiner(first_step=first_step)
+    with pytest.raises(osh.StatusError, match="level 1"):
+        osh.SurfaceFactory(refiner)
+    refiner.refine_uniform(1, full_topology_in_last_level=True)
+    points = osh.RefinementEvaluator(refiner).evaluate(POSITIONS)
+    limit = osh.RefinementEvaluator(refiner).evaluate_limit(POSITIONS, level=1)
+    level = refiner.get_level(1)
+    vertices = level.face_vertices
+    factory = osh.SurfaceFactory(refiner)
+    for face in (0, level.num_faces - 1):
+        surface = factory.vertex_surface(face)
+        corners = vertices[level.face_offsets[face]:level.face_offsets[face + 1]]
+        tessellation = osh.Tessellation(surface.face_size, 0)
+        np.testing.assert_allclose(surface.evaluate(tessellation, points), limit[corners],
+                                   atol=3e-6)
+        with pytest.raises(ValueError):
+            surface.evaluate(tessellation, POSITIONS)
+    refiner.refine_uniform(2)
+    with pytest.raises(osh.StatusError, match="refined again"):
+        factory.has_limit_surface(0)
+    with pytest.raises(osh.StatusError, match="refined again"):
+        factory.vertex_surface(0)
+
+
 def test_derivatives_are_those_of_the_points(factory):
     surface = factory.vertex_surface(5)
     inside = UV * 0.8 + 0.1

@@ -39,8 +39,7 @@ inline BfrExt::CellForest MakeRandomForest(FarExt::TopologyRefiner const &refine
     std::mt19937 random(seed);
     BfrExt::CellForest forest(refiner);
     for (int face = 0; face < forest.GetNumFaces(); ++face) {
-        forest.SetTree(face,
-                       MakeRandomTree(refiner.GetLevel(0).GetFaceVertices(face).size(), random));
+        forest.SetTree(face, MakeRandomTree(forest.GetTree(face).GetFaceSize(), random));
     }
     forest.MatchEdges();
     return forest;

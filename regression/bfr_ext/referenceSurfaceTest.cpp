@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Surfaces against the limits that the reference finds by refining again and again.
+#include "surfaceCase.h"
 #include "surfaceFixture.h"
 
 #include "regression/far_ext/referenceMatch.h"
@@ -28,12 +29,26 @@ namespace {
 /// A shape refined by the reference, with the places that vertices of its last level have.
 class ReferenceSurface {
 public:
+    /// \param refiner  of the shape, refined to the surface level
     ReferenceSurface(Shape const &shape, FarExt::TopologyRefiner const &refiner, ReferenceMask mask)
         : _mask(mask), _positions(GetPositions(shape)) {
         TaggedMatch const match(shape, refiner);
         EXPECT_EQ(match.GetError(), "");
-        _mesh = match.GetMesh(0);
+        int const level = refiner.GetMaxLevel();
+        _mesh = match.GetMesh(level);
+        if (level > 0) {
+            _positions = Interpolate(match.GetMesh(0), _mesh, mask, _positions);
+        }
         _pieces = MakeBasePieces(_mesh);
+        for (BasePiece &piece : _pieces) {
+            // The library may begin a face at another corner.
+            std::vector<int> const &corners = match.GetLibraryCorners(level, piece.face);
+            ReferencePolygon const polygon = piece.places;
+            for (std::size_t i = 0; i < polygon.size(); ++i) {
+                piece.places[i] = polygon[std::size_t(corners[i])];
+            }
+            piece.baseFace = match.GetLibraryFace(level, piece.face);
+        }
         setPlaces();
     }
 
@@ -108,7 +123,8 @@ void expectLimits(SurfaceSet<double> const &surfaces, ReferenceSurface const &re
                 continue;
             }
             double const distance =
-                GetDistance(surfaces.Evaluate(place.baseFace, place.uv.data()).p, limit) / size;
+                GetDistance(surfaces.EvaluatePosition(place.baseFace, place.uv.data()), limit) /
+                size;
             comparison.largest = std::max(comparison.largest, distance);
             ++comparison.numPlaces;
             ASSERT_LE(distance, 1e-11) << "vertex " << vertex << ", face " << place.baseFace
@@ -117,17 +133,18 @@ void expectLimits(SurfaceSet<double> const &surfaces, ReferenceSurface const &re
     }
 }
 
-/// At some of the levels up to \p maxLevel.
-void expectLimits(Shape const &shape, ReferenceMask mask,
+/// At some of the levels up to \p maxLevel behind the surface level.
+void expectLimits(Shape const &shape, SurfaceCase const &surfaceCase,
                   Sdc::Options::VtxBoundaryInterpolation boundary, int maxLevel,
                   std::size_t maxNumVertices, LimitReference &limits, Comparison &comparison) {
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(boundary);
-    auto const refiner = CreateRefiner(shape, mask, 0, options);
+    auto const refiner = CreateSurfaceRefiner(shape, surfaceCase, 0, options);
     SurfaceSet<double> const surfaces(*refiner, shape.positions);
-    ReferenceSurface reference(shape, *refiner, mask);
+    ReferenceSurface reference(shape, *refiner, surfaceCase.mask);
     double const size = GetSize(GetPositions(shape));
-    for (int level = 0; level <= GetTestLevel(shape, maxLevel, 4000); ++level) {
+    int const lastLevel = GetTestLevel(shape, maxLevel, surfaceCase.HasFirstStep() ? 1000 : 4000);
+    for (int level = 0; level <= lastLevel; ++level) {
         SCOPED_TRACE(testing::Message()
                      << shape.name << ", boundary rule " << boundary << ", level " << level);
         if (level > 0) {
@@ -140,20 +157,26 @@ void expectLimits(Shape const &shape, ReferenceMask mask,
 
 } // namespace
 
-class ReferenceSurfaceTest : public testing::TestWithParam<ReferenceMask> {};
+class ReferenceSurfaceTest : public testing::TestWithParam<SurfaceCase> {};
+class ReferenceFeatureTest : public testing::TestWithParam<SurfaceCase> {};
+class ReferenceDerivativeTest : public testing::TestWithParam<ReferenceMask> {};
 
 TEST_P(ReferenceSurfaceTest, PointsAreTheLimitsOfTheReference) {
-    LimitReference limits(GetParam());
+    constexpr int kManyCorners = 300; // the reference takes long for polygons of as many sides
+    LimitReference limits(GetParam().mask);
     Comparison comparison;
-    for (Shape const &shape : GetShapes()) {
+    for (Shape const &shape : GetParam().IsPlain() ? GetManifoldShapes() : GetShapes()) {
+        if (GetParam().HasFirstStep() && shape.GetNumCorners() > kManyCorners) {
+            continue;
+        }
         ASSERT_NO_FATAL_FAILURE(expectLimits(
             shape, GetParam(), Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, 3, 6, limits, comparison));
     }
     comparison.Report();
 }
 
-TEST_P(ReferenceSurfaceTest, PointsBesideFeaturesAreTheLimitsOfTheReference) {
-    LimitReference limits(GetParam());
+TEST_P(ReferenceFeatureTest, PointsAreTheLimitsOfTheReference) {
+    LimitReference limits(GetParam().mask);
     Comparison comparison;
     for (Shape const &shape : GetFeatureShapes()) {
         for (auto const boundary :
@@ -205,7 +228,7 @@ double getDistanceToSectors(ReferencePolygon const &polygon, std::array<double, 
 } // namespace
 
 // Inside of sectors, between which parameters have kinks.
-TEST_P(ReferenceSurfaceTest, DerivativesAreThoseOfTheReference) {
+TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
     if (GetParam() == ReferenceMask::Average) {
         GTEST_SKIP() << "has none";
     }
@@ -271,7 +294,22 @@ TEST_P(ReferenceSurfaceTest, DerivativesAreThoseOfTheReference) {
     EXPECT_LE(sum, 0.001 * numPlaces);
 }
 
-INSTANTIATE_TEST_SUITE_P(Masks, ReferenceSurfaceTest, testing::ValuesIn(kMasks),
+namespace {
+
+std::string getName(testing::TestParamInfo<SurfaceCase> const &info) {
+    return info.param.GetName();
+}
+
+} // namespace
+
+INSTANTIATE_TEST_SUITE_P(Masks, ReferenceSurfaceTest, testing::ValuesIn(kPlainCases), getName);
+INSTANTIATE_TEST_SUITE_P(Truncate, ReferenceSurfaceTest, testing::ValuesIn(kTruncateCases),
+                         getName);
+INSTANTIATE_TEST_SUITE_P(TriHex, ReferenceSurfaceTest, testing::ValuesIn(kTriHexCases), getName);
+INSTANTIATE_TEST_SUITE_P(Masks, ReferenceFeatureTest, testing::ValuesIn(kPlainCases), getName);
+INSTANTIATE_TEST_SUITE_P(Truncate, ReferenceFeatureTest, testing::ValuesIn(kTruncateCases),
+                         getName);
+INSTANTIATE_TEST_SUITE_P(Masks, ReferenceDerivativeTest, testing::ValuesIn(kMasks),
                          [](auto const &mask) { return std::string(ToString(mask.param)); });
 
 } // namespace OpenSubdivHex::Regression

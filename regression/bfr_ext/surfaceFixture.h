@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_REGRESSION_BFR_EXT_SURFACE_FIXTURE_H
 
 #include "bfr_ext/surfaceFactory.h"
+#include "far_ext/primvarRefiner.h"
 
 #include <array>
 #include <cmath>
@@ -32,6 +33,46 @@ struct SurfacePoint {
 
 inline Vector3 GetNormal(SurfacePoint const &point) { return Normalize(Cross(point.du, point.dv)); }
 
+/// A number for PrimvarRefiner, or several.
+template <typename REAL, std::size_t LENGTH>
+struct Numbers {
+    void Clear() { values = {}; }
+    void AddWithWeight(Numbers const &other, REAL weight) {
+        for (std::size_t i = 0; i < LENGTH; ++i) {
+            values[i] += weight * other.values[i];
+        }
+    }
+
+    std::array<REAL, LENGTH> values{};
+};
+
+template <typename REAL>
+std::vector<Numbers<REAL, 3>> ToPoints(std::vector<REAL> const &positions) {
+    std::vector<Numbers<REAL, 3>> points(positions.size() / 3);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        points[i / 3].values[i % 3] = positions[i];
+    }
+    return points;
+}
+
+/// The positions of the surface level, which surfaces take, from those of level 0.
+template <typename REAL>
+std::vector<REAL> FindControlPoints(FarExt::TopologyRefiner const &refiner,
+                                    std::vector<REAL> const &positions) {
+    int const level = refiner.GetHexSchemeOptions().GetSurfaceLevel();
+    if (level == 0) {
+        return positions;
+    }
+    using Point = Numbers<REAL, 3>;
+    std::vector<Point> next(std::size_t(refiner.GetLevel(level).GetNumVertices()));
+    FarExt::PrimvarRefinerReal<REAL>(refiner).Interpolate(level, ToPoints(positions), next);
+    std::vector<REAL> result;
+    for (Point const &point : next) {
+        result.insert(result.end(), point.values.begin(), point.values.end());
+    }
+    return result;
+}
+
 template <typename REAL>
 SurfacePoint EvaluateSurface(BfrExt::Surface<REAL> const &surface,
                              std::vector<REAL> const &positions, REAL const uv[2]) {
@@ -52,10 +93,16 @@ SurfacePoint EvaluateSurface(BfrExt::Surface<REAL> const &surface,
 template <typename REAL>
 class SurfaceSet {
 public:
-    /// \p positions is referred to.
-    SurfaceSet(FarExt::TopologyRefiner const &refiner, std::vector<REAL> const &positions)
-        : _positions(positions), _surfaces(std::size_t(refiner.GetLevel(0).GetNumFaces())) {
-        auto const factory = BfrExt::SurfaceFactory::Create(refiner);
+    /// \brief Those of a refiner, which has the surface level.
+    ///
+    /// \param positions  of level 0
+    /// \param cache      of the types, or null
+    SurfaceSet(FarExt::TopologyRefiner const &refiner, std::vector<REAL> const &positions,
+               BfrExt::SurfaceFactoryCache *cache = nullptr)
+        : _positions(FindControlPoints(refiner, positions)) {
+        auto const factory = BfrExt::SurfaceFactory::Create(
+            refiner, BfrExt::SurfaceFactory::Options().SetExternalCache(cache));
+        _surfaces.resize(std::size_t(factory->GetNumFaces()));
         for (int face = 0; face < factory->GetNumFaces(); ++face) {
             factory->InitVertexSurface(face, &_surfaces[std::size_t(face)]);
         }
@@ -66,9 +113,21 @@ public:
     SurfacePoint Evaluate(int face, REAL const uv[2]) const {
         return EvaluateSurface((*this)[face], _positions, uv);
     }
+    /// Without derivatives, which take most of the time.
+    Vector3 EvaluatePosition(int face, REAL const uv[2]) const {
+        BfrExt::Surface<REAL> const &surface = (*this)[face];
+        std::vector<REAL> points(3 * std::size_t(surface.GetNumControlPoints()));
+        surface.GatherControlPoints(_positions.data(), 3, points.data(), 3);
+        REAL p[3];
+        surface.Evaluate(uv, points.data(), 3, p);
+        return {double(p[0]), double(p[1]), double(p[2])};
+    }
+
+    /// Of the surface level.
+    std::vector<REAL> const &GetPositions() const { return _positions; }
 
 private:
-    std::vector<REAL> const &_positions;
+    std::vector<REAL> const _positions;
     std::vector<BfrExt::Surface<REAL>> _surfaces;
 };
 

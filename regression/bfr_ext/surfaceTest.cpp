@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Surfaces of base faces, against limit tables of whole meshes and against what they must be.
+#include "surfaceCase.h"
 #include "surfaceFixture.h"
 
 #include "far_ext/limitStencilTableFactory.h"
@@ -38,9 +39,9 @@ Vector3 apply(Tables::Table const &table, std::vector<double> const &weights, in
     return sum;
 }
 
-/// A corner of a face of a level, in a base face.
+/// A corner of a face of a level, in a face of the surface level.
 struct LevelCorner {
-    int baseFace;
+    int face;
     int vert;
     int side; ///< as LimitSides numbers them
     double uv[2];
@@ -51,13 +52,13 @@ std::vector<LevelCorner> getCorners(TopologyLevel const &level) {
     std::vector<LevelCorner> result;
     for (int face = 0; face < level.GetNumFaces(); ++face) {
         auto const verts = level.GetFaceVertices(face);
-        bool const isSplit = level.IsFaceBaseSplit(face);
+        bool const isSplit = level.GetFaceSurfaceFace(face, 0) != level.GetFaceSurfaceFace(face, 1);
         for (int half = 0; half < 1 + isSplit; ++half) {
             std::vector<double> uv(2 * std::size_t(verts.size()));
-            EXPECT_TRUE(level.GetFaceBaseCoords(face, half, uv.data()));
+            EXPECT_TRUE(level.GetFaceSurfaceCoords(face, half, uv.data()));
             for (int i = 0; i < (isSplit ? 4 : verts.size()); ++i) {
                 int const local = isSplit ? FarExt::kHexagonHalves[half][i] : i;
-                result.push_back({level.GetFaceBaseFace(face, half),
+                result.push_back({level.GetFaceSurfaceFace(face, half),
                                   verts[local],
                                   sides.FindSide(level, face, local, half),
                                   {uv[2 * std::size_t(i)], uv[2 * std::size_t(i) + 1]}});
@@ -78,6 +79,24 @@ struct Limits {
     std::unique_ptr<Tables::Table const> table;
 };
 
+using Point = Numbers<double, 3>;
+
+/// Of all vertices of the last level, from positions of level 0.
+std::vector<Point> findLimits(TopologyRefiner const &refiner,
+                              std::vector<double> const &positions) {
+    FarExt::PrimvarRefinerReal<double> const primvarRefiner(refiner);
+    std::vector<Point> points = ToPoints(positions);
+    for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
+        std::vector<Point> next(std::size_t(refiner.GetLevel(level).GetNumVertices()));
+        primvarRefiner.Interpolate(level, points, next);
+        points = std::move(next);
+    }
+    std::vector<Point> limits(points.size());
+    FarExt::Status status;
+    EXPECT_TRUE(primvarRefiner.Limit(points, limits, &status)) << status.GetMessage();
+    return limits;
+}
+
 bool isAtFreeBoundary(TopologyLevel const &level, int face) {
     for (int const vert : level.GetFaceVertices(face)) {
         for (int const edge : level.GetVertexEdges(vert)) {
@@ -89,11 +108,13 @@ bool isAtFreeBoundary(TopologyLevel const &level, int face) {
     return false;
 }
 
-void expectLimits(Shape const &shape, ReferenceMask mask, Sdc::Options const &options) {
-    auto const refiner = CreateRefiner(shape, mask, GetTestLevel(shape, 2, 8000), options);
-    Limits const limits(*refiner);
-    SurfaceSet<double> const surfaces(*refiner, shape.positions);
-    TopologyLevel const &base = refiner->GetLevel(0);
+void expectLimits(Shape const &shape, SurfaceCase const &surfaceCase, Sdc::Options const &options,
+                  BfrExt::SurfaceFactoryCache &cache) {
+    int const level = GetTestLevel(shape, 2, surfaceCase.HasFirstStep() ? 700 : 8000);
+    auto const refiner = CreateSurfaceRefiner(shape, surfaceCase, level, options);
+    std::vector<Point> const limits = findLimits(*refiner, shape.positions);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions, &cache);
+    TopologyLevel const &base = refiner->GetLevel(refiner->GetMaxLevel() - level);
     bool const isFree = options.GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE;
     for (int face = 0; face < base.GetNumFaces(); ++face) {
         ASSERT_EQ(surfaces[face].IsValid(),
@@ -101,12 +122,11 @@ void expectLimits(Shape const &shape, ReferenceMask mask, Sdc::Options const &op
             << "face " << face;
     }
     for (LevelCorner const &corner : getCorners(refiner->GetLevel(refiner->GetMaxLevel()))) {
-        if (surfaces[corner.baseFace].IsValid()) {
-            ASSERT_LE(GetDistance(surfaces.Evaluate(corner.baseFace, corner.uv).p,
-                                  apply(*limits.table, limits.table->GetWeights(), corner.vert,
-                                        shape.positions)),
+        if (surfaces[corner.face].IsValid()) {
+            ASSERT_LE(GetDistance(surfaces.EvaluatePosition(corner.face, corner.uv),
+                                  limits[std::size_t(corner.vert)].values),
                       kTolerance)
-                << "vertex " << corner.vert << " in base face " << corner.baseFace;
+                << "vertex " << corner.vert << " in face " << corner.face;
         }
     }
 }
@@ -141,24 +161,43 @@ std::vector<std::array<double, 2>> getRandomPlaces(int size, int count) {
 
 } // namespace
 
-class SurfaceTest : public testing::TestWithParam<ReferenceMask> {};
+class SurfaceLimitTest : public testing::TestWithParam<SurfaceCase> {};
+class FeatureLimitTest : public testing::TestWithParam<SurfaceCase> {};
 
-TEST_P(SurfaceTest, GivesTheLimitsOfVerticesOfAllLevels) {
-    for (Shape const &shape : GetShapes()) {
+TEST_P(SurfaceLimitTest, IsThatOfVerticesOfAllLevels) {
+    BfrExt::SurfaceFactoryCache cache;
+    for (Shape const &shape : GetParam().IsPlain() ? GetManifoldShapes() : GetShapes()) {
         SCOPED_TRACE(shape.name);
-        ASSERT_NO_FATAL_FAILURE(
-            expectLimits(shape, GetParam(), getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY)));
+        ASSERT_NO_FATAL_FAILURE(expectLimits(
+            shape, GetParam(), getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY), cache));
     }
 }
 
-TEST_P(SurfaceTest, GivesTheLimitsBesideFeatures) {
+TEST_P(FeatureLimitTest, IsThatOfVerticesOfAllLevels) {
+    BfrExt::SurfaceFactoryCache cache;
     for (Shape const &shape : GetFeatureShapes()) {
         for (auto const boundary : kBoundaries) {
             SCOPED_TRACE(testing::Message() << shape.name << ", boundary rule " << boundary);
-            ASSERT_NO_FATAL_FAILURE(expectLimits(shape, GetParam(), getOptions(boundary)));
+            ASSERT_NO_FATAL_FAILURE(expectLimits(shape, GetParam(), getOptions(boundary), cache));
         }
     }
 }
+
+namespace {
+
+std::string getName(testing::TestParamInfo<SurfaceCase> const &info) {
+    return info.param.GetName();
+}
+
+} // namespace
+
+INSTANTIATE_TEST_SUITE_P(Masks, SurfaceLimitTest, testing::ValuesIn(kPlainCases), getName);
+INSTANTIATE_TEST_SUITE_P(Truncate, SurfaceLimitTest, testing::ValuesIn(kTruncateCases), getName);
+INSTANTIATE_TEST_SUITE_P(TriHex, SurfaceLimitTest, testing::ValuesIn(kTriHexCases), getName);
+INSTANTIATE_TEST_SUITE_P(Masks, FeatureLimitTest, testing::ValuesIn(kPlainCases), getName);
+INSTANTIATE_TEST_SUITE_P(Truncate, FeatureLimitTest, testing::ValuesIn(kTruncateCases), getName);
+
+class SurfaceTest : public testing::TestWithParam<ReferenceMask> {};
 
 TEST_P(SurfaceTest, HasTheNormalsOfLimitTables) {
     // Such small n-gons that all vertices have tangent planes that iteration finds.
@@ -169,7 +208,7 @@ TEST_P(SurfaceTest, HasTheNormalsOfLimitTables) {
         Limits const limits(*refiner);
         SurfaceSet<double> const surfaces(*refiner, shape.positions);
         for (LevelCorner const &corner : getCorners(refiner->GetLevel(2))) {
-            Vector3 const normal = GetNormal(surfaces.Evaluate(corner.baseFace, corner.uv));
+            Vector3 const normal = GetNormal(surfaces.Evaluate(corner.face, corner.uv));
             Vector3 const expected = Normalize(Cross(
                 apply(*limits.table, limits.table->GetDuWeights(), corner.side, shape.positions),
                 apply(*limits.table, limits.table->GetDvWeights(), corner.side, shape.positions)));
@@ -306,18 +345,12 @@ INSTANTIATE_TEST_SUITE_P(Masks, SurfaceTest, testing::ValuesIn(kMasks),
 
 namespace {
 
-/// A number for PrimvarRefiner.
-struct Number {
-    void Clear() { value = 0; }
-    void AddWithWeight(Number const &other, double weight) { value += weight * other.value; }
-
-    double value = 0;
-};
+using Number = Numbers<double, 1>;
 
 std::vector<Number> makeNumbers(int count) {
     std::vector<Number> result(static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < result.size(); ++i) {
-        result[i].value = std::sin(3.0 * double(i));
+        result[i].values[0] = std::sin(3.0 * double(i));
     }
     return result;
 }
@@ -325,7 +358,7 @@ std::vector<Number> makeNumbers(int count) {
 double evaluate(BfrExt::Surface<double> const &surface, std::vector<Number> const &points,
                 double const uv[2]) {
     std::vector<double> gathered(std::size_t(surface.GetNumControlPoints()));
-    surface.GatherControlPoints(&points[0].value, 1, gathered.data(), 1);
+    surface.GatherControlPoints(points[0].values.data(), 1, gathered.data(), 1);
     double result = 0;
     surface.Evaluate(uv, gathered.data(), 1, &result);
     return result;
@@ -333,33 +366,38 @@ double evaluate(BfrExt::Surface<double> const &surface, std::vector<Number> cons
 
 } // namespace
 
-TEST(SurfaceDataTest, VaryingDataStay) {
-    constexpr int kLevel = 3;
+class SurfaceDataTest : public testing::TestWithParam<SurfaceCase> {};
+
+TEST_P(SurfaceDataTest, VaryingDataStay) {
     for (char const *const name : {"creasedBall", "creaseMeetsBorderTriangles", "bowTieOfFans"}) {
         SCOPED_TRACE(name);
         Shape const &shape = GetFeatureShape(name);
-        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, kLevel,
-                                           getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
+        auto const refiner = CreateSurfaceRefiner(shape, GetParam(), 3,
+                                                  getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
         auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
-        std::vector<Number> const base = makeNumbers(shape.GetNumVertices());
-        std::vector<Number> values = base;
-        for (int level = 1; level <= kLevel; ++level) {
+        std::vector<Number> values = makeNumbers(shape.GetNumVertices());
+        std::vector<Number> base = values;
+        for (int level = 1; level <= refiner->GetMaxLevel(); ++level) {
             std::vector<Number> next(std::size_t(refiner->GetLevel(level).GetNumVertices()));
             FarExt::PrimvarRefinerReal<double>(*refiner).InterpolateVarying(level, values, next);
             values = std::move(next);
+            if (level == factory->GetLevel().GetDepth()) {
+                base = values;
+            }
         }
-        for (LevelCorner const &corner : getCorners(refiner->GetLevel(kLevel))) {
+        for (LevelCorner const &corner : getCorners(refiner->GetLevel(refiner->GetMaxLevel()))) {
             BfrExt::Surface<double> surface;
-            ASSERT_TRUE(factory->InitVaryingSurface(corner.baseFace, &surface));
-            ASSERT_NEAR(evaluate(surface, base, corner.uv), values[std::size_t(corner.vert)].value,
-                        kTolerance)
+            ASSERT_TRUE(factory->InitVaryingSurface(corner.face, &surface));
+            ASSERT_NEAR(evaluate(surface, base, corner.uv),
+                        values[std::size_t(corner.vert)].values[0], kTolerance)
                 << "vertex " << corner.vert;
         }
     }
 }
 
-TEST(SurfaceDataTest, FaceVaryingValuesAreTheirLimits) {
+TEST_P(SurfaceDataTest, FaceVaryingValuesAreTheirLimits) {
     constexpr int kLevel = 6;
+    int const numSteps = kLevel - (GetParam().HasFirstStep() ? 1 : 0);
     for (auto const rule : {Sdc::Options::FVAR_LINEAR_ALL, Sdc::Options::FVAR_LINEAR_NONE,
                             Sdc::Options::FVAR_LINEAR_CORNERS_ONLY}) {
         for (char const *const name : {"seamAcrossCrease", "seamsCross", "cornersOnSeam"}) {
@@ -367,31 +405,34 @@ TEST(SurfaceDataTest, FaceVaryingValuesAreTheirLimits) {
             Shape const &shape = GetFeatureShape(name);
             Sdc::Options options = getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
             options.SetFVarLinearInterpolation(rule);
-            auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, kLevel, options);
+            auto const refiner = CreateSurfaceRefiner(shape, GetParam(), numSteps, options);
             auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
-            std::vector<Number> const base = makeNumbers(refiner->GetLevel(0).GetNumFVarValues());
-            std::vector<Number> values = base;
+            std::vector<Number> values = makeNumbers(refiner->GetLevel(0).GetNumFVarValues());
+            std::vector<Number> base = values;
             for (int level = 1; level <= kLevel; ++level) {
                 std::vector<Number> next(std::size_t(refiner->GetLevel(level).GetNumFVarValues()));
                 FarExt::PrimvarRefinerReal<double>(*refiner).InterpolateFaceVarying(level, values,
                                                                                     next);
                 values = std::move(next);
+                if (level == factory->GetLevel().GetDepth()) {
+                    base = values;
+                }
             }
             TopologyLevel const &level = refiner->GetLevel(kLevel);
             for (int face = 0; face < level.GetNumFaces(); face += 7) {
-                bool const isSplit = level.IsFaceBaseSplit(face);
-                if (level.IsFaceFVarSplit(face) || isSplit) {
+                int const ofSurface = level.GetFaceSurfaceFace(face);
+                if (level.IsFaceFVarSplit(face) || level.GetFaceSurfaceFace(face, 1) != ofSurface) {
                     continue;
                 }
                 BfrExt::Surface<double> surface;
-                ASSERT_TRUE(factory->InitFaceVaryingSurface(level.GetFaceBaseFace(face), &surface));
+                ASSERT_TRUE(factory->InitFaceVaryingSurface(ofSurface, &surface));
                 auto const faceValues = level.GetFaceFVarValues(face);
                 std::vector<double> uv(2 * std::size_t(faceValues.size()));
-                level.GetFaceBaseCoords(face, 0, uv.data());
+                level.GetFaceSurfaceCoords(face, 0, uv.data());
                 for (int i = 0; i < faceValues.size(); ++i) {
                     // Those of the level are as far from their limits as its faces are large.
                     ASSERT_NEAR(evaluate(surface, base, uv.data() + 2 * std::ptrdiff_t(i)),
-                                values[std::size_t(faceValues[i])].value,
+                                values[std::size_t(faceValues[i])].values[0],
                                 rule == Sdc::Options::FVAR_LINEAR_ALL ? kTolerance : 1e-2)
                         << "value " << faceValues[i];
                 }
@@ -399,6 +440,9 @@ TEST(SurfaceDataTest, FaceVaryingValuesAreTheirLimits) {
         }
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(, SurfaceDataTest, testing::Values(kPlainCases[2], kTruncateCases[2]),
+                         getName);
 
 TEST(SurfaceFactoryTest, RefusesFacesWithoutASurface) {
     Shape const &shape = GetShape("quadGrid");
@@ -443,6 +487,47 @@ TEST(SurfaceFactoryTest, RefusesOtherSchemes) {
     FarExt::Status status;
     EXPECT_FALSE(BfrExt::SurfaceFactory::Create(*refiner, &status));
     EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
+}
+
+// Behind a first step, surfaces are those of level 1.
+TEST(SurfaceFactoryTest, NeedsTheSurfaceLevelAsItWas) {
+    for (auto const firstStep : {FarExt::FirstStep::Truncate, FarExt::FirstStep::TriHex}) {
+        FarExt::HexSchemeOptions options;
+        options.firstStep = firstStep;
+        EXPECT_EQ(options.GetSurfaceLevel(), 1);
+        auto const refiner =
+            CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 0, Sdc::Options(), options);
+        FarExt::Status status;
+        EXPECT_FALSE(BfrExt::SurfaceFactory::Create(*refiner, &status));
+        EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+        EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Level);
+        EXPECT_EQ(status.GetComponentIndex(), 1);
+        TopologyRefiner::UniformOptions uniformOptions(1);
+        ASSERT_TRUE(refiner->RefineUniform(uniformOptions));
+        if (!refiner->GetLevel(1).HasFullTopology()) {
+            EXPECT_FALSE(BfrExt::SurfaceFactory::Create(*refiner, &status));
+            EXPECT_NE(status.GetMessage().find("fullTopologyInLastLevel"), std::string::npos);
+        }
+        uniformOptions.fullTopologyInLastLevel = true;
+        ASSERT_TRUE(refiner->RefineUniform(uniformOptions));
+        auto const factory = BfrExt::SurfaceFactory::Create(*refiner, &status);
+        ASSERT_TRUE(factory) << status.GetMessage();
+        EXPECT_EQ(factory->GetLevel().GetDepth(), 1);
+        EXPECT_EQ(factory->GetNumFaces(), 14);
+        EXPECT_EQ(factory->GetFaceParameterization(0).GetFaceSize(),
+                  firstStep == FarExt::FirstStep::Truncate ? 8 : 4);
+        BfrExt::Surface<double> surface;
+        EXPECT_TRUE(factory->InitVertexSurface(13, &surface, &status));
+        EXPECT_FALSE(factory->InitVertexSurface(14, &surface, &status));
+        EXPECT_EQ(status.GetMessage(), "face 14 is not one of the 14 faces of level 1");
+
+        ASSERT_TRUE(refiner->RefineUniform(3));
+        EXPECT_FALSE(factory->FaceHasLimitSurface(0, &status));
+        EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+        EXPECT_FALSE(factory->InitVaryingSurface(0, &surface, &status));
+        EXPECT_FALSE(surface.IsValid());
+        EXPECT_NE(status.GetMessage().find("refined again"), std::string::npos);
+    }
 }
 
 TEST(SurfaceFactoryTest, TypesAreSharedByFacesThatLookAlike) {
@@ -501,7 +586,7 @@ TEST(SurfaceFactoryTest, ThreadsMayShareACacheThatGoesFirst) {
     }
 }
 
-TEST(SurfaceDataTest, ControlPointsBoundTheSurface) {
+TEST(SurfaceTest, ControlPointsBoundTheSurface) {
     Shape const &shape = GetShape("cube");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0);
     std::vector<float> const positions(shape.positions.begin(), shape.positions.end());

@@ -34,6 +34,10 @@ public:
     TaggedMesh const &GetMesh(int level) const { return _levels[level]; }
     /// The library's face that a face is, or is half of, and which half; -1 for all of it.
     int GetLibraryFace(int level, int face) const { return _places[level][face].face; }
+    /// By corner of a face, that of the library's face.
+    std::vector<int> const &GetLibraryCorners(int level, int face) const {
+        return _places[level][face].corners;
+    }
     int GetLibraryHalf(int level, int face) const {
         Place const &place = _places[level][face];
         bool const isWhole = int(place.corners.size()) ==

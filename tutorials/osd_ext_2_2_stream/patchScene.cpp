@@ -113,7 +113,7 @@ PatchScene::Patches::Patches(BfrExt::PatchStream<float> const &stream,
     BfrExt::SurfaceFactory const &factory = stream.GetFactory();
     BfrExt::Surface<float> surface;
     for (int face = 0; face < factory.GetNumFaces(); ++face) {
-        if (factory.GetMesh().GetLevel(0).IsFaceHole(face)) {
+        if (factory.GetLevel().IsFaceHole(face)) {
             continue;
         }
         FarExt::Status status;

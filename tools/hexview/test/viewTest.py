@@ -125,7 +125,7 @@ def test_cells(program, meshes):
             (["--adaptive", "--level", "2"], "--level", 2),
             (["--adaptive", "--limit"], "--limit", 2),
             (["--pixel-error", "1"], "--adaptive", 2),
-            (["--adaptive", "--first-step", "truncate", "--png", "no.png"], "level 0", 1)):
+            (["--adaptive", "--first-step", "truncate", "--png", "no.png"], "level 1", 1)):
         run = subprocess.run([program, torus, *options], capture_output=True, text=True)
         expect(run.returncode == code and cause in run.stderr and not os.path.exists("no.png"),
                f"{options} is refused")
