@@ -149,7 +149,11 @@ bool RingCells::AreFacesAlike(RingLayout const &ring) const {
         return std::all_of(numbers.begin(), numbers.end(),
                            [&](int number) { return number == numbers[0]; });
     };
-    return areSame(ring.faceSizes) && (hasPlainMasks() || areSame(ring.neighbors));
+    std::vector<int> verts = ring.verts;
+    std::sort(verts.begin(), verts.end());
+    bool const hasVertexTwice = std::adjacent_find(verts.begin(), verts.end()) != verts.end();
+    return !hasVertexTwice && areSame(ring.faceSizes) &&
+           (hasPlainMasks() || areSame(ring.neighbors));
 }
 
 std::shared_ptr<RingItem const> RingItem::Make(CellPatch const &patch, RingCells &cells) {
@@ -312,24 +316,22 @@ void RingValues<REAL>::EvaluateVertex(RingCell const &vVertex, int ring, int fir
         first += face < firstFace ? ofRing.GetBlockSize(face) : 0;
         numPoints += ofRing.GetBlockSize(face);
     }
-    assert(weights.size() == 1 + numPoints);
+    std::vector<int> const &places = vVertex.GetPlaces();
+    assert(weights.size() == 1 + places.size());
     constexpr std::size_t kLanes = StepMatrix::kPadding;
     for (std::size_t lane = 0; lane < _size; lane += kLanes) {
         REAL sums[kLanes];
         for (std::size_t i = 0; i < kLanes; ++i) {
             sums[i] = weights[0] * _center[lane + i];
         }
-        REAL const *weight = &weights[1];
-        auto const add = [&](std::size_t from, std::size_t to) {
-            REAL const *point = begin + from * _paddedSize + lane;
-            for (; from < to; ++from, point += _paddedSize, ++weight) {
-                for (std::size_t i = 0; i < kLanes; ++i) {
-                    sums[i] += *weight * point[i];
-                }
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            std::size_t const place = first + std::size_t(places[k]);
+            REAL const *const point =
+                begin + (place < numPoints ? place : place - numPoints) * _paddedSize + lane;
+            for (std::size_t i = 0; i < kLanes; ++i) {
+                sums[i] += weights[k + 1] * point[i];
             }
-        };
-        add(first, numPoints);
-        add(0, first);
+        }
         std::copy_n(sums, std::min(kLanes, _size - lane), result + lane);
     }
 }

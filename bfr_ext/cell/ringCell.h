@@ -26,6 +26,11 @@ public:
     std::vector<int> GetKey() const;
     /// By *column*, a point of the type, in the order in which rings have them.
     std::vector<int> const &GetColumns() const { return _columns; }
+    /// \brief By column but the first, its place behind the begin of the block of its ring's face 0.
+    ///
+    /// A ring has places without a column where it has a vertex twice, since two edges join the same
+    /// vertices.
+    std::vector<int> const &GetPlaces() const { return _places; }
     /// \brief Writes by column which of the points of rings it is.
     ///
     /// \param center    the point of the first ring's vertex
@@ -53,7 +58,7 @@ public:
 private:
     CellType const &_type;
     std::vector<int> _columns;
-    std::vector<int> _places;       // by column but the first, behind the block of face 0
+    std::vector<int> _places;
     std::vector<std::size_t> _ends; // by ring, of columns
     mutable PatternTable _patterns;
 };

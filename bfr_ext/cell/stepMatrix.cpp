@@ -63,8 +63,8 @@ void StepMatrix::fill(FarExt::internal::PatchRefinement const &step,
     _block.resize((size + sizeof(_block[0]) - 1) / sizeof(_block[0]));
     char *to = reinterpret_cast<char *>(_block.data());
     auto const append = [&](auto const &array) {
-        std::memcpy(to, array.data(), getSize(array));
-        to += getSize(array);
+        auto const *const begin = reinterpret_cast<char const *>(array.data());
+        to = std::copy(begin, begin + getSize(array), to);
     };
     append(weights);
     append(floatWeights);
