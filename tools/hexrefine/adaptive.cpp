@@ -170,7 +170,7 @@ void AdaptiveRefinement::Refine(AdaptiveArguments const &arguments,
     if (!factory) {
         throw FileError(input, "--adaptive: " + status.GetMessage());
     }
-    FarExt::TopologyLevel const base = refiner.GetLevel(0);
+    FarExt::TopologyLevel const base = factory->GetLevel();
     int const numFaces = base.GetNumFaces();
     Surface<float> surface;
     std::int64_t numSurfaces = 0;

@@ -66,12 +66,14 @@ struct AdaptiveCamera {
 /// out.
 class AdaptiveRefinement {
 public:
-    /// \param mesh    that is refined, with what the file is to have; it must live as long
+    /// \param mesh    that is refined, with what the file is to have: its labels are those of base faces,
+    ///                its numbers those of the surface level; it must live as long
     /// \param output  the file, which Write() puts in its place; empty: none
     /// \param isKept  whether the cells are kept
     AdaptiveRefinement(Mesh const &mesh, std::string const &output, bool isKept);
 
-    /// Throws FileError, naming \p input, where a face has no surface.
+    /// Refines the faces of the surface level, which \p refiner has.  Throws FileError, naming \p input,
+    /// where a face has no surface.
     void Refine(AdaptiveArguments const &arguments, FarExt::TopologyRefiner const &refiner,
                 std::string const &input);
     AdaptiveStatistics const &GetStatistics() const { return _statistics; }

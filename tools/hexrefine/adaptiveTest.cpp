@@ -34,6 +34,37 @@ protected:
     }
 };
 
+/// The areas of faces by material, of fans around their vertices' mean.
+std::map<std::string, double> measureMaterials(Mesh const &mesh) {
+    std::map<std::string, double> areas;
+    auto corner = mesh.faceVertices.begin();
+    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+        int const size = mesh.faceSizes[std::size_t(face)];
+        double mean[3] = {};
+        for (int i = 0; i < size; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                mean[k] += double(mesh.positions[3 * std::size_t(corner[i]) + k]) / size;
+            }
+        }
+        double area = 0;
+        for (int i = 0; i < size; ++i) {
+            float const *const p = &mesh.positions[3 * std::size_t(corner[i])];
+            float const *const q = &mesh.positions[3 * std::size_t(corner[(i + 1) % size])];
+            double cross[3];
+            for (int k = 0; k < 3; ++k) {
+                int const l = (k + 1) % 3;
+                int const m = (k + 2) % 3;
+                cross[k] = (double(p[l]) - mean[l]) * (double(q[m]) - mean[m]) -
+                           (double(p[m]) - mean[m]) * (double(q[l]) - mean[l]);
+            }
+            area += std::hypot(cross[0], cross[1], cross[2]) / 2;
+        }
+        corner += size;
+        areas[mesh.labels[std::size_t(mesh.faceLabels[std::size_t(face)])].material] += area;
+    }
+    return areas;
+}
+
 } // namespace
 
 TEST_F(HexrefineAdaptive, MakesClosedMeshesInEachFormat) {
@@ -236,6 +267,59 @@ TEST_F(HexrefineAdaptive, MakesPicturesOfHugeMeshes) {
     EXPECT_TRUE(contents[0] == contents[1]);
 }
 #endif
+
+// Cells begin with the faces of level 1, whose base faces have the materials and holes.
+TEST_F(HexrefineAdaptive, BeginsBehindAFirstStep) {
+    std::string const cube = makeCubeFile();
+    EXPECT_EQ(refine(cube, "--first-step tri-hex --max-level 0", "base.obj").GetNumFaces(), 14);
+    for (char const *const firstStep : {"truncate", "tri-hex"}) {
+        Mesh const mesh =
+            refine(cube, std::string("--mask smooth --first-step ") + firstStep, "closed.obj");
+        ASSERT_NO_FATAL_FAILURE(expectClosed(mesh));
+        EXPECT_GT(mesh.GetNumFaces(), 100);
+    }
+    std::string const octahedron =
+        makeFile("octahedron.obj",
+                 "v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
+                 "vt 0 0\nvt 1 0\nvt 0 1\n"
+                 "usemtl blue\nf 1/1 2/2 5/3\nf 2/1 3/2 5/3\nf 3/1 4/2 5/3\nf 4/1 1/2 5/3\n"
+                 "usemtl red\nf 2/1 1/2 6/3\nf 3/1 2/2 6/3\nf 4/1 3/2 6/3\nf 1/1 4/2 6/3\n"
+                 "t hole 1/0/0 7\n");
+    std::string const options = "--mask smooth --first-step truncate ";
+    Mesh const mesh = refine(octahedron, options + "--pixel-error 0.2", "cells.obj");
+    Result const result =
+        run(octahedron + " --level 5 --limit --quiet " + options + " -o " + getPath("uniform.obj"));
+    ASSERT_EQ(result.status, 0) << result.error;
+    std::map<std::string, double> const areas = measureMaterials(mesh);
+    std::map<std::string, double> const expected =
+        measureMaterials(ReadMesh(getPath("uniform.obj")));
+    ASSERT_EQ(areas.size(), 2u);
+    EXPECT_NEAR(areas.at("blue"), expected.at("blue"), 0.01 * expected.at("blue"));
+    EXPECT_NEAR(areas.at("red"), expected.at("red"), 0.01 * expected.at("red"));
+    EXPECT_NEAR(areas.at("red"), 0.75 * areas.at("blue"), 0.02 * areas.at("blue"));
+    ASSERT_EQ(mesh.channels.size(), 1u);
+    EXPECT_EQ(mesh.channels[0].faceValues.size(), mesh.faceVertices.size());
+    for (float const number : mesh.channels[0].values) {
+        EXPECT_TRUE(-1e-5F <= number && number <= 1.00001F);
+    }
+    // Around the hole alone it is open.
+    std::set<std::pair<int, int>> sides;
+    auto corner = mesh.faceVertices.begin();
+    for (int const size : mesh.faceSizes) {
+        for (int i = 0; i < size; ++i) {
+            EXPECT_TRUE(sides.emplace(corner[i], corner[(i + 1) % size]).second);
+        }
+        corner += size;
+    }
+    int numOpen = 0;
+    for (auto const &[start, end] : sides) {
+        numOpen += sides.count({end, start}) == 0;
+    }
+    EXPECT_GT(numOpen, 0);
+    EXPECT_LT(numOpen, int(sides.size()) / 10);
+    Result const json = run(octahedron + " --adaptive --quiet --stats - " + options);
+    EXPECT_EQ(Json::parse(json.out)["firstStep"], "truncate");
+}
 
 TEST_F(HexrefineAdaptive, LeavesHolesOut) {
     std::string const strip = makeStrip("t hole 1/0/0 1\nt interpolateboundary 1/0/0 1\n");

@@ -44,8 +44,8 @@ struct CellPieces::Patch {
 
 CellPieces::CellPieces(BfrExt::SurfaceFactory const &factory, BfrExt::CellForest const &forest,
                        Mesh const &mesh, std::string const &input)
-    : _factory(factory), _forest(forest), _mesh(mesh), _input(input),
-      _base(factory.GetMesh().GetLevel(0)), _frontValues(mesh.channels.size()), _piece(mesh) {
+    : _factory(factory), _forest(forest), _mesh(mesh), _input(input), _level(factory.GetLevel()),
+      _frontValues(mesh.channels.size()), _piece(mesh) {
     std::size_t const width = mesh.vertexProperties.size();
     _properties.resize(width * std::size_t(mesh.GetNumVertices()));
     for (std::size_t i = 0; i < _properties.size(); ++i) {
@@ -65,10 +65,10 @@ void CellPieces::numberFront() {
         if (!hasFace(face)) {
             continue;
         }
-        for (int const vert : _base.GetFaceVertices(face)) {
+        for (int const vert : _level.GetFaceVertices(face)) {
             _frontVerts[std::size_t(vert)] = 0;
         }
-        for (int const edge : _base.GetFaceEdges(face)) {
+        for (int const edge : _level.GetFaceEdges(face)) {
             std::fill_n(_frontVerts.begin() + _forest.GetFirstEdgePoint(edge),
                         _forest.GetPolyline(edge).GetNumPoints(), 0);
         }
@@ -110,7 +110,7 @@ int CellPieces::takeFaces() {
             continue;
         }
         if (!_mesh.faceLabels.empty()) {
-            int const own = _mesh.faceLabels[std::size_t(end)];
+            int const own = _mesh.faceLabels[std::size_t(_level.GetFaceBaseFace(end))];
             if (label >= 0 && own != label) {
                 break;
             }
@@ -203,7 +203,8 @@ void CellPieces::add(Patch const &patch) {
         }
     }
     _piece.faceSizes.insert(_piece.faceSizes.end(), patch.sizes.begin(), patch.sizes.end());
-    _piece.baseFaces.insert(_piece.baseFaces.end(), patch.sizes.size(), patch.face);
+    _piece.baseFaces.insert(_piece.baseFaces.end(), patch.sizes.size(),
+                            _level.GetFaceBaseFace(patch.face));
     _faceLevels.insert(_faceLevels.end(), patch.levels.begin(), patch.levels.end());
     for (int const place : patch.facets) {
         _piece.faceVertices.push_back(verts[std::size_t(place)]);

@@ -21,9 +21,9 @@ namespace OpenSubdivHex::Tools {
 /// places of one vertex with the same value share it.
 class CellPieces {
 public:
-    /// \param factory  of the base mesh
+    /// \param factory  of the refiner
     /// \param forest   of the same, matched
-    /// \param mesh     positions, properties, channels and labels of the base mesh
+    /// \param mesh     positions, properties and channels of the surface level, and labels of base faces
     /// \param input    its file, for messages
     ///
     /// All must live as long.
@@ -54,7 +54,7 @@ private:
         int numValues = 0; // of the whole mesh
     };
 
-    bool hasFace(int face) const { return !_base.IsFaceHole(face); }
+    bool hasFace(int face) const { return !_level.IsFaceHole(face); }
     void numberFront();
     int takeFaces();
     void evaluate(int face, Patch &patch) const;
@@ -68,7 +68,7 @@ private:
     BfrExt::CellForest const &_forest;
     Mesh const &_mesh;
     std::string const &_input;
-    FarExt::TopologyLevel _base;
+    FarExt::TopologyLevel _level;   // whose faces are refined
     std::vector<float> _properties; // of vertices, by vertex
     std::vector<int> _frontVerts;   // by the forest's numbers of points
     std::vector<FrontValues> _frontValues;

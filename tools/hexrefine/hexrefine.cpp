@@ -343,14 +343,16 @@ std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Arguments const &argument
     return refiner;
 }
 
-/// To the last level; the positions of \p mesh are the rest pose.
-void refine(Arguments const &arguments, Mesh const &mesh, FarExt::TopologyRefiner *refiner) {
+/// To a level; the positions of \p mesh are the rest pose.
+void refine(Arguments const &arguments, Mesh const &mesh, int level,
+            FarExt::TopologyRefiner *refiner) {
     FarExt::Status status;
-    bool const needsFullTopology = arguments.isLimit || !arguments.png.empty();
-    FarExt::TopologyRefiner::UniformOptions uniformOptions(arguments.level);
+    bool const needsFullTopology =
+        arguments.isLimit || arguments.adaptive.isAdaptive || !arguments.png.empty();
+    FarExt::TopologyRefiner::UniformOptions uniformOptions(level);
     uniformOptions.fullTopologyInLastLevel = needsFullTopology;
     uniformOptions.faceLabels = FindFaceClasses(mesh);
-    FarExt::TopologyRefiner::CoplanarOptions options(arguments.level);
+    FarExt::TopologyRefiner::CoplanarOptions options(level);
     options.angleTolerance = arguments.tolerance;
     options.closeGaps = !arguments.hasOpenGaps;
     options.fullTopologyInLastLevel = needsFullTopology;
@@ -466,7 +468,6 @@ void evaluate(Arguments const &arguments, FarExt::TopologyRefiner const &refiner
             EvaluateStencils(*table, arguments.evaluator, primvar);
         });
     }
-    NormalizeNormals(mesh);
 }
 
 /// Removes from \p mesh what will not be written.
@@ -574,10 +575,12 @@ void run(Arguments const &arguments) {
         });
 
         bool const isAdaptive = arguments.adaptive.isAdaptive;
-        int const lastDepth = isAdaptive ? 0 : arguments.level;
+        // Cells begin with the faces of the surface level.
+        int const lastDepth =
+            isAdaptive ? refiner->GetHexSchemeOptions().GetSurfaceLevel() : arguments.level;
         milliseconds.refine = measure(progress, "refining", [&] {
-            if (!isAdaptive) {
-                refine(arguments, mesh, refiner.get());
+            if (!isAdaptive || lastDepth > 0) {
+                refine(arguments, mesh, lastDepth, refiner.get());
             }
         });
         statistics.levels = CountLevels(*refiner);
@@ -587,14 +590,17 @@ void run(Arguments const &arguments) {
         statistics.channels = CountChannels(*refiner, mesh);
 
         std::optional<AdaptiveRefinement> cells;
+        if (lastDepth > 0) {
+            evaluate(arguments, *refiner, &mesh, progress, &statistics);
+        }
         if (isAdaptive) {
-            milliseconds.evaluate = measure(progress, "evaluating", [&] {
+            milliseconds.evaluate += measure(progress, "evaluating", [&] {
                 cells.emplace(mesh, arguments.output, !arguments.png.empty());
                 cells->Refine(arguments.adaptive, *refiner, arguments.input);
                 statistics.adaptive = cells->GetStatistics();
             });
-        } else if (arguments.level > 0) {
-            evaluate(arguments, *refiner, &mesh, progress, &statistics);
+        } else if (lastDepth > 0) {
+            NormalizeNormals(&mesh);
         }
         FarExt::TopologyLevel const &lastLevel = refiner->GetLevel(lastDepth);
         std::optional<FarExt::LimitSides> sides;

@@ -30,19 +30,51 @@ std::vector<float> gather(BfrExt::Surface<float> const &surface, std::vector<flo
     return result;
 }
 
+/// What makes values of the last level of a refiner; null where that is level 0.
+std::unique_ptr<OsdExt::RefinementEvaluator> makeEvaluator(FarExt::TopologyRefiner const &refiner,
+                                                           FarExt::StencilMode mode, int channel) {
+    if (refiner.GetMaxLevel() == 0) {
+        return nullptr;
+    }
+    OsdExt::RefinementEvaluator::Options options;
+    options.interpolationMode = mode;
+    options.fvarChannel = channel;
+    FarExt::Status status;
+    auto evaluator = OsdExt::RefinementEvaluator::Create(refiner, options, &status);
+    requireOk(evaluator != nullptr, status);
+    return evaluator;
+}
+
+/// Values of a level from those of level 0, by its evaluator.
+std::vector<float> evaluate(std::vector<float> const &values, int width,
+                            OsdExt::RefinementEvaluator *evaluator, int level) {
+    if (!evaluator) {
+        return values;
+    }
+    OpenSubdiv::Osd::BufferDescriptor const desc(0, width, width);
+    std::vector<float> result(std::size_t(evaluator->GetNumElements(level)) * std::size_t(width));
+    FarExt::Status status;
+    requireOk(evaluator->Evaluate(values.data(), desc, result.data(), desc, level, &status),
+              status);
+    return result;
+}
+
 } // namespace
 
 CellView::CellView(Mesh const &mesh, std::unique_ptr<FarExt::TopologyRefiner> refiner,
                    int uvChannel)
-    : _refiner(std::move(refiner)), _baseSides(_refiner->GetLevel(0)) {
+    : _refiner(std::move(refiner)), _baseSides(getBase()) {
     FarExt::Status status;
     _factory = SurfaceFactory::Create(*_refiner,
                                       SurfaceFactory::Options().SetExternalCache(&_cache), &status);
     requireOk(_factory != nullptr, status);
+    _evaluator = makeEvaluator(*_refiner, FarExt::INTERPOLATE_VERTEX, 0);
     if (uvChannel >= 0) {
         FVarChannel const &channel = mesh.channels[std::size_t(uvChannel)];
-        _uvs = channel.values;
         _uvWidth = channel.width;
+        _uvs = evaluate(channel.values, _uvWidth,
+                        makeEvaluator(*_refiner, FarExt::INTERPOLATE_FACE_VARYING, uvChannel).get(),
+                        _refiner->GetMaxLevel());
     }
     _faces.resize(std::size_t(getBase().GetNumFaces()));
     for (int number = 0; number < int(_faces.size()); ++number) {
@@ -59,9 +91,15 @@ CellView::CellView(Mesh const &mesh, std::unique_ptr<FarExt::TopologyRefiner> re
     _statistics.numTypes = int(_cache.GetNumTypes());
 }
 
+// The points that surfaces take.
+std::vector<float> CellView::findPoints(std::vector<float> const &controlPoints) const {
+    return evaluate(controlPoints, kLength, _evaluator.get(), _refiner->GetMaxLevel());
+}
+
 void CellView::Refine(BfrExt::View const &view, std::vector<float> const &controlPoints) {
     BfrExt::View::Counts counts;
-    _forest = view.MakeForest<float>(*_factory, controlPoints.data(), kLength,
+    std::vector<float> const points = findPoints(controlPoints);
+    _forest = view.MakeForest<float>(*_factory, points.data(), kLength,
                                      _forest ? &*_forest : nullptr, &counts);
     _statistics.counts = std::move(counts);
     ForEachFace(int(_faces.size()), [&](int number) {
@@ -80,7 +118,7 @@ void CellView::Refine(BfrExt::View const &view, std::vector<float> const &contro
 }
 
 // Points on edges come first, in the order of the forest, then those inside of faces.  Vertices of the
-// base mesh have sides; edges have one, or where they are sharp one for each face.
+// surface level have sides; edges have one, or where they are sharp one for each face.
 void CellView::numberPlaces() {
     FarExt::TopologyLevel const base = getBase();
     int const numVertices = base.GetNumVertices();
@@ -170,8 +208,9 @@ void CellView::addTriangles(int number, Face const &face) {
         float const *const coord = &coords[width * std::size_t(place)];
         _topology.coords.insert(_topology.coords.end(), coord, coord + 2);
     }
+    int const baseFace = getBase().GetFaceBaseFace(number);
     for (int const level : levels) {
-        _topology.triangleFaces.push_back(number);
+        _topology.triangleFaces.push_back(baseFace);
         _topology.triangleFaces.push_back(level);
     }
 }
@@ -184,6 +223,7 @@ void CellView::Evaluate(std::vector<float> const &controlPoints) {
         std::vector<float> dv;
     };
     std::vector<Values> ofFaces(_faces.size());
+    std::vector<float> const surfacePoints = findPoints(controlPoints);
     ForEachFace(int(_faces.size()), [&](int number) {
         Face const &face = _faces[std::size_t(number)];
         if (face.surface.IsValid()) {
@@ -191,7 +231,7 @@ void CellView::Evaluate(std::vector<float> const &controlPoints) {
             for (std::vector<float> *const array : {&values.points, &values.du, &values.dv}) {
                 array->resize(kLength * face.points.size());
             }
-            std::vector<float> const control = gather(face.surface, controlPoints, kLength);
+            std::vector<float> const control = gather(face.surface, surfacePoints, kLength);
             face.surface.Evaluate(*face.polygons, control.data(), kLength, values.points.data(),
                                   values.du.data(), values.dv.data(), kLength);
         }

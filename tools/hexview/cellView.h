@@ -7,6 +7,7 @@
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
 #include "far_ext/limitStencilTableFactory.h"
+#include "osd_ext/refinementEvaluator.h"
 #include "tools/mesh/mesh.h"
 
 #include <memory>
@@ -18,7 +19,7 @@ namespace OpenSubdivHex::Tools {
 /// \brief The base faces of a mesh, each refined as far as a camera needs it.
 class CellView {
 public:
-    /// \brief Makes the surfaces of all faces.
+    /// \brief Makes the surfaces of all faces of the surface level, to which the refiner is refined.
     ///
     /// \param uvChannel  the channel with texture coordinates; -1 if there is none
     ///
@@ -33,7 +34,7 @@ public:
     };
 
     /// \brief Finds the cells that a view needs; those of the call before stay refined, by the
-    /// hysteresis of the view.  What is drawn is another then.
+    /// hysteresis of the view.  What is drawn is another then.  Control points are those of the mesh.
     void Refine(BfrExt::View const &view, std::vector<float> const &controlPoints);
     /// Whether Refine() has found cells.
     bool IsRefined() const { return _forest.has_value(); }
@@ -61,12 +62,15 @@ private:
     void findTopology();
     void addTriangles(int number, Face const &face);
 
-    FarExt::TopologyLevel getBase() const { return _refiner->GetLevel(0); }
+    FarExt::TopologyLevel getBase() const { return _refiner->GetLevel(_refiner->GetMaxLevel()); }
+    std::vector<float> findPoints(std::vector<float> const &controlPoints) const;
 
     std::unique_ptr<FarExt::TopologyRefiner> _refiner;
-    FarExt::LimitSides _baseSides; // of the vertices of the base mesh
+    FarExt::LimitSides _baseSides; // of the vertices of the surface level
     BfrExt::SurfaceFactoryCache _cache;
     std::unique_ptr<BfrExt::SurfaceFactory> _factory;
+    std::unique_ptr<OsdExt::RefinementEvaluator>
+        _evaluator;          // of points of a surface level beyond 0
     std::vector<float> _uvs; // of the channel; empty without
     int _uvWidth = 0;
     std::vector<Face> _faces;

@@ -48,9 +48,11 @@ std::unique_ptr<FarExt::TopologyRefiner> makeRefiner(Mesh const &mesh,
     options.schemeOptions = settings.scheme;
     FarExt::Status status;
     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options, &status);
-    FarExt::TopologyRefiner::UniformOptions uniform(settings.level);
+    // Cells begin with the faces of the surface level.
+    FarExt::TopologyRefiner::UniformOptions uniform(
+        settings.isAdaptive ? settings.scheme.GetSurfaceLevel() : settings.level);
     uniform.fullTopologyInLastLevel = true;
-    if (!refiner || (!settings.isAdaptive && !refiner->RefineUniform(uniform, &status))) {
+    if (!refiner || !refiner->RefineUniform(uniform, &status)) {
         fail(status);
     }
     return refiner;

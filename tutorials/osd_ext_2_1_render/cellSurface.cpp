@@ -98,11 +98,14 @@ CellSurface::CellSurface(FarExt::TopologyRefiner const &refiner) {
     FarExt::Status status;
     _factory = BfrExt::SurfaceFactory::Create(
         refiner, BfrExt::SurfaceFactory::Options().SetExternalCache(&_cache), &status);
-    FarExt::TopologyLevel const &base = refiner.GetLevel(0);
-    for (int face = 0; _factory && status.IsOk() && face < base.GetNumFaces(); ++face) {
-        if (!base.IsFaceHole(face)) {
+    for (int face = 0; _factory && status.IsOk() && face < _factory->GetNumFaces(); ++face) {
+        if (!_factory->GetLevel().IsFaceHole(face)) {
             _factory->FaceHasLimitSurface(face, &status);
         }
+    }
+    // Behind a first step, surfaces take points of level 1.
+    if (status.IsOk() && _factory->GetLevel().GetDepth() > 0) {
+        _evaluator = OsdExt::RefinementEvaluator::Create(refiner, &status);
     }
     if (!status.IsOk()) {
         throw std::runtime_error(status.GetMessage());
@@ -116,15 +119,21 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
     if (!view.IsValid()) {
         throw std::runtime_error("the camera has no picture");
     }
-    _forest = view.MakeForest(*_factory, positions.data(), 3, _forest ? &*_forest : nullptr);
+    FarExt::TopologyLevel const &base = _factory->GetLevel();
+    _points = positions;
+    if (_evaluator) {
+        _points.resize(3 * std::size_t(base.GetNumVertices()));
+        OpenSubdiv::Osd::BufferDescriptor const desc(0, 3, 3);
+        _evaluator->Evaluate(positions.data(), desc, _points.data(), desc, base.GetDepth());
+    }
+    _forest = view.MakeForest(*_factory, _points.data(), 3, _forest ? &*_forest : nullptr);
 
     // Points on edges are numbered by the forest, and those inside of faces follow.
-    FarExt::TopologyLevel const &base = _factory->GetMesh().GetLevel(0);
     Mesh mesh;
     std::vector<Patch> patches;
     std::vector<int> corners; // of all polygons: the place in the patch
     int numPoints = _forest->GetNumBoundaryPoints();
-    _baseFaces.clear();
+    std::vector<int> faces; // of the surface level, by polygon
     for (int face = 0; face < base.GetNumFaces(); ++face) {
         if (base.IsFaceHole(face)) {
             continue;
@@ -135,7 +144,7 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
                            {},
                            {}});
         Patch &patch = patches.back();
-        evaluate(*_factory, face, positions, &patch);
+        evaluate(*_factory, face, _points, &patch);
         Tessellation const &tessellation = patch.tessellation;
         patch.points.resize(std::size_t(tessellation.GetNumCoords()));
         int const numBoundary = _forest->GetBoundaryPoints(face, patch.points.data());
@@ -149,7 +158,7 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
         std::vector<int> numbers(std::size_t(tessellation.GetNumFacets()));
         tessellation.GetFacetSizes(numbers.data());
         mesh.faceSizes.insert(mesh.faceSizes.end(), numbers.begin(), numbers.end());
-        _baseFaces.insert(_baseFaces.end(), numbers.size(), face);
+        faces.insert(faces.end(), numbers.size(), face);
         numbers.resize(std::size_t(tessellation.GetNumFacetVertices()));
         tessellation.GetFacets(numbers.data());
         for (int const place : numbers) {
@@ -158,6 +167,9 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
         }
         addCreases(base, face, patch, &mesh.tags);
     }
+    _baseFaces.resize(faces.size());
+    std::transform(faces.begin(), faces.end(), _baseFaces.begin(),
+                   [&](int face) { return base.GetFaceBaseFace(face); });
     FarExt::Status status;
     _polygons = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), {}, {}, &status);
     if (!_polygons) {
@@ -173,8 +185,7 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
     auto place = corners.begin();
     auto patch = patches.begin();
     for (int polygon = 0; polygon < level.GetNumFaces(); ++polygon) {
-        if (polygon > 0 &&
-            _baseFaces[std::size_t(polygon)] != _baseFaces[std::size_t(polygon) - 1]) {
+        if (polygon > 0 && faces[std::size_t(polygon)] != faces[std::size_t(polygon) - 1]) {
             ++patch;
         }
         for (int local = 0; local < level.GetFaceVertices(polygon).size(); ++local, ++place) {

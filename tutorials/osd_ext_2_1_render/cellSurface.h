@@ -4,6 +4,7 @@
 
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
+#include "osd_ext/refinementEvaluator.h"
 #include "tools/render/camera.h"
 #include "tools/render/surface.h"
 
@@ -21,8 +22,8 @@ class CellSurface {
 public:
     /// \brief Prepares the surfaces of all faces.
     ///
-    /// \param refiner  of the control mesh; must live as long.  Throws std::runtime_error where a face
-    ///                 has no surface
+    /// \param refiner  of the control mesh, refined to the surface level; must live as long.  Throws
+    ///                 std::runtime_error where a face has no surface
     explicit CellSurface(FarExt::TopologyRefiner const &refiner);
 
     /// \brief Makes the polygons of a frame.
@@ -42,6 +43,8 @@ public:
 private:
     BfrExt::SurfaceFactoryCache _cache;
     std::unique_ptr<BfrExt::SurfaceFactory> _factory;
+    std::unique_ptr<OsdExt::RefinementEvaluator> _evaluator; // to a surface level beyond 0
+    std::vector<float> _points;                              // of the surface level
     std::optional<BfrExt::CellForest> _forest;
     std::unique_ptr<FarExt::TopologyRefiner> _polygons; // as a mesh that is not refined
     std::unique_ptr<Surface> _surface;

@@ -264,6 +264,13 @@ public:
         auto const [low, high] = findBounds(mesh.positions);
         _rodRadius = 0.005f * Length(high - low);
         if (settings.isAdaptive) {
+            // Surfaces begin with the faces of level 0 or, behind a first step, of level 1.
+            FarExt::TopologyRefiner::UniformOptions refineOptions(
+                refinerOptions.schemeOptions.GetSurfaceLevel());
+            refineOptions.fullTopologyInLastLevel = true;
+            if (!_refiner->RefineUniform(refineOptions, &status)) {
+                throw FileError(input, status.GetMessage());
+            }
             try {
                 _cells = std::make_unique<CellSurface>(*_refiner);
             } catch (std::runtime_error const &error) {

@@ -106,6 +106,12 @@ def test_cells(program, meshes):
         expect(share_of_different(level, fine, 16) < 0.01,
                "cells that are flat to a part of a pixel look like those of a level")
         expect(share_of_different(level, coarse, 16) > 0.02, "coarse cells do not")
+    for step in ("truncate", "tri-hex"):
+        level = draw(program, torus, "-l", "5", "--limit", "--no-edges", "--first-step", step)
+        cells = draw(program, torus, "--adaptive", "--no-edges", "--pixel-error", "0.1",
+                     "--first-step", step)
+        expect(share_of_different(level, cells, 16) < 0.01,
+               f"cells behind a first step, {step}, look like those of a level")
     far = draw(program, lantern, "--adaptive", "--no-edges", "--shading", "levels",
                "--pixel-error", "4")
     near = draw(program, lantern, "--adaptive", "--no-edges", "--shading", "levels",
@@ -125,7 +131,7 @@ def test_cells(program, meshes):
             (["--adaptive", "--level", "2"], "--level", 2),
             (["--adaptive", "--limit"], "--limit", 2),
             (["--pixel-error", "1"], "--adaptive", 2),
-            (["--adaptive", "--first-step", "truncate", "--png", "no.png"], "level 1", 1)):
+            (["--adaptive", "--scheme", "doo-sabin", "--png", "no.png"], "level 0", 1)):
         run = subprocess.run([program, torus, *options], capture_output=True, text=True)
         expect(run.returncode == code and cause in run.stderr and not os.path.exists("no.png"),
                f"{options} is refused")
