@@ -32,17 +32,6 @@ void BorderEvaluator<REAL>::SetFace(CellType const &type, int const *turns, REAL
     _paddedSize = StepMatrix::GetPaddedSize(size);
     _border = nullptr;
     _edge = {};
-    if (type.IsInLattice()) {
-        return; // with all of its border
-    }
-    _border = &type.GetBorder(turns);
-    std::size_t const numPoints = _border->sums.GetNumParentPoints();
-    _paddedPoints.resize(numPoints * _paddedSize);
-    for (std::size_t i = 0; i < numPoints; ++i) {
-        StepMatrix::Pad(points + std::ptrdiff_t(i) * stride, size, &_paddedPoints[i * _paddedSize]);
-    }
-    _sums.resize(_border->sums.GetNumRows() * _paddedSize);
-    _border->sums.Apply(_paddedPoints.data(), _paddedSize, _sums.data());
 }
 
 template <typename REAL>
@@ -59,6 +48,24 @@ void BorderEvaluator<REAL>::SetFace(PlainFaceType const &type, RingValues<REAL> 
     _paddedSize = values.GetPaddedSize();
     _border = nullptr;
     _edge = {};
+}
+
+// What is neither in a lattice nor has rings follows from sums.  A plain face may have such an item, too,
+// where a closed mesh is so small that its lattice meets itself.
+template <typename REAL>
+REAL const *BorderEvaluator<REAL>::getSums(std::size_t item) {
+    if (!_border) {
+        _border = &getType().GetBorder(_turns);
+        std::size_t const numPoints = _border->sums.GetNumParentPoints();
+        _paddedPoints.resize(numPoints * _paddedSize);
+        for (std::size_t i = 0; i < numPoints; ++i) {
+            StepMatrix::Pad(_points + std::ptrdiff_t(i) * _stride, _size,
+                            &_paddedPoints[i * _paddedSize]);
+        }
+        _sums.resize(_border->sums.GetNumRows() * _paddedSize);
+        _border->sums.Apply(_paddedPoints.data(), _paddedSize, _sums.data());
+    }
+    return &_sums[_border->items[item].firstSum * _paddedSize];
 }
 
 template <typename REAL>
@@ -81,7 +88,7 @@ void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
                           _stride, _size);
         _vertexValues.EvaluateVertex(*item.rings->cell, 0, 0, result);
     } else {
-        std::copy_n(&_sums[_border->items[_numEdges + vert].firstSum * _paddedSize], _size, result);
+        std::copy_n(getSums(_numEdges + vert), _size, result);
     }
 }
 
@@ -117,9 +124,8 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
         _edge = {&cell.GetType(), &cell, _edgeValues.GetPoints(), std::ptrdiff_t(_paddedSize),
                  _indices.data()};
     } else {
-        CellType::Border::Item const &sums = _border->items[edge];
-        _edge = {sums.type, nullptr, &_sums[sums.firstSum * _paddedSize],
-                 std::ptrdiff_t(_paddedSize), nullptr};
+        REAL const *const sums = getSums(edge);
+        _edge = {_border->items[edge].type, nullptr, sums, std::ptrdiff_t(_paddedSize), nullptr};
     }
 }
 

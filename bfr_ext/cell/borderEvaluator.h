@@ -71,6 +71,7 @@ private:
             [&] { return makeMatrix(type, cell, makePoints()); });
     }
     CellType const &getType() const { return _plain ? _plain->Get() : *_type; }
+    REAL const *getSums(std::size_t item);
     void setEdge(std::size_t edge);
     void sumUp(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t resultStride) const {
         SumUpPlaces(matrix,
@@ -86,7 +87,7 @@ private:
     std::ptrdiff_t _stride = 0;
     std::size_t _size = 0;
     std::size_t _paddedSize = 0;
-    CellType::Border const *_border = nullptr;
+    CellType::Border const *_border = nullptr; // once sums are asked for
     std::vector<REAL> _paddedPoints;
     std::vector<REAL> _sums; // of the border
     // Of the edge that was last asked for, if any.
