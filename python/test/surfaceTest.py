@@ -49,7 +49,7 @@ def test_surfaces_behind_a_first_step_are_those_of_level_1(first_step):
     points = osh.RefinementEvaluator(refiner).evaluate(POSITIONS)
     limit = osh.RefinementEvaluator(refiner).evaluate_limit(POSITIONS, level=1)
     level = refiner.get_level(1)
-    vertices = level.face_vertices
+    vertices = level.face_vertices.copy()
     factory = osh.SurfaceFactory(refiner)
     for face in (0, level.num_faces - 1):
         surface = factory.vertex_surface(face)
