@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitStencilTableFactory.h"
 
+#include "far_ext/limit/latticeStencils.h"
 #include "far_ext/limit/limitMultiplier.h"
 #include "far_ext/limit/regularFaces.h"
+#include "far_ext/limit/regularVertices.h"
 #include "far_ext/stencil/levelStencils.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
 
+#include <atomic>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -17,6 +20,7 @@ namespace OpenSubdivHex::FarExt {
 
 using Far::Index;
 using internal::FaceLimitMaskFinder;
+using internal::LatticeFaces;
 using internal::Level;
 using internal::LevelStencils;
 using internal::LimitMask;
@@ -24,6 +28,7 @@ using internal::LimitRow;
 using internal::LimitRows;
 using internal::RegularFace;
 using internal::RegularFaces;
+using internal::RegularVertices;
 
 LimitSides::LimitSides(TopologyLevel const &level) : _numVertices(level.GetNumVertices()) {
     internal::Level const &topology = level.GetLevel();
@@ -106,19 +111,81 @@ private:
     std::vector<REAL> &dvWeights() { return const_cast<std::vector<REAL> &>(this->GetDvWeights()); }
 };
 
-// The rows of a table, in its order: those of vertices, further sides and face centres.
+// What the limit of the vertices of a level follows from, in terms of control vertices or of levels
+// before.
+struct EarlierLimits {
+    EarlierLimits(internal::MeshLevels const &mesh, int level) : lattice(mesh, level) {}
+
+    Status Find(internal::MeshLevels const &mesh, HexSchemeOptions const &schemeOptions,
+                LimitRows &rows) {
+        Status result = lattice.FindMasks(schemeOptions, rows);
+        if (!result.IsOk()) {
+            return result;
+        }
+        faces.emplace(mesh, rows.GetLevel().depth, lattice.GetMarks());
+        result = faces->FindMasks(schemeOptions, rows);
+        if (result.IsOk()) {
+            verts.emplace(mesh, schemeOptions, rows, faces->GetOthers());
+        }
+        return result;
+    }
+
+    LatticeFaces lattice;
+    std::optional<RegularFaces> faces;
+    std::optional<RegularVertices> verts;
+};
+
+// The rows of a table, in its order: those of vertices, further sides and face centres.  Each is in
+// terms of the vertices of some level.
 class PointRows {
 public:
-    PointRows(LimitRows const *vertexRows, LimitSides const *sides,
+    // None, for a row that is made otherwise.
+    static constexpr int kNoLevel = -1;
+
+    PointRows(LimitRows const *vertexRows, EarlierLimits const *earlier, LimitSides const *sides,
               FaceLimitMaskFinder const *faceMasks, Level const &level)
-        : _vertexRows(vertexRows), _sides(sides), _faceMasks(faceMasks), _level(level),
-          _numSides(!vertexRows ? 0
-                    : sides     ? sides->GetNumSides()
-                                : level.numVertices) {}
+        : _vertexRows(vertexRows), _earlier(earlier), _sides(sides), _faceMasks(faceMasks),
+          _level(level), _numSides(!vertexRows ? 0
+                                   : sides     ? sides->GetNumSides()
+                                               : level.numVertices) {}
 
     std::int64_t GetNumRows() const {
         return std::int64_t(_numSides) + (_faceMasks ? _level.numFaces : 0);
     }
+    // Of vertices.
+    Index GetNumVertexRows() const { return _vertexRows ? _level.numVertices : 0; }
+
+    // Once their number is checked.
+    void FindLevels() {
+        _levels.assign(std::size_t(GetNumRows()), _level.depth);
+        if (!_earlier) {
+            return;
+        }
+        std::vector<unsigned char> const &ofLattice = _earlier->lattice.GetMarks();
+        internal::ParallelFor(Index(ofLattice.size()), [&](Index vert) {
+            if (ofLattice[std::size_t(vert)]) {
+                _levels[std::size_t(vert)] = kNoLevel;
+            }
+        });
+        for (RegularFaces::OfLevel const &ofLevel : _earlier->faces->GetLevels()) {
+            for (RegularFaces::Set const *set : {&ofLevel.fVertices, &ofLevel.ownVertices}) {
+                internal::ParallelFor(Index(set->faces.size()), [&](Index i) {
+                    RegularFace const &face = set->faces[std::size_t(i)];
+                    face.ForEachCorner([&](int corner) {
+                        _levels[std::size_t(set->firstVertex + face.firstCorner + corner)] =
+                            kNoLevel;
+                    });
+                });
+            }
+        }
+        for (int level = 0; level < _level.depth; ++level) {
+            for (Index const vert : _earlier->verts->GetVertices(level)) {
+                _levels[std::size_t(vert)] = level;
+            }
+        }
+    }
+    // The level of the vertices of a row.
+    int GetLevel(Index row) const { return _levels[std::size_t(row)]; }
 
     // What a row refers to.
     struct Scratch {
@@ -127,10 +194,14 @@ public:
         std::map<int, LimitMask> plainMasks; // of faces, by size
     };
 
+    // That of a row which has a level.
     LimitRow GetRow(Index row, Scratch &scratch) const {
         if (row < _numSides) {
-            return _vertexRows->GetRow(_sides ? _sides->GetVertex(row) : row,
-                                       _sides ? _sides->GetLocalSide(row) : 0, scratch.sources);
+            Index const vert = _sides ? _sides->GetVertex(row) : row;
+            return GetLevel(row) < _level.depth
+                       ? _earlier->verts->GetRow(GetLevel(row), vert, scratch.sources)
+                       : _vertexRows->GetRow(vert, _sides ? _sides->GetLocalSide(row) : 0,
+                                             scratch.sources);
         }
         Index const face = row - _numSides;
         LimitMask const &mask = findFaceMask(face, scratch);
@@ -153,101 +224,90 @@ private:
     }
 
     LimitRows const *const _vertexRows;
+    EarlierLimits const *const _earlier;
     LimitSides const *const _sides;
     FaceLimitMaskFinder const *const _faceMasks;
     Level const &_level;
     Index const _numSides;
+    std::vector<int> _levels; // by row
 };
 
-// Of the regular faces of a level, those that give the limit of their F-vertices or of their own.
-struct RegularKind {
-    int level = 0;
-    bool isOwn = false;
-
-    RegularFaces::Set const &GetSet(std::vector<RegularFaces::OfLevel> const &levels) const {
-        RegularFaces::OfLevel const &ofLevel = levels[std::size_t(level)];
-        return isOwn ? ofLevel.ownVertices : ofLevel.fVertices;
-    }
-};
-
-// Rows of a table that are near one another, up to the first one of the next group.
+// Rows that are made together: the limits that a regular face gives, or some that are near one another.
 struct RowGroup {
-    Index first;
-    RegularFace const *face = nullptr; ///< that gives the limit of some of them, by corner
-    RegularKind kind = {};
+    Index first; ///< that of the face's corner 0, or the number in a list of rows
+    RegularFace const *face = nullptr; ///< of one of the sets
+    int set = -1;                      ///< its number, or -1
 };
 
-// The faces of a set one after the other, in the order of their corners.
-class RegularFaceReader {
+// The rows in a table that have a level, in groups: the F-vertices of a face are near one another.
+class RowGroups {
 public:
-    RegularFaceReader(std::vector<RegularFaces::OfLevel> const &levels, RegularKind kind)
-        : _kind(kind) {
-        if (std::size_t(kind.level) < levels.size()) {
-            std::vector<RegularFace> const &faces = kind.GetSet(levels).faces;
-            _next = faces.data();
-            _end = _next + faces.size();
+    RowGroups(internal::MeshLevels const &mesh, int level, PointRows const &rows,
+              std::vector<RegularFaces::Set const *> const &sets) {
+        for (std::size_t i = 0; i < sets.size(); ++i) {
+            for (RegularFace const &face : sets[i]->faces) {
+                _groups.push_back({sets[i]->firstVertex + face.firstCorner, &face, int(i)});
+            }
         }
+        addVertices(mesh, level, rows);
+        auto const numRows = Index(rows.GetNumRows());
+        for (Index row = rows.GetNumVertexRows(); row < numRows; ++row) {
+            addRows(row, row + 1, rows);
+        }
+        _numGroups = Index(_groups.size());
+        _groups.push_back({Index(_rows.size())});
     }
 
-    // Adds a group if the next face is that with this first corner.
-    bool AddGroup(Index firstCorner, Index firstRow, std::vector<RowGroup> &groups) {
-        bool const isFound = _next != _end && _next->firstCorner == firstCorner;
-        if (isFound) {
-            groups.push_back({firstRow, _next++, _kind});
-        }
-        return isFound;
+    Index GetNum() const { return _numGroups; }
+    RowGroup const &Get(Index group) const { return _groups[std::size_t(group)]; }
+    // Of a group without a face.
+    Far::ConstIndexArray GetRows(Index group) const {
+        Index const first = Get(group).first;
+        return {_rows.data() + first, Get(group + 1).first - first};
     }
 
 private:
-    RegularKind _kind;
-    RegularFace const *_next = nullptr;
-    RegularFace const *_end = nullptr;
-};
-
-// Cuts the rows of a table into groups: the F-vertices that the steps before made of the same face.
-std::vector<RowGroup> makeGroups(internal::MeshLevels const &mesh, int level, Index numVertexRows,
-                                 Index numRows,
-                                 std::vector<RegularFaces::OfLevel> const &regularLevels) {
-    std::vector<RowGroup> groups;
-    // Vertices are numbered as those of the levels before, as far as all of these make V-vertices.
-    int firstLevel = level;
-    while (firstLevel > 0 && !mesh.refinements[std::size_t(firstLevel) - 1].isTruncation &&
-           mesh.levels[std::size_t(firstLevel)].numVVertices ==
-               mesh.levels[std::size_t(firstLevel) - 1].numVertices) {
-        --firstLevel;
-    }
-    Index const numFirst =
-        std::min(numVertexRows, mesh.levels[std::size_t(firstLevel)].numVertices);
-    groups.reserve(std::size_t(numFirst) + 1);
-    for (Index row = 0; row < numFirst; ++row) {
-        groups.push_back({row});
-    }
-    for (int child = firstLevel + 1; child <= level && numVertexRows > 0; ++child) {
-        Level const &parent = mesh.levels[std::size_t(child) - 1];
-        // An F-face has its vertices' corners in the order of those that they were made of.
-        RegularFaceReader fVertices(regularLevels, {child - 1, false});
-        RegularFaceReader ownVertices(regularLevels, {child, true});
-        for (Index face = 0; face < parent.numFaces; ++face) {
-            Index const begin = parent.faceFirstCorner[face];
-            Index const end = parent.faceFirstCorner[face + 1];
-            Index const firstRow = parent.numVertices + begin;
-            if (fVertices.AddGroup(begin, firstRow, groups) ||
-                ownVertices.AddGroup(begin, firstRow, groups)) {
+    // Those of the rows that have a level.
+    void addRows(Index begin, Index end, PointRows const &rows) {
+        auto const first = Index(_rows.size());
+        for (Index row = begin; row < end; ++row) {
+            if (rows.GetLevel(row) == PointRows::kNoLevel) {
                 continue;
             }
-            for (Index row = firstRow; row < parent.numVertices + end;
-                 row += internal::kMaxLimitRows) {
-                groups.push_back({row});
+            if ((Index(_rows.size()) - first) % internal::kMaxLimitRows == 0) {
+                _groups.push_back({Index(_rows.size())});
+            }
+            _rows.push_back(row);
+        }
+    }
+
+    void addVertices(internal::MeshLevels const &mesh, int level, PointRows const &rows) {
+        Index const numVertices = rows.GetNumVertexRows();
+        // Vertices are numbered as those of the levels before, as far as all of these make V-vertices.
+        int firstLevel = level;
+        while (firstLevel > 0 && !mesh.refinements[std::size_t(firstLevel) - 1].isTruncation &&
+               mesh.levels[std::size_t(firstLevel)].numVVertices ==
+                   mesh.levels[std::size_t(firstLevel) - 1].numVertices) {
+            --firstLevel;
+        }
+        Index const numFirst =
+            std::min(numVertices, mesh.levels[std::size_t(firstLevel)].numVertices);
+        for (Index row = 0; row < numFirst; ++row) {
+            addRows(row, row + 1, rows);
+        }
+        for (int child = firstLevel + 1; child <= level && numVertices > 0; ++child) {
+            Level const &parent = mesh.levels[std::size_t(child) - 1];
+            for (Index face = 0; face < parent.numFaces; ++face) {
+                addRows(parent.numVertices + parent.faceFirstCorner[face],
+                        parent.numVertices + parent.faceFirstCorner[face + 1], rows);
             }
         }
     }
-    Index const numVertices = mesh.levels[std::size_t(level)].numVertices;
-    for (Index row = std::min(numVertexRows, numVertices); row < numRows; ++row) {
-        groups.push_back({row});
-    }
-    groups.push_back({numRows});
-    return groups;
-}
+
+    std::vector<RowGroup> _groups;
+    Index _numGroups = 0;
+    std::vector<Index> _rows;
+};
 
 // Makes a table of rows: first the sizes of all stencils, then the stencils.
 template <typename REAL>
@@ -256,32 +316,54 @@ class TableBuilder {
     using Columns = typename Multiplier::Columns;
     using RowBits = typename Multiplier::RowBits;
     using FaceRows = internal::RegularFaceRows;
+    using LatticeStencils = internal::LatticeStencils<REAL>;
 
 public:
-    TableBuilder(PointRows const &rows, std::vector<RowGroup> const &groups,
-                 LevelStencils const *stencils, int level, Index numIndices, bool hasDerivatives)
-        : _rows(rows), _groups(groups), _stencils(stencils), _level(level),
-          _firstSource(stencils ? stencils->GetFirst(level) : 0), _numIndices(numIndices),
-          _hasDerivatives(hasDerivatives), _table(new WritableLimitTable<REAL>(numIndices)) {}
-
-    /// The rows of the regular faces in groups, if there are any.
-    void SetRegularRows(internal::MeshLevels const &mesh,
-                        std::vector<RegularFaces::OfLevel> const &regularLevels) {
-        for (std::size_t i = 0; i < regularLevels.size(); ++i) {
-            for (bool const isOwn : {false, true}) {
-                RegularRows regular = {&mesh.levels[i], _stencils->GetFirst(int(i)), {}};
-                addRows(RegularKind{int(i), isOwn}.GetSet(regularLevels), regular);
-                _regularRows.push_back(std::move(regular));
+    TableBuilder(internal::MeshLevels const &mesh, int level, PointRows const &rows,
+                 EarlierLimits const *earlier, Index numIndices, bool hasDerivatives)
+        : _level(level), _rows(rows), _numIndices(numIndices), _hasDerivatives(hasDerivatives),
+          _table(new WritableLimitTable<REAL>(numIndices)) {
+        std::vector<RegularFaces::Set const *> sets;
+        if (earlier) {
+            _lattice.emplace(earlier->lattice, hasDerivatives);
+            std::vector<RegularFaces::OfLevel> const &levels = earlier->faces->GetLevels();
+            for (std::size_t i = 0; i < levels.size(); ++i) {
+                for (RegularFaces::Set const *set :
+                     {&levels[i].fVertices, &levels[i].ownVertices}) {
+                    if (!set->faces.empty()) {
+                        sets.push_back(set);
+                        _regularRows.push_back({&mesh.levels[i], {}});
+                        shareRows(*set, _regularRows.back());
+                    }
+                }
             }
         }
+        _groups.emplace(mesh, level, rows, sets);
+    }
+
+    // Makes the stencils of which those of rows are combined, when the rows are to be factorized.
+    Status FormStencils(internal::Hierarchy const &hierarchy,
+                        HexSchemeOptions const &schemeOptions) {
+        std::vector<std::vector<Index>> wanted = findSources(hierarchy.mesh);
+        while (!wanted.empty() && wanted.back().empty()) {
+            wanted.pop_back();
+        }
+        if (wanted.size() < 2) {
+            return Status(); // the control vertices themselves
+        }
+        _stencils.emplace(hierarchy, schemeOptions, std::move(wanted));
+        return _stencils->Form();
     }
 
     Status Build() {
         std::vector<int> &sizes = _table->GetRowSizes();
         auto const numRows = std::size_t(_rows.GetNumRows());
         internal::ResizeLarge(sizes, numRows);
+        if (_lattice) {
+            _lattice->CountSizes(sizes.data());
+        }
         std::vector<KeptColumns> kept(
-            std::size_t(internal::GetNumParallelRanges(getNumGroups(), kRange)));
+            std::size_t(internal::GetNumParallelRanges(_groups->GetNum(), kRange)));
         forEachGroup([&](Multiplier &multiplier, Index const *rows, Index group) {
             Columns const columns = multiplier.FindColumns();
             kept[std::size_t(group / kRange)].Add(columns);
@@ -301,6 +383,9 @@ public:
         }
         _table->Resize(numRows, std::size_t(numWeights), _hasDerivatives);
         std::exclusive_scan(sizes.begin(), sizes.end(), _table->GetRowOffsets().begin(), 0);
+        if (_lattice) {
+            _lattice->Fill([&](Index row) { return _table->GetPlace(row); });
+        }
         forEachGroup([&](Multiplier &multiplier, Index const *rows, Index group) {
             typename Multiplier::Place places[internal::kMaxLimitRows];
             for (int row = 0; row < multiplier.GetNumRows(); ++row) {
@@ -334,10 +419,9 @@ private:
         std::vector<RowBits> rows;
     };
 
-    // Of a RegularKind.
+    // Of a set of regular faces.
     struct RegularRows {
         Level const *level;
-        Index firstSource; // that of vertex 0 of the level
         std::map<unsigned, typename Multiplier::SharedRows> ofCorners; // by RegularFace::corners
     };
 
@@ -348,50 +432,84 @@ private:
         Index rows[internal::kMaxLimitRows]; // of the table, by row of the multiplier
     };
 
-    Index getNumGroups() const { return Index(_groups.size()) - 1; }
-
-    // Adds the rows of all kinds of faces of a set: some have fewer corners.
-    void addRows(RegularFaces::Set const &set, RegularRows &regular) const {
+    // The rows of all kinds of faces of a set: some have fewer corners.
+    void shareRows(RegularFaces::Set const &set, RegularRows &regular) const {
         FaceRows const rows(set.mask);
-        Multiplier multiplier(_stencils, 0, _hasDerivatives);
+        Multiplier multiplier(nullptr, 0, _hasDerivatives);
         for (RegularFace const &face : set.faces) {
             if (regular.ofCorners.count(face.corners) > 0) {
                 continue;
             }
             multiplier.Clear();
-            for (int corner = 0; corner < internal::kRegularFaceSize; ++corner) {
-                if (face.HasCorner(corner)) {
-                    Index numbers[FaceRows::kNumSources];
-                    multiplier.AddRow(rows.GetRow(corner, numbers), 0);
-                }
-            }
+            face.ForEachCorner([&](int corner) {
+                Index numbers[FaceRows::kNumSources];
+                multiplier.AddRow(rows.GetRow(corner, numbers), 0);
+            });
             regular.ofCorners.emplace(face.corners, multiplier.ShareRows());
         }
     }
 
-    void setRows(std::size_t number, State &state) {
-        RowGroup const &group = _groups[number];
+    // The vertices of each level that rows are in terms of, ascending.
+    std::vector<std::vector<Index>> findSources(internal::MeshLevels const &mesh) const {
+        // Set by several threads.
+        std::vector<std::vector<std::atomic<unsigned char>>> marks(std::size_t(_level) + 1);
+        for (std::size_t level = 0; level < marks.size(); ++level) {
+            marks[level] = std::vector<std::atomic<unsigned char>>(
+                std::size_t(mesh.levels[level].numVertices));
+        }
+        auto const mark = [&](int level, Index const *verts, int numVerts) {
+            for (int i = 0; i < numVerts; ++i) {
+                marks[std::size_t(level)][std::size_t(verts[i])].store(1,
+                                                                       std::memory_order_relaxed);
+            }
+        };
+        internal::ParallelForRange(
+            _groups->GetNum(), [] { return PointRows::Scratch(); },
+            [&](PointRows::Scratch &scratch, Index begin, Index end) {
+                for (Index i = begin; i < end; ++i) {
+                    RowGroup const &group = _groups->Get(i);
+                    if (group.face) {
+                        Level const &level = *_regularRows[std::size_t(group.set)].level;
+                        Index sources[FaceRows::kNumFaceSources];
+                        FaceRows::GetFaceSources(level, *group.face, sources);
+                        mark(level.depth, sources, FaceRows::kNumFaceSources);
+                        continue;
+                    }
+                    for (Index const row : _groups->GetRows(i)) {
+                        LimitRow const limitRow = _rows.GetRow(row, scratch);
+                        mark(_rows.GetLevel(row), limitRow.sources, limitRow.size);
+                    }
+                }
+            },
+            kRange);
+        std::vector<std::vector<Index>> sources;
+        for (auto const &ofLevel : marks) {
+            sources.push_back(internal::ParallelSelect(Index(ofLevel.size()), [&](Index vert) {
+                return ofLevel[std::size_t(vert)].load(std::memory_order_relaxed) != 0;
+            }));
+        }
+        return sources;
+    }
+
+    Index getFirstSource(int level) const { return _stencils ? _stencils->GetFirst(level) : 0; }
+
+    void setRows(Index number, State &state) const {
+        RowGroup const &group = _groups->Get(number);
         Index *next = state.rows;
         if (group.face) {
-            RegularRows const &regular =
-                _regularRows[2 * std::size_t(group.kind.level) + std::size_t(group.kind.isOwn)];
+            RegularRows const &regular = _regularRows[std::size_t(group.set)];
             Index sources[FaceRows::kNumFaceSources];
             FaceRows::GetFaceSources(*regular.level, *group.face, sources);
             state.multiplier.SetRows(regular.ofCorners.at(group.face->corners), sources,
-                                     regular.firstSource, group.face->HasAllCorners());
-            for (int corner = 0; corner < internal::kRegularFaceSize; ++corner) {
-                if (group.face->HasCorner(corner)) {
-                    *next++ = group.first + corner;
-                }
-            }
-        } else {
-            state.multiplier.Clear();
+                                     getFirstSource(regular.level->depth));
+            group.face->ForEachCorner([&](int corner) { *next++ = group.first + corner; });
+            return;
         }
-        for (Index row = group.first; row < _groups[number + 1].first; ++row) {
-            if (!group.face || !group.face->HasCorner(row - group.first)) {
-                state.multiplier.AddRow(_rows.GetRow(row, state.scratch), _firstSource);
-                *next++ = row;
-            }
+        state.multiplier.Clear();
+        for (Index const row : _groups->GetRows(number)) {
+            state.multiplier.AddRow(_rows.GetRow(row, state.scratch),
+                                    getFirstSource(_rows.GetLevel(row)));
+            *next++ = row;
         }
     }
 
@@ -399,13 +517,16 @@ private:
     template <typename FUNCTION>
     void forEachGroup(FUNCTION function) {
         internal::ParallelForRange(
-            getNumGroups(),
+            _groups->GetNum(),
             [&] {
-                return State{Multiplier(_stencils, _numIndices, _hasDerivatives), {}, {}};
+                return State{
+                    Multiplier(_stencils ? &*_stencils : nullptr, _numIndices, _hasDerivatives),
+                    {},
+                    {}};
             },
             [&](State &state, Index begin, Index end) {
                 for (Index group = begin; group < end; ++group) {
-                    setRows(std::size_t(group), state);
+                    setRows(group, state);
                     function(state.multiplier, state.rows, group);
                 }
             },
@@ -414,15 +535,15 @@ private:
 
     static constexpr Index kRange = 64; // groups, which take some microseconds each
 
-    PointRows const &_rows;
-    std::vector<RowGroup> const &_groups;
-    std::vector<RegularRows> _regularRows; // by level, of F-vertices and own ones
-    LevelStencils const *const _stencils;
     int const _level;
-    Index const _firstSource; // that of vertex 0 of the level
+    PointRows const &_rows;
     Index const _numIndices;
     bool const _hasDerivatives;
     std::unique_ptr<WritableLimitTable<REAL>> _table;
+    std::optional<LatticeStencils> _lattice;
+    std::vector<RegularRows> _regularRows; // by set
+    std::optional<RowGroups> _groups;
+    std::optional<LevelStencils> _stencils;
 };
 
 template <typename OPTIONS>
@@ -468,14 +589,14 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
     internal::MeshLevels const &mesh = refiner.GetHierarchy().mesh;
     bool const hasStencils = options.factorizeIntermediateLevels && options.level > 0;
     std::optional<LimitRows> vertexRows;
-    std::optional<RegularFaces> regularFaces;
+    std::optional<EarlierLimits> earlier;
     if (options.generateVertices) {
         vertexRows.emplace(level, refiner.GetSchemeOptions(), schemeOptions);
         if (hasStencils) {
-            regularFaces.emplace(mesh, options.level);
+            earlier.emplace(mesh, options.level);
         }
         Status const result =
-            regularFaces ? regularFaces->FindMasks(schemeOptions, *vertexRows) : vertexRows->Find();
+            earlier ? earlier->Find(mesh, schemeOptions, *vertexRows) : vertexRows->Find();
         if (!internal::Report(result, status)) {
             return nullptr;
         }
@@ -489,28 +610,20 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
         faceMasks.emplace(level, refiner.GetSchemeOptions(),
                           internal::GetStepsToLimit(schemeOptions));
     }
-    PointRows const rows(vertexRows ? &*vertexRows : nullptr, sides ? &*sides : nullptr,
-                         faceMasks ? &*faceMasks : nullptr, level);
+    EarlierLimits const *const ofEarlier = earlier ? &*earlier : nullptr;
+    PointRows rows(vertexRows ? &*vertexRows : nullptr, ofEarlier, sides ? &*sides : nullptr,
+                   faceMasks ? &*faceMasks : nullptr, level);
     if (!internal::Report(checkNumRows(options.level, rows.GetNumRows()), status)) {
         return nullptr;
     }
-
-    std::vector<RegularFaces::OfLevel> const noLevels;
-    auto const &regularLevels = regularFaces ? regularFaces->GetLevels() : noLevels;
-    std::optional<LevelStencils> stencils;
-    if (hasStencils) {
-        stencils.emplace(refiner.GetHierarchy(), schemeOptions, options.level);
-        if (!internal::Report(stencils->Form(), status)) {
-            return nullptr;
-        }
-    }
-    std::vector<RowGroup> const groups =
-        makeGroups(mesh, options.level, options.generateVertices ? level.numVertices : 0,
-                   Index(rows.GetNumRows()), regularLevels);
-    TableBuilder<REAL> builder(rows, groups, stencils ? &*stencils : nullptr, options.level,
+    rows.FindLevels();
+    TableBuilder<REAL> builder(mesh, options.level, rows, ofEarlier,
                                refiner.GetLevel(hasStencils ? 0 : options.level).GetNumVertices(),
                                options.generate1stDerivatives);
-    builder.SetRegularRows(mesh, regularLevels);
+    if (hasStencils &&
+        !internal::Report(builder.FormStencils(refiner.GetHierarchy(), schemeOptions), status)) {
+        return nullptr;
+    }
     if (!internal::Report(builder.Build(), status)) {
         return nullptr;
     }

@@ -182,6 +182,17 @@ bool isMirrorSymmetric(LatticePatch const &patch, PatchWeights const &weights) {
     return areEqual(mirrored, weights);
 }
 
+/// Those of the vertex that one, or its mirror image, comes to as the face turns.
+PatchWeights turn(LatticePatch const &patch, PatchWeights const &weights, bool isMirrored,
+                  int turns) {
+    PatchWeights result(weights.size());
+    for (int place = 0; place < patch.GetNumPlaces(); ++place) {
+        int const to = patch.TurnPlace(isMirrored ? patch.MirrorPlace(place) : place, turns);
+        result[std::size_t(to)] = weights[std::size_t(place)];
+    }
+    return result;
+}
+
 /// With other derivatives, factors[i] being the i-th in terms of those that there are.
 PatchWeights combine(PatchWeights weights, double const (&factors)[2][2]) {
     for (LimitWeights &ofPlace : weights) {
@@ -250,6 +261,13 @@ void LatticeFaces::findFaces(int faceSize) {
     ParallelFor(Index(set.faces.size()), [&](Index i) {
         gather(set.faces[std::size_t(i)], set.sources.data() + std::size_t(i) * numPlaces);
     });
+}
+
+PatchWeights LatticeFaces::getRow(LatticePatch const &patch, Orbit const &orbit, bool isMirrored,
+                                  int turns) {
+    PatchWeights weights = turn(patch, orbit.weights, isMirrored, turns);
+    bool const isAsGiven = orbit.isPair && !isMirrored;
+    return isAsGiven ? weights : combine(std::move(weights), orbit.derivatives);
 }
 
 // Calls function(vert) for the vertices of the level that lie in a face of level 0, in an order that
@@ -417,13 +435,7 @@ bool LatticeFaces::setOrbits(Sample &sample, Set &set) {
             if (number < 0) {
                 return false;
             }
-            PatchWeights turned(first.size());
-            for (int place = 0; place < patch.GetNumPlaces(); ++place) {
-                int const to =
-                    patch.TurnPlace(isMirrored ? patch.MirrorPlace(place) : place, turns);
-                turned[std::size_t(to)] = first[std::size_t(place)];
-            }
-            if (!areEqual(combine(std::move(turned), derivatives),
+            if (!areEqual(combine(turn(patch, first, isMirrored, turns), derivatives),
                           sample.weights[std::size_t(number)])) {
                 return false;
             }

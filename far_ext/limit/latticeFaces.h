@@ -50,6 +50,17 @@ public:
         std::vector<int> vertexPlaces;
     };
 
+    /// Calls function(weights) for the rows of the vertices of an orbit in turn: all places of the patch.
+    template <typename FUNCTION>
+    static void ForEachRow(LatticePatch const &patch, Orbit const &orbit, FUNCTION function) {
+        for (bool const isMirrored : {false, true}) {
+            for (int turns = 0; turns < patch.GetFaceSize() && (orbit.isPair || !isMirrored);
+                 ++turns) {
+                function(getRow(patch, orbit, isMirrored, turns));
+            }
+        }
+    }
+
     /// Finds the faces, and the vertices of \p level in them.  \p mesh is referred to; where any step
     /// up to the level is not hexagonal there are none.
     LatticeFaces(MeshLevels const &mesh, int level);
@@ -77,6 +88,8 @@ private:
         int corner;
     };
 
+    static std::vector<LimitWeights> getRow(LatticePatch const &patch, Orbit const &orbit,
+                                            bool isMirrored, int turns);
     template <typename FUNCTION>
     void forEachOutput(Index face, FUNCTION function) const;
     template <typename FUNCTION>

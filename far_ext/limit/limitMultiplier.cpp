@@ -68,19 +68,14 @@ auto LimitMultiplier<REAL>::ShareRows() const -> SharedRows {
 }
 
 template <typename REAL>
-void LimitMultiplier<REAL>::SetRows(SharedRows const &rows, Index const *sources, Index firstSource,
-                                    bool isAll) {
+void LimitMultiplier<REAL>::SetRows(SharedRows const &rows, Index const *sources,
+                                    Index firstSource) {
     _shared = &rows;
-    _rows.clear();
     _sources = rows._sources;
     for (Source &source : _sources) {
         source.index = firstSource + sources[source.index];
-        Prefetch(&_stencils->Get(source.index), 1);
-    }
-    if (!isAll) {
-        _numberOfSource.Clear();
-        for (std::size_t i = 0; i < _sources.size(); ++i) {
-            _numberOfSource.FindOrSet(_sources[i].index, Index(i));
+        if (_stencils) {
+            Prefetch(&_stencils->Get(source.index), 1);
         }
     }
 }
@@ -118,11 +113,13 @@ void LimitMultiplier<REAL>::findSourceColumns() {
         _columns.push_back(source.index);
     }
     std::sort(_columns.begin(), _columns.end());
+    // Sources of shared rows may be one vertex, where the mesh has no other end.
+    _columns.erase(std::unique(_columns.begin(), _columns.end()), _columns.end());
     numberColumns(_columns.data(), int(_columns.size()));
-    _rowsOfColumns.resize(_columns.size());
+    _rowsOfColumns.assign(_columns.size(), 0);
     for (Source const &source : _sources) {
         int const column = _columnOfIndex[std::size_t(source.index)].value;
-        _rowsOfColumns[std::size_t(column)] = source.rows;
+        _rowsOfColumns[std::size_t(column)] |= source.rows;
     }
 }
 
@@ -303,12 +300,9 @@ void LimitMultiplier<REAL>::Fill(Columns const &columns, Place const *places) {
     for (int i = 0; i < columns.size; ++i) {
         ofAll &= columns.rows[i];
     }
-    int const numShared = getNumShared();
+    std::vector<Term> const &ofRows = _shared ? _shared->_terms : _terms;
     for (int row = 0; row < GetNumRows(); ++row) {
-        bool const isShared = row < numShared;
-        std::vector<Term> const &ofRows = isShared ? _shared->_terms : _terms;
-        RowTerms const terms =
-            isShared ? _shared->_rows[std::size_t(row)] : _rows[std::size_t(row - numShared)];
+        RowTerms const terms = getRows()[std::size_t(row)];
         Term const *const begin = ofRows.data() + terms.begin;
         Term const *const end = ofRows.data() + terms.end;
         Place const &place = places[row];

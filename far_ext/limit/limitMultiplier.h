@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_MULTIPLIER_H
 
 #include "limitRows.h"
+#include "limitStencilPlace.h"
 
 #include "far_ext/stencil/levelStencils.h"
 #include "far_ext/vtr/indexSet.h"
@@ -53,24 +54,18 @@ public:
     void AddRow(LimitRow const &row, Index firstSource);
     /// All rows; their sources are numbers.
     SharedRows ShareRows() const;
-    /// Forgets all rows and adds those, source number i being \p firstSource + \p sources[i].
+    /// \brief Has those rows alone, source number i being \p firstSource + \p sources[i].
     ///
-    /// \param rows   are referred to until the next Clear() or SetRows()
-    /// \param isAll  whether no other will be added, until Clear()
-    void SetRows(SharedRows const &rows, Index const *sources, Index firstSource, bool isAll);
-    int GetNumRows() const { return getNumShared() + int(_rows.size()); }
+    /// \param rows  are referred to until the next Clear() or SetRows()
+    void SetRows(SharedRows const &rows, Index const *sources, Index firstSource);
+    int GetNumRows() const { return int(getRows().size()); }
 
     /// Valid until the next call.
     Columns FindColumns();
 
-    /// Where the stencil of a row is to be written, an entry of each array for each of its columns.
-    struct Place {
-        Index *indices;
-        REAL *weights;
-        REAL *duWeights; ///< these two are null without derivatives
-        REAL *dvWeights;
-    };
-    /// Writes the stencils of all rows, whose \p columns are those that FindColumns() gave.
+    using Place = LimitStencilPlace<REAL>;
+    /// \brief Writes the stencils of all rows, whose \p columns are those that FindColumns() gave: an
+    /// entry for each of them that a row has.
     void Fill(Columns const &columns, Place const *places);
 
 private:
@@ -101,7 +96,7 @@ private:
         int firstPosition;
     };
 
-    int getNumShared() const { return _shared ? int(_shared->_rows.size()) : 0; }
+    std::vector<RowTerms> const &getRows() const;
     LevelStencils::Stencil const &getStencil(int source) const {
         return _stencils->Get(_sources[std::size_t(source)].index);
     }
@@ -118,8 +113,8 @@ private:
     LevelStencils const *const _stencils;
     bool const _hasDerivatives;
 
-    SharedRows const *_shared = nullptr; // the first rows
-    std::vector<RowTerms> _rows;         // the others
+    SharedRows const *_shared = nullptr; // the rows, if there are any of them
+    std::vector<RowTerms> _rows;         // else these
     std::vector<Term> _terms;            // of these in turn, and room for more
     std::vector<Source> _sources;
     IndexMap _numberOfSource; // among the sources of the rows
@@ -147,6 +142,11 @@ class LimitMultiplier<REAL>::SharedRows {
     std::vector<Term> _terms;
     std::vector<Source> _sources;
 };
+
+template <typename REAL>
+auto LimitMultiplier<REAL>::getRows() const -> std::vector<RowTerms> const & {
+    return _shared ? _shared->_rows : _rows;
+}
 
 extern template class LimitMultiplier<float>;
 extern template class LimitMultiplier<double>;

@@ -23,9 +23,10 @@ StencilPlan makePlan(Hierarchy const &hierarchy, HexSchemeOptions const &schemeO
 } // namespace
 
 LevelStencils::LevelStencils(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
-                             int lastLevel)
-    : _plan(makePlan(hierarchy, schemeOptions, lastLevel)), _symbolic(_plan),
-      _levels(std::size_t(lastLevel)) {}
+                             std::vector<std::vector<Index>> wanted)
+    : _plan(makePlan(hierarchy, schemeOptions, int(wanted.size()) - 1)),
+      _selection(_plan, std::move(wanted), true), _symbolic(_plan, _selection),
+      _levels(std::size_t(_plan.lastLevel)) {}
 
 Status LevelStencils::Form() {
     Status status = _symbolic.Form();
@@ -63,10 +64,17 @@ Status LevelStencils::Form() {
 void LevelStencils::addLevel(int level, RowSupports const &supports,
                              StencilPlaces<double> const *places) {
     Stencil *const stencils = _stencils.data() + GetFirst(level);
-    ParallelFor(_plan.GetNumVertices(level), [&](Index vert) {
-        stencils[vert] = {supports.OfVertices()[std::size_t(vert)],
-                          places ? places->GetWeights(vert) : &kOne};
-    });
+    auto const add = [&](Index vert, Index row) {
+        stencils[vert] = {supports.OfVertices()[std::size_t(row)],
+                          places ? places->GetWeights(row) : &kOne};
+    };
+    if (level <= _selection.wholeLevel) {
+        ParallelFor(_plan.GetNumVertices(level), [&](Index vert) { add(vert, vert); });
+        return;
+    }
+    std::vector<Index> const made =
+        GetMadeVertices(_plan.GetRefinement(level), _selection.parts[std::size_t(level) - 1]);
+    ParallelFor(Index(made.size()), [&](Index row) { add(made[std::size_t(row)], row); });
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

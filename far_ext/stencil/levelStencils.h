@@ -7,8 +7,8 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief The stencils of all vertices of a mesh up to a level, in double: what further tables are made
-/// of.  Unlike those of a table, stencils share lists of indices.
+/// \brief The stencils of vertices of some levels of a mesh, in double: what further tables are made of.
+/// Unlike those of a table, stencils share lists of indices.
 class LevelStencils {
 public:
     using Index = Far::Index;
@@ -19,20 +19,25 @@ public:
     };
 
     /// \param hierarchy  is referred to
-    /// \param lastLevel  1 or more
-    LevelStencils(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions, int lastLevel);
+    /// \param wanted     the vertices of levels 0, 1 ... that are needed, ascending; of two levels at
+    ///                   least
+    LevelStencils(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
+                  std::vector<std::vector<Index>> wanted);
 
-    /// Makes all stencils, or says what is too large.
+    /// Makes the stencils of all that is needed, or says what is too large.
     Status Form();
 
-    /// The number of a level's first stencil: they are in turn, from the control vertices on.
+    /// The number of a level's first stencil: those of all vertices are in turn, from the control
+    /// vertices on.
     Index GetFirst(int level) const { return _firsts[std::size_t(level)]; }
+    /// Of a vertex that is needed.
     Stencil const &Get(Index number) const { return _stencils[std::size_t(number)]; }
 
 private:
     void addLevel(int level, RowSupports const &supports, StencilPlaces<double> const *places);
 
     StencilPlan const _plan;
+    StencilSelection const _selection;
     SymbolicTable _symbolic;
     std::vector<SpareStencils<double>> _levels;
     std::vector<Index> _firsts;

@@ -4,6 +4,7 @@
 #include "far_ext/vtr/indexSet.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -92,11 +93,17 @@ void appendPart(std::vector<Index> &indices, ConstIndexArray vertices, unsigned 
     }
 }
 
-// The part of the refinement that makes each level but the first.
+// The part of the refinement that makes each level, behind a level that is taken whole.
 std::vector<RefinementRows::Part> findParts(StencilPlan const &plan,
-                                            std::vector<std::vector<Index>> wanted) {
+                                            std::vector<std::vector<Index>> wanted, bool hasWholes,
+                                            int &wholeLevel) {
+    auto const isWhole = [&](int level) {
+        Index const numVertices = plan.GetLevel(level).numVertices;
+        return hasWholes && (level == 0 || Index(wanted[level].size()) > numVertices / 2);
+    };
     std::vector<RefinementRows::Part> parts(plan.lastLevel);
-    for (int level = plan.lastLevel; level > 0; --level) {
+    int level = plan.lastLevel;
+    for (; level > 0 && !isWhole(level); --level) {
         RefinementRows::Part &part = parts[level - 1];
         part = FindPart(plan.GetRefinement(level), plan.schemeOptions, plan.interpolation,
                         wanted[level]);
@@ -104,10 +111,18 @@ std::vector<RefinementRows::Part> findParts(StencilPlan const &plan,
         pVerts.insert(pVerts.end(), part.verts.begin(), part.verts.end());
         SortUnique(pVerts, plan.GetLevel(level - 1).numVertices);
     }
-    if (!parts.empty()) {
-        parts[0].verts = wanted[0];
+    wholeLevel = hasWholes ? level : -1;
+    if (level == plan.lastLevel) {
+        return parts;
     }
-    for (std::size_t i = 1; i < parts.size(); ++i) {
+    std::vector<Index> &first = parts[level].verts;
+    if (hasWholes) {
+        first.resize(plan.GetLevel(level).numVertices);
+        std::iota(first.begin(), first.end(), 0);
+    } else {
+        first = wanted[0];
+    }
+    for (std::size_t i = std::size_t(level) + 1; i < parts.size(); ++i) {
         parts[i].verts = GetMadeVertices(plan.GetRefinement(int(i)), parts[i - 1]);
     }
     return parts;
@@ -160,9 +175,12 @@ std::vector<Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int level, in
     return verts;
 }
 
-StencilSelection::StencilSelection(StencilPlan const &plan, std::vector<std::vector<Index>> wanted)
-    : parts(findParts(plan, std::move(wanted))) {
-    if (!parts.empty()) {
+StencilSelection::StencilSelection(StencilPlan const &plan, std::vector<std::vector<Index>> wanted,
+                                   bool hasWholes)
+    : parts(findParts(plan, std::move(wanted), hasWholes, wholeLevel)) {
+    if (hasWholes) {
+        sources = plan.GetSources(0);
+    } else if (!parts.empty()) {
         sources = plan.GetSources(0, parts[0].verts);
     }
     indices = sources;

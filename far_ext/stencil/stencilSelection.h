@@ -30,12 +30,17 @@ std::vector<Far::Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int leve
 /// \brief The least parts of all refinements that make wanted vertices, in terms of the control
 /// vertices.
 struct StencilSelection {
-    /// \param wanted  vertices of each level of the plan, ascending
-    StencilSelection(StencilPlan const &plan, std::vector<std::vector<Far::Index>> wanted);
+    /// \param wanted     vertices of each level of the plan, ascending
+    /// \param hasWholes  whether a level that is needed for the most part is taken whole, with all
+    ///                   before it, level 0 in any case: that takes less time than to find the part
+    StencilSelection(StencilPlan const &plan, std::vector<std::vector<Far::Index>> wanted,
+                     bool hasWholes = false);
 
-    std::vector<RefinementRows::Part> parts; ///< of the refinements that make levels 1, 2 ...
-    std::vector<Far::Index> sources;         ///< of parts[0].verts, as numbers in indices
-    std::vector<Far::Index> indices;         ///< ascending; what the stencils refer to
+    int wholeLevel; ///< the last that is taken whole, or -1
+    /// Of the refinements that make levels 1, 2 ...; empty up to that of the whole level.
+    std::vector<RefinementRows::Part> parts;
+    std::vector<Far::Index> sources; ///< of parts[0].verts, as numbers in indices
+    std::vector<Far::Index> indices; ///< ascending; what the stencils refer to
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -37,8 +37,12 @@ SymbolicTable::SymbolicTable(StencilPlan const &plan, StencilSelection const &se
     : _plan(plan) {
     _sources.push_back({selection.sources, Index(selection.indices.size())});
     for (int level = 1; level <= plan.lastLevel; ++level) {
-        _rows.emplace_back(plan.GetRefinement(level), plan.schemeOptions, plan.interpolation,
-                           selection.parts[level - 1]);
+        if (level <= selection.wholeLevel) {
+            _rows.emplace_back(plan.GetRefinement(level), plan.schemeOptions, plan.interpolation);
+        } else {
+            _rows.emplace_back(plan.GetRefinement(level), plan.schemeOptions, plan.interpolation,
+                               selection.parts[level - 1]);
+        }
     }
 }
 

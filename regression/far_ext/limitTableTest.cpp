@@ -6,11 +6,16 @@
 
 #include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/primvarRefiner.h"
+#include "far_ext/threads.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -37,11 +42,11 @@ struct Element {
 using Elements = std::vector<Element>;
 
 std::unique_ptr<Factory::Table const> createTable(TopologyRefiner const &refiner, int level,
-                                                  bool isFactorized) {
+                                                  bool isFactorized, bool hasFaceCenters = true) {
     Factory::Options options;
     options.level = level;
     options.generateFurtherSides = true;
-    options.generateFaceCenters = true;
+    options.generateFaceCenters = hasFaceCenters;
     options.factorizeIntermediateLevels = isFactorized;
     FarExt::Status status;
     auto table = Factory::Create(refiner, options, &status);
@@ -85,9 +90,17 @@ Elements getPositions(Shape const &shape) {
     return result;
 }
 
+/// A lattice but for a vertex.
+Shape makeSharpTorus(TorusFaces kind) {
+    Shape shape = MakeTorus(12, 11, kind);
+    shape.cornerVertices = {5 * 11 + 4};
+    shape.cornerSharpness = {1.5f};
+    return shape;
+}
+
 /// What comes of control values by way of the level is what comes of them straight.
 void expectSameLimits(Shape const &shape, ReferenceMask mask, Sdc::Options const &options,
-                      int maxLevel) {
+                      int maxLevel, bool hasFaceCenters = true) {
     auto const refiner = CreateRefiner(shape, mask, maxLevel, options);
     FarExt::PrimvarRefinerReal<double> const primvarRefiner(*refiner);
     Elements const base = getPositions(shape);
@@ -99,8 +112,8 @@ void expectSameLimits(Shape const &shape, ReferenceMask mask, Sdc::Options const
             values.assign(std::size_t(refiner->GetLevel(level).GetNumVertices()), Element());
             primvarRefiner.Interpolate(level, before, values);
         }
-        auto const factorized = createTable(*refiner, level, true);
-        auto const ofLevel = createTable(*refiner, level, false);
+        auto const factorized = createTable(*refiner, level, true, hasFaceCenters);
+        auto const ofLevel = createTable(*refiner, level, false, hasFaceCenters);
         ASSERT_TRUE(factorized && ofLevel);
         ASSERT_EQ(ofLevel->GetNumControlVertices(), refiner->GetLevel(level).GetNumVertices());
         std::size_t const count = std::size_t(factorized->GetNumStencils());
@@ -164,6 +177,75 @@ TEST(LimitTable, RowsOfRegularFacesAreThoseOfTheLevel) {
             options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
             ASSERT_NO_FATAL_FAILURE(expectSameLimits(GetShape(name), mask, options, 3));
         }
+    }
+}
+
+// Most rows of a lattice follow from control vertices alone, those near a sharp vertex do not: without face
+// centers, of which each depends on the last level, a part of that is enough for them.
+TEST(LimitTable, RowsOfLatticeFacesAreThoseOfTheLevel) {
+    for (TorusFaces const kind : {TorusFaces::Quads, TorusFaces::Triangles}) {
+        Shape const torus = MakeTorus(7, 6, kind);
+        Shape const sharp = makeSharpTorus(kind);
+        for (auto mask : {ReferenceMask::Average, ReferenceMask::Cosine, ReferenceMask::Smooth}) {
+            SCOPED_TRACE(testing::Message() << "faces " << int(kind) << ", mask " << int(mask));
+            for (bool const hasFaceCenters : {false, true}) {
+                ASSERT_NO_FATAL_FAILURE(
+                    expectSameLimits(torus, mask, Sdc::Options(), 3, hasFaceCenters));
+                ASSERT_NO_FATAL_FAILURE(
+                    expectSameLimits(sharp, mask, Sdc::Options(), 3, hasFaceCenters));
+            }
+        }
+    }
+}
+
+// As all others are, whatever they are made of.
+TEST(LimitTable, StencilsOfLatticesAreSortedAndAsLargeAsTheyMustBe) {
+    for (TorusFaces const kind : {TorusFaces::Quads, TorusFaces::Triangles}) {
+        auto const refiner = CreateRefiner(makeSharpTorus(kind), ReferenceMask::Average, 3);
+        auto const table = createTable(*refiner, 3, true);
+        std::vector<int> const sizes(table->GetSizes().begin(), table->GetSizes().end());
+        auto const &indices = table->GetControlIndices();
+        ASSERT_EQ(indices.size(), std::accumulate(sizes.begin(), sizes.end(), std::size_t(0)));
+        EXPECT_EQ(indices.capacity(), indices.size());
+        EXPECT_EQ(table->GetWeights().capacity(), indices.size());
+        for (std::size_t row = 0; row < sizes.size(); ++row) {
+            auto const first = indices.begin() + table->GetOffsets()[row];
+            ASSERT_TRUE(std::is_sorted(first, first + sizes[row], std::less_equal<int>()));
+            for (int k = table->GetOffsets()[row]; k < table->GetOffsets()[row] + sizes[row]; ++k) {
+                ASSERT_GT(table->GetWeights()[std::size_t(k)], 0) << "row " << row;
+            }
+        }
+        Factory::Options options;
+        options.level = 3;
+        options.generate1stDerivatives = false;
+        auto const points = Factory::Create(*refiner, options);
+        ASSERT_TRUE(points);
+        ASSERT_TRUE(
+            std::equal(points->GetSizes().begin(), points->GetSizes().end(), sizes.begin()));
+        ASSERT_TRUE(std::equal(points->GetWeights().begin(), points->GetWeights().end(),
+                               table->GetWeights().begin()));
+    }
+}
+
+TEST(LimitTable, SameBitsForAnyNumberOfThreads) {
+    for (TorusFaces const kind : {TorusFaces::Quads, TorusFaces::IrregularTriangles}) {
+        Shape shape = MakeTorus(40, 30, kind);
+        shape.cornerVertices = {17};
+        shape.cornerSharpness = {1.5f};
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 2);
+        FarExt::SetNumThreads(1);
+        auto const expected = createTable(*refiner, 2, true);
+        for (int const numThreads : {2, 3, 5}) {
+            SCOPED_TRACE(testing::Message() << numThreads << " threads");
+            FarExt::SetNumThreads(numThreads);
+            auto const table = createTable(*refiner, 2, true);
+            EXPECT_TRUE(table->GetSizes() == expected->GetSizes());
+            EXPECT_TRUE(table->GetControlIndices() == expected->GetControlIndices());
+            EXPECT_TRUE(table->GetWeights() == expected->GetWeights());
+            EXPECT_TRUE(table->GetDuWeights() == expected->GetDuWeights());
+            EXPECT_TRUE(table->GetDvWeights() == expected->GetDvWeights());
+        }
+        FarExt::SetNumThreads(0);
     }
 }
 
