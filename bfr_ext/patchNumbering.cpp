@@ -207,8 +207,8 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
             };
             stream.getLevels(face, levels);
             if (stream.isCut(face, levels)) {
-                std::shared_ptr<SectionNumbers const> forest;
-                auto &sections = stream.GetForest() ? forest : sectionsOfLevels[levels];
+                std::shared_ptr<SectionNumbers const> ofTree;
+                auto &sections = stream.GetForest() ? ofTree : sectionsOfLevels[levels];
                 if (!sections) {
                     sections = makeSections(face);
                 }

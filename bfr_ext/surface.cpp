@@ -174,16 +174,14 @@ template <typename REAL>
 template <typename FUNCTION>
 void Surface<REAL>::useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
                               FUNCTION const &function) const {
-    // What they have taken of memory is kept for the next face, here and below.
+    // What it has taken of memory is kept for the next face, as below.
     static thread_local internal::BorderEvaluator<REAL> border;
+    auto const size = std::size_t(pointDesc.size);
     if (internal::PlainFaceType const *const plain = _type.GetPlain()) {
-        static thread_local internal::RingValues<REAL> values;
-        values.Set(plain->GetRings().GetRings(), std::size_t(_numControlPoints), nullptr,
-                   controlPoints, pointDesc.stride, std::size_t(pointDesc.size));
-        border.SetFace(*plain, values, getTurns(), controlPoints, pointDesc.stride);
+        border.SetFace(*plain, getTurns(), std::size_t(_numControlPoints), controlPoints,
+                       pointDesc.stride, size);
     } else {
-        border.SetFace(*_type, getTurns(), controlPoints, pointDesc.stride,
-                       std::size_t(pointDesc.size));
+        border.SetFace(*_type, getTurns(), controlPoints, pointDesc.stride, size);
     }
     function(border);
 }
@@ -220,18 +218,16 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
     };
     static thread_local internal::PatchEvaluator<REAL> evaluator;
     if (internal::PlainFaceType const *const plain = _type.GetPlain()) {
-        static thread_local internal::RingValues<REAL> values;
-        static thread_local internal::BorderEvaluator<REAL> border;
-        values.Set(plain->GetRings().GetRings(), std::size_t(_numControlPoints), nullptr,
-                   controlPoints, pointDesc.stride, std::size_t(pointDesc.size));
-        evaluator.Evaluate(*plain, values, tessellation.getCellPlan(), results[0],
-                           resultDesc.stride);
-        if (results[1]) {
-            evaluator.EvaluateDerivatives(*plain, values, tessellation.getCellPlan(true),
-                                          results[1], results[2], resultDesc.stride);
-        }
-        border.SetFace(*plain, values, getTurns(), controlPoints, pointDesc.stride);
-        evaluateBorder(tessellation, border, results[0], resultDesc);
+        useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
+            internal::RingValues<REAL> &values = border.GetRingValues();
+            evaluator.Evaluate(*plain, values, tessellation.getCellPlan(), results[0],
+                               resultDesc.stride);
+            if (results[1]) {
+                evaluator.EvaluateDerivatives(*plain, values, tessellation.getCellPlan(true),
+                                              results[1], results[2], resultDesc.stride);
+            }
+            evaluateBorder(tessellation, border, results[0], resultDesc);
+        });
         return;
     }
     // Few types, and few levels, have matrices of a face: others go by cells.

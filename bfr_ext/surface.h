@@ -209,6 +209,7 @@ public:
 private:
     friend class SurfaceFactory;
     friend class View;
+
     internal::BasePoint findPoint(REAL const uv[2]) const;
     bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
                           PointDescriptor const &pointDesc, REAL p[]) const;

@@ -35,17 +35,19 @@ void BorderEvaluator<REAL>::SetFace(CellType const &type, int const *turns, REAL
 }
 
 template <typename REAL>
-void BorderEvaluator<REAL>::SetFace(PlainFaceType const &type, RingValues<REAL> &values,
-                                    int const *turns, REAL const *points, std::ptrdiff_t stride) {
+void BorderEvaluator<REAL>::SetFace(PlainFaceType const &type, int const *turns,
+                                    std::size_t numPoints, REAL const *points,
+                                    std::ptrdiff_t stride, std::size_t size) {
+    VertexRings const &rings = type.GetRings().GetRings();
+    _values.Set(rings, numPoints, nullptr, points, stride, size);
     _type = nullptr;
     _plain = &type;
-    _values = &values;
     _turns = turns;
-    _numEdges = type.GetRings().GetRings().GetRings().size();
+    _numEdges = rings.GetRings().size();
     _points = points;
     _stride = stride;
-    _size = values.GetSize();
-    _paddedSize = values.GetPaddedSize();
+    _size = size;
+    _paddedSize = _values.GetPaddedSize();
     _border = nullptr;
     _edge = {};
 }
@@ -75,7 +77,7 @@ void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
         FaceRings const &face = _plain->GetRings();
         if (RingCell const *const cell = face.GetVVertex(int(vert), turn)) {
             int const numFaces = face.GetRings().GetRings()[vert].GetNumFaces();
-            _values->EvaluateVertex(*cell, int(vert), turn == 0 ? 0 : numFaces - turn, result);
+            _values.EvaluateVertex(*cell, int(vert), turn == 0 ? 0 : numFaces - turn, result);
             return;
         }
     }
@@ -104,7 +106,7 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
         if (RingCell const *const cell = face.GetLongEdge(int(edge), _isReversed)) {
             _indices.resize(cell->GetColumns().size());
             face.FindLongEdgeIndices(int(edge), _isReversed, _indices.data());
-            _edge = {&cell->GetType(), cell, _values->GetPoints(), std::ptrdiff_t(_paddedSize),
+            _edge = {&cell->GetType(), cell, _values.GetPoints(), std::ptrdiff_t(_paddedSize),
                      _indices.data()};
             return;
         }

@@ -22,10 +22,11 @@ public:
     /// \param turns  those of FindBaseCellTurns()
     void SetFace(CellType const &type, int const *turns, REAL const *points, std::ptrdiff_t stride,
                  std::size_t size);
-    /// The same of a plain one that is not in a lattice.
-    /// \param values  of its rings
-    void SetFace(PlainFaceType const &type, RingValues<REAL> &values, int const *turns,
-                 REAL const *points, std::ptrdiff_t stride);
+    /// The same of a plain one that is not in a lattice, with all its points.
+    void SetFace(PlainFaceType const &type, int const *turns, std::size_t numPoints,
+                 REAL const *points, std::ptrdiff_t stride, std::size_t size);
+    /// Of the rings of a plain face.
+    RingValues<REAL> &GetRingValues() { return _values; }
 
     /// Writes the point of a vertex.
     void EvaluateVertex(std::size_t vert, REAL *result);
@@ -80,7 +81,6 @@ private:
 
     CellType const *_type = nullptr;
     PlainFaceType const *_plain = nullptr;
-    RingValues<REAL> *_values = nullptr; // of this
     int const *_turns = nullptr;
     std::size_t _numEdges = 0;
     REAL const *_points = nullptr;
@@ -95,6 +95,7 @@ private:
     Sources _edge = {};
     bool _isReversed = false;
     std::vector<int> _indices;
+    RingValues<REAL> _values;     // of a plain face
     RingValues<REAL> _edgeValues; // of its own rings
     RingValues<REAL> _vertexValues;
 };

@@ -66,12 +66,6 @@ public:
 private:
     using Row = std::vector<double>;
 
-    void add(Row &sum, double weight, Row const &row) const {
-        for (std::size_t place = 0; place < _numPlaces; ++place) {
-            sum[place] += weight * row[place];
-        }
-    }
-
     Row const &findRow(std::size_t level, Index vert) {
         auto const found = _rows[level].find(vert);
         if (found != _rows[level].end()) {
@@ -80,38 +74,16 @@ private:
         Row row(_numPlaces, 0);
         if (level == 0) {
             _isComplete = false;
-        } else if (vert < _mesh.levels[level].numVVertices) {
-            addVVertex(level, vert, row);
         } else {
-            addFVertex(level, _mesh.refinements[level - 1].GetChildVertexCorner(vert), row);
+            ForEachParentWeight(_mesh.refinements[level - 1], _masks[level - 1], vert,
+                                [&](Index pVert, double weight) {
+                                    Row const &pRow = findRow(level - 1, pVert);
+                                    for (std::size_t place = 0; place < _numPlaces; ++place) {
+                                        row[place] += weight * pRow[place];
+                                    }
+                                });
         }
         return _rows[level].emplace(vert, std::move(row)).first->second;
-    }
-
-    void addVVertex(std::size_t level, Index vert, Row &row) {
-        Refinement const &refinement = _mesh.refinements[level - 1];
-        Index const pVert = refinement.GetVVertexParent(vert);
-        RefinementMask::VertexMask const mask = _masks[level - 1].GetVertexMask(pVert);
-        for (int i = 0; i < mask.numSources; ++i) {
-            add(row, mask.weights[i], findRow(level - 1, mask.sources[i]));
-        }
-        Level const &parent = *refinement.parent;
-        for (Index k = parent.vertFirstFace[pVert]; k < parent.vertFirstFace[pVert + 1]; ++k) {
-            Index const fVert = refinement.GetCornerChildVertex(parent.GetVertexCorner(k));
-            add(row, mask.faceWeight, findRow(level, fVert));
-        }
-    }
-
-    void addFVertex(std::size_t level, Index corner, Row &row) {
-        Level const &parent = _mesh.levels[level - 1];
-        Index const face = parent.FindFaceOfCorner(corner);
-        Index const first = parent.faceFirstCorner[face];
-        std::vector<double> scratch;
-        double const *const weights =
-            _masks[level - 1].GetFaceVertexWeights(face, corner - first, scratch);
-        for (int i = 0; i < parent.GetFaceSize(face); ++i) {
-            add(row, weights[i], findRow(level - 1, parent.faceVerts[first + i]));
-        }
     }
 
     MeshLevels const &_mesh;
@@ -308,6 +280,9 @@ void LatticeFaces::forEachOutputOfHalf(int level, Index face, int side, FUNCTION
 }
 
 Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows) {
+    if (_sets.empty()) {
+        return Status();
+    }
     std::vector<Sample> samples(_sets.size());
     std::vector<Index> verts;
     for (std::size_t i = 0; i < _sets.size(); ++i) {
@@ -323,7 +298,7 @@ Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
         verts.insert(verts.end(), sample.verts.begin(), sample.verts.end());
     }
     std::vector<Index> ofSets(_sets.size(), Far::INDEX_INVALID); // a vertex of level 0 for each
-    for (Index vert = 0; vert < _mesh.levels[0].numVertices && !_sets.empty(); ++vert) {
+    for (Index vert = 0; vert < _mesh.levels[0].numVertices; ++vert) {
         if (Set const *const set = findPlace(vert).set) {
             Index &ofSet = ofSets[std::size_t(set - _sets.data())];
             if (ofSet < 0) {
@@ -334,7 +309,7 @@ Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
     }
     std::sort(verts.begin(), verts.end());
     verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
-    Status status = _sets.empty() ? Status() : rows.Find(verts);
+    Status status = rows.Find(verts);
     if (!status.IsOk()) {
         return status;
     }
@@ -356,7 +331,9 @@ Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
         }
     }
     _sets = std::move(sets);
-    setVertices();
+    if (!_sets.empty()) {
+        setVertices();
+    }
     return status;
 }
 
@@ -540,7 +517,7 @@ void LatticeFaces::setOutputs(Sample const &sample, Set &set) {
 }
 
 void LatticeFaces::setVertices() {
-    for (Index vert = 0; vert < _mesh.levels[0].numVertices && !_sets.empty(); ++vert) {
+    for (Index vert = 0; vert < _mesh.levels[0].numVertices; ++vert) {
         Set const *const set = findPlace(vert).set;
         if (set && !set->vertexPlaces.empty()) {
             _verts.push_back(vert);

@@ -17,30 +17,11 @@ void addToRow(SteppedRow &row, Index vert, LimitWeights const &weights, double f
 // The row in terms of the vertices of the parent.
 SteppedRow stepBack(SteppedRow const &cRow, Refinement const &refinement,
                     RefinementMask const &mask) {
-    Level const &parent = *refinement.parent;
     SteppedRow row;
-    std::vector<double> scratch;
-    auto const addFVertex = [&](Index corner, LimitWeights const &weights, double factor) {
-        Index const face = parent.FindFaceOfCorner(corner);
-        Index const first = parent.faceFirstCorner[face];
-        double const *const ofFace = mask.GetFaceVertexWeights(face, corner - first, scratch);
-        for (int i = 0; i < parent.GetFaceSize(face); ++i) {
-            addToRow(row, parent.faceVerts[first + i], weights, factor * ofFace[i]);
-        }
-    };
-    for (auto const &[vert, weights] : cRow) {
-        if (vert >= refinement.child->numVVertices) {
-            addFVertex(refinement.GetChildVertexCorner(vert), weights, 1);
-            continue;
-        }
-        Index const pVert = refinement.GetVVertexParent(vert);
-        RefinementMask::VertexMask const ofVertex = mask.GetVertexMask(pVert);
-        for (int i = 0; i < ofVertex.numSources; ++i) {
-            addToRow(row, ofVertex.sources[i], weights, ofVertex.weights[i]);
-        }
-        for (Index k = parent.vertFirstFace[pVert]; k < parent.vertFirstFace[pVert + 1]; ++k) {
-            addFVertex(parent.GetVertexCorner(k), weights, ofVertex.faceWeight);
-        }
+    for (auto const &ofVertex : cRow) {
+        ForEachParentWeight(refinement, mask, ofVertex.first, [&](Index pVert, double weight) {
+            addToRow(row, pVert, ofVertex.second, weight);
+        });
     }
     return row;
 }

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <map>
+#include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -16,6 +17,38 @@ using LimitWeights = std::array<double, 3>;
 
 /// A LimitRow by vertex, in which a vertex comes once.
 using SteppedRow = std::map<Far::Index, LimitWeights>;
+
+/// \brief Calls function(vertex, weight) for the vertices of the parent that a vertex of the child is a
+/// sum of; a vertex may come more than once.
+///
+/// \param mask  of the step
+template <typename FUNCTION>
+void ForEachParentWeight(Refinement const &refinement, RefinementMask const &mask, Far::Index cVert,
+                         FUNCTION function) {
+    using Index = Far::Index;
+    Level const &parent = *refinement.parent;
+    std::vector<double> scratch;
+    auto const addFVertex = [&](Index corner, double factor) {
+        Index const face = parent.FindFaceOfCorner(corner);
+        Index const first = parent.faceFirstCorner[face];
+        double const *const weights = mask.GetFaceVertexWeights(face, corner - first, scratch);
+        for (int i = 0; i < parent.GetFaceSize(face); ++i) {
+            function(parent.faceVerts[first + i], factor * weights[i]);
+        }
+    };
+    if (cVert >= refinement.child->numVVertices) {
+        addFVertex(refinement.GetChildVertexCorner(cVert), 1);
+        return;
+    }
+    Index const pVert = refinement.GetVVertexParent(cVert);
+    RefinementMask::VertexMask const ofVertex = mask.GetVertexMask(pVert);
+    for (int i = 0; i < ofVertex.numSources; ++i) {
+        function(ofVertex.sources[i], ofVertex.weights[i]);
+    }
+    for (Index k = parent.vertFirstFace[pVert]; k < parent.vertFirstFace[pVert + 1]; ++k) {
+        addFVertex(parent.GetVertexCorner(k), ofVertex.faceWeight);
+    }
+}
 
 /// \brief The row of a vertex of level \p cLevel in terms of the vertices of \p level, one before it.
 OPENSUBDIVHEX_API SteppedRow StepRowBack(MeshLevels const &mesh,

@@ -15,11 +15,10 @@ using Far::Index;
 using FarExt::internal::Buffer;
 using FarExt::internal::LatticeFaces;
 using FarExt::internal::LatticeOrbits;
+using FarExt::internal::LatticePatch;
 using FarExt::internal::LimitWeights;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 using Complex = std::complex<double>;
 
@@ -75,9 +74,9 @@ SourceOrbits findSourceOrbits(LatticeFaces::Set const &set) {
 /// The rows of one output of an orbit, taken apart as LatticeSources are.
 class RowWaves {
 public:
-    RowWaves(SourceOrbits const &sources, int faceSize, LatticeFaces::Orbit const &orbit,
-             std::size_t sum)
-        : _sources(sources), _faceSize(faceSize), _orbit(orbit), _sum(sum) {}
+    RowWaves(SourceOrbits const &sources, LatticePatch const &patch,
+             LatticeFaces::Orbit const &orbit, std::size_t sum)
+        : _sources(sources), _patch(patch), _orbit(orbit), _sum(sum) {}
 
     /// For the part that is the same in the mirror, the waves of a frequency of all orbits on axes and
     /// sums, then of all differences.
@@ -97,11 +96,11 @@ public:
 
 private:
     Complex findWave(int orbit, int frequency) const {
-        LimitWeights const *weights = _orbit.weights.data() + std::ptrdiff_t(orbit) * _faceSize;
+        int const faceSize = _patch.GetFaceSize();
+        LimitWeights const *weights = _orbit.weights.data() + std::ptrdiff_t(orbit) * faceSize;
         Complex result = 0;
-        for (int i = 0; i < _faceSize; ++i, ++weights) {
-            double const angle = 2 * kPi * frequency * i / _faceSize;
-            result += (*weights)[_sum] * std::polar(1.0 / _faceSize, angle);
+        for (int i = 0; i < faceSize; ++i, ++weights) {
+            result += (*weights)[_sum] * _patch.Turn(1.0 / faceSize, frequency * i);
         }
         return result;
     }
@@ -126,7 +125,7 @@ private:
     }
 
     SourceOrbits const &_sources;
-    int _faceSize;
+    LatticePatch const &_patch;
     LatticeFaces::Orbit const &_orbit;
     std::size_t _sum;
 };
@@ -142,44 +141,39 @@ void addRows(std::vector<std::vector<double>> const &rows, int begin, int end, d
 }
 
 // Weights in the order in which LatticeKernel reads them.
-void addOrbit(SourceOrbits const &sources, int faceSize, LatticeFaces::Orbit const &orbit,
-              std::vector<float> &weights) {
+void addOrbit(SourceOrbits const &sources, LatticePatch const &patch,
+              LatticeFaces::Orbit const &orbit, std::vector<float> &weights) {
     auto const numSums = int(sources.axes.size() + sources.pairs.size());
     int const size = numSums + int(sources.pairs.size());
-    RowWaves const rows[] = {{sources, faceSize, orbit, 0},
-                             {sources, faceSize, orbit, 1},
-                             {sources, faceSize, orbit, 2}};
+    auto const addRowsOf = [&](int frequency, std::vector<std::vector<double>> &even,
+                               std::vector<std::vector<double>> &odd) {
+        for (int i = 0; i < LimitTask::kMaxOutputs; ++i) {
+            RowWaves const row(sources, patch, orbit, std::size_t(i));
+            bool const isAcross = !orbit.isPair && i == LimitTask::kMaxOutputs - 1;
+            if (!isAcross) {
+                even.push_back(row.FindEven(frequency));
+            }
+            if (orbit.isPair || isAcross) {
+                odd.push_back(row.FindOdd(frequency));
+            }
+        }
+    };
     // Frequencies of one wave: what is even there has sums alone, and what is odd differences.
     auto const addSingle = [&](int frequency) {
         std::vector<std::vector<double>> even;
         std::vector<std::vector<double>> odd;
-        for (int i = 0; i < LimitTask::kMaxOutputs; ++i) {
-            bool const isAcross = !orbit.isPair && i == LimitTask::kMaxOutputs - 1;
-            if (!isAcross) {
-                even.push_back(rows[i].FindEven(frequency));
-            }
-            if (orbit.isPair || isAcross) {
-                odd.push_back(rows[i].FindOdd(frequency));
-            }
-        }
+        addRowsOf(frequency, even, odd);
         addRows(even, 0, numSums, 1, weights);
         addRows(odd, numSums, size, 1, weights);
     };
     addSingle(0);
-    if (faceSize % 2 == 0) {
-        addSingle(faceSize / 2);
+    if (patch.GetFaceSize() % 2 == 0) {
+        addSingle(patch.GetFaceSize() / 2);
     }
-    std::vector<std::vector<double>> ofWaves;
-    for (int i = 0; i < LimitTask::kMaxOutputs; ++i) {
-        bool const isAcross = !orbit.isPair && i == LimitTask::kMaxOutputs - 1;
-        if (!isAcross) {
-            ofWaves.push_back(rows[i].FindEven(1));
-        }
-        if (orbit.isPair || isAcross) {
-            ofWaves.push_back(rows[i].FindOdd(1));
-        }
-    }
-    addRows(ofWaves, 0, size, 2, weights);
+    // Of the others the conjugate, which has the same weights, is added, too.
+    std::vector<std::vector<double>> both;
+    addRowsOf(1, both, both);
+    addRows(both, 0, size, 2, weights);
     for (auto const &ofDerivative : orbit.derivatives) {
         weights.insert(weights.end(), {float(ofDerivative[0]), float(ofDerivative[1])});
     }
@@ -239,7 +233,7 @@ void LatticeLimit::Prepare(LatticeFaces const &faces) {
         std::iota(outputs.begin(), outputs.end(), 0);
         group(of.outputs, of.numOutputs, outputs, set.verts, [](Index vert) { return vert; });
         for (LatticeFaces::Orbit const &orbit : of.orbits) {
-            addOrbit(sources, set.faceSize, orbit, set.weights);
+            addOrbit(sources, of.patch, orbit, set.weights);
         }
     }
 }

@@ -2,6 +2,7 @@
 //
 // Trees of cells, against books that are kept of every line, and their tessellations of whole meshes.
 #include "cellFixture.h"
+#include "facets.h"
 #include "surfaceCase.h"
 #include "surfaceFixture.h"
 
@@ -35,23 +36,6 @@ Tessellation::Options getPolygonOptions(int facetSize) {
     return Tessellation::Options().SetFacetSize(facetSize);
 }
 
-/// The facets of a tessellation, as places in it.
-std::vector<std::vector<int>> getFacets(Tessellation const &tessellation) {
-    std::vector<int> sizes(std::size_t(tessellation.GetNumFacets()));
-    tessellation.GetFacetSizes(sizes.data());
-    int const stride = tessellation.GetFacetStride();
-    std::vector<int> indices(stride == 0 ? std::size_t(tessellation.GetNumFacetVertices())
-                                         : sizes.size() * std::size_t(stride));
-    tessellation.GetFacets(indices.data());
-    std::vector<std::vector<int>> result;
-    auto index = indices.begin();
-    for (int const size : sizes) {
-        result.emplace_back(index, index + size);
-        index += stride == 0 ? size : stride;
-    }
-    return result;
-}
-
 /// All facets of a forest, whose vertices are numbers of points.
 struct ForestMesh {
     ForestMesh(CellForest const &forest, std::vector<bool> const &hasFace, int facetSize) {
@@ -68,7 +52,7 @@ struct ForestMesh {
                 numbers[i] = numPoints++;
             }
             points.push_back(numbers);
-            for (std::vector<int> &facet : getFacets(tessellation)) {
+            for (std::vector<int> &facet : GetFacets(tessellation)) {
                 if (!hasFace[std::size_t(face)]) {
                     continue;
                 }
@@ -257,7 +241,7 @@ void expectReference(Shape const &shape, unsigned seed) {
         std::vector<double> coords(2 * std::size_t(tessellation.GetNumCoords()));
         tessellation.GetCoords(coords.data());
         std::multiset<PlacePolygon> polygons;
-        for (std::vector<int> const &facet : getFacets(tessellation)) {
+        for (std::vector<int> const &facet : GetFacets(tessellation)) {
             PlacePolygon places;
             for (int const place : facet) {
                 places.push_back(
@@ -330,7 +314,7 @@ Vector3 getAreaVector(std::vector<int> const &facet, std::vector<double> const &
 int countTurned(Tessellation const &tessellation, std::vector<double> const &p,
                 std::vector<double> const &du, std::vector<double> const &dv) {
     int count = 0;
-    for (std::vector<int> const &facet : getFacets(tessellation)) {
+    for (std::vector<int> const &facet : GetFacets(tessellation)) {
         Vector3 normal{};
         for (int const place : facet) {
             auto const i = 3 * std::size_t(place);
@@ -360,7 +344,7 @@ void expectPlaneTiling(Tessellation const &tessellation) {
         return sum / 2;
     };
     double area = 0;
-    for (std::vector<int> const &facet : getFacets(tessellation)) {
+    for (std::vector<int> const &facet : GetFacets(tessellation)) {
         ASSERT_GT(getArea(facet), 1e-12);
         area += getArea(facet);
     }

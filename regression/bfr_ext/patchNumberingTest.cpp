@@ -2,6 +2,7 @@
 //
 // Numbers of what a stream makes, and the PLY files that are made with them.
 #include "cellFixture.h"
+#include "facets.h"
 #include "streamFixture.h"
 #include "surfaceCase.h"
 #include "surfaceFixture.h"
@@ -116,27 +117,20 @@ struct Joined {
             }
         }
         EXPECT_EQ(place, tessellation.GetNumCoords());
-        std::vector<int> sizes(std::size_t(tessellation.GetNumFacets()));
-        tessellation.GetFacetSizes(sizes.data());
-        int const stride = tessellation.GetFacetStride();
-        std::vector<int> facets(stride == 0 ? std::size_t(tessellation.GetNumFacetVertices())
-                                            : sizes.size() * std::size_t(stride));
-        tessellation.GetFacets(facets.data());
-        auto facet = facets.begin();
+        std::vector<std::vector<int>> const facets = GetFacets(tessellation);
         int const section = tessellation.GetSection();
         EXPECT_EQ(tessellation.GetNumSections(), stream.GetNumSections(patch.face));
         numSections += tessellation.GetNumSections() == 1 ? 0 : 1;
         Number number = numbering->GetFirstFacet(patch.face, section);
         if (section + 1 == tessellation.GetNumSections()) {
-            EXPECT_EQ(numbering->GetFirstFacet(patch.face + 1), number + Number(sizes.size()));
+            EXPECT_EQ(numbering->GetFirstFacet(patch.face + 1), number + Number(facets.size()));
         }
-        for (int const size : sizes) {
+        for (std::vector<int> const &facet : facets) {
             EXPECT_EQ(polygons.count(number), 0);
             std::vector<Number> &polygon = polygons[number++];
-            for (int i = 0; i < size; ++i) {
-                polygon.push_back(numbers[std::size_t(facet[i])]);
+            for (int const vert : facet) {
+                polygon.push_back(numbers[std::size_t(vert)]);
             }
-            facet += stride == 0 ? size : stride;
         }
     }
 

@@ -2,6 +2,7 @@
 //
 // Faces that come in sections, against the same as a whole.
 #include "cellFixture.h"
+#include "facets.h"
 #include "streamFixture.h"
 
 #include "regression/far_ext/referenceMatch.h"
@@ -63,20 +64,13 @@ void add(typename PatchStream<REAL>::Patch const &patch, FaceContents<REAL> &con
         auto const [found, isNew] = contents.points.emplace(coords[i], values);
         ASSERT_EQ(found->second, values) << "sections differ at a place that they share";
     }
-    std::vector<int> sizes(std::size_t(tessellation.GetNumFacets()));
-    tessellation.GetFacetSizes(sizes.data());
-    int const stride = tessellation.GetFacetStride();
-    std::vector<int> facets(stride == 0 ? std::size_t(tessellation.GetNumFacetVertices())
-                                        : sizes.size() * std::size_t(stride));
-    tessellation.GetFacets(facets.data());
-    auto facet = facets.begin();
-    for (int const count : sizes) {
+    for (std::vector<int> const &facet : GetFacets(tessellation)) {
         Polygon polygon;
-        std::for_each(facet, facet + count,
-                      [&](int index) { polygon.push_back(coords[std::size_t(index)]); });
+        for (int const place : facet) {
+            polygon.push_back(coords[std::size_t(place)]);
+        }
         contents.facets.insert(rotate(polygon));
         contents.polygons.push_back(std::move(polygon));
-        facet += stride == 0 ? count : stride;
     }
     // An edge of a section is that of another, with the same points.
     std::vector<Coord> boundary(std::size_t(tessellation.GetNumBoundaryCoords()));

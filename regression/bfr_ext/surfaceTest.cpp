@@ -8,6 +8,7 @@
 #include "far_ext/primvarRefiner.h"
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
+#include "regression/shapes/flatShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <gtest/gtest.h>
@@ -170,6 +171,17 @@ TEST_P(SurfaceLimitTest, IsThatOfVerticesOfAllLevels) {
         SCOPED_TRACE(shape.name);
         ASSERT_NO_FATAL_FAILURE(expectLimits(
             shape, GetParam(), getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY), cache));
+    }
+}
+
+// Around columns of three to six quads the lattice meets itself, in other ways than at the ends.
+TEST_P(SurfaceLimitTest, IsThatOfVerticesOfColumns) {
+    BfrExt::SurfaceFactoryCache cache;
+    for (int numSides = 3; numSides <= 6; ++numSides) {
+        SCOPED_TRACE(numSides);
+        ASSERT_NO_FATAL_FAILURE(expectLimits(MakePrism(numSides, 1, 8), GetParam(),
+                                             getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY),
+                                             cache));
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Tessellations alone, in the parameter plane, and of neighbours, which share points to the bit.
+#include "facets.h"
 #include "surfaceFixture.h"
 
 #include "regression/far_ext/referenceMatch.h"
@@ -29,28 +30,6 @@ Tessellation::Options getOptions(int facetSize) {
     return Tessellation::Options().SetFacetSize(facetSize);
 }
 
-/// Facets as lists of places.
-std::vector<std::vector<int>> getFacets(Tessellation const &tessellation) {
-    std::vector<int> sizes(std::size_t(tessellation.GetNumFacets()));
-    EXPECT_EQ(tessellation.GetFacetSizes(sizes.data()), tessellation.GetNumFacets());
-    int const stride = tessellation.GetFacetStride();
-    std::vector<int> indices(stride == 0 ? std::size_t(tessellation.GetNumFacetVertices())
-                                         : sizes.size() * std::size_t(stride),
-                             -7);
-    EXPECT_EQ(tessellation.GetFacets(indices.data()), tessellation.GetNumFacets());
-    std::vector<std::vector<int>> result;
-    auto index = indices.begin();
-    for (int const size : sizes) {
-        result.emplace_back(index, index + size);
-        if (stride > 0) {
-            EXPECT_TRUE(std::all_of(index + size, index + tessellation.GetFacetSize(),
-                                    [](int rest) { return rest == Far::INDEX_INVALID; }));
-        }
-        index += stride == 0 ? size : stride;
-    }
-    return result;
-}
-
 std::vector<double> getCoords(Tessellation const &tessellation) {
     std::vector<double> coords(2 * std::size_t(tessellation.GetNumCoords()));
     EXPECT_EQ(tessellation.GetCoords(coords.data()), tessellation.GetNumCoords());
@@ -73,7 +52,7 @@ void expectTiling(Tessellation const &tessellation) {
     std::map<std::pair<int, int>, int> sides;
     std::set<int> used;
     double area = 0;
-    for (std::vector<int> const &facet : getFacets(tessellation)) {
+    for (std::vector<int> const &facet : GetFacets(tessellation)) {
         double const facetArea = getArea(facet, coords);
         ASSERT_GT(facetArea, 1e-9);
         area += facetArea;
@@ -160,7 +139,7 @@ TEST(Tessellation, UniformOnesAreRefinedPolygons) {
             }
             std::vector<double> const coords = getCoords(tessellation);
             std::set<Polygon> polygons;
-            for (std::vector<int> const &facet : getFacets(tessellation)) {
+            for (std::vector<int> const &facet : GetFacets(tessellation)) {
                 Polygon polygon;
                 for (int const place : facet) {
                     polygon.insert(
@@ -293,7 +272,7 @@ struct Welded {
             surface.GatherControlPoints(positions.data(), 3, control.data(), 3);
             std::vector<Point> points(std::size_t(tessellation.GetNumCoords()));
             surface.Evaluate(tessellation, control.data(), 3, points[0].data(), 3);
-            for (std::vector<int> facet : getFacets(tessellation)) {
+            for (std::vector<int> facet : GetFacets(tessellation)) {
                 for (int &place : facet) {
                     place = numbers.emplace(points[std::size_t(place)], int(numbers.size()))
                                 .first->second;

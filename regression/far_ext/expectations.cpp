@@ -266,6 +266,25 @@ void ExpectVaryingValuesEqual(TopologyRefiner const &refiner, TaggedMatch const 
     expectTables(refiner, expected, FarExt::INTERPOLATE_VARYING, 1);
 }
 
+void ExpectMeshEqual(Shape const &shape, int numLevels, Sdc::Options options,
+                     FarExt::HexSchemeOptions const &schemeOptions) {
+    auto const topology =
+        CreateRefiner(shape, ReferenceMask::Average, numLevels, options, schemeOptions);
+    TaggedMatch const match(shape, *topology);
+    ASSERT_EQ(match.GetError(), "");
+    ASSERT_NO_FATAL_FAILURE(ExpectValid(*topology));
+    if (schemeOptions.firstStep != FarExt::FirstStep::Truncate) {
+        ASSERT_NO_FATAL_FAILURE(ExpectNumbering(*topology));
+    }
+    ReferenceValues const positions = GetPositions(shape);
+    for (ReferenceMask const mask : kMasks) {
+        SCOPED_TRACE(ToString(mask));
+        auto const refiner = CreateRefiner(shape, mask, numLevels, options, schemeOptions);
+        ASSERT_NO_FATAL_FAILURE(ExpectVertexValuesEqual(*refiner, match, mask, positions));
+    }
+    ASSERT_NO_FATAL_FAILURE(ExpectVaryingValuesEqual(*topology, match, positions));
+}
+
 void ExpectChannelValuesEqual(TopologyRefiner const &refiner, TaggedMatch const &match,
                               ReferenceMask mask, ReferenceValues const &base, int channel) {
     bool const isLinear =

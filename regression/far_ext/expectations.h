@@ -20,9 +20,15 @@ inline constexpr double kRowTolerance = sizeof(REAL) == 8 ? 1e-12 : 2e-6;
 /// Every level passes its own checks.
 void ExpectValid(FarExt::TopologyRefiner const &refiner);
 
-/// \brief Children have the numbers that INDEXING.md gives them, whatever step makes them, and know
-/// their parents; face-uniform data follows the parents.
+/// \brief Children have the numbers that INDEXING.md gives them, whatever step but truncation makes
+/// them, and know their parents; face-uniform data follows the parents.
 void ExpectNumbering(FarExt::TopologyRefiner const &refiner);
+
+/// \brief All levels of a mesh equal the reference: topology, numbering (but for truncation, which has
+/// a numbering of its own), and vertex data with each mask and varying data as ExpectVertexValuesEqual()
+/// and ExpectVaryingValuesEqual() have it.
+void ExpectMeshEqual(Shape const &shape, int numLevels, Sdc::Options options = Sdc::Options(),
+                     FarExt::HexSchemeOptions const &schemeOptions = FarExt::HexSchemeOptions());
 
 /// Rows that the reference does not know (values that no corner has) are skipped.
 void ExpectLevelsEqual(std::vector<ReferenceValues> const &actual,

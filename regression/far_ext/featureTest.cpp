@@ -19,20 +19,6 @@ constexpr Sdc::Options::FVarLinearInterpolation kLinearInterpolations[] = {
     Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
     Sdc::Options::FVAR_LINEAR_BOUNDARIES,    Sdc::Options::FVAR_LINEAR_ALL};
 
-void expectMeshEqual(Shape const &shape, Sdc::Options options, int numLevels) {
-    auto const topology = CreateRefiner(shape, ReferenceMask::Average, numLevels, options);
-    TaggedMatch const match(shape, *topology);
-    ASSERT_EQ(match.GetError(), "");
-    ASSERT_NO_FATAL_FAILURE(ExpectValid(*topology));
-    ReferenceValues const positions = GetPositions(shape);
-    for (ReferenceMask mask : kMasks) {
-        SCOPED_TRACE(ToString(mask));
-        auto const refiner = CreateRefiner(shape, mask, numLevels, options);
-        ASSERT_NO_FATAL_FAILURE(ExpectVertexValuesEqual(*refiner, match, mask, positions));
-    }
-    ASSERT_NO_FATAL_FAILURE(ExpectVaryingValuesEqual(*topology, match, positions));
-}
-
 void expectChannelEqual(Shape const &shape, Sdc::Options options, int channel, int numLevels) {
     SCOPED_TRACE(testing::Message()
                  << "channel " << channel << ", linear " << options.GetFVarLinearInterpolation());
@@ -76,13 +62,13 @@ protected:
 
 TEST_F(Feature, MeshEqualsReference) {
     forEach(GetFeatureShapes(), [](Shape const &shape, Sdc::Options options) {
-        expectMeshEqual(shape, options, GetTestLevel(shape, 4, 40000));
+        ExpectMeshEqual(shape, GetTestLevel(shape, 4, 40000), options);
     });
 }
 
 TEST_F(Feature, PlainShapesEqualReference) {
     forEach(GetShapes(), [](Shape const &shape, Sdc::Options options) {
-        expectMeshEqual(shape, options, GetTestLevel(shape, 4, 16000));
+        ExpectMeshEqual(shape, GetTestLevel(shape, 4, 16000), options);
     });
 }
 

@@ -3,9 +3,8 @@
 // Which faces of level 0 lie in a regular lattice, and that what they make is the limit of all vertices
 // in them.
 #include "far_ext/limit/latticeFaces.h"
-#include "far_ext/topologyRefinerFactory.h"
 #include "far_ext/vtr/hierarchy.h"
-#include "regression/shapes/shapeDescriptor.h"
+#include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/torus.h"
 
 #include <gtest/gtest.h>
@@ -26,22 +25,6 @@ using FarExt::internal::LimitWeights;
 using FarExt::internal::SteppedRow;
 
 namespace {
-
-std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, int level,
-                                               FarExt::HexSchemeOptions const &schemeOptions = {}) {
-    FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions = schemeOptions;
-    Sdc::Options sdcOptions;
-    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    auto refiner =
-        FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(), sdcOptions, options);
-    TopologyRefiner::UniformOptions uniformOptions(level);
-    uniformOptions.fullTopologyInLastLevel = true;
-    if (!refiner || !refiner->RefineUniform(uniformOptions)) {
-        throw std::runtime_error("not refined");
-    }
-    return refiner;
-}
 
 LimitRows makeRows(TopologyRefiner const &refiner) {
     auto const &level = refiner.GetHierarchy().mesh.levels[std::size_t(refiner.GetMaxLevel())];
@@ -162,12 +145,9 @@ void expectRows(TopologyRefiner const &refiner, LatticeFaces const &faces) {
     }
 }
 
-constexpr FarExt::FaceMask kMasks[] = {FarExt::FaceMask::Average, FarExt::FaceMask::Cosine,
-                                       FarExt::FaceMask::Smooth};
-
-FarExt::HexSchemeOptions makeOptions(FarExt::FaceMask mask) {
-    FarExt::HexSchemeOptions options;
-    options.faceMask = mask;
+Sdc::Options getEdgeOnly() {
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     return options;
 }
 
@@ -199,11 +179,11 @@ TEST(LatticePatch, HasOrbitsOfTheSymmetriesOfItsFace) {
 // Every vertex of the level is made once, whatever the level and the mask.
 TEST(LatticeFaces, MakeAllOfARegularTorus) {
     for (TorusFaces const kind : {TorusFaces::Quads, TorusFaces::Triangles}) {
-        for (FarExt::FaceMask const mask : kMasks) {
+        for (ReferenceMask const mask : kMasks) {
             for (int level = 1; level <= 3; ++level) {
-                SCOPED_TRACE(testing::Message() << "mask " << int(mask) << ", level " << level);
+                SCOPED_TRACE(testing::Message() << ToString(mask) << ", level " << level);
                 Shape const shape = MakeTorus(7, 6, kind);
-                auto const refiner = createRefiner(shape, level, makeOptions(mask));
+                auto const refiner = CreateRefiner(shape, mask, level);
                 LatticeFaces const faces = findFaces(*refiner);
                 EXPECT_EQ(countFaces(faces), std::size_t(shape.GetNumFaces()));
                 ASSERT_NO_FATAL_FAILURE(expectRows(*refiner, faces));
@@ -220,7 +200,7 @@ TEST(LatticeFaces, LeaveWhatIsNearAFeature) {
     Shape shape = MakeTorus(12, 11, TorusFaces::Quads);
     shape.cornerVertices = {5 * 11 + 4};
     shape.cornerSharpness = {1.5f};
-    auto const refiner = createRefiner(shape, 2, makeOptions(FarExt::FaceMask::Smooth));
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 2, getEdgeOnly());
     LatticeFaces const faces = findFaces(*refiner);
     EXPECT_EQ(countFaces(faces), 12u * 11 - 32);
     expectRows(*refiner, faces);
@@ -230,7 +210,7 @@ TEST(LatticeFaces, LeaveWhatIsNearAHole) {
     Shape shape = MakeTorus(14, 12, TorusFaces::Triangles);
     shape.faceSizes.pop_back();
     shape.faceVertices.resize(shape.faceVertices.size() - 3);
-    auto const refiner = createRefiner(shape, 2, makeOptions(FarExt::FaceMask::Smooth));
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 2, getEdgeOnly());
     LatticeFaces const faces = findFaces(*refiner);
     EXPECT_GT(countFaces(faces), 100u);
     EXPECT_LT(countFaces(faces), 28u * 12 - 27);
@@ -240,14 +220,16 @@ TEST(LatticeFaces, LeaveWhatIsNearAHole) {
 // Other lattices, one too small for what a face depends on, level 0 itself, and levels behind another
 // step.
 TEST(LatticeFaces, AreThereForNoOtherMesh) {
-    EXPECT_EQ(countFaces(findFaces(*createRefiner(GetShape("hexTorus"), 2))), 0u);
-    EXPECT_EQ(countFaces(findFaces(*createRefiner(GetShape("icosahedron"), 2))), 0u);
-    EXPECT_EQ(countFaces(findFaces(*createRefiner(MakeTorus(5, 9, TorusFaces::Quads), 1))), 0u);
+    ReferenceMask const mask = ReferenceMask::Average;
+    EXPECT_EQ(countFaces(findFaces(*CreateRefiner(GetShape("hexTorus"), mask, 2))), 0u);
+    EXPECT_EQ(countFaces(findFaces(*CreateRefiner(GetShape("icosahedron"), mask, 2))), 0u);
+    EXPECT_EQ(countFaces(findFaces(*CreateRefiner(MakeTorus(5, 9, TorusFaces::Quads), mask, 1))),
+              0u);
     Shape const torus = MakeTorus(9, 8, TorusFaces::Triangles);
-    EXPECT_EQ(countFaces(findFaces(*createRefiner(torus, 0))), 0u);
+    EXPECT_EQ(countFaces(findFaces(*CreateRefiner(torus, mask, 0))), 0u);
     FarExt::HexSchemeOptions options;
     options.firstStep = FarExt::FirstStep::Truncate;
-    EXPECT_EQ(countFaces(findFaces(*createRefiner(torus, 2, options))), 0u);
+    EXPECT_EQ(countFaces(findFaces(*CreateRefiner(torus, mask, 2, {}, options))), 0u);
 }
 
 } // namespace OpenSubdivHex::Regression

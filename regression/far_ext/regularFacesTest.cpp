@@ -5,9 +5,8 @@
 #include "far_ext/limit/regularFaces.h"
 #include "far_ext/limit/regularVertices.h"
 #include "far_ext/limit/rowSteps.h"
-#include "far_ext/topologyRefinerFactory.h"
 #include "far_ext/vtr/hierarchy.h"
-#include "regression/shapes/shapeDescriptor.h"
+#include "regression/far_ext/referenceMatch.h"
 
 #include <gtest/gtest.h>
 
@@ -26,20 +25,6 @@ using FarExt::internal::RegularVertices;
 using FarExt::internal::SteppedRow;
 
 namespace {
-
-std::unique_ptr<TopologyRefiner> createRefiner(char const *shape, FarExt::FaceMask mask,
-                                               int level) {
-    FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = mask;
-    auto refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(GetShape(shape)).Get(),
-                                                          Sdc::Options(), options);
-    TopologyRefiner::UniformOptions uniformOptions(level);
-    uniformOptions.fullTopologyInLastLevel = true;
-    if (!refiner || !refiner->RefineUniform(uniformOptions)) {
-        throw std::runtime_error("not refined");
-    }
-    return refiner;
-}
 
 RegularFaces findFaces(TopologyRefiner const &refiner) {
     auto const &mesh = refiner.GetHierarchy().mesh;
@@ -98,7 +83,7 @@ RegularVertices findVertices(TopologyRefiner const &refiner) {
 
 // All faces are regular there, and what they do not make are the vertices of level 0.
 TEST(RegularFaces, AreAllOfATorusOfHexagons) {
-    auto const refiner = createRefiner("hexTorus", FarExt::FaceMask::Smooth, 3);
+    auto const refiner = CreateRefiner(GetShape("hexTorus"), ReferenceMask::Smooth, 3);
     RegularFaces const faces = findFaces(*refiner);
     for (int level = 0; level < 3; ++level) {
         EXPECT_EQ(countFaces(faces, level), std::size_t(refiner->GetLevel(level).GetNumFaces()));
@@ -112,7 +97,7 @@ TEST(RegularFaces, AreAllOfATorusOfHexagons) {
 // A pentagon has five faces around it, and five further ones with a neighbour of one of its vertices:
 // from level 2 on, where these are hexagons for each of twelve pentagons, all but they are regular.
 TEST(RegularFaces, AreAllThatAreNotNearAPentagon) {
-    auto const refiner = createRefiner("dodecahedron", FarExt::FaceMask::Average, 5);
+    auto const refiner = CreateRefiner(GetShape("dodecahedron"), ReferenceMask::Average, 5);
     RegularFaces const faces = findFaces(*refiner);
     EXPECT_EQ(countFaces(faces, 0), 0u);
     for (int level : {3, 4}) {
@@ -125,8 +110,8 @@ TEST(RegularFaces, AreAllThatAreNotNearAPentagon) {
 // Where all vertices have three faces, every vertex is regular once hexagons are all around: all but those
 // of level 0 and the corners of F-faces of pentagons.
 TEST(RegularFaces, LeaveTheCornersOfPentagons) {
-    for (FarExt::FaceMask mask : {FarExt::FaceMask::Average, FarExt::FaceMask::Smooth}) {
-        auto const refiner = createRefiner("dodecahedron", mask, 5);
+    for (ReferenceMask mask : {ReferenceMask::Average, ReferenceMask::Smooth}) {
+        auto const refiner = CreateRefiner(GetShape("dodecahedron"), mask, 5);
         RegularFaces const faces = findFaces(*refiner);
         EXPECT_EQ(faces.GetOthers().size(), 20u + 5 * 60u);
     }
@@ -135,7 +120,7 @@ TEST(RegularFaces, LeaveTheCornersOfPentagons) {
 // Vertices with four faces leave one corner for each of them at every level, besides the triangles: two
 // in the hexagons of level 1, one in those of further levels.
 TEST(RegularFaces, GiveSomeOfTheirOwnVertices) {
-    auto const refiner = createRefiner("octahedron", FarExt::FaceMask::Average, 4);
+    auto const refiner = CreateRefiner(GetShape("octahedron"), ReferenceMask::Average, 4);
     RegularFaces const faces = findFaces(*refiner);
     for (int level = 0; level < 2; ++level) {
         EXPECT_TRUE(faces.GetLevels()[std::size_t(level)].ownVertices.faces.empty());
@@ -175,8 +160,8 @@ TEST(RegularFaces, GiveSomeOfTheirOwnVertices) {
 
 // Whatever the mask, vertices among hexagons are regular where they come from.
 TEST(RegularVertices, AreAllThatATorusOfHexagonsHadBefore) {
-    for (FarExt::FaceMask mask : {FarExt::FaceMask::Smooth, FarExt::FaceMask::Cosine}) {
-        auto const refiner = createRefiner("hexTorus", mask, 2);
+    for (ReferenceMask mask : {ReferenceMask::Smooth, ReferenceMask::Cosine}) {
+        auto const refiner = CreateRefiner(GetShape("hexTorus"), mask, 2);
         RegularVertices const vertices = findVertices(*refiner);
         std::vector<Far::Index> const &ofBase = vertices.GetVertices(0);
         EXPECT_EQ(ofBase.size(), std::size_t(refiner->GetLevel(0).GetNumVertices()));
@@ -187,7 +172,7 @@ TEST(RegularVertices, AreAllThatATorusOfHexagonsHadBefore) {
 // The corners of a cube have three faces, and hexagons around all their neighbours from level 2 on; so
 // have, one level later each, those of the quads of a level.
 TEST(RegularVertices, AreOfTheFirstLevelInWhichTheyAreRegular) {
-    auto const refiner = createRefiner("cube", FarExt::FaceMask::Smooth, 4);
+    auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 4);
     RegularVertices const vertices = findVertices(*refiner);
     EXPECT_TRUE(vertices.GetVertices(0).empty());
     EXPECT_TRUE(vertices.GetVertices(1).empty());
@@ -201,7 +186,7 @@ TEST(RegularVertices, AreOfTheFirstLevelInWhichTheyAreRegular) {
 
 // Its masks weigh opposite vertices of hexagons more than others.
 TEST(RegularFaces, AreNoneForTheCosineMask) {
-    auto const refiner = createRefiner("hexTorus", FarExt::FaceMask::Cosine, 2);
+    auto const refiner = CreateRefiner(GetShape("hexTorus"), ReferenceMask::Cosine, 2);
     RegularFaces const faces = findFaces(*refiner);
     EXPECT_EQ(countFaces(faces, 0) + countFaces(faces, 1), 0u);
     EXPECT_EQ(faces.GetOthers().size(), std::size_t(refiner->GetLevel(2).GetNumVertices()));

@@ -33,13 +33,17 @@ constexpr NamedScheme kSchemes[] = {
     {"tri-hex, then hexagonal", SchemeType::Hexagonal, FirstStep::TriHex},
     {"tri-hex, then Doo-Sabin", SchemeType::DooSabin, FirstStep::TriHex}};
 
+HexSchemeOptions makeOptions(NamedScheme const &scheme) {
+    HexSchemeOptions options;
+    options.schemeType = scheme.schemeType;
+    options.firstStep = scheme.firstStep;
+    return options;
+}
+
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, ReferenceMask mask,
                                                NamedScheme const &scheme, int level,
                                                Sdc::Options options = Sdc::Options()) {
-    HexSchemeOptions schemeOptions;
-    schemeOptions.schemeType = scheme.schemeType;
-    schemeOptions.firstStep = scheme.firstStep;
-    return CreateRefiner(shape, mask, level, options, schemeOptions);
+    return CreateRefiner(shape, mask, level, options, makeOptions(scheme));
 }
 
 /// Calls check(shape, scheme, options) for all shapes without flaws, and without their channels.
@@ -67,28 +71,11 @@ void forEach(CHECK const &check) {
     }
 }
 
-/// Everything of all levels equals the reference.
-void expectEqual(Shape const &shape, NamedScheme const &scheme, Sdc::Options options,
-                 int numLevels) {
-    auto const topology = createRefiner(shape, ReferenceMask::Average, scheme, numLevels, options);
-    TaggedMatch const match(shape, *topology);
-    ASSERT_EQ(match.GetError(), "");
-    ASSERT_NO_FATAL_FAILURE(ExpectValid(*topology));
-    ASSERT_NO_FATAL_FAILURE(ExpectNumbering(*topology));
-    ReferenceValues const positions = GetPositions(shape);
-    for (ReferenceMask mask : kMasks) {
-        SCOPED_TRACE(ToString(mask));
-        auto const refiner = createRefiner(shape, mask, scheme, numLevels, options);
-        ASSERT_NO_FATAL_FAILURE(ExpectVertexValuesEqual(*refiner, match, mask, positions));
-    }
-    ASSERT_NO_FATAL_FAILURE(ExpectVaryingValuesEqual(*topology, match, positions));
-}
-
 } // namespace
 
 TEST(Scheme, EqualsReference) {
     forEach([](Shape const &shape, NamedScheme const &scheme, Sdc::Options options) {
-        expectEqual(shape, scheme, options, GetTestLevel(shape, 3, 6000));
+        ExpectMeshEqual(shape, GetTestLevel(shape, 3, 6000), options, makeOptions(scheme));
     });
 }
 
@@ -100,7 +87,7 @@ TEST(Scheme, HolesAndTurnedFacesEqualReference) {
         shape.creaseSharpness.clear();
         for (NamedScheme const &scheme : kSchemes) {
             SCOPED_TRACE(std::string(name) + ", " + scheme.name);
-            ASSERT_NO_FATAL_FAILURE(expectEqual(shape, scheme, Sdc::Options(), 3));
+            ASSERT_NO_FATAL_FAILURE(ExpectMeshEqual(shape, 3, Sdc::Options(), makeOptions(scheme)));
         }
     }
 }

@@ -27,11 +27,15 @@ constexpr Sdc::Options::FVarLinearInterpolation kLinearInterpolations[] = {
     Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
     Sdc::Options::FVAR_LINEAR_BOUNDARIES,    Sdc::Options::FVAR_LINEAR_ALL};
 
+HexSchemeOptions getSchemeOptions() {
+    HexSchemeOptions options;
+    options.firstStep = FirstStep::Truncate;
+    return options;
+}
+
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, ReferenceMask mask, int level,
                                                Sdc::Options options = Sdc::Options()) {
-    HexSchemeOptions schemeOptions;
-    schemeOptions.firstStep = FirstStep::Truncate;
-    return CreateRefiner(shape, mask, level, options, schemeOptions);
+    return CreateRefiner(shape, mask, level, options, getSchemeOptions());
 }
 
 /// Calls check(shape, options) for all shapes, boundary rules and, with creases, creasing methods.
@@ -164,18 +168,7 @@ private:
 
 TEST(Truncation, EqualsReference) {
     forEach([](Shape const &shape, Sdc::Options options) {
-        int const level = GetTestLevel(shape, 3, 6000);
-        auto const topology = createRefiner(shape, ReferenceMask::Average, level, options);
-        TaggedMatch const match(shape, *topology);
-        ASSERT_EQ(match.GetError(), "");
-        ASSERT_NO_FATAL_FAILURE(ExpectValid(*topology));
-        ReferenceValues const positions = GetPositions(shape);
-        for (ReferenceMask mask : kMasks) {
-            SCOPED_TRACE(ToString(mask));
-            auto const refiner = createRefiner(shape, mask, level, options);
-            ASSERT_NO_FATAL_FAILURE(ExpectVertexValuesEqual(*refiner, match, mask, positions));
-        }
-        ASSERT_NO_FATAL_FAILURE(ExpectVaryingValuesEqual(*topology, match, positions));
+        ExpectMeshEqual(shape, GetTestLevel(shape, 3, 6000), options, getSchemeOptions());
     });
 }
 

@@ -3,7 +3,7 @@
 
 #include "fileError.h"
 #include "meshCheck.h"
-#include "meshSections.h"
+#include "meshOutput.h"
 #include "outputFile.h"
 
 namespace OpenSubdivHex::Tools {

@@ -46,10 +46,10 @@ private:
 
 } // namespace
 
-PieceWriter::Section::Section(std::string const &path)
+PieceWriter::ScratchFile::ScratchFile(std::string const &path)
     : _path(path), _file(OpenScratchFile(path)) {}
 
-void PieceWriter::Section::Write(std::string_view bytes) {
+void PieceWriter::ScratchFile::Write(std::string_view bytes) {
     errno = 0;
     if (std::fwrite(bytes.data(), 1, bytes.size(), _file.get()) != bytes.size()) {
         refuse();
@@ -57,7 +57,8 @@ void PieceWriter::Section::Write(std::string_view bytes) {
     _size += std::int64_t(bytes.size());
 }
 
-void PieceWriter::Section::Read(std::int64_t offset, std::int64_t size, WriteBytes const &write) {
+void PieceWriter::ScratchFile::Read(std::int64_t offset, std::int64_t size,
+                                    WriteBytes const &write) {
     errno = 0;
     if (fseeko(_file.get(), off_t(offset), SEEK_SET) != 0) {
         refuse();
@@ -73,7 +74,7 @@ void PieceWriter::Section::Read(std::int64_t offset, std::int64_t size, WriteByt
     }
 }
 
-void PieceWriter::Section::refuse() const {
+void PieceWriter::ScratchFile::refuse() const {
     throw FileError(_path, std::string("cannot be written: ") + std::strerror(errno));
 }
 
@@ -81,7 +82,7 @@ PieceWriter::PieceWriter(Mesh const &mesh, std::string const &path)
     : _mesh(mesh), _path(path), _format(findFormat(path)), _file(path), _vertices(path),
       _faces(path), _numValues(mesh.channels.size()) {
     for (std::size_t i = 0; i < mesh.channels.size(); ++i) {
-        _values.push_back(std::make_unique<Section>(path));
+        _values.push_back(std::make_unique<ScratchFile>(path));
     }
 }
 
@@ -94,8 +95,8 @@ void PieceWriter::Add(Mesh const &piece) {
         _numValues[i] += piece.channels[i].GetNumValues();
     }
     checkCounts();
-    auto const getWrite = [](Section &section) {
-        return [&section](std::string_view bytes) { section.Write(bytes); };
+    auto const getWrite = [](ScratchFile &file) {
+        return [&file](std::string_view bytes) { file.Write(bytes); };
     };
     WriteVertices(_format, piece, getWrite(_vertices));
     for (std::size_t i = 0; i < _values.size(); ++i) {
@@ -156,7 +157,7 @@ void PieceWriter::Commit(Mesh const &front) {
     WriteHeader(_format, _mesh, _counts, write);
     WriteVertices(_format, front, write);
     _vertices.Read(0, _vertices.GetSize(), write);
-    for (std::unique_ptr<Section> const &values : _values) {
+    for (std::unique_ptr<ScratchFile> const &values : _values) {
         values->Read(0, values->GetSize(), write);
     }
     std::stable_sort(_blocks.begin(), _blocks.end(),

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_TOOLS_PIECE_WRITER_H
 #define OPENSUBDIVHEX_TOOLS_PIECE_WRITER_H
 
-#include "meshSections.h"
+#include "meshOutput.h"
 #include "outputFile.h"
 
 #include <cstdio>
@@ -14,7 +14,7 @@ namespace OpenSubdivHex::Tools {
 
 /// \brief Writes a mesh that comes in pieces, as WriteMesh would write the whole, and keeps none of them.
 ///
-/// Each section of the file has a scratch file of its own until all is there.  Functions throw
+/// Each part of the file has a scratch file of its own until all is there.  Functions throw
 /// FileError; without Commit() the target stays as it was.
 class PieceWriter {
 public:
@@ -36,9 +36,9 @@ public:
 
 private:
     // What is written behind one another, and read again.
-    class Section {
+    class ScratchFile {
     public:
-        explicit Section(std::string const &path);
+        explicit ScratchFile(std::string const &path);
         void Write(std::string_view bytes);
         std::int64_t GetSize() const { return _size; }
         /// Hands bytes from an offset on to a function, in parts.
@@ -69,9 +69,9 @@ private:
     std::string const _path;
     MeshFormat const _format;
     OutputFile _file;
-    Section _vertices;
-    std::vector<std::unique_ptr<Section>> _values; // by channel
-    Section _faces;
+    ScratchFile _vertices;
+    std::vector<std::unique_ptr<ScratchFile>> _values; // by channel
+    ScratchFile _faces;
     std::vector<Block> _blocks;
     MeshCounts _counts;
     std::int64_t _numCorners = 0;

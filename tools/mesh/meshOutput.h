@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef OPENSUBDIVHEX_TOOLS_MESH_SECTIONS_H
-#define OPENSUBDIVHEX_TOOLS_MESH_SECTIONS_H
+#ifndef OPENSUBDIVHEX_TOOLS_MESH_OUTPUT_H
+#define OPENSUBDIVHEX_TOOLS_MESH_OUTPUT_H
 
 #include "mesh.h"
 #include "meshFormat.h"
@@ -24,9 +24,9 @@ struct MeshCounts {
 /// Whether the numbers of corners take one byte each, as a binary file has them then.
 bool HasShortFaces(Mesh const &mesh);
 
-/// @name Sections
+/// @name Parts of a file
 /// A mesh file is its header, its vertices, the values of each channel (OBJ) and its faces, one behind
-/// the other.  Of a mesh that comes in pieces, each section is those of the pieces; the header has what
+/// the other.  Of a mesh that comes in pieces, each part is those of the pieces; the header has what
 /// the mesh has beside arrays, and the counts of all.
 /// @{
 void WriteHeader(MeshFormat format, Mesh const &mesh, MeshCounts const &counts,

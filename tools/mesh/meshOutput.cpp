@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meshSections.h"
+#include "meshOutput.h"
 
 #include "meshContent.h"
 
