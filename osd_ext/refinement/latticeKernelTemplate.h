@@ -191,7 +191,7 @@ sumWaves(float const *weights, typename SIMD::Vector const *cosines,
 /// Writes the point and the two derivatives of an orbit, these in terms of others.
 template <class SIMD, class ACCESS, int FACE_SIZE, int NUM_OUTPUTS>
 OPENSUBDIVHEX_INLINE Far::Index const *
-storeOrbit(Elements<float> const (&outputs)[NUM_OUTPUTS], Far::Index const *verts,
+storeOrbit(Elements<float> const (&outputs)[NUM_OUTPUTS], bool prefetches, Far::Index const *verts,
            float const *derivatives, typename SIMD::Vector (&x)[NUM_OUTPUTS][FACE_SIZE]) {
     using Vector = typename SIMD::Vector;
     if (NUM_OUTPUTS > 1 && derivatives) {
@@ -203,6 +203,11 @@ storeOrbit(Elements<float> const (&outputs)[NUM_OUTPUTS], Far::Index const *vert
                                    SIMD::Spread(derivatives[1]) * dv);
             dv = SIMD::MultiplyAdd(SIMD::Spread(derivatives[2]), first,
                                    SIMD::Spread(derivatives[3]) * dv);
+        }
+    }
+    for (int k = 0; k < FACE_SIZE * RegularFaceGroup::kSize && prefetches; ++k) {
+        for (Elements<float> const &output : outputs) {
+            prefetch(ACCESS::At(output, verts[LatticeTask::kNumAhead + k]));
         }
     }
     for (int corner = 0; corner < FACE_SIZE; ++corner, verts += RegularFaceGroup::kSize) {
@@ -339,6 +344,8 @@ void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) 
         std::ptrdiff_t(kGroup) * FACE_SIZE * (2 * task.numPairs + task.numAxes);
     for (Far::Index group = begin; group < end; ++group) {
         for (int first = 0; first < kGroup; first += SIMD::kNumFaces) {
+            // All faces of the group at once.
+            bool const prefetches = task.prefetches && first == 0;
             Sources sources;
             loadSources<SIMD, ACCESS>(values, task.places + group * numPlaces + first, sources);
             Far::Index const *verts = task.verts + group * numVerts + first;
@@ -347,12 +354,13 @@ void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) 
             for (int i = 0; i < task.numPairs; ++i, weights += kNumDerivatives) {
                 typename Kernel::Values images;
                 weights = Kernel::EvaluatePair(weights, sources, x, images);
-                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, verts, nullptr, x);
-                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, verts, weights, images);
+                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, prefetches, verts, nullptr, x);
+                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, prefetches, verts, weights,
+                                                            images);
             }
             for (int i = 0; i < task.numAxes; ++i, weights += kNumDerivatives) {
                 weights = Kernel::EvaluateAxis(weights, sources, x);
-                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, verts, weights, x);
+                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, prefetches, verts, weights, x);
             }
         }
     }

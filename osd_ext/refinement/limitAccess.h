@@ -38,6 +38,14 @@ struct LimitAccess {
     }
 };
 
+/// Asks for memory that is written soon.
+OPENSUBDIVHEX_INLINE void prefetch([[maybe_unused]] float const *place) {
+#if defined(__GNUC__)
+    constexpr int kForWriting = 1;
+    __builtin_prefetch(place, kForWriting);
+#endif
+}
+
 /// sum += weight value
 template <class SIMD>
 OPENSUBDIVHEX_INLINE void addProduct(typename SIMD::Vector &sum,

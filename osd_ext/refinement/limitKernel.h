@@ -165,6 +165,8 @@ struct VertexLimitTask : LimitTask {
 /// vertex.
 struct LatticeTask : LimitTask {
     static constexpr int kNumDerivatives = 4; ///< weights of derivatives in terms of others
+    /// Of verts, how many are read behind the last of a group, and so behind the last of all.
+    static constexpr int kNumAhead = 512;
 
     int faceSize;
     bool isCompact; ///< of sources, whether there are as many orbits as LatticeOrbits says for that
@@ -174,6 +176,9 @@ struct LatticeTask : LimitTask {
         *places; ///< by group, those of all sources of its faces, as in RegularFaceGroup
     Far::Index const *verts; ///< by group, those of all outputs
     float const *weights;    ///< those of LatticeLimit
+    /// Whether memory is asked for before outputs are written there, as it should be where they are too
+    /// large for the caches: the order of orbits is far from that of memory.
+    bool prefetches;
 };
 
 /// \brief The kernels of one SimdLevel; all are instances of limitKernelTemplate.h.

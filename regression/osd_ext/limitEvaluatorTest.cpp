@@ -236,7 +236,7 @@ TEST(LimitEvaluator, LargeValuesAreAsSmallOnes) {
 }
 
 TEST(LimitEvaluator, SameBitsForAnyNumberOfThreads) {
-    for (Shape const &shape : {GetShape("dodecahedron"), MakeTorus(13, 12, TorusFaces::Quads)}) {
+    for (Shape const &shape : {GetShape("dodecahedron"), MakeTorus(20, 18, TorusFaces::Quads)}) {
         auto const refiner = createRefiner(shape, 5);
         auto const evaluate = [&](int numThreads) {
             FarExt::SetNumThreads(numThreads);
