@@ -194,6 +194,7 @@ LatticeFaces::LatticeFaces(MeshLevels const &mesh, int level) : _mesh(mesh), _le
     if (level > 0) {
         findFaces(3);
         findFaces(4);
+        findFaces(6);
     }
 }
 

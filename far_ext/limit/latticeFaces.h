@@ -10,11 +10,11 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief The faces of level 0 around which the mesh is a regular lattice of triangles or of quads, and
-/// the limit at all vertices of a level that lie in them, as sums of vertices of level 0.
+/// \brief The faces of level 0 around which the mesh is a regular lattice of triangles, of quads or of
+/// hexagons, and the limit at all vertices of a level that lie in them, as sums of vertices of level 0.
 ///
 /// So no level between has to be refined for them; and the vertices in a face, which are many, depend
-/// on the same 27 or 32.  RegularFaces have the other end: hexagons among hexagons, as deep levels are.
+/// on the same 27 to 42.  RegularFaces have the other end: hexagons among hexagons, as deep levels are.
 class OPENSUBDIVHEX_API LatticeFaces {
 public:
     using Index = Far::Index;

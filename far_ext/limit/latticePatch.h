@@ -16,12 +16,12 @@ namespace OpenSubdivHex::FarExt::internal {
 /// corner 0 keeps an orbit on an *axis*, and exchanges the two of a *pair*.
 template <int FACE_SIZE, bool IS_COMPACT>
 struct LatticeOrbits {
-    static constexpr int kNumAxes = FACE_SIZE == 3 && !IS_COMPACT ? 3 : 2;
-    static constexpr int kNumPairs = IS_COMPACT ? 1 : 3;
+    static constexpr int kNumAxes = FACE_SIZE == 4 || IS_COMPACT ? 2 : 3;
+    static constexpr int kNumPairs = IS_COMPACT ? 1 : FACE_SIZE == 6 ? 2 : 3;
 };
 
-/// \brief What the surface of a face depends on in the regular lattice of triangles, six at a vertex,
-/// or of quads: the vertices of the faces at its vertices and at their neighbours.
+/// \brief What the surface of a face depends on in the regular lattice of triangles, six at a vertex, of
+/// quads, or of hexagons: the vertices of the faces at its vertices and at their neighbours.
 ///
 /// Vertices are numbered by their places: orbit after orbit, those on axes first, then pair after pair.
 /// Place i of an orbit is place 0 turned by i corners; of a pair, place 0 of the second orbit is that
@@ -31,9 +31,9 @@ public:
     using Index = Far::Index;
     using Point = std::complex<double>;
 
-    static constexpr int kMaxPlaces = 32;
+    static constexpr int kMaxPlaces = 42;
 
-    /// For triangles or quads.
+    /// For triangles, quads or hexagons.
     explicit LatticePatch(int faceSize);
 
     int GetFaceSize() const { return _faceSize; }

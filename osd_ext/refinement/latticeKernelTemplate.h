@@ -14,70 +14,116 @@ namespace {
 
 constexpr float kSineOfThird = 0.86602540378443864676f; ///< of 120 degrees
 
+/// Frequencies that have a cosine and a sine.
+template <int FACE_SIZE>
+constexpr int kNumFrequencies = (FACE_SIZE - 1) / 2;
+
 /// \brief The values of an orbit, one for each corner, as waves around the face: value i is the sum of
-/// the mean, cosine cos(2 pi i / n) - sine sin(2 pi i / n) and, for n = 4 alone, alternating (-1)^i.
-template <class SIMD>
+/// the mean, cosine[k - 1] cos(2 pi k i / n) - sine[k - 1] sin(2 pi k i / n) for each frequency k and, where
+/// n is even, alternating (-1)^i.
+template <class SIMD, int FACE_SIZE>
 struct LatticeWaves {
     using T = typename SIMD::Vector;
     T mean;
-    T cosine;
-    T sine;
+    T cosine[kNumFrequencies<FACE_SIZE>];
+    T sine[kNumFrequencies<FACE_SIZE>];
     T alternating;
 };
 
 /// That of values, but that the mean and what alternates are n times as large, and the others n / 2.
 template <class SIMD>
-OPENSUBDIVHEX_INLINE LatticeWaves<SIMD> findWaves(typename SIMD::Vector const (&x)[3]) {
+OPENSUBDIVHEX_INLINE LatticeWaves<SIMD, 3> findWaves(typename SIMD::Vector const (&x)[3]) {
     using Vector = typename SIMD::Vector;
     Vector const sum = x[1] + x[2];
-    LatticeWaves<SIMD> waves;
+    LatticeWaves<SIMD, 3> waves;
     waves.mean = x[0] + sum;
-    waves.cosine = SIMD::MultiplyAdd(SIMD::Spread(-0.5f), sum, x[0]);
-    waves.sine = SIMD::Spread(kSineOfThird) * (x[2] - x[1]);
+    waves.cosine[0] = SIMD::MultiplyAdd(SIMD::Spread(-0.5f), sum, x[0]);
+    waves.sine[0] = SIMD::Spread(kSineOfThird) * (x[2] - x[1]);
     return waves;
 }
 template <class SIMD>
-OPENSUBDIVHEX_INLINE LatticeWaves<SIMD> findWaves(typename SIMD::Vector const (&x)[4]) {
+OPENSUBDIVHEX_INLINE LatticeWaves<SIMD, 4> findWaves(typename SIMD::Vector const (&x)[4]) {
     using Vector = typename SIMD::Vector;
     Vector const even = x[0] + x[2];
     Vector const odd = x[1] + x[3];
-    LatticeWaves<SIMD> waves;
+    LatticeWaves<SIMD, 4> waves;
     waves.mean = even + odd;
-    waves.cosine = x[0] - x[2];
-    waves.sine = x[3] - x[1];
+    waves.cosine[0] = x[0] - x[2];
+    waves.sine[0] = x[3] - x[1];
     waves.alternating = even - odd;
+    return waves;
+}
+/// Even frequencies are those of the sums of opposite values, three of them, odd ones those of the
+/// differences.
+template <class SIMD>
+OPENSUBDIVHEX_INLINE LatticeWaves<SIMD, 6> findWaves(typename SIMD::Vector const (&x)[6]) {
+    using Vector = typename SIMD::Vector;
+    Vector const sums[] = {x[0] + x[3], x[1] + x[4], x[2] + x[5]};
+    LatticeWaves<SIMD, 3> const even = findWaves<SIMD>(sums);
+    Vector const first = x[0] - x[3];
+    Vector const second = x[1] - x[4];
+    Vector const third = x[2] - x[5];
+    Vector const difference = second - third;
+    LatticeWaves<SIMD, 6> waves;
+    waves.mean = even.mean;
+    waves.cosine[0] = SIMD::MultiplyAdd(SIMD::Spread(0.5f), difference, first);
+    waves.sine[0] = SIMD::Spread(-kSineOfThird) * (second + third);
+    waves.cosine[1] = even.cosine[0];
+    waves.sine[1] = even.sine[0];
+    waves.alternating = first - difference;
     return waves;
 }
 
 template <class SIMD>
-OPENSUBDIVHEX_INLINE void findValues(LatticeWaves<SIMD> const &waves,
+OPENSUBDIVHEX_INLINE void findValues(LatticeWaves<SIMD, 3> const &waves,
                                      typename SIMD::Vector (&x)[3]) {
     using Vector = typename SIMD::Vector;
-    Vector const rest = SIMD::MultiplyAdd(SIMD::Spread(-0.5f), waves.cosine, waves.mean);
-    x[0] = waves.mean + waves.cosine;
-    x[1] = SIMD::MultiplyAdd(SIMD::Spread(-kSineOfThird), waves.sine, rest);
-    x[2] = SIMD::MultiplyAdd(SIMD::Spread(kSineOfThird), waves.sine, rest);
+    Vector const rest = SIMD::MultiplyAdd(SIMD::Spread(-0.5f), waves.cosine[0], waves.mean);
+    x[0] = waves.mean + waves.cosine[0];
+    x[1] = SIMD::MultiplyAdd(SIMD::Spread(-kSineOfThird), waves.sine[0], rest);
+    x[2] = SIMD::MultiplyAdd(SIMD::Spread(kSineOfThird), waves.sine[0], rest);
 }
 template <class SIMD>
-OPENSUBDIVHEX_INLINE void findValues(LatticeWaves<SIMD> const &waves,
+OPENSUBDIVHEX_INLINE void findValues(LatticeWaves<SIMD, 4> const &waves,
                                      typename SIMD::Vector (&x)[4]) {
     using Vector = typename SIMD::Vector;
     Vector const even = waves.mean + waves.alternating;
     Vector const odd = waves.mean - waves.alternating;
-    x[0] = even + waves.cosine;
-    x[1] = odd - waves.sine;
-    x[2] = even - waves.cosine;
-    x[3] = odd + waves.sine;
+    x[0] = even + waves.cosine[0];
+    x[1] = odd - waves.sine[0];
+    x[2] = even - waves.cosine[0];
+    x[3] = odd + waves.sine[0];
+}
+template <class SIMD>
+OPENSUBDIVHEX_INLINE void findValues(LatticeWaves<SIMD, 6> const &waves,
+                                     typename SIMD::Vector (&x)[6]) {
+    using Vector = typename SIMD::Vector;
+    LatticeWaves<SIMD, 3> evenWaves;
+    evenWaves.mean = waves.mean;
+    evenWaves.cosine[0] = waves.cosine[1];
+    evenWaves.sine[0] = waves.sine[1];
+    Vector even[3];
+    findValues<SIMD>(evenWaves, even);
+    Vector const half = SIMD::Spread(0.5f) * waves.cosine[0] - waves.alternating;
+    Vector const sine = SIMD::Spread(kSineOfThird) * waves.sine[0];
+    Vector const odd[] = {waves.cosine[0] + waves.alternating, half - sine,
+                          SIMD::Spread(0) - (half + sine)};
+    for (int i = 0; i < 3; ++i) {
+        x[i] = even[i] + odd[i];
+        x[i + 3] = even[i] - odd[i];
+    }
 }
 
-/// The same of waves whose sine has the other sign: the values in the mirror.
+/// The same of waves whose sines have the other sign: the values in the mirror.
 template <class SIMD, int FACE_SIZE>
-OPENSUBDIVHEX_INLINE void findMirroredValues(LatticeWaves<SIMD> const &waves,
+OPENSUBDIVHEX_INLINE void findMirroredValues(LatticeWaves<SIMD, FACE_SIZE> const &waves,
                                              typename SIMD::Vector (&x)[FACE_SIZE]) {
     findValues<SIMD>(waves, x);
-    typename SIMD::Vector const last = x[FACE_SIZE - 1];
-    x[FACE_SIZE - 1] = x[1];
-    x[1] = last;
+    for (int i = 1; i < FACE_SIZE - i; ++i) {
+        typename SIMD::Vector const opposite = x[FACE_SIZE - i];
+        x[FACE_SIZE - i] = x[i];
+        x[i] = opposite;
+    }
 }
 
 /// \brief The waves of all sources of some faces, as the weights of LatticeWeights take them.
@@ -94,8 +140,8 @@ struct LatticeSources {
     static constexpr int kSize = kNumSums + kNumDifferences;
 
     T mean[kSize];
-    T cosine[kSize];
-    T sine[kSize];
+    T cosine[kNumFrequencies<FACE_SIZE>][kSize];
+    T sine[kNumFrequencies<FACE_SIZE>][kSize];
     T alternating[kSize];
 };
 
@@ -119,10 +165,13 @@ OPENSUBDIVHEX_INLINE void loadSources(Elements<float const> const &values,
     using Vector = typename SIMD::Vector;
     using Sources = LatticeSources<SIMD, FACE_SIZE, IS_COMPACT>;
     constexpr int kStride = FACE_SIZE * RegularFaceGroup::kSize;
-    auto const set = [&](int i, LatticeWaves<SIMD> const &waves) {
+    constexpr int kNumWaves = kNumFrequencies<FACE_SIZE>;
+    auto const set = [&](int i, LatticeWaves<SIMD, FACE_SIZE> const &waves) {
         result.mean[i] = waves.mean;
-        result.cosine[i] = waves.cosine;
-        result.sine[i] = waves.sine;
+        for (int k = 0; k < kNumWaves; ++k) {
+            result.cosine[k][i] = waves.cosine[k];
+            result.sine[k][i] = waves.sine[k];
+        }
         if constexpr (FACE_SIZE % 2 == 0) {
             result.alternating[i] = waves.alternating;
         }
@@ -142,10 +191,12 @@ OPENSUBDIVHEX_INLINE void loadSources(Elements<float const> const &values,
             y[corner] = x[corner] - y[corner];
         }
         set(Sources::Orbits::kNumAxes + i, findWaves<SIMD>(sums));
-        LatticeWaves<SIMD> waves = findWaves<SIMD>(y);
-        Vector const cosine = waves.cosine;
-        waves.cosine = SIMD::Spread(0) - waves.sine;
-        waves.sine = cosine;
+        LatticeWaves<SIMD, FACE_SIZE> waves = findWaves<SIMD>(y);
+        for (int k = 0; k < kNumWaves; ++k) {
+            Vector const cosine = waves.cosine[k];
+            waves.cosine[k] = SIMD::Spread(0) - waves.sine[k];
+            waves.sine[k] = cosine;
+        }
         set(Sources::kNumSums + i, waves);
     }
 }
@@ -231,6 +282,7 @@ struct LatticeKernel {
     using Values = Vector[NUM_OUTPUTS][FACE_SIZE];
     static constexpr int kMaxOutputs = LimitTask::kMaxOutputs;
     static constexpr bool kAlternates = FACE_SIZE % 2 == 0;
+    static constexpr int kNumWaves = kNumFrequencies<FACE_SIZE>;
     static constexpr bool kHasDerivatives = NUM_OUTPUTS > 1;
 
     /// The values of both orbits.
@@ -240,23 +292,27 @@ struct LatticeKernel {
         constexpr int kNum = 2 * NUM_OUTPUTS; // half their sums and half their differences in turn
         Vector mean[2][NUM_OUTPUTS];
         Vector alternating[2][NUM_OUTPUTS];
-        Vector cosine[kNum];
-        Vector sine[kNum];
+        Vector cosine[kNumWaves][kNum];
+        Vector sine[kNumWaves][kNum];
         weights = sumSingle(weights, sources.mean, mean);
         if constexpr (kAlternates) {
             weights = sumSingle(weights, sources.alternating, alternating);
         }
-        weights = sumWaves<SIMD, Sources::kSize, kNumRows>(weights, sources.cosine, sources.sine,
-                                                           cosine, sine);
+        for (int k = 0; k < kNumWaves; ++k) {
+            weights = sumWaves<SIMD, Sources::kSize, kNumRows>(weights, sources.cosine[k],
+                                                               sources.sine[k], cosine[k], sine[k]);
+        }
         for (int i = 0; i < NUM_OUTPUTS; ++i) {
-            LatticeWaves<SIMD> sum;
-            LatticeWaves<SIMD> difference;
+            LatticeWaves<SIMD, FACE_SIZE> sum;
+            LatticeWaves<SIMD, FACE_SIZE> difference;
             sum.mean = mean[0][i];
-            sum.cosine = cosine[2 * i];
-            sum.sine = sine[2 * i];
             difference.mean = mean[1][i];
-            difference.cosine = sine[2 * i + 1];
-            difference.sine = cosine[2 * i + 1];
+            for (int k = 0; k < kNumWaves; ++k) {
+                sum.cosine[k] = cosine[k][2 * i];
+                sum.sine[k] = sine[k][2 * i];
+                difference.cosine[k] = sine[k][2 * i + 1];
+                difference.sine[k] = cosine[k][2 * i + 1];
+            }
             if constexpr (kAlternates) {
                 sum.alternating = alternating[0][i];
                 difference.alternating = alternating[1][i];
@@ -278,8 +334,8 @@ struct LatticeKernel {
         constexpr int kNumAlong = kHasDerivatives ? 2 : 1;
         Vector mean[NUM_OUTPUTS];
         Vector alternating[NUM_OUTPUTS];
-        Vector cosine[NUM_OUTPUTS];
-        Vector sine[NUM_OUTPUTS];
+        Vector cosine[kNumWaves][NUM_OUTPUTS];
+        Vector sine[kNumWaves][NUM_OUTPUTS];
         auto const sum = [&](Vector const *of, Vector(&sums)[NUM_OUTPUTS]) {
             Vector along[kNumAlong];
             weights = sumWaves<SIMD, Sources::kNumSums, 2>(weights, of, along);
@@ -297,14 +353,18 @@ struct LatticeKernel {
         if constexpr (kAlternates) {
             sum(sources.alternating, alternating);
         }
-        weights = sumWaves<SIMD, Sources::kSize, kMaxOutputs>(weights, sources.cosine, sources.sine,
-                                                              cosine, sine);
+        for (int k = 0; k < kNumWaves; ++k) {
+            weights = sumWaves<SIMD, Sources::kSize, kMaxOutputs>(
+                weights, sources.cosine[k], sources.sine[k], cosine[k], sine[k]);
+        }
         for (int i = 0; i < NUM_OUTPUTS; ++i) {
             bool const isAcross = i == kMaxOutputs - 1;
-            LatticeWaves<SIMD> waves;
+            LatticeWaves<SIMD, FACE_SIZE> waves;
             waves.mean = mean[i];
-            waves.cosine = isAcross ? sine[i] : cosine[i];
-            waves.sine = isAcross ? cosine[i] : sine[i];
+            for (int k = 0; k < kNumWaves; ++k) {
+                waves.cosine[k] = isAcross ? sine[k][i] : cosine[k][i];
+                waves.sine[k] = isAcross ? cosine[k][i] : sine[k][i];
+            }
             if constexpr (kAlternates) {
                 waves.alternating = alternating[i];
             }

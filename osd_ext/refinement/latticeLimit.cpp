@@ -60,7 +60,7 @@ SourceOrbits findSourceOrbits(LatticeFaces::Set const &set) {
     for (int i = 0; i < set.patch.GetNumPairs(); ++i) {
         all.pairs.push_back(set.patch.GetNumAxes() + 2 * i);
     }
-    using OfCompact = LatticeOrbits<3, true>; // quads have as many
+    using OfCompact = LatticeOrbits<3, true>; // others have as many
     SourceOrbits compact = all;
     bool const areEnough = keepUsed(compact.axes, OfCompact::kNumAxes,
                                     [&](int orbit) { return isUsed(set, orbit); }) &&
@@ -171,9 +171,11 @@ void addOrbit(SourceOrbits const &sources, LatticePatch const &patch,
         addSingle(patch.GetFaceSize() / 2);
     }
     // Of the others the conjugate, which has the same weights, is added, too.
-    std::vector<std::vector<double>> both;
-    addRowsOf(1, both, both);
-    addRows(both, 0, size, 2, weights);
+    for (int frequency = 1; 2 * frequency < patch.GetFaceSize(); ++frequency) {
+        std::vector<std::vector<double>> both;
+        addRowsOf(frequency, both, both);
+        addRows(both, 0, size, 2, weights);
+    }
     for (auto const &ofDerivative : orbit.derivatives) {
         weights.insert(weights.end(), {float(ofDerivative[0]), float(ofDerivative[1])});
     }

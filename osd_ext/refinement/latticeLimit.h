@@ -15,7 +15,7 @@ namespace OpenSubdivHex::OsdExt::internal {
 ///
 /// A face is evaluated by its symmetries: its sources are taken apart into waves around it, which the
 /// weights of a vertex multiply by a number each, and with one row of weights all vertices of an orbit
-/// are made, six of triangles and eight of quads.
+/// are made, six of triangles, eight of quads and twelve of hexagons.
 class LatticeLimit {
 public:
     void Prepare(FarExt::internal::LatticeFaces const &faces);

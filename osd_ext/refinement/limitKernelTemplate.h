@@ -401,12 +401,13 @@ struct LimitKernels {
     static void EvaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
         forEachQuad(task, [=](LatticeTask const &part, auto access) {
             using Access = decltype(access);
-            if (part.faceSize == 3) {
-                part.isCompact ? evaluateLattice<Access, 3, true>(part, begin, end)
-                               : evaluateLattice<Access, 3, false>(part, begin, end);
-            } else {
-                part.isCompact ? evaluateLattice<Access, 4, true>(part, begin, end)
-                               : evaluateLattice<Access, 4, false>(part, begin, end);
+            switch (part.faceSize) {
+            case 3:
+                return evaluateLattice<Access, 3>(part, begin, end);
+            case 4:
+                return evaluateLattice<Access, 4>(part, begin, end);
+            default:
+                return evaluateLattice<Access, 6>(part, begin, end);
             }
         });
     }
@@ -415,6 +416,11 @@ struct LimitKernels {
                                             EvaluateLattice};
 
 private:
+    template <class ACCESS, int FACE_SIZE>
+    static void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
+        task.isCompact ? evaluateLattice<ACCESS, FACE_SIZE, true>(task, begin, end)
+                       : evaluateLattice<ACCESS, FACE_SIZE, false>(task, begin, end);
+    }
     template <class ACCESS, int FACE_SIZE, bool IS_COMPACT>
     static void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
         if (task.numOutputs > 1) {

@@ -5,6 +5,7 @@
 #include "far_ext/limit/latticeFaces.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "regression/far_ext/referenceMatch.h"
+#include "regression/shapes/meshOperations.h"
 #include "regression/shapes/torus.h"
 
 #include <gtest/gtest.h>
@@ -154,14 +155,22 @@ Sdc::Options getEdgeOnly() {
 } // namespace
 
 TEST(LatticePatch, HasOrbitsOfTheSymmetriesOfItsFace) {
-    for (int faceSize : {3, 4}) {
+    using FarExt::internal::LatticeOrbits;
+    struct Expected {
+        int faceSize;
+        int numPlaces;
+        int numAxes;
+        int numPairs;
+    };
+    for (Expected const &expected :
+         {Expected{3, 27, LatticeOrbits<3, false>::kNumAxes, LatticeOrbits<3, false>::kNumPairs},
+          Expected{4, 32, LatticeOrbits<4, false>::kNumAxes, LatticeOrbits<4, false>::kNumPairs},
+          Expected{6, 42, LatticeOrbits<6, false>::kNumAxes, LatticeOrbits<6, false>::kNumPairs}}) {
+        int const faceSize = expected.faceSize;
         LatticePatch const patch(faceSize);
-        EXPECT_EQ(patch.GetNumPlaces(), faceSize == 3 ? 27 : 32);
-        bool const isTriangle = faceSize == 3;
-        using OfTriangle = FarExt::internal::LatticeOrbits<3, false>;
-        using OfQuad = FarExt::internal::LatticeOrbits<4, false>;
-        EXPECT_EQ(patch.GetNumAxes(), isTriangle ? OfTriangle::kNumAxes : OfQuad::kNumAxes);
-        EXPECT_EQ(patch.GetNumPairs(), isTriangle ? OfTriangle::kNumPairs : OfQuad::kNumPairs);
+        EXPECT_EQ(patch.GetNumPlaces(), expected.numPlaces);
+        EXPECT_EQ(patch.GetNumAxes(), expected.numAxes);
+        EXPECT_EQ(patch.GetNumPairs(), expected.numPairs);
         auto const &points = patch.GetPoints();
         for (int place = 0; place < patch.GetNumPlaces(); ++place) {
             LatticePatch::Point const point = points[std::size_t(place)];
@@ -178,11 +187,13 @@ TEST(LatticePatch, HasOrbitsOfTheSymmetriesOfItsFace) {
 
 // Every vertex of the level is made once, whatever the level and the mask.
 TEST(LatticeFaces, MakeAllOfARegularTorus) {
-    for (TorusFaces const kind : {TorusFaces::Quads, TorusFaces::Triangles}) {
+    for (Shape const &shape :
+         {MakeTorus(7, 6, TorusFaces::Quads), MakeTorus(7, 6, TorusFaces::Triangles),
+          MakeDual("hexagons", MakeTorus(7, 6, TorusFaces::Triangles))}) {
         for (ReferenceMask const mask : kMasks) {
             for (int level = 1; level <= 3; ++level) {
-                SCOPED_TRACE(testing::Message() << ToString(mask) << ", level " << level);
-                Shape const shape = MakeTorus(7, 6, kind);
+                SCOPED_TRACE(testing::Message()
+                             << shape.name << ", " << ToString(mask) << ", level " << level);
                 auto const refiner = CreateRefiner(shape, mask, level);
                 LatticeFaces const faces = findFaces(*refiner);
                 EXPECT_EQ(countFaces(faces), std::size_t(shape.GetNumFaces()));
@@ -217,11 +228,12 @@ TEST(LatticeFaces, LeaveWhatIsNearAHole) {
     expectRows(*refiner, faces);
 }
 
-// Other lattices, one too small for what a face depends on, level 0 itself, and levels behind another
+// Another mesh, lattices too small for what a face depends on, level 0 itself, and levels behind another
 // step.
 TEST(LatticeFaces, AreThereForNoOtherMesh) {
     ReferenceMask const mask = ReferenceMask::Average;
-    EXPECT_EQ(countFaces(findFaces(*CreateRefiner(GetShape("hexTorus"), mask, 2))), 0u);
+    Shape const hexagons = MakeDual("hexagons", MakeTorus(5, 4, TorusFaces::Triangles));
+    EXPECT_EQ(countFaces(findFaces(*CreateRefiner(hexagons, mask, 2))), 0u);
     EXPECT_EQ(countFaces(findFaces(*CreateRefiner(GetShape("icosahedron"), mask, 2))), 0u);
     EXPECT_EQ(countFaces(findFaces(*CreateRefiner(MakeTorus(5, 9, TorusFaces::Quads), mask, 1))),
               0u);

@@ -7,6 +7,7 @@
 #include "osd_ext/refinementEvaluator.h"
 #include "osd_ext/simdLevel.h"
 #include "regression/shapes/featureShapes.h"
+#include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
 #include "regression/shapes/torus.h"
 
@@ -183,8 +184,8 @@ TEST(LimitEvaluator, TakesRegularFacesOfAnyMask) {
 // Faces of a lattice make all vertices in them from level 0; beside them are those near a sharp vertex.
 TEST(LimitEvaluator, TakesLatticeFacesOfAnyLengthAndSimdLevel) {
     auto const saved = OsdExt::GetSimdLevel();
-    for (TorusFaces const faces : {TorusFaces::Quads, TorusFaces::Triangles}) {
-        Shape shape = MakeTorus(9, 8, faces);
+    for (Shape shape : {MakeTorus(9, 8, TorusFaces::Quads), MakeTorus(9, 8, TorusFaces::Triangles),
+                        MakeDual("hexagons", MakeTorus(9, 8, TorusFaces::Triangles))}) {
         for (bool const isSharp : {false, true}) {
             if (isSharp) {
                 shape.cornerVertices = {30};
