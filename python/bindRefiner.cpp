@@ -170,15 +170,31 @@ void takeChannels(py::object const &fvarChannels, py::object const &numFVarValue
     mesh->descriptor.fvarChannels = mesh->channels.data();
 }
 
-std::shared_ptr<Refiner> createRefiner(py::object const &faces, std::optional<int> numVertices,
-                                       py::object const &faceOffsets, py::object const &creases,
-                                       py::object const &corners, py::object const &holes,
-                                       py::object const &fvarChannels,
-                                       py::object const &numFVarValues, bool isLeftHanded,
-                                       py::object const &vtxBoundaryInterpolation,
-                                       py::object const &fvarLinearInterpolation,
-                                       py::object const &creasingMethod, py::object const &faceMask,
-                                       py::object const &schemeType, py::object const &firstStep) {
+/// \brief Takes a number of the type T, \p typeName to Python.
+///
+/// What pybind11 itself refuses it refuses with all arguments in the message, faces too.
+template <typename T>
+T takeNumber(py::object const &object, char const *name, char const *typeName) {
+    try {
+        return object.cast<T>();
+    } catch (py::cast_error const &) {
+        throw py::type_error(std::string(name) + ": " + typeName + " is needed, not " +
+                             Py_TYPE(object.ptr())->tp_name);
+    }
+}
+
+std::shared_ptr<Refiner>
+createRefiner(py::object const &faces, py::object const &numVertices, py::object const &faceOffsets,
+              py::object const &creases, py::object const &corners, py::object const &holes,
+              py::object const &fvarChannels, py::object const &numFVarValues,
+              py::object const &isLeftHanded, py::object const &vtxBoundaryInterpolation,
+              py::object const &fvarLinearInterpolation, py::object const &creasingMethod,
+              py::object const &faceMask, py::object const &schemeType, py::object const &firstStep,
+              py::kwargs const &others) {
+    for (auto const &[name, value] : others) {
+        throw py::type_error("TopologyRefiner: there is no argument '" +
+                             std::string(py::str(name)) + "'");
+    }
     OpenSubdiv::Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(
         TakeEnum<OpenSubdiv::Sdc::Options::VtxBoundaryInterpolation>(vtxBoundaryInterpolation,
@@ -202,8 +218,12 @@ std::shared_ptr<Refiner> createRefiner(py::object const &faces, std::optional<in
     mesh.descriptor.numFaces = int(mesh.faceSizes.size());
     mesh.descriptor.numVertsPerFace = mesh.faceSizes.data();
     mesh.descriptor.vertIndicesPerFace = mesh.faceVertices.data();
-    mesh.descriptor.numVertices = findCount(mesh.faceVertices, numVertices, "num_vertices");
-    mesh.descriptor.isLeftHanded = isLeftHanded;
+    std::optional<int> givenNumVertices;
+    if (!numVertices.is_none()) {
+        givenNumVertices = takeNumber<int>(numVertices, "num_vertices", "an integer");
+    }
+    mesh.descriptor.numVertices = findCount(mesh.faceVertices, givenNumVertices, "num_vertices");
+    mesh.descriptor.isLeftHanded = takeNumber<bool>(isLeftHanded, "is_left_handed", "a bool");
     takeTags(creases, corners, holes, &mesh);
     takeChannels(fvarChannels, numFVarValues, &mesh);
 
@@ -340,10 +360,7 @@ void BindRefiner(py::module_ &module) {
             "unrefine()\n\nRemoves all levels but the base.")
         .def(
             "get_level",
-            [](std::shared_ptr<Refiner> const &self, int level) {
-                CheckIndex(level, self->Read([](auto &r) { return r.GetNumLevels(); }), "level");
-                return Level(self, level);
-            },
+            [](std::shared_ptr<Refiner> const &self, int level) { return Level(self, level); },
             "get_level(level)\n\nThe TopologyLevel of that depth, 0 ... max_level.",
             py::arg("level"))
         .def_property_readonly("num_levels", property(&TopologyRefiner::GetNumLevels))

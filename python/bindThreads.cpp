@@ -85,15 +85,19 @@ std::optional<ExecutorType> getExecutor() {
     return std::nullopt;
 }
 
+void checkNumThreads(int numThreads) {
+    if (numThreads < 0) {
+        throw py::value_error("num_threads: " + std::to_string(numThreads) + " is negative");
+    }
+}
+
 /// \brief An ExecutorScope as a context manager.
 class Scope {
 public:
     Scope(py::object const &executor, int numThreads)
         : _executor(executor.is_none() ? nullptr : takeExecutor(executor)),
           _numThreads(numThreads) {
-        if (numThreads < 0) {
-            throw py::value_error("num_threads: " + std::to_string(numThreads) + " is negative");
-        }
+        checkNumThreads(numThreads);
     }
 
     /// One that was entered and never ended, in a generator that was dropped say, ends here.  Where it
@@ -181,10 +185,14 @@ void BindThreads(py::module_ &module) {
         "without.",
         py::arg("executor"));
     module.def(
-        "set_num_threads", &SetNumThreads,
+        "set_num_threads",
+        [](int numThreads) {
+            checkNumThreads(numThreads);
+            SetNumThreads(numThreads);
+        },
         "set_num_threads(num_threads)\n\n"
         "Sets how many threads the calls of the calling thread use from now on; 0: as many as\n"
-        "OpenMP says.  Results do not depend on it.",
+        "the executor says.  Results do not depend on it.  Raises ValueError for less.",
         py::arg("num_threads"));
     module.def("get_num_threads", &GetNumThreads,
                "get_num_threads()\n\nHow many threads a call from this thread uses at most.");

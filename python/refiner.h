@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_PYTHON_REFINER_H
 #define OPENSUBDIVHEX_PYTHON_REFINER_H
 
+#include "arrays.h"
 #include "errors.h"
 
 #include "far_ext/topologyRefiner.h"
@@ -88,9 +89,13 @@ private:
 /// once the refiner refined again.
 class Level {
 public:
+    /// Raises IndexError for a depth that the refiner has not.
     Level(std::shared_ptr<Refiner const> refiner, int depth)
         : _refiner(std::move(refiner)), _depth(depth),
-          _numRefinements(_refiner->Read([](auto &r) { return r.GetNumRefinements(); })) {}
+          _numRefinements(_refiner->Read([depth](FarExt::TopologyRefiner const &r) {
+              CheckIndex(depth, r.GetNumLevels(), "level");
+              return r.GetNumRefinements();
+          })) {}
 
     Refiner const &GetRefiner() const { return *_refiner; }
     int GetDepth() const { return _depth; }

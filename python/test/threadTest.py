@@ -64,6 +64,9 @@ def test_numbers_of_threads_are_those_of_the_thread():
     thread.start()
     thread.join()
     assert osh.get_num_threads() == 1
+    with pytest.raises(ValueError, match="num_threads: -3 is negative"):
+        osh.set_num_threads(-3)
+    assert osh.get_num_threads() == 1
     osh.set_num_threads(0)
     assert osh.get_num_threads() == found[0]
 
@@ -93,6 +96,44 @@ def test_threads_share_a_refiner_and_an_evaluator():
     for thread in threads:
         thread.join()
     assert not failures
+
+
+def test_levels_that_vanish_are_not_taken():
+    # A depth is looked up in the refinement that the level then shows: once that is gone, no level does.
+    refiner = osh.TopologyRefiner(CUBE_FACES)
+    failures, taken, is_over = [], [], False
+
+    def take():
+        while not is_over:
+            try:
+                taken.append(refiner.get_level(3))
+            except IndexError:
+                pass
+            except BaseException as failure:
+                failures.append(failure)
+                return
+
+    threads = [threading.Thread(target=take) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    num_taken, end = 0, time.monotonic() + 2
+    try:
+        while time.monotonic() < end or not num_taken:
+            refiner.refine_uniform(3)
+            time.sleep(0.0002)
+            refiner.unrefine()
+            time.sleep(0.001)  # calls that were under way end
+            levels = taken[:]
+            taken.clear()
+            num_taken += len(levels)
+            for level in levels:
+                with pytest.raises(RuntimeError, match="refined"):
+                    level.num_vertices
+    finally:
+        is_over = True
+        for thread in threads:
+            thread.join()
+    assert not failures and num_taken
 
 
 def test_refining_while_others_look():

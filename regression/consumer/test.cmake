@@ -26,6 +26,29 @@ add_test(NAME consumer.build
       -DOpenSubdiv_ROOT=${OpenSubdiv_ROOT}
       -DOpenSubdiv_DIR=${OpenSubdiv_DIR}
     --test-command ${consumerDir}/build/consumer)
+set(present far_ext osd_ext bfr_ext)
+set(absent "")
+foreach(device IN ITEMS gl cuda)
+  if(TARGET osd_ext_${device})
+    list(APPEND present osd_ext_${device})
+  else()
+    list(APPEND absent osd_ext_${device})
+  endif()
+endforeach()
+add_test(NAME consumer.components
+  COMMAND ${CMAKE_COMMAND} --fresh
+    -S ${PROJECT_SOURCE_DIR}/regression/consumer/components
+    -B ${consumerDir}/components
+    -G ${CMAKE_GENERATOR}
+    "-Dpresent=${present}"
+    "-Dabsent=${absent}"
+    "-DCMAKE_PREFIX_PATH=${consumerDir}/prefix;${CMAKE_PREFIX_PATH}"
+    -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
+    -DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}
+    -DCMAKE_TOOLCHAIN_FILE=${CMAKE_TOOLCHAIN_FILE}
+    -DOpenSubdiv_ROOT=${OpenSubdiv_ROOT}
+    -DOpenSubdiv_DIR=${OpenSubdiv_DIR})
+set_tests_properties(consumer.components PROPERTIES FIXTURES_REQUIRED installed)
 find_program(OPENSUBDIVHEX_PKG_CONFIG NAMES pkgconf pkg-config)
 mark_as_advanced(OPENSUBDIVHEX_PKG_CONFIG)
 if(OPENSUBDIVHEX_PKG_CONFIG AND UNIX)

@@ -236,6 +236,7 @@ int main(int argc, char **argv) {
                    "Print counts and hash of one share of the faces alone")
         ->delimiter(',')
         ->expected(2)
+        ->allow_extra_args(false)
         ->type_name("SHARE,SHARES");
     app.footer("Exit status: 0 all hashes are equal, 1 bad input or other hashes, 2 bad usage.");
     return Tools::RunProgram(app, argc, argv, [&] { Regression::run(arguments, argv[0]); });

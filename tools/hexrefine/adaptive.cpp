@@ -6,8 +6,7 @@
 #include "bfr_ext/view.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshText.h"
-
-#include <CLI/CLI.hpp>
+#include "tools/mesh/program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,6 +83,21 @@ BfrExt::View makeView(AdaptiveArguments const &arguments, std::vector<float> con
                                     .SetCulling(arguments.isCulling));
 }
 
+/// Throws FileError if boundaries have no limit.
+void requireBoundaryRule(FarExt::TopologyRefiner const &refiner, std::string const &input) {
+    FarExt::TopologyLevel const &base = refiner.GetLevel(0);
+    for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
+        if (refiner.GetSchemeOptions().GetVtxBoundaryInterpolation() ==
+                Sdc::Options::VTX_BOUNDARY_NONE &&
+            base.IsEdgeBoundary(edge)) {
+            throw FileError(input, "--adaptive needs --boundary edge-only or edge-and-corner: the "
+                                   "mesh has boundary edges, one at vertex " +
+                                       std::to_string(base.GetEdgeVertices(edge)[0]) +
+                                       " (counted from 0)");
+        }
+    }
+}
+
 } // namespace
 
 void AddAdaptiveOptions(CLI::App &app, AdaptiveArguments *arguments) {
@@ -91,15 +105,8 @@ void AddAdaptiveOptions(CLI::App &app, AdaptiveArguments *arguments) {
                                         "Refine parts of the mesh as far as a camera needs them, "
                                         "in place of --level, with vertices "
                                         "on the limit surface and without gaps");
-    app.add_option("--camera", arguments->camera,
-                   "Eye and target of the camera of --adaptive, with y up")
-        ->delimiter(',')
-        ->expected(6)
-        ->check([](std::string const &word) {
-            float number = 0;
-            return std::string(ParseFiniteFloat(word, &number) ? ""
-                                                               : "'" + word + "' is not a number");
-        })
+    AddNumbers(app, "--camera", &arguments->camera, 6, 6,
+               "Eye and target of the camera of --adaptive, with y up")
         ->type_name("EX,EY,EZ,TX,TY,TZ")
         ->needs(adaptive)
         ->default_str("all of the mesh, from the front and above");
@@ -147,7 +154,7 @@ void AddAdaptiveOptions(CLI::App &app, AdaptiveArguments *arguments) {
 
 void CheckAdaptiveOptions(CLI::App const &app, AdaptiveArguments const &arguments) {
     for (char const *const option :
-         {"--level", "--limit", "--evaluator", "--coplanar", "--separate-vertices"}) {
+         {"--level", "--limit", "--evaluator", "--simd", "--coplanar", "--separate-vertices"}) {
         if (arguments.isAdaptive && app.count(option) > 0) {
             throw CLI::ValidationError(option, "is not for --adaptive");
         }
@@ -179,6 +186,7 @@ void AdaptiveRefinement::Refine(AdaptiveArguments const &arguments,
             continue;
         }
         if (!factory->InitVertexSurface(face, &surface, &status)) {
+            requireBoundaryRule(refiner, input);
             throw FileError(input, "--adaptive: " + status.GetMessage());
         }
         ++numSurfaces;

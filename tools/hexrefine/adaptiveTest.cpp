@@ -223,12 +223,16 @@ TEST_F(HexrefineAdaptive, BadArgumentsAreNamed) {
     expectBadUsage(cube + " --adaptive --max-level 13", "--max-level");
     expectBadUsage(cube + " --adaptive -l 3", "--level");
     expectBadUsage(cube + " --adaptive --limit", "--limit");
+    expectBadUsage(cube + " --adaptive --simd portable", "--simd: is not for --adaptive");
     expectBadUsage(cube + " --png a.png --png-colors levels", "--adaptive");
     expectFailure(cube + " --adaptive --camera 1,2,3,1,2,3", cube, "camera");
     expectFailure(cube + " --adaptive --scheme doo-sabin", cube, "--adaptive");
     std::string const strip = makeStrip();
-    expectFailure(strip + " --adaptive", strip, "VTX_BOUNDARY_NONE");
+    expectFailure(strip + " --adaptive", strip,
+                  "--adaptive needs --boundary edge-only or edge-and-corner: the mesh has boundary "
+                  "edges, one at vertex 0 (counted from 0)");
     EXPECT_EQ(run(cube + " --adaptive --camera 0,9,0,0,0,0").status, 0);
+    EXPECT_EQ(run("--adaptive --camera 0,0,5,0,0,0 " + cube + " --fov 30").status, 0);
 }
 
 #ifdef HEXREFINE_HAS_RENDERER

@@ -90,6 +90,31 @@ void setNormalized(double const (&vector)[3], float *result) {
     }
 }
 
+/// Points of the limit surface, and derivatives there: three floats for each side of a vertex.
+struct LimitArrays {
+    explicit LimitArrays(int numSides)
+        : points(3 * std::size_t(numSides)), du(points.size()), dv(points.size()) {}
+
+    /// 1 long; 0 where there is no tangent plane.
+    std::vector<float> GetNormals() const {
+        std::vector<float> normals(du.size());
+        for (std::size_t i = 0; i < normals.size(); i += 3) {
+            double normal[3]; // products of floats need not be floats
+            for (std::size_t k = 0; k < 3; ++k) {
+                std::size_t const a = i + (k + 1) % 3;
+                std::size_t const b = i + (k + 2) % 3;
+                normal[k] = double(du[a]) * double(dv[b]) - double(du[b]) * double(dv[a]);
+            }
+            setNormalized(normal, normals.data() + i);
+        }
+        return normals;
+    }
+
+    std::vector<float> points;
+    std::vector<float> du;
+    std::vector<float> dv;
+};
+
 } // namespace
 
 bool NeedsStencils(std::string const &evaluator) {
@@ -123,30 +148,31 @@ std::unique_ptr<Far::StencilTable const> CreateStencils(FarExt::TopologyRefiner 
     return FarExt::StencilTableFactory::Create(refiner, options, status);
 }
 
-void EvaluateStencils(Far::StencilTable const &table, std::string const &evaluator,
+bool EvaluateStencils(Far::StencilTable const &table, std::string const &evaluator,
                       Primvar const &primvar) {
     int const width = primvar.width;
     Osd::BufferDescriptor const desc(0, width, width);
     auto evaluate = [&](auto const &evaluateRange) {
         for (std::vector<float> *array : primvar.arrays) {
             std::vector<float> values(std::size_t(width) * std::size_t(table.GetNumStencils()));
-            evaluateRange(array->data(), desc, values.data(), desc, table.GetSizes().data(),
-                          table.GetOffsets().data(), table.GetControlIndices().data(),
-                          table.GetWeights().data(), 0, table.GetNumStencils());
+            if (!evaluateRange(array->data(), desc, values.data(), desc, table.GetSizes().data(),
+                               table.GetOffsets().data(), table.GetControlIndices().data(),
+                               table.GetWeights().data(), 0, table.GetNumStencils())) {
+                return false;
+            }
             *array = std::move(values);
         }
+        return true;
     };
     if (evaluator == kStencil) {
-        evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });
-        return;
+        return evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });
     }
 #ifdef HEXREFINE_HAS_OPENMP
     if (evaluator == kStencilOmp) {
-        evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
-        return;
+        return evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
     }
 #endif
-    evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
+    return evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
 }
 
 std::unique_ptr<Far::LimitStencilTable const>
@@ -157,42 +183,65 @@ CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::Status *stat
     return FarExt::LimitStencilTableFactory::Create(refiner, options, status);
 }
 
-std::vector<float> EvaluateLimit(Far::LimitStencilTable const &table,
-                                 FarExt::LimitSides const &sides, std::string const &evaluator,
-                                 std::vector<float> *positions) {
-    std::size_t const size = 3 * std::size_t(table.GetNumStencils());
-    std::vector<float> points(size), du(size), dv(size);
+bool EvaluateLimit(Far::LimitStencilTable const &table, FarExt::LimitSides const &sides,
+                   std::string const &evaluator, std::vector<float> *positions,
+                   std::vector<float> *normals) {
+    LimitArrays limit(table.GetNumStencils());
     Osd::BufferDescriptor const desc(0, 3, 3);
     auto evaluate = [&](auto const &evaluateRange) {
-        evaluateRange(positions->data(), desc, points.data(), desc, du.data(), desc, dv.data(),
-                      desc, table.GetSizes().data(), table.GetOffsets().data(),
-                      table.GetControlIndices().data(), table.GetWeights().data(),
-                      table.GetDuWeights().data(), table.GetDvWeights().data(), 0,
-                      table.GetNumStencils());
+        return evaluateRange(positions->data(), desc, limit.points.data(), desc, limit.du.data(),
+                             desc, limit.dv.data(), desc, table.GetSizes().data(),
+                             table.GetOffsets().data(), table.GetControlIndices().data(),
+                             table.GetWeights().data(), table.GetDuWeights().data(),
+                             table.GetDvWeights().data(), 0, table.GetNumStencils());
     };
+    bool isDone = false;
     if (evaluator == kStencilCpu) {
-        evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
+        isDone = evaluate([](auto... args) { return Osd::CpuEvaluator::EvalStencils(args...); });
 #ifdef HEXREFINE_HAS_OPENMP
     } else if (evaluator == kStencilOmp) {
-        evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
+        isDone = evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
 #endif
     } else {
-        evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });
+        isDone = evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });
     }
-    std::vector<float> normals(3 * std::size_t(sides.GetNumSides()));
-    for (std::size_t i = 0; i < normals.size(); i += 3) {
-        double normal[3]; // products of floats need not be floats
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::size_t const a = i + (k + 1) % 3;
-            std::size_t const b = i + (k + 2) % 3;
-            normal[k] = double(du[a]) * double(dv[b]) - double(du[b]) * double(dv[a]);
-        }
-        setNormalized(normal, normals.data() + i);
+    if (!isDone) {
+        return false;
     }
+    *normals = limit.GetNormals();
     // The points of further sides are those of their vertices.
-    points.resize(3 * std::size_t(sides.GetNumVertices()));
-    *positions = std::move(points);
-    return normals;
+    limit.points.resize(3 * std::size_t(sides.GetNumVertices()));
+    *positions = std::move(limit.points);
+    return true;
+}
+
+bool EvaluateLimit(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
+                   std::vector<float> *positions, std::vector<float> *normals,
+                   FarExt::Status *status) {
+    int const level = refiner.GetMaxLevel();
+    LimitArrays limit(refiner.GetLevel(level).GetNumVertices());
+    if (evaluator == kRefinement) {
+        auto const refinement = OsdExt::RefinementEvaluator::Create(refiner, status);
+        Osd::BufferDescriptor const desc(0, 3, 3);
+        if (!refinement || !refinement->EvaluateLimit(positions->data(), desc, limit.points.data(),
+                                                      desc, limit.du.data(), desc, limit.dv.data(),
+                                                      desc, level, status)) {
+            return false;
+        }
+    } else {
+        Primvar const primvar{FarExt::INTERPOLATE_VERTEX, 0, 3, {positions}};
+        evaluateLevels<3>(refiner, primvar, positions);
+        auto const *const source = reinterpret_cast<Value<3> const *>(positions->data());
+        auto *const points = reinterpret_cast<Value<3> *>(limit.points.data());
+        auto *const du = reinterpret_cast<Value<3> *>(limit.du.data());
+        auto *const dv = reinterpret_cast<Value<3> *>(limit.dv.data());
+        if (!FarExt::PrimvarRefiner(refiner).Limit(source, points, du, dv, status)) {
+            return false;
+        }
+    }
+    *normals = limit.GetNormals();
+    *positions = std::move(limit.points);
+    return true;
 }
 
 void Normalize(std::vector<float> *vectors) {

@@ -47,7 +47,8 @@ CreateStencils(FarExt::TopologyRefiner const &refiner, Primvar const &primvar,
 
 /// \brief Replaces \p primvar's values by those that \p table, from CreateStencils, makes of them.
 /// \param evaluator  one that takes a table
-void EvaluateStencils(OpenSubdiv::Far::StencilTable const &table, std::string const &evaluator,
+/// \return           false if it refuses
+bool EvaluateStencils(OpenSubdiv::Far::StencilTable const &table, std::string const &evaluator,
                       Primvar const &primvar);
 
 /// The limit points of the refiner's last level, which has full topology, and the derivatives on
@@ -55,12 +56,21 @@ void EvaluateStencils(OpenSubdiv::Far::StencilTable const &table, std::string co
 std::unique_ptr<OpenSubdiv::Far::LimitStencilTable const>
 CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::Status *status);
 
-/// \brief Replaces \p positions by the limit points of \p table, from CreateLimitStencils.
-/// \param evaluator  stencil-cpu or stencil-omp
-/// \return  a normal for each side, 1 long; 0 where there is no tangent plane
-std::vector<float> EvaluateLimit(OpenSubdiv::Far::LimitStencilTable const &table,
-                                 FarExt::LimitSides const &sides, std::string const &evaluator,
-                                 std::vector<float> *positions);
+/// \brief Replaces \p positions, of level 0, by the limit points of \p table, from
+/// CreateLimitStencils, and \p normals by a normal for each side, 1 long; 0 where there is no
+/// tangent plane.
+/// \param evaluator  stencil-cpu, stencil-omp or, for all others, OsdExt::OmpEvaluator
+/// \return           false if it refuses
+bool EvaluateLimit(OpenSubdiv::Far::LimitStencilTable const &table, FarExt::LimitSides const &sides,
+                   std::string const &evaluator, std::vector<float> *positions,
+                   std::vector<float> *normals);
+
+/// \brief The same of a level whose vertices have one side each, without a table.
+/// \param evaluator  refinement or primvar
+/// \return           false with a status, as from RefinementEvaluator or PrimvarRefiner
+bool EvaluateLimit(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
+                   std::vector<float> *positions, std::vector<float> *normals,
+                   FarExt::Status *status);
 
 /// Makes vectors of three floats 1 long; those without a direction stay 0.
 void Normalize(std::vector<float> *vectors);

@@ -236,7 +236,8 @@ void addOptions(CLI::App &app, Arguments *arguments) {
 #endif
         );
     app.add_option("--simd", arguments->simd,
-                   "Instructions of --evaluator stencil and --limit: portable, avx2 or avx512")
+                   "Instructions of --evaluator stencil, and of --limit by it or by refinement: "
+                   "portable, avx2 or avx512")
         ->check(checkSimdLevel)
         ->type_name("LEVEL")
         ->default_str("that of OPENSUBDIVHEX_SIMD, or the highest of the processor");
@@ -284,11 +285,17 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                                        "is for an --output that is a .ply or .off file");
         }
         CheckAdaptiveOptions(app, arguments->adaptive);
+        if (arguments->scheme == "tri-hex" && app.count("--mask") > 0) {
+            throw CLI::ValidationError("--mask", "has no effect with --scheme tri-hex");
+        }
+        if (arguments->simd && arguments->evaluator != kStencil &&
+            !(arguments->isLimit && arguments->evaluator == kRefinement)) {
+            throw CLI::ValidationError(
+                "--simd", "has no effect on --evaluator " + arguments->evaluator +
+                              (arguments->evaluator == kRefinement ? " without --limit" : ""));
+        }
         if (arguments->pngColors == kLevelColors && !arguments->adaptive.isAdaptive) {
             throw CLI::ValidationError("--png-colors", "levels are those of --adaptive");
-        }
-        if (arguments->isLimit && arguments->evaluator == "primvar") {
-            throw CLI::ValidationError("--limit", "needs a stencil table, not --evaluator primvar");
         }
     });
     app.set_version_flag("--version", "hexrefine " OPENSUBDIVHEX_VERSION);
@@ -382,24 +389,40 @@ std::vector<Primvar> findPrimvars(Mesh *mesh) {
     return primvars;
 }
 
+/// Throws FileError unless \p isDone, with \p status, which evaluators of tables give none of.
+void requireDone(Arguments const &arguments, bool isDone, FarExt::Status const &status) {
+    if (!isDone) {
+        throw FileError(arguments.input,
+                        status.IsOk() ? "--evaluator " + arguments.evaluator + " gives no values"
+                                      : status.GetMessage());
+    }
+}
+
 /// Replaces the positions of \p mesh by limit points, and gives the normal on each side.
 std::vector<float> evaluateLimit(Arguments const &arguments, FarExt::TopologyRefiner const &refiner,
                                  FarExt::LimitSides const &sides, Mesh *mesh, Progress &progress,
                                  Statistics *statistics) {
     auto &milliseconds = statistics->milliseconds;
+    FarExt::Status status;
+    auto const require = [&](bool isDone) { requireDone(arguments, isDone, status); };
+    std::vector<float> normals;
+    // Tables alone have further sides.
+    if (!NeedsStencils(arguments.evaluator) && sides.GetNumSides() == sides.GetNumVertices()) {
+        milliseconds.evaluate += measure(progress, "evaluating", [&] {
+            require(
+                EvaluateLimit(refiner, arguments.evaluator, &mesh->positions, &normals, &status));
+        });
+        return normals;
+    }
     std::unique_ptr<Far::LimitStencilTable const> table;
     milliseconds.stencils += measure(progress, "building limit stencils", [&] {
-        FarExt::Status status;
         table = CreateLimitStencils(refiner, &status);
-        if (!table) {
-            throw FileError(arguments.input, status.GetMessage());
-        }
+        require(table != nullptr);
     });
     statistics->stencils = table->GetNumStencils();
     statistics->weights = std::int64_t(table->GetWeights().size());
-    std::vector<float> normals;
     milliseconds.evaluate += measure(progress, "evaluating", [&] {
-        normals = EvaluateLimit(*table, sides, arguments.evaluator, &mesh->positions);
+        require(EvaluateLimit(*table, sides, arguments.evaluator, &mesh->positions, &normals));
     });
     return normals;
 }
@@ -444,11 +467,7 @@ void evaluate(Arguments const &arguments, FarExt::TopologyRefiner const &refiner
             continue;
         }
         FarExt::Status status;
-        auto const require = [&](bool isDone) {
-            if (!isDone) {
-                throw FileError(arguments.input, status.GetMessage());
-            }
-        };
+        auto const require = [&](bool isDone) { requireDone(arguments, isDone, status); };
         if (!NeedsStencils(arguments.evaluator)) {
             milliseconds.evaluate += measure(progress, "evaluating", [&] {
                 require(EvaluateLevels(refiner, arguments.evaluator, primvar, &status));
@@ -465,7 +484,7 @@ void evaluate(Arguments const &arguments, FarExt::TopologyRefiner const &refiner
             statistics->weights = std::int64_t(table->GetWeights().size());
         }
         milliseconds.evaluate += measure(progress, "evaluating", [&] {
-            EvaluateStencils(*table, arguments.evaluator, primvar);
+            require(EvaluateStencils(*table, arguments.evaluator, primvar));
         });
     }
 }

@@ -296,13 +296,22 @@ TEST_F(Hexrefine, SimdChoosesTheKernel) {
         }
         EXPECT_TRUE(refine(stencil, variable) == chosen) << name;
         EXPECT_TRUE(refine(stencil + option, "OPENSUBDIVHEX_SIMD=portable ") == chosen) << name;
-        EXPECT_TRUE(refine(option) == refine("")) << name;
     }
     Result const result = run(LANTERN_FILE + output, "OPENSUBDIVHEX_SIMD=sse ");
     EXPECT_EQ(result.status, 2);
     EXPECT_NE(result.error.find("OPENSUBDIVHEX_SIMD"), std::string::npos) << result.error;
     EXPECT_NE(result.error.find("'sse' is not portable, avx2 or avx512"), std::string::npos);
     expectBadUsage(LANTERN_FILE + output + " --simd AVX2", "'AVX2' is not portable");
+    std::string const portable = " --simd portable";
+    for (char const *evaluator : {"refinement", "primvar", "stencil-cpu"}) {
+        expectBadUsage(LANTERN_FILE + output + portable + " --evaluator " + evaluator,
+                       "--simd: has no effect on --evaluator " + std::string(evaluator));
+    }
+    expectBadUsage(LANTERN_FILE + output + portable, "refinement without --limit");
+    expectBadUsage(LANTERN_FILE + output + portable + " --limit --evaluator stencil-cpu",
+                   "--simd: has no effect");
+    refine(portable + " --limit");
+    refine(portable + " --limit --evaluator stencil");
 }
 
 TEST_F(Hexrefine, LanternIsClosedAndOfFourFaceSizes) {
@@ -323,6 +332,7 @@ TEST_F(Hexrefine, RefusesBadUsage) {
     expectBadUsage(input + " -o out.stl", "out.stl");
     expectBadUsage(input + " -o out", "out");
     expectBadUsage(input + " --mask best", "best");
+    expectBadUsage(input + " --mask smooth --scheme tri-hex", "--mask: has no effect");
     expectBadUsage(input + " --scheme loop", "loop");
     expectBadUsage(input + " --scheme doo-sabin --coplanar", "hexagonal");
     expectBadUsage(input + " --first-step tri-hex --coplanar", "hexagonal");

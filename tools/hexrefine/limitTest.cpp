@@ -109,8 +109,34 @@ TEST_F(HexrefineLimit, RefusesWhatItCannotWrite) {
     refine(makeCubeFile(), "-l 1", "normals.obj");
     expectFailure("\"" + getPath("normals.obj") + "\" --limit", getPath("normals.obj"),
                   "has normals of its own");
-    expectBadUsage("\"" + getPath("cube.obj") + "\" --limit --evaluator primvar",
-                   "needs a stencil table");
+}
+
+TEST_F(HexrefineLimit, IsTheSameByAllEvaluators) {
+    struct {
+        std::string path;
+        bool hasFurtherSides;
+    } const inputs[] = {{makeCubeFile(), false}, {makeCreasedCube(), true}};
+    for (auto const &input : inputs) {
+        Mesh const expected = refine(input.path, "-l 3 --evaluator stencil-cpu", "expected.obj");
+        for (std::string const evaluator : {"refinement", "primvar", "stencil"}) {
+            SCOPED_TRACE(evaluator);
+            std::string const arguments = "-l 3 --evaluator " + evaluator;
+            Mesh const mesh = refine(input.path, arguments, "out.obj");
+            ASSERT_EQ(mesh.positions.size(), expected.positions.size());
+            for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+                ASSERT_NEAR(mesh.positions[i], expected.positions[i], 2e-6);
+            }
+            std::vector<float> const &normals = mesh.channels.at(0).values;
+            ASSERT_EQ(normals.size(), expected.channels.at(0).values.size());
+            for (std::size_t i = 0; i < normals.size(); ++i) {
+                ASSERT_NEAR(normals[i], expected.channels[0].values[i], 1e-4);
+            }
+            // Tables are made for those who need one.
+            Json const json = Json::parse(run(input.path + " --limit --stats - " + arguments).out);
+            EXPECT_EQ(json["evaluator"], evaluator);
+            EXPECT_EQ(json["stencils"] > 0, evaluator == "stencil" || input.hasFurtherSides);
+        }
+    }
 }
 
 } // namespace OpenSubdivHex::Tools

@@ -47,7 +47,7 @@ TEST_F(ObjTag, Creases) {
     EXPECT_EQ(tags.creaseVertices, (std::vector<int>{1, 4}));
     EXPECT_EQ(tags.creaseSharpness, (std::vector<float>{3}));
     EXPECT_EQ(read("t crease 2/1/0 1 4 2\nt crease 2/1/0 1 4 0\n").GetNumCreases(), 0);
-    EXPECT_EQ(read("t crease 2/1/0 1 4 -2\n").GetNumCreases(), 0);
+    EXPECT_EQ(read("t crease 2/1/0 1 4 -0\n").GetNumCreases(), 0);
 }
 
 TEST_F(ObjTag, CornersAndHoles) {
@@ -113,6 +113,9 @@ TEST_F(ObjTag, RefusesMalformedTags) {
     expectRefused("crease 2/1/0 1 4 x", "'x' is not a finite number");
     expectRefused("crease 2/1/0 1 4 nan", "'nan' is not a finite number");
     expectRefused("crease 2/1/0 1 4 inf", "'inf' is not a finite number");
+    expectRefused("crease 2/1/0 1 4 -5", "sharpness -5 is negative");
+    expectRefused("crease 4/2/0 1 4 3 4 2 -.5", "sharpness -0.5 is negative");
+    expectRefused("corner 1/1/0 4 -1e-9", "sharpness -1e-09 is negative");
 }
 
 TEST_F(ObjTag, RefusesWrongArguments) {

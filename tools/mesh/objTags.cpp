@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 namespace OpenSubdivHex::Tools::internal {
 
@@ -130,7 +131,17 @@ int ObjTagReader::onlyInt(Tag const &tag, int maxValue) const {
 }
 
 ObjTagReader::Sharpness ObjTagReader::sharpness(Tag const &tag, std::size_t i) const {
-    return {tag.line, std::max(0.0f, tag.floats[tag.floats.size() == 1 ? 0 : i])};
+    return {tag.line, tag.floats[tag.floats.size() == 1 ? 0 : i]};
+}
+
+void ObjTagReader::checkSharpness(Tag const &tag) const {
+    for (float const sharpness : tag.floats) {
+        if (sharpness < 0) {
+            std::ostringstream text;
+            text << "sharpness " << sharpness << " is negative";
+            refuse(tag.line, text.str());
+        }
+    }
 }
 
 void ObjTagReader::readCreases(Tag const &tag) {
@@ -139,6 +150,7 @@ void ObjTagReader::readCreases(Tag const &tag) {
         (tag.floats.size() != 1 && tag.floats.size() != numEdges)) {
         refuse(tag.line, "tag 'crease' needs pairs of vertices and one sharpness, or one for each");
     }
+    checkSharpness(tag);
     for (std::size_t i = 0; i < numEdges; ++i) {
         _creases[std::minmax(tag.ints[2 * i], tag.ints[2 * i + 1])] = sharpness(tag, i);
     }
@@ -149,6 +161,7 @@ void ObjTagReader::readCorners(Tag const &tag) {
         (tag.floats.size() != 1 && tag.floats.size() != tag.ints.size())) {
         refuse(tag.line, "tag 'corner' needs vertices and one sharpness, or one for each");
     }
+    checkSharpness(tag);
     for (std::size_t i = 0; i < tag.ints.size(); ++i) {
         _corners[tag.ints[i]] = sharpness(tag, i);
     }

@@ -26,9 +26,9 @@ namespace OpenSubdivHex::Tools::internal {
 /// | creasemethod                   | normal or chaikin                                           |
 /// | smoothtriangles                | whatever: it is about Catmull-Clark alone, and left out     |
 ///
-/// Vertices and faces are counted from 0.  As in OpenSubdiv, a negative sharpness is 0, and of
-/// several lines about the same thing the last holds.  All functions throw FileError, with the
-/// line, for what is not in this table.
+/// Vertices and faces are counted from 0, and no sharpness is negative.  As in OpenSubdiv, of several
+/// lines about the same thing the last holds.  All functions throw FileError, with the line, for what
+/// is not in this table.
 class ObjTagReader {
 public:
     explicit ObjTagReader(std::string const &path) : _path(path) {}
@@ -57,6 +57,7 @@ private:
     Tag parse(int line, std::string_view text) const;
     int onlyInt(Tag const &tag, int maxValue) const;
     Sharpness sharpness(Tag const &tag, std::size_t i) const;
+    void checkSharpness(Tag const &tag) const;
     void readCreases(Tag const &tag);
     void readCorners(Tag const &tag);
     void readHoles(Tag const &tag);

@@ -3,11 +3,16 @@
 #define OPENSUBDIVHEX_TOOLS_PROGRAM_H
 
 #include "fileError.h"
+#include "meshText.h"
 
 #include <CLI/CLI.hpp>
 
+#include <cstddef>
 #include <iostream>
 #include <new>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace OpenSubdivHex::Tools {
 
@@ -16,7 +21,7 @@ enum ExitCode { kSuccess = 0, kFailure = 1, kBadUsage = 2 };
 /// \brief What main does: reads the command line into \p app, calls work() and gives the exit code.
 ///
 /// Whatever they throw ends the program with one line, "PROGRAM: cause"; a CLI::ParseError, which
-/// work may throw too, with CLI11's text.
+/// work may throw too, with CLI11's text behind the name.
 template <typename WORK>
 int RunProgram(CLI::App &app, int argc, char const *const *argv, WORK work) {
     auto const fail = [&](std::string const &cause) {
@@ -24,8 +29,8 @@ int RunProgram(CLI::App &app, int argc, char const *const *argv, WORK work) {
         return kFailure;
     };
     app.failure_message([](CLI::App const *failed, CLI::Error const &error) {
-        return EscapeControls(error.what()) + "\nRun " + failed->get_name() +
-               " with --help for more information.\n";
+        return failed->get_name() + ": " + EscapeControls(error.what()) + "\nRun " +
+               failed->get_name() + " with --help for more information.\n";
     });
     try {
         try {
@@ -42,6 +47,33 @@ int RunProgram(CLI::App &app, int argc, char const *const *argv, WORK work) {
         return fail("an error that says nothing of itself");
     }
     return kSuccess;
+}
+
+/// \brief Adds an option with one argument, \p least to \p most finite numbers with commas between
+/// them, that replace those in \p numbers.  Lists of CLI11 take what comes behind them, too.
+inline CLI::Option *AddNumbers(CLI::App &app, std::string const &name, std::vector<float> *numbers,
+                               std::size_t least, std::size_t most,
+                               std::string const &description) {
+    auto const read = [=](std::string const &argument) {
+        numbers->clear();
+        std::string_view rest = argument;
+        for (std::size_t end = 0; end != std::string_view::npos;) {
+            end = rest.find(',');
+            std::string_view const word = rest.substr(0, end);
+            if (!ParseFiniteFloat(word, &numbers->emplace_back())) {
+                throw CLI::ValidationError(name, "'" + std::string(word) + "' is " +
+                                                     NameFloatFailure(word));
+            }
+            rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+        }
+        if (numbers->size() < least || numbers->size() > most) {
+            throw CLI::ValidationError(
+                name, "'" + argument + "' has " + std::to_string(numbers->size()) +
+                          " numbers, not " + std::to_string(least) +
+                          (most > least ? " to " + std::to_string(most) : std::string()));
+        }
+    };
+    return app.add_option_function<std::string>(name, read, description);
 }
 
 } // namespace OpenSubdivHex::Tools

@@ -50,11 +50,42 @@ TEST(Program, TellsBadUsage) {
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_EQ(run("--number=-1"), kBadUsage);
     EXPECT_EQ(testing::internal::GetCapturedStderr(),
-              "--number: is\\nnegative\nRun program with --help for more information.\n");
+              "program: --number: is\\nnegative\nRun program with --help for more information.\n");
     EXPECT_EQ(run("--number=x\ny"), kBadUsage);
     std::string const text = testing::internal::GetCapturedStderr();
     EXPECT_NE(text.find("x\\ny"), std::string::npos) << text;
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
+}
+
+TEST(Program, NumbersAreOneArgument) {
+    std::vector<float> numbers;
+    std::string input;
+    auto const run = [&](std::vector<char const *> arguments) {
+        numbers = {7};
+        input.clear();
+        CLI::App app("", "program");
+        app.add_option("INPUT", input)->required();
+        AddNumbers(app, "--numbers", &numbers, 2, 3, "");
+        app.add_flag("--flag");
+        arguments.insert(arguments.begin(), "program");
+        testing::internal::CaptureStderr();
+        int const status = RunProgram(app, int(arguments.size()), arguments.data(), [] {});
+        std::string const error = testing::internal::GetCapturedStderr();
+        return std::to_string(status) + error.substr(0, error.find('\n'));
+    };
+    EXPECT_EQ(run({"--numbers", "1,-2.5", "a", "--flag"}), "0");
+    EXPECT_EQ(numbers, (std::vector<float>{1, -2.5f}));
+    EXPECT_EQ(input, "a");
+    EXPECT_EQ(run({"--numbers=-1,2,3", "4", "--flag"}), "0");
+    EXPECT_EQ(numbers, (std::vector<float>{-1, 2, 3}));
+    EXPECT_EQ(input, "4");
+    EXPECT_EQ(run({"a"}), "0");
+    EXPECT_EQ(numbers, std::vector<float>{7});
+    EXPECT_EQ(run({"a", "--numbers", "1"}), "2program: --numbers: '1' has 1 numbers, not 2 to 3");
+    EXPECT_EQ(run({"a", "--numbers", "1,2,3,4"}),
+              "2program: --numbers: '1,2,3,4' has 4 numbers, not 2 to 3");
+    EXPECT_EQ(run({"a", "--numbers", "1,x"}), "2program: --numbers: 'x' is not a finite number");
+    EXPECT_EQ(run({"a", "--numbers", "1,"}), "2program: --numbers: '' is not a finite number");
 }
 
 } // namespace OpenSubdivHex::Tools

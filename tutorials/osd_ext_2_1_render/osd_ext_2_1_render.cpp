@@ -164,11 +164,9 @@ void addOptions(CLI::App &app, Arguments *arguments) {
     app.add_option("--line-width", arguments->lineWidth, "Width of the wireframe in pixels")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    app.add_option("--camera", arguments->camera,
-                   "Where the camera stands, in degrees around the mesh and above the horizon, and "
-                   "a factor to enlarge")
-        ->delimiter(',')
-        ->expected(2, 3)
+    AddNumbers(app, "--camera", &arguments->camera, 2, 3,
+               "Where the camera stands, in degrees around the mesh and above the horizon, and "
+               "a factor to enlarge")
         ->type_name("AZIMUTH,ELEVATION[,ZOOM]")
         ->default_str("30,20");
     app.add_flag("--no-ground", arguments->hasNoGround, "No ground for shadows to fall on");

@@ -258,11 +258,9 @@ int main(int argc, char **argv) {
     app.add_option("--memory", arguments.megabytes, "Megabytes that patches may take")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
-    app.add_option("--camera", arguments.camera,
-                   "Where the camera stands, in degrees around the mesh and above the horizon, and "
-                   "a factor to enlarge")
-        ->delimiter(',')
-        ->expected(2, 3)
+    AddNumbers(app, "--camera", &arguments.camera, 2, 3,
+               "Where the camera stands, in degrees around the mesh and above the horizon, and "
+               "a factor to enlarge")
         ->type_name("AZIMUTH,ELEVATION[,ZOOM]")
         ->default_str("30,20");
     app.footer("Exit status: 0 success, 1 bad input or failed output, 2 bad usage.");
