@@ -180,9 +180,11 @@ void AddLimitBenchmarks(Suite &suite) {
                              [=] { return makeTableContest(mesh); });
         }
     }
-    for (BenchMesh const &mesh : suite.GetMeshes()) {
-        suite.AddContest({"limit, length 3", "vertex", mesh, Memory::Resident},
-                         [=] { return makeFrameContest(mesh); });
+    for (auto const *meshes : {&suite.GetMeshes(), &suite.GetIrregularMeshes()}) {
+        for (BenchMesh const &mesh : *meshes) {
+            suite.AddContest({"limit, length 3", "vertex", mesh, Memory::Resident},
+                             [=] { return makeFrameContest(mesh); });
+        }
     }
 }
 
