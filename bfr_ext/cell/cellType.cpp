@@ -259,10 +259,10 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
         for (std::size_t i = 0; i < patches.size(); ++i) {
             std::vector<int> points = patches[i].patch.sources;
             points.shrink_to_fit();
-            std::shared_ptr<RingItem const> rings =
-                RingItem::Make(patches[i], _types.GetRingCells(_rules));
-            items.push_back({&_types.Find(std::move(patches[i]), _rules), std::move(points),
-                             i < numEdges && turns[i] == 1, std::move(rings)});
+            CellType const &type = _types.Find(CellPatch(patches[i]), _rules);
+            RingItem const &rings = RingItem::Get(type, patches[i], _types.GetRingCells(_rules));
+            items.push_back({&type, std::move(points), i < numEdges && turns[i] == 1,
+                             rings.cell ? &rings : nullptr});
         }
         for (std::size_t i = 0; i < items.size(); ++i) {
             if (i != item) {

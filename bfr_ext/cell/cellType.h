@@ -93,8 +93,8 @@ public:
     struct BorderItem {
         CellType const *type;
         std::vector<int> points;
-        bool isReversed;                       ///< whether the edge runs against the face
-        std::shared_ptr<RingItem const> rings; ///< null where it has none
+        bool isReversed;       ///< whether the edge runs against the face
+        RingItem const *rings; ///< of its type; null where that has none
     };
     /// \brief Of a base face, which neighbours have the same of: an edge, or behind these a vertex.
     ///

@@ -22,6 +22,7 @@ enum class PatternOf {
     LeafDerivatives,
     CornerWeights,
     RingCell,
+    RingItem,
     CellBounds,
     LatticeBounds,
     SlopeBounds

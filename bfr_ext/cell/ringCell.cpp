@@ -156,19 +156,22 @@ bool RingCells::AreFacesAlike(RingLayout const &ring) const {
            (hasPlainMasks() || areSame(ring.neighbors));
 }
 
-std::shared_ptr<RingItem const> RingItem::Make(CellPatch const &patch, RingCells &cells) {
-    auto item = std::make_shared<RingItem>();
-    if (!item->rings.Init(patch.patch, patch.locals, cells.GetRules())) {
-        return nullptr;
-    }
-    auto const &rings = item->rings.GetRings();
-    if (std::all_of(rings.begin(), rings.end(),
-                    [](VertexRings::Ring const &ring) { return ring.isInLattice; })) {
-        return nullptr;
-    }
-    item->cell = &cells.Find(getChildKind(patch.kind), FindRingLayouts(patch.patch, patch.locals),
-                             [&] { return makeItemCell(patch, cells.GetRules()); });
-    return item;
+RingItem const &RingItem::Get(CellType const &type, CellPatch const &patch, RingCells &cells) {
+    constexpr int kKind = PatternTable::GetKind<double>(PatternOf::RingItem);
+    return type.GetPatterns().Get<RingItem>(kKind, nullptr, nullptr, [&] {
+        RingItem item;
+        bool const isPlain = item.rings.Init(patch.patch, patch.locals, cells.GetRules());
+        auto const &rings = item.rings.GetRings();
+        if (!isPlain || std::all_of(rings.begin(), rings.end(), [](VertexRings::Ring const &ring) {
+                return ring.isInLattice;
+            })) {
+            return RingItem();
+        }
+        item.cell =
+            &cells.Find(getChildKind(patch.kind), FindRingLayouts(patch.patch, patch.locals),
+                        [&] { return makeItemCell(patch, cells.GetRules()); });
+        return item;
+    });
 }
 
 // Finds the cells of a face.

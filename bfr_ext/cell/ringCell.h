@@ -103,13 +103,15 @@ private:
 
 /// \brief An edge or a vertex of a base face that has rings of its own, since the face itself is not plain or
 /// not asked for them.
+///
+/// It is kept with its type: all faces around a vertex of many, or those of whole strips of edges, share it.
 struct RingItem {
-    VertexRings rings; ///< of the start of the edge and of its end, or of the vertex
-    RingCell const *cell;
+    VertexRings rings;              ///< of the start of the edge and of its end, or of the vertex
+    RingCell const *cell = nullptr; ///< null where the edge or vertex is in a lattice, or not plain
 
-    /// Null where the edge or vertex is in a lattice, or not plain.
-    static std::shared_ptr<RingItem const> Make(FarExt::internal::CellPatch const &patch,
-                                                RingCells &cells);
+    /// That of a type, which \p patch is of.
+    static RingItem const &Get(CellType const &type, FarExt::internal::CellPatch const &patch,
+                               RingCells &cells);
 };
 
 /// A plain base face that is not in a lattice, with its rings: those of its vertices in turn, each from
