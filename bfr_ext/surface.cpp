@@ -244,7 +244,6 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         if (!_type->IsInLattice()) {
             // Mostly no other face has the same, so that it would be waited for.
             _type->GetStep().Prefetch();
-            _type->GetBorder(getTurns()).sums.Prefetch();
         }
         evaluator.Evaluate(*_type, tessellation.getCellPlan(), pointDesc.size, controlPoints,
                            pointDesc.stride, results[0], resultDesc.stride);

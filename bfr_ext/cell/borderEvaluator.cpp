@@ -30,7 +30,6 @@ void BorderEvaluator<REAL>::SetFace(CellType const &type, int const *turns, REAL
     _stride = stride;
     _size = size;
     _paddedSize = StepMatrix::GetPaddedSize(size);
-    _border = nullptr;
     _edge = {};
 }
 
@@ -48,26 +47,7 @@ void BorderEvaluator<REAL>::SetFace(PlainFaceType const &type, int const *turns,
     _stride = stride;
     _size = size;
     _paddedSize = _values.GetPaddedSize();
-    _border = nullptr;
     _edge = {};
-}
-
-// What is neither in a lattice nor has rings follows from sums.  A plain face may have such an item, too,
-// where a closed mesh is so small that its lattice meets itself.
-template <typename REAL>
-REAL const *BorderEvaluator<REAL>::getSums(std::size_t item) {
-    if (!_border) {
-        _border = &getType().GetBorder(_turns);
-        std::size_t const numPoints = _border->sums.GetNumParentPoints();
-        _paddedPoints.resize(numPoints * _paddedSize);
-        for (std::size_t i = 0; i < numPoints; ++i) {
-            StepMatrix::Pad(_points + std::ptrdiff_t(i) * _stride, _size,
-                            &_paddedPoints[i * _paddedSize]);
-        }
-        _sums.resize(_border->sums.GetNumRows() * _paddedSize);
-        _border->sums.Apply(_paddedPoints.data(), _paddedSize, _sums.data());
-    }
-    return &_sums[_border->items[item].firstSum * _paddedSize];
 }
 
 template <typename REAL>
@@ -82,15 +62,13 @@ void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
         }
     }
     CellType::BorderItem const &item = getType().GetBorderItem(_turns, _numEdges + vert);
-    if (item.type->IsInLattice()) {
-        SumUpPlaces(GetVertexMatrix(*item.type),
-                    {_points, _stride, _size, item.points.data(), result, 0});
-    } else if (item.rings) {
+    if (item.rings) {
         _vertexValues.Set(item.rings->rings, item.points.size(), item.points.data(), _points,
                           _stride, _size);
         _vertexValues.EvaluateVertex(*item.rings->cell, 0, 0, result);
     } else {
-        std::copy_n(getSums(_numEdges + vert), _size, result);
+        SumUpPlaces(GetVertexMatrix(*item.type),
+                    {_points, _stride, _size, item.points.data(), result, 0});
     }
 }
 
@@ -126,8 +104,19 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
         _edge = {&cell.GetType(), &cell, _edgeValues.GetPoints(), std::ptrdiff_t(_paddedSize),
                  _indices.data()};
     } else {
-        REAL const *const sums = getSums(edge);
-        _edge = {_border->items[edge].type, nullptr, sums, std::ptrdiff_t(_paddedSize), nullptr};
+        CellType::Child const &longEdge = item.type->GetChildren()[0];
+        _paddedPoints.resize(item.points.size() * _paddedSize);
+        for (std::size_t i = 0; i < item.points.size(); ++i) {
+            StepMatrix::Pad(_points + item.points[i] * _stride, _size,
+                            &_paddedPoints[i * _paddedSize]);
+        }
+        StepMatrix const &step = item.type->GetStep();
+        _stepPoints.resize(step.GetNumRows() * _paddedSize);
+        step.Apply(_paddedPoints.data(), _paddedSize, _stepPoints.data());
+        _longEdgePoints.resize(longEdge.step.GetNumRows() * _paddedSize);
+        longEdge.step.CopyPoints(_stepPoints.data(), _paddedSize, _longEdgePoints.data());
+        _edge = {longEdge.type, nullptr, _longEdgePoints.data(), std::ptrdiff_t(_paddedSize),
+                 nullptr};
     }
 }
 

@@ -72,7 +72,6 @@ private:
             [&] { return makeMatrix(type, cell, makePoints()); });
     }
     CellType const &getType() const { return _plain ? _plain->Get() : *_type; }
-    REAL const *getSums(std::size_t item);
     void setEdge(std::size_t edge);
     void sumUp(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t resultStride) const {
         SumUpPlaces(matrix,
@@ -87,14 +86,14 @@ private:
     std::ptrdiff_t _stride = 0;
     std::size_t _size = 0;
     std::size_t _paddedSize = 0;
-    CellType::Border const *_border = nullptr; // once sums are asked for
-    std::vector<REAL> _paddedPoints;
-    std::vector<REAL> _sums; // of the border
     // Of the edge that was last asked for, if any.
     std::size_t _edgeNumber = 0;
     Sources _edge = {};
     bool _isReversed = false;
     std::vector<int> _indices;
+    std::vector<REAL> _paddedPoints;
+    std::vector<REAL> _stepPoints;
+    std::vector<REAL> _longEdgePoints;
     RingValues<REAL> _values;     // of a plain face
     RingValues<REAL> _edgeValues; // of its own rings
     RingValues<REAL> _vertexValues;

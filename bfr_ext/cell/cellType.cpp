@@ -18,9 +18,8 @@ namespace {
 
 using Vector = std::vector<double>;
 
-// The kinds of whole borders, where those of their items are their numbers.
-constexpr int kWholeBorder = -1;
-constexpr int kLatticeBorder = -2;
+// The kind of a whole border, where those of its items are their numbers.
+constexpr int kLatticeBorder = -1;
 
 // Appends a number in as many bytes as it takes, small ones, of either sign, in one.
 void addNumber(int number, std::string &key) {
@@ -286,47 +285,6 @@ CellType::LatticeBorder const &CellType::GetLatticeBorder() const {
                 border.items[item].push_back(&GetBorderItem(turns.data(), item));
             }
         }
-        return border;
-    });
-}
-
-CellType::Border const &CellType::GetBorder(int const *turns) const {
-    auto const numEdges = std::size_t(GetNumCorners());
-    return _borderItems.Get<Border>(kWholeBorder, turns, turns + 2 * numEdges, [&] {
-        Border border;
-        PatchRefinement sums;
-        sums.numParentVerts = GetNumPoints();
-        sums.firsts.push_back(0);
-        auto const addRow = [&](BorderItem const &item, auto const &forEachEntry) {
-            forEachEntry([&](std::size_t point, double weight) {
-                sums.verts.push_back(item.points[point]);
-                sums.weights.push_back(weight);
-            });
-            sums.firsts.push_back(int(sums.verts.size()));
-        };
-        for (std::size_t i = 0; i < 2 * numEdges; ++i) {
-            BorderItem const &item = GetBorderItem(turns, i);
-            border.items.push_back({&item, nullptr, sums.firsts.size() - 1});
-            if (item.rings || item.type->IsInLattice()) {
-                continue;
-            }
-            if (i < numEdges) {
-                Child const &longEdge = item.type->GetChildren()[0];
-                border.items.back().type = longEdge.type;
-                for (std::size_t row = 0; row < longEdge.step.GetNumRows(); ++row) {
-                    addRow(item, [&](auto const &add) { longEdge.step.ForEachEntry(row, add); });
-                }
-                continue;
-            }
-            border.items.back().type = item.type;
-            Vector const &weights = item.type->GetCornerPoints()[0];
-            addRow(item, [&](auto const &add) {
-                for (std::size_t point = 0; point < weights.size(); ++point) {
-                    add(point, weights[point]);
-                }
-            });
-        }
-        border.sums = StepMatrix(sums);
         return border;
     });
 }

@@ -108,21 +108,6 @@ public:
         std::vector<std::vector<BorderItem const *>> items;
     };
     LatticeBorder const &GetLatticeBorder() const;
-    /// \brief All of these together, with the sums of the face's points that the border is made of, in
-    /// the order in which the items have their points: the points of the long edges that edges become in
-    /// the first step, and the surface at the vertices, but for items in a lattice or with rings.
-    struct Border {
-        struct Item {
-            BorderItem const *item;
-            CellType const *type; ///< of the long edge; null where there are no sums
-            std::size_t firstSum; ///< of the surface at the vertex or of the long edge's points
-        };
-        std::vector<Item> items; ///< by edge and then by vertex
-        StepMatrix sums;
-    };
-    /// As GetBorderItem(), of a face that is not in a lattice: few have the same.
-    Border const &GetBorder(int const *turns) const;
-
     /// What has been made of this type.
     PatternTable &GetPatterns() const { return _patterns; }
 
