@@ -3,8 +3,7 @@
 
 #include "far_ext/limit/latticeStencils.h"
 #include "far_ext/limit/limitMultiplier.h"
-#include "far_ext/limit/regularFaces.h"
-#include "far_ext/limit/regularVertices.h"
+#include "far_ext/limit/plainFaces.h"
 #include "far_ext/stencil/levelStencils.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
@@ -26,9 +25,7 @@ using internal::LevelStencils;
 using internal::LimitMask;
 using internal::LimitRow;
 using internal::LimitRows;
-using internal::RegularFace;
-using internal::RegularFaces;
-using internal::RegularVertices;
+using internal::PlainFaces;
 
 LimitSides::LimitSides(TopologyLevel const &level) : _numVertices(level.GetNumVertices()) {
     internal::Level const &topology = level.GetLevel();
@@ -111,81 +108,39 @@ private:
     std::vector<REAL> &dvWeights() { return const_cast<std::vector<REAL> &>(this->GetDvWeights()); }
 };
 
-// What the limit of the vertices of a level follows from, in terms of control vertices or of levels
-// before.
+// What most vertices of a level follow from, in terms of levels before.
 struct EarlierLimits {
     EarlierLimits(internal::MeshLevels const &mesh, int level) : lattice(mesh, level) {}
 
     Status Find(internal::MeshLevels const &mesh, HexSchemeOptions const &schemeOptions,
                 LimitRows &rows) {
-        Status result = lattice.FindMasks(schemeOptions, rows);
+        Status const result = lattice.FindMasks(schemeOptions, rows);
         if (!result.IsOk()) {
             return result;
         }
-        faces.emplace(mesh, rows.GetLevel().depth, lattice.GetMarks());
-        result = faces->FindMasks(schemeOptions, rows);
-        if (result.IsOk()) {
-            verts.emplace(mesh, schemeOptions, rows, faces->GetOthers());
-        }
-        return result;
+        plain.emplace(mesh, rows.GetLevel().depth, lattice.GetMarks());
+        return plain->FindRows(schemeOptions, rows);
     }
 
     LatticeFaces lattice;
-    std::optional<RegularFaces> faces;
-    std::optional<RegularVertices> verts;
+    std::optional<PlainFaces> plain;
 };
 
-// The rows of a table, in its order: those of vertices, further sides and face centres.  Each is in
-// terms of the vertices of some level.
+// The rows of a table, in its order: those of vertices, further sides and face centres.
 class PointRows {
 public:
-    // None, for a row that is made otherwise.
-    static constexpr int kNoLevel = -1;
-
-    PointRows(LimitRows const *vertexRows, EarlierLimits const *earlier, LimitSides const *sides,
+    PointRows(LimitRows const *vertexRows, LimitSides const *sides,
               FaceLimitMaskFinder const *faceMasks, Level const &level)
-        : _vertexRows(vertexRows), _earlier(earlier), _sides(sides), _faceMasks(faceMasks),
-          _level(level), _numSides(!vertexRows ? 0
-                                   : sides     ? sides->GetNumSides()
-                                               : level.numVertices) {}
+        : _vertexRows(vertexRows), _sides(sides), _faceMasks(faceMasks), _level(level),
+          _numSides(!vertexRows ? 0
+                    : sides     ? sides->GetNumSides()
+                                : level.numVertices) {}
 
     std::int64_t GetNumRows() const {
         return std::int64_t(_numSides) + (_faceMasks ? _level.numFaces : 0);
     }
     // Of vertices.
     Index GetNumVertexRows() const { return _vertexRows ? _level.numVertices : 0; }
-
-    // Once their number is checked.
-    void FindLevels() {
-        _levels.assign(std::size_t(GetNumRows()), _level.depth);
-        if (!_earlier) {
-            return;
-        }
-        std::vector<unsigned char> const &ofLattice = _earlier->lattice.GetMarks();
-        internal::ParallelFor(Index(ofLattice.size()), [&](Index vert) {
-            if (ofLattice[std::size_t(vert)]) {
-                _levels[std::size_t(vert)] = kNoLevel;
-            }
-        });
-        for (RegularFaces::OfLevel const &ofLevel : _earlier->faces->GetLevels()) {
-            for (RegularFaces::Set const *set : {&ofLevel.fVertices, &ofLevel.ownVertices}) {
-                internal::ParallelFor(Index(set->faces.size()), [&](Index i) {
-                    RegularFace const &face = set->faces[std::size_t(i)];
-                    face.ForEachCorner([&](int corner) {
-                        _levels[std::size_t(set->firstVertex + face.firstCorner + corner)] =
-                            kNoLevel;
-                    });
-                });
-            }
-        }
-        for (int level = 0; level < _level.depth; ++level) {
-            for (Index const vert : _earlier->verts->GetVertices(level)) {
-                _levels[std::size_t(vert)] = level;
-            }
-        }
-    }
-    // The level of the vertices of a row.
-    int GetLevel(Index row) const { return _levels[std::size_t(row)]; }
 
     // What a row refers to.
     struct Scratch {
@@ -194,14 +149,11 @@ public:
         std::map<int, LimitMask> plainMasks; // of faces, by size
     };
 
-    // That of a row which has a level.
+    // In terms of the vertices of the level; not that of a vertex which is made otherwise.
     LimitRow GetRow(Index row, Scratch &scratch) const {
         if (row < _numSides) {
-            Index const vert = _sides ? _sides->GetVertex(row) : row;
-            return GetLevel(row) < _level.depth
-                       ? _earlier->verts->GetRow(GetLevel(row), vert, scratch.sources)
-                       : _vertexRows->GetRow(vert, _sides ? _sides->GetLocalSide(row) : 0,
-                                             scratch.sources);
+            return _vertexRows->GetRow(_sides ? _sides->GetVertex(row) : row,
+                                       _sides ? _sides->GetLocalSide(row) : 0, scratch.sources);
         }
         Index const face = row - _numSides;
         LimitMask const &mask = findFaceMask(face, scratch);
@@ -224,38 +176,44 @@ private:
     }
 
     LimitRows const *const _vertexRows;
-    EarlierLimits const *const _earlier;
     LimitSides const *const _sides;
     FaceLimitMaskFinder const *const _faceMasks;
     Level const &_level;
     Index const _numSides;
-    std::vector<int> _levels; // by row
 };
 
-// Rows that are made together: the limits that a regular face gives, or some that are near one another.
+// Rows that are made together: vertices in a plain face, or some rows that are near one another.
 struct RowGroup {
-    Index first; ///< that of the face's corner 0, or the number in a list of rows
-    RegularFace const *face = nullptr; ///< of one of the sets
-    int set = -1;                      ///< its number, or -1
+    PlainFaces::Face const *face = nullptr;
+    int first = 0; ///< of the outputs of the face, or of a list of rows
 };
 
-// The rows in a table that have a level, in groups: the F-vertices of a face are near one another.
+// The rows of a table, but for those of lattices, in groups.
 class RowGroups {
 public:
     RowGroups(internal::MeshLevels const &mesh, int level, PointRows const &rows,
-              std::vector<RegularFaces::Set const *> const &sets) {
-        for (std::size_t i = 0; i < sets.size(); ++i) {
-            for (RegularFace const &face : sets[i]->faces) {
-                _groups.push_back({sets[i]->firstVertex + face.firstCorner, &face, int(i)});
+              EarlierLimits const *earlier) {
+        if (earlier) {
+            for (PlainFaces::Face const &face : earlier->plain->GetFaces()) {
+                int const numOutputs =
+                    earlier->plain->GetTypes()[std::size_t(face.type)].numOutputs;
+                for (int first = 0; first < numOutputs; first += internal::kMaxLimitRows) {
+                    _groups.push_back({&face, first});
+                }
             }
+            addVertices(mesh, level, earlier->plain->GetOthers());
+        } else if (rows.GetNumVertexRows() > 0) {
+            std::vector<Index> verts(std::size_t(rows.GetNumVertexRows()));
+            std::iota(verts.begin(), verts.end(), 0);
+            addVertices(mesh, level, verts);
         }
-        addVertices(mesh, level, rows);
         auto const numRows = Index(rows.GetNumRows());
         for (Index row = rows.GetNumVertexRows(); row < numRows; ++row) {
-            addRows(row, row + 1, rows);
+            _groups.push_back({nullptr, Index(_rows.size())});
+            _rows.push_back(row);
         }
         _numGroups = Index(_groups.size());
-        _groups.push_back({Index(_rows.size())});
+        _groups.push_back({nullptr, Index(_rows.size())});
     }
 
     Index GetNum() const { return _numGroups; }
@@ -267,41 +225,44 @@ public:
     }
 
 private:
-    // Those of the rows that have a level.
-    void addRows(Index begin, Index end, PointRows const &rows) {
-        auto const first = Index(_rows.size());
-        for (Index row = begin; row < end; ++row) {
-            if (rows.GetLevel(row) == PointRows::kNoLevel) {
-                continue;
+    // Those that are F-vertices of one face go together.
+    void addVertices(internal::MeshLevels const &mesh, int level, std::vector<Index> const &verts) {
+        constexpr int kMaxVertices = 8;
+        // Vertices are numbered as those of the levels before, as far as all of these make V-vertices.
+        int child = level;
+        while (child > 0 && !mesh.refinements[std::size_t(child) - 1].isTruncation &&
+               mesh.levels[std::size_t(child)].numVVertices ==
+                   mesh.levels[std::size_t(child) - 1].numVertices) {
+            --child;
+        }
+        Index end = mesh.levels[std::size_t(child)].numVertices; // of the vertices of a level
+        Index endOfFace = 0;
+        int numTogether = 0;
+        for (Index const vert : verts) {
+            while (vert >= end) {
+                end = mesh.levels[std::size_t(++child)].numVertices;
             }
-            if ((Index(_rows.size()) - first) % internal::kMaxLimitRows == 0) {
-                _groups.push_back({Index(_rows.size())});
+            if (vert >= endOfFace || numTogether == kMaxVertices) {
+                _groups.push_back({nullptr, Index(_rows.size())});
+                numTogether = 0;
             }
-            _rows.push_back(row);
+            if (vert >= endOfFace) {
+                endOfFace = findEndOfFace(mesh, child, vert);
+            }
+            _rows.push_back(vert);
+            ++numTogether;
         }
     }
 
-    void addVertices(internal::MeshLevels const &mesh, int level, PointRows const &rows) {
-        Index const numVertices = rows.GetNumVertexRows();
-        // Vertices are numbered as those of the levels before, as far as all of these make V-vertices.
-        int firstLevel = level;
-        while (firstLevel > 0 && !mesh.refinements[std::size_t(firstLevel) - 1].isTruncation &&
-               mesh.levels[std::size_t(firstLevel)].numVVertices ==
-                   mesh.levels[std::size_t(firstLevel) - 1].numVertices) {
-            --firstLevel;
+    static Index findEndOfFace(internal::MeshLevels const &mesh, int child, Index vert) {
+        internal::Refinement const *const refinement =
+            child > 0 ? &mesh.refinements[std::size_t(child) - 1] : nullptr;
+        if (!refinement || refinement->isTruncation || vert < refinement->child->numVVertices) {
+            return vert + 1;
         }
-        Index const numFirst =
-            std::min(numVertices, mesh.levels[std::size_t(firstLevel)].numVertices);
-        for (Index row = 0; row < numFirst; ++row) {
-            addRows(row, row + 1, rows);
-        }
-        for (int child = firstLevel + 1; child <= level && numVertices > 0; ++child) {
-            Level const &parent = mesh.levels[std::size_t(child) - 1];
-            for (Index face = 0; face < parent.numFaces; ++face) {
-                addRows(parent.numVertices + parent.faceFirstCorner[face],
-                        parent.numVertices + parent.faceFirstCorner[face + 1], rows);
-            }
-        }
+        Level const &parent = *refinement->parent;
+        Index const corner = refinement->GetChildVertexCorner(vert);
+        return vert + parent.faceFirstCorner[parent.FindFaceOfCorner(corner) + 1] - corner;
     }
 
     std::vector<RowGroup> _groups;
@@ -315,30 +276,21 @@ class TableBuilder {
     using Multiplier = internal::LimitMultiplier<REAL>;
     using Columns = typename Multiplier::Columns;
     using RowBits = typename Multiplier::RowBits;
-    using FaceRows = internal::RegularFaceRows;
+    using SharedRows = typename Multiplier::SharedRows;
     using LatticeStencils = internal::LatticeStencils<REAL>;
 
 public:
     TableBuilder(internal::MeshLevels const &mesh, int level, PointRows const &rows,
                  EarlierLimits const *earlier, Index numIndices, bool hasDerivatives)
-        : _level(level), _rows(rows), _numIndices(numIndices), _hasDerivatives(hasDerivatives),
-          _table(new WritableLimitTable<REAL>(numIndices)) {
-        std::vector<RegularFaces::Set const *> sets;
+        : _level(level), _rows(rows), _plain(earlier ? &*earlier->plain : nullptr),
+          _groups(mesh, level, rows, earlier), _numIndices(numIndices),
+          _hasDerivatives(hasDerivatives), _table(new WritableLimitTable<REAL>(numIndices)) {
         if (earlier) {
             _lattice.emplace(earlier->lattice, hasDerivatives);
-            std::vector<RegularFaces::OfLevel> const &levels = earlier->faces->GetLevels();
-            for (std::size_t i = 0; i < levels.size(); ++i) {
-                for (RegularFaces::Set const *set :
-                     {&levels[i].fVertices, &levels[i].ownVertices}) {
-                    if (!set->faces.empty()) {
-                        sets.push_back(set);
-                        _regularRows.push_back({&mesh.levels[i], {}});
-                        shareRows(*set, _regularRows.back());
-                    }
-                }
+            for (PlainFaces::Type const &type : _plain->GetTypes()) {
+                _sharedRows.push_back(shareRows(type));
             }
         }
-        _groups.emplace(mesh, level, rows, sets);
     }
 
     // Makes the stencils of which those of rows are combined, when the rows are to be factorized.
@@ -363,14 +315,16 @@ public:
             _lattice->CountSizes(sizes.data());
         }
         std::vector<KeptColumns> kept(
-            std::size_t(internal::GetNumParallelRanges(_groups->GetNum(), kRange)));
+            std::size_t(internal::GetNumParallelRanges(_groups.GetNum(), kRange)));
         forEachGroup([&](Multiplier &multiplier, Index const *rows, Index group) {
             Columns const columns = multiplier.FindColumns();
             kept[std::size_t(group / kRange)].Add(columns);
             for (int row = 0; row < multiplier.GetNumRows(); ++row) {
-                sizes[std::size_t(rows[row])] =
-                    int(std::count_if(columns.rows, columns.rows + columns.size,
-                                      [row](RowBits bits) { return (bits >> row & 1) != 0; }));
+                if (rows[row] != Far::INDEX_INVALID) {
+                    sizes[std::size_t(rows[row])] =
+                        int(std::count_if(columns.rows, columns.rows + columns.size,
+                                          [row](RowBits bits) { return (bits >> row & 1) != 0; }));
+                }
             }
         });
         std::int64_t const numWeights =
@@ -389,7 +343,8 @@ public:
         forEachGroup([&](Multiplier &multiplier, Index const *rows, Index group) {
             typename Multiplier::Place places[internal::kMaxLimitRows];
             for (int row = 0; row < multiplier.GetNumRows(); ++row) {
-                places[row] = _table->GetPlace(rows[row]);
+                places[row] = rows[row] != Far::INDEX_INVALID ? _table->GetPlace(rows[row])
+                                                              : typename Multiplier::Place();
             }
             multiplier.Fill(kept[std::size_t(group / kRange)].Get(group % kRange), places);
         });
@@ -419,12 +374,6 @@ private:
         std::vector<RowBits> rows;
     };
 
-    // Of a set of regular faces.
-    struct RegularRows {
-        Level const *level;
-        std::map<unsigned, typename Multiplier::SharedRows> ofCorners; // by RegularFace::corners
-    };
-
     // What a thread makes rows with.
     struct State {
         Multiplier multiplier;
@@ -432,21 +381,30 @@ private:
         Index rows[internal::kMaxLimitRows]; // of the table, by row of the multiplier
     };
 
-    // The rows of all kinds of faces of a set: some have fewer corners.
-    void shareRows(RegularFaces::Set const &set, RegularRows &regular) const {
-        FaceRows const rows(set.mask);
+    // The rows of a type, as many at a time as a group has.
+    std::vector<SharedRows> shareRows(PlainFaces::Type const &type) const {
+        std::vector<SharedRows> result;
         Multiplier multiplier(nullptr, 0, _hasDerivatives);
-        for (RegularFace const &face : set.faces) {
-            if (regular.ofCorners.count(face.corners) > 0) {
-                continue;
+        std::vector<Index> numbers(std::size_t(type.numSources));
+        std::iota(numbers.begin(), numbers.end(), 0);
+        std::vector<double> weights[3];
+        for (int output = 0; output < type.numOutputs; ++output) {
+            for (std::size_t sum = 0; sum < 3; ++sum) {
+                weights[sum].clear();
+                for (internal::LimitWeights const &ofSource : type.rows[std::size_t(output)]) {
+                    weights[sum].push_back(ofSource[sum]);
+                }
             }
-            multiplier.Clear();
-            face.ForEachCorner([&](int corner) {
-                Index numbers[FaceRows::kNumSources];
-                multiplier.AddRow(rows.GetRow(corner, numbers), 0);
-            });
-            regular.ofCorners.emplace(face.corners, multiplier.ShareRows());
+            multiplier.AddRow({type.numSources, numbers.data(), weights[0].data(),
+                               weights[1].data(), weights[2].data()},
+                              0);
+            if (multiplier.GetNumRows() == internal::kMaxLimitRows ||
+                output + 1 == type.numOutputs) {
+                result.push_back(multiplier.ShareRows());
+                multiplier.Clear();
+            }
         }
+        return result;
     }
 
     // The vertices of each level that rows are in terms of, ascending.
@@ -464,20 +422,18 @@ private:
             }
         };
         internal::ParallelForRange(
-            _groups->GetNum(), [] { return PointRows::Scratch(); },
+            _groups.GetNum(), [] { return PointRows::Scratch(); },
             [&](PointRows::Scratch &scratch, Index begin, Index end) {
                 for (Index i = begin; i < end; ++i) {
-                    RowGroup const &group = _groups->Get(i);
+                    RowGroup const &group = _groups.Get(i);
                     if (group.face) {
-                        Level const &level = *_regularRows[std::size_t(group.set)].level;
-                        Index sources[FaceRows::kNumFaceSources];
-                        FaceRows::GetFaceSources(level, *group.face, sources);
-                        mark(level.depth, sources, FaceRows::kNumFaceSources);
+                        mark(_plain->GetLevel(), _plain->GetSources(*group.face),
+                             getType(group).numSources);
                         continue;
                     }
-                    for (Index const row : _groups->GetRows(i)) {
+                    for (Index const row : _groups.GetRows(i)) {
                         LimitRow const limitRow = _rows.GetRow(row, scratch);
-                        mark(_rows.GetLevel(row), limitRow.sources, limitRow.size);
+                        mark(_level, limitRow.sources, limitRow.size);
                     }
                 }
             },
@@ -493,22 +449,25 @@ private:
 
     Index getFirstSource(int level) const { return _stencils ? _stencils->GetFirst(level) : 0; }
 
+    PlainFaces::Type const &getType(RowGroup const &group) const {
+        return _plain->GetTypes()[std::size_t(group.face->type)];
+    }
+
     void setRows(Index number, State &state) const {
-        RowGroup const &group = _groups->Get(number);
-        Index *next = state.rows;
+        RowGroup const &group = _groups.Get(number);
         if (group.face) {
-            RegularRows const &regular = _regularRows[std::size_t(group.set)];
-            Index sources[FaceRows::kNumFaceSources];
-            FaceRows::GetFaceSources(*regular.level, *group.face, sources);
-            state.multiplier.SetRows(regular.ofCorners.at(group.face->corners), sources,
-                                     getFirstSource(regular.level->depth));
-            group.face->ForEachCorner([&](int corner) { *next++ = group.first + corner; });
+            state.multiplier.SetRows(
+                _sharedRows[std::size_t(group.face->type)]
+                           [std::size_t(group.first / internal::kMaxLimitRows)],
+                _plain->GetSources(*group.face), getFirstSource(_plain->GetLevel()));
+            std::copy_n(_plain->GetOutputs(*group.face) + group.first,
+                        state.multiplier.GetNumRows(), state.rows);
             return;
         }
         state.multiplier.Clear();
-        for (Index const row : _groups->GetRows(number)) {
-            state.multiplier.AddRow(_rows.GetRow(row, state.scratch),
-                                    getFirstSource(_rows.GetLevel(row)));
+        Index *next = state.rows;
+        for (Index const row : _groups.GetRows(number)) {
+            state.multiplier.AddRow(_rows.GetRow(row, state.scratch), getFirstSource(_level));
             *next++ = row;
         }
     }
@@ -517,7 +476,7 @@ private:
     template <typename FUNCTION>
     void forEachGroup(FUNCTION function) {
         internal::ParallelForRange(
-            _groups->GetNum(),
+            _groups.GetNum(),
             [&] {
                 return State{
                     Multiplier(_stencils ? &*_stencils : nullptr, _numIndices, _hasDerivatives),
@@ -537,12 +496,13 @@ private:
 
     int const _level;
     PointRows const &_rows;
+    PlainFaces const *const _plain;
+    RowGroups const _groups;
     Index const _numIndices;
     bool const _hasDerivatives;
     std::unique_ptr<WritableLimitTable<REAL>> _table;
     std::optional<LatticeStencils> _lattice;
-    std::vector<RegularRows> _regularRows; // by set
-    std::optional<RowGroups> _groups;
+    std::vector<std::vector<SharedRows>> _sharedRows; // by type
     std::optional<LevelStencils> _stencils;
 };
 
@@ -611,12 +571,11 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
                           internal::GetStepsToLimit(schemeOptions));
     }
     EarlierLimits const *const ofEarlier = earlier ? &*earlier : nullptr;
-    PointRows rows(vertexRows ? &*vertexRows : nullptr, ofEarlier, sides ? &*sides : nullptr,
-                   faceMasks ? &*faceMasks : nullptr, level);
+    PointRows const rows(vertexRows ? &*vertexRows : nullptr, sides ? &*sides : nullptr,
+                         faceMasks ? &*faceMasks : nullptr, level);
     if (!internal::Report(checkNumRows(options.level, rows.GetNumRows()), status)) {
         return nullptr;
     }
-    rows.FindLevels();
     TableBuilder<REAL> builder(mesh, options.level, rows, ofEarlier,
                                refiner.GetLevel(hasStencils ? 0 : options.level).GetNumVertices(),
                                options.generate1stDerivatives);

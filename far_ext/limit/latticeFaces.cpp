@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "latticeFaces.h"
 
+#include "faceDescendants.h"
+#include "patchRows.h"
+
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
@@ -15,7 +18,6 @@ using Far::Index;
 namespace {
 
 using Point = LatticePatch::Point;
-using PatchWeights = std::vector<LimitWeights>; // by place
 
 constexpr double kTolerance = 1e-9; ///< of weights, as RegularFaces has it
 constexpr Index kRange = 64;        ///< of faces, which take some microseconds each
@@ -31,67 +33,6 @@ bool areEqual(PatchWeights const &a, PatchWeights const &b) {
     }
     return true;
 }
-
-/// \brief The rows of vertices of all levels in terms of a patch of level 0, each found once from those
-/// of the level before.
-class PatchRows {
-public:
-    PatchRows(MeshLevels const &mesh, HexSchemeOptions const &schemeOptions, int level,
-              Index const *verts, int numPlaces)
-        : _mesh(mesh), _rows(std::size_t(level) + 1), _numPlaces(std::size_t(numPlaces)) {
-        for (int i = 0; i < level; ++i) {
-            _masks.emplace_back(mesh.levels[std::size_t(i)], schemeOptions, Interpolation::Vertex);
-        }
-        for (std::size_t place = 0; place < _numPlaces; ++place) {
-            Row row(_numPlaces, 0);
-            row[place] = 1;
-            _rows[0].emplace(verts[place], std::move(row));
-        }
-    }
-
-    /// That of a limit row; nothing where it depends on other vertices.
-    PatchWeights Find(LimitRow const &ofLimit) {
-        PatchWeights weights(_numPlaces, LimitWeights());
-        for (int i = 0; i < ofLimit.size; ++i) {
-            Row const &row = findRow(_rows.size() - 1, ofLimit.sources[i]);
-            for (std::size_t place = 0; place < _numPlaces; ++place) {
-                weights[place][0] += ofLimit.weights[i] * row[place];
-                weights[place][1] += ofLimit.du[i] * row[place];
-                weights[place][2] += ofLimit.dv[i] * row[place];
-            }
-        }
-        return _isComplete ? weights : PatchWeights();
-    }
-
-private:
-    using Row = std::vector<double>;
-
-    Row const &findRow(std::size_t level, Index vert) {
-        auto const found = _rows[level].find(vert);
-        if (found != _rows[level].end()) {
-            return found->second;
-        }
-        Row row(_numPlaces, 0);
-        if (level == 0) {
-            _isComplete = false;
-        } else {
-            ForEachParentWeight(_mesh.refinements[level - 1], _masks[level - 1], vert,
-                                [&](Index pVert, double weight) {
-                                    Row const &pRow = findRow(level - 1, pVert);
-                                    for (std::size_t place = 0; place < _numPlaces; ++place) {
-                                        row[place] += weight * pRow[place];
-                                    }
-                                });
-        }
-        return _rows[level].emplace(vert, std::move(row)).first->second;
-    }
-
-    MeshLevels const &_mesh;
-    std::vector<std::unordered_map<Index, Row>> _rows; // by level and vertex
-    std::size_t const _numPlaces;
-    std::vector<RefinementMask> _masks;
-    bool _isComplete = true;
-};
 
 /// Numbers of points that are near to given ones.
 class PointFinder {
@@ -178,7 +119,7 @@ PatchWeights combine(PatchWeights weights, double const (&factors)[2][2]) {
 
 /// The first face of a set, and what is found for it.
 struct LatticeFaces::Sample {
-    std::vector<int> numbers; ///< by output of forEachOutput(), among those that differ
+    std::vector<int> numbers; ///< by output of ForEachDescendant(), among those that differ
     std::vector<Index> verts; ///< that differ
     std::vector<PatchWeights> weights;
 
@@ -243,43 +184,6 @@ PatchWeights LatticeFaces::getRow(LatticePatch const &patch, Orbit const &orbit,
     return isAsGiven ? weights : combine(std::move(weights), orbit.derivatives);
 }
 
-// Calls function(vert) for the vertices of the level that lie in a face of level 0, in an order that
-// begins at its first corner; for some twice.
-template <typename FUNCTION>
-void LatticeFaces::forEachOutput(Index face, FUNCTION function) const {
-    for (int i = 0; i < _level; ++i) {
-        Level const &level = _mesh.levels[std::size_t(i)];
-        Refinement const &refinement = _mesh.refinements[std::size_t(i)];
-        Index const first = level.faceFirstCorner[face];
-        for (Index corner = first; corner < level.faceFirstCorner[face + 1]; ++corner) {
-            function(refinement.GetCornerChildVertex(corner));
-            Index const edge = level.faceEdges[corner];
-            int const side = level.GetSideCorner(edge, 0) == corner ? 0 : 1;
-            forEachOutputOfHalf(i + 1, refinement.GetEdgeChildFace(edge), side, function);
-        }
-    }
-}
-
-// The same for what is made in half a hexagon of a level, of one side of its parent edge.
-template <typename FUNCTION>
-void LatticeFaces::forEachOutputOfHalf(int level, Index face, int side, FUNCTION &function) const {
-    EFaceSide const &places = side == 0 ? kEFaceSideA : kEFaceSideB;
-    for (int i = level; i < _level; ++i) {
-        Level const &ofFace = _mesh.levels[std::size_t(i)];
-        Refinement const &refinement = _mesh.refinements[std::size_t(i)];
-        Index const first = ofFace.faceFirstCorner[face];
-        for (Index const local :
-             {places.startVertex, places.endVertex, places.startFVertex, places.endFVertex}) {
-            function(refinement.GetCornerChildVertex(first + local));
-        }
-        for (Index const local : {places.startSpoke, places.fFaceEdge, places.endSpoke}) {
-            Index const edge = ofFace.faceEdges[first + local];
-            int const sideOfEdge = ofFace.GetSideCorner(edge, 0) == first + local ? 0 : 1;
-            forEachOutputOfHalf(i + 1, refinement.GetEdgeChildFace(edge), sideOfEdge, function);
-        }
-    }
-}
-
 Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows) {
     if (_sets.empty()) {
         return Status();
@@ -289,7 +193,7 @@ Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
     for (std::size_t i = 0; i < _sets.size(); ++i) {
         std::unordered_map<Index, int> numbers;
         Sample &sample = samples[i];
-        forEachOutput(_sets[i].faces.front(), [&](Index vert) {
+        ForEachDescendant(_mesh, 0, _level, _sets[i].faces.front(), [&](Index vert) {
             auto const [found, isNew] = numbers.emplace(vert, int(sample.verts.size()));
             if (isNew) {
                 sample.verts.push_back(vert);
@@ -315,16 +219,16 @@ Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
         return status;
     }
     std::vector<Set> sets;
+    std::vector<RefinementMask> const masks = MakeStepMasks(_mesh, schemeOptions, _level);
     for (std::size_t i = 0; i < _sets.size(); ++i) {
         Set &set = _sets[i];
-        PatchRows patchRows(_mesh, schemeOptions, _level, set.sources.data(),
-                            set.patch.GetNumPlaces());
+        PatchRows patchRows(_mesh, masks, 0, set.sources.data(), set.patch.GetNumPlaces());
         Index sources[PlainNeighborhoodGatherer::kNumRegular];
         for (Index const vert : samples[i].verts) {
             samples[i].weights.push_back(patchRows.Find(rows.GetRow(vert, 0, sources)));
         }
         if (ofSets[i] >= 0) {
-            setVertexMask(schemeOptions, rows, ofSets[i], set);
+            setVertexMask(masks, rows, ofSets[i], set);
         }
         if (setOrbits(samples[i], set)) {
             setOutputs(samples[i], set);
@@ -357,15 +261,14 @@ LatticeFaces::VertexPlace LatticeFaces::findPlace(Index vert) const {
     return {nullptr, 0, 0};
 }
 
-void LatticeFaces::setVertexMask(HexSchemeOptions const &schemeOptions, LimitRows const &rows,
+void LatticeFaces::setVertexMask(std::vector<RefinementMask> const &masks, LimitRows const &rows,
                                  Index vert, Set &set) const {
     Index sources[LatticePatch::kMaxPlaces];
     VertexPlace const place = findPlace(vert);
     getSources(place, sources);
     Index regularSources[PlainNeighborhoodGatherer::kNumRegular];
-    PatchWeights const weights =
-        PatchRows(_mesh, schemeOptions, _level, sources, set.patch.GetNumPlaces())
-            .Find(rows.GetRow(vert, 0, regularSources));
+    PatchWeights const weights = PatchRows(_mesh, masks, 0, sources, set.patch.GetNumPlaces())
+                                     .Find(rows.GetRow(vert, 0, regularSources));
     LimitMask::Tangents tangents;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         LimitWeights const &ofPlace = weights[i];
@@ -492,7 +395,7 @@ void LatticeFaces::setOutputs(Sample const &sample, Set &set) {
             for (Index i = begin; i < end; ++i) {
                 Index *const outputs = set.outputs.data() + std::size_t(i) * numOutputs;
                 auto number = sample.numbers.begin();
-                forEachOutput(set.faces[std::size_t(i)], [&](Index vert) {
+                ForEachDescendant(_mesh, 0, _level, set.faces[std::size_t(i)], [&](Index vert) {
                     for (int const place : places[std::size_t(*number)]) {
                         outputs[place] = vert;
                     }

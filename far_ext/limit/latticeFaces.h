@@ -90,14 +90,10 @@ private:
 
     static std::vector<LimitWeights> getRow(LatticePatch const &patch, Orbit const &orbit,
                                             bool isMirrored, int turns);
-    template <typename FUNCTION>
-    void forEachOutput(Index face, FUNCTION function) const;
-    template <typename FUNCTION>
-    void forEachOutputOfHalf(int level, Index face, int side, FUNCTION &function) const;
     void findFaces(int faceSize);
     VertexPlace findPlace(Index vert) const;
     static void getSources(VertexPlace const &of, Index *sources);
-    void setVertexMask(HexSchemeOptions const &schemeOptions, LimitRows const &rows, Index vert,
+    void setVertexMask(std::vector<RefinementMask> const &masks, LimitRows const &rows, Index vert,
                        Set &set) const;
     static bool setOrbits(Sample &sample, Set &set);
     void setOutputs(Sample const &sample, Set &set);

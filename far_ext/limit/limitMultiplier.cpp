@@ -35,7 +35,7 @@ void LimitMultiplier<REAL>::Clear() {
 
 template <typename REAL>
 void LimitMultiplier<REAL>::AddRow(LimitRow const &row, Index firstSource) {
-    auto const rowBit = RowBits(1u << GetNumRows());
+    auto const rowBit = RowBits(1) << GetNumRows();
     int const begin = _rows.empty() ? 0 : _rows.back().end;
     std::size_t const numTerms = std::size_t(begin) + std::size_t(row.size);
     if (_terms.size() < numTerms) {
@@ -88,22 +88,7 @@ auto LimitMultiplier<REAL>::FindColumns() -> Columns {
     }
     findLists();
     makeUnion();
-    auto const numColumns = int(_columns.size());
-    numberColumns(_columns.data(), numColumns);
-    RowBits ofAll = 0; // rows that are known to have all columns
-    for (List const &list : _lists) {
-        ofAll |= list.support.size() == numColumns ? list.rows : RowBits(0);
-    }
-    _rowsOfColumns.assign(_columns.size(), ofAll);
-    for (List const &list : _lists) {
-        if ((list.rows & ~ofAll) != 0) {
-            for (Index const index : list.support) {
-                int const column = _columnOfIndex[std::size_t(index)].value;
-                _rowsOfColumns[std::size_t(column)] |= list.rows;
-            }
-        }
-    }
-    return {_columns.data(), _rowsOfColumns.data(), numColumns};
+    return {_columns.data(), _rowsOfColumns.data(), int(_columns.size())};
 }
 
 template <typename REAL>
@@ -113,20 +98,18 @@ void LimitMultiplier<REAL>::findSourceColumns() {
         _columns.push_back(source.index);
     }
     std::sort(_columns.begin(), _columns.end());
-    // Sources of shared rows may be one vertex, where the mesh has no other end.
-    _columns.erase(std::unique(_columns.begin(), _columns.end()), _columns.end());
     numberColumns(_columns.data(), int(_columns.size()));
-    _rowsOfColumns.assign(_columns.size(), 0);
+    _rowsOfColumns.resize(_columns.size());
     for (Source const &source : _sources) {
-        int const column = _columnOfIndex[std::size_t(source.index)].value;
-        _rowsOfColumns[std::size_t(column)] |= source.rows;
+        int const column = _columnOfIndex[std::size_t(source.index)].column;
+        _rowsOfColumns[std::size_t(column)] = source.rows;
     }
 }
 
 template <typename REAL>
 void LimitMultiplier<REAL>::numberColumns(Index const *columns, int numColumns) {
     for (int i = 0; i < numColumns; ++i) {
-        _columnOfIndex[std::size_t(columns[i])].value = i;
+        _columnOfIndex[std::size_t(columns[i])].column = i;
     }
 }
 
@@ -161,20 +144,27 @@ void LimitMultiplier<REAL>::makeUnion() {
     beginRound(_columnOfIndex, _columnRound);
     _added.clear();
     for (Index const index : largest) {
-        _columnOfIndex[std::size_t(index)].round = _columnRound;
+        Entry &entry = _columnOfIndex[std::size_t(index)];
+        entry.round = _columnRound;
+        entry.rows = 0;
     }
     for (List const &list : _lists) {
         for (Index const index : list.support) {
-            Entry &column = _columnOfIndex[std::size_t(index)];
-            if (column.round != _columnRound) {
-                column.round = _columnRound;
+            Entry &entry = _columnOfIndex[std::size_t(index)];
+            if (entry.round != _columnRound) {
+                entry.round = _columnRound;
+                entry.rows = 0;
                 _added.push_back(index);
             }
+            entry.rows |= list.rows;
         }
     }
     std::sort(_added.begin(), _added.end());
     _columns.resize(std::size_t(largest.size()) + _added.size());
     std::merge(largest.begin(), largest.end(), _added.begin(), _added.end(), _columns.begin());
+    _rowsOfColumns.resize(_columns.size());
+    std::transform(_columns.begin(), _columns.end(), _rowsOfColumns.begin(),
+                   [this](Index index) { return _columnOfIndex[std::size_t(index)].rows; });
 }
 
 // The difference of each source to the first one, by column.
@@ -189,7 +179,7 @@ void LimitMultiplier<REAL>::findDifferences(Columns const &columns) {
     for (List &list : _lists) {
         list.firstPosition = int(_positions.size());
         for (Index const index : list.support) {
-            _positions.push_back(_columnOfIndex[std::size_t(index)].value);
+            _positions.push_back(_columnOfIndex[std::size_t(index)].column);
         }
     }
     auto const getPositions = [this](int source) {
@@ -231,7 +221,7 @@ void LimitMultiplier<REAL>::scatterTerms(Term const *begin, Term const *end, int
     std::fill(_sums.begin(), _sums.end(), REAL(0));
     for (Term const *term = begin; term != end; ++term) {
         Index const index = _sources[std::size_t(term->source)].index;
-        REAL *const sums = _sums.data() + _columnOfIndex[std::size_t(index)].value;
+        REAL *const sums = _sums.data() + _columnOfIndex[std::size_t(index)].column;
         for (int sum = 0; sum < kNumSums; ++sum) {
             sums[sum * std::ptrdiff_t(getStride(numColumns))] += term->factors[sum];
         }
@@ -296,7 +286,8 @@ void LimitMultiplier<REAL>::Fill(Columns const &columns, Place const *places) {
     if (_stencils) {
         findDifferences(columns);
     }
-    auto ofAll = RowBits(columns.size >= kVector ? ~0u : 0u); // rows that are summed up in place
+    RowBits ofAll =
+        columns.size >= kVector ? ~RowBits(0) : RowBits(0); // rows that are summed up in place
     for (int i = 0; i < columns.size; ++i) {
         ofAll &= columns.rows[i];
     }
@@ -306,6 +297,9 @@ void LimitMultiplier<REAL>::Fill(Columns const &columns, Place const *places) {
         Term const *const begin = ofRows.data() + terms.begin;
         Term const *const end = ofRows.data() + terms.end;
         Place const &place = places[row];
+        if (!place.indices) {
+            continue;
+        }
         if (!_stencils) {
             scatterTerms(begin, end, columns.size);
             write(row, columns, place);

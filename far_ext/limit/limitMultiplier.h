@@ -8,15 +8,16 @@
 #include "far_ext/stencil/levelStencils.h"
 #include "far_ext/vtr/indexSet.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
 
 /// Rows that a LimitMultiplier has at most.
-inline constexpr int kMaxLimitRows = 8;
+inline constexpr int kMaxLimitRows = 64;
 
 /// \brief Multiplies limit rows by the stencils of their sources, some rows at a time that are near
-/// one another: these have most sources in common, and sources mostly have the same indices.
+/// one another: these have most sources in common, and sources have indices in common.
 ///
 /// Tables are made in two passes, the first of which finds the indices of all rows.  Each thread has
 /// a multiplier.  Sums are formed in an order that the rows fix, of the differences to the stencil of
@@ -25,7 +26,7 @@ template <typename REAL>
 class LimitMultiplier {
 public:
     using Index = Far::Index;
-    using RowBits = unsigned char; ///< a bit for each row
+    using RowBits = std::uint64_t; ///< a bit for each row
 
     static_assert(8 * sizeof(RowBits) >= kMaxLimitRows);
 
@@ -65,14 +66,15 @@ public:
 
     using Place = LimitStencilPlace<REAL>;
     /// \brief Writes the stencils of all rows, whose \p columns are those that FindColumns() gave: an
-    /// entry for each of them that a row has.
+    /// entry for each of them that a row has.  A row without a place is not wanted.
     void Fill(Columns const &columns, Place const *places);
 
 private:
-    // What has a value in the round that is set.
+    // What an index has: its rows in the round that is set, and its column.
     struct Entry {
         unsigned round = 0;
-        int value = 0;
+        int column = 0;
+        RowBits rows = 0;
     };
     // A source of a row, and its part in the sums.
     static constexpr int kNumSums = 3; // of points, du and dv

@@ -122,18 +122,19 @@ bool PlainNeighborhoodGatherer::addFace(Index face, int local, PlainNeighborhood
         }
         *key++ = char(number);
     }
-    addIrregularCorners(face, local, result);
+    // Of a face's, all faces count as those of the ring.
+    addIrregularCorners(face, local, _neighbors.empty() || _faces.size() <= _neighbors.size(),
+                        result);
     return size < kEndOfBytes && result.sources.size() < kEndOfBytes;
 }
 
 // Of the faces further out, only the corners at the neighbours of the vertex matter.
-void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local,
+void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local, bool isRing,
                                                     PlainNeighborhood &result) const {
     if (_level.irregularCorners.empty()) {
         return;
     }
     auto const numComplete = Index(1 + _neighbors.size());
-    bool const isRing = _faces.size() <= _neighbors.size();
     Index const first = _level.faceFirstCorner[face];
     int const size = _level.GetFaceSize(face);
     char numAdded = 0;
@@ -221,6 +222,87 @@ bool PlainNeighborhoodGatherer::Gather(Index vert, std::vector<VertexMark> const
     for (int i = 0; i < numFaces; ++i) {
         if (!addOuterFaces(i, result)) {
             return false;
+        }
+    }
+    return true;
+}
+
+// All faces around a vertex in turn, from that on which was added first.
+bool PlainNeighborhoodGatherer::addFacesAround(Index vert, PlainNeighborhood &result) {
+    constexpr char kIsThere = 0; // in place of a size
+    Index const firstFace = _level.vertFirstFace[vert];
+    int const numFaces = _level.GetNumVertexFaces(vert);
+    if (numFaces < kRegularValence || numFaces >= kEndOfBytes) {
+        return false;
+    }
+    result.key.push_back(char(numFaces));
+    Index const *const faces = _level.vertFaces.data() + firstFace;
+    auto const find = [this](Index face) { return std::find(_faces.begin(), _faces.end(), face); };
+    int const first = int(std::min_element(faces, faces + numFaces,
+                                           [&](Index a, Index b) { return find(a) < find(b); }) -
+                          faces);
+    std::bitset<kEndOfBytes> isNeighbor;
+    for (int i = 0; i < numFaces; ++i) {
+        int const k = (first + i) % numFaces;
+        FaceCorner const corner = getFaceCorner(_level, firstFace + k);
+        if (find(faces[k]) != _faces.end()) {
+            result.key.push_back(kIsThere);
+        } else if (!addFace(faces[k], corner.local, result)) {
+            return false;
+        }
+        auto const number = std::size_t(_numbers.Find(corner.GetVertex(1)));
+        if (isNeighbor[number]) {
+            return false;
+        }
+        isNeighbor[number] = true;
+    }
+    return true;
+}
+
+bool PlainNeighborhoodGatherer::GatherFace(Index face, std::vector<VertexMark> const &marks,
+                                           PlainNeighborhood &result) {
+    auto const hasFeature = [&](Index vert) {
+        return !marks.empty() && marks[std::size_t(vert)] == VertexMark::Feature;
+    };
+    _numbers.Clear();
+    _faces.clear();
+    _neighbors.clear();
+    result.key.clear();
+    result.sources.clear();
+    Far::ConstIndexArray const verts = _level.GetFaceVertices(face);
+    if (std::any_of(verts.begin(), verts.end(), hasFeature) || !addFace(face, 0, result) ||
+        result.sources.size() != std::size_t(verts.size())) {
+        return false;
+    }
+    for (Index const vert : verts) {
+        result.key.push_back(char(_level.vertFaces[_level.vertFirstFace[vert]] == face));
+    }
+    for (Index const vert : verts) {
+        if (!addFacesAround(vert, result)) {
+            return false;
+        }
+    }
+    auto const numRing = _faces.size();
+    std::bitset<kEndOfBytes> isDone;
+    for (std::size_t i = 0; i < numRing; ++i) {
+        FaceCorner const corners = {_level.faceVerts.data() + _level.faceFirstCorner[_faces[i]],
+                                    _level.GetFaceSize(_faces[i]), 0};
+        for (int k = 0; k < corners.size; ++k) {
+            // Beside a vertex of the face, but none itself.
+            auto const isOfFace = [&](int place) {
+                return _numbers.Find(corners.GetVertex(place)) < Index(verts.size());
+            };
+            Index const vert = corners.GetVertex(k);
+            auto const number = std::size_t(_numbers.Find(vert));
+            if (isDone[number] || isOfFace(k) ||
+                !(isOfFace((k + 1) % corners.size) ||
+                  isOfFace((k + corners.size - 1) % corners.size))) {
+                continue;
+            }
+            isDone[number] = true;
+            if (hasFeature(vert) || !addFacesAround(vert, result)) {
+                return false;
+            }
         }
     }
     return true;

@@ -46,6 +46,12 @@ public:
     ///          result is of no use
     bool Gather(Index vert, std::vector<VertexMark> const &marks, PlainNeighborhood &result);
 
+    /// \brief The same of a face: the faces around its vertices and around their neighbours.  Its vertices
+    /// are the first sources, in their order.
+    ///
+    /// The key tells, too, of which of its vertices the face is the first one.
+    bool GatherFace(Index face, std::vector<VertexMark> const &marks, PlainNeighborhood &result);
+
     bool IsRegular(Index vert, std::vector<VertexMark> const &marks) const;
     /// The sources alone, of a vertex that is regular.
     static void GatherRegular(Level const &level, Index vert, Index sources[kNumRegular]);
@@ -54,7 +60,8 @@ private:
     int findFirstFace(Index vert);
     bool addFace(Index face, int local, PlainNeighborhood &result);
     bool addOuterFaces(int neighbor, PlainNeighborhood &result);
-    void addIrregularCorners(Index face, int local, PlainNeighborhood &result) const;
+    bool addFacesAround(Index vert, PlainNeighborhood &result);
+    void addIrregularCorners(Index face, int local, bool isRing, PlainNeighborhood &result) const;
 
     Level const &_level;
     IndexMap _numbers;             // of the sources

@@ -25,15 +25,6 @@ constexpr int kRegularFaceSize = HexIndexing::kNumEFaceCorners;
 /// beyond: there it is the face itself.
 struct RegularFace {
     bool HasCorner(int corner) const { return (corners >> corner & 1) != 0; }
-    /// Calls function(corner) for the corners that it has.
-    template <typename FUNCTION>
-    void ForEachCorner(FUNCTION function) const {
-        for (int corner = 0; corner < kRegularFaceSize; ++corner) {
-            if (HasCorner(corner)) {
-                function(corner);
-            }
-        }
-    }
 
     Far::Index firstCorner;
     unsigned corners; ///< a bit for each corner whose vertex has a limit of the face's mask

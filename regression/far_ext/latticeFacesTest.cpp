@@ -4,6 +4,7 @@
 // in them.
 #include "far_ext/limit/latticeFaces.h"
 #include "far_ext/vtr/hierarchy.h"
+#include "regression/far_ext/expectedRows.h"
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/meshOperations.h"
 #include "regression/shapes/torus.h"
@@ -27,14 +28,9 @@ using FarExt::internal::SteppedRow;
 
 namespace {
 
-LimitRows makeRows(TopologyRefiner const &refiner) {
-    auto const &level = refiner.GetHierarchy().mesh.levels[std::size_t(refiner.GetMaxLevel())];
-    return {level, refiner.GetSchemeOptions(), refiner.GetHexSchemeOptions()};
-}
-
 LatticeFaces findFaces(TopologyRefiner const &refiner) {
     LatticeFaces faces(refiner.GetHierarchy().mesh, refiner.GetMaxLevel());
-    LimitRows rows = makeRows(refiner);
+    LimitRows rows = MakeLimitRows(refiner);
     if (!faces.FindMasks(refiner.GetHexSchemeOptions(), rows).IsOk()) {
         throw std::runtime_error("no masks");
     }
@@ -48,37 +44,6 @@ std::size_t countFaces(LatticeFaces const &faces) {
     }
     return count;
 }
-
-/// The limit at vertices of the last level, from that level, as rows in terms of level 0.
-class Expected {
-public:
-    explicit Expected(TopologyRefiner const &refiner)
-        : _refiner(refiner), _rows(makeRows(refiner)) {
-        EXPECT_TRUE(_rows.Find().IsOk());
-    }
-
-    /// What is left of that of a vertex without \p row is nothing.
-    void Expect(Far::Index vert, SteppedRow const &row) const {
-        Far::Index sources[FarExt::internal::PlainNeighborhoodGatherer::kNumRegular];
-        SteppedRow left = FarExt::internal::StepRowBack(
-            _refiner.GetHierarchy().mesh, _refiner.GetHexSchemeOptions(),
-            _rows.GetRow(vert, 0, sources), _refiner.GetMaxLevel(), 0);
-        for (auto const &[source, weights] : row) {
-            for (std::size_t i = 0; i < weights.size(); ++i) {
-                left[source][i] -= weights[i];
-            }
-        }
-        for (auto const &[source, weights] : left) {
-            for (double const weight : weights) {
-                ASSERT_NEAR(weight, 0, 1e-8) << "vertex " << vert << ", source " << source;
-            }
-        }
-    }
-
-private:
-    TopologyRefiner const &_refiner;
-    LimitRows _rows;
-};
 
 /// The row of an output: number \p corner of an orbit, or of the mirror images in it.
 SteppedRow makeRow(LatticePatch const &patch, LatticeFaces::Orbit const &orbit, int corner,
@@ -98,7 +63,7 @@ SteppedRow makeRow(LatticePatch const &patch, LatticeFaces::Orbit const &orbit, 
 
 // Compares all rows, and counts what makes each vertex.
 void expectRows(TopologyRefiner const &refiner, LatticeFaces const &faces) {
-    Expected const expected(refiner);
+    ExpectedRows const expected(refiner, 0);
     std::vector<int> made(std::size_t(refiner.GetLevel(refiner.GetMaxLevel()).GetNumVertices()), 0);
     for (LatticeFaces::Set const &set : faces.GetSets()) {
         int const faceSize = set.patch.GetFaceSize();

@@ -167,9 +167,8 @@ TEST(LimitTable, RegularVerticesShareAMaskAtDeepLevels) {
     }
 }
 
-// Where all faces are hexagons most rows come from the levels before, whichever the mask, but for
-// Cosine.
-TEST(LimitTable, RowsOfRegularFacesAreThoseOfTheLevel) {
+// Where all faces are hexagons most rows come from the levels before, whichever the mask.
+TEST(LimitTable, RowsOfHexagonsAreThoseOfTheLevel) {
     for (char const *name : {"hexTorus", "hexGrid"}) {
         for (auto mask : {ReferenceMask::Average, ReferenceMask::Cosine, ReferenceMask::Smooth}) {
             SCOPED_TRACE(testing::Message() << name << ", mask " << int(mask));
