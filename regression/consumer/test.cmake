@@ -74,6 +74,13 @@ find_package(TBB CONFIG QUIET)
 find_path(OPENSUBDIVHEX_GL_INCLUDE_DIR GL/gl.h)
 mark_as_advanced(OPENSUBDIVHEX_GL_INCLUDE_DIR)
 set(missing $<$<NOT:$<BOOL:${TBB_FOUND}>>:tbb> $<$<NOT:$<BOOL:${OPENSUBDIVHEX_GL_INCLUDE_DIR}>>:gl>)
+set(notBuilt "")
+if(NOT TARGET osd_ext_gl)
+  list(APPEND notBuilt osd_ext/glRefinement)
+endif()
+if(NOT TARGET osd_ext_cuda)
+  list(APPEND notBuilt osd_ext/cuda)
+endif()
 add_test(NAME consumer.headers
   COMMAND ${CMAKE_COMMAND}
     -D sourceDir=${PROJECT_SOURCE_DIR}
@@ -81,6 +88,7 @@ add_test(NAME consumer.headers
     -D compiler=${CMAKE_CXX_COMPILER}
     -D "flags=${opensubdivDirs}"
     -D "missing=${missing}"
+    -D "notBuilt=${notBuilt}"
     -P ${PROJECT_SOURCE_DIR}/regression/consumer/headers.cmake)
 set_tests_properties(consumer.headers PROPERTIES FIXTURES_REQUIRED installed)
 if(OPENSUBDIVHEX_TOOLS)

@@ -143,7 +143,7 @@ bool CellPieces::MakeNext() {
             patch.reset();
         }
     }
-    CheckFinite(_piece, _input, "level 0: ", start);
+    CheckFinite(_piece, _input, "--adaptive: ", start);
     NormalizeNormals(&_piece);
     return !_piece.faceSizes.empty();
 }
@@ -248,7 +248,7 @@ void CellPieces::addValues(Patch const &patch, std::vector<int> const &verts, st
 }
 
 Mesh CellPieces::TakeFront() {
-    CheckFinite(_front, _input, "level 0: ");
+    CheckFinite(_front, _input, "--adaptive: ");
     NormalizeNormals(&_front);
     return std::move(_front);
 }

@@ -121,7 +121,8 @@ TEST_F(Hexrefine, RefusesWhatNoFloatHolds) {
         if (result.status == 0) {
             EXPECT_NO_THROW(ReadMesh(getPath(name)));
         } else {
-            EXPECT_NE(result.error.find("not a finite number"), std::string::npos) << result.error;
+            EXPECT_NE(result.error.find("too large for a float"), std::string::npos)
+                << result.error;
             EXPECT_FALSE(std::filesystem::exists(getPath(name)));
         }
     }

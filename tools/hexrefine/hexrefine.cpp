@@ -12,6 +12,7 @@
 #include "far_ext/version.h"
 #include "levelMesh.h"
 #include "libraryPaths.h"
+#include "nonManifold.h"
 #include "normals.h"
 #include "osd_ext/simdLevel.h"
 #include "picture.h"
@@ -330,6 +331,13 @@ Sdc::Options chooseOptions(Arguments const &arguments, MeshTags const &tags) {
     return options;
 }
 
+/// Prints a line, unless there is no \p message.
+void warn(std::string const &input, std::string const &message) {
+    if (!message.empty()) {
+        std::cerr << "hexrefine: " << EscapeControls(input + ": warning: " + message) << "\n";
+    }
+}
+
 /// The base mesh as the library takes it, validated.
 std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Arguments const &arguments, Mesh const &mesh,
                                                        Sdc::Options sdcOptions) {
@@ -345,8 +353,9 @@ std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Arguments const &argument
         throw FileError(arguments.input, status.GetMessage());
     }
     for (FarExt::Warning const &warning : status.GetWarnings()) {
-        std::cerr << "hexrefine: " << arguments.input << ": warning: " << warning.message << "\n";
+        warn(arguments.input, warning.message);
     }
+    warn(arguments.input, DescribeWhatComesApart(mesh, refiner->GetLevel(0)));
     return refiner;
 }
 

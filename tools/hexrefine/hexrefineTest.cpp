@@ -389,6 +389,34 @@ TEST_F(Hexrefine, WarnsOfInconsistentOrientation) {
     expectFailure(path + " --scheme doo-sabin", path, "non-manifold");
 }
 
+TEST_F(Hexrefine, WarnsOfWhatComesApart) {
+    std::string const vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 0 -1\n";
+    auto const getWarning = [&](std::string const &faces) {
+        std::string const path = makeFile("apart.obj", vertices + faces);
+        Result const result = run(path + " -l 1");
+        EXPECT_EQ(result.status, 0);
+        std::string const begin = "hexrefine: " + path + ": warning: ";
+        return result.error.substr(result.error.rfind(begin, 0) == 0 ? begin.size() : 0);
+    };
+    EXPECT_EQ(getWarning("f 1 2 3 4\nf 2 1 5\n"), "");
+    // A fin.
+    EXPECT_EQ(getWarning("f 1 2 3 4\nf 2 1 5\nf 2 1 6\n"),
+              "1 non-manifold edge comes apart, first between vertices 0 and 1 (counted from 0)\n");
+    // A face twice, on an edge of another: its own edges are those of two faces in one direction.
+    std::string const twice = getWarning("f 2 1 5\nf 1 2 3 4\nf 1 2 3 4\n");
+    EXPECT_NE(twice.find("1 non-manifold edge comes apart, first between vertices 0 and 1"),
+              std::string::npos)
+        << twice;
+    std::string const degenerate = getWarning("f 1 2 3 4\nf 2 1 5 1\n");
+    EXPECT_NE(degenerate.find("1 face has a vertex several times, first face 1 (counted from 0)"),
+              std::string::npos)
+        << degenerate;
+    // Of two faces that run an edge in the same direction the library warns.
+    std::string const flipped = getWarning("f 1 2 3 4\nf 1 2 5\n");
+    EXPECT_EQ(flipped.rfind("inconsistent orientation", 0), 0u);
+    EXPECT_EQ(flipped.find("come"), std::string::npos);
+}
+
 TEST_F(Hexrefine, FailedOutputLeavesNothing) {
     std::string const input = makeCubeFile();
     expectFailure(input + " -o " + getPath("missing/out.obj"), getPath("missing/out.obj"), "");

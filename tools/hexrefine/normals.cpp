@@ -3,6 +3,8 @@
 
 #include "evaluation.h"
 
+#include <algorithm>
+
 namespace OpenSubdivHex::Tools {
 
 bool IsNormal(VertexProperty const &property) {
@@ -15,16 +17,21 @@ bool IsNormal(VertexProperty const &property) {
 
 namespace {
 
+/// Whether \p property is a part of a normal that is not rounded to integers.
+bool isFloatNormal(VertexProperty const &property) {
+    return IsNormal(property) && !IsInteger(property.type);
+}
+
 /// Makes the normals that vertices have as properties 1 long.
 void normalizeProperties(Mesh *mesh) {
+    if (!HasFloatNormals(*mesh)) {
+        return;
+    }
     std::vector<VertexProperty *> normal;
     for (VertexProperty &property : mesh->vertexProperties) {
-        if (IsNormal(property) && !IsInteger(property.type)) {
+        if (isFloatNormal(property)) {
             normal.push_back(&property);
         }
-    }
-    if (normal.size() < 3) {
-        return;
     }
     std::vector<float> vectors(mesh->positions.size());
     for (std::size_t i = 0; i < vectors.size(); ++i) {
@@ -37,6 +44,11 @@ void normalizeProperties(Mesh *mesh) {
 }
 
 } // namespace
+
+bool HasFloatNormals(Mesh const &mesh) {
+    return std::count_if(mesh.vertexProperties.begin(), mesh.vertexProperties.end(),
+                         isFloatNormal) >= 3;
+}
 
 void NormalizeNormals(Mesh *mesh) {
     for (FVarChannel &channel : mesh->channels) {

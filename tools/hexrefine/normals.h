@@ -9,7 +9,11 @@ namespace OpenSubdivHex::Tools {
 /// Whether a property of vertices is a number of their normals.
 bool IsNormal(VertexProperty const &property);
 
-/// Makes all normals of \p mesh 1 long: those of channels and those of vertices.
+/// Whether vertices have normals as properties, not rounded to integers.
+bool HasFloatNormals(Mesh const &mesh);
+
+/// Makes all normals of \p mesh 1 long: those of channels and, where they are not
+/// rounded to integers, those of vertices.
 void NormalizeNormals(Mesh *mesh);
 
 } // namespace OpenSubdivHex::Tools

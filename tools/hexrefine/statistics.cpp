@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "statistics.h"
 
+#include "normals.h"
 #include "tagText.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshText.h"
@@ -88,6 +89,7 @@ private:
 AttributeStatistics CountAttributes(Mesh const &mesh) {
     AttributeStatistics attributes;
     attributes.vertexProperties = countProperties(mesh.vertexProperties);
+    attributes.hasNormals = HasFloatNormals(mesh);
     attributes.faceProperties = countProperties(mesh.faceProperties);
     NameList objects(&attributes.objects);
     NameList groups(&attributes.groups);
@@ -245,9 +247,11 @@ std::string formatTags(Statistics const &statistics) {
     }
     bool const hasHoles = !statistics.holes.empty() && statistics.holes[0] > 0;
     if (hasHoles && statistics.adaptive) {
-        lines += format("%d holes, which have no cells\n", statistics.holes[0]);
+        lines += format("%d %s no cells\n", statistics.holes[0],
+                        statistics.holes[0] == 1 ? "hole, which has" : "holes, which have");
     } else if (hasHoles) {
-        lines += format("%d holes; without them the last level has %d faces\n", statistics.holes[0],
+        lines += format("%d %s the last level has %d faces\n", statistics.holes[0],
+                        statistics.holes[0] == 1 ? "hole; without it" : "holes; without them",
                         statistics.levels.back().faces - statistics.holes.back());
     }
     for (std::size_t i = 0; i < statistics.channels.size(); ++i) {
@@ -293,7 +297,9 @@ std::string formatAttributes(Statistics const &statistics) {
     auto const addLine = [&](std::string const &begin, std::string const &text) {
         lines += text.empty() ? "" : begin + text + "\n";
     };
-    addLine("of vertices, interpolated linearly: ", join(attributes.vertexProperties));
+    addLine("of vertices, interpolated linearly" +
+                std::string(attributes.hasNormals ? ", normals then made 1 long: " : ": "),
+            join(attributes.vertexProperties));
     addLine("of faces: ", join(attributes.faceProperties));
     std::vector<std::string> counts;
     addCount("object", attributes.objects, &counts);

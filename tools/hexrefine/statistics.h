@@ -41,6 +41,7 @@ struct PropertyStatistics {
 /// file.
 struct AttributeStatistics {
     std::vector<PropertyStatistics> vertexProperties;
+    bool hasNormals = false; ///< among these, which are made 1 long
     std::vector<PropertyStatistics> faceProperties;
     std::vector<std::string> objects;
     std::vector<std::string> groups;

@@ -185,6 +185,10 @@ TEST_F(HexrefineTag, HolesAreLeftOut) {
     EXPECT_NE(result.out.find("2 holes; without them the last level has 29 faces"),
               std::string::npos)
         << result.out;
+    EXPECT_NE(run(makeGridFile("t hole 1/0/0 4\n") + " -l 1")
+                  .out.find("1 hole; without it the last level has 32 faces"),
+              std::string::npos);
+    makeGridFile("t hole 2/0/0 5 4\n");
     run(input + " -l 0 --quiet -o " + getPath("copy.off"));
     EXPECT_EQ(ReadMesh(getPath("copy.off")).GetNumFaces(), 7);
     EXPECT_EQ(ReadMesh(getPath("copy.off")).GetNumVertices(), 16);

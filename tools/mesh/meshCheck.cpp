@@ -18,7 +18,9 @@ void CheckFinite(Mesh const &mesh, std::string const &path, std::string const &p
         if (bad != values.end()) {
             throw FileError(path, place + name + " " +
                                       std::to_string(first + (bad - values.begin()) / width) +
-                                      " has a " + number + " that is not a finite number");
+                                      " has a " + number +
+                                      (place.empty() ? " that is not a finite number"
+                                                     : " that is too large for a float"));
         }
     };
     check("vertex", "coordinate", mesh.positions, 3, start.vertex);

@@ -17,7 +17,8 @@ struct MeshStart {
 };
 
 /// \brief Throws FileError for the file \p path, which names the vertex or the value, if a number
-/// of \p mesh is not finite.  \p place, such as "level 3: ", goes before the cause.
+/// of \p mesh is not finite.  \p place, such as "level 3: ", goes before the cause: there the numbers
+/// are sums of finite ones, beyond what floats hold.
 ///
 /// \param start  what is before it in the mesh that names are of
 void CheckFinite(Mesh const &mesh, std::string const &path, std::string const &place = "",

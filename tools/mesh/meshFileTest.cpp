@@ -155,10 +155,21 @@ TEST_F(MeshFile, FormFeedsAreSpaces) {
 
 TEST_F(MeshFile, RefusesBadObj) {
     std::string const vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
-    expectRefused("a.obj", vertices + "f 1 2 4\n", "line 4: vertex index 4 is out of range");
+    expectRefused("a.obj", vertices + "f 1 2 4\n",
+                  "line 4: vertex index 4 is out of range: the file has 3 of them");
+    expectRefused("a.obj", vertices + "f 1 2 2147483648\n",
+                  "line 4: vertex index 2147483648 is out of range");
+    expectRefused("a.obj", vertices + "f 1 2 -99999999999\n",
+                  "line 4: vertex index -99999999999 is out of range");
+    expectRefused("a.obj", vertices + "f 1 2 -\n", "line 4: '-' is not a vertex of a face");
+    expectRefused("a.obj", vertices + "vt 0 0\nf 1/ 2/ 3/\n",
+                  "line 5: '1/' has no index after '/'");
+    expectRefused("a.obj", vertices + "vt 0 0\nf 1/1/ 2/1/ 3/1/\n",
+                  "line 5: '1/1/' has no index after '/'");
     expectRefused("a.obj", vertices + "f 1 2 0\n", "line 4: vertex index 0 is out of range");
     expectRefused("a.obj", vertices + "f 1 2 -4\n", "line 4: vertex index -4 is out of range");
-    expectRefused("a.obj", vertices + "f 1 2 99999999999\n", "line 4: '99999999999'");
+    expectRefused("a.obj", vertices + "f 1 2 99999999999\n",
+                  "line 4: vertex index 99999999999 is out of range");
     expectRefused("a.obj", vertices + "f 1 2 3x\n", "line 4: '3x'");
     expectRefused("a.obj", vertices + "f 1 2 3/\n", "line 4: '3/'");
     expectRefused("a.obj", vertices + "f 1 2\n", "line 4: a face needs three corners");
@@ -214,7 +225,8 @@ TEST_F(MeshFile, RefusesBadOff) {
     for (char const *line : {"0 0 1.x", "0 0 1x", "0 0.5.5", "0 1.5.5 2", "1-2 3"}) {
         expectRefused("a.off", std::string("OFF\n1 1 0\n") + line + "\n3 0 0 0\n", "line 3: ");
     }
-    expectRefused("a.off", "OFF\n4 -2 0\n" + kFourVertices, "line 2: the numbers of vertices");
+    expectRefused("a.off", "OFF\n4 -2 0\n" + kFourVertices, "line 2: -2 is not a number of faces");
+    expectRefused("a.off", "OFF\n-4 2 0\n", "line 2: -4 is not a number of vertices");
     expectRefused("a.off", "OFF\n4 x 0\n" + kFourVertices, "line 2: the numbers of vertices");
     expectRefused("a.off", "OFF\n", "the numbers of vertices");
     expectRefused("a.off", "OFF\n4 0 0\n" + kFourVertices, "has no faces");

@@ -60,6 +60,8 @@ void joinContinuedLines(std::string *text) {
     *text = std::move(joined);
 }
 
+constexpr char kVertexName[] = "vertex";
+
 /// What the corners of faces have beside their vertices.
 struct Attribute {
     FVarKind kind;
@@ -92,8 +94,10 @@ struct ObjContent {
     [[noreturn]] void Refuse(int line, std::string const &cause) const {
         throw FileError(path, "line " + std::to_string(line) + ": " + cause);
     }
-    [[noreturn]] void RefuseIndex(int line, char const *name, int index) const {
-        Refuse(line, std::string(name) + " index " + std::to_string(index) + " is out of range");
+    [[noreturn]] void RefuseIndex(int line, char const *name, std::string_view index,
+                                  std::string const &more = "") const {
+        Refuse(line,
+               std::string(name) + " index " + std::string(index) + " is out of range" + more);
     }
 
     /// The index, from 0, of what a corner of the face that comes next names as \p index: counted
@@ -101,7 +105,8 @@ struct ObjContent {
     int Resolve(char const *name, int index, int numSoFar, int numTotal) const {
         int const result = index > 0 ? index - 1 : numSoFar + index;
         if (index == 0 || result < 0 || result >= numTotal) {
-            RefuseIndex(faceLines[mesh.faceSizes.size()], name, index);
+            RefuseIndex(faceLines[mesh.faceSizes.size()], name, std::to_string(index),
+                        ": the file has " + std::to_string(numTotal) + " of them");
         }
         return result;
     }
@@ -115,12 +120,23 @@ void checkCorner(ObjContent const &content, int line, std::string_view word) {
         std::string_view const number = rest.substr(0, slash);
         int index = 0;
         bool const isLeftOut = i == 1 && number.empty() && slash != std::string_view::npos;
+        char const *const name = i == 0   ? kVertexName
+                                 : i == 1 ? content.uvs.name
+                                          : content.normals.name;
+        if (i > 0 && !isLeftOut && number.empty()) {
+            content.Refuse(line, "'" + std::string(word) + "' has no index after '/'");
+        }
         if (!isLeftOut && !ParseInt(number, &index)) {
+            std::size_t const digits = number.substr(0, 1) == "-" ? 1 : 0;
+            if (digits < number.size() &&
+                number.find_first_not_of("0123456789", digits) == std::string_view::npos) {
+                content.RefuseIndex(line, name, number); // beyond 32 bits
+            }
             content.Refuse(line, "'" + std::string(word) + "' is not a vertex of a face");
         }
         if (i > 0 && !isLeftOut && index == 0) {
             // Tinyobj gives 0 for what is left out, too.
-            content.RefuseIndex(line, i == 1 ? content.uvs.name : content.normals.name, 0);
+            content.RefuseIndex(line, name, "0");
         }
         if (slash == std::string_view::npos) {
             return;
@@ -252,7 +268,7 @@ void addFace(void *data, tinyobj::index_t *corners, int numCorners) {
     Mesh &mesh = content.mesh;
     for (int i = 0; i < numCorners; ++i) {
         mesh.faceVertices.push_back(content.Resolve(
-            "vertex", corners[i].vertex_index, content.numVerticesSoFar, mesh.GetNumVertices()));
+            kVertexName, corners[i].vertex_index, content.numVerticesSoFar, mesh.GetNumVertices()));
     }
     addFaceValues(content, corners, numCorners, &tinyobj::index_t::texcoord_index, &content.uvs);
     addFaceValues(content, corners, numCorners, &tinyobj::index_t::normal_index, &content.normals);

@@ -180,11 +180,15 @@ Mesh ReadOff(std::string const &path, std::string *content) {
     int numVertices = 0;
     int numFaces = 0;
     int numEdges = 0;
+    std::string const place = "line " + std::to_string(numLines) + ": ";
     if (words.size() < 3 || words.size() > 4 || !ParseInt(words[1], &numVertices) ||
-        !ParseInt(words[2], &numFaces) || numVertices < 0 || numFaces < 0 ||
-        (words.size() == 4 && !ParseInt(words[3], &numEdges))) {
-        throw FileError(path, "line " + std::to_string(numLines) +
-                                  ": the numbers of vertices, faces and edges are expected");
+        !ParseInt(words[2], &numFaces) || (words.size() == 4 && !ParseInt(words[3], &numEdges))) {
+        throw FileError(path, place + "the numbers of vertices, faces and edges are expected");
+    }
+    for (auto const &[count, name] : {std::pair(numVertices, "vertices"), {numFaces, "faces"}}) {
+        if (count < 0) {
+            throw FileError(path, place + std::to_string(count) + " is not a number of " + name);
+        }
     }
 
     std::string const openMeshHeader =

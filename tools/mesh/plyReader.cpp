@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace OpenSubdivHex::Tools::internal {
 
@@ -201,7 +202,9 @@ public:
         PlyElement const *const vertices = find("vertex");
         PlyElement const *const faces = find("face");
         if (!faces) {
-            throw FileError(_path, "has no faces");
+            throw FileError(_path, find("tristrips") ? "has no faces, and its element tristrips is "
+                                                       "not read"
+                                                     : "has no faces");
         }
         if (!vertices || std::count_if(vertices->properties.begin(), vertices->properties.end(),
                                        [](PlyProperty const &property) {
@@ -266,6 +269,11 @@ private:
 
     int takeCount(PlyProperty const &list, Item const &item) {
         double const count = _source.Take(list.countType);
+        constexpr double kMostNumbers = std::numeric_limits<int>::max();
+        if (count > kMostNumbers && _source.MayHave(count)) {
+            _source.Refuse(item.GetName() + " has a list '" + list.name + "' of " +
+                           std::to_string(std::int64_t(count)) + " numbers, more than 2147483647");
+        }
         if (count < 0 || !_source.MayHave(count)) {
             _source.Refuse(item.GetName() + " has a list '" + list.name + "' of " +
                            std::to_string(std::int64_t(count)) + " numbers, which are not there");
