@@ -125,10 +125,14 @@ public:
         TileSums const tiles{matrix.GetNumPoints(), matrix.GetWidth(begin), points, stride,
                              indices};
         REAL const *const weights = matrix.GetBlock(begin);
-        std::size_t first = 0;
         std::size_t const end = (count + kSize - 1) / kSize * kSize;
-        for (; first + 3 * kSize <= end; first += 3 * kSize) {
+        std::size_t first = 0;
+        for (; first + kMaxTile * kSize <= end; first += kMaxTile * kSize) {
+            tiles.form<kMaxTile, NUM_COMPONENTS, HAS_INDICES>(weights + first, numbers, first);
+        }
+        if (first + 3 * kSize <= end) {
             tiles.form<3, NUM_COMPONENTS, HAS_INDICES>(weights + first, numbers, first);
+            first += 3 * kSize;
         }
         if (first + 2 * kSize <= end) {
             tiles.form<2, NUM_COMPONENTS, HAS_INDICES>(weights + first, numbers, first);
@@ -146,6 +150,10 @@ public:
     int const *indices;
 
 private:
+    // Registers of places at most, so that the sums of all components are in registers: there are 32 of
+    // the widest ones, and else 16.
+    static constexpr std::size_t kMaxTile = BYTES == 64 ? 4 : 3;
+
     /// NUM_LANES registers of places, from the first on, of each component.
     template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES>
     void form(REAL const *weights, Numbers &numbers, std::size_t first) const {
@@ -210,9 +218,9 @@ public:
             _count = std::min(_matrix.GetWidth(_begin), numPlaces - _begin);
             PlaceOfRow const *const firstRow = row;
             if (_sums.rows) {
-                while (row != _sums.rows + _sums.numRows && row->row < int(_begin + _count)) {
-                    ++row;
-                }
+                row = std::lower_bound(
+                    row, _sums.rows + _sums.numRows, int(_begin + _count),
+                    [](PlaceOfRow const &other, int end) { return other.row < end; });
                 if (row == firstRow) {
                     continue;
                 }
