@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellType.h"
 
-#include "halfCell.h"
 #include "plainFace.h"
 #include "ringCell.h"
 
@@ -179,18 +178,19 @@ void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) co
     CellMap map = {{{1, 0}, {0, 1}}, {0, 0}};
     std::vector<ChildStep const *> steps;
     for (int i = 0; i < numSteps; ++i) {
-        auto const c = std::size_t(corner);
-        auto const child = type->IsWhole() ? c + 1 : std::size_t(HalfCell::kCornerChildren[c]);
-        map =
-            Concatenate(map, type->IsWhole() ? HalfCell::kFromSector : HalfCell::kChildren[child]);
-        corner = type->IsWhole() ? 0 : HalfCell::kCornersOfChildren[c];
-        steps.push_back(&type->GetChildren()[child].step);
-        type = type->GetChildren()[child].type;
+        CornerChild const next = type->findCornerChild(corner);
+        Child const &child = type->GetChildren()[next.child];
+        map = Concatenate(map, *next.map);
+        corner = next.corner;
+        steps.push_back(&child.step);
+        type = child.type;
     }
     // Of a half cell, at an end of its long edge.
     std::vector<Vector> const &points = type->GetCornerPoints();
-    Vector along(points[0].size());
-    Vector across(points[0].size());
+    Vector differences[2];
+    auto &[along, across] = differences;
+    along.resize(points[0].size());
+    across.resize(points[0].size());
     for (std::size_t i = 0; i < along.size(); ++i) {
         along[i] = points[1][i] - points[0][i];
         across[i] = corner == 0 ? 2 * (points[3][i] - points[0][i]) - 0.5 * along[i]
@@ -198,39 +198,45 @@ void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) co
     }
     Vector scratch;
     for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
-        for (Vector *left : {&along, &across}) {
-            (*step)->ApplyLeft(*left, scratch);
-            left->swap(scratch);
+        for (Vector &left : differences) {
+            (*step)->ApplyLeft(left, scratch);
+            left.swap(scratch);
         }
     }
     for (std::size_t k = 0; k < 2; ++k) {
-        result[k].resize(along.size());
-        for (std::size_t i = 0; i < along.size(); ++i) {
-            result[k][i] = map.rows[0][k] * along[i] + map.rows[1][k] * across[i];
-        }
+        result[k] = map.GetDerivatives(differences, k);
     }
+}
+
+CellType::CornerChild CellType::findCornerChild(int corner) const {
+    if (IsWhole()) {
+        return {std::size_t(corner) + 1, 0, &HalfCell::kFromSector};
+    }
+    int const child = HalfCell::kCornerChildren[corner];
+    return {std::size_t(child), HalfCell::kCornersOfChildren[corner], &HalfCell::kChildren[child]};
 }
 
 // Differences tend to sums of the masks of the tangents, with factors that tend to those of the
 // derivatives; or grow or shrink by a rate that each step makes, where there are no derivatives: then
 // that is taken off.  Where they tend to nothing of the kind, as at some tips of cones, there is no
 // tangent plane, and they are taken as they are.
-void CellType::findDerivatives(std::size_t corner, Vector (&result)[2]) const {
-    // Sharp features alternate, so that two steps make a rate.
+void CellType::findParentDerivatives(int corner, Vector (&result)[2]) const {
+    // Sharp features alternate, so that two steps make a rate; those of the parent are one more.
     constexpr int kSteps = 20;
-    constexpr int kStepsAlone = 6;
+    constexpr int kStepsAlone = 5;
     constexpr double kLeastRate = 1e-4; // of two steps; less is what convergence leaves
+    GetCornerPoints();
     if (!_tangents.empty()) {
-        findDifferences(int(corner), kSteps, result);
+        findDifferences(corner, kSteps - 1, result);
     }
     Projection last;
     Projection before;
-    if (_tangents.empty() || !last.Find(result, _tangents[corner])) {
-        findDifferences(int(corner), kStepsAlone, result);
+    if (_tangents.empty() || !last.Find(result, _tangents[std::size_t(corner)])) {
+        findDifferences(corner, kStepsAlone, result);
         return;
     }
-    LimitMask::Tangents const &tangents = _tangents[corner];
-    findDifferences(int(corner), kSteps - 2, result);
+    LimitMask::Tangents const &tangents = _tangents[std::size_t(corner)];
+    findDifferences(corner, kSteps - 3, result);
     before.Find(result, tangents);
     Pair scales;
     for (std::size_t column = 0; column < 2; ++column) {
@@ -244,6 +250,15 @@ void CellType::findDerivatives(std::size_t corner, Vector (&result)[2]) const {
                            scales[1] * last.factors[k][1] * tangents.dv[i];
         }
     }
+}
+
+CellType::Derivatives const &CellType::GetParentDerivatives(int corner) const {
+    return _patterns.Get<Derivatives>(PatternTable::GetKind<double>(PatternOf::ParentDerivatives),
+                                      &corner, &corner + 1, [&] {
+                                          Derivatives result;
+                                          findParentDerivatives(corner, result.rows);
+                                          return result;
+                                      });
 }
 
 CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_t item) const {
@@ -294,7 +309,13 @@ std::vector<CellType::Corner> const &CellType::GetCorners() const {
         std::vector<Corner> corners(GetCornerPoints().size());
         for (std::size_t i = 0; i < corners.size(); ++i) {
             corners[i].point = GetCornerPoints()[i];
-            findDerivatives(i, corners[i].derivatives);
+            CornerChild const next = findCornerChild(int(i));
+            Child const &child = GetChildren()[next.child];
+            Derivatives const &ofChild = child.type->GetParentDerivatives(next.corner);
+            for (std::size_t k = 0; k < 2; ++k) {
+                child.step.ApplyLeft(next.map->GetDerivatives(ofChild.rows, k),
+                                     corners[i].derivatives[k]);
+            }
         }
         _corners = std::move(corners);
     });

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_TYPE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_TYPE_H
 
+#include "halfCell.h"
 #include "patternTable.h"
 #include "stepMatrix.h"
 
@@ -89,6 +90,15 @@ public:
     /// By corner; of cells.
     std::vector<Corner> const &GetCorners() const;
 
+    /// Derivatives by two coordinates, as sums of points.
+    struct Derivatives {
+        std::vector<double> rows[2];
+    };
+    /// \brief The derivatives that the cell before has at a corner which they share, by the coordinates of
+    /// this one and in terms of its points; those of this cell differ where steps make derivatives grow or
+    /// shrink.
+    Derivatives const &GetParentDerivatives(int corner) const;
+
     /// \brief An edge or a vertex of a base face, with which of the face's points its points are.
     struct BorderItem {
         CellType const *type;
@@ -112,8 +122,16 @@ public:
     PatternTable &GetPatterns() const { return _patterns; }
 
 private:
+    // The child that has a corner, which corner of it that is, and the child's coordinates.
+    struct CornerChild {
+        std::size_t child;
+        int corner;
+        CellMap const *map;
+    };
+
+    CornerChild findCornerChild(int corner) const;
     void findDifferences(int corner, int numSteps, std::vector<double> (&result)[2]) const;
-    void findDerivatives(std::size_t corner, std::vector<double> (&result)[2]) const;
+    void findParentDerivatives(int corner, std::vector<double> (&result)[2]) const;
 
     CellTypes &_types;
     mutable FarExt::internal::CellPatch _cell; // of vertices, without a patch once it is not needed

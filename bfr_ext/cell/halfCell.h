@@ -5,6 +5,7 @@
 #include "far_ext/vtr/basePolygon.h"
 
 #include <array>
+#include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -16,6 +17,16 @@ struct CellMap {
     Pair Apply(Pair const &p) const {
         return {shift[0] + (rows[0][0] * p[0] + rows[0][1] * p[1]),
                 shift[1] + (rows[1][0] * p[0] + rows[1][1] * p[1])};
+    }
+
+    /// The derivatives by coordinate \p k of the one cell, from those by both of the other.
+    std::vector<double> GetDerivatives(std::vector<double> const (&byOther)[2],
+                                       std::size_t k) const {
+        std::vector<double> result(byOther[0].size());
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            result[i] = rows[0][k] * byOther[0][i] + rows[1][k] * byOther[1][i];
+        }
+        return result;
     }
 
     Pair rows[2];

@@ -53,6 +53,23 @@ std::array<PlaceMatrix<REAL>, COUNT> const &getMatrices(PatternOf of, Leaf const
         [&] { return makeMatrices<REAL, COUNT>(leaf, find, getRow); });
 }
 
+// Of a child beside an edge of a face: the derivatives that the face has at the start of the edge, by the
+// coordinates in the edge's sector, as two places.
+template <typename REAL>
+PlaceMatrix<REAL> const &getFaceDerivatives(RingCell const &child) {
+    constexpr int kKind = PatternTable::GetKind<REAL>(PatternOf::FaceCorner);
+    return child.GetPatterns().Get<PlaceMatrix<REAL>>(kKind, nullptr, nullptr, [&] {
+        CellType::Derivatives const &derivatives = child.GetType().GetParentDerivatives(0);
+        PlaceMatrix<REAL> matrix(2, child.GetColumns().size());
+        std::vector<double> ordered;
+        for (std::size_t k = 0; k < 2; ++k) {
+            child.Order(HalfCell::kFromSector.GetDerivatives(derivatives.rows, k), ordered);
+            matrix.Set(k, ordered);
+        }
+        return matrix;
+    });
+}
+
 } // namespace
 
 template <typename REAL>
@@ -139,10 +156,8 @@ void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> 
                                     CellPlan const &plan) {
     _size = values.GetSize();
     _paddedSize = values.GetPaddedSize();
-    if (!plan[0].corners.empty()) {
-        evaluateCorners(type.Get(), plan[0], values.GetControlPoints());
-    }
     FaceRings const &face = type.GetRings();
+    evaluateCorners(face, plan[0], values.GetPoints());
     for (std::size_t const next : plan[0].children) {
         CellPlan::Node const &child = plan[next];
         RingCell const &cell = face.GetChild(child.child);
@@ -231,6 +246,29 @@ void PatchEvaluator<REAL>::evaluateCorners(CellType const &type, CellPlan::Node 
             for (std::size_t i = 0; i < 2; ++i) {
                 _derivatives[i][first + std::ptrdiff_t(k)] =
                     REAL(corner.toCoords[0][i] * along[0] + corner.toCoords[1][i] * along[1]);
+            }
+        }
+    }
+}
+
+// Of a base face, from the points of its rings.
+template <typename REAL>
+void PatchEvaluator<REAL>::evaluateCorners(FaceRings const &face, CellPlan::Node const &cell,
+                                           REAL const *points) {
+    _along.resize(2 * _size);
+    for (CellPlan::CornerPlace const &corner : cell.corners) {
+        RingCell const &child = face.GetChild(corner.corner + 1);
+        _indices.resize(child.GetColumns().size());
+        face.FindChildIndices(corner.corner + 1, _indices.data());
+        SumUpPlaces(getFaceDerivatives<REAL>(child),
+                    {points, std::ptrdiff_t(_paddedSize), _size, _indices.data(), _along.data(),
+                     std::ptrdiff_t(_size)});
+        std::ptrdiff_t const first = std::ptrdiff_t(corner.place) * _resultStride;
+        for (std::size_t i = 0; i < 2; ++i) {
+            REAL const factors[2] = {REAL(corner.toCoords[0][i]), REAL(corner.toCoords[1][i])};
+            for (std::size_t k = 0; k < _size; ++k) {
+                _derivatives[i][first + std::ptrdiff_t(k)] =
+                    factors[0] * _along[k] + factors[1] * _along[_size + k];
             }
         }
     }

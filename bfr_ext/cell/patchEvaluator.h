@@ -46,12 +46,14 @@ private:
     void evaluateLeaf(CellType const &type, RingCell const *ringCell, CellPlan::Node const &leaf,
                       REAL const *points, int const *indices);
     void evaluateCorners(CellType const &type, CellPlan::Node const &cell, REAL const *points);
+    void evaluateCorners(FaceRings const &face, CellPlan::Node const &cell, REAL const *points);
     std::vector<REAL> &getPoints(std::size_t place, std::size_t numPoints);
 
     std::size_t _size = 0; // of a point
     std::size_t _paddedSize = 0;
     std::deque<std::vector<REAL>> _points; // by depth, of a cell and of its children
     std::vector<int> _indices;
+    std::vector<REAL> _along; // derivatives at a corner, by two coordinates
     REAL *_results = nullptr; // points
     REAL *_derivatives[2] = {};
     std::ptrdiff_t _resultStride = 0;

@@ -21,6 +21,8 @@ enum class PatternOf {
     Leaf,
     LeafDerivatives,
     CornerWeights,
+    ParentDerivatives,
+    FaceCorner,
     RingCell,
     RingItem,
     CellBounds,

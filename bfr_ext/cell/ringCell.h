@@ -163,7 +163,6 @@ public:
     std::size_t GetSize() const { return _size; }
     /// From one point to the next.
     std::size_t GetPaddedSize() const { return _paddedSize; }
-    REAL const *GetControlPoints() const { return _controlPoints.data(); }
     /// Those of the rings.
     REAL const *GetPoints() const { return _points.data(); }
     /// Writes the point of the surface at a vertex, whose first face is \p firstFace of its ring.
