@@ -37,6 +37,8 @@ int GetNumThreads() {
     return chosenNumThreads > 0 ? chosenNumThreads : std::max(1, GetExecutor().GetNumThreads());
 }
 
+int internal::GetChosenNumThreads() { return chosenNumThreads; }
+
 ExecutorScope::ExecutorScope(Executor *executor, int numThreads)
     : _executor(chosenExecutor), _numThreads(chosenNumThreads) {
     if (executor) {

@@ -8,8 +8,8 @@
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief Runs loops on threads: what a host implements to have the calls of this library, far_ext
-/// and osd_ext, work on threads of its own.
+/// \brief Runs loops on threads: what a host implements to have the calls of this library, of
+/// all its parts, work on threads of its own.
 ///
 /// TbbExecutor and OmpExecutor are two.  Results do not depend on the executor, bit for bit.
 ///
@@ -84,6 +84,11 @@ private:
 ///
 /// What a call throws is thrown again when all have ended; others may then be left out.
 OPENSUBDIVHEX_API void ParallelFor(int count, std::function<void(int)> const &function);
+
+namespace internal {
+/// What SetNumThreads() or an ExecutorScope says for calls from the calling thread; 0: the executor.
+OPENSUBDIVHEX_API int GetChosenNumThreads();
+} // namespace internal
 
 } // namespace OpenSubdivHex::FarExt
 

@@ -29,7 +29,7 @@ enum class SchemeType {
 /// Both make vertices with three faces each, so that all irregularities are faces, where Cosine and
 /// Smooth have bounded curvature.
 ///
-/// - TriHex is one step of the scheme of that name, with the same limits.
+/// - TriHex is one step of the scheme of that name, and refuses what that refuses.
 /// - Truncate cuts the corners off: a face of n sides becomes one of 2n, a vertex the polygon of the
 ///   points beside it on its edges.  Of triangles it makes hexagons.  It takes what the hexagonal
 ///   scheme takes: boundaries, creases, corners and face-varying data.  ComputeTruncateMask has

@@ -27,7 +27,11 @@ using internal::LimitRow;
 using internal::LimitRows;
 using internal::PlainFaces;
 
-LimitSides::LimitSides(TopologyLevel const &level) : _numVertices(level.GetNumVertices()) {
+LimitSides::LimitSides(TopologyLevel const &level)
+    : _isValid(level.HasFullTopology()), _numVertices(_isValid ? level.GetNumVertices() : 0) {
+    if (!_isValid) {
+        return;
+    }
     internal::Level const &topology = level.GetLevel();
     for (internal::SharpVertex const &sharp : topology.sharpVerts) {
         auto const sides = internal::FindVertexSides(topology, sharp.vert);

@@ -33,9 +33,11 @@ public:
     /// A vertex, a face or a side.
     using Index = Far::Index;
 
-    /// \p level has full topology; it is not referred to afterwards.
+    /// \p level has full topology, else the sides are invalid; it is not referred to afterwards.
     explicit LimitSides(TopologyLevel const &level);
 
+    /// Whether the level had full topology; else there are no sides, and no vertices.
+    bool IsValid() const { return _isValid; }
     /// Vertices of the level.
     int GetNumVertices() const { return _numVertices; }
     /// Sides of all vertices, one for each at least.
@@ -70,6 +72,7 @@ private:
 
     void addCorner(std::size_t begin, Index corner, int half, Index side);
 
+    bool _isValid;
     int _numVertices;
     std::vector<FurtherSide> _furtherSides;
     std::vector<Corner> _corners; // ascending; of the vertices with more than one side
@@ -123,10 +126,14 @@ public:
     /// \brief Which points, in this order: the vertices of the level, the further sides of
     /// vertices, the centres of the level's faces.
     struct Options {
-        int level = 0;                     ///< 0 ... refiner.GetMaxLevel(); must have full topology
-        bool generateVertices = true;      ///< the vertices, one point each
-        bool generateFurtherSides = false; ///< only with vertices; as LimitSides numbers them
-        bool generateFaceCenters = false;  ///< the centres of faces
+        /// \brief 0 ... refiner.GetMaxLevel(); must have full topology.
+        ///
+        /// Unless it is set, it is not the last level, but level 0: the limits of the control vertices
+        /// alone, however far the refiner is refined.
+        int level = 0;
+        bool generateVertices = true;       ///< the vertices, one point each
+        bool generateFurtherSides = false;  ///< only with vertices; as LimitSides numbers them
+        bool generateFaceCenters = false;   ///< the centres of faces
         bool generate1stDerivatives = true; ///< else the table has no derivative weights
 
         /// Else the stencils are of the vertices of the level, as in StencilTableFactory of those of

@@ -217,7 +217,7 @@ void setParts(int const (&parts)[SIZE], double whole, double (&weights)[SIZE]) {
 template <std::size_t NUM_STEPS>
 void setFirstAround(FirstAround const (&levels)[NUM_STEPS], double whole, int numSteps,
                     IrregularVertexMask &mask) {
-    if (std::size_t(numSteps) <= NUM_STEPS) {
+    if (1 <= numSteps && std::size_t(numSteps) <= NUM_STEPS) {
         setParts(levels[numSteps - 1].atVertex, whole, mask.atVertex);
         setParts(levels[numSteps - 1].atNeighbor, whole, mask.atNeighbor);
     }

@@ -136,7 +136,8 @@ struct IrregularVertexMask {
 };
 
 /// \brief Returns the masks around a vertex inside the mesh with \p numFaces hexagons,
-/// kMinIrregularFaces or more, after \p numSteps hexagonal steps, 1 or more.
+/// kMinIrregularFaces or more, after \p numSteps hexagonal steps, 1 or more; for less, those that many
+/// steps lead to.
 ///
 /// \param isAmongQuads  whether all of its faces, kNumFacesAmongQuads, were quads before these steps
 ///

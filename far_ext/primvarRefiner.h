@@ -96,6 +96,9 @@ private:
 /// values on it, bit for bit, however either numbers and orients it, as long as AddWithWeight()
 /// rounds the product before it adds (no fused multiply-add).
 ///
+/// Levels and channels are not checked, as in Far, whose functions have no way to answer, either: those
+/// that the refiner has not are undefined behaviour.
+///
 /// Works on the calling thread.  Several threads may use one primvar refiner at once, for elements
 /// of their own.  What the elements throw passes through, and std::bad_alloc.
 ///
@@ -149,10 +152,7 @@ public:
     /// those of level - 1, by the channel's FVarLinearInterpolation.
     template <class T, class U>
     void InterpolateFaceVarying(int level, T const &src, U &dst, int channel = 0) const {
-        bool const isLinear =
-            _refiner.GetFVarLinearInterpolation(channel) == Sdc::Options::FVAR_LINEAR_ALL;
-        interpolate(level, isLinear ? Interpolation::Varying : Interpolation::Vertex, channel, src,
-                    dst);
+        interpolate(level, internal::GetChannelInterpolation(_refiner, channel), channel, src, dst);
     }
 
     /// \brief The limit of vertex data: dstPos[v] for all vertices of the last level from src, the

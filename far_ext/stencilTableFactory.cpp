@@ -200,15 +200,12 @@ template <typename OPTIONS>
 StencilPlan makePlan(TopologyRefiner const &refiner, OPTIONS const &options) {
     int const channel =
         options.interpolationMode == INTERPOLATE_FACE_VARYING ? options.fvarChannel : -1;
-    bool const isLinear = options.interpolationMode == INTERPOLATE_VARYING ||
-                          (channel >= 0 && refiner.GetFVarLinearInterpolation(channel) ==
-                                               Sdc::Options::FVAR_LINEAR_ALL);
     int const lastLevel = std::min(options.maxLevel, refiner.GetMaxLevel());
     int const firstStored = options.generateIntermediateLevels ? 1 : std::max(1, lastLevel);
     StencilPlan plan = {refiner.GetHierarchy(),
                         refiner.GetHexSchemeOptions(),
                         channel,
-                        isLinear ? Interpolation::Varying : Interpolation::Vertex,
+                        internal::GetModeInterpolation(refiner, options.interpolationMode, channel),
                         options.factorizeIntermediateLevels,
                         lastLevel,
                         firstStored,
@@ -238,23 +235,32 @@ Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
         return Status(StatusCode::InvalidArgument, ComponentType::Level, options.maxLevel,
                       "maxLevel " + std::to_string(options.maxLevel) + " is negative");
     }
-    if (!internal::IsInEnum(options.interpolationMode, INTERPOLATE_FACE_VARYING)) {
-        return internal::Failure(StatusCode::InvalidArgument,
-                                 "there is no interpolationMode " +
-                                     std::to_string(int(options.interpolationMode)));
-    }
-    bool const hasChannel =
-        0 <= options.fvarChannel && options.fvarChannel < refiner.GetNumFVarChannels();
-    if (options.interpolationMode == INTERPOLATE_FACE_VARYING && !hasChannel) {
-        return internal::Failure(StatusCode::InvalidArgument,
-                                 "there is no face-varying channel " +
-                                     std::to_string(options.fvarChannel) + "; the mesh has " +
-                                     std::to_string(refiner.GetNumFVarChannels()));
-    }
-    return Status();
+    return internal::CheckStencilMode(refiner, options.interpolationMode, options.fvarChannel);
 }
 
 } // namespace
+
+namespace internal {
+
+Status CheckStencilMode(TopologyRefiner const &refiner, StencilMode mode, int fvarChannel) {
+    if (!IsInEnum(mode, INTERPOLATE_FACE_VARYING)) {
+        return Failure(StatusCode::InvalidArgument,
+                       "there is no interpolationMode " + std::to_string(int(mode)));
+    }
+    return mode == INTERPOLATE_FACE_VARYING
+               ? CheckChannel(fvarChannel, refiner.GetNumFVarChannels())
+               : Status();
+}
+
+Interpolation GetModeInterpolation(TopologyRefiner const &refiner, StencilMode mode,
+                                   int fvarChannel) {
+    if (mode == INTERPOLATE_FACE_VARYING) {
+        return GetChannelInterpolation(refiner, fvarChannel);
+    }
+    return mode == INTERPOLATE_VARYING ? Interpolation::Varying : Interpolation::Vertex;
+}
+
+} // namespace internal
 
 template <typename REAL>
 auto StencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Options options,

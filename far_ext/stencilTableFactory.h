@@ -145,6 +145,17 @@ using StencilTableFactory = StencilTableFactoryReal<float>;
 extern template class StencilTableFactoryReal<float>;
 extern template class StencilTableFactoryReal<double>;
 
+namespace internal {
+
+/// InvalidArgument for a mode that is none, and for face-varying data of a channel that the mesh has not.
+OPENSUBDIVHEX_API Status CheckStencilMode(TopologyRefiner const &refiner, StencilMode mode,
+                                          int fvarChannel);
+/// By which masks data are interpolated, with a mode for which CheckStencilMode() is well.
+OPENSUBDIVHEX_API Interpolation GetModeInterpolation(TopologyRefiner const &refiner,
+                                                     StencilMode mode, int fvarChannel);
+
+} // namespace internal
+
 } // namespace OpenSubdivHex::FarExt
 
 #endif

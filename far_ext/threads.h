@@ -6,8 +6,8 @@
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief Sets how many threads each call of this library, far_ext or osd_ext, uses at most from now
-/// on when the calling thread makes it; other threads of the program keep their own number.
+/// \brief Sets how many threads each call of this library, of all its parts, uses at most from now on
+/// when the calling thread makes it; other threads of the program keep their own number.
 ///
 /// Until then, and again after 0 or less, the Executor in use says: the default one that of OpenMP,
 /// which is omp_set_num_threads() of the calling thread or OMP_NUM_THREADS, and in a build without

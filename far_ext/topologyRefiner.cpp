@@ -23,8 +23,24 @@ Status checkLevel(int refinementLevel) {
                   "refinement level " + std::to_string(refinementLevel) + " is negative");
 }
 
-Status checkLabels(Far::ConstIndexArray labels, int numFaces) {
-    if (labels.empty() || labels.size() == numFaces) {
+Status checkLabels(Far::ConstIndexArray labels, int numFaces, HexSchemeOptions schemeOptions,
+                   int refinementLevel) {
+    if (labels.empty()) {
+        return Status();
+    }
+    if (labels.size() == numFaces) {
+        bool const areSame = std::all_of(labels.begin(), labels.end(),
+                                         [&](int label) { return label == labels[0]; });
+        // The first step, and those behind it.
+        for (int level = 1; level <= std::min(refinementLevel, 2) && !areSame; ++level) {
+            StepType const step = schemeOptions.GetStepOfLevel(level);
+            if (step == StepType::DooSabin || step == StepType::TriHex) {
+                return Status(StatusCode::Unsupported, ComponentType::Level, level,
+                              std::string("labels of base faces differ, which steps of ") +
+                                  (step == StepType::TriHex ? "tri-hex" : "Doo-Sabin") +
+                                  " do not keep apart");
+            }
+        }
         return Status();
     }
     return Status(StatusCode::InvalidArgument, ComponentType::None, Far::INDEX_INVALID,
@@ -93,7 +109,7 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
     Far::ConstIndexArray const labels(options.faceLabels.data(), int(options.faceLabels.size()));
     Status result = checkLevel(refinementLevel);
     if (result.IsOk()) {
-        result = checkLabels(labels, GetLevel(0).GetNumFaces());
+        result = checkLabels(labels, GetLevel(0).GetNumFaces(), _schemeOptions, refinementLevel);
     }
     if (result.IsOk()) {
         result = checkSizes(refinementLevel, [&](int level) {
@@ -198,5 +214,24 @@ int TopologyRefiner::total(int (TopologyLevel::*count)() const) const {
     }
     return sum;
 }
+
+namespace internal {
+
+Status CheckChannel(int channel, int numChannels) {
+    if (0 <= channel && channel < numChannels) {
+        return Status();
+    }
+    return Failure(StatusCode::InvalidArgument, "there is no face-varying channel " +
+                                                    std::to_string(channel) + "; the mesh has " +
+                                                    std::to_string(numChannels));
+}
+
+Interpolation GetChannelInterpolation(TopologyRefiner const &refiner, int channel) {
+    return refiner.GetFVarLinearInterpolation(channel) == Sdc::Options::FVAR_LINEAR_ALL
+               ? Interpolation::Varying
+               : Interpolation::Vertex;
+}
+
+} // namespace internal
 
 } // namespace OpenSubdivHex::FarExt

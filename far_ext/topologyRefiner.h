@@ -81,7 +81,8 @@ public:
         bool fullTopologyInLastLevel = false; ///< false: the last level has face-vertices alone
         /// A label of each base face, such as the number of its material, or empty: where labels
         /// differ, FirstStep::Truncate cuts the polygons of vertices, so that every face lies in base
-        /// faces of one label.  Other steps need none.
+        /// faces of one label.  Hexagonal steps need none: each half of a hexagon lies in one base face.
+        /// Steps of Doo-Sabin and tri-hex, which cut no polygons, are refused with labels that differ.
         std::vector<int> faceLabels;
     };
 
@@ -90,7 +91,8 @@ public:
     /// \return  false with StatusCode::InvalidArgument for a negative level, and with
     ///          StatusCode::TooLarge, which names the level and the count, when a size or the sum
     ///          of a size over the levels exceeds 2^31 - 1, or for a level beyond kLastLevel; with
-    ///          InvalidArgument for another number of labels than of base faces.  No memory is taken
+    ///          InvalidArgument for another number of labels than of base faces, and Unsupported for labels
+    ///          that differ where a step does not keep them apart.  No memory is taken
     ///          then and the levels are as before.  The sizes of a tri-hex step with borders, and of
     ///          a truncation that cuts polygons, and what follows are known only once it is made:
     ///          there the base alone is left.  When std::bad_alloc is thrown, it is, too, unless all
@@ -162,6 +164,16 @@ private:
     int _numRefinements = 0;
     std::vector<TopologyLevel> _levels;
 };
+
+namespace internal {
+
+/// InvalidArgument where a channel is none of the \p numChannels face-varying ones of a mesh.
+OPENSUBDIVHEX_API Status CheckChannel(int channel, int numChannels);
+/// By which masks the values of a channel, which is in range, are interpolated.
+OPENSUBDIVHEX_API Interpolation GetChannelInterpolation(TopologyRefiner const &refiner,
+                                                        int channel);
+
+} // namespace internal
 
 } // namespace OpenSubdivHex::FarExt
 

@@ -41,16 +41,19 @@ public:
     /// they have, and holes beside a boundary are not taken over, since Far tags all faces there as
     /// holes.
     ///
-    /// \return  null on failure: InvalidTopology (no faces, a face with fewer than three vertices, an
-    ///          edge without a face or that is none of its faces, a value out of range, a sharpness
-    ///          that is negative or not a number), InvalidArgument (an option that is none of its
-    ///          enumeration's values), TooLarge (a face of more than 65,535 vertices, a vertex of
-    ///          more than 65,535 faces, more than 2^31 - 1 of anything), or Unsupported
-    ///          (creases, interior corners, non-manifold edges or face-varying channels with other
-    ///          steps than hexagonal ones; a channel without a seam at a vertex inside of such a
-    ///          curve, where a semi-sharp crease meets it or some faces meet one end alone, or, with
-    ///          CREASE_CHAIKIN, at any non-manifold vertex where semi-sharp creases meet that lie
-    ///          between faces which no edges join there).
+    /// \return  null on failure:
+    ///           - InvalidTopology: no faces, a face with fewer than three vertices, an edge without a
+    ///             face or that is none of its faces, a value out of range, a sharpness that is
+    ///             negative or not a number
+    ///           - InvalidArgument: an option that is none of its enumeration's values
+    ///           - TooLarge: a face of more than 65,535 vertices, a vertex of more than 65,535 faces,
+    ///             more than 2^31 - 1 of anything
+    ///           - Unsupported with other steps than hexagonal ones: creases, interior corners,
+    ///             non-manifold edges or face-varying channels
+    ///           - Unsupported at a vertex inside of such a curve: a channel without a seam there, where
+    ///             a semi-sharp crease meets the curve or some faces meet one end alone
+    ///           - Unsupported with CREASE_CHAIKIN at any non-manifold vertex: a channel without a seam
+    ///             there, where semi-sharp creases meet that lie between faces which no edges join
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    Options options, Status *status = nullptr);
     /// The same with the default options.

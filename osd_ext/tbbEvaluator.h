@@ -8,7 +8,8 @@
 namespace OpenSubdivHex::OsdExt {
 
 /// \brief Evaluates stencils on the threads of TBB, in the arena of the calling thread: a faster
-/// Osd::TbbEvaluator.  It is OmpEvaluator with a FarExt::TbbExecutor, whatever executor is set.
+/// Osd::TbbEvaluator.  It is OmpEvaluator with a FarExt::TbbExecutor, whatever executor is set, and as
+/// many threads as FarExt::SetNumThreads() or a FarExt::ExecutorScope says.
 ///
 /// This header is all of it: a program that includes it links TBB.
 class TbbEvaluator : public StencilEvaluator<TbbEvaluator> {
@@ -17,7 +18,7 @@ class TbbEvaluator : public StencilEvaluator<TbbEvaluator> {
                     internal::StencilOutput const *outputs, int numOutputs,
                     internal::StencilRows const &rows, int start, int end) {
         FarExt::TbbExecutor executor;
-        FarExt::ExecutorScope const scope(&executor);
+        FarExt::ExecutorScope const scope(&executor, FarExt::internal::GetChosenNumThreads());
         return OmpEvaluator::run(src, srcDesc, outputs, numOutputs, rows, start, end);
     }
 };

@@ -189,7 +189,7 @@ public:
 #ifdef _OPENMP
         return omp_get_max_threads();
 #else
-        return int(std::thread::hardware_concurrency());
+        return std::max(1, int(std::thread::hardware_concurrency())); // 0: not known
 #endif
     }
 

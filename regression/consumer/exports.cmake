@@ -11,7 +11,8 @@ set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report S
   FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
   FindCornerLimits PatchRefinement MarkFeatures StepRowBack MakePlainBaseCell IndexMap
   Device MakeDeviceLimit MakeDeviceRefinements
-  CheckOptions CheckLevel CheckDescriptors GetInterpolation)
+  CheckChannel CheckStencilMode GetChannelInterpolation GetModeInterpolation GetChosenNumThreads
+  CheckLevel CheckDescriptors)
 
 execute_process(COMMAND ${nm} --dynamic --defined-only --format=posix ${library}
   OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)

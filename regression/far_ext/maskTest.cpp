@@ -204,6 +204,17 @@ TEST(Mask, IrregularVertices) {
     }
 }
 
+TEST(Mask, IrregularVerticesBeforeAnyStep) {
+    for (int const numSteps : {0, -1, -1000}) {
+        for (bool const isAmongQuads : {false, true}) {
+            auto const mask = FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads,
+                                                                 numSteps, isAmongQuads);
+            expectSameAround(mask,
+                             FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads, 1000));
+        }
+    }
+}
+
 // Around four faces F-vertices have other weights in the first levels.
 TEST(Mask, IrregularVerticesAmongQuads) {
     auto const compute = [](int numSteps, bool isAmongQuads) {

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 
 namespace OpenSubdivHex::Regression {
 
@@ -276,6 +277,48 @@ TEST(Truncation, KeepsLabelsApart) {
         ASSERT_TRUE(refiner->RefineUniform(options));
         EXPECT_EQ(refiner->GetLevel(1).GetNumFaces(), numUncut);
         EXPECT_LE(numUncut, numFaces);
+    }
+}
+
+// Faces of Doo-Sabin and tri-hex lie across base faces of any labels; hexagons have halves.
+TEST(Truncation, OtherStepsRefuseLabelsThatDiffer) {
+    using FarExt::SchemeType;
+    ShapeDescriptor const descriptor(GetShape("cube"));
+    for (SchemeType const type :
+         {SchemeType::Hexagonal, SchemeType::DooSabin, SchemeType::TriHex}) {
+        for (FarExt::FirstStep const firstStep :
+             {FarExt::FirstStep::None, FarExt::FirstStep::TriHex, FarExt::FirstStep::Truncate}) {
+            FarExt::TopologyRefinerFactory::Options factoryOptions;
+            factoryOptions.schemeOptions.schemeType = type;
+            factoryOptions.schemeOptions.firstStep = firstStep;
+            auto const refiner = FarExt::TopologyRefinerFactory::Create(
+                descriptor.Get(), Sdc::Options(), factoryOptions);
+            ASSERT_TRUE(refiner);
+            for (int level = 0; level <= 3; ++level) {
+                TopologyRefiner::UniformOptions options(level);
+                options.faceLabels = {3, 3, 3, 3, 3, 3};
+                EXPECT_TRUE(refiner->RefineUniform(options));
+                options.faceLabels[5] = 4;
+                int const firstOther = firstStep == FarExt::FirstStep::TriHex ? 1
+                                       : type == SchemeType::Hexagonal        ? 100
+                                       : firstStep == FarExt::FirstStep::None ? 1
+                                                                              : 2;
+                FarExt::Status status;
+                EXPECT_EQ(refiner->RefineUniform(options, &status), level < firstOther);
+                EXPECT_EQ(refiner->GetMaxLevel(), level);
+                if (level >= firstOther) {
+                    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
+                    EXPECT_EQ(status.GetComponentIndex(), firstOther);
+                    EXPECT_EQ(status.GetMessage(),
+                              std::string("labels of base faces differ, which steps of ") +
+                                  (refiner->GetHexSchemeOptions().GetStepOfLevel(firstOther) ==
+                                           FarExt::StepType::TriHex
+                                       ? "tri-hex"
+                                       : "Doo-Sabin") +
+                                  " do not keep apart");
+                }
+            }
+        }
     }
 }
 

@@ -16,6 +16,9 @@
 #ifdef OPENSUBDIVHEX_HAS_TBB
 #include "far_ext/tbbExecutor.h"
 #include "osd_ext/tbbEvaluator.h"
+
+#include <tbb/task_arena.h>
+#include <tbb/task_scheduler_observer.h>
 #endif
 
 #include <gtest/gtest.h>
@@ -202,6 +205,44 @@ TEST(Executor, TbbHasAnEvaluator) {
     ExecutorScope const scope(nullptr, 3);
     EXPECT_TRUE(made.Evaluate<OsdExt::TbbEvaluator>() == expected);
     EXPECT_EQ(&FarExt::GetExecutor(), &FarExt::GetDefaultExecutor());
+}
+
+namespace {
+
+/// Counts how often threads of TBB come to an arena to work there.
+class WorkerCounter : public tbb::task_scheduler_observer {
+public:
+    explicit WorkerCounter(tbb::task_arena &arena) : tbb::task_scheduler_observer(arena) {
+        observe(true);
+    }
+    ~WorkerCounter() override { observe(false); }
+    void on_scheduler_entry(bool isWorker) override { numTimes += isWorker ? 1 : 0; }
+
+    std::atomic<int> numTimes{0};
+};
+
+} // namespace
+
+TEST(Executor, TbbEvaluatorUsesAsManyThreadsAsWereChosen) {
+    Made made;
+    tbb::task_arena arena(4);
+    WorkerCounter const workers(arena);
+    auto const evaluate = [&] { arena.execute([&] { made.Evaluate<OsdExt::TbbEvaluator>(); }); };
+    FarExt::SetNumThreads(1);
+    for (int i = 0; i < 50; ++i) {
+        evaluate();
+    }
+    FarExt::SetNumThreads(0);
+    {
+        ExecutorScope const alone(nullptr, 1);
+        evaluate();
+    }
+    EXPECT_EQ(workers.numTimes, 0);
+    // All of TBB otherwise: they come when they find the time.
+    for (int i = 0; i < 10000 && workers.numTimes == 0; ++i) {
+        evaluate();
+    }
+    EXPECT_GT(workers.numTimes, 0);
 }
 #endif
 

@@ -367,7 +367,9 @@ void refine(Arguments const &arguments, Mesh const &mesh, int level,
         arguments.isLimit || arguments.adaptive.isAdaptive || !arguments.png.empty();
     FarExt::TopologyRefiner::UniformOptions uniformOptions(level);
     uniformOptions.fullTopologyInLastLevel = needsFullTopology;
-    uniformOptions.faceLabels = FindFaceClasses(mesh);
+    if (refiner->GetHexSchemeOptions().firstStep == FarExt::FirstStep::Truncate) {
+        uniformOptions.faceLabels = FindFaceClasses(mesh);
+    }
     FarExt::TopologyRefiner::CoplanarOptions options(level);
     options.angleTolerance = arguments.tolerance;
     options.closeGaps = !arguments.hasOpenGaps;
