@@ -72,7 +72,8 @@ private:
 ///
 /// All functions return false, with nothing written, if the lengths of the descriptors differ or are
 /// less than 1, a stride is less than the length, an offset or \c start is negative, something is null
-/// where there are stencils, or CUDA says that it cannot run them.
+/// where there are stencils, or CUDA says that it cannot run them.  An error of the thread that CUDA held
+/// before a call, and nobody has asked it for (cudaGetLastError()), is taken for one of the call.
 class OPENSUBDIVHEX_API CudaEvaluator {
 public:
     /// @name With buffers

@@ -14,6 +14,23 @@ namespace Osd = OpenSubdiv::Osd;
 
 namespace OsdExt {
 
+namespace internal {
+
+/// \brief Calls function(start, end) for ranges of some stencils, until one gives false.
+///
+/// \return  whether all gave true; false, with no call, for maxStencils below 1
+template <typename FUNCTION>
+bool ForEachStencilRange(int numStencils, int maxStencils, FUNCTION function) {
+    bool isDone = maxStencils >= 1;
+    for (int start = 0, end = 0; isDone && start < numStencils; start = end) {
+        end = start + std::min(numStencils - start, maxStencils);
+        isDone = function(start, end);
+    }
+    return isDone;
+}
+
+} // namespace internal
+
 /// \name Evaluation by OpenGL
 /// The evaluators of Osd, of which this header is a part: a program that includes it links osdGPU.
 /// A context of OpenGL must be current in all of these functions.
@@ -42,8 +59,8 @@ constexpr int kMaxGLComputeStencils = 65535 * 64;
 ///
 /// \param instance     compiled for the descriptors, see Osd::GLComputeEvaluator::Create
 /// \param srcBuffer,dstBuffer  such as Osd::GLVertexBuffer; they may be one
-/// \param maxStencils  of a range, 1 or more
-/// \return  false if \p instance has no program
+/// \param maxStencils  of a range
+/// \return  false if \p instance has no program, and for maxStencils below 1
 template <class SRC_BUFFER, class DST_BUFFER>
 bool EvalStencilsInRanges(Osd::GLComputeEvaluator const &instance, SRC_BUFFER *srcBuffer,
                           Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,
@@ -51,16 +68,13 @@ bool EvalStencilsInRanges(Osd::GLComputeEvaluator const &instance, SRC_BUFFER *s
                           Osd::GLStencilTableSSBO const &table,
                           int maxStencils = kMaxGLComputeStencils) {
     Osd::BufferDescriptor const none;
-    for (int start = 0, end = 0; start < table.GetNumStencils(); start = end) {
-        end = start + std::min(table.GetNumStencils() - start, maxStencils);
-        if (!instance.EvalStencils(srcBuffer->BindVBO(), srcDesc, dstBuffer->BindVBO(), dstDesc, 0,
-                                   none, 0, none, table.GetSizesBuffer(), table.GetOffsetsBuffer(),
-                                   table.GetIndicesBuffer(), table.GetWeightsBuffer(), 0, 0, start,
-                                   end)) {
-            return false;
-        }
-    }
-    return true;
+    return internal::ForEachStencilRange(
+        table.GetNumStencils(), maxStencils, [&](int start, int end) {
+            return instance.EvalStencils(srcBuffer->BindVBO(), srcDesc, dstBuffer->BindVBO(),
+                                         dstDesc, 0, none, 0, none, table.GetSizesBuffer(),
+                                         table.GetOffsetsBuffer(), table.GetIndicesBuffer(),
+                                         table.GetWeightsBuffer(), 0, 0, start, end);
+        });
 }
 
 /// The same with first derivatives, which tables of a Far::LimitStencilTable have.
@@ -71,17 +85,14 @@ bool EvalStencilsInRanges(Osd::GLComputeEvaluator const &instance, SRC_BUFFER *s
                           Osd::BufferDescriptor const &duDesc, DST_BUFFER *dvBuffer,
                           Osd::BufferDescriptor const &dvDesc, Osd::GLStencilTableSSBO const &table,
                           int maxStencils = kMaxGLComputeStencils) {
-    for (int start = 0, end = 0; start < table.GetNumStencils(); start = end) {
-        end = start + std::min(table.GetNumStencils() - start, maxStencils);
-        if (!instance.EvalStencils(
+    return internal::ForEachStencilRange(
+        table.GetNumStencils(), maxStencils, [&](int start, int end) {
+            return instance.EvalStencils(
                 srcBuffer->BindVBO(), srcDesc, dstBuffer->BindVBO(), dstDesc, duBuffer->BindVBO(),
                 duDesc, dvBuffer->BindVBO(), dvDesc, table.GetSizesBuffer(),
                 table.GetOffsetsBuffer(), table.GetIndicesBuffer(), table.GetWeightsBuffer(),
-                table.GetDuWeightsBuffer(), table.GetDvWeightsBuffer(), start, end)) {
-            return false;
-        }
-    }
-    return true;
+                table.GetDuWeightsBuffer(), table.GetDvWeightsBuffer(), start, end);
+        });
 }
 /// @}
 

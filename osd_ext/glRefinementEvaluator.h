@@ -60,6 +60,11 @@ struct GLBinding {
 /// product and sum rounded by itself: on every device the same bits.  Values whose sums are too large
 /// for a float are not scaled as there.
 ///
+/// **Threads.** An evaluator keeps the levels below the one that was asked for: it is used by one thread at
+/// a time, that of the context.
+///
+/// **Memory.** Memory that the driver does not have throws std::bad_alloc.
+///
 /// **Lifetime.** The evaluator keeps what it needs of the refiner, but for the limits: the first frame
 /// of the limit of a level needs the refiner as it was.
 class OPENSUBDIVHEX_API GLRefinementEvaluator

@@ -281,9 +281,9 @@ Status checkOptions(TopologyLevel const &level, DrawOptions const &options) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument, std::move(message));
     };
     for (int channel : options.fvarChannels) {
-        if (channel < 0 || channel >= level.GetNumFVarChannels()) {
-            return fail("there is no face-varying channel " + std::to_string(channel) +
-                        "; the mesh has " + std::to_string(level.GetNumFVarChannels()));
+        Status result = FarExt::internal::CheckChannel(channel, level.GetNumFVarChannels());
+        if (!result.IsOk()) {
+            return result;
         }
     }
     Index const numBaseFaces = level.GetHierarchy().mesh.levels[0].numFaces;
@@ -294,14 +294,14 @@ Status checkOptions(TopologyLevel const &level, DrawOptions const &options) {
     if (!FarExt::internal::IsInEnum(int(options.cutCreases), CreaseCuts::All)) {
         return fail("there is no CreaseCuts " + std::to_string(int(options.cutCreases)));
     }
-    if (options.sides && options.sides->GetNumVertices() != level.GetNumVertices()) {
-        return fail("the sides are those of " + std::to_string(options.sides->GetNumVertices()) +
-                    " vertices; the level has " + std::to_string(level.GetNumVertices()));
-    }
     if (options.sides && !level.HasFullTopology()) {
         return fail("level " + std::to_string(level.GetDepth()) +
                     " has no full topology, and so no sides: see "
                     "UniformOptions::fullTopologyInLastLevel");
+    }
+    if (options.sides && options.sides->GetNumVertices() != level.GetNumVertices()) {
+        return fail("the sides are those of " + std::to_string(options.sides->GetNumVertices()) +
+                    " vertices; the level has " + std::to_string(level.GetNumVertices()));
     }
     if (options.splitVertices && !options.sides) {
         return fail("vertices are split by sides, and none are given");

@@ -142,6 +142,8 @@ RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options 
     MeshLevels const &mesh =
         refiner.GetHierarchy().GetMesh(isFaceVarying ? options.fvarChannel : -1);
     _refinements.resize(std::size_t(maxLevel));
+    FarExt::Interpolation const interpolation = FarExt::internal::GetModeInterpolation(
+        refiner, options.interpolationMode, options.fvarChannel);
     internal::TileMap tileMap(
         mesh.levels[0], internal::GetNumTiles(mesh.levels[std::size_t(std::max(0, maxLevel - 1))]));
     std::vector<Refinement const *> refinements; // up to the level that is made
@@ -151,8 +153,7 @@ RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options 
         }
         refinements.push_back(&mesh.refinements[level]);
         FarExt::internal::RefinementMask const mask(mesh.levels[level],
-                                                    refiner.GetHexSchemeOptions(),
-                                                    internal::GetInterpolation(refiner, options));
+                                                    refiner.GetHexSchemeOptions(), interpolation);
         internal::PrepareRefinement(mask, refinements, tileMap, _refinements[level]);
     }
     for (int level = 0; level <= maxLevel; ++level) {
@@ -309,7 +310,8 @@ void RefinementEvaluator::Impl::EvaluateLimit(Source values,
 
 std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner const &refiner,
                                                                  Options options, Status *status) {
-    Status const result = internal::CheckOptions(refiner, options);
+    Status const result =
+        FarExt::internal::CheckStencilMode(refiner, options.interpolationMode, options.fvarChannel);
     if (!FarExt::internal::Report(result, status)) {
         return nullptr;
     }

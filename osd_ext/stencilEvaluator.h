@@ -26,7 +26,7 @@ struct StencilOutput {
 
 } // namespace internal
 
-/// \brief The static functions of CpuEvaluator and OmpEvaluator, which are its EVALUATOR.
+/// \brief The static functions of CpuEvaluator, OmpEvaluator and TbbEvaluator, which are its EVALUATOR.
 ///
 /// They have the signatures of Osd::CpuEvaluator, so that templates over the evaluator, such as
 /// Osd::Mesh and EvalStencilsInPlace, accept them.  There are no EvalPatches functions.
@@ -54,8 +54,8 @@ struct StencilOutput {
 /// range, stride and offset.
 ///
 /// **Threads.** Several threads may evaluate at once, also the same table and from the same source,
-/// into elements of their own.  Nothing throws but OmpEvaluator, std::bad_alloc for a table without
-/// offsets; nothing is written then.
+/// into elements of their own.  Nothing throws but OmpEvaluator and TbbEvaluator, std::bad_alloc for a
+/// table without offsets; nothing is written then.
 ///
 /// **Return value.** True if all went well, also where there is nothing to do: an empty table, and
 /// end <= start.  False, with nothing written, if

@@ -3,13 +3,15 @@
 
 #include "far_ext/vtr/parallel.h"
 
+#include <algorithm>
+
 namespace OpenSubdivHex::OsdExt {
 
 namespace {
 
 using Far::Index;
 
-// Polygons, and the corners and triangles of these.
+// Where a polygon has its corners, and its triangles.
 struct Place {
     Place &operator+=(Place const &other) {
         corner += other.corner;
@@ -47,7 +49,7 @@ public:
                 Place sum;
                 for (Index i = begin; i < end; ++i) {
                     std::size_t const size = std::size_t(_polygons.sizes[std::size_t(i)]);
-                    sum += {size, size - 2};
+                    sum += {size, std::max(size, std::size_t(2)) - 2};
                 }
                 return sum;
             });

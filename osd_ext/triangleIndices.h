@@ -13,7 +13,7 @@ struct TriangleIndices : DrawnFaces {
 };
 
 /// \brief Triangulates polygons: one of n sides makes n - 2 triangles that zigzag across it, so that
-/// no vertex collects them all.  They are in the order and the orientation of the polygons.
+/// no vertex collects them all, one of less than three none.  They are in the order and the orientation of the polygons.
 ///
 /// Works in parallel, with the same result for any number of threads; several threads may call it at
 /// once.  std::bad_alloc passes through.

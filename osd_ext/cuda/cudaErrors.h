@@ -21,15 +21,17 @@ inline FarExt::Status GetCudaStatus(cudaError_t error) {
                                      std::string("CUDA: ") + cudaGetErrorString(error));
 }
 
-/// Throws std::bad_alloc where there is no memory, and std::runtime_error at any other error.
+/// Throws std::bad_alloc where there is no memory, and std::runtime_error at any other error, which
+/// CUDA then forgets, so that later calls do not find it.
 inline void ThrowCudaError(cudaError_t error) {
+    if (error == cudaSuccess) {
+        return;
+    }
+    cudaGetLastError();
     if (error == cudaErrorMemoryAllocation) {
-        cudaGetLastError(); // so that later calls do not find it
         throw std::bad_alloc();
     }
-    if (error != cudaSuccess) {
-        throw std::runtime_error(GetCudaStatus(error).GetMessage());
-    }
+    throw std::runtime_error(GetCudaStatus(error).GetMessage());
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

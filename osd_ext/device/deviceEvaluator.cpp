@@ -57,7 +57,8 @@ DeviceEvaluator::DeviceEvaluator(std::unique_ptr<Device> device,
       _oddLevel(*_device) {}
 
 Status DeviceEvaluator::Prepare(Options options) {
-    Status status = CheckOptions(_refiner, options);
+    Status status = FarExt::internal::CheckStencilMode(_refiner, options.interpolationMode,
+                                                       options.fvarChannel);
     if (status.IsOk()) {
         status = _device->CheckContext();
     }
@@ -71,6 +72,8 @@ Status DeviceEvaluator::Prepare(Options options) {
         _refiner.GetHierarchy().GetMesh(isFaceVarying ? options.fvarChannel : -1);
     std::vector<Refinement const *> refinements;
     std::vector<RefinementMask> masks;
+    FarExt::Interpolation const interpolation = FarExt::internal::GetModeInterpolation(
+        _refiner, options.interpolationMode, options.fvarChannel);
     for (int level = 0; level <= _refiner.GetMaxLevel(); ++level) {
         FarExt::internal::Level const &ofMesh = mesh.levels[std::size_t(level)];
         _numElements.push_back(ofMesh.numVertices);
@@ -78,8 +81,7 @@ Status DeviceEvaluator::Prepare(Options options) {
                                 2 * std::int64_t(ofMesh.numFaces));
         if (level < _refiner.GetMaxLevel()) {
             refinements.push_back(&mesh.refinements[std::size_t(level)]);
-            masks.emplace_back(ofMesh, _refiner.GetHexSchemeOptions(),
-                               GetInterpolation(_refiner, options));
+            masks.emplace_back(ofMesh, _refiner.GetHexSchemeOptions(), interpolation);
         }
     }
     std::vector<std::int32_t> values;

@@ -18,7 +18,7 @@ class VertexSeparator {
 public:
     using Index = Far::Index;
 
-    /// \param numVertices   the vertices of \p polygons are 0 ... numVertices, plus the offset
+    /// \param numVertices   the vertices of \p polygons are 0 ... numVertices - 1, plus the offset
     /// \param vertexOffset  DrawOptions::vertexOffset
     VertexSeparator(Index numVertices, Index vertexOffset, PolygonIndices &polygons);
 

@@ -9,8 +9,6 @@ namespace OpenSubdivHex::OsdExt::internal {
 
 using FarExt::Status;
 using FarExt::StatusCode;
-using FarExt::TopologyRefiner;
-using Options = RefinementEvaluator::Options;
 
 namespace {
 
@@ -19,28 +17,6 @@ Status invalidArgument(std::string const &message) {
 }
 
 } // namespace
-
-Status CheckOptions(TopologyRefiner const &refiner, Options options) {
-    if (!FarExt::internal::IsInEnum(options.interpolationMode, FarExt::INTERPOLATE_FACE_VARYING)) {
-        return invalidArgument("there is no interpolationMode " +
-                               std::to_string(int(options.interpolationMode)));
-    }
-    if (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING &&
-        (options.fvarChannel < 0 || options.fvarChannel >= refiner.GetNumFVarChannels())) {
-        return invalidArgument("there is no face-varying channel " +
-                               std::to_string(options.fvarChannel) + " among the refiner's " +
-                               std::to_string(refiner.GetNumFVarChannels()));
-    }
-    return Status();
-}
-
-FarExt::Interpolation GetInterpolation(TopologyRefiner const &refiner, Options options) {
-    bool const isLinear =
-        options.interpolationMode == FarExt::INTERPOLATE_VARYING ||
-        (options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING &&
-         refiner.GetFVarLinearInterpolation(options.fvarChannel) == Sdc::Options::FVAR_LINEAR_ALL);
-    return isLinear ? FarExt::Interpolation::Varying : FarExt::Interpolation::Vertex;
-}
 
 Status CheckLevel(int level, int maxLevel) {
     if (0 <= level && level <= maxLevel) {

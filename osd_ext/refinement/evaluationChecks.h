@@ -4,17 +4,7 @@
 
 #include "osd_ext/refinementEvaluator.h"
 
-#include "far_ext/mask.h"
-
 namespace OpenSubdivHex::OsdExt::internal {
-
-/// Whether \p refiner has what \p options ask for.
-OPENSUBDIVHEX_API FarExt::Status CheckOptions(FarExt::TopologyRefiner const &refiner,
-                                              RefinementEvaluator::Options options);
-
-/// By which masks it is interpolated.
-OPENSUBDIVHEX_API FarExt::Interpolation GetInterpolation(FarExt::TopologyRefiner const &refiner,
-                                                         RefinementEvaluator::Options options);
 
 /// Whether \p level is one of 0 ... \p maxLevel.
 OPENSUBDIVHEX_API FarExt::Status CheckLevel(int level, int maxLevel);

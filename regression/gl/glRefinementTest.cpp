@@ -184,7 +184,7 @@ TEST_F(GlRefinement, RefusesWhatItCannotEvaluate) {
     FarExt::Status status;
     EXPECT_FALSE(
         GLRefinementEvaluator::Create(*refiner, {FarExt::INTERPOLATE_FACE_VARYING, 0}, &status));
-    EXPECT_EQ(status.GetMessage(), "there is no face-varying channel 0 among the refiner's 0");
+    EXPECT_EQ(status.GetMessage(), "there is no face-varying channel 0; the mesh has 0");
     auto const evaluator = GLRefinementEvaluator::Create(*refiner);
     Descriptor const desc(0, 3, 3);
     Buffer const src = kind.MakeBuffer(MakeValues(evaluator->GetNumElements(0), 3), 3);

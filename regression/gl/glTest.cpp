@@ -290,6 +290,12 @@ TEST_F(GlLarge, RangesEvaluateMoreStencilsThanADispatchHas) {
         EXPECT_EQ(context.GetGlError(), GLenum(GL_NO_ERROR));
         expectFloats(*dstBuffer, expected);
     }
+    for (int maxStencils : {0, -1}) {
+        GlBuffer const dstBuffer = makeBuffer(std::vector<float>(expected.size(), 9), 1);
+        EXPECT_FALSE(OsdExt::EvalStencilsInRanges(*evaluator, srcBuffer.get(), desc,
+                                                  dstBuffer.get(), desc, *glTable, maxStencils));
+        expectFloats(*dstBuffer, std::vector<float>(expected.size(), 9));
+    }
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -281,10 +281,25 @@ TEST(PolygonIndices, RefusesWhatDoesNotFit) {
     // Such a level knows of no edges, and so of no sides.
     ASSERT_TRUE(refiner->RefineUniform(1));
     FarExt::LimitSides const noSides(refiner->GetLevel(1));
+    EXPECT_TRUE(sides.IsValid());
+    EXPECT_FALSE(noSides.IsValid());
+    EXPECT_EQ(noSides.GetNumVertices(), 0);
+    EXPECT_EQ(noSides.GetNumSides(), 0);
     options = DrawOptions();
     options.sides = &noSides;
     expectRefused(options, "level 1 has no full topology, and so no sides: see "
                            "UniformOptions::fullTopologyInLastLevel");
+}
+
+TEST(TriangleIndices, PolygonsOfLessThanThreeMakeNone) {
+    PolygonIndices polygons;
+    polygons.sizes = {2, 3, 0, 1, 4};
+    polygons.faces = {0, 1, 2, 3, 4};
+    polygons.vertices = {8, 9, 1, 2, 3, 7, 4, 5, 6, 0};
+    OsdExt::TriangleIndices const triangles = OsdExt::CreateTriangleIndices(polygons);
+    EXPECT_EQ(triangles.GetNumTriangles(), 3);
+    EXPECT_EQ(triangles.faces, (std::vector<int>{1, 4, 4}));
+    EXPECT_EQ(triangles.vertices, (std::vector<int>{1, 2, 3, 4, 5, 0, 5, 6, 0}));
 }
 
 } // namespace OpenSubdivHex::Regression

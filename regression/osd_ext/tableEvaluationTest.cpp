@@ -13,6 +13,9 @@
 #include <opensubdiv/osd/cpuVertexBuffer.h>
 #include <opensubdiv/osd/mesh.h>
 
+#include <limits>
+#include <memory>
+
 namespace OpenSubdivHex::Regression {
 namespace {
 
@@ -46,6 +49,70 @@ struct TableWithoutOffsets : Far::StencilTable {
         _weights = table.GetWeights();
     }
 };
+
+/// As far as sizes go.
+struct TableOfSizes : Far::StencilTable {
+    TableOfSizes(int numControlVertices, int numStencils) : Far::StencilTable(numControlVertices) {
+        _sizes.resize(std::size_t(numStencils));
+    }
+};
+
+/// What buffers are asked for.
+struct BufferOfSizes {
+    static BufferOfSizes *Create(int numElements, int numVertices) {
+        return new BufferOfSizes{numElements, numVertices};
+    }
+    int GetNumElements() const { return numElements; }
+
+    int numElements;
+    int numVertices;
+};
+
+/// Keeps the offset of what is to be written.
+struct OffsetEvaluator {
+    static bool EvalStencils(BufferOfSizes *, Osd::BufferDescriptor const &, BufferOfSizes *,
+                             Osd::BufferDescriptor const &dstDesc, Far::StencilTable const *) {
+        offset = dstDesc.offset;
+        return true;
+    }
+    static inline int offset = -1;
+};
+
+TEST(EvaluationOfTables, RefusesBuffersThatIntsDoNotCount) {
+    constexpr int kMost = std::numeric_limits<int>::max();
+    struct Case {
+        int numElements;
+        int numControlVertices;
+        int numStencils;
+        bool hasBuffer;
+    };
+    for (Case const &c :
+         {Case{3, kMost / 3 - 10, 10, true}, Case{3, kMost / 3 - 10, 11, false},
+          Case{1, kMost, 0, true}, Case{1, kMost, 1, false}, Case{64, 50000000, 5, false},
+          Case{0, 8, 5, false}, Case{-1, 8, 5, false}}) {
+        TableOfSizes const table(c.numControlVertices, c.numStencils);
+        auto const buffer = OsdExt::CreateInPlaceBuffer<BufferOfSizes>(table, c.numElements);
+        ASSERT_EQ(buffer != nullptr, c.hasBuffer);
+        if (buffer) {
+            EXPECT_EQ(buffer->numElements, c.numElements);
+            EXPECT_EQ(buffer->numVertices, c.numControlVertices + c.numStencils);
+        }
+    }
+    TableOfSizes const table(kMost / 3, 1);
+    BufferOfSizes buffer = {3, 0};
+    EXPECT_TRUE(OsdExt::EvalStencilsInPlace<OffsetEvaluator>(table, &buffer));
+    EXPECT_EQ(OffsetEvaluator::offset, kMost / 3 * 3);
+    OffsetEvaluator::offset = -1;
+    for (int const numElements : {4, 100, 0, -1}) {
+        buffer.numElements = numElements;
+        EXPECT_FALSE(OsdExt::EvalStencilsInPlace<OffsetEvaluator>(table, &buffer));
+    }
+    BufferOfSizes *const none = nullptr;
+    EXPECT_FALSE(OsdExt::EvalStencilsInPlace<OffsetEvaluator>(table, none));
+    EXPECT_FALSE(OsdExt::EvalStencils<OffsetEvaluator>(table, none, &buffer));
+    EXPECT_FALSE(OsdExt::EvalStencils<OffsetEvaluator>(table, &buffer, none));
+    EXPECT_EQ(OffsetEvaluator::offset, -1);
+}
 
 template <class EVALUATOR>
 class EvaluatorOfTables : public testing::Test {};
