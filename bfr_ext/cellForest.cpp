@@ -3,6 +3,7 @@
 
 #include "far_ext/vtr/hierarchy.h"
 
+#include <limits>
 #include <map>
 
 namespace OpenSubdivHex::BfrExt {
@@ -89,11 +90,17 @@ std::vector<Polyline> CellForest::GetFacePolylines(Index face) const {
 }
 
 Tessellation CellForest::GetTessellation(Index face, Tessellation::Options options) const {
+    if (GetTree(face).GetFaceSize() != _level.GetLevel().GetFaceSize(face)) {
+        return Tessellation(Parameterization(), 0);
+    }
     return Tessellation(GetTree(face), GetFacePolylines(face).data(), options);
 }
 
 int CellForest::GetBoundaryPoints(Index face, int points[]) const {
     Level const &level = _level.GetLevel();
+    if (GetNumBoundaryPoints() > std::numeric_limits<int>::max()) {
+        return 0;
+    }
     int numPoints = 0;
     for (int local = 0; local < level.GetFaceSize(face); ++local) {
         Index const corner = level.faceFirstCorner[face] + local;
@@ -102,7 +109,8 @@ int CellForest::GetBoundaryPoints(Index face, int points[]) const {
         int const numInner = GetPolyline(edge).GetNumPoints();
         bool const isBackwards = isReversed(face, local);
         for (int i = 0; i < numInner; ++i) {
-            points[numPoints++] = GetFirstEdgePoint(edge) + (isBackwards ? numInner - 1 - i : i);
+            points[numPoints++] =
+                int(GetFirstEdgePoint(edge)) + (isBackwards ? numInner - 1 - i : i);
         }
     }
     return numPoints;

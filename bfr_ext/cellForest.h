@@ -6,6 +6,7 @@
 
 #include "far_ext/topologyRefiner.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt {
@@ -27,6 +28,8 @@ class OPENSUBDIVHEX_API CellForest {
 public:
     /// A face or an edge of the base mesh.
     using Index = Far::Index;
+    /// A point that faces share, of which there may be more than an int counts.
+    using Number = std::int64_t;
 
     /// \brief No face is refined.
     ///
@@ -53,17 +56,17 @@ public:
     Polyline const &GetPolyline(Index edge) const { return _polylines[std::size_t(edge)]; }
     /// Those of the edges of a face, in the direction of the face.
     std::vector<Polyline> GetFacePolylines(Index face) const;
-    /// The tessellation of a face.
+    /// The tessellation of a face; invalid where not IsMatched().
     Tessellation GetTessellation(Index face,
                                  Tessellation::Options options = Tessellation::Options()) const;
 
     /// Points that faces share, or might share: base vertices and the inner points of edges.
-    int GetNumBoundaryPoints() const { return _firstPoints.back(); }
+    Number GetNumBoundaryPoints() const { return _firstPoints.back(); }
     /// The first inner point of an edge; those of GetPolyline() follow one another.
-    int GetFirstEdgePoint(Index edge) const { return _firstPoints[std::size_t(edge)]; }
+    Number GetFirstEdgePoint(Index edge) const { return _firstPoints[std::size_t(edge)]; }
     /// \brief Writes the numbers of the points on the boundary of a face, in the order of its
     /// tessellation's coordinates: for Tessellation::TransformFacetCoordIndices().
-    /// \return  how many they are
+    /// \return  how many they are; 0, with nothing written, where GetNumBoundaryPoints() is above 2^31 - 1
     int GetBoundaryPoints(Index face, int points[]) const;
 
 private:
@@ -73,7 +76,7 @@ private:
     std::vector<CellTree> _trees;
     std::vector<Polyline> _edges;     // what was set
     std::vector<Polyline> _polylines; // the same with the points of faces
-    std::vector<int> _firstPoints;    // by edge; then their end
+    std::vector<Number> _firstPoints; // by edge; then their end
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -2,6 +2,8 @@
 #include "cellTree.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 
 namespace OpenSubdivHex::BfrExt {
 
@@ -14,7 +16,7 @@ CellTree::CellTree(int faceSize, int const edgeLevels[], int level) : CellTree(f
     for (int cell = 0; cell < GetNumCells(); ++cell) {
         // A step divides the long edges of half cells, and no others.
         bool const isOnEdge = GetBorderSide(cell) == 0;
-        if (GetLevel(cell) < (isOnEdge ? std::min(level, edgeLevels[GetSector(cell)]) : level)) {
+        if (GetLevel(cell) < (isOnEdge ? std::min(level, edgeLevels[GetEdge(cell)]) : level)) {
             Refine(cell);
         }
     }
@@ -27,12 +29,17 @@ int CellTree::GetMaxLevel() const {
 }
 
 int CellTree::Refine(int cell) {
+    if (cell < 0 || cell >= GetNumCells()) {
+        return 0;
+    }
     Cell const parent = getCell(cell);
-    if (parent.firstChild > 0 || parent.level == kLastLevel) {
+    int const first = GetNumCells();
+    bool const hasNumbers =
+        std::int64_t(first) + GetNumChildren(cell) <= std::numeric_limits<int>::max();
+    if (parent.firstChild > 0 || parent.level == kLastLevel || !hasNumbers) {
         return parent.firstChild;
     }
     auto const level = short(parent.level + 1);
-    int const first = GetNumCells();
     _cells[std::size_t(cell)].firstChild = first;
     _numLeaves += GetNumChildren(cell) - 1;
     if (parent.sector < 0) {

@@ -21,7 +21,7 @@ namespace OpenSubdivHex::BfrExt {
 /// Cells have numbers: 0 is the face, and others are numbered as they are made, children of one cell
 /// one behind the other.
 ///
-/// Arguments are not checked.  Several threads may read one tree; std::bad_alloc passes through.
+/// Other arguments than those of Refine() are not checked.  Several threads may read one tree; std::bad_alloc passes through.
 class OPENSUBDIVHEX_API CellTree {
 public:
     /// The last level that cells can have.
@@ -29,7 +29,7 @@ public:
 
     /// A face of \p faceSize vertices, 3 at least, that is not refined.
     explicit CellTree(int faceSize);
-    /// Cells of one level, 0 ... kLastLevel, everywhere.
+    /// Cells of one level, 0 ... kLastLevel, everywhere, as far as there are numbers: to 2^31 - 1.
     CellTree(int faceSize, int level);
     /// \brief Cells of one level, but for those whose refinement would give an edge of the face more
     /// points than it has with cells of another level.
@@ -52,10 +52,10 @@ public:
     bool IsWhole(int cell) const { return getCell(cell).sector < 0; }
     /// The level of a cell.
     int GetLevel(int cell) const { return getCell(cell).level; }
-    /// The edge of the face that a half cell is in the sector of, which is the triangle with the
-    /// centre; -1 of a whole cell.
-    int GetSector(int cell) const { return getCell(cell).sector; }
-    /// The side of a half cell that lies on the edge of its sector: 0, 1 or 3, or -1 if it is not there.
+    /// The edge of the face that a half cell lies at, in the triangle with the centre; -1 of a whole
+    /// cell.
+    int GetEdge(int cell) const { return getCell(cell).sector; }
+    /// The side of a half cell that lies on that edge: 0, 1 or 3, or -1 if none does.
     int GetBorderSide(int cell) const { return getCell(cell).borderSide; }
 
     /// Whether a cell has children.
@@ -66,7 +66,8 @@ public:
     /// edges, from edge 0 of whole cells and side 1 of half cells on.
     int GetFirstChild(int cell) const { return getCell(cell).firstChild; }
     /// \brief Refines a cell.
-    /// \return  its first child, also if it is refined already; 0 if it is of the last level
+    /// \return  its first child, also if it is refined already; 0, with nothing changed, if it is of the
+    ///          last level, if there is no such cell, and if the tree would have more than 2^31 - 1
     int Refine(int cell);
 
     /// \brief The polyline that the cells make of an edge of the face, in the direction of the face.

@@ -4,6 +4,7 @@
 #include "cell/faceSections.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 namespace OpenSubdivHex::BfrExt {
@@ -162,25 +163,18 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
         numbering->_pointOfVertex.push_back(next);
         next += numbering->findOwner(base.GetVertexFaces(vert)) == Far::INDEX_INVALID ? 0 : 1;
     }
-    // Polylines have the points of tessellations of any face.
-    constexpr int kTriangle = 3;
-    std::vector<int> numEdgePoints;
+    std::array<int, Polyline::kLastLevel + 1> numEdgePoints; // by level
+    for (std::size_t level = 0; level < numEdgePoints.size(); ++level) {
+        numEdgePoints[level] = Polyline(int(level)).GetNumPoints();
+    }
     for (Index edge = 0; edge < base.GetNumEdges(); ++edge) {
         numbering->_firstPointOfEdge.push_back(next);
         if (numbering->findOwner(base.GetEdgeFaces(edge)) == Far::INDEX_INVALID) {
             continue;
         }
-        if (stream.GetForest()) {
-            next += stream.GetForest()->GetPolyline(edge).GetNumPoints();
-            continue;
-        }
-        auto const level = std::size_t(stream.GetLevels().GetEdgeLevel(edge));
-        while (numEdgePoints.size() <= level) {
-            int const levels[] = {int(numEdgePoints.size()), 0, 0, 0};
-            numEdgePoints.push_back(Tessellation(Parameterization(kTriangle), kTriangle + 1, levels)
-                                        .GetNumEdgeCoords(0));
-        }
-        next += numEdgePoints[level];
+        next += stream.GetForest()
+                    ? stream.GetForest()->GetPolyline(edge).GetNumPoints()
+                    : numEdgePoints[std::size_t(stream.GetLevels().GetEdgeLevel(edge))];
     }
     numbering->_firstPointOfEdge.push_back(next);
     numbering->_firstFacet.push_back(0);

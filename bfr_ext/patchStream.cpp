@@ -42,7 +42,7 @@ public:
     ///
     /// \param section  -1: of the face as a whole
     /// \return  false where the sink ended the stream, or a face has no surface, as status says
-    bool Run(Index face, int section, Status *status) {
+    bool Run(Index face, int section, Status &status) {
         if (_stream._types && _numPatches++ % kFacesOfFactory == 0) {
             _surface.Clear();
             _ownFactory.reset();
@@ -101,8 +101,9 @@ private:
         _surface.GatherControlPoints(meshPoints, desc, _controlPoints.data(), desc.size);
     }
 
-    bool evaluatePoints(Index face, Tessellation const &tessellation, Status *status) {
-        if (!_factory->InitVertexSurface(face, &_surface, status)) {
+    bool evaluatePoints(Index face, Tessellation const &tessellation, Status &status) {
+        status = _factory->init(face, FarExt::Interpolation::Vertex, -1, _surface);
+        if (!status.IsOk()) {
             return false;
         }
         PointDescriptor const desc(_meshPointDesc.size);
@@ -120,14 +121,15 @@ private:
         return true;
     }
 
-    bool evaluateValues(Index face, Tessellation const &tessellation, Status *status) {
+    bool evaluateValues(Index face, Tessellation const &tessellation, Status &status) {
         for (std::size_t i = 0; i < _values.size(); ++i) {
             Values const &values = _values[i];
-            bool const isInit =
-                values.channel == Values::kVarying
-                    ? _factory->InitVaryingSurface(face, &_surface, status)
-                    : _factory->InitFaceVaryingSurface(face, &_surface, values.channel, status);
-            if (!isInit) {
+            FarExt::Interpolation const interpolation =
+                values.channel == Values::kVarying ? FarExt::Interpolation::Varying
+                                                   : FarExt::internal::GetChannelInterpolation(
+                                                         _factory->GetMesh(), values.channel);
+            status = _factory->init(face, interpolation, values.channel, _surface);
+            if (!status.IsOk()) {
                 return false;
             }
             PointDescriptor const desc(values.desc.size);
@@ -425,8 +427,8 @@ Status PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKe
 // Of a stream of levels, these are written.
 template <typename REAL>
 Status PatchStream<REAL>::checkFace(Index face, std::vector<int> &levels) const {
-    Status status;
-    if (!_factory.FaceHasLimitSurface(face, &status)) {
+    Status const status = _factory.checkFace(face);
+    if (!status.IsOk()) {
         return status;
     }
     if (_forest) {
@@ -473,13 +475,8 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
     bool arePlansKept = false;
     Status result = check(beginFace, endFace, &arePlansKept);
     for (Values const &further : values) {
-        bool const isChannel =
-            0 <= further.channel && further.channel < _factory.GetNumFVarChannels();
-        if (result.IsOk() && further.channel != Values::kVarying && !isChannel) {
-            result = FarExt::internal::Failure(
-                StatusCode::InvalidArgument,
-                "channel " + std::to_string(further.channel) + " is not one of the " +
-                    std::to_string(_factory.GetNumFVarChannels()) + " face-varying channels");
+        if (result.IsOk() && further.channel != Values::kVarying) {
+            result = FarExt::internal::CheckChannel(further.channel, _factory.GetNumFVarChannels());
         }
     }
     if (!FarExt::internal::Report(result, status)) {
@@ -502,7 +499,7 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
                 for (Index i = begin; i < end && !isEnded; ++i) {
                     PatchOfFace const patch = getPatch(i);
                     if (base.IsFaceHole(patch.face) ||
-                        worker->Run(patch.face, patch.section, &workerStatus)) {
+                        worker->Run(patch.face, patch.section, workerStatus)) {
                         continue;
                     }
                     isEnded = true;

@@ -75,6 +75,9 @@ std::uint64_t PlySink<REAL>::GetFileSize() const {
 
 template <typename REAL>
 bool PlySink<REAL>::operator()(typename PatchStream<REAL>::Patch const &patch) const {
+    if (patch.pointSize != int(kPointSize)) {
+        return false;
+    }
     std::vector<PatchNumbering::Run> runs;
     _numbering.GetRuns(patch.face, patch.tessellation, runs);
     return writePoints(patch, runs) && writeFacets(patch, runs);

@@ -40,9 +40,10 @@ public:
     /// Writes the begin of the file, as one of those who write it has to.
     /// \return  what the function that writes gives
     bool WriteHeader() const { return _write(0, _header.data(), _header.size()); }
-    /// \brief Writes what belongs to a patch, whose points are of three numbers.
+    /// \brief Writes what belongs to a patch.
     ///
-    /// \return  whether all was written
+    /// \return  whether all was written; false, with nothing written, for points that are not of three
+    ///          numbers, so that PatchStream::Run() ends
     bool operator()(typename PatchStream<REAL>::Patch const &patch) const;
 
 private:

@@ -104,6 +104,9 @@ void Surface<REAL>::BoundControlPointsFromMesh(REAL const meshPoints[],
 template <typename REAL>
 void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL p[]) const {
+    if (!IsValid()) {
+        return;
+    }
     internal::BasePoint const point = findPoint(uv);
     if (evaluateOnBorder(point, controlPoints, pointDesc, p)) {
         return;
@@ -117,6 +120,9 @@ template <typename REAL>
 void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL p[], REAL du[],
                              REAL dv[]) const {
+    if (!IsValid()) {
+        return;
+    }
     internal::BasePoint const point = findPoint(uv);
     CellStencil stencil(*_type);
     stencil.Find(point, true);
@@ -194,6 +200,9 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
     using internal::PatternOf;
     using internal::PatternTable;
     using Pattern = internal::CellPattern<REAL>;
+    if (!IsValid() || !tessellation.IsValid() || tessellation.GetFaceSize() != GetFaceSize()) {
+        return;
+    }
     if (tessellation._tree) {
         evaluateTree(tessellation, controlPoints, pointDesc, results, resultDesc);
         return;
@@ -432,6 +441,9 @@ void Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
 
 template <typename REAL>
 int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[]) const {
+    if (!IsValid()) {
+        return 0;
+    }
     CellStencil stencil(*_type);
     stencil.Find(findPoint(uv), false);
     copyWeights(stencil.GetWeights(), weights);
@@ -441,6 +453,9 @@ int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[]) const {
 template <typename REAL>
 int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[],
                                    REAL dvWeights[]) const {
+    if (!IsValid()) {
+        return 0;
+    }
     CellStencil stencil(*_type);
     stencil.Find(findPoint(uv), true);
     copyWeights(stencil.GetWeights(), weights);

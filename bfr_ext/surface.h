@@ -82,7 +82,8 @@ private:
 /// and its functions are there for programs that call them.
 ///
 /// Const functions may be called by several threads at once.  A surface may outlive the factory and
-/// the cache.  Arguments are not checked; std::bad_alloc passes through.
+/// the cache.  An invalid surface evaluates nothing: nothing is written.  Other arguments are not
+/// checked; std::bad_alloc passes through.
 template <typename REAL>
 class OPENSUBDIVHEX_API Surface {
 public:
@@ -174,7 +175,7 @@ public:
                   REAL p[], REAL du[], REAL dv[]) const;
 
     /// \brief Writes the points at all places of a tessellation, of a face of this size, from one to the
-    /// next by the stride of \p resultDesc.
+    /// next by the stride of \p resultDesc; nothing where it is of another size, or invalid.
     ///
     /// Two faces that share an edge get the same points there, to the bit, if the edge has the same
     /// level, or Polyline, in both and their control points come from the same mesh: so facets of

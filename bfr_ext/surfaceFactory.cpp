@@ -106,7 +106,12 @@ Status SurfaceFactory::checkFace(Index face) const {
 }
 
 bool SurfaceFactory::FaceHasLimitSurface(Index face, Status *status) const {
-    return FarExt::internal::Report(checkFace(face), status);
+    Status result = checkFace(face);
+    bool const hasSurface = result.IsOk();
+    if (status) {
+        *status = std::move(result);
+    }
+    return hasSurface;
 }
 
 Parameterization SurfaceFactory::GetFaceParameterization(Index face) const {
@@ -144,12 +149,12 @@ internal::CellType const *SurfaceFactory::findType(Level const &level, Index lev
 }
 
 template <typename REAL>
-bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
-                          Surface<REAL> *surface, Status *status) const {
+Status SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
+                            Surface<REAL> &surface) const {
     Status result = checkIsFace(face);
     if (!result.IsOk()) {
-        surface->Clear();
-        return FarExt::internal::Report(result, status);
+        surface.Clear();
+        return result;
     }
     FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();
     FVarChannel const *const values =
@@ -161,57 +166,54 @@ bool SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
     static thread_local internal::PlainFaceGatherer gatherer;
     if (internal::PlainFaceType const *const plain =
             gatherer.Find(*_plainTypes[std::size_t(interpolation)], level,
-                          _marks.begin()[channel + 1], levelFace, surface->_points)) {
-        surface->_type = internal::BaseType(*plain);
+                          _marks.begin()[channel + 1], levelFace, surface._points)) {
+        surface._type = internal::BaseType(*plain);
     } else if (internal::CellType const *const type =
-                   findType(level, levelFace, face, interpolation, surface->_points, result)) {
-        surface->_type = internal::BaseType(*type);
+                   findType(level, levelFace, face, interpolation, surface._points, result)) {
+        surface._type = internal::BaseType(*type);
     } else {
-        surface->Clear();
-        return FarExt::internal::Report(result, status);
+        surface.Clear();
+        return result;
     }
-    if (surface->_types != _types) {
-        surface->_types = _types;
+    if (surface._types != _types) {
+        surface._types = _types;
     }
     int const size = level.GetFaceSize(levelFace);
-    surface->_numControlPoints = int(surface->_points.size()) - 2 * size;
-    surface->_parameterization = Parameterization(size);
+    surface._numControlPoints = int(surface._points.size()) - 2 * size;
+    surface._parameterization = Parameterization(size);
     // Vertices of the value mesh of a later level are its values.
     if (values && depth == 0) {
-        std::for_each_n(surface->_points.begin(), surface->_numControlPoints,
+        std::for_each_n(surface._points.begin(), surface._numControlPoints,
                         [&](Index &point) { point = values->valuesOfVertices[point]; });
     }
-    return FarExt::internal::Report(result, status);
+    return result;
 }
 
 template <typename REAL>
 bool SurfaceFactory::InitVertexSurface(Index face, Surface<REAL> *surface, Status *status) const {
-    return init(face, Interpolation::Vertex, -1, surface, status);
+    return FarExt::internal::Report(init(face, Interpolation::Vertex, -1, *surface), status);
 }
 
 template <typename REAL>
 bool SurfaceFactory::InitVaryingSurface(Index face, Surface<REAL> *surface, Status *status) const {
-    return init(face, Interpolation::Varying, -1, surface, status);
+    return FarExt::internal::Report(init(face, Interpolation::Varying, -1, *surface), status);
 }
 
 template <typename REAL>
 bool SurfaceFactory::InitFaceVaryingSurface(Index face, Surface<REAL> *surface, FVarID channel,
                                             Status *status) const {
-    if (channel < 0 || channel >= GetNumFVarChannels()) {
+    Status result = FarExt::internal::CheckChannel(channel, GetNumFVarChannels());
+    if (result.IsOk()) {
+        result = init(face, FarExt::internal::GetChannelInterpolation(_refiner, channel), channel,
+                      *surface);
+    } else {
         surface->Clear();
-        return FarExt::internal::Report(
-            FarExt::internal::Failure(StatusCode::InvalidArgument,
-                                      "channel " + std::to_string(channel) + " is not one of the " +
-                                          std::to_string(GetNumFVarChannels()) +
-                                          " face-varying channels"),
-            status);
     }
-    bool const isLinear =
-        _refiner.GetFVarLinearInterpolation(channel) == Sdc::Options::FVAR_LINEAR_ALL;
-    return init(face, isLinear ? Interpolation::Varying : Interpolation::Vertex, channel, surface,
-                status);
+    return FarExt::internal::Report(result, status);
 }
 
+template Status SurfaceFactory::init(Index, Interpolation, int, Surface<float> &) const;
+template Status SurfaceFactory::init(Index, Interpolation, int, Surface<double> &) const;
 template bool SurfaceFactory::InitVertexSurface(Index, Surface<float> *, Status *) const;
 template bool SurfaceFactory::InitVertexSurface(Index, Surface<double> *, Status *) const;
 template bool SurfaceFactory::InitVaryingSurface(Index, Surface<float> *, Status *) const;

@@ -99,7 +99,8 @@ public:
     /// Face-varying channels.
     int GetNumFVarChannels() const { return _refiner.GetNumFVarChannels(); }
 
-    /// \brief Whether a face has a surface.
+    /// \brief Whether a face has a surface; a no is no failure, of which an error callback
+    /// (FarExt::SetErrorCallback()) is told.
     ///
     /// \param status  says why not: InvalidArgument for a face out of range and for a hole, and behind
     ///                a first step for a refiner that has refined again since the factory was made;
@@ -136,6 +137,10 @@ public:
     /// @}
 
 private:
+    template <typename REAL>
+    friend class PatchStream;
+    friend class View;
+
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
 
     FarExt::Status checkIsFace(Index face) const;
@@ -143,9 +148,10 @@ private:
     internal::CellType const *findType(FarExt::internal::Level const &level, Index levelFace,
                                        Index face, FarExt::Interpolation interpolation,
                                        std::vector<Index> &points, FarExt::Status &status) const;
+    // With the causes of the public functions, which report them; a channel is in range, -1: none.
     template <typename REAL>
-    bool init(Index face, FarExt::Interpolation interpolation, int channel, Surface<REAL> *surface,
-              FarExt::Status *status) const;
+    FarExt::Status init(Index face, FarExt::Interpolation interpolation, int channel,
+                        Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;

@@ -19,11 +19,11 @@ class CellTypes;
 /// mesh or of several with any options, and the weights that make the surface of its control points
 /// are found once for a type.  Every SurfaceFactory has a cache of its own unless it is given one.
 ///
-/// Any number of threads and of factories may share a cache.  It grows with the types that it meets:
-/// some hundred bytes for each where no feature is near, and when a surface of the type is first
-/// evaluated, or at once where one is, some kilobytes for it and for each type of cell that evaluation
-/// goes through; and with the tessellations that are evaluated, whose weights are kept for types of faces
-/// or of cells.  Surfaces keep what they need of it, so that it may go before them.
+/// Any number of threads and of factories may share a cache.  It grows by some hundred bytes with each type
+/// of faces that it meets.  When a surface of the type is first evaluated, or at once where a feature is
+/// near, it grows by some kilobytes for it and for each type of cell that evaluation goes through.  Of the
+/// tessellations that are evaluated it keeps the weights, for types of faces or of cells.  Surfaces keep
+/// what they need of the cache, so that it may go before them.
 class OPENSUBDIVHEX_API SurfaceFactoryCache {
 public:
     SurfaceFactoryCache();

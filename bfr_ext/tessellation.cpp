@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <mutex>
 
 #include <opensubdiv/far/types.h>
@@ -89,6 +91,11 @@ private:
     std::vector<double> const &_coords;
 };
 
+// Whether triangles have more indices than an int counts.
+bool areTooMany(double numTriangles) {
+    return 3 * numTriangles > double(std::numeric_limits<int>::max());
+}
+
 } // namespace
 
 Tessellation::Tessellation(Parameterization const &parameterization, int level, Options options) {
@@ -110,7 +117,8 @@ Tessellation::Tessellation(CellTree const &tree, Polyline const edges[], Options
             polylines.back() = edges[edge];
         }
     }
-    if (!setOptions(options) || !hasAllPoints) {
+    // A half cell makes two triangles at least.
+    if (!setOptions(options) || !hasAllPoints || areTooMany(2.0 * (tree.GetNumLeaves() - 1))) {
         return;
     }
     _parameterization = Parameterization(tree.GetFaceSize());
@@ -182,6 +190,10 @@ void Tessellation::initialize(Parameterization const &parameterization, int numL
         _levels.assign(levels, levels + size);
         _levels.push_back(numLevels > size ? levels[size]
                                            : *std::max_element(levels, levels + size));
+    }
+    if (areTooMany(2 * (internal::FaceSections::CountLeaves(_levels) - 1))) {
+        *this = Tessellation(Parameterization(), 0);
+        return;
     }
     std::vector<Polyline> edges;
     std::for_each(_levels.begin(), _levels.end() - 1,
@@ -318,6 +330,13 @@ void Tessellation::setFacets(CellMesh const &mesh, std::vector<int> const &place
         _firstFacetIndices.push_back(int(_facetIndices.size()));
         _facetLevels.push_back(level);
     };
+    // What Euler says of triangles; quads and polygons are fewer.
+    std::size_t const numTriangles =
+        2 * std::size_t(GetNumCoords()) - std::size_t(GetNumBoundaryCoords()) - 2;
+    if (areTooMany(double(numTriangles))) {
+        *this = Tessellation(Parameterization(), 0);
+        return;
+    }
     if (_facetSize == 0) {
         for (CellMesh::Polygon &polygon : mesh.GetMergedPolygons()) {
             for (int &vert : polygon.verts) {
@@ -326,9 +345,6 @@ void Tessellation::setFacets(CellMesh const &mesh, std::vector<int> const &place
             addFacet(polygon.verts.data(), int(polygon.verts.size()), polygon.level);
         }
     } else {
-        // What Euler says of triangles; quads are fewer.
-        std::size_t const numTriangles =
-            2 * std::size_t(GetNumCoords()) - std::size_t(GetNumBoundaryCoords()) - 2;
         std::size_t const numFacets = _facetSize == 3 ? numTriangles : numTriangles / 2;
         _facetIndices.reserve(std::size_t(_facetSize) * numFacets);
         _firstFacetIndices.reserve(numFacets + 1);

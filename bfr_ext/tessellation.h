@@ -83,7 +83,8 @@ public:
     /// \brief The same level everywhere, 0 ... kLastLevel.
     ///
     /// The tessellation is invalid for other levels, for an invalid parameterization, for a facet size
-    /// that is none of the three, and for strides that are less than what they are between.
+    /// that is none of the three, for strides that are less than what they are between, and for so many
+    /// cells that as triangles they have more than 2^31 - 1 indices.
     Tessellation(Parameterization const &parameterization, int level, Options options = Options());
     /// \brief Levels of the edges and of the inside.
     ///

@@ -21,20 +21,29 @@ namespace internal {
 /// The pyramid that a camera sees.
 class ViewGeometry {
 public:
-    /// Whether the camera has a picture.
-    bool Set(Camera const &camera) {
+    /// Whether the camera has a picture.  Of one that looks along what is up, that is replaced.
+    bool Set(Camera &camera) {
         constexpr double kHalfTurn = 180;
         constexpr double kPi = 3.14159265358979323846;
         _eye = ToVector3(camera.eye);
         Vector3 const toTarget = Subtract(ToVector3(camera.target), _eye);
-        Vector3 const right = Cross(toTarget, ToVector3(camera.up));
         double const distance = GetLength(toTarget);
-        double const sine = GetLength(right) / (distance * GetLength(ToVector3(camera.up)));
+        double const upLength = GetLength(ToVector3(camera.up));
         if (!(camera.fieldOfView > 0) || !(camera.fieldOfView < kHalfTurn) || camera.width < 1 ||
-            camera.height < 1 || !std::isfinite(distance) || !(distance > 0) || !(sine > 1e-9)) {
+            camera.height < 1 || !std::isfinite(distance) || !(distance > 0) ||
+            !std::isfinite(upLength) || !(upLength > 0)) {
             return false;
         }
+        constexpr double kLeastSine = 1e-9;
         _forward = Scale(toTarget, 1 / distance);
+        Vector3 right = Cross(_forward, ToVector3(camera.up));
+        if (!(GetLength(right) > kLeastSine * upLength)) {
+            bool const isAlongZ = std::abs(_forward[2]) > std::abs(_forward[1]);
+            camera.up[0] = 0;
+            camera.up[1] = isAlongZ ? 1 : 0;
+            camera.up[2] = isAlongZ ? 0 : -1;
+            right = Cross(_forward, ToVector3(camera.up));
+        }
         Vector3 const rightAxis = Scale(right, 1 / GetLength(right));
         Vector3 const upAxis = Cross(rightAxis, _forward);
         double const top = std::tan(camera.fieldOfView / 2 * kPi / kHalfTurn);
@@ -329,7 +338,7 @@ View::View(Camera const &camera, Options options) : _camera(camera), _options(op
     auto const isNumber = [](double number) { return std::isfinite(number) && number >= 0; };
     auto geometry = std::make_shared<internal::ViewGeometry>();
     bool const hasAim = options.GetFlatness() > 0 || options.GetEdgeLength() > 0;
-    if (geometry->Set(camera) && hasAim && isNumber(options.GetFlatness()) &&
+    if (geometry->Set(_camera) && hasAim && isNumber(options.GetFlatness()) &&
         isNumber(options.GetEdgeLength()) && isNumber(options.GetHysteresis()) &&
         options.GetHysteresis() <= 1 && options.GetMaxLevel() >= 0 &&
         options.GetMaxLevel() <= CellTree::kLastLevel) {
@@ -345,9 +354,13 @@ CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[]
     if (visibility) {
         visibility->clear();
     }
-    internal::TreeMaker maker(*_geometry, _options, previous, tree, visibility);
-    maker.Make(*surface._type,
-               gather(controlPoints, pointDesc.stride, std::size_t(surface.GetNumControlPoints())));
+    if (IsValid()) {
+        bool const hasPrevious = previous && previous->GetFaceSize() == tree.GetFaceSize();
+        internal::TreeMaker maker(*_geometry, _options, hasPrevious ? previous : nullptr, tree,
+                                  visibility);
+        maker.Make(*surface._type, gather(controlPoints, pointDesc.stride,
+                                          std::size_t(surface.GetNumControlPoints())));
+    }
     if (visibility) {
         visibility->resize(std::size_t(tree.GetNumCells()));
     }
@@ -357,6 +370,9 @@ CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[]
 template <typename REAL>
 Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
                         typename Surface<REAL>::PointDescriptor const &pointDesc) const {
+    if (!IsValid()) {
+        return Polyline();
+    }
     internal::CellType::BorderItem const &item =
         surface._type->GetBorderItem(surface.getTurns(), std::size_t(edge));
     std::vector<double> points;
@@ -381,7 +397,7 @@ int View::FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
     std::fill(levels, levels + size, 0);
     for (int cell = 1; cell < tree.GetNumCells(); ++cell) {
         if (tree.GetBorderSide(cell) >= 0) {
-            int &level = levels[tree.GetSector(cell)];
+            int &level = levels[tree.GetEdge(cell)];
             level = std::max(level, tree.GetLevel(cell));
         }
     }
@@ -397,6 +413,7 @@ CellForest View::MakeForest(SurfaceFactory const &factory, REAL const meshPoints
     FarExt::TopologyLevel const base = factory.GetLevel();
     Level const &level = factory.GetLevel().GetLevel();
     CellForest forest(factory.GetMesh());
+    bool const hasPrevious = previous && previous->GetNumFaces() == forest.GetNumFaces();
     std::vector<std::vector<CellVisibility>> visibility(std::size_t(forest.GetNumFaces()));
     struct State {
         Surface<REAL> surface;
@@ -408,12 +425,12 @@ CellForest View::MakeForest(SurfaceFactory const &factory, REAL const meshPoints
         [&](State &state, Index begin, Index end) {
             auto &[surface, points] = state;
             for (Index face = begin; face < end; ++face) {
-                if (!factory.InitVertexSurface(face, &surface)) {
+                if (!factory.init(face, FarExt::Interpolation::Vertex, -1, surface).IsOk()) {
                     continue;
                 }
                 points.resize(3 * std::size_t(surface.GetNumControlPoints()));
                 surface.GatherControlPoints(meshPoints, {3, pointDesc.stride}, points.data(), 3);
-                CellTree const *const last = previous ? &previous->GetTree(face) : nullptr;
+                CellTree const *const last = hasPrevious ? &previous->GetTree(face) : nullptr;
                 forest.SetTree(face, MakeTree(surface, points.data(), 3, last,
                                               &visibility[std::size_t(face)]));
                 for (int local = 0; local < surface.GetFaceSize(); ++local) {
@@ -430,7 +447,7 @@ CellForest View::MakeForest(SurfaceFactory const &factory, REAL const meshPoints
     forest.MatchEdges();
     if (counts) {
         *counts = Counts();
-        counts->cellsByLevel.assign(std::size_t(_options.GetMaxLevel()) + 1, 0);
+        counts->cellsByLevel.assign(IsValid() ? std::size_t(_options.GetMaxLevel()) + 1 : 1, 0);
         for (Index face = 0; face < forest.GetNumFaces(); ++face) {
             CellTree const &tree = forest.GetTree(face);
             std::vector<CellVisibility> const &found = visibility[std::size_t(face)];

@@ -18,10 +18,12 @@ class ViewGeometry;
 struct Camera {
     double eye[3] = {0, 0, 1};    ///< where it is
     double target[3] = {0, 0, 0}; ///< what is in the middle of the picture
-    double up[3] = {0, 1, 0};     ///< a direction that is upright in the picture
-    double fieldOfView = 40;      ///< degrees, of the height of the picture; between 0 and 180
-    int width = 1280;             ///< pixels
-    int height = 720;             ///< pixels
+    /// A direction that is upright in the picture.  Where the camera looks along it, -z takes its
+    /// place, or y for a look more along z than along y: so a look down has x to the right.
+    double up[3] = {0, 1, 0};
+    double fieldOfView = 40; ///< degrees, of the height of the picture; between 0 and 180
+    int width = 1280;        ///< pixels
+    int height = 720;        ///< pixels
 };
 
 /// What is known of a cell in a view.
@@ -118,9 +120,9 @@ public:
 
     /// \brief What a camera sees.
     ///
-    /// The view is invalid if eye and target are one place, or what is up lies in the direction between
-    /// them; if a number is not finite, or an angle, resolution or option is not in its range; and if
-    /// both numbers of pixels are 0.
+    /// The view is invalid if eye and target are one place, or nothing is up; if a number is not finite,
+    /// or an angle, resolution or option is not in its range; and if both numbers of pixels are 0.  It
+    /// then refines nothing: trees have one cell, and polylines one segment.
     ///
     /// \param camera   where it is, and its picture
     /// \param options  what is to be reached
@@ -128,7 +130,7 @@ public:
 
     /// Whether the arguments were as they have to be.
     bool IsValid() const { return _geometry != nullptr; }
-    /// The camera.
+    /// The camera, with what is up in its picture.
     Camera const &GetCamera() const { return _camera; }
     /// The options.
     Options const &GetOptions() const { return _options; }
@@ -138,7 +140,7 @@ public:
     /// \param surface       a valid surface of positions
     /// \param controlPoints  its control points, of 3 numbers each
     /// \param pointDesc      how they lie; the first 3 numbers of each are read
-    /// \param previous       the tree of the last frame, or null
+    /// \param previous       the tree of the last frame, or null; of another face size it is ignored
     /// \param visibility     null, or gets what is known of each cell; those below cells that are not
     ///                       seen have no numbers
     template <typename REAL>
@@ -179,7 +181,8 @@ public:
     /// \param factory     of the mesh, whose refiner the forest refers to
     /// \param meshPoints  the positions of its vertices
     /// \param pointDesc   how they lie; the first 3 numbers of each are read
-    /// \param previous    the forest of the last frame, of the same mesh, or null
+    /// \param previous    the forest of the last frame, of the same mesh, or null; where its trees are
+    ///                    others in number or of another face size, they are ignored
     /// \param counts      null, or gets what was found
     template <typename REAL>
     CellForest MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],

@@ -64,7 +64,7 @@ FaceSections::FaceSections(std::vector<int> const &levels, int maxLeaves)
             return cell == 0 ? CountLeaves(levels)
                              : 1 + GetFaceSize() * (std::ldexp(1.0, 2 * left) - 1) / 3;
         }
-        return counts.at(levels[std::size_t(_cells.GetSector(cell))])
+        return counts.at(levels[std::size_t(_cells.GetEdge(cell))])
             .Get(_cells.GetLevel(cell), _cells.GetBorderSide(cell));
     });
 }
@@ -127,7 +127,7 @@ bool FaceSections::isRefined(CellTree const &tree, int cell, int wholeCell) cons
     // As CellTree refines cells of levels.
     int const level = _levels.back();
     int const last = tree.GetBorderSide(cell) == 0
-                         ? std::min(level, _levels[std::size_t(tree.GetSector(cell))])
+                         ? std::min(level, _levels[std::size_t(tree.GetEdge(cell))])
                          : level;
     return tree.GetLevel(cell) < last;
 }

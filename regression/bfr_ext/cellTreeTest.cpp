@@ -39,7 +39,7 @@ Tessellation::Options getPolygonOptions(int facetSize) {
 /// All facets of a forest, whose vertices are numbers of points.
 struct ForestMesh {
     ForestMesh(CellForest const &forest, std::vector<bool> const &hasFace, int facetSize) {
-        int numPoints = forest.GetNumBoundaryPoints();
+        int numPoints = int(forest.GetNumBoundaryPoints());
         for (int face = 0; face < forest.GetNumFaces(); ++face) {
             tessellations.push_back(forest.GetTessellation(face, getPolygonOptions(facetSize)));
             Tessellation const &tessellation = tessellations.back();
@@ -145,7 +145,7 @@ TEST(CellTree, RefinesWhatItIsAskedTo) {
     EXPECT_EQ(tree.Refine(0), 1);
     EXPECT_EQ(tree.GetNumCells(), 7);
     EXPECT_TRUE(tree.IsWhole(1));
-    EXPECT_EQ(tree.GetSector(4), 2);
+    EXPECT_EQ(tree.GetEdge(4), 2);
     EXPECT_EQ(tree.GetBorderSide(4), 0);
     int const half = tree.Refine(4);
     EXPECT_EQ(tree.GetNumLeaves(), 9);
@@ -173,6 +173,11 @@ TEST(CellTree, RefinesWhatItIsAskedTo) {
     }
     EXPECT_EQ(deep.GetLevel(cell), CellTree::kLastLevel);
     EXPECT_EQ(deep.Refine(cell), 0);
+    int const numCells = deep.GetNumCells();
+    for (int const none : {-1, numCells, numCells + 99}) {
+        EXPECT_EQ(deep.Refine(none), 0);
+        EXPECT_EQ(deep.GetNumCells(), numCells);
+    }
 }
 
 TEST(CellTree, TessellationsNeedAllPointsOfTheTree) {
@@ -192,6 +197,21 @@ TEST(CellTree, TessellationsNeedAllPointsOfTheTree) {
     std::vector<int> levels(std::size_t(finer.GetNumFacets()));
     EXPECT_EQ(finer.GetFacetLevels(levels.data()), finer.GetNumFacets());
     EXPECT_EQ(std::set<int>(levels.begin(), levels.end()), std::set<int>{3});
+}
+
+TEST(CellForest, TreesOfOtherFacesHaveNoTessellation) {
+    auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 0, {});
+    CellForest forest(*refiner);
+    for (int const faceSize : {3, 5, 60}) {
+        forest.SetTree(2, CellTree(faceSize, 2));
+        EXPECT_FALSE(forest.GetTessellation(2).IsValid());
+        EXPECT_EQ(forest.GetTessellation(2).GetNumFacets(), 0);
+        EXPECT_TRUE(forest.GetTessellation(1).IsValid());
+    }
+    forest.SetTree(2, CellTree(4, 2));
+    EXPECT_FALSE(forest.GetTessellation(2).IsValid()); // until edges are matched
+    forest.MatchEdges();
+    EXPECT_TRUE(forest.GetTessellation(2).IsValid());
 }
 
 namespace {

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -339,6 +340,29 @@ TEST(PlySinkTest, EndsTheStreamWhenWritingFails) {
     FarExt::Status status;
     EXPECT_FALSE(PatchNumbering::Create(wrong, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
+}
+
+TEST(PlySinkTest, TakesPointsOfThreeNumbersAlone) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    PatchStream<double> const stream(*factory, PatchLevels(1));
+    auto const numbering = PatchNumbering::Create(stream);
+    std::atomic<int> numWrites(0);
+    auto const sink =
+        PlySink<double>::Create(*numbering, [&](std::uint64_t, char const *, std::size_t) {
+            ++numWrites;
+            return true;
+        });
+    std::vector<double> const points(4 * std::size_t(shape.GetNumVertices()));
+    for (int const size : {2, 4}) {
+        FarExt::Status status;
+        EXPECT_FALSE(stream.Run(points.data(), size, *sink, &status));
+        EXPECT_TRUE(status.IsOk());
+        EXPECT_EQ(numWrites, 0);
+    }
+    EXPECT_TRUE(stream.Run(points.data(), 3, *sink));
+    EXPECT_GT(numWrites, 0);
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -5,6 +5,7 @@
 #include "streamFixture.h"
 #include "surfaceFixture.h"
 
+#include "bfr_ext/view.h"
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
@@ -12,7 +13,10 @@
 
 #include <gtest/gtest.h>
 
+#include <opensubdiv/sdc/crease.h>
+
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -320,6 +324,60 @@ TEST(PatchStreamTest, TellsOfTheFirstFaceThatIsWrong) {
                              &status));
         EXPECT_EQ(status.GetComponentIndex(), kFirst) << status.GetMessage();
     }
+}
+
+namespace {
+
+/// Counts the errors that Far's callback is told of, while it lives.
+struct ErrorCounter {
+    ErrorCounter() {
+        numErrors = 0;
+        FarExt::SetErrorCallback([](Far::ErrorType, char const *) { ++numErrors; });
+    }
+    ~ErrorCounter() { FarExt::SetErrorCallback(nullptr); }
+    ErrorCounter(ErrorCounter const &) = delete;
+    ErrorCounter &operator=(ErrorCounter const &) = delete;
+
+    static inline std::atomic<int> numErrors;
+};
+
+} // namespace
+
+// An error callback is told of each failure once, by the thread of the call; faces without a surface are
+// none by themselves.
+TEST(PatchStreamTest, ReportsEachFailureOnce) {
+    using Stream = PatchStream<double>;
+    Stream::Sink const sink = [](Stream::Patch const &) { return true; };
+    auto const countErrors = [&](Shape const &shape, Sdc::Options options, bool isWell) {
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0, options);
+        auto const factory = SurfaceFactory::Create(*refiner);
+        ErrorCounter const counter;
+        EXPECT_EQ(Stream(*factory, PatchLevels(1)).Run(shape.positions.data(), 3, sink), isWell);
+        return int(ErrorCounter::numErrors);
+    };
+    Shape withHoles = GetShape("cube");
+    withHoles.holeFaces = {2, 3};
+    EXPECT_EQ(countErrors(withHoles, getEdgeOnly(), true), 0);
+    // Before the first patch, at many faces.
+    EXPECT_EQ(countErrors(GetShape("quadGrid"), Sdc::Options(), false), 1);
+    // On the way: a single sharp edge ends among many faces, and no face at its end has a limit.
+    constexpr int kNumSides = 140;
+    Shape withoutLimit = MakeBipyramid(kNumSides);
+    withoutLimit.creaseVertexPairs = {0, kNumSides};
+    withoutLimit.creaseSharpness = {Sdc::Crease::SHARPNESS_INFINITE};
+    EXPECT_EQ(countErrors(withoutLimit, getEdgeOnly(), false), 1);
+
+    auto const refiner = CreateRefiner(withHoles, ReferenceMask::Smooth, 0, getEdgeOnly());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    ErrorCounter const counter;
+    FarExt::Status status;
+    EXPECT_FALSE(factory->FaceHasLimitSurface(2, &status));
+    EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+    BfrExt::View(BfrExt::Camera()).MakeForest<double>(*factory, withHoles.positions.data(), 3);
+    EXPECT_EQ(ErrorCounter::numErrors, 0);
+    Surface<double> surface;
+    EXPECT_FALSE(factory->InitVertexSurface(2, &surface));
+    EXPECT_EQ(ErrorCounter::numErrors, 1);
 }
 
 TEST(PatchStreamTest, RefusesForestsThatDoNotFit) {

@@ -491,6 +491,43 @@ TEST(SurfaceFactoryTest, RefusesFacesWithoutASurface) {
     EXPECT_TRUE(status.IsOk());
 }
 
+TEST(SurfaceFactoryTest, WhatDoesNotFitIsNotEvaluated) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    BfrExt::Surface<double> surface;
+    constexpr double kUntouched = 77;
+    constexpr std::size_t kSize = 3 * 64;
+    std::vector<double> const control(kSize, 1);
+    using BfrExt::Parameterization;
+    using BfrExt::Tessellation;
+    auto const expectNothing = [&](Tessellation const &tessellation) {
+        std::vector<double> results(3 * kSize, kUntouched);
+        double *const p = results.data();
+        surface.Evaluate(tessellation, control.data(), 3, p, 3);
+        surface.Evaluate(tessellation, control.data(), 3, p, p + kSize, p + 2 * kSize, 3);
+        EXPECT_EQ(results, std::vector<double>(3 * kSize, kUntouched));
+    };
+    double const uv[2] = {0.5, 0.25};
+    std::vector<double> results(9, kUntouched);
+    double *const p = results.data();
+    surface.Evaluate(uv, control.data(), 3, p);
+    surface.Evaluate(uv, control.data(), 3, p, p + 3, p + 6);
+    EXPECT_EQ(surface.EvaluateStencil(uv, p), 0);
+    EXPECT_EQ(surface.EvaluateStencil(uv, p, p + 3, p + 6), 0);
+    EXPECT_EQ(results, std::vector<double>(9, kUntouched));
+    expectNothing(Tessellation(Parameterization(4), 1));
+
+    ASSERT_TRUE(factory->InitVertexSurface(0, &surface));
+    for (int const faceSize : {3, 5}) {
+        expectNothing(Tessellation(Parameterization(faceSize), 1));
+        expectNothing(Tessellation(BfrExt::CellTree(faceSize, 1)));
+    }
+    expectNothing(Tessellation(Parameterization(4), 99));
+    surface.Evaluate(Tessellation(Parameterization(4), 0), control.data(), 3, p, 3);
+    EXPECT_NE(results[0], kUntouched);
+}
+
 TEST(SurfaceFactoryTest, RefusesOtherSchemes) {
     FarExt::HexSchemeOptions options;
     options.schemeType = FarExt::SchemeType::DooSabin;

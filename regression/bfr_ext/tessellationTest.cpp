@@ -231,6 +231,19 @@ TEST(Tessellation, IsInvalidForWrongArguments) {
     EXPECT_EQ(Tessellation(quad, -1).GetNumBoundaryCoords(), 0);
 }
 
+// Refused before any memory is taken for them.
+TEST(Tessellation, IsInvalidForMoreIndicesThanAnIntCounts) {
+    // A face of n sides has n (4^12 - 1)/3 half cells at level 12, of two triangles each.
+    for (int const faceSize : {65, 290, 1000, 65535}) {
+        Tessellation const tessellation(Parameterization(faceSize), Tessellation::kLastLevel);
+        EXPECT_FALSE(tessellation.IsValid());
+        EXPECT_EQ(tessellation.GetNumFacets(), 0);
+        EXPECT_EQ(tessellation.GetNumCoords(), 0);
+        EXPECT_EQ(tessellation.GetNumEdges(), 0);
+    }
+    EXPECT_TRUE(Tessellation(Parameterization(1000), 4).IsValid());
+}
+
 namespace {
 
 /// Random levels for the edges and the insides of a mesh.

@@ -218,10 +218,7 @@ TEST(View, IsInvalidForWrongArguments) {
     EXPECT_FALSE(isValid([&](Camera &camera, View::Options &) { camera.eye[2] = nan; }));
     EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.eye[2] = INFINITY; }));
     EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.up[1] = 0; }));
-    EXPECT_FALSE(isValid([](Camera &camera, View::Options &) {
-        camera.up[1] = 0;
-        camera.up[2] = 3;
-    }));
+    EXPECT_FALSE(isValid([&](Camera &camera, View::Options &) { camera.up[0] = nan; }));
     EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.fieldOfView = 180; }));
     EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.fieldOfView = 0; }));
     EXPECT_FALSE(isValid([](Camera &camera, View::Options &) { camera.width = 0; }));
@@ -234,6 +231,103 @@ TEST(View, IsInvalidForWrongArguments) {
     EXPECT_FALSE(isValid([](Camera &, View::Options &options) { options.SetHysteresis(1.5); }));
     EXPECT_TRUE(
         isValid([](Camera &, View::Options &options) { options.SetFlatness(0).SetEdgeLength(3); }));
+}
+
+// Another direction is up where a camera looks along that, as in a view from the top.
+TEST(View, LooksAlongWhatIsUp) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = makeRefiner(shape);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    struct Look {
+        std::size_t axis;
+        Vector3 up;
+    };
+    for (auto const &[axis, up] : {Look{0, {0, 0, -1}}, Look{1, {0, 0, -1}}, Look{2, {0, 1, 0}}}) {
+        for (double const distance : {5.0, -5.0}) {
+            Camera camera;
+            std::fill_n(camera.eye, 3, 0.25);
+            std::fill_n(camera.target, 3, 0.25);
+            std::fill_n(camera.up, 3, 0.0);
+            camera.eye[axis] += distance;
+            camera.up[axis] = 2;
+            View const view(camera);
+            ASSERT_TRUE(view.IsValid());
+            std::copy_n(up.data(), 3, camera.up);
+            View const turned(camera);
+            for (std::size_t k = 0; k < 3; ++k) {
+                EXPECT_EQ(view.GetCamera().up[k], up[k]);
+                EXPECT_EQ(view.GetCamera().eye[k], camera.eye[k]);
+                EXPECT_EQ(turned.GetCamera().up[k], up[k]);
+            }
+            View::Counts counts;
+            View::Counts ofTurned;
+            view.MakeForest<double>(*factory, shape.positions.data(), 3, nullptr, &counts);
+            turned.MakeForest<double>(*factory, shape.positions.data(), 3, nullptr, &ofTurned);
+            EXPECT_GT(counts.cellsByLevel.size(), 1u);
+            EXPECT_EQ(counts.cellsByLevel, ofTurned.cellsByLevel);
+        }
+    }
+}
+
+TEST(View, RefinesNothingWhereItIsInvalid) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = makeRefiner(shape);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    Surface<double> surface;
+    ASSERT_TRUE(factory->InitVertexSurface(0, &surface));
+    std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+    surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+    Camera same;
+    same.eye[2] = 0;
+    Camera wide;
+    wide.fieldOfView = 180;
+    for (View const &view :
+         {View(same), View(wide), View(Camera(), View::Options().SetMaxLevel(-1)),
+          View(Camera(), View::Options().SetMaxLevel(1 << 30))}) {
+        ASSERT_FALSE(view.IsValid());
+        std::vector<CellVisibility> visibility(7);
+        CellTree const tree = view.MakeTree(surface, control.data(), 3, nullptr, &visibility);
+        EXPECT_EQ(tree.GetNumCells(), 1);
+        EXPECT_EQ(visibility, std::vector<CellVisibility>{CellVisibility::Visible});
+        EXPECT_EQ(view.MakeEdge(surface, 1, control.data(), 3), Polyline());
+        std::vector<int> levels(5, 9);
+        EXPECT_EQ(view.FindLevels(surface, control.data(), 3, levels.data()), 5);
+        EXPECT_EQ(levels, std::vector<int>(5));
+        View::Counts counts;
+        CellForest const forest =
+            view.MakeForest<double>(*factory, shape.positions.data(), 3, nullptr, &counts);
+        EXPECT_EQ(forest.GetNumBoundaryPoints(), 8);
+        EXPECT_EQ(counts.cellsByLevel, std::vector<long>{6});
+    }
+}
+
+TEST(View, IgnoresForestsOfOtherMeshes) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = makeRefiner(shape);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    Camera camera;
+    camera.eye[2] = 5;
+    View const view(camera);
+    auto const count = [&](CellForest const *previous) {
+        View::Counts counts;
+        view.MakeForest<double>(*factory, shape.positions.data(), 3, previous, &counts);
+        return counts.cellsByLevel;
+    };
+    std::vector<long> const expected = count(nullptr);
+    for (char const *const name : {"polygon4", "icosahedron"}) {
+        auto const other = makeRefiner(GetShape(name));
+        CellForest forest(*other);
+        for (int face = 0; face < forest.GetNumFaces(); ++face) {
+            forest.SetTree(face, CellTree(forest.GetTree(face).GetFaceSize(), 3));
+        }
+        EXPECT_EQ(count(&forest), expected);
+    }
+    // As many trees, but of triangles.
+    CellForest forest(*refiner);
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        forest.SetTree(face, CellTree(3, 3));
+    }
+    EXPECT_EQ(count(&forest), expected);
 }
 
 TEST(View, FacetsAreCloseToTheSurfaceInThePicture) {

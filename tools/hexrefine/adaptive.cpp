@@ -72,10 +72,6 @@ BfrExt::View makeView(AdaptiveArguments const &arguments, std::vector<float> con
     } else {
         std::copy_n(arguments.camera.begin(), 3, camera.eye);
         std::copy_n(arguments.camera.begin() + 3, 3, camera.target);
-        if (camera.eye[0] == camera.target[0] && camera.eye[2] == camera.target[2]) {
-            camera.up[1] = 0; // a look straight up or down
-            camera.up[2] = -1;
-        }
     }
     return BfrExt::View(camera, BfrExt::View::Options()
                                     .SetFlatness(double(arguments.pixelError))

@@ -122,7 +122,7 @@ void CellView::Refine(BfrExt::View const &view, std::vector<float> const &contro
 void CellView::numberPlaces() {
     FarExt::TopologyLevel const base = getBase();
     int const numVertices = base.GetNumVertices();
-    int numPoints = _forest->GetNumBoundaryPoints();
+    int numPoints = int(_forest->GetNumBoundaryPoints());
     std::vector<int> sidesOfPoints(std::size_t(numPoints - numVertices), -1);
     std::vector<unsigned> &sideVertices = _topology.sideVertices;
     sideVertices.clear();

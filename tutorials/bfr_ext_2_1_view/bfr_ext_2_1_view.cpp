@@ -27,7 +27,7 @@ using namespace OpenSubdivHex;
 static std::set<std::pair<int, int>> collectSides(BfrExt::CellForest const &forest,
                                                   int *numPolygons, bool *isManifold) {
     std::set<std::pair<int, int>> sides;
-    int numPoints = forest.GetNumBoundaryPoints();
+    int numPoints = int(forest.GetNumBoundaryPoints());
     for (int face = 0; face < forest.GetNumFaces(); ++face) {
         BfrExt::Tessellation::Options options;
         options.SetFacetSize(0); // polygons

@@ -132,7 +132,7 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
     Mesh mesh;
     std::vector<Patch> patches;
     std::vector<int> corners; // of all polygons: the place in the patch
-    int numPoints = _forest->GetNumBoundaryPoints();
+    int numPoints = int(_forest->GetNumBoundaryPoints());
     std::vector<int> faces; // of the surface level, by polygon
     for (int face = 0; face < base.GetNumFaces(); ++face) {
         if (base.IsFaceHole(face)) {
