@@ -524,7 +524,8 @@ TEST(SurfaceFactoryTest, WhatDoesNotFitIsNotEvaluated) {
         expectNothing(Tessellation(BfrExt::CellTree(faceSize, 1)));
     }
     expectNothing(Tessellation(Parameterization(4), 99));
-    surface.Evaluate(Tessellation(Parameterization(4), 0), control.data(), 3, p, 3);
+    results.resize(3 * 4);
+    surface.Evaluate(Tessellation(Parameterization(4), 0), control.data(), 3, results.data(), 3);
     EXPECT_NE(results[0], kUntouched);
 }
 
