@@ -296,7 +296,7 @@ TEST(Truncation, OtherStepsRefuseLabelsThatDiffer) {
             ASSERT_TRUE(refiner);
             for (int level = 0; level <= 3; ++level) {
                 TopologyRefiner::UniformOptions options(level);
-                options.faceLabels = {3, 3, 3, 3, 3, 3};
+                options.faceLabels.assign(6, 3);
                 EXPECT_TRUE(refiner->RefineUniform(options));
                 options.faceLabels[5] = 4;
                 int const firstOther = firstStep == FarExt::FirstStep::TriHex ? 1
