@@ -3,9 +3,9 @@
 
 #include "cell/borderEvaluator.h"
 #include "cell/cellPattern.h"
-#include "cell/cellValues.h"
 #include "cell/patchEvaluator.h"
 #include "cell/plainFace.h"
+#include "cell/refinedCells.h"
 
 #include <algorithm>
 #include <limits>
@@ -276,7 +276,6 @@ template <typename REAL>
 void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const controlPoints[],
                                  PointDescriptor const &pointDesc, REAL *const results[3],
                                  PointDescriptor const &resultDesc) const {
-    using internal::CellValues;
     auto const length = std::size_t(pointDesc.size);
     std::vector<double> control;
     for (int i = 0; i < GetNumControlPoints(); ++i) {
@@ -290,36 +289,47 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
     auto const write = [&](int place, int kind, double const *from) {
         std::copy(from, from + length, results[kind] + std::ptrdiff_t(place) * resultDesc.stride);
     };
-    auto const evaluateCorners = [&](int cell, CellValues const &values) {
+    // What they have taken of memory is kept for the next face.
+    static thread_local internal::RefinedCells cells;
+    auto const evaluateCorners = [&](int treeCell, std::size_t cell) {
         auto corner = std::lower_bound(
-            corners.begin(), corners.end(), cell,
+            corners.begin(), corners.end(), treeCell,
             [](Tessellation::CellCorner const &a, int number) { return a.cell < number; });
-        for (; corner != corners.end() && corner->cell == cell; ++corner) {
-            values.EvaluateCorner(corner->corner, point.data());
-            write(corner->place, 0, point.data());
+        for (; corner != corners.end() && corner->cell == treeCell; ++corner) {
+            if (treeCell > 0) { // points on the border are made below
+                cells.EvaluateCorner(cell, corner->corner, point.data());
+                write(corner->place, 0, point.data());
+            }
             if (results[1]) {
-                values.EvaluateCorner(corner->corner, point.data(), point.data() + length);
+                cells[cell].EvaluateCorner(corner->corner, point.data(), point.data() + length);
                 write(corner->place, 1, point.data());
                 write(corner->place, 2, point.data() + length);
                 isDone[std::size_t(corner->place)] = true;
             }
         }
     };
-    std::vector<CellValues> path(std::size_t(CellTree::kLastLevel) + 1);
-    auto const visit = [&](auto const &self, int cell) -> void {
-        auto const level = std::size_t(tree.GetLevel(cell));
-        evaluateCorners(cell, path[level]);
-        int const first = tree.GetFirstChild(cell);
-        for (int i = 0; first > 0 && i < tree.GetNumChildren(cell); ++i) {
+    auto const visit = [&](auto const &self, int treeCell, std::size_t cell) -> void {
+        evaluateCorners(treeCell, cell);
+        if (!tree.IsRefined(treeCell)) {
+            return;
+        }
+        int const firstInTree = tree.GetFirstChild(treeCell);
+        std::size_t const first = cells.GetFirstChild(cell);
+        std::size_t const numCells = cells.GetSize();
+        for (int i = 0; i < tree.GetNumChildren(treeCell); ++i) {
             // Only the first child has corners that the cell has not.
-            if (i == 0 || tree.IsRefined(first + i)) {
-                path[level + 1].SetChild(path[level], i);
-                self(self, first + i);
+            if (i == 0 || tree.IsRefined(firstInTree + i)) {
+                self(self, firstInTree + i, first + std::size_t(i));
+                cells.Drop(numCells);
             }
         }
     };
-    path[0].SetBase(*_type, control.data(), pointDesc.size);
-    visit(visit, 0);
+    if (internal::PlainFaceType const *const plain = _type.GetPlain()) {
+        cells.SetBase(*plain, control.data(), pointDesc.size);
+    } else {
+        cells.SetBase(*_type, control.data(), pointDesc.size);
+    }
+    visit(visit, 0, internal::RefinedCells::kBase);
     // Derivatives at points of neighbours alone.
     for (std::size_t i = 0; results[1] && i < isDone.size(); ++i) {
         if (!isDone[i]) {

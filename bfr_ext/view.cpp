@@ -63,10 +63,10 @@ public:
     Vector3 const &GetEye() const { return _eye; }
 
     /// Whether the hull of some points is outside of the picture, or behind the eye.
-    bool IsOutside(std::vector<double> const &points) const {
+    bool IsOutside(CellValues const &points) const {
         auto const isBeyond = [&](Vector3 const &outwards) {
-            for (std::size_t i = 0; i < points.size(); i += 3) {
-                if (!(Dot(outwards, Subtract(ToVector3(&points[i]), _eye)) > 0)) {
+            for (int i = 0; i < points.GetNumPoints(); ++i) {
+                if (!(Dot(outwards, Subtract(ToVector3(points.GetPoint(i)), _eye)) > 0)) {
                     return false;
                 }
             }
@@ -80,16 +80,16 @@ public:
     ///
     /// A piece of it at depth z, and by an angle with the secant s away from the axis, has s/z times the
     /// pixels that it would have at depth 1.  Or, at distance r = s z, s^2/r times these.
-    double GetPixelsPerUnit(std::vector<double> const &points) const {
+    double GetPixelsPerUnit(CellValues const &points) const {
         double leastDepth = std::numeric_limits<double>::infinity();
-        double largestSecant = 1;
+        double largestSquare = 1; // of secants
         Vector3 least = {leastDepth, leastDepth, leastDepth};
         Vector3 largest = Scale(least, -1);
-        for (std::size_t i = 0; i < points.size(); i += 3) {
-            Vector3 const toPoint = Subtract(ToVector3(&points[i]), _eye);
+        for (int i = 0; i < points.GetNumPoints(); ++i) {
+            Vector3 const toPoint = Subtract(ToVector3(points.GetPoint(i)), _eye);
             double const depth = Dot(_forward, toPoint);
             leastDepth = std::min(leastDepth, depth);
-            largestSecant = std::max(largestSecant, GetLength(toPoint) / depth);
+            largestSquare = std::max(largestSquare, Dot(toPoint, toPoint) / (depth * depth));
             for (std::size_t k = 0; k < 3; ++k) {
                 least[k] = std::min(least[k], toPoint[k]);
                 largest[k] = std::max(largest[k], toPoint[k]);
@@ -100,8 +100,9 @@ public:
             nearest[k] = std::max({least[k], -largest[k], 0.0});
         }
         double const byDistance = _largestSecant * _largestSecant / GetLength(nearest);
-        double const byDepth = leastDepth > 0 ? std::min(largestSecant, _largestSecant) / leastDepth
-                                              : std::numeric_limits<double>::infinity();
+        double const byDepth = leastDepth > 0
+                                   ? std::min(std::sqrt(largestSquare), _largestSecant) / leastDepth
+                                   : std::numeric_limits<double>::infinity();
         return _pixelsAtDepth1 * std::min(byDepth, byDistance);
     }
 
@@ -123,86 +124,91 @@ public:
         : _geometry(geometry), _options(options), _previous(previous), _tree(tree),
           _visibility(visibility) {}
 
-    void Make(CellType const &type, std::vector<double> const &controlPoints) {
-        _cells.resize(std::size_t(CellTree::kLastLevel) + 1);
-        CellValues base;
-        base.SetBase(type, controlPoints.data(), 3);
-        visit(base, 0, _previous ? 0 : -1);
+    /// \param cells  of the base face, which it refines
+    void Make(RefinedCells &cells) {
+        _cells = &cells;
+        visit(RefinedCells::kBase, 0, _previous ? 0 : -1);
     }
 
 private:
-    void visit(CellValues const &values, int cell, int previousCell) {
-        CellVisibility const found = find(values);
+    void visit(std::size_t cell, int treeCell, int previousCell) {
+        CellVisibility const found = find(cell);
         if (_visibility) {
             _visibility->resize(std::size_t(_tree.GetNumCells()));
-            (*_visibility)[std::size_t(cell)] = found;
+            (*_visibility)[std::size_t(treeCell)] = found;
         }
-        if (found != CellVisibility::Visible || values.GetLevel() >= _options.GetMaxLevel()) {
+        if (found != CellVisibility::Visible ||
+            getCell(cell).GetLevel() >= _options.GetMaxLevel()) {
             return;
         }
         bool const wasRefined = previousCell >= 0 && _previous->IsRefined(previousCell);
-        if (!isToRefine(values, wasRefined ? _options.GetHysteresis() : 1)) {
+        if (!isToRefine(cell, wasRefined ? _options.GetHysteresis() : 1)) {
             return;
         }
-        std::size_t const numChildren = values.GetType().GetChildren().size();
-        std::vector<CellValues> &children = _cells[std::size_t(values.GetLevel())];
-        children.resize(numChildren);
-        for (std::size_t i = 0; i < numChildren; ++i) {
-            children[i].SetChild(values, int(i));
-        }
-        int const first = _tree.Refine(cell);
-        for (std::size_t i = 0; i < numChildren; ++i) {
-            visit(children[i], first + int(i),
-                  wasRefined ? _previous->GetFirstChild(previousCell) + int(i) : -1);
+        std::size_t const firstChild = _cells->GetFirstChild(cell);
+        std::size_t const numCells = _cells->GetSize();
+        int const first = _tree.Refine(treeCell);
+        for (int i = 0; i < _tree.GetNumChildren(treeCell); ++i) {
+            visit(firstChild + std::size_t(i), first + i,
+                  wasRefined ? _previous->GetFirstChild(previousCell) + i : -1);
+            _cells->Drop(numCells); // what was made within the child
         }
     }
 
-    CellVisibility find(CellValues const &values) {
+    CellValues const &getCell(std::size_t cell) const { return (*_cells)[cell]; }
+
+    CellVisibility find(std::size_t cell) {
         if (!_options.IsCulling()) {
             return CellVisibility::Visible;
         }
-        if (_geometry.IsOutside(values.GetValues())) {
+        if (_geometry.IsOutside(getCell(cell))) {
             return CellVisibility::Outside;
         }
-        return isBackFacing(values, SlopeBounds::kMaxSteps) ? CellVisibility::BackFacing
-                                                            : CellVisibility::Visible;
+        return isBackFacing(cell, SlopeBounds::kMaxSteps) ? CellVisibility::BackFacing
+                                                          : CellVisibility::Visible;
     }
 
     // Whether the cell faces away, or all cells do that some steps make of it.
-    bool isBackFacing(CellValues const &values, int numSteps) {
-        SlopeBounds const &bounds = SlopeBounds::Find(values.GetType());
-        if (bounds.GetNumSteps() > numSteps || !areCornersBackFacing(values)) {
+    bool isBackFacing(std::size_t cell, int numSteps) {
+        CellValues const &values = getCell(cell);
+        SlopeBounds const *const bounds =
+            values.IsPlainBase() ? nullptr : &SlopeBounds::Find(values.GetType());
+        if ((bounds && bounds->GetNumSteps() > numSteps) || !areCornersBackFacing(cell)) {
             return false;
         }
-        if (bounds.Exist() && areSlopesBackFacing(values, bounds)) {
+        if (bounds && bounds->Exist() && areSlopesBackFacing(values, *bounds)) {
             return true;
         }
         if (numSteps == 0) {
             return false;
         }
-        std::vector<CellValues> &children = _partsAhead[std::size_t(numSteps) - 1];
-        std::size_t const numChildren = values.GetType().GetChildren().size();
-        children.resize(std::max(children.size(), numChildren));
-        for (std::size_t i = 0; i < numChildren; ++i) {
-            children[i].SetChild(values, int(i));
-            if (!isBackFacing(children[i], numSteps - 1)) {
+        std::size_t const first = _cells->GetFirstChild(cell);
+        for (int i = 0; i < values.GetNumChildren(); ++i) {
+            if (!isBackFacing(first + std::size_t(i), numSteps - 1)) {
                 return false;
             }
         }
         return true;
     }
 
+    void findCorners(std::size_t cell) {
+        CellValues const &values = getCell(cell);
+        int const numCorners =
+            values.IsPlainBase() ? values.GetNumChildren() - 1 : values.GetType().GetNumCorners();
+        _corners.resize(3 * std::size_t(numCorners));
+        for (int i = 0; i < numCorners; ++i) {
+            _cells->EvaluateCorner(cell, i, &_corners[3 * std::size_t(i)]);
+        }
+    }
+
     // Whether the polygon of the corners does, which others of the surface are likely to do as well then.
-    bool areCornersBackFacing(CellValues const &values) const {
-        Vector3 first;
-        Vector3 last;
-        Vector3 corner;
+    bool areCornersBackFacing(std::size_t cell) {
+        findCorners(cell);
+        Vector3 const first = ToVector3(_corners.data());
         Vector3 area = {};
-        values.EvaluateCorner(0, first.data());
-        values.EvaluateCorner(1, last.data());
-        for (int i = 2; i < values.GetType().GetNumCorners(); ++i, last = corner) {
-            values.EvaluateCorner(i, corner.data());
-            Vector3 const part = Cross(Subtract(last, first), Subtract(corner, first));
+        for (std::size_t i = 3; i + 3 < _corners.size(); i += 3) {
+            Vector3 const part = Cross(Subtract(ToVector3(&_corners[i]), first),
+                                       Subtract(ToVector3(&_corners[i + 3]), first));
             area = {area[0] + part[0], area[1] + part[1], area[2] + part[2]};
         }
         return Dot(area, Subtract(_geometry.GetEye(), first)) < 0;
@@ -212,16 +218,18 @@ private:
     // plane.  With c the mean of the points and r how far they are from it, (m + s w) . (eye - p) is at
     // most m . (eye - c) - m . (p - c) + s (|part of eye - c in the plane| + r).
     bool areSlopesBackFacing(CellValues const &values, SlopeBounds const &bounds) const {
-        std::vector<double> const &points = values.GetValues();
-        SlopeBounds::Normals const normals = bounds.GetNormals(points);
+        SlopeBounds::Normals const normals = bounds.GetNormals(values);
+        int const numPoints = values.GetNumPoints();
         Vector3 center = {};
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            center[i % 3] += 3 * points[i] / double(points.size());
+        for (int i = 0; i < numPoints; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                center[k] += values.GetPoint(i)[k] / double(numPoints);
+            }
         }
         double radius = 0;
         double depth = 0;
-        for (std::size_t i = 0; i < points.size(); i += 3) {
-            Vector3 const d = Subtract(ToVector3(&points[i]), center);
+        for (int i = 0; i < numPoints; ++i) {
+            Vector3 const d = Subtract(ToVector3(values.GetPoint(i)), center);
             radius = std::max(radius, GetLength(d));
             depth = std::max(depth, -Dot(normals.middle, d));
         }
@@ -231,24 +239,21 @@ private:
         return height + depth + normals.spread * (across + radius) < 0;
     }
 
-    bool isToRefine(CellValues const &values, double fraction) {
-        auto const numCorners = std::size_t(values.GetType().GetNumCorners());
-        std::vector<double> corners(3 * numCorners);
-        for (std::size_t i = 0; i < numCorners; ++i) {
-            values.EvaluateCorner(int(i), &corners[3 * i]);
-        }
-        double const pixels = _geometry.GetPixelsPerUnit(values.GetValues());
+    bool isToRefine(std::size_t cell, double fraction) {
+        findCorners(cell);
+        double const pixels = _geometry.GetPixelsPerUnit(getCell(cell));
         if (_options.GetEdgeLength() > 0) {
-            for (std::size_t i = 0; i < numCorners; ++i) {
-                Vector3 const side = Subtract(ToVector3(&corners[3 * ((i + 1) % numCorners)]),
-                                              ToVector3(&corners[3 * i]));
+            for (std::size_t i = 0; i < _corners.size(); i += 3) {
+                std::size_t const next = i + 3 < _corners.size() ? i + 3 : 0;
+                Vector3 const side = Subtract(ToVector3(&_corners[next]), ToVector3(&_corners[i]));
                 if (GetLength(side) * pixels > fraction * _options.GetEdgeLength()) {
                     return true;
                 }
             }
         }
         return _options.GetFlatness() > 0 &&
-               !_flatness.IsFlat(values, corners, fraction * _options.GetFlatness() / pixels);
+               !_flatness.IsFlat(*_cells, cell, _corners,
+                                 fraction * _options.GetFlatness() / pixels);
     }
 
     ViewGeometry const &_geometry;
@@ -256,9 +261,8 @@ private:
     CellTree const *const _previous;
     CellTree &_tree;
     std::vector<CellVisibility> *const _visibility;
-    std::vector<std::vector<CellValues>>
-        _cells; // by level: the children of the cell that is looked at
-    std::array<std::vector<CellValues>, SlopeBounds::kMaxSteps> _partsAhead;
+    RefinedCells *_cells = nullptr;
+    std::vector<double> _corners; // of the surface, of the cell that is looked at
     Flatness _flatness;
 };
 
@@ -305,7 +309,7 @@ private:
         values.EvaluateCorner(0, ends);
         values.EvaluateCorner(1, ends + 3);
         double const length = GetLength(Subtract(ToVector3(ends + 3), ToVector3(ends)));
-        double const pixels = _geometry.GetPixelsPerUnit(values.GetValues());
+        double const pixels = _geometry.GetPixelsPerUnit(values);
         return (_options.GetEdgeLength() > 0 && length * pixels > _options.GetEdgeLength()) ||
                (_options.GetFlatness() > 0 &&
                 !IsStraight(parts, ends, ends + 3, _options.GetFlatness() / pixels));
@@ -356,10 +360,18 @@ CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[]
     }
     if (IsValid()) {
         bool const hasPrevious = previous && previous->GetFaceSize() == tree.GetFaceSize();
-        internal::TreeMaker maker(*_geometry, _options, hasPrevious ? previous : nullptr, tree,
-                                  visibility);
-        maker.Make(*surface._type, gather(controlPoints, pointDesc.stride,
-                                          std::size_t(surface.GetNumControlPoints())));
+        std::vector<double> const points =
+            gather(controlPoints, pointDesc.stride, std::size_t(surface.GetNumControlPoints()));
+        // What they have taken of memory is kept for the next face.
+        static thread_local internal::RefinedCells cells;
+        if (internal::PlainFaceType const *const plain = surface._type.GetPlain()) {
+            cells.SetBase(*plain, points.data(), 3);
+        } else {
+            cells.SetBase(*surface._type, points.data(), 3);
+        }
+        internal::TreeMaker(*_geometry, _options, hasPrevious ? previous : nullptr, tree,
+                            visibility)
+            .Make(cells);
     }
     if (visibility) {
         visibility->resize(std::size_t(tree.GetNumCells()));

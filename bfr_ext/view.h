@@ -38,9 +38,9 @@ enum class CellVisibility : unsigned char {
 /// **Flatness.**  A cell is refined until its facets are closer to the surface than some pixels.  The
 /// bound is a true one.  Points of the surface in a cell are sums of the cell's control points, with
 /// weights that are known for its type: so the heights of these over a plane bound those of the surface.
-/// The plane is that of the corners of a cell that may be refined.  In a regular lattice, with
-/// FaceMask::Smooth and Cosine, weights are nearly linear functions in a part of the cell, and the bound is
-/// close at once; else it is that of the cells that some steps make, where bounds are close.  The range
+/// The plane is that of the corners of a cell that may be refined.  Between some of its points, which are known, the
+/// surface of a cell is nearly linear, and how far it may be from that is found once for all cells of its
+/// type; of base faces and their children outside of lattices it is that of the cells in them.  The range
 /// of all these heights, in which the corners and all points on the sides of the cell are, too, is taken
 /// for the distance between surface and facets.  It
 /// is seen at the least depth, and furthest from the axis, that the control points have in the picture.

@@ -21,6 +21,8 @@ public:
     /// Those of a type, which are found once.
     static CellBounds const &Find(CellType const &type);
 
+    /// These, by point.
+    std::vector<double> const &GetWeights() const { return _weights; }
     /// \brief A bound of the largest sum of some numbers of the points, with such weights, that a place of
     /// the cell may have; or \p atLeast if that is larger.
     double GetMax(std::vector<double> const &numbers, double atLeast) const {

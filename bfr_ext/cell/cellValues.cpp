@@ -3,108 +3,156 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-namespace {
+void CellValues::SetBase(CellType const &root, double const *controlPoints, int length) {
+    _type = &root;
+    _plain = nullptr;
+    setBase(root.GetNumPoints(), controlPoints, length);
+}
 
-// Calls function(first, count) for some components of values at a time, count being known when this is
-// compiled.
-template <typename FUNCTION>
-void forComponents(int length, FUNCTION const &function) {
-    int k = 0;
-    for (; k + 3 <= length; k += 3) {
-        function(k, std::integral_constant<int, 3>());
-    }
-    for (; k < length; ++k) {
-        function(k, std::integral_constant<int, 1>());
+void CellValues::SetBase(PlainFaceType const &root, double const *controlPoints, int length) {
+    _type = nullptr;
+    _plain = &root;
+    setBase(root.GetNumPoints(), controlPoints, length);
+}
+
+void CellValues::setBase(int numPoints, double const *controlPoints, int length) {
+    _level = 0;
+    _length = length;
+    _paddedSize = StepMatrix::GetPaddedSize(std::size_t(length));
+    _numPoints = numPoints;
+    _isRefined = false;
+    _faceSize = _plain ? GetNumChildren() - 1 : _type->GetNumCorners();
+    _points.resize(std::max(_points.size(), std::size_t(numPoints) * _paddedSize));
+    for (std::size_t i = 0; i < std::size_t(numPoints); ++i) {
+        StepMatrix::Pad(controlPoints + i * std::size_t(length), std::size_t(length),
+                        &_points[i * _paddedSize]);
     }
 }
 
-} // namespace
+int CellValues::GetNumChildren() const {
+    return _plain ? 1 + int(_plain->GetRings().GetRings().GetRings().size())
+                  : int(_type->GetChildren().size());
+}
 
-void CellValues::SetBase(CellType const &root, double const *controlPoints, int length) {
-    _type = &root;
-    _level = 0;
-    _length = length;
-    _values.assign(controlPoints,
-                   controlPoints + std::ptrdiff_t(root.GetNumPoints()) * std::ptrdiff_t(length));
+void CellValues::refine() const {
+    if (_isRefined) {
+        return;
+    }
+    _isRefined = true;
+    auto const grow = [&](std::size_t numPoints) {
+        _refined.resize(std::max(_refined.size(), numPoints * _paddedSize));
+    };
+    if (_plain) {
+        VertexRings const &rings = _plain->GetRings().GetRings();
+        grow(rings.GetNumPoints());
+        rings.Apply(_points.data(), _paddedSize, _refined.data());
+        return;
+    }
+    StepMatrix const &step = _type->GetStep();
+    grow(step.GetNumRows());
+    step.Apply(_points.data(), _paddedSize, _refined.data());
 }
 
 void CellValues::SetChild(CellValues const &parent, int child) {
-    CellType::Child const &link = parent._type->GetChildren()[std::size_t(child)];
-    if (!link.type->IsWhole()) {
-        bool const isOfWhole = parent._type->IsWhole();
-        CellMap const &map =
-            isOfWhole ? HalfCell::kFromSector : HalfCell::kChildren[std::size_t(child)];
-        BasePoint const sector =
-            isOfWhole ? MakeBasePoint(parent._type->GetNumCorners(), child - 1, {}) : BasePoint();
-        Pair const *const rows = isOfWhole ? sector.toCoords : parent._toCoords;
-        int const exponent = isOfWhole ? parent._level : 0;
-        for (std::size_t i = 0; i < 2; ++i) {
-            for (std::size_t k = 0; k < 2; ++k) {
-                _toCoords[i][k] =
-                    std::ldexp(map.rows[i][0] * rows[0][k] + map.rows[i][1] * rows[1][k], exponent);
-            }
-        }
-    }
-    _type = link.type;
+    parent.refine();
     _level = parent._level + 1;
     _length = parent._length;
-    ChildStep const &step = link.step;
-    std::size_t const numVerts = step.GetNumRows();
-    auto const length = std::size_t(_length);
-    _values.resize(numVerts * length);
-    forComponents(_length, [&](int first, auto count) {
-        constexpr int kCount = decltype(count)::value;
-        double const *const from = parent._values.data() + first;
-        double *to = _values.data() + first;
-        for (std::size_t vert = 0; vert < numVerts; ++vert, to += length) {
-            double sums[kCount] = {};
-            step.ForEachEntry(vert, [&](std::size_t parentPoint, double weight) {
-                double const *const point = from + parentPoint * length;
-                for (int k = 0; k < kCount; ++k) {
-                    sums[k] += weight * point[k];
-                }
-            });
-            std::copy(sums, sums + kCount, to);
+    _paddedSize = parent._paddedSize;
+    _plain = nullptr;
+    _isRefined = false;
+    _faceSize = parent._faceSize;
+    auto const grow = [&](int numPoints) {
+        _numPoints = numPoints;
+        _points.resize(std::max(_points.size(), std::size_t(numPoints) * _paddedSize));
+    };
+    if (parent._plain) {
+        FaceRings const &face = parent._plain->GetRings();
+        RingCell const &cell = face.GetChild(std::size_t(child));
+        std::vector<int> const &columns = cell.GetColumns();
+        _type = &cell.GetType();
+        grow(_type->GetNumPoints());
+        _indices.resize(columns.size());
+        face.FindChildIndices(std::size_t(child), _indices.data());
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            double const *const from = &parent._refined[std::size_t(_indices[i]) * _paddedSize];
+            double *const to = &_points[std::size_t(columns[i]) * _paddedSize];
+            for (std::size_t k = 0; k < _paddedSize; k += StepMatrix::kPadding) {
+                std::copy_n(from + k, StepMatrix::kPadding, to + k);
+            }
         }
-    });
+    } else {
+        CellType::Child const &link = parent._type->GetChildren()[std::size_t(child)];
+        _type = link.type;
+        grow(_type->GetNumPoints());
+        link.step.CopyPoints(parent._refined.data(), _paddedSize, _points.data());
+    }
+    if (!_type->IsWhole()) {
+        findCoords(parent, child);
+    }
+}
+
+void CellValues::findCoords(CellValues const &parent, int child) {
+    if (parent._plain || parent._type->IsWhole()) {
+        _sector = child - 1;
+        for (std::size_t i = 0; i < 2; ++i) {
+            Pair const &row = HalfCell::kFromSector.rows[i];
+            _toCoords[i] = {std::ldexp(row[0], parent._level), std::ldexp(row[1], parent._level)};
+        }
+        return;
+    }
+    _sector = parent._sector;
+    CellMap const &map = HalfCell::kChildren[std::size_t(child)];
+    for (std::size_t i = 0; i < 2; ++i) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            _toCoords[i][k] =
+                map.rows[i][0] * parent._toCoords[0][k] + map.rows[i][1] * parent._toCoords[1][k];
+        }
+    }
 }
 
 void CellValues::sum(std::vector<double> const &weights, double *result) const {
+    constexpr std::size_t kLanes = StepMatrix::kPadding;
     auto const length = std::size_t(_length);
-    forComponents(_length, [&](int first, auto count) {
-        constexpr int kCount = decltype(count)::value;
-        double const *point = _values.data() + first;
-        double sums[kCount] = {};
+    for (std::size_t first = 0; first < length; first += kLanes) {
+        double const *point = _points.data() + first;
+        double sums[kLanes] = {};
         for (double const weight : weights) {
-            for (int k = 0; k < kCount; ++k) {
+            for (std::size_t k = 0; k < kLanes; ++k) {
                 sums[k] += weight * point[k];
             }
-            point += length;
+            point += _paddedSize;
         }
-        std::copy(sums, sums + kCount, result + first);
-    });
+        std::copy_n(sums, std::min(kLanes, length - first), result + first);
+    }
 }
 
 void CellValues::EvaluateCorner(int corner, double *p) const {
-    sum(_type->GetCornerPoints()[std::size_t(corner)], p);
+    sum(GetType().GetCornerPoints()[std::size_t(corner)], p);
 }
 
 void CellValues::EvaluateCorner(int corner, double *du, double *dv) const {
-    Pair const *toCoords = _toCoords;
-    BasePoint sector;
-    if (_type->IsWhole()) {
+    CellType const &type = GetType();
+    Pair toCoords[2];
+    if (type.IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        sector = MakeBasePoint(_type->GetNumCorners(), corner, {});
-        for (Pair &row : sector.toCoords) {
-            row = {std::ldexp(row[0], _level), std::ldexp(row[1], _level)};
+        BasePoint const sector = MakeBasePoint(type.GetNumCorners(), corner, {});
+        for (std::size_t i = 0; i < 2; ++i) {
+            toCoords[i] = {std::ldexp(sector.toCoords[i][0], _level),
+                           std::ldexp(sector.toCoords[i][1], _level)};
         }
-        toCoords = sector.toCoords;
+    } else {
+        BasePoint const sector = MakeBasePoint(_faceSize, _sector, {});
+        for (std::size_t i = 0; i < 2; ++i) {
+            for (std::size_t k = 0; k < 2; ++k) {
+                toCoords[i][k] = _toCoords[i][0] * sector.toCoords[0][k] +
+                                 _toCoords[i][1] * sector.toCoords[1][k];
+            }
+        }
     }
-    CellType::Corner const &values = _type->GetCorners()[std::size_t(corner)];
+    CellType::Corner const &values = type.GetCorners()[std::size_t(corner)];
     auto const length = std::size_t(_length);
     _scratch.resize(2 * length);
     sum(values.derivatives[0], _scratch.data());

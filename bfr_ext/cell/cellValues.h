@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_VALUES_H
 
 #include "cellStencil.h"
+#include "plainFace.h"
 
 #include <vector>
 
@@ -13,19 +14,35 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// CellStencil and CellPattern have what a place is in terms of the control points, once for all faces
 /// of a type.  Trees hardly have places in common, and their cells are met in the order of refinement:
 /// there it is less work to refine values.
+///
+/// The children of a cell share points, so that those of all are made when the first child is asked for.  Those
+/// of a plain base face outside of lattices are made by its rings, without a CellType of the face.
 class CellValues {
 public:
     /// That of a base face, whose control points are \p length numbers each, without gaps.
     void SetBase(CellType const &root, double const *controlPoints, int length);
+    /// The same of a plain face that is not in a lattice.
+    void SetBase(PlainFaceType const &root, double const *controlPoints, int length);
     /// \brief A child, in the order of RefineCell().
     ///
     /// \param parent  another object
     void SetChild(CellValues const &parent, int child);
 
-    CellType const &GetType() const { return *_type; }
+    /// That of a plain base face is made when it is asked for.
+    CellType const &GetType() const { return _plain ? _plain->Get() : *_type; }
+    /// Whether it is a plain base face, whose children alone need types.
+    bool IsPlainBase() const { return _plain != nullptr; }
+    int GetNumChildren() const;
     int GetLevel() const { return _level; }
-    /// Of the patch's vertices, one behind the other.
-    std::vector<double> const &GetValues() const { return _values; }
+
+    /// Of the patch's vertices, as long as the cell is not set again.
+    int GetNumPoints() const { return _numPoints; }
+    /// The numbers of a point, those of the next being GetPaddedSize() behind them.
+    double const *GetPoint(int point) const {
+        return _points.data() + std::size_t(point) * _paddedSize;
+    }
+    /// A multiple of StepMatrix::kPadding.
+    std::size_t GetPaddedSize() const { return _paddedSize; }
 
     /// Writes the surface at a corner.
     void EvaluateCorner(int corner, double *p) const;
@@ -33,13 +50,25 @@ public:
     void EvaluateCorner(int corner, double *du, double *dv) const;
 
 private:
+    void setBase(int numPoints, double const *controlPoints, int length);
+    void refine() const;
+    void findCoords(CellValues const &parent, int child);
     void sum(std::vector<double> const &weights, double *result) const;
 
     CellType const *_type = nullptr;
+    PlainFaceType const *_plain = nullptr; // of a base face that is plain, in place of the type
     int _level = 0;
     int _length = 0;
-    Pair _toCoords[2] = {}; // of u and v in a half cell: the derivatives of its coordinates by them
-    std::vector<double> _values;
+    std::size_t _paddedSize = 0;
+    int _numPoints = 0;
+    int _faceSize = 0; // of the base face
+    int _sector = 0;   // of a half cell
+    Pair _toCoords[2] =
+        {}; // of a half cell: the derivatives of its coordinates by those of the sector
+    std::vector<double> _points;
+    mutable bool _isRefined = false;
+    mutable std::vector<double> _refined; // the points of all children
+    std::vector<int> _indices;
     mutable std::vector<double> _scratch;
 };
 

@@ -2,23 +2,12 @@
 #include "flatness.h"
 
 #include "cellBounds.h"
-#include "latticeBounds.h"
-#include "vector3.h"
 
 #include <algorithm>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
-
-struct Plane {
-    double GetHeight(double const *point) const {
-        return Dot(normal, Subtract(ToVector3(point), origin));
-    }
-
-    Vector3 origin;
-    Vector3 normal;
-};
 
 struct Line {
     double GetDistance(double const *point) const {
@@ -31,24 +20,10 @@ struct Line {
     double length; // of that; 0: the line is a point
 };
 
-// The plane through the first corner with the mean normal of all.
-Plane findPlane(std::vector<double> const &corners) {
-    Vector3 const origin = ToVector3(corners.data());
-    Vector3 area = {};
-    for (std::size_t i = 3; i + 3 < corners.size(); i += 3) {
-        Vector3 const part = Cross(Subtract(ToVector3(&corners[i]), origin),
-                                   Subtract(ToVector3(&corners[i + 3]), origin));
-        area = Subtract(area, Scale(part, -1));
-    }
-    double const length = GetLength(area);
-    return {origin, length > 0 ? Scale(area, 1 / length) : Vector3{0, 0, 1}};
-}
-
 bool isStraight(CellValues const &values, Line const &line, double length, int numSteps) {
-    std::vector<double> const &points = values.GetValues();
     std::vector<double> distances;
-    for (std::size_t i = 0; i < points.size(); i += 3) {
-        distances.push_back(line.GetDistance(&points[i]));
+    for (int i = 0; i < values.GetNumPoints(); ++i) {
+        distances.push_back(line.GetDistance(values.GetPoint(i)));
     }
     if (CellBounds::Find(values.GetType()).GetMax(distances, length) <= length) {
         return true;
@@ -76,53 +51,47 @@ Flatness::Range Flatness::widen(Range const &range, Range const &bound, double l
     return {range.min - factor * below, range.max + factor * above};
 }
 
-void Flatness::Cell::SetType(CellType const &cellType) {
-    type = &cellType;
-    LatticeBounds const &bounds = LatticeBounds::Find(cellType);
-    lattice = bounds.Exist() ? &bounds : nullptr;
-}
-
-Flatness::Cell &Flatness::Cells::Add() {
-    if (size == cells.size()) {
-        cells.emplace_back();
+// The plane through the first corner with the mean normal of all.
+Flatness::Plane Flatness::findPlane(std::vector<double> const &corners) {
+    Vector3 const origin = ToVector3(corners.data());
+    Vector3 area = {};
+    for (std::size_t i = 3; i + 3 < corners.size(); i += 3) {
+        Vector3 const part = Cross(Subtract(ToVector3(&corners[i]), origin),
+                                   Subtract(ToVector3(&corners[i + 3]), origin));
+        area = Subtract(area, Scale(part, -1));
     }
-    return cells[size++];
+    double const length = GetLength(area);
+    return {origin, length > 0 ? Scale(area, 1 / length) : Vector3{0, 0, 1}};
 }
 
-bool Flatness::IsFlat(CellValues const &values, std::vector<double> const &corners, double length) {
-    Plane const plane = findPlane(corners);
+bool Flatness::IsFlat(RefinedCells &cells, std::size_t cell, std::vector<double> const &corners,
+                      double length) {
+    _plane = findPlane(corners);
     _attained = {0, 0};
     for (std::size_t i = 0; i < corners.size(); i += 3) {
-        _attained.Add(plane.GetHeight(&corners[i]));
+        _attained.Add(_plane.GetHeight(&corners[i]));
     }
     if (_attained.GetLength() > length) {
         return false;
     }
-    Cells *cells = &_cells[0];
-    Cells *next = &_cells[1];
-    cells->size = 0;
-    next->size = 0;
-    Cell &first = cells->Add();
-    first.SetType(values.GetType());
-    first.numStepsLeft = first.lattice ? kNumLatticeSteps : kNumSteps;
-    first.heights.clear();
-    for (std::size_t i = 0; i < values.GetValues().size(); i += 3) {
-        first.heights.push_back(plane.GetHeight(&values.GetValues()[i]));
-    }
-    if (!first.lattice) {
-        refine(first, *next); // its own range is too far from what the surface has
-        std::swap(cells, next);
+    _parts.clear();
+    if (cells.GetHeightBounds(cell)) {
+        _parts.push_back({cell, kNumBoundedSteps, {0, 0}});
+    } else if (findHeights(cells[cell]).GetLength() <= length) {
+        return true;
+    } else {
+        refine(cells, {cell, kNumSteps, {0, 0}},
+               _parts); // its own range is too far from what the surface has
     }
     Range closed = {0, 0}; // of all that is not refined
-    while (cells->size > 0) {
+    while (!_parts.empty()) {
         Range bound = closed;
-        for (std::size_t i = 0; i < cells->size; ++i) {
-            Cell &cell = cells->cells[i];
-            cell.range = findRange(cell);
+        for (Part &part : _parts) {
+            part.range = findRange(cells, part.cell);
             if (_attained.GetLength() > length) {
                 return false;
             }
-            bound.Add(cell.range);
+            bound.Add(part.range);
         }
         closed.Add(_attained);
         bound.Add(_attained);
@@ -130,59 +99,71 @@ bool Flatness::IsFlat(CellValues const &values, std::vector<double> const &corne
             return true;
         }
         Range const window = widen(closed, bound, length);
-        next->size = 0;
-        for (std::size_t i = 0; i < cells->size; ++i) {
-            Cell const &cell = cells->cells[i];
-            if (cell.numStepsLeft == 0 || window.Has(cell.range)) {
-                closed.Add(cell.range);
+        _next.clear();
+        for (Part const &part : _parts) {
+            if (part.numStepsLeft == 0 || window.Has(part.range)) {
+                closed.Add(part.range);
             } else {
-                refine(cell, *next);
+                refine(cells, part, _next);
             }
         }
         if (closed.GetLength() > length) {
             return false;
         }
-        std::swap(cells, next);
+        std::swap(_parts, _next);
     }
     return true;
 }
 
-// Of all heights in a cell, and those that the surface has for certain.
-Flatness::Range Flatness::findRange(Cell const &cell) {
-    if (cell.lattice) {
-        LatticeBounds::Ranges const range = cell.lattice->GetRanges(cell.heights, _scratch);
-        _attained.Add(range.attained.min);
-        _attained.Add(range.attained.max);
-        return {range.bound.min, range.bound.max};
+Flatness::Range Flatness::findHeights(CellValues const &values) {
+    auto const size = std::size_t(values.GetNumPoints());
+    std::size_t const stride = values.GetPaddedSize();
+    _heights.resize(size);
+    Vector3 const normal = _plane.normal;
+    double const ofOrigin = Dot(normal, _plane.origin);
+    double const *point = values.GetPoint(0);
+    double least = Dot(normal, ToVector3(point)) - ofOrigin;
+    double largest = least;
+    for (std::size_t i = 0; i < size; ++i, point += stride) {
+        double const height = Dot(normal, ToVector3(point)) - ofOrigin;
+        _heights[i] = height;
+        least = std::min(least, height);
+        largest = std::max(largest, height);
     }
-    auto const [least, largest] = std::minmax_element(cell.heights.begin(), cell.heights.end());
-    if (*least >= _attained.min && *largest <= _attained.max) {
-        return {*least, *largest};
-    }
-    CellBounds const &bounds = CellBounds::Find(*cell.type);
-    return {bounds.GetMin(cell.heights, _attained.min), bounds.GetMax(cell.heights, _attained.max)};
+    return {least, largest};
 }
 
-void Flatness::refine(Cell const &parent, Cells &children) {
-    parent.type->GetStep().Apply(parent.heights, _scratch);
-    bool isFirst = true;
-    for (CellType::Child const &link : parent.type->GetChildren()) {
-        Cell &child = children.Add();
-        child.SetType(*link.type);
-        child.numStepsLeft =
-            std::min(parent.numStepsLeft - 1, child.lattice ? kNumLatticeSteps : kNumSteps);
-        link.step.CopyNumbers(_scratch, child.heights);
-        if (isFirst && !parent.lattice) {
-            // Of all children it alone has corners that the cell has not.
-            for (std::vector<double> const &weights : link.type->GetCornerPoints()) {
-                double height = 0;
-                for (std::size_t i = 0; i < weights.size(); ++i) {
-                    height += weights[i] * child.heights[i];
-                }
-                _attained.Add(height);
-            }
+// Of all heights in a cell, and those that the surface has for certain.
+Flatness::Range Flatness::findRange(RefinedCells const &cells, std::size_t cell) {
+    Range const range = findHeights(cells[cell]);
+    HeightBounds const *const bounds = cells.GetHeightBounds(cell);
+    if (!bounds) {
+        return range;
+    }
+    HeightBounds::Ranges const ranges = bounds->GetRanges(_heights.data(), _scratch);
+    _attained.min = std::min(_attained.min, ranges.attained.min);
+    _attained.max = std::max(_attained.max, ranges.attained.max);
+    if (_attained.Has(range)) {
+        return range;
+    }
+    return {std::max(range.min, ranges.bound.min), std::min(range.max, ranges.bound.max)};
+}
+
+void Flatness::refine(RefinedCells &cells, Part const &parent, std::vector<Part> &children) {
+    std::size_t const first = cells.GetFirstChild(parent.cell);
+    int const numChildren = cells.GetNumChildren(parent.cell);
+    for (int i = 0; i < numChildren; ++i) {
+        std::size_t const child = first + std::size_t(i);
+        int const numSteps = cells.GetHeightBounds(child) ? kNumBoundedSteps : kNumSteps;
+        children.push_back({child, std::min(parent.numStepsLeft - 1, numSteps), {0, 0}});
+    }
+    // Of all children the first alone has corners that the cell has not.
+    if (!cells.GetHeightBounds(parent.cell)) {
+        for (int corner = 0; corner < cells[first].GetType().GetNumCorners(); ++corner) {
+            double point[3];
+            cells.EvaluateCorner(first, corner, point);
+            _attained.Add(_plane.GetHeight(point));
         }
-        isFirst = false;
     }
 }
 

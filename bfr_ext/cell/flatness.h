@@ -2,14 +2,13 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_FLATNESS_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_FLATNESS_H
 
-#include "cellValues.h"
+#include "refinedCells.h"
+#include "vector3.h"
 
 #include <algorithm>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
-
-class LatticeBounds;
 
 /// \brief Says whether the surface in a cell is as flat as is asked for.
 ///
@@ -20,7 +19,7 @@ class LatticeBounds;
 ///
 /// **Why it holds.**  Heights are linear in the points, so those of a cell's points give, by the same
 /// steps, those of the points of all cells in it; and no height of the surface in such a cell is outside
-/// of the range that LatticeBounds or, where there are none, CellBounds tell of it.  Each part of the
+/// of the range that HeightBounds or, where there are none, CellBounds tell of it.  Each part of the
 /// surface is in one of the children, and in one of their children, and so on: so the ranges of cells
 /// any number of steps on, together, bound all heights.  Where heights that the surface has for certain,
 /// as at corners, have a range that is too large, the cell is not flat.
@@ -28,7 +27,7 @@ class LatticeBounds;
 /// **What is looked at.**  Only cells whose range is not within a window, which is as long as is asked
 /// for and around the heights that the surface has for certain, are looked at one step on.
 ///
-/// **How close it is.**  Ranges of LatticeBounds are close, and mostly decide at once.  Those of other
+/// **How close it is.**  Ranges of HeightBounds are close, and mostly decide at once.  Those of other
 /// cells reach farther: their points lie around a cell by about its size, so that their heights have a
 /// range that is some times as large as that of the surface.  Where curvature is bounded, this excess
 /// falls by 4 in a step, so that it is a small part after kNumSteps of them.  What cannot be shown then
@@ -37,15 +36,25 @@ class Flatness {
 public:
     /// Whether the surface of a cell is so flat.
     ///
-    /// \param values   of its points, 3 numbers each
+    /// \param cells    gets cells that some steps make of it; points have 3 numbers
+    /// \param cell     that is looked at
     /// \param corners  the surface's points there
     /// \param length   the largest range of heights
-    bool IsFlat(CellValues const &values, std::vector<double> const &corners, double length);
+    bool IsFlat(RefinedCells &cells, std::size_t cell, std::vector<double> const &corners,
+                double length);
 
 private:
     static constexpr int kNumSteps = 4;
-    static constexpr int kNumLatticeSteps = 1; // of these, at most
+    static constexpr int kNumBoundedSteps = 2; // of these, at most
 
+    struct Plane {
+        double GetHeight(double const *point) const {
+            return Dot(normal, Subtract(ToVector3(point), origin));
+        }
+
+        Vector3 origin;
+        Vector3 normal;
+    };
     struct Range {
         void Add(double height) {
             min = std::min(min, height);
@@ -60,30 +69,24 @@ private:
         double min;
         double max;
     };
-    // A cell some steps on, with the heights of its points.
-    struct Cell {
-        void SetType(CellType const &cellType);
-
-        CellType const *type;
-        LatticeBounds const *lattice; // null where there are none
+    // A cell some steps on.
+    struct Part {
+        std::size_t cell;
         int numStepsLeft;
-        std::vector<double> heights;
-        Range range; // of them
-    };
-    // Cells one behind the other, which keep their memory.
-    struct Cells {
-        Cell &Add();
-
-        std::vector<Cell> cells;
-        std::size_t size = 0;
+        Range range; // of heights
     };
 
+    static Plane findPlane(std::vector<double> const &corners);
     static Range widen(Range const &range, Range const &bound, double length);
-    Range findRange(Cell const &cell);
-    void refine(Cell const &parent, Cells &children);
+    Range findHeights(CellValues const &values);
+    Range findRange(RefinedCells const &cells, std::size_t cell);
+    void refine(RefinedCells &cells, Part const &parent, std::vector<Part> &children);
 
-    Cells _cells[2]; // of this step and of the next, in turn
-    Range _attained; // of heights that the surface has
+    Plane _plane = {};
+    Range _attained = {0, 0};     // of heights that the surface has
+    std::vector<Part> _parts;     // of this step
+    std::vector<Part> _next;      // of the next
+    std::vector<double> _heights; // of a part's points
     std::vector<double> _scratch;
 };
 

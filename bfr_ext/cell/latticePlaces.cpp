@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -10,62 +11,20 @@ namespace {
 
 using FarExt::internal::LimitPatch;
 
-Pair fromLattice(Pair const &p) { return {p[0], p[1] / std::sqrt(0.75)}; }
+using Place = std::complex<double>;
 
-// The places of the points of a half cell, if the faces of its patch are hexagons of a regular lattice.
-std::vector<Pair> findPlaces(FarExt::internal::CellPatch const &cell) {
-    LimitPatch const &patch = cell.patch;
-    constexpr std::size_t kSize = 6;
-    bool const isHalf = cell.kind == FarExt::internal::CellKind::Half;
-    if (!isHalf || std::any_of(patch.faceSizes.begin(), patch.faceSizes.end(),
-                               [](int size) { return size != int(kSize); })) {
-        return {};
+Pair fromLattice(Pair const &p) { return {p[0], p[1] / std::sqrt(0.75)}; }
+Place toPlace(Pair const &p) { return {p[0], p[1]}; }
+
+// The corners of a face from one on, as far as its shape goes: a regular polygon, or half a hexagon, with a
+// long edge that begins at some corner.
+Place getTemplate(std::size_t size, std::size_t corner, std::size_t longEdge, bool isHalf) {
+    constexpr double kTurn = 6.283185307179586;
+    if (isHalf) {
+        std::size_t const local = (corner + size - longEdge) % size;
+        return toPlace(ToLattice(HalfCell::kCorners[local]));
     }
-    std::size_t const numFaces = patch.faceSizes.size();
-    std::vector<Pair> places(patch.sources.size());
-    std::vector<bool> isPlaced(places.size());
-    std::vector<Pair> centers(numFaces);
-    std::vector<bool> isDone(numFaces);
-    // All corners of a face follow from its centre and two of them.
-    auto const place = [&](std::size_t face, std::size_t local, Pair const &first,
-                           Pair const &second, Pair const &center) {
-        Pair from = {first[0] - center[0], first[1] - center[1]};
-        Pair to = {second[0] - center[0], second[1] - center[1]};
-        for (std::size_t i = 0; i < kSize; ++i) {
-            auto const vert = std::size_t(patch.faceVerts[kSize * face + (local + i) % kSize]);
-            places[vert] = {center[0] + from[0], center[1] + from[1]};
-            isPlaced[vert] = true;
-            Pair const next = {to[0] - from[0], to[1] - from[1]};
-            from = to;
-            to = next;
-        }
-        centers[face] = center;
-        isDone[face] = true;
-    };
-    // Corners 1, 2 and 3 of a half cell follow one another in the hexagon.
-    Pair const center = ToLattice({0.5, 0});
-    place(0, std::size_t(cell.locals[1]), ToLattice(HalfCell::kCorners[1]),
-          ToLattice(HalfCell::kCorners[2]), center);
-    std::vector<std::size_t> faces = {0};
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-        for (std::size_t local = 0; local < kSize; ++local) {
-            std::size_t const corner = kSize * faces[i] + local;
-            Far::Index const other = patch.otherCorners[corner];
-            if (other < 0 || isDone[std::size_t(other) / kSize]) {
-                continue;
-            }
-            std::size_t const face = std::size_t(other) / kSize;
-            Pair const &start = places[std::size_t(patch.faceVerts[corner])];
-            Pair const &end =
-                places[std::size_t(patch.faceVerts[kSize * faces[i] + (local + 1) % kSize])];
-            Pair const &own = centers[faces[i]];
-            place(face, std::size_t(other) % kSize, end, start,
-                  {start[0] + end[0] - own[0], start[1] + end[1] - own[1]});
-            faces.push_back(face);
-        }
-    }
-    bool const areAllPlaced = std::find(isPlaced.begin(), isPlaced.end(), false) == isPlaced.end();
-    return areAllPlaced ? places : std::vector<Pair>();
+    return std::polar(1.0, kTurn * double(corner % size) / double(size));
 }
 
 // Whether a step makes a regular lattice of the places.
@@ -93,12 +52,78 @@ bool keepsPlaces(CellType const &type, std::vector<Pair> const &places) {
 // A half cell is half of a regular hexagon.
 Pair ToLattice(Pair const &p) { return {p[0], p[1] * std::sqrt(0.75)}; }
 
+std::vector<Pair> PlacePoints(FarExt::internal::CellPatch const &cell) {
+    LimitPatch const &patch = cell.patch;
+    std::size_t const numFaces = patch.faceSizes.size();
+    std::vector<std::size_t> firstCorners = {0};
+    std::vector<std::size_t> faceOfCorner;
+    for (std::size_t face = 0; face < numFaces; ++face) {
+        faceOfCorner.insert(faceOfCorner.end(), std::size_t(patch.faceSizes[face]), face);
+        firstCorners.push_back(faceOfCorner.size());
+    }
+    std::vector<Place> places(patch.sources.size());
+    std::vector<bool> isPlaced(places.size());
+    std::vector<bool> isDone(numFaces);
+    std::vector<std::size_t> faces;
+    // All corners of a face follow from two of them.
+    auto const place = [&](std::size_t face, std::size_t local, Place const &start,
+                           Place const &end) {
+        auto const size = std::size_t(patch.faceSizes[face]);
+        auto const begin = patch.otherCorners.begin() + std::ptrdiff_t(firstCorners[face]);
+        auto const longEdge = std::size_t(std::find(begin, begin + std::ptrdiff_t(size),
+                                                    Far::Index(FarExt::internal::kSharpBoundaryB)) -
+                                          begin);
+        bool const isHalf = longEdge < size && size == FarExt::internal::kNumHalfCellCorners;
+        auto const get = [&](std::size_t corner) {
+            return getTemplate(size, corner, longEdge, isHalf);
+        };
+        Place const scale = (end - start) / (get(local + 1) - get(local));
+        for (std::size_t i = 0; i < size; ++i) {
+            auto const vert = std::size_t(patch.faceVerts[firstCorners[face] + i]);
+            if (!isPlaced[vert]) {
+                places[vert] = start + scale * (get(i) - get(local));
+                isPlaced[vert] = true;
+            }
+        }
+        isDone[face] = true;
+        faces.push_back(face);
+    };
+    // Corners 1 and 2 follow one another in the face.
+    place(0, std::size_t(cell.locals[1]), toPlace(ToLattice(HalfCell::kCorners[1])),
+          toPlace(ToLattice(HalfCell::kCorners[2])));
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        std::size_t const first = firstCorners[faces[i]];
+        auto const size = std::size_t(patch.faceSizes[faces[i]]);
+        for (std::size_t local = 0; local < size; ++local) {
+            Far::Index const other = patch.otherCorners[first + local];
+            if (other < 0 || isDone[faceOfCorner[std::size_t(other)]]) {
+                continue;
+            }
+            std::size_t const face = faceOfCorner[std::size_t(other)];
+            auto const getEnd = [&](std::size_t corner) {
+                return places[std::size_t(patch.faceVerts[first + corner % size])];
+            };
+            place(face, std::size_t(other) - firstCorners[face], getEnd(local + 1), getEnd(local));
+        }
+    }
+    std::vector<Pair> result;
+    for (Place const &p : places) {
+        result.push_back({p.real(), p.imag()});
+    }
+    return result;
+}
+
 std::vector<Pair> FindLatticePlaces(CellType const &type) {
-    if (type.IsWhole() || !type.IsRegular()) {
+    if (type.GetCell().kind != FarExt::internal::CellKind::Half || !type.IsRegular()) {
         return {};
     }
-    std::vector<Pair> places = findPlaces(type.GetCell());
-    return !places.empty() && keepsPlaces(type, places) ? places : std::vector<Pair>();
+    std::vector<int> const &sizes = type.GetCell().patch.faceSizes;
+    constexpr int kSize = 6;
+    if (std::any_of(sizes.begin(), sizes.end(), [](int size) { return size != kSize; })) {
+        return {};
+    }
+    std::vector<Pair> places = PlacePoints(type.GetCell());
+    return keepsPlaces(type, places) ? places : std::vector<Pair>();
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

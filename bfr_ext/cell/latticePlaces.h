@@ -19,6 +19,12 @@ namespace OpenSubdivHex::BfrExt::internal {
 ///          as with FaceMask::Average
 std::vector<Pair> FindLatticePlaces(CellType const &type);
 
+/// \brief Where the points of any half cell lie if the faces of its patch are drawn as regular polygons, and
+/// half faces as half hexagons, one beside another from the cell on.
+///
+/// Where these do not fit around a vertex, a point has the place that it was given first.
+std::vector<Pair> PlacePoints(FarExt::internal::CellPatch const &cell);
+
 /// Such coordinates of those of HalfCell.
 Pair ToLattice(Pair const &p);
 

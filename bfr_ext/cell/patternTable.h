@@ -26,7 +26,9 @@ enum class PatternOf {
     RingCell,
     RingItem,
     CellBounds,
-    LatticeBounds,
+    HeightBounds,
+    HeightFit,
+    TermIntervals,
     SlopeBounds
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slopeBounds.h"
 
-#include "latticeBounds.h"
 #include "latticePlaces.h"
 #include "pointRows.h"
 
@@ -25,7 +24,7 @@ double sumAbsolute(Row const &row) {
 }
 
 bool isBounded(CellType const &type) {
-    return type.HasBoundedCurvature() && LatticeBounds::Find(type).Exist();
+    return type.HasBoundedCurvature() && !FindLatticePlaces(type).empty();
 }
 
 // How many steps on all cells are bounded, or a larger number than a limit.
@@ -187,14 +186,14 @@ void SlopeBounds::narrow(std::vector<Descendant> const &descendants) {
     _changes = std::move(bounds);
 }
 
-SlopeBounds::Normals SlopeBounds::GetNormals(std::vector<double> const &values) const {
+SlopeBounds::Normals SlopeBounds::GetNormals(CellValues const &values) const {
     Vector3 along = {};
     Vector3 across = {};
     Vector3 mean = {};
     std::size_t const size = _places.size();
     for (std::size_t i = 0; i < size; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
-            double const value = values[3 * i + k];
+            double const value = values.GetPoint(int(i))[k];
             mean[k] += value / double(size);
             along[k] += _slopes[0][i] * value;
             across[k] += _slopes[1][i] * value;
@@ -214,7 +213,7 @@ SlopeBounds::Normals SlopeBounds::GetNormals(std::vector<double> const &values) 
         Pair const d = fromCenter(i);
         Vector3 rest;
         for (std::size_t k = 0; k < 3; ++k) {
-            rest[k] = values[3 * i + k] - mean[k] - d[0] * along[k] - d[1] * across[k];
+            rest[k] = values.GetPoint(int(i))[k] - mean[k] - d[0] * along[k] - d[1] * across[k];
         }
         double const height = Dot(normal, rest);
         changesOut += _changes[i] * std::abs(height);

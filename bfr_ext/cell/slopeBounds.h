@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_SLOPE_BOUNDS_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_SLOPE_BOUNDS_H
 
-#include "cellType.h"
+#include "cellValues.h"
 #include "halfCell.h"
 #include "vector3.h"
 
@@ -54,7 +54,7 @@ public:
     /// turned over.  By the parts along the normal they leave it.
     ///
     /// \param values  of points, 3 numbers each
-    Normals GetNormals(std::vector<double> const &values) const;
+    Normals GetNormals(CellValues const &values) const;
 
 private:
     // What the points of a cell some steps on are, in terms of those of the type.

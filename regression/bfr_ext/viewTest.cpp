@@ -35,6 +35,7 @@ using BfrExt::Polyline;
 using BfrExt::Surface;
 using BfrExt::View;
 using BfrExt::internal::CellValues;
+using BfrExt::internal::RefinedCells;
 
 namespace {
 
@@ -44,6 +45,15 @@ struct BaseCells {
         : _refiner(refiner), _meshPoints(meshPoints) {}
 
     CellValues Make(int face) {
+        CellValues values;
+        set(face, values);
+        return values;
+    }
+    void Make(int face, RefinedCells &cells) { set(face, cells); }
+
+private:
+    template <typename CELLS>
+    void set(int face, CELLS &cells) {
         FarExt::internal::CellPatch cell;
         GatherBaseCell(_refiner.GetHierarchy().mesh.levels[0], face, cell);
         std::vector<double> points;
@@ -51,15 +61,12 @@ struct BaseCells {
             double const *const p = &_meshPoints[3 * std::size_t(vert)];
             points.insert(points.end(), p, p + 3);
         }
-        CellValues values;
-        values.SetBase(_types.Find(std::move(cell),
-                                   {_refiner.GetSchemeOptions(), _refiner.GetHexSchemeOptions(),
-                                    FarExt::Interpolation::Vertex}),
-                       points.data(), 3);
-        return values;
+        cells.SetBase(_types.Find(std::move(cell),
+                                  {_refiner.GetSchemeOptions(), _refiner.GetHexSchemeOptions(),
+                                   FarExt::Interpolation::Vertex}),
+                      points.data(), 3);
     }
 
-private:
     FarExt::TopologyRefiner const &_refiner;
     std::vector<double> const &_meshPoints;
     BfrExt::internal::CellTypes _types;
@@ -587,7 +594,7 @@ TEST(View, NormalsAreWithinTheirBounds) {
                 if (!bounds.Exist()) {
                     return;
                 }
-                auto const normals = bounds.GetNormals(values.GetValues());
+                auto const normals = bounds.GetNormals(values);
                 if (!std::isfinite(normals.spread)) {
                     return;
                 }
@@ -699,24 +706,35 @@ TEST(View, FlatnessIsABoundAndCloseToTheSurface) {
             BaseCells cells(*refiner, shape.positions);
             int const numFaces = std::min(refiner->GetLevel(0).GetNumFaces(), 4);
             for (int face = 0; face < numFaces; ++face) {
-                auto const look = [&](CellValues const &values) {
-                    std::array<double, 2> const sampled = sampleHeights(values, 3);
+                RefinedCells refined;
+                cells.Make(face, refined);
+                auto const look = [&](std::size_t cell) {
+                    std::array<double, 2> const sampled = sampleHeights(refined[cell], 3);
                     double const size = sampled[1] - sampled[0];
                     std::vector<double> corners;
-                    for (Vector3 const &corner : getCorners(values)) {
+                    for (Vector3 const &corner : getCorners(refined[cell])) {
                         corners.insert(corners.end(), corner.begin(), corner.end());
                     }
-                    ASSERT_FALSE(flatness.IsFlat(values, corners, size * (1 - 1e-6)));
+                    auto const isFlat = [&](double length) {
+                        return flatness.IsFlat(refined, cell, corners, length);
+                    };
+                    ASSERT_FALSE(isFlat(size * (1 - 1e-6)));
                     double ratio = 1.01;
-                    while (size > 1e-6 && !flatness.IsFlat(values, corners, size * ratio)) {
+                    while (size > 1e-6 && !isFlat(size * ratio)) {
                         ratio *= 1.01;
                         ASSERT_LT(ratio, 16);
                     }
                     ratios.push_back(ratio);
                 };
-                CellValues const base = cells.Make(face);
-                look(base);
-                forDescendants(base, 2, look);
+                look(RefinedCells::kBase);
+                std::size_t const first = refined.GetFirstChild(RefinedCells::kBase);
+                for (int i = 0; i < refined.GetNumChildren(RefinedCells::kBase); ++i) {
+                    std::size_t const child = first + std::size_t(i);
+                    std::size_t const next = refined.GetFirstChild(child);
+                    for (int k = 0; k < refined.GetNumChildren(child); ++k) {
+                        look(next + std::size_t(k));
+                    }
+                }
             }
         }
     }

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinedCells.h"
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+std::size_t RefinedCells::add(std::size_t number) {
+    std::size_t const first = _size;
+    _size += number;
+    while (_cells.size() < _size) {
+        _cells.emplace_back();
+    }
+    for (std::size_t cell = first; cell < _size; ++cell) {
+        _cells[cell].firstChild = 0;
+        _cells[cell].bounds = nullptr;
+    }
+    return first;
+}
+
+std::size_t RefinedCells::makeChildren(std::size_t cell) {
+    int const numChildren = GetNumChildren(cell);
+    std::size_t const first = add(std::size_t(numChildren));
+    _cells[cell].firstChild = first;
+    for (int i = 0; i < numChildren; ++i) {
+        _cells[first + std::size_t(i)].values.SetChild(_cells[cell].values, i);
+        findBounds(first + std::size_t(i));
+    }
+    return first;
+}
+
+void RefinedCells::findBounds(std::size_t cell) {
+    // Beside faces of hundreds of vertices bounds would take minutes.
+    constexpr int kMaxPoints = 128;
+    if (hasCommonType(cell) && _cells[cell].values.GetNumPoints() <= kMaxPoints) {
+        _cells[cell].bounds = &HeightBounds::Find(_cells[cell].values.GetType());
+    }
+}
+
+void RefinedCells::EvaluateCorner(std::size_t cell, int corner, double *p) {
+    while (!hasCommonType(cell)) {
+        CellValues const &values = _cells[cell].values;
+        bool const isWhole = values.IsPlainBase() || values.GetType().IsWhole();
+        int const child = isWhole ? corner + 1 : HalfCell::kCornerChildren[corner];
+        corner = isWhole ? 0 : HalfCell::kCornersOfChildren[corner];
+        cell = GetFirstChild(cell) + std::size_t(child);
+    }
+    _cells[cell].values.EvaluateCorner(corner, p);
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal
