@@ -177,27 +177,77 @@ IrregularWeights findWeights(int numFaces) {
             1 - share * c * c};
 }
 
-// The first levels, where points are uneven: what F-vertices around a vertex with four faces are made
-// of, as in IrregularVertexMask, in parts of a whole.
+// The first levels, where points are uneven: what F-vertices around a vertex are made of, as in
+// IrregularVertexMask, in parts of a whole.  Among triangles the same vertices take part as in later
+// levels, if only by one part, since evaluators have kernels for those.
+constexpr double kParts = 256;
 struct FirstAround {
     int atVertex[6];
     int atNeighbor[6];
 };
-constexpr double kPartsAmongQuads = 256;
-constexpr FirstAround kAmongQuads[] = {
-    {{52, 87, 15, 0, 15, 87}, {112, 72, 0, 0, 40, 32}},
-    {{96, 74, 0, 12, 0, 74}, {128, 25, 33, 0, 31, 39}},
-    {{82, 69, 18, 0, 18, 69}, {99, 78, 0, 0, 42, 37}},
+struct FirstLevels {
+    int numFaces;
+    FacesAround facesAround;
+    int numLevels;
+    FirstAround levels[kNumStepsToConstantMasks - 1];
 };
-constexpr double kPartsAmongOthers = 64;
-constexpr FirstAround kAmongOthers[] = {
-    {{22, 16, 5, 0, 5, 16}, {29, 14, 0, 7, 5, 9}},
-    {{22, 14, 7, 0, 7, 14}, {28, 13, 0, 9, 0, 14}},
+constexpr FirstLevels kFirstLevels[] = {
+    {4,
+     FacesAround::Quads,
+     3,
+     {{{52, 87, 15, 0, 15, 87}, {112, 72, 0, 0, 40, 32}},
+      {{96, 74, 0, 12, 0, 74}, {128, 25, 33, 0, 31, 39}},
+      {{82, 69, 18, 0, 18, 69}, {99, 78, 0, 0, 42, 37}}}},
+    {4,
+     FacesAround::Others,
+     2,
+     {{{88, 64, 20, 0, 20, 64}, {116, 56, 0, 28, 20, 36}},
+      {{88, 56, 28, 0, 28, 56}, {112, 52, 0, 36, 0, 56}}}},
+    {5,
+     FacesAround::Others,
+     2,
+     {{{68, 94, 0, 0, 0, 94}, {159, 0, 34, 11, 29, 23}},
+      {{74, 78, 13, 0, 13, 78}, {127, 35, 8, 14, 31, 41}}}},
+    {6,
+     FacesAround::Others,
+     2,
+     {{{62, 97, 0, 0, 0, 97}, {157, 6, 25, 19, 23, 26}},
+      {{76, 90, 0, 0, 0, 90}, {144, 8, 18, 10, 36, 40}}}},
+    {7,
+     FacesAround::Others,
+     2,
+     {{{56, 100, 0, 0, 0, 100}, {151, 20, 14, 21, 23, 27}},
+      {{82, 87, 0, 0, 0, 87}, {141, 0, 35, 0, 37, 43}}}},
+    {8,
+     FacesAround::Others,
+     2,
+     {{{54, 101, 0, 0, 0, 101}, {152, 11, 37, 0, 31, 25}},
+      {{88, 84, 0, 0, 0, 84}, {137, 0, 50, 0, 30, 39}}}},
+    {5,
+     FacesAround::Triangles,
+     2,
+     {{{50, 87, 16, 0, 16, 87}, {111, 79, 0, 0, 65, 1}},
+      {{92, 69, 13, 0, 13, 69}, {118, 45, 0, 0, 48, 45}}}},
+    {6,
+     FacesAround::Triangles,
+     2,
+     {{{30, 113, 0, 0, 0, 113}, {128, 59, 0, 0, 68, 1}},
+      {{90, 83, 0, 0, 0, 83}, {128, 48, 0, 0, 41, 39}}}},
+    {7,
+     FacesAround::Triangles,
+     2,
+     {{{34, 100, 11, 0, 11, 100}, {106, 73, 0, 0, 76, 1}},
+      {{78, 80, 9, 0, 9, 80}, {124, 58, 0, 0, 31, 43}}}},
+    {8,
+     FacesAround::Triangles,
+     2,
+     {{{30, 103, 10, 0, 10, 103}, {106, 73, 0, 0, 76, 1}},
+      {{98, 66, 13, 0, 13, 66}, {121, 68, 0, 0, 27, 40}}}},
 };
 
-// The same in quads and beside them, as in QuadMask; regression/analysis/searchQuadMasks.cpp finds these
-// and those among quads.  After the first step all corners beside a neighbor of a vertex among quads are
-// at a quad, and nothing else is.
+// The same in quads and beside them, as in QuadMask; regression/analysis/searchMasks.cpp finds these and
+// those above.  After the first step all corners beside a neighbor of a vertex among quads are at a quad,
+// and nothing else is.
 struct FirstOfQuads {
     int inQuad[4];
     int numRows;
@@ -210,32 +260,26 @@ constexpr FirstOfQuads kFirstOfQuads[kNumStepsToConstantMasks - 1] = {
 };
 
 template <int SIZE>
-void setParts(int const (&parts)[SIZE], double whole, double (&weights)[SIZE]) {
-    std::transform(parts, parts + SIZE, weights, [whole](int part) { return part / whole; });
-}
-
-template <std::size_t NUM_STEPS>
-void setFirstAround(FirstAround const (&levels)[NUM_STEPS], double whole, int numSteps,
-                    IrregularVertexMask &mask) {
-    if (1 <= numSteps && std::size_t(numSteps) <= NUM_STEPS) {
-        setParts(levels[numSteps - 1].atVertex, whole, mask.atVertex);
-        setParts(levels[numSteps - 1].atNeighbor, whole, mask.atNeighbor);
-    }
+void setParts(int const (&parts)[SIZE], double (&weights)[SIZE]) {
+    std::transform(parts, parts + SIZE, weights, [](int part) { return part / kParts; });
 }
 
 } // namespace
 
-IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps, bool isAmongQuads) {
+IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps,
+                                               FacesAround facesAround) {
     IrregularWeights const weights = findWeights(numFaces);
     auto const [self, side, next, opposite] = weights.atVertex;
     auto const [n, v, a, m] = weights.atNeighbor;
     IrregularVertexMask mask = {{self, side, next, opposite, next, side},
                                 {n, a, 0, 0, m, v},
                                 {1 - weights.ofFaces, weights.ofFaces / numFaces}};
-    if (isAmongQuads) {
-        setFirstAround(kAmongQuads, kPartsAmongQuads, numSteps, mask);
-    } else if (numFaces == 4) {
-        setFirstAround(kAmongOthers, kPartsAmongOthers, numSteps, mask);
+    for (FirstLevels const &first : kFirstLevels) {
+        if (first.numFaces == numFaces && first.facesAround == facesAround && 1 <= numSteps &&
+            numSteps <= first.numLevels) {
+            setParts(first.levels[numSteps - 1].atVertex, mask.atVertex);
+            setParts(first.levels[numSteps - 1].atNeighbor, mask.atNeighbor);
+        }
     }
     return mask;
 }
@@ -248,9 +292,9 @@ QuadMask ComputeQuadMask(int numSteps) {
     }
     FirstOfQuads const &first = kFirstOfQuads[numSteps - 1];
     mask.numRows = first.numRows;
-    setParts(first.inQuad, kPartsAmongQuads, mask.inQuad);
+    setParts(first.inQuad, mask.inQuad);
     for (int i = 0; i < first.numRows; ++i) {
-        setParts(first.beside[i], kPartsAmongQuads, mask.beside[i]);
+        setParts(first.beside[i], mask.beside[i]);
     }
     return mask;
 }

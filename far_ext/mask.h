@@ -4,6 +4,8 @@
 
 #include "export.h"
 
+#include <cstdint>
+
 namespace OpenSubdivHex::FarExt {
 
 /// \brief The circulant mask that makes a face's new points (F-vertices) from its vertices.
@@ -117,8 +119,14 @@ OPENSUBDIVHEX_API VertexVertexMask ComputeVertexVertexMask(Interpolation interpo
 /// own around it.
 inline constexpr int kMinIrregularFaces = 4;
 
-/// \brief The faces of a vertex among quads, which all have been quads when hexagonal steps began.
-inline constexpr int kNumFacesAmongQuads = 4;
+/// \brief What all faces around an irregular vertex were when hexagonal steps began, which made them
+/// hexagons; as far as it matters.
+enum class FacesAround : std::uint16_t {
+    Others,    ///< anything else
+    Quads,     ///< four quads
+    Triangles, ///< five triangles or more
+};
+inline constexpr int kNumFacesAround = 3;
 
 /// \brief The hexagonal steps from which on the masks of irregular vertices, of quads and beside quads do
 /// not change any more.
@@ -139,7 +147,7 @@ struct IrregularVertexMask {
 /// kMinIrregularFaces or more, after \p numSteps hexagonal steps, 1 or more; for less, those that many
 /// steps lead to.
 ///
-/// \param isAmongQuads  whether all of its faces, kNumFacesAmongQuads, were quads before these steps
+/// \param facesAround  what its faces were before these steps
 ///
 /// With the mask of all hexagons curvature would grow there from level to level without bound, by
 /// 1.14 with 4 faces and 1.32 with 6.  These keep the square of the sub-dominant eigenvalue as the
@@ -154,12 +162,11 @@ struct IrregularVertexMask {
 /// where atVertex is (a, c1, a2, 0, a2, c1).  x = lambda at w = 1 and x = lambda^2 at w = 2 give c1
 /// and a2, and the same for w = 0 the weight of V'.
 ///
-/// Around a vertex with four faces the points of the first levels are uneven, and the F-vertices have
-/// other weights there, which make surfaces more even: three steps long among quads, two where a face
-/// was none.  Searches found them (see docs/guide/masks.md); they have no bearing on the limit of
-/// curvature.
-OPENSUBDIVHEX_API IrregularVertexMask ComputeIrregularVertexMask(int numFaces, int numSteps,
-                                                                 bool isAmongQuads = false);
+/// Around a vertex the points of the first levels are uneven, and with four to eight faces the F-vertices
+/// have other weights there, which make surfaces more even: three steps long with four quads, else two.
+/// Searches found them (see docs/guide/masks.md); they have no bearing on the limit of curvature.
+OPENSUBDIVHEX_API IrregularVertexMask ComputeIrregularVertexMask(
+    int numFaces, int numSteps, FacesAround facesAround = FacesAround::Others);
 
 /// \brief The masks of Smooth in quads, and in hexagons that share an edge with one.
 ///

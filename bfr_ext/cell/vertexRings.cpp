@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vertexRings.h"
 
+#include "far_ext/vtr/irregularFeatures.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -436,7 +438,6 @@ RingLayout RingLayout::From(int firstFace) const {
 }
 
 std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int> const &corners) {
-    constexpr int kQuad = 4;
     PatchCorners const ofPatch(patch);
     int const numVerts = int(patch.sources.size());
     std::vector<RingLayout> layouts;
@@ -452,11 +453,9 @@ std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int
             }
             std::vector<int> const ofNeighbor = ofPatch.FindRing(neighbor);
             int const numFaces = int(ofNeighbor.size());
-            bool const isAmongQuads =
-                numFaces == kQuad && std::all_of(ofNeighbor.begin(), ofNeighbor.end(), [&](int c) {
-                    return ofPatch.GetFaceSize(c) == kQuad;
-                });
-            layout.neighbors.push_back(isAmongQuads ? -numFaces : numFaces);
+            FarExt::FacesAround const facesAround = FarExt::internal::FindFacesAround(
+                numFaces, [&](int i) { return ofPatch.GetFaceSize(ofNeighbor[std::size_t(i)]); });
+            layout.neighbors.push_back(numFaces * FarExt::kNumFacesAround + int(facesAround));
         }
         layouts.push_back(std::move(layout));
     }

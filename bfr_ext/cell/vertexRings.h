@@ -113,8 +113,7 @@ struct RingLayout {
     int center;
     std::vector<int> faceSizes;
     std::vector<int> verts; ///< from the block of face 0 to that of the last
-    /// By neighbour, its number of faces; below 0 where these are four quads, around which some masks are
-    /// others.
+    /// By neighbour, its number of faces, and what these are: numFaces kNumFacesAround + facesAround.
     std::vector<int> neighbors;
 
     /// The same from another face on.

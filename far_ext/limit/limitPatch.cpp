@@ -283,8 +283,9 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
     }
     signature.push_back(patch.numHexagonalSteps);
     for (IrregularCorner const &irregular : patch.irregularCorners) {
-        signature.insert(signature.end(), {irregular.corner, irregular.numFaces,
-                                           getBits(irregular.weight), irregular.kind});
+        signature.insert(signature.end(),
+                         {irregular.corner, irregular.numFaces, getBits(irregular.weight),
+                          irregular.kind, int(irregular.facesAround)});
     }
 }
 

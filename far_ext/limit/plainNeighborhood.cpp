@@ -146,6 +146,7 @@ void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local, bool 
                         sizeof irregular.weight);
             result.key.push_back(char((irregular.corner - first - local + size) % size));
             result.key.push_back(char(irregular.kind));
+            result.key.push_back(char(irregular.facesAround));
             result.key.append(bytes, sizeof bytes);
             ++numAdded;
         }

@@ -93,11 +93,11 @@ private:
     // Of a vertex: the share of its masks, negative of those that are not irregular.
     struct Vertex {
         float weight;
-        bool isAmongQuads;
+        FacesAround facesAround;
     };
     void findVertices();
     Vertex findVertex(Index vert) const;
-    bool isAmongQuads(Index vert) const;
+    FacesAround findFacesAround(Index vert) const;
     void markFacesOfVertices();
     void markFacesBesideQuads();
     Mark &markOf(Index face) { return _marks[std::size_t(face - _level.numFFaces)]; }
@@ -116,7 +116,7 @@ private:
 
 // Irregular are vertices inside the mesh all of whose faces are E-faces of six sides.
 auto IrregularFinder::findVertex(Index vert) const -> Vertex {
-    constexpr Vertex kNone = {-1, false};
+    constexpr Vertex kNone = {-1, FacesAround::Others};
     if (_level.GetNumVertexFaces(vert) < kMinIrregularFaces || _level.IsNonManifold(vert)) {
         return kNone;
     }
@@ -132,30 +132,29 @@ auto IrregularFinder::findVertex(Index vert) const -> Vertex {
         sharpness =
             std::max({sharpness, _level.GetDiagonalSharpness(face), _level.GetEdgeSharpness(edge)});
     }
-    Vertex const result = {smoothPart(sharpness), isAmongQuads(vert)};
-    // The next level learns from this one what was among quads.
+    Vertex const result = {smoothPart(sharpness), findFacesAround(vert)};
+    // The next level learns from this one what was around.
     bool const matters =
-        result.weight > 0 ||
-        (result.isAmongQuads && _level.numHexagonalSteps < kNumStepsToConstantMasks - 1 &&
-         !Sdc::Crease::IsInfinite(sharpness));
+        result.weight > 0 || (result.facesAround != FacesAround::Others &&
+                              _level.numHexagonalSteps < kNumStepsToConstantMasks - 1 &&
+                              !Sdc::Crease::IsInfinite(sharpness));
     return matters ? result : kNone;
 }
 
-bool IrregularFinder::isAmongQuads(Index vert) const {
-    if (_level.GetNumVertexFaces(vert) != kNumFacesAmongQuads ||
-        _level.numHexagonalSteps >= kNumStepsToConstantMasks) {
-        return false; // or makes no difference
+FacesAround IrregularFinder::findFacesAround(Index vert) const {
+    if (_level.numHexagonalSteps >= kNumStepsToConstantMasks) {
+        return FacesAround::Others; // makes no difference
     }
     Level const &parent = *_refinement.parent;
     Index const pVert = _refinement.GetVVertexParent(vert);
     if (parent.numHexagonalSteps > 0) {
         Index const corner = parent.GetVertexCorner(parent.vertFirstFace[pVert]);
         auto const irregular = parent.GetIrregularCorners(corner, corner + 1);
-        return !irregular.empty() && irregular[0].kind == IrregularCorner::kAtVertexAmongQuads;
+        bool const isKnown = !irregular.empty() && irregular[0].kind == IrregularCorner::kAtVertex;
+        return isKnown ? irregular[0].facesAround : FacesAround::Others;
     }
     Far::ConstIndexArray const faces = parent.GetVertexFaces(pVert);
-    return std::all_of(faces.begin(), faces.end(),
-                       [&](Index face) { return parent.GetFaceSize(face) == kQuad; });
+    return FindFacesAround(faces.size(), [&](int i) { return parent.GetFaceSize(faces[i]); });
 }
 
 void IrregularFinder::findVertices() {
@@ -242,12 +241,12 @@ IrregularCorner *IrregularFinder::writeCorners(Index face, Mark mark, IrregularC
     forEachCorner(mark, _numRows, [&](Side const &side, int local, IrregularCorner::Kind kind) {
         local %= kHexagon;
         if (IrregularCorner::IsAtQuad(kind)) {
-            found[local] = {first + local, 0, besideQuad, kind};
+            found[local] = {first + local, 0, besideQuad, kind, FacesAround::Others};
         } else {
             Index const vert = _level.faceVerts[first + side.places.startVertex];
-            auto const [weight, isAmongQuads] = _vertices[std::size_t(vert)];
-            found[local] = {first + local, _level.GetNumVertexFaces(vert), weight,
-                            isAmongQuads ? IrregularCorner::AmongQuads(kind) : kind};
+            auto const [weight, facesAround] = _vertices[std::size_t(vert)];
+            found[local] = {first + local, _level.GetNumVertexFaces(vert), weight, kind,
+                            facesAround};
         }
         places |= 1U << local;
     });

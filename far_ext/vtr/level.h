@@ -5,12 +5,14 @@
 #include "buffer.h"
 
 #include "far_ext/indexing.h"
+#include "far_ext/mask.h"
 
 #include <opensubdiv/sdc/crease.h>
 #include <opensubdiv/vtr/types.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -49,8 +51,8 @@ struct SectorCorner {
 /// in mask.h.
 struct IrregularVertex {
     Far::Index vert;
-    /// Share of its masks: less than 1 where it, or an edge or diagonal at it, is sharp.  0 where the
-    /// vertex was among quads and only the next level may have a share.
+    /// Share of its masks: less than 1 where it, or an edge or diagonal at it, is sharp.  0 where only the
+    /// next level may have a share, and what was around the vertex matters there.
     float weight;
 };
 
@@ -58,27 +60,21 @@ struct IrregularVertex {
 /// quad is beside it.
 struct IrregularCorner {
     /// What is irregular, seen from the corner.
-    enum Kind : Far::Index { // without padding in the corner, whose bytes are compared
-        kAtVertex,           ///< its vertex
-        kBehindVertex,       ///< the vertex before it in the face
-        kBeforeVertex,       ///< the vertex behind it in the face
-        kAlongQuad,          ///< the face across the edge from it
-        kBehindQuad,         ///< the face across the edge to it
-        kOneBeforeQuad,      ///< the face across the next edge but one
-        kOneBehindQuad,      ///< the face across the last edge but one
-        // As the first three, of a vertex all four faces of which were quads.
-        kAtVertexAmongQuads,
-        kBehindVertexAmongQuads,
-        kBeforeVertexAmongQuads
+    enum Kind : std::uint16_t { // without padding in the corner, whose bytes are compared
+        kAtVertex,              ///< its vertex
+        kBehindVertex,          ///< the vertex before it in the face
+        kBeforeVertex,          ///< the vertex behind it in the face
+        kAlongQuad,             ///< the face across the edge from it
+        kBehindQuad,            ///< the face across the edge to it
+        kOneBeforeQuad,         ///< the face across the next edge but one
+        kOneBehindQuad          ///< the face across the last edge but one
     };
-    static bool IsAmongQuads(Kind kind) { return kind >= kAtVertexAmongQuads; }
-    static bool IsAtQuad(Kind kind) { return kind >= kAlongQuad && kind <= kOneBehindQuad; }
-    /// The same of a vertex among quads, of one of the first three.
-    static Kind AmongQuads(Kind kind) { return Kind(kind + kAtVertexAmongQuads); }
+    static bool IsAtQuad(Kind kind) { return kind >= kAlongQuad; }
     Far::Index corner;
     Far::Index numFaces; ///< of the irregular vertex; 0 beside a quad
     float weight;        ///< as of the vertex
     Kind kind;
+    FacesAround facesAround; ///< of the irregular vertex; Others beside a quad
 };
 
 /// \brief A boundary edge where an edge of level 0 came apart into one for each of its faces.  Edges

@@ -62,13 +62,15 @@ void RefinementMask::findIrregularMasks() {
             last = irregular.numFaces;
             auto const place = findMask(last);
             if (place == _irregularMasks.end() || place->first != last) {
-                _irregularMasks.insert(
-                    place, {last, ComputeIrregularVertexMask(last, _level.numHexagonalSteps)});
+                MasksByFacesAround masks;
+                for (int around = 0; around < kNumFacesAround; ++around) {
+                    masks[std::size_t(around)] = ComputeIrregularVertexMask(
+                        last, _level.numHexagonalSteps, FacesAround(around));
+                }
+                _irregularMasks.insert(place, {last, masks});
             }
         }
     }
-    _maskAmongQuads =
-        ComputeIrregularVertexMask(kNumFacesAmongQuads, _level.numHexagonalSteps, true);
     findIrregularTypes();
 }
 
@@ -101,19 +103,20 @@ void RefinementMask::findIrregularTypes() {
 }
 
 bool RefinementMask::areAlike(IrregularCornersOfFace const &a, IrregularCornersOfFace const &b) {
-    return std::equal(
-        a.begin, a.end, b.begin, b.end, [&](IrregularCorner const &x, IrregularCorner const &y) {
-            return x.corner - a.firstCorner == y.corner - b.firstCorner &&
-                   x.numFaces == y.numFaces && x.weight == y.weight && x.kind == y.kind;
-        });
+    return std::equal(a.begin, a.end, b.begin, b.end,
+                      [&](IrregularCorner const &x, IrregularCorner const &y) {
+                          return x.corner - a.firstCorner == y.corner - b.firstCorner &&
+                                 x.numFaces == y.numFaces && x.weight == y.weight &&
+                                 x.kind == y.kind && x.facesAround == y.facesAround;
+                      });
 }
 
 auto RefinementMask::getKey(IrregularCornersOfFace const &face) -> CornersOfType {
     CornersOfType result;
-    result.fill({-1, 0, IrregularCorner::kAtVertex});
+    result.fill({-1, 0, IrregularCorner::kAtVertex, FacesAround::Others});
     for (IrregularCorner const *corner = face.begin; corner < face.end; ++corner) {
-        result[std::size_t(corner->corner - face.firstCorner)] = {corner->numFaces, corner->weight,
-                                                                  corner->kind};
+        result[std::size_t(corner->corner - face.firstCorner)] = {
+            corner->numFaces, corner->weight, corner->kind, corner->facesAround};
     }
     return result;
 }
@@ -123,10 +126,10 @@ void RefinementMask::addIrregularType(CornersOfType const &corners) {
     for (int i = 0; i < kHexagonSize; ++i) {
         double *const weights = type.weights[i];
         std::copy_n(smoothWeights(kHexagonSize, i), kHexagonSize, weights);
-        auto const [numFaces, weight, kind] = corners[std::size_t(i)];
+        auto const [numFaces, weight, kind, facesAround] = corners[std::size_t(i)];
         type.areIrregular[i] = numFaces >= 0;
         if (type.areIrregular[i]) {
-            addIrregularWeights({0, numFaces, weight, kind}, i, weights);
+            addIrregularWeights({0, numFaces, weight, kind, facesAround}, i, weights);
         }
     }
 }
@@ -134,10 +137,6 @@ void RefinementMask::addIrregularType(CornersOfType const &corners) {
 auto RefinementMask::findMask(Index numFaces) const -> IrregularMasks::const_iterator {
     return std::lower_bound(_irregularMasks.begin(), _irregularMasks.end(), numFaces,
                             [](auto const &mask, Index size) { return mask.first < size; });
-}
-
-IrregularVertexMask const &RefinementMask::getIrregularMask(Index numFaces) const {
-    return findMask(numFaces)->second;
 }
 
 double const *RefinementMask::GetFaceVertexWeights(Index face, int corner,
@@ -202,18 +201,14 @@ void RefinementMask::addSharpWeights(Index face, int corner, std::vector<double>
 // The mask of a corner, and whether its weights go around the face backwards.
 auto RefinementMask::findCornerMask(IrregularCorner const &irregular) const -> CornerMask {
     auto const getVertexMask = [&]() -> IrregularVertexMask const & {
-        return IrregularCorner::IsAmongQuads(irregular.kind) ? _maskAmongQuads
-                                                             : getIrregularMask(irregular.numFaces);
+        return getIrregularMask(irregular.numFaces, irregular.facesAround);
     };
     switch (irregular.kind) {
     case IrregularCorner::kAtVertex:
-    case IrregularCorner::kAtVertexAmongQuads:
         return {getVertexMask().atVertex, false};
     case IrregularCorner::kBehindVertex:
-    case IrregularCorner::kBehindVertexAmongQuads:
         return {getVertexMask().atNeighbor, false};
     case IrregularCorner::kBeforeVertex:
-    case IrregularCorner::kBeforeVertexAmongQuads:
         return {getVertexMask().atNeighbor, true};
     case IrregularCorner::kAlongQuad:
         return {_quadMask.beside[0], false};
@@ -241,7 +236,7 @@ auto RefinementMask::irregularMask(IrregularVertex const &irregular, VertexMask 
     -> VertexMask {
     Index const numFaces = _level.GetNumVertexFaces(irregular.vert);
     VertexVertexMask const plain = GetPlainVertexMask(numFaces);
-    VertexVertexMask const full = getIrregularMask(numFaces).vertex;
+    VertexVertexMask const full = getIrregularMask(numFaces, FacesAround::Others).vertex;
     // Rules of sharp vertices do not depend on the faces: the smooth one has the share that these
     // have.
     double const share = irregular.weight * mask.faceWeight / plain.faceWeight;

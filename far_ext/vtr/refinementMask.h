@@ -93,10 +93,11 @@ public:
         std::size_t const size = _hasIrregular ? _level.irregularVerts.size() : 0;
         return {_level.irregularVerts.data(), int(size)};
     }
-    /// The mask of irregular vertices without anything sharp, by their number of faces, ascending.
-    std::vector<std::pair<Index, IrregularVertexMask>> const &GetIrregularMasks() const {
-        return _irregularMasks;
-    }
+    /// The masks of irregular vertices without anything sharp, by their number of faces, ascending, and
+    /// by what was around them, which has no bearing on V' itself.
+    using MasksByFacesAround = std::array<IrregularVertexMask, kNumFacesAround>;
+    using IrregularMasks = std::vector<std::pair<Index, MasksByFacesAround>>;
+    IrregularMasks const &GetIrregularMasks() const { return _irregularMasks; }
     /// The irregular corners from \p begin to \p end - 1.
     OpenSubdiv::Vtr::ConstArray<IrregularCorner> GetIrregularCorners(Index begin, Index end) const {
         return _hasIrregular ? _level.GetIrregularCorners(begin, end)
@@ -127,12 +128,11 @@ private:
     void addIrregularWeights(IrregularCorner const &irregular, int corner, double *weights) const;
 
     /// The irregular corners of a hexagon, by place: the rest of IrregularCorner; -1 faces at others.
-    using CornersOfType =
-        std::array<std::tuple<Index, float, IrregularCorner::Kind>, HexIndexing::kNumEFaceCorners>;
+    using CornersOfType = std::array<std::tuple<Index, float, IrregularCorner::Kind, FacesAround>,
+                                     HexIndexing::kNumEFaceCorners>;
     static constexpr int kHexagonSize = HexIndexing::kNumEFaceCorners;
     static constexpr int kQuadSize = 4;
     static constexpr int kPlainType = -1;
-    using IrregularMasks = std::vector<std::pair<Index, IrregularVertexMask>>;
     struct IrregularCornersOfFace {
         Index firstCorner;
         IrregularCorner const *begin;
@@ -148,7 +148,9 @@ private:
     void addIrregularType(CornersOfType const &corners);
     int getType(Index face) const { return _irregularTypes[std::size_t(face)]; }
     IrregularMasks::const_iterator findMask(Index numFaces) const;
-    IrregularVertexMask const &getIrregularMask(Index numFaces) const;
+    IrregularVertexMask const &getIrregularMask(Index numFaces, FacesAround facesAround) const {
+        return findMask(numFaces)->second[std::size_t(facesAround)];
+    }
 
     Level const &_level;
     FaceMask _faceMask;
@@ -161,7 +163,6 @@ private:
     std::vector<std::vector<double>> _faceMasks;  ///< by face size
 
     IrregularMasks _irregularMasks; ///< by number of faces
-    IrregularVertexMask _maskAmongQuads;
     QuadMask _quadMask;
     std::vector<int> _irregularTypes; ///< by face; empty without irregular ones
     std::vector<IrregularFace> _irregularFaces;

@@ -487,9 +487,9 @@ void addIrregularMasks(RefinementMask const &mask, PlainMasks &masks) {
         masks.irregularFaces.push_back(makeIrregularMask(type));
     }
     for (auto const &[numFaces, irregular] : mask.GetIrregularMasks()) {
+        FarExt::VertexVertexMask const &vertex = irregular[0].vertex;
         masks.irregularVertices.resize(std::size_t(numFaces) + 1);
-        masks.irregularVertices.back() = {float(irregular.vertex.vertexWeight),
-                                          float(irregular.vertex.faceWeight)};
+        masks.irregularVertices.back() = {float(vertex.vertexWeight), float(vertex.faceWeight)};
     }
 }
 

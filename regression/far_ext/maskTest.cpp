@@ -179,10 +179,21 @@ void expectSameAround(FarExt::IrregularVertexMask const &mask,
     EXPECT_EQ(mask.vertex.faceWeight, expected.vertex.faceWeight);
 }
 
+/// Of the weights of F-vertices.
+double findLargestDifference(FarExt::IrregularVertexMask const &a,
+                             FarExt::IrregularVertexMask const &b) {
+    double result = 0;
+    for (int i = 0; i < 6; ++i) {
+        result = std::max({result, std::abs(a.atVertex[i] - b.atVertex[i]),
+                           std::abs(a.atNeighbor[i] - b.atNeighbor[i])});
+    }
+    return result;
+}
+
 } // namespace
 
 // Smooth around irregular vertices: averages of what is there, the same at all levels but for the first
-// two of vertices with four faces.
+// ones.
 TEST(Mask, IrregularVertices) {
     for (int numFaces = FarExt::kMinIrregularFaces; numFaces <= 400; ++numFaces) {
         for (int numSteps = 1; numSteps <= 5; ++numSteps) {
@@ -197,7 +208,7 @@ TEST(Mask, IrregularVertices) {
             EXPECT_NEAR(mask.vertex.vertexWeight + numFaces * mask.vertex.faceWeight, 1, 1e-15);
             EXPECT_GE(mask.vertex.vertexWeight, 0);
             EXPECT_GE(mask.vertex.faceWeight, 0);
-            if (numFaces > FarExt::kNumFacesAmongQuads || numSteps >= 3) {
+            if (numFaces > 8 || numSteps >= 3) {
                 expectSameAround(mask, FarExt::ComputeIrregularVertexMask(numFaces, 6));
             }
         }
@@ -205,38 +216,51 @@ TEST(Mask, IrregularVertices) {
 }
 
 TEST(Mask, IrregularVerticesBeforeAnyStep) {
+    using FarExt::FacesAround;
     for (int const numSteps : {0, -1, -1000}) {
-        for (bool const isAmongQuads : {false, true}) {
-            auto const mask = FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads,
-                                                                 numSteps, isAmongQuads);
-            expectSameAround(mask,
-                             FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads, 1000));
+        for (FacesAround const facesAround :
+             {FacesAround::Others, FacesAround::Quads, FacesAround::Triangles}) {
+            for (int numFaces = 4; numFaces <= 8; ++numFaces) {
+                expectSameAround(
+                    FarExt::ComputeIrregularVertexMask(numFaces, numSteps, facesAround),
+                    FarExt::ComputeIrregularVertexMask(numFaces, 1000));
+            }
         }
     }
 }
 
-// Around four faces F-vertices have other weights in the first levels.
-TEST(Mask, IrregularVerticesAmongQuads) {
-    auto const compute = [](int numSteps, bool isAmongQuads) {
-        return FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads, numSteps,
-                                                  isAmongQuads);
-    };
-    constexpr int kLast = FarExt::kNumStepsToConstantMasks;
-    auto const last = compute(kLast, false);
-    for (bool isAmongQuads : {false, true}) {
-        for (int numSteps = 1; numSteps < (isAmongQuads ? kLast : kLast - 1); ++numSteps) {
-            auto const mask = compute(numSteps, isAmongQuads);
-            for (auto const &weights : {mask.atVertex, mask.atNeighbor}) {
-                EXPECT_EQ(std::accumulate(weights, weights + 6, 0.0), 1);
-                EXPECT_GE(*std::min_element(weights, weights + 6), 0);
+// In the first levels F-vertices have other weights, by what the faces were: with four faces quads or not,
+// with more triangles or not.
+TEST(Mask, IrregularVerticesByFacesAround) {
+    using FarExt::FacesAround;
+    for (int numFaces = 4; numFaces <= 8; ++numFaces) {
+        FacesAround const own = numFaces == 4 ? FacesAround::Quads : FacesAround::Triangles;
+        auto const last = FarExt::ComputeIrregularVertexMask(numFaces, 6);
+        for (FacesAround facesAround : {FacesAround::Others, own}) {
+            SCOPED_TRACE(::testing::Message() << numFaces << ", " << int(facesAround));
+            int const numFirst = facesAround == FacesAround::Quads ? 3 : 2;
+            for (int numSteps = 1; numSteps <= 5; ++numSteps) {
+                auto const mask =
+                    FarExt::ComputeIrregularVertexMask(numFaces, numSteps, facesAround);
+                if (numSteps > numFirst) {
+                    expectSameAround(mask, last);
+                    continue;
+                }
+                for (auto const &weights : {mask.atVertex, mask.atNeighbor}) {
+                    EXPECT_EQ(std::accumulate(weights, weights + 6, 0.0), 1);
+                    EXPECT_GE(*std::min_element(weights, weights + 6), 0);
+                }
+                EXPECT_EQ(mask.atVertex[1], mask.atVertex[5]);
+                EXPECT_EQ(mask.atVertex[2], mask.atVertex[4]);
+                EXPECT_GT(findLargestDifference(mask, last), 0.01);
+                EXPECT_EQ(mask.vertex.faceWeight, last.vertex.faceWeight);
+                EXPECT_EQ(mask.vertex.vertexWeight, last.vertex.vertexWeight);
+                if (facesAround == own) {
+                    auto const others = FarExt::ComputeIrregularVertexMask(numFaces, numSteps);
+                    EXPECT_GT(findLargestDifference(mask, others), 0.01);
+                }
             }
-            EXPECT_EQ(mask.atVertex[1], mask.atVertex[5]);
-            EXPECT_EQ(mask.atVertex[2], mask.atVertex[4]);
-            EXPECT_GT(std::abs(mask.atVertex[1] - last.atVertex[1]), 0.01);
-            EXPECT_EQ(mask.vertex.faceWeight, last.vertex.faceWeight);
         }
-        expectSameAround(compute(kLast, isAmongQuads), last);
-        expectSameAround(compute(kLast + 1, isAmongQuads), last);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <map>
 
 namespace OpenSubdivHex::Regression {
 
@@ -90,28 +91,62 @@ void setWeightsOfN(double const (&in32nds)[6], IrregularRule &rule) {
     }
 }
 
-/// The first levels of a vertex with four faces: the new points have other weights, of V, N, A, B, C and
-/// M, among quads in 256ths and else in 64ths; V' stays.
-void setFirstWeights(int numSteps, bool isAmongQuads, IrregularRule &rule) {
-    struct Parts {
-        double ofV[6];
-        double ofN[6];
-    };
-    static std::vector<Parts> const kAmongQuads = {
-        {{52, 87, 15, 0, 15, 87}, {32, 112, 72, 0, 0, 40}},
-        {{96, 74, 0, 12, 0, 74}, {39, 128, 25, 33, 0, 31}},
-        {{82, 69, 18, 0, 18, 69}, {37, 99, 78, 0, 0, 42}},
-    };
-    static std::vector<Parts> const kAmongOthers = {{{22, 16, 5, 0, 5, 16}, {9, 29, 14, 0, 7, 5}},
-                                                    {{22, 14, 7, 0, 7, 14}, {14, 28, 13, 0, 9, 0}}};
-    std::vector<Parts> const &levels = isAmongQuads ? kAmongQuads : kAmongOthers;
-    if (numSteps > int(levels.size())) {
+/// In the first levels the new points have other weights, in 256ths: of V, N, A, B, C and M.
+struct FirstParts {
+    double ofV[6];
+    double ofN[6];
+};
+/// By level.
+using FirstLevels = std::vector<FirstParts>;
+/// By number of faces.
+std::map<int, FirstLevels> const kQuads = {{4,
+                                            {{{52, 87, 15, 0, 15, 87}, {32, 112, 72, 0, 0, 40}},
+                                             {{96, 74, 0, 12, 0, 74}, {39, 128, 25, 33, 0, 31}},
+                                             {{82, 69, 18, 0, 18, 69}, {37, 99, 78, 0, 0, 42}}}}};
+std::map<int, FirstLevels> const kOthers = {{4,
+                                             {{{88, 64, 20, 0, 20, 64}, {36, 116, 56, 0, 28, 20}},
+                                              {{88, 56, 28, 0, 28, 56}, {56, 112, 52, 0, 36, 0}}}},
+                                            {5,
+                                             {{{68, 94, 0, 0, 0, 94}, {23, 159, 0, 34, 11, 29}},
+                                              {{74, 78, 13, 0, 13, 78}, {41, 127, 35, 8, 14, 31}}}},
+                                            {6,
+                                             {{{62, 97, 0, 0, 0, 97}, {26, 157, 6, 25, 19, 23}},
+                                              {{76, 90, 0, 0, 0, 90}, {40, 144, 8, 18, 10, 36}}}},
+                                            {7,
+                                             {{{56, 100, 0, 0, 0, 100}, {27, 151, 20, 14, 21, 23}},
+                                              {{82, 87, 0, 0, 0, 87}, {43, 141, 0, 35, 0, 37}}}},
+                                            {8,
+                                             {{{54, 101, 0, 0, 0, 101}, {25, 152, 11, 37, 0, 31}},
+                                              {{88, 84, 0, 0, 0, 84}, {39, 137, 0, 50, 0, 30}}}}};
+std::map<int, FirstLevels> const kTriangles = {
+    {5,
+     {{{50, 87, 16, 0, 16, 87}, {1, 111, 79, 0, 0, 65}},
+      {{92, 69, 13, 0, 13, 69}, {45, 118, 45, 0, 0, 48}}}},
+    {6,
+     {{{30, 113, 0, 0, 0, 113}, {1, 128, 59, 0, 0, 68}},
+      {{90, 83, 0, 0, 0, 83}, {39, 128, 48, 0, 0, 41}}}},
+    {7,
+     {{{34, 100, 11, 0, 11, 100}, {1, 106, 73, 0, 0, 76}},
+      {{78, 80, 9, 0, 9, 80}, {43, 124, 58, 0, 0, 31}}}},
+    {8,
+     {{{30, 103, 10, 0, 10, 103}, {1, 106, 73, 0, 0, 76}},
+      {{98, 66, 13, 0, 13, 66}, {40, 121, 68, 0, 0, 27}}}}};
+
+/// V' stays as in later levels.
+void setFirstWeights(int numFaces, int numSteps, FormerFaces formerFaces, IrregularRule &rule) {
+    bool const areFourQuads = numFaces == 4 && formerFaces == FormerFaces::Quads;
+    bool const areTriangles = numFaces > 4 && formerFaces == FormerFaces::Triangles;
+    std::map<int, FirstLevels> const &table = areFourQuads   ? kQuads
+                                              : areTriangles ? kTriangles
+                                                             : kOthers;
+    auto const found = table.find(numFaces);
+    if (found == table.end() || numSteps > int(found->second.size())) {
         return;
     }
-    Parts const &parts = levels[numSteps - 1];
+    FirstParts const &parts = found->second[numSteps - 1];
     for (int i = 0; i < 6; ++i) {
-        rule.ofV[i] = parts.ofV[i] / (isAmongQuads ? 256 : 64);
-        rule.ofN[i] = parts.ofN[i] / (isAmongQuads ? 256 : 64);
+        rule.ofV[i] = parts.ofV[i] / 256;
+        rule.ofN[i] = parts.ofN[i] / 256;
     }
 }
 
@@ -129,24 +164,23 @@ std::vector<QuadParts> const kQuadParts = {
 
 } // namespace
 
-IrregularRule MakeIrregularRule(int numFaces, int numSteps, bool isAmongQuads) {
+IrregularRule MakeIrregularRule(int numFaces, int numSteps, FormerFaces formerFaces) {
     IrregularRule rule{};
     if (numFaces == 4) {
         setWeightsOfN({4, 14, 9, 0, 0, 5}, rule);
-        balance(4, 4.0 / 7, rule);
-        setFirstWeights(numSteps, isAmongQuads, rule);
-        return rule;
+    } else {
+        setWeightsOfN({4, 15, 8, 0, 0, 5}, rule);
     }
-    setWeightsOfN({4, 15, 8, 0, 0, 5}, rule);
-    if (numFaces == 5) {
-        balance(5, 4.0 / 7, rule);
-        return rule;
+    if (numFaces <= 5) {
+        balance(numFaces, 4.0 / 7, rule);
+    } else {
+        // Along the edges alone.
+        double const c = std::cos(kPi / numFaces);
+        double const s = std::min(std::cos(2 * kPi / numFaces) / (c * c), 0.77);
+        setWeightsOfV(s / 2, 0, rule);
+        rule.meanWeight = 1 - s * c * c;
     }
-    // Along the edges alone.
-    double const c = std::cos(kPi / numFaces);
-    double const s = std::min(std::cos(2 * kPi / numFaces) / (c * c), 0.77);
-    setWeightsOfV(s / 2, 0, rule);
-    rule.meanWeight = 1 - s * c * c;
+    setFirstWeights(numFaces, numSteps, formerFaces, rule);
     return rule;
 }
 

@@ -9,6 +9,23 @@
 
 namespace OpenSubdivHex::Regression {
 
+/// What all faces of a vertex were before the first hexagonal step.
+enum class FormerFaces { Mixed, Triangles, Quads };
+
+/// What all faces are that getSize(0 ... numFaces - 1) are the sizes of.
+template <typename GetSize>
+FormerFaces FindFormerFaces(int numFaces, GetSize const &getSize) {
+    bool areTriangles = true;
+    bool areQuads = true;
+    for (int i = 0; i < numFaces; ++i) {
+        areTriangles = areTriangles && getSize(i) == 3;
+        areQuads = areQuads && getSize(i) == 4;
+    }
+    return areTriangles ? FormerFaces::Triangles
+           : areQuads   ? FormerFaces::Quads
+                        : FormerFaces::Mixed;
+}
+
 /// \brief The rules of the mask Smooth around a vertex where four hexagons or more meet, at a level
 /// that some hexagonal steps made.
 ///
@@ -22,8 +39,8 @@ struct IrregularRule {
 /// Of a vertex with \p numFaces hexagons, four or more, at a level made by \p numSteps steps, one or
 /// more.
 ///
-/// \param isAmongQuads  whether it had four faces before these steps, and all of them quads
-IrregularRule MakeIrregularRule(int numFaces, int numSteps, bool isAmongQuads);
+/// \param formerFaces  of the vertex, before these steps
+IrregularRule MakeIrregularRule(int numFaces, int numSteps, FormerFaces formerFaces);
 
 /// \brief The new point beside corner \p i of a hexagon, from the values at its corners.
 ///

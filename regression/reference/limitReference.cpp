@@ -131,7 +131,7 @@ LimitReference::Piece LimitReference::cutOut(TaggedMesh const &mesh, int vertex,
         TaggedMesh::Vertex copy = mesh.vertices[source];
         copy.corners.clear();
         signature.insert(signature.end(),
-                         {bitsOf(copy.sharpness), copy.isNonManifold, copy.isAmongQuads});
+                         {bitsOf(copy.sharpness), copy.isNonManifold, int(copy.formerFaces)});
         part.vertices.push_back(copy);
         if (!mesh.vertexOrigins.empty()) {
             TaggedMesh::VertexOrigin origin;

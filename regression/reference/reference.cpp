@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference.h"
 
-#include "irregularReference.h"
-
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -108,23 +106,20 @@ int irregularFaces(ReferenceMesh const &mesh, VertexHandle vertex) {
     return mesh.numSteps > 0 && count >= 4 && !mesh.is_boundary(vertex) ? count : 0;
 }
 
-/// Whether a vertex had four faces in the base mesh, and all of them quads.
-bool isAmongQuads(ReferenceMesh const &mesh, VertexHandle vertex) {
+/// What the faces of a vertex were in the base mesh.
+FormerFaces formerFaces(ReferenceMesh const &mesh, VertexHandle vertex) {
     if (mesh.numSteps > 0) {
-        return mesh.areAmongQuads[vertex.idx()];
+        return mesh.formerFaces[vertex.idx()];
     }
-    int count = 0;
+    std::vector<int> sizes;
     for (FaceHandle face : mesh.vf_range(vertex)) {
-        if (mesh.valence(face) != 4) {
-            return false;
-        }
-        ++count;
+        sizes.push_back(int(mesh.valence(face)));
     }
-    return count == 4;
+    return FindFormerFaces(int(sizes.size()), [&](int i) { return sizes[i]; });
 }
 
 IrregularRule makeRule(ReferenceMesh const &mesh, VertexHandle vertex, int numFaces) {
-    return MakeIrregularRule(numFaces, mesh.numSteps, isAmongQuads(mesh, vertex));
+    return MakeIrregularRule(numFaces, mesh.numSteps, formerFaces(mesh, vertex));
 }
 
 /// Whether across the edge from a corner is the smaller copy of a quad: quads made for edges are at
@@ -321,9 +316,9 @@ ReferenceLevel Refine(ReferenceMesh const &mesh, ReferenceMask mask) {
     child.mesh.numSteps = mesh.numSteps + 1;
     std::vector<VertexHandle> const fVertices = numberFVertices(mesh);
     std::size_t const numFVertices = countCorners(mesh);
-    child.mesh.areAmongQuads.resize(numFVertices + mesh.n_vertices());
+    child.mesh.formerFaces.resize(numFVertices + mesh.n_vertices());
     for (VertexHandle v : mesh.vertices()) {
-        child.mesh.areAmongQuads[vVertex(numFVertices, v).idx()] = isAmongQuads(mesh, v);
+        child.mesh.formerFaces[vVertex(numFVertices, v).idx()] = formerFaces(mesh, v);
     }
     child.vertexOrigins.resize(numFVertices + mesh.n_vertices());
     for (FaceHandle face : mesh.faces()) {

@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_REFERENCE_REFERENCE_H
 #define OPENSUBDIVHEX_REGRESSION_REFERENCE_REFERENCE_H
 
+#include "irregularReference.h"
+
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/Mesh/Traits.hh>
 
@@ -18,8 +20,8 @@ struct ReferenceTraits : OpenMesh::DefaultTraits {
 /// A polygon mesh with positions in double precision.
 struct ReferenceMesh : OpenMesh::PolyMesh_ArrayKernelT<ReferenceTraits> {
     int numSteps = 0; ///< that made it
-    /// By vertex of a refined mesh: whether it had four faces in the base mesh, and all of them quads.
-    std::vector<bool> areAmongQuads;
+    /// By vertex of a refined mesh: of those that the base mesh had, what their faces were there.
+    std::vector<FormerFaces> formerFaces;
 };
 
 /// Values of any width, one row per vertex.

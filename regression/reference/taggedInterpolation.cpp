@@ -98,7 +98,7 @@ public:
     struct Vertex {
         int numFaces = 0;
         double share = 0; ///< of its rule: what is left by the sharpest thing at it
-        bool isAmongQuads = false;
+        FormerFaces formerFaces = FormerFaces::Mixed;
     };
     /// Of no faces for others.
     Vertex FindVertex(int vertex) const {
@@ -122,7 +122,7 @@ public:
         bool const isIrregular = _mesh.numHexagonalSteps > 0 &&
                                  _mesh.vertexOrigins[vertex].face < 0 && !tags.isNonManifold &&
                                  size >= 4 && sharpness < 1;
-        return isIrregular ? Vertex{int(size), 1 - sharpness, tags.isAmongQuads} : Vertex();
+        return isIrregular ? Vertex{int(size), 1 - sharpness, tags.formerFaces} : Vertex();
     }
 
     /// \brief \p plain, with the rules' share at corner \p i of a hexagon.
@@ -154,8 +154,8 @@ public:
         for (int corner : {i, (i + 1) % 6, (i + 5) % 6}) {
             Vertex const vertex = FindVertex(_mesh.GetStart(corners[corner]));
             if (vertex.numFaces > 0) {
-                IrregularRule const rule = MakeIrregularRule(
-                    vertex.numFaces, _mesh.numHexagonalSteps, vertex.isAmongQuads);
+                IrregularRule const rule =
+                    MakeIrregularRule(vertex.numFaces, _mesh.numHexagonalSteps, vertex.formerFaces);
                 return vertex.share * NewIrregularPoint(rule, hexagon, i, corner) +
                        (1 - vertex.share) * plain;
             }
@@ -328,7 +328,7 @@ private:
             return plain;
         }
         double const weight =
-            MakeIrregularRule(irregular.numFaces, _mesh.numHexagonalSteps, irregular.isAmongQuads)
+            MakeIrregularRule(irregular.numFaces, _mesh.numHexagonalSteps, irregular.formerFaces)
                 .meanWeight;
         Point const old = _values.row(v);
         Point const mean = (sum - old) / double(around.size());

@@ -42,7 +42,7 @@ struct TaggedMesh {
     struct Vertex {
         float sharpness = 0;
         bool isNonManifold = false;
-        bool isAmongQuads = false; ///< had four quads and nothing else when hexagonal steps began
+        FormerFaces formerFaces = FormerFaces::Mixed; ///< when hexagonal steps began
         std::vector<Side> corners; ///< faces of the vertex, and where it is in them
     };
     /// What a vertex was made from: an old vertex, or the corner of a face.

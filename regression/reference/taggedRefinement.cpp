@@ -53,19 +53,19 @@ private:
     void tagPartedVertices();
 
     /// In the child of a hexagonal step.
-    bool isAmongQuads(int vertex) const {
+    FormerFaces formerFaces(int vertex) const {
         TaggedMesh::Vertex const &tags = _parent.vertices[vertex];
         if (_parent.numHexagonalSteps > 0) {
             // Where edges were flat, it has got other faces.
-            return tags.isAmongQuads &&
-                   std::all_of(tags.corners.begin(), tags.corners.end(), [&](Side corner) {
-                       return _parent.faceOrigins[corner.face].edge >= 0;
-                   });
+            bool const areOfEdges =
+                std::all_of(tags.corners.begin(), tags.corners.end(), [&](Side corner) {
+                    return _parent.faceOrigins[corner.face].edge >= 0;
+                });
+            return areOfEdges ? tags.formerFaces : FormerFaces::Mixed;
         }
-        return tags.corners.size() == 4 &&
-               std::all_of(tags.corners.begin(), tags.corners.end(), [&](Side corner) {
-                   return _parent.faces[corner.face].vertices.size() == 4;
-               });
+        return FindFormerFaces(int(tags.corners.size()), [&](int i) {
+            return int(_parent.faces[tags.corners[i].face].vertices.size());
+        });
     }
 
     bool isHole(Side side) const { return _parent.faces[side.face].holes[side.place]; }
@@ -119,7 +119,7 @@ void Refinement::makeVertices() {
         TaggedMesh::Vertex vertex;
         vertex.sharpness = decremented(_parent.vertices[v].sharpness);
         vertex.isNonManifold = _parent.vertices[v].isNonManifold;
-        vertex.isAmongQuads = isHexagonal() && isAmongQuads(v);
+        vertex.formerFaces = isHexagonal() ? formerFaces(v) : FormerFaces::Mixed;
         _child.vertices.push_back(vertex);
         _child.vertexOrigins.push_back({v, -1, -1});
     }

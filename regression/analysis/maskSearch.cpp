@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "quadMaskSearch.h"
+#include "maskSearch.h"
 
 #include "evenness.h"
 #include "maskedStep.h"
@@ -24,6 +24,7 @@ namespace OpenSubdivHex::Regression {
 namespace {
 
 using FarExt::FaceMask;
+using FarExt::FacesAround;
 using FarExt::HexSchemeOptions;
 using FarExt::IrregularVertexMask;
 using FarExt::internal::IrregularCorner;
@@ -34,6 +35,7 @@ using Position = PositionReal<double>;
 constexpr int kQuad = 4;
 constexpr int kHexagon = 6;
 constexpr int kNumSearchedLevels = FarExt::kNumStepsToConstantMasks - 1;
+constexpr int kNumFacesOfQuads = 4; // around a regular vertex
 
 /// Of one of the first levels, from 1 on.
 struct LevelWeights {
@@ -43,9 +45,9 @@ struct LevelWeights {
     double besideQuad[FarExt::QuadMask::kNumRows][kHexagon];
 };
 
-LevelWeights getWeights(int level, bool isAmongQuads, FarExt::QuadMask const &quad) {
+LevelWeights getWeights(SearchedMasks const &searched, int level, FarExt::QuadMask const &quad) {
     IrregularVertexMask const vertex =
-        FarExt::ComputeIrregularVertexMask(FarExt::kNumFacesAmongQuads, level, isAmongQuads);
+        FarExt::ComputeIrregularVertexMask(searched.numFaces, level, searched.facesAround);
     LevelWeights result;
     std::copy_n(quad.inQuad, kQuad, result.inQuad);
     std::copy_n(vertex.atVertex, kHexagon, result.atVertex);
@@ -63,10 +65,20 @@ LevelWeights getWeights(int level, bool isAmongQuads, FarExt::QuadMask const &qu
 /// Calls function(weights, size, free, isSymmetric) for the masks of a level that are searched for: the
 /// places of the free weights, or of one of each two in a symmetric mask.
 template <typename FUNCTION>
-void forEachMask(int level, LevelWeights &weights, FUNCTION const &function) {
+void forEachMask(SearchedMasks const &searched, int level, LevelWeights &weights,
+                 FUNCTION const &function) {
     using Places = std::vector<int>;
     bool const isFirst = level == 1;
     bool const isSecond = level == 2;
+    if (!searched.AreOfQuads()) {
+        if (isFirst || isSecond) {
+            function(weights.atVertex, kHexagon, Places{1, 2}, true);
+            bool const areTriangles = searched.facesAround == FacesAround::Triangles;
+            function(weights.atNeighbor, kHexagon,
+                     areTriangles ? Places{1, 4, 5} : Places{1, 2, 3, 4, 5}, false);
+        }
+        return;
+    }
     Places const atVertex = isSecond ? Places{1, 3} : Places{1, 2};
     function(weights.atVertex, kHexagon, atVertex, true);
     Places const besideQuad = isSecond ? Places{1, 3, 4, 5} : Places{1, 3, 4};
@@ -85,32 +97,33 @@ void forEachMask(int level, LevelWeights &weights, FUNCTION const &function) {
 
 using SearchedLevels = std::array<LevelWeights, kNumSearchedLevels>;
 
-QuadWeights gather(SearchedLevels levels) {
+MaskWeights gather(SearchedMasks const &searched, SearchedLevels levels) {
     std::vector<double> values;
     for (int level = 1; level <= kNumSearchedLevels; ++level) {
-        forEachMask(level, levels[std::size_t(level) - 1],
+        forEachMask(searched, level, levels[std::size_t(level) - 1],
                     [&](double const *mask, int, std::vector<int> const &places, bool) {
                         for (int place : places) {
                             values.push_back(mask[place]);
                         }
                     });
     }
-    return Eigen::Map<QuadWeights const>(values.data(), Eigen::Index(values.size()));
+    return Eigen::Map<MaskWeights const>(values.data(), Eigen::Index(values.size()));
 }
 
-SearchedLevels getShippedLevels() {
+SearchedLevels getShippedLevels(SearchedMasks const &searched) {
     SearchedLevels levels;
     for (int level = 1; level <= kNumSearchedLevels; ++level) {
-        levels[std::size_t(level) - 1] = getWeights(level, true, FarExt::ComputeQuadMask(level));
+        levels[std::size_t(level) - 1] =
+            getWeights(searched, level, FarExt::ComputeQuadMask(level));
     }
     return levels;
 }
 
-SearchedLevels spread(QuadWeights const &weights) {
-    SearchedLevels levels = getShippedLevels();
+SearchedLevels spread(SearchedMasks const &searched, MaskWeights const &weights) {
+    SearchedLevels levels = getShippedLevels(searched);
     double const *next = weights.data();
     for (int level = 1; level <= kNumSearchedLevels; ++level) {
-        forEachMask(level, levels[std::size_t(level) - 1],
+        forEachMask(searched, level, levels[std::size_t(level) - 1],
                     [&](double *mask, int size, std::vector<int> const &places, bool isSymmetric) {
                         std::fill_n(mask, size, 0.0);
                         for (int place : places) {
@@ -131,13 +144,19 @@ struct CornerWeights {
     double const *weights;
     bool isBackwards;
 };
-CornerWeights findMask(LevelWeights const &weights, IrregularCorner const &irregular) {
+CornerWeights findMask(SearchedMasks const &searched, LevelWeights const &weights,
+                       IrregularCorner const &irregular) {
+    if (!IrregularCorner::IsAtQuad(irregular.kind) &&
+        (irregular.numFaces != searched.numFaces ||
+         irregular.facesAround != searched.facesAround)) {
+        return {nullptr, false};
+    }
     switch (irregular.kind) {
-    case IrregularCorner::kAtVertexAmongQuads:
+    case IrregularCorner::kAtVertex:
         return {weights.atVertex, false};
-    case IrregularCorner::kBehindVertexAmongQuads:
+    case IrregularCorner::kBehindVertex:
         return {weights.atNeighbor, false};
-    case IrregularCorner::kBeforeVertexAmongQuads:
+    case IrregularCorner::kBeforeVertex:
         return {weights.atNeighbor, true};
     case IrregularCorner::kAlongQuad:
         return {weights.besideQuad[0], false};
@@ -152,11 +171,11 @@ CornerWeights findMask(LevelWeights const &weights, IrregularCorner const &irreg
     }
 }
 
-/// Quads of a plane around a vertex, lifted by very little to a quadratic form, or to x y.
-Shape makeLifted(int valence, double xx, double xy, double yy) {
+/// Faces of a plane around a vertex, lifted by very little to a quadratic form, or to x y.
+Shape makeLifted(Tiling tiling, int valence, double xx, double xy, double yy) {
     constexpr int kNumRings = 3;
     constexpr double kHeight = 1e-3; // so that slopes do not matter
-    Shape shape = MakeVertexDisk(Tiling::Quads, valence, kNumRings);
+    Shape shape = MakeVertexDisk(tiling, valence, kNumRings);
     for (std::size_t i = 0; i < shape.positions.size(); i += 3) {
         double const x = shape.positions[i];
         double const y = shape.positions[i + 1];
@@ -168,10 +187,11 @@ Shape makeLifted(int valence, double xx, double xy, double yy) {
 } // namespace
 
 /// A control mesh of quads, refined once; its points follow the weights.
-class QuadJudge::Surface {
+class MaskJudge::Surface {
 public:
-    Surface(std::string name, Shape const &shape, int level, Curvature curvature, double weight)
-        : _name(std::move(name)), _curvature(curvature), _weight(weight) {
+    Surface(SearchedMasks const &searched, std::string name, Shape const &shape, int level,
+            Curvature curvature, double weight)
+        : _searched(searched), _name(std::move(name)), _curvature(curvature), _weight(weight) {
         HexSchemeOptions const options{FaceMask::Smooth};
         _refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(),
                                                           getBoundaryOptions(), {options});
@@ -190,13 +210,20 @@ public:
         }
     }
 
-    void LookAtSector(int numU) { _chosen = FindTorusSector(_mesh, numU); }
+    void LookAtSector(int numU) { _chosen = {FindTorusSector(_mesh, numU)}; }
     void LookAtRow(int numU, int numV, int row) {
-        _chosen = FindTorusStrip(_mesh, numU, 1.0 / numV, 1.0 / numV, row);
+        _chosen = {FindTorusStrip(_mesh, numU, 1.0 / numV, 1.0 / numV, row)};
+    }
+    void LookAtAll() {
+        _chosen.resize(1);
+        _chosen[0].vertices.resize(_mesh.positions.size());
+        std::iota(_chosen[0].vertices.begin(), _chosen[0].vertices.end(), 0);
+        _chosen[0].groups.assign(_mesh.positions.size(), 0);
     }
     /// In rings, each half as far out as the one before.
     void LookAtCenter() {
         constexpr int kLastRing = 3;
+        _chosen.resize(1);
         for (int vertex = 0; vertex < _mesh.GetNumVertices(); ++vertex) {
             double const distance = _mesh.positions[vertex].head<2>().norm();
             if (distance < 1) {
@@ -204,21 +231,44 @@ public:
                 while (ring < kLastRing && distance <= std::ldexp(0.5, -ring)) {
                     ++ring;
                 }
-                _chosen.vertices.push_back(vertex);
-                _chosen.groups.push_back(ring);
+                _chosen[0].vertices.push_back(vertex);
+                _chosen[0].groups.push_back(ring);
+            }
+        }
+    }
+    /// As MeasureRipple(): at the two outer ones of these rings, each for itself.
+    void LookAtRings() {
+        constexpr int kNumRings = 2;
+        _chosen.resize(kNumRings);
+        for (int vertex = 0; vertex < _mesh.GetNumVertices(); ++vertex) {
+            double const distance = _mesh.positions[vertex].head<2>().norm();
+            for (int ring = 0; ring < kNumRings; ++ring) {
+                if (distance < std::ldexp(1, -ring) && distance >= std::ldexp(0.5, -ring)) {
+                    _chosen[ring].vertices.push_back(vertex);
+                    _chosen[ring].groups.push_back(0);
+                }
             }
         }
     }
 
-    Eigen::VectorXd Measure(QuadWeights const &weights) {
+    Eigen::VectorXd Measure(MaskWeights const &weights) {
         refine(weights);
-        Eigen::VectorXd const deviations =
-            MeasureDeviations(_mesh, _chosen.vertices, _chosen.groups, _curvature);
-        _unevenness = deviations.norm();
-        return _weight * deviations;
+        Eigen::VectorXd result;
+        _entries.clear();
+        for (VertexGroups const &chosen : _chosen) {
+            Eigen::VectorXd const deviations =
+                MeasureDeviations(_mesh, chosen.vertices, chosen.groups, _curvature);
+            Eigen::Index const first = result.size();
+            result.conservativeResize(first + deviations.size());
+            result.tail(deviations.size()) = _weight * deviations;
+            std::string const ring =
+                _chosen.size() > 1 ? ", ring " + std::to_string(_entries.size()) : "";
+            _entries.push_back({_name + ring, deviations.norm()});
+        }
+        return result;
     }
 
-    Entry GetEntry() const { return {_name, _unevenness}; }
+    std::vector<Entry> const &GetEntries() const { return _entries; }
 
 private:
     static OpenSubdiv::Sdc::Options getBoundaryOptions() {
@@ -228,14 +278,14 @@ private:
     }
     FarExt::internal::MeshLevels const &getLevels() const { return _refiner->GetHierarchy().mesh; }
 
-    void refine(QuadWeights const &weights) {
+    void refine(MaskWeights const &weights) {
         std::vector<Position> points = _base;
         std::vector<double> scratch;
-        SearchedLevels const searched = spread(weights);
+        SearchedLevels const levels = spread(_searched, weights);
         for (std::size_t depth = 0; depth < _masks.size(); ++depth) {
             Level const &parent = getLevels().levels[depth];
             LevelWeights const *const ofLevel =
-                depth > 0 && depth <= searched.size() ? &searched[depth - 1] : nullptr;
+                depth > 0 && depth <= levels.size() ? &levels[depth - 1] : nullptr;
             double turned[kHexagon];
             auto const getWeights = [&](int face, int i) -> double const * {
                 int const corner = parent.faceFirstCorner[std::size_t(face)] + i;
@@ -245,7 +295,7 @@ private:
                 if (ofLevel && size == kQuad && !parent.IsHalfFace(face)) {
                     mask.weights = ofLevel->inQuad;
                 } else if (ofLevel && !irregular.empty() && irregular[0].weight == 1) {
-                    mask = findMask(*ofLevel, irregular[0]);
+                    mask = findMask(_searched, *ofLevel, irregular[0]);
                 }
                 if (!mask.weights) {
                     return _masks[depth].GetFaceVertexWeights(face, i, scratch);
@@ -264,6 +314,7 @@ private:
                        [](Position const &point) { return point.value; });
     }
 
+    SearchedMasks _searched;
     std::string _name;
     Curvature _curvature;
     double _weight;
@@ -271,56 +322,108 @@ private:
     std::vector<RefinementMask> _masks; // by parent
     std::vector<Position> _base;
     PolygonMesh _mesh;
-    VertexGroups _chosen;
-    double _unevenness = 0;
+    std::vector<VertexGroups> _chosen;
+    std::vector<Entry> _entries; // by what is chosen
 };
 
-QuadJudge::QuadJudge(int level) {
+MaskJudge::MaskJudge(SearchedMasks const &searched, int level) : _searched(searched) {
+    if (searched.AreOfQuads()) {
+        addQuads(level);
+    } else {
+        addVertex(level);
+    }
+}
+
+auto MaskJudge::add(std::string const &name, Shape const &shape, int level, Curvature curvature,
+                    double weight) -> Surface & {
+    _surfaces.push_back(
+        std::make_unique<Surface>(_searched, name, shape, level, curvature, weight));
+    return *_surfaces.back();
+}
+
+// A bowl and a saddle, as ripple is measured.
+void MaskJudge::addRipple(Tiling tiling, int level, double ofBowl, double ofSaddle) {
+    char const *const names[] = {" in triangles", " in quads", " in hexagons"};
+    std::string const around = " at " + std::to_string(_searched.numFaces) + names[int(tiling)];
+    auto const addQuadratic = [&](char const *name, double yy, Curvature curvature, double weight) {
+        add(name + around, makeLifted(tiling, _searched.numFaces, 1, 0, yy), level, curvature,
+            weight)
+            .LookAtRings();
+    };
+    addQuadratic("bowl", 1, Curvature::Mean, ofBowl);
+    addQuadratic("saddle", -1, Curvature::Gaussian, ofSaddle);
+}
+
+void MaskJudge::addQuads(int level) {
     constexpr double kOfBorder = 0.4;
     constexpr double kOfPlane = 0.2;
     constexpr double kOfIrregular = 0.1;
     std::array<std::pair<int, int>, 3> const sizes = {{{14, 8}, {20, 10}, {9, 6}}};
-    auto const add = [&](std::string const &name, Shape const &shape, Curvature curvature,
-                         double weight) -> Surface & {
-        _surfaces.push_back(std::make_unique<Surface>(name, shape, level, curvature, weight));
-        return *_surfaces.back();
-    };
     for (auto const &[numU, numV] : sizes) {
         std::string const size = std::to_string(numU) + " x " + std::to_string(numV);
-        add("torus " + size, MakeTorus(numU, numV, TorusFaces::Quads), Curvature::Mean, 1)
+        add("torus " + size, MakeTorus(numU, numV, TorusFaces::Quads), level, Curvature::Mean, 1)
             .LookAtSector(numU);
         for (int row : {0, 1}) {
             add("row " + std::to_string(row) + " of " + size,
-                MakeOpenTorus(numU, numV, TorusFaces::Quads), Curvature::Mean, kOfBorder)
+                MakeOpenTorus(numU, numV, TorusFaces::Quads), level, Curvature::Mean, kOfBorder)
                 .LookAtRow(numU, numV, row);
         }
     }
     for (int valence : {4, 3, 5}) {
-        bool const isRegular = valence == 4;
-        double const weight = isRegular ? kOfPlane : kOfIrregular;
+        double const weight = valence == kNumFacesOfQuads ? kOfPlane : kOfIrregular;
         std::string const around = " at " + std::to_string(valence);
-        add("bowl" + around, makeLifted(valence, 1, 0, 1), Curvature::Mean, weight).LookAtCenter();
-        add("saddle" + around, makeLifted(valence, 1, 0, -1), Curvature::Gaussian, weight)
-            .LookAtCenter();
-        if (isRegular) {
-            add("saddle 2xy" + around, makeLifted(valence, 0, 2, 0), Curvature::Gaussian, weight)
+        auto const addLifted = [&](char const *name, double xx, double xy, double yy,
+                                   Curvature curvature) {
+            add(name + around, makeLifted(Tiling::Quads, valence, xx, xy, yy), level, curvature,
+                weight)
                 .LookAtCenter();
+        };
+        addLifted("bowl", 1, 0, 1, Curvature::Mean);
+        addLifted("saddle", 1, 0, -1, Curvature::Gaussian);
+        if (valence == kNumFacesOfQuads) {
+            addLifted("saddle 2xy", 0, 2, 0, Curvature::Gaussian);
         }
     }
 }
 
-QuadJudge::~QuadJudge() = default;
+// Mean curvature matters more than Gaussian curvature, which is larger by nature.
+void MaskJudge::addVertex(int level) {
+    int const numFaces = _searched.numFaces;
+    if (_searched.facesAround == FacesAround::Triangles) {
+        constexpr double kOfSaddle = 0.5;
+        addRipple(Tiling::Triangles, level, 1, kOfSaddle);
+        if (numFaces == 5) {
+            add("icosahedron", MakeIcosahedron(), level, Curvature::Mean, 1).LookAtAll();
+        } else if (numFaces == 6) {
+            constexpr int kNumU = 14;
+            add("torus", MakeTorus(kNumU, 8, TorusFaces::Triangles), level, Curvature::Mean, 1)
+                .LookAtSector(kNumU);
+        }
+        return;
+    }
+    constexpr double kOfBowl = 4;
+    constexpr double kOfHexagons = 1.5;
+    addRipple(Tiling::Hexagons, level, kOfHexagons * kOfBowl, kOfHexagons);
+    if (numFaces != kNumFacesOfQuads) {
+        addRipple(Tiling::Quads, level, kOfBowl, 1);
+    } else {
+        Shape const octahedron = MakeTrianglePlatonics()[1];
+        add(octahedron.name, octahedron, level, Curvature::Mean, kOfBowl).LookAtAll();
+    }
+}
 
-Eigen::VectorXd QuadJudge::Measure(QuadWeights const &weights) {
+MaskJudge::~MaskJudge() = default;
+
+Eigen::VectorXd MaskJudge::Measure(MaskWeights const &weights) {
     constexpr double kOfNegative = 1.5;
     std::vector<double> values;
     for (auto const &surface : _surfaces) {
         Eigen::VectorXd const deviations = surface->Measure(weights);
         values.insert(values.end(), deviations.begin(), deviations.end());
     }
-    SearchedLevels levels = spread(weights);
+    SearchedLevels levels = spread(_searched, weights);
     for (int level = 1; level <= kNumSearchedLevels; ++level) {
-        forEachMask(level, levels[std::size_t(level) - 1],
+        forEachMask(_searched, level, levels[std::size_t(level) - 1],
                     [&](double const *mask, int size, std::vector<int> const &, bool) {
                         std::transform(
                             mask, mask + size, std::back_inserter(values),
@@ -330,24 +433,26 @@ Eigen::VectorXd QuadJudge::Measure(QuadWeights const &weights) {
     return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
 }
 
-std::vector<QuadJudge::Entry> QuadJudge::GetEntries() const {
+std::vector<MaskJudge::Entry> MaskJudge::GetEntries() const {
     std::vector<Entry> entries;
     for (auto const &surface : _surfaces) {
-        entries.push_back(surface->GetEntry());
+        entries.insert(entries.end(), surface->GetEntries().begin(), surface->GetEntries().end());
     }
     return entries;
 }
 
-QuadWeights GetShippedQuadWeights() { return gather(getShippedLevels()); }
-
-QuadWeights GetPlainQuadWeights() {
-    SearchedLevels levels;
-    int const later = FarExt::kNumStepsToConstantMasks;
-    levels.fill(getWeights(later, false, FarExt::ComputeQuadMask(later)));
-    return gather(levels);
+MaskWeights GetShippedWeights(SearchedMasks const &searched) {
+    return gather(searched, getShippedLevels(searched));
 }
 
-QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judge, int firstFree) {
+MaskWeights GetPlainWeights(SearchedMasks const &searched) {
+    SearchedLevels levels;
+    int const later = FarExt::kNumStepsToConstantMasks;
+    levels.fill(getWeights(searched, later, FarExt::ComputeQuadMask(later)));
+    return gather(searched, levels);
+}
+
+MaskWeights SearchWeights(MaskWeights weights, int maxSteps, MaskJudge &judge, int firstFree) {
     constexpr double kDifference = 1e-5;
     constexpr double kLargestChange = 0.1;
     constexpr double kLeastGain = 1e-4;
@@ -358,18 +463,18 @@ QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judg
     for (int step = 0; step < maxSteps; ++step) {
         Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(values.size(), weights.size());
         for (Eigen::Index i = firstFree; i < weights.size(); ++i) {
-            QuadWeights changed = weights;
+            MaskWeights changed = weights;
             changed[i] += kDifference;
             derivatives.col(i) = (judge.Measure(changed) - values) / kDifference;
         }
         Eigen::MatrixXd const squares = derivatives.transpose() * derivatives;
-        QuadWeights const slope = derivatives.transpose() * values;
+        MaskWeights const slope = derivatives.transpose() * values;
         double const before = values.norm();
         bool isBetter = false;
         for (int attempt = 0; attempt < kMaxAttempts && !isBetter; ++attempt, damping *= kFactor) {
             Eigen::MatrixXd damped = squares;
             damped.diagonal().array() += damping;
-            QuadWeights right = -slope;
+            MaskWeights right = -slope;
             for (Eigen::Index i = 0; i < weights.size(); ++i) {
                 if (i < firstFree || (weights[i] <= 0 && slope[i] > 0)) { // stays, or stays at 0
                     damped.row(i).setZero();
@@ -378,9 +483,9 @@ QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judg
                     right[i] = 0;
                 }
             }
-            QuadWeights change = damped.ldlt().solve(right);
+            MaskWeights change = damped.ldlt().solve(right);
             change *= std::min(1.0, kLargestChange / change.cwiseAbs().maxCoeff());
-            QuadWeights const next = (weights + change).cwiseMax(0);
+            MaskWeights const next = (weights + change).cwiseMax(0);
             Eigen::VectorXd const nextValues = judge.Measure(next);
             if (nextValues.norm() < before) {
                 weights = next;
@@ -397,20 +502,21 @@ QuadWeights SearchQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judg
     return weights;
 }
 
-QuadWeights RoundQuadWeights(QuadWeights weights, int maxSteps, QuadJudge &judge) {
+MaskWeights RoundWeights(MaskWeights weights, int maxSteps, MaskJudge &judge) {
     constexpr double kParts = 256;
-    SearchedLevels levels = spread(weights);
+    SearchedMasks const &searched = judge.GetSearched();
+    SearchedLevels levels = spread(searched, weights);
     Eigen::Index next = 0;
     for (int level = 1; level <= kNumSearchedLevels; ++level) {
         Eigen::Index const first = next;
-        forEachMask(level, levels[std::size_t(level) - 1],
+        forEachMask(searched, level, levels[std::size_t(level) - 1],
                     [&](double const *, int, std::vector<int> const &places, bool) {
                         next += Eigen::Index(places.size());
                     });
         auto ofLevel = weights.segment(first, next - first);
         ofLevel = (kParts * ofLevel).array().round() / kParts;
         if (next < weights.size()) {
-            weights = SearchQuadWeights(weights, maxSteps, judge, int(next));
+            weights = SearchWeights(weights, maxSteps, judge, int(next));
         }
     }
     return weights;
