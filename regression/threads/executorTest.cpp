@@ -225,7 +225,7 @@ public:
 
 TEST(Executor, TbbEvaluatorUsesAsManyThreadsAsWereChosen) {
     Made made;
-    tbb::task_arena arena(4);
+    tbb::task_arena arena(2);
     WorkerCounter const workers(arena);
     auto const evaluate = [&] { arena.execute([&] { made.Evaluate<OsdExt::TbbEvaluator>(); }); };
     FarExt::SetNumThreads(1);
