@@ -88,7 +88,7 @@ TEST_F(HexrefineAdaptive, MakesClosedMeshesInEachFormat) {
 TEST_F(HexrefineAdaptive, CameraDecidesWhatIsFine) {
     std::string const cube = makeCubeFile();
     std::string const camera =
-        "--mask smooth --fov 20 --pixel-error 1 --camera 2.4,0.2,0.4,1,0.2,0.4 ";
+        "--mask smooth --fov 20 --pixel-error 0.7 --camera 2.4,0.2,0.4,1,0.2,0.4 ";
     Mesh const all = refine(cube, camera, "all.obj");
     auto const count = [](Mesh const &mesh, float side) {
         int result = 0;
