@@ -161,10 +161,11 @@ RingItem const &RingItem::Get(CellType const &type, CellPatch const &patch, Ring
     return type.GetPatterns().Get<RingItem>(kKind, nullptr, nullptr, [&] {
         RingItem item;
         bool const isPlain = item.rings.Init(patch.patch, patch.locals, cells.GetRules());
-        auto const &rings = item.rings.GetRings();
-        if (!isPlain || std::all_of(rings.begin(), rings.end(), [](VertexRings::Ring const &ring) {
-                return ring.isInLattice;
-            })) {
+        auto const &ofItem = item.rings.GetRings();
+        bool const isInLattice =
+            std::all_of(ofItem.begin(), ofItem.end(),
+                        [](VertexRings::Ring const &ring) { return ring.isInLattice; });
+        if (!isPlain || isInLattice) {
             return RingItem();
         }
         item.cell =
