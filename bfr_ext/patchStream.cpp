@@ -427,7 +427,7 @@ Status PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKe
 // Of a stream of levels, these are written.
 template <typename REAL>
 Status PatchStream<REAL>::checkFace(Index face, std::vector<int> &levels) const {
-    Status const status = _factory.checkFace(face);
+    Status status = _factory.checkFace(face);
     if (!status.IsOk()) {
         return status;
     }

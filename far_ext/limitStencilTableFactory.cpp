@@ -118,7 +118,7 @@ struct EarlierLimits {
 
     Status Find(internal::MeshLevels const &mesh, HexSchemeOptions const &schemeOptions,
                 LimitRows &rows) {
-        Status const result = lattice.FindMasks(schemeOptions, rows);
+        Status result = lattice.FindMasks(schemeOptions, rows);
         if (!result.IsOk()) {
             return result;
         }
@@ -443,6 +443,7 @@ private:
             },
             kRange);
         std::vector<std::vector<Index>> sources;
+        sources.reserve(marks.size());
         for (auto const &ofLevel : marks) {
             sources.push_back(internal::ParallelSelect(Index(ofLevel.size()), [&](Index vert) {
                 return ofLevel[std::size_t(vert)].load(std::memory_order_relaxed) != 0;

@@ -126,7 +126,7 @@ enum class FacesAround : std::uint16_t {
     Quads,     ///< four quads
     Triangles, ///< five triangles or more
 };
-inline constexpr int kNumFacesAround = 3;
+inline constexpr int kNumFacesAround = 3; ///< values of that
 
 /// \brief The hexagonal steps from which on the masks of irregular vertices, of quads and beside quads do
 /// not change any more.

@@ -22,6 +22,7 @@ struct Line {
 
 bool isStraight(CellValues const &values, Line const &line, double length, int numSteps) {
     std::vector<double> distances;
+    distances.reserve(std::size_t(values.GetNumPoints()));
     for (int i = 0; i < values.GetNumPoints(); ++i) {
         distances.push_back(line.GetDistance(values.GetPoint(i)));
     }

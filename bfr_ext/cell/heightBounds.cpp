@@ -246,7 +246,7 @@ private:
     }
 
     void addPart(CellType const &type, Fit const &fit, std::vector<double> const &values) {
-        static std::array<Pair, kNumCorners> const places = getCorners();
+        static std::array<Pair, kNumCorners> const kPlaces = getCorners();
         std::array<std::vector<double>, kNumCorners> corners;
         Corners numbers;
         for (std::size_t k = 0; k < kNumCorners; ++k) {
@@ -263,10 +263,10 @@ private:
                 linear[k] = corners[k][column];
             }
             removeDefect(linear);
-            Pair const slope = {(linear[1] - linear[0]) / (places[1][0] - places[0][0]),
+            Pair const slope = {(linear[1] - linear[0]) / (kPlaces[1][0] - kPlaces[0][0]),
                                 (linear[3] - linear[0] + linear[2] - linear[1]) /
-                                    (2 * (places[3][1] - places[0][1]))};
-            function[0] -= linear[0] - slope[0] * places[0][0] - slope[1] * places[0][1];
+                                    (2 * (kPlaces[3][1] - kPlaces[0][1]))};
+            function[0] -= linear[0] - slope[0] * kPlaces[0][0] - slope[1] * kPlaces[0][1];
             function[1] -= slope[0];
             function[2] -= slope[1];
             Range const range = findRange(function);
@@ -472,14 +472,14 @@ std::vector<double> HeightBounds::Fit::GetValues() const {
 
 // At the corners, and where it is extreme along sides and inside.
 HeightBounds::Range HeightBounds::findRange(Terms const &quadratic) {
-    static std::array<Pair, kNumCorners> const corners = getCorners();
+    static std::array<Pair, kNumCorners> const kCorners = getCorners();
     auto const evaluate = [&](Pair const &p) {
         auto const [x, y] = p;
         return quadratic[0] + x * (quadratic[1] + x * quadratic[3] + y * quadratic[4]) +
                y * (quadratic[2] + y * quadratic[5]);
     };
     std::array<double, kNumCorners> values;
-    std::transform(corners.begin(), corners.end(), values.begin(), evaluate);
+    std::transform(kCorners.begin(), kCorners.end(), values.begin(), evaluate);
     auto const [least, largest] = std::minmax_element(values.begin(), values.end());
     Range range = {*least, *largest};
     auto const addHeight = [&](double value) {
@@ -488,7 +488,7 @@ HeightBounds::Range HeightBounds::findRange(Terms const &quadratic) {
     };
     for (std::size_t k = 0; k < kNumCorners; ++k) {
         std::size_t const next = (k + 1) % kNumCorners;
-        auto const [dx, dy] = subtract(corners[next], corners[k]);
+        auto const [dx, dy] = subtract(kCorners[next], kCorners[k]);
         // values[k] + t slope + t^2 bend
         double const bend =
             quadratic[3] * dx * dx + quadratic[4] * dx * dy + quadratic[5] * dy * dy;
@@ -504,7 +504,8 @@ HeightBounds::Range HeightBounds::findRange(Terms const &quadratic) {
         Pair const extreme = {x / determinant, y / determinant};
         bool isInside = true;
         for (std::size_t k = 0; k < kNumCorners; ++k) {
-            isInside = isInside && getArea(corners[k], corners[(k + 1) % kNumCorners], extreme) > 0;
+            isInside =
+                isInside && getArea(kCorners[k], kCorners[(k + 1) % kNumCorners], extreme) > 0;
         }
         if (isInside) {
             addHeight(evaluate(extreme));

@@ -71,7 +71,7 @@ private:
     static Intervals const &findIntervals(CellType const &type, int numSteps);
     static Intervals boundAny(CellType const &type);
     static Intervals boundBySteps(CellType const &type, int numSteps);
-    static Range findRange(Terms const &function);
+    static Range findRange(Terms const &quadratic);
     class Maker;
 
     Fit const &_fit;

@@ -91,9 +91,10 @@ std::vector<Pair> PlacePoints(FarExt::internal::CellPatch const &cell) {
     // Corners 1 and 2 follow one another in the face.
     place(0, std::size_t(cell.locals[1]), toPlace(ToLattice(HalfCell::kCorners[1])),
           toPlace(ToLattice(HalfCell::kCorners[2])));
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-        std::size_t const first = firstCorners[faces[i]];
-        auto const size = std::size_t(patch.faceSizes[faces[i]]);
+    for (std::size_t next = 0; next < faces.size();) {
+        std::size_t const placed = faces[next++];
+        std::size_t const first = firstCorners[placed];
+        auto const size = std::size_t(patch.faceSizes[placed]);
         for (std::size_t local = 0; local < size; ++local) {
             Far::Index const other = patch.otherCorners[first + local];
             if (other < 0 || isDone[faceOfCorner[std::size_t(other)]]) {
@@ -107,6 +108,7 @@ std::vector<Pair> PlacePoints(FarExt::internal::CellPatch const &cell) {
         }
     }
     std::vector<Pair> result;
+    result.reserve(places.size());
     for (Place const &p : places) {
         result.push_back({p.real(), p.imag()});
     }

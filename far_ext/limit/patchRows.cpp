@@ -8,6 +8,7 @@ using Far::Index;
 std::vector<RefinementMask> MakeStepMasks(MeshLevels const &mesh,
                                           HexSchemeOptions const &schemeOptions, int last) {
     std::vector<RefinementMask> masks;
+    masks.reserve(std::size_t(last));
     for (int level = 0; level < last; ++level) {
         masks.emplace_back(mesh.levels[std::size_t(level)], schemeOptions, Interpolation::Vertex);
     }

@@ -185,12 +185,11 @@ void PlainFaces::setOutputs() {
 // In the order of the faces, whatever the threads.
 void PlainFaces::claimOutputs() {
     std::vector<unsigned char> isClaimed = _isMade;
-    for (std::size_t i = 0; i < _outputs.size(); ++i) {
-        Index &output = _outputs[i];
+    std::for_each_n(_outputs.data(), _outputs.size(), [&](Index &output) {
         unsigned char &mark = isClaimed[std::size_t(output)];
         output = mark ? Far::INDEX_INVALID : output;
         mark = 1;
-    }
+    });
     _others = selectUnmarked(isClaimed);
 }
 
