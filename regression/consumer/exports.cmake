@@ -5,9 +5,9 @@
 # Checks that a shared library exports its public API, of which public is a part of a mangled name,
 # and of what is internal no more than the inline code of public headers and other layers call.
 set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report SortUnique
-  RefinementMask TruncationMask LimitRows LatticePatch LatticeFaces RegularFaces RegularFaceMask RegularFaceRows RegularVertices
-  CheckLimitLevel
-  PrimvarRows PrimvarLimitRows
+  RefinementMask TruncationMask PrimvarRows PrimvarLimitRows
+  LimitRows CheckLimitLevel LatticePatch LatticeFaces PlainFaces
+  RegularFaces RegularFaceMask RegularFaceRows RegularVertices
   FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
   FindCornerLimits PatchRefinement MarkFeatures StepRowBack MakePlainBaseCell IndexMap
   Device MakeDeviceLimit MakeDeviceRefinements
