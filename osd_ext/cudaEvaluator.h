@@ -144,13 +144,6 @@ public:
                              int const *offsets, int const *indices, float const *weights,
                              float const *duWeights, float const *dvWeights, int start, int end,
                              void *deviceContext = nullptr);
-
-    /// \brief The same with one thread for each stencil, as Osd::CudaEvaluator does: for comparison.
-    static bool EvalStencilsByThread(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                     float *dst, Osd::BufferDescriptor const &dstDesc,
-                                     int const *sizes, int const *offsets, int const *indices,
-                                     float const *weights, int start, int end,
-                                     void *deviceContext = nullptr);
     /// @}
 
     /// Waits for what a cudaStream_t was asked for, null for the default stream.

@@ -46,26 +46,6 @@ __global__ void __launch_bounds__(kGroup) evalStencils(StencilArguments argument
     }
 }
 
-// One thread for each stencil, and its sums in the memory of the destination, as Osd does.
-__global__ void __launch_bounds__(kGroup) evalStencilsByThread(StencilArguments arguments) {
-    std::int64_t const stencil = arguments.start + std::int64_t(blockIdx.x) * kGroup + threadIdx.x;
-    if (stencil >= arguments.end) {
-        return;
-    }
-    float *const element = arguments.dst + stencil * arguments.dstStride;
-    for (int k = 0; k < arguments.length; ++k) {
-        element[k] = 0;
-    }
-    int const first = arguments.offsets[stencil];
-    for (int i = first; i < first + arguments.sizes[stencil]; ++i) {
-        float const *const source =
-            arguments.src + std::int64_t(arguments.indices[i]) * arguments.srcStride;
-        for (int k = 0; k < arguments.length; ++k) {
-            element[k] += arguments.weights[i] * source[k];
-        }
-    }
-}
-
 bool areValid(BufferDescriptor const &srcDesc, BufferDescriptor const &dstDesc, float const *src,
               float const *dst, StencilArguments const &arguments) {
     bool const isEmpty = arguments.end <= arguments.start;
@@ -76,14 +56,10 @@ bool areValid(BufferDescriptor const &srcDesc, BufferDescriptor const &dstDesc, 
                         arguments.offsets && arguments.indices && arguments.weights));
 }
 
-unsigned getNumGroups(StencilArguments const &arguments, int numThreads) {
-    std::int64_t const count = std::int64_t(arguments.end - arguments.start) * numThreads;
-    return unsigned((count + kGroup - 1) / kGroup);
-}
-
 // Elements of any length, up to kMaxLength floats at a time.
 void evalLanes(StencilArguments arguments, cudaStream_t stream) {
-    unsigned const numGroups = getNumGroups(arguments, kStencilLanes);
+    std::int64_t const numThreads = std::int64_t(arguments.end - arguments.start) * kStencilLanes;
+    auto const numGroups = unsigned((numThreads + kGroup - 1) / kGroup);
     for (int left = arguments.length; left > 0; left -= kMaxLength) {
         switch (left) {
         case 1:
@@ -101,10 +77,6 @@ void evalLanes(StencilArguments arguments, cudaStream_t stream) {
         arguments.src += kMaxLength;
         arguments.dst += kMaxLength;
     }
-}
-
-void evalByThread(StencilArguments const &arguments, cudaStream_t stream) {
-    evalStencilsByThread<<<getNumGroups(arguments, 1), kGroup, 0, stream>>>(arguments);
 }
 
 /// A destination and the weights that it is made with.
@@ -125,9 +97,8 @@ StencilArguments makeArguments(int const *sizes, int const *offsets, int const *
     return arguments;
 }
 
-template <typename RUN>
 bool eval(float const *src, BufferDescriptor const &srcDesc, std::vector<Output> const &outputs,
-          StencilArguments arguments, RUN run) {
+          StencilArguments arguments, void *deviceContext) {
     std::vector<StencilArguments> ofOutputs;
     for (Output const &output : outputs) {
         arguments.weights = output.weights;
@@ -143,7 +114,7 @@ bool eval(float const *src, BufferDescriptor const &srcDesc, std::vector<Output>
     }
     if (arguments.end > arguments.start) {
         for (StencilArguments const &ofOutput : ofOutputs) {
-            run(ofOutput);
+            evalLanes(ofOutput, getStream(deviceContext));
         }
     }
     return cudaGetLastError() == cudaSuccess;
@@ -236,8 +207,7 @@ bool CudaEvaluator::EvalStencils(float const *src, BufferDescriptor const &srcDe
                                  int const *offsets, int const *indices, float const *weights,
                                  int start, int end, void *deviceContext) {
     StencilArguments const arguments = makeArguments(sizes, offsets, indices, start, end);
-    return eval(src, srcDesc, {{dst, dstDesc, weights}}, arguments,
-                [=](StencilArguments const &all) { evalLanes(all, getStream(deviceContext)); });
+    return eval(src, srcDesc, {{dst, dstDesc, weights}}, arguments, deviceContext);
 }
 
 bool CudaEvaluator::EvalStencils(float const *src, BufferDescriptor const &srcDesc, float *dst,
@@ -248,19 +218,9 @@ bool CudaEvaluator::EvalStencils(float const *src, BufferDescriptor const &srcDe
                                  float const *duWeights, float const *dvWeights, int start, int end,
                                  void *deviceContext) {
     StencilArguments const arguments = makeArguments(sizes, offsets, indices, start, end);
-    return eval(
-        src, srcDesc, {{dst, dstDesc, weights}, {du, duDesc, duWeights}, {dv, dvDesc, dvWeights}},
-        arguments, [=](StencilArguments const &all) { evalLanes(all, getStream(deviceContext)); });
-}
-
-bool CudaEvaluator::EvalStencilsByThread(float const *src, BufferDescriptor const &srcDesc,
-                                         float *dst, BufferDescriptor const &dstDesc,
-                                         int const *sizes, int const *offsets, int const *indices,
-                                         float const *weights, int start, int end,
-                                         void *deviceContext) {
-    StencilArguments const arguments = makeArguments(sizes, offsets, indices, start, end);
-    return eval(src, srcDesc, {{dst, dstDesc, weights}}, arguments,
-                [=](StencilArguments const &all) { evalByThread(all, getStream(deviceContext)); });
+    return eval(src, srcDesc,
+                {{dst, dstDesc, weights}, {du, duDesc, duWeights}, {dv, dvDesc, dvWeights}},
+                arguments, deviceContext);
 }
 
 void CudaEvaluator::Synchronize(void *deviceContext) {

@@ -8,6 +8,7 @@
 #include "osd_ext/cudaRefinementEvaluator.h"
 #include "osd_ext/cudaVertexBuffer.h"
 #include "regression/device/deviceEvaluatorTest.h"
+#include "stencilsByThread.h"
 
 #include <cstdlib>
 
@@ -95,12 +96,8 @@ TEST_F(CudaTable, GivesTheValuesOfTheCpu) {
                                                 onDevice.get()));
         ASSERT_NO_FATAL_FAILURE(expectFloats(dstBuffer, dst, kNumUnits));
         dstBuffer = makeBlank(dst.size(), length);
-        ASSERT_TRUE(CudaEvaluator::EvalStencilsByThread(
-            srcBuffer->BindCudaBuffer(), desc, dstBuffer->BindCudaBuffer(), desc,
-            static_cast<int const *>(onDevice->GetSizesBuffer()),
-            static_cast<int const *>(onDevice->GetOffsetsBuffer()),
-            static_cast<int const *>(onDevice->GetIndicesBuffer()),
-            static_cast<float const *>(onDevice->GetWeightsBuffer()), 0, table->GetNumStencils()));
+        ASSERT_TRUE(EvalStencilsByThread(srcBuffer->BindCudaBuffer(), dstBuffer->BindCudaBuffer(),
+                                         length, *onDevice));
         ASSERT_NO_FATAL_FAILURE(expectFloats(dstBuffer, dst, kNumUnits));
     }
 }

@@ -9,6 +9,7 @@
 #include "osd_ext/cudaRefinementEvaluator.h"
 #include "osd_ext/cudaVertexBuffer.h"
 #include "osd_ext/refinementEvaluator.h"
+#include "regression/cuda/stencilsByThread.h"
 
 #include <cuda_runtime_api.h>
 
@@ -123,13 +124,8 @@ Contest makeFrames(BenchMesh const &mesh) {
         makeFrame(
             "one thread for each stencil", tableBytes,
             [=] {
-                return CudaEvaluator::EvalStencilsByThread(
-                    control->buffer->BindCudaBuffer(), kPacked, dst->BindCudaBuffer(), kPacked,
-                    static_cast<int const *>(table->GetSizesBuffer()),
-                    static_cast<int const *>(table->GetOffsetsBuffer()),
-                    static_cast<int const *>(table->GetIndicesBuffer()),
-                    static_cast<float const *>(table->GetWeightsBuffer()), 0,
-                    table->GetNumStencils());
+                return EvalStencilsByThread(control->buffer->BindCudaBuffer(),
+                                            dst->BindCudaBuffer(), kLength, *table);
             },
             validate),
         makeFrame(
