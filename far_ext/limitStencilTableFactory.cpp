@@ -44,7 +44,7 @@ LimitSides::LimitSides(TopologyLevel const &level)
                 _furtherSides.push_back({sharp.vert, side});
             }
             Index const index = side == 0 ? sharp.vert : GetNumSides() - 1;
-            for (internal::RingItem const &item : sides[side].items) {
+            for (internal::FanItem const &item : sides[side].items) {
                 if (item.isFace) {
                     addCorner(firstCorner, item.corner, item.half, index);
                 }

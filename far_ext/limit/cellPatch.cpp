@@ -60,7 +60,7 @@ void gatherEdge(LimitPatchGatherer &gatherer, Level const &level, Index edge, in
 int findSide(Level const &level, Index vert, Index face, int half) {
     std::vector<VertexSide> const sides = FindVertexSides(level, vert);
     for (std::size_t side = 0; side < sides.size(); ++side) {
-        for (RingItem const &item : sides[side].items) {
+        for (FanItem const &item : sides[side].items) {
             if (item.isFace && item.face == face && (item.half < 0 || item.half == half)) {
                 return int(side);
             }

@@ -118,7 +118,7 @@ struct Layout {
     Layout(Level const &level, VertexSide const &side, bool isCorner)
         : x(level.numVertices, 0.0), y(level.numVertices, 0.0), isPlaced(level.numVertices, false),
           isInside(level.numVertices, false) {
-        for (RingItem const &item : side.items) {
+        for (FanItem const &item : side.items) {
             size += item.isFace ? (item.isHalf ? 0.5 : 1) : 0;
         }
         double const angleOfSide = side.isAllAround ? 2 * kPi
@@ -127,7 +127,7 @@ struct Layout {
         double const unit = angleOfSide / size;
         isPlaced[0] = true;
         double angle = 0;
-        for (RingItem const &item : side.items) {
+        for (FanItem const &item : side.items) {
             if (!item.isFace) {
                 place(item.neighbor, item.isLong ? 2 : 1, angle, !isBreak(item));
                 continue;
@@ -136,7 +136,7 @@ struct Layout {
             placeFace(level, item, angle, end);
             angle = end;
         }
-        for (RingItem const &item : side.items) {
+        for (FanItem const &item : side.items) {
             if (!item.isFace && !item.isLong) {
                 placeOuterFaces(level, item.neighbor, !isBreak(item));
             }
@@ -150,7 +150,7 @@ struct Layout {
     std::vector<bool> isInside; // not on the sharp edges that bound the side, nor beyond
 
 private:
-    static bool isBreak(RingItem const &item) { return Crease::IsInfinite(item.sharpness); }
+    static bool isBreak(FanItem const &item) { return Crease::IsInfinite(item.sharpness); }
 
     void place(Index vert, double radius, double angle, bool inside) {
         if (!isPlaced[vert]) {
@@ -162,7 +162,7 @@ private:
     }
 
     // The vertices of a face between the edges at angles begin and end.
-    void placeFace(Level const &level, RingItem const &item, double begin, double end) {
+    void placeFace(Level const &level, FanItem const &item, double begin, double end) {
         Index const face = level.FindFaceOfCorner(item.corner);
         Index const first = level.faceFirstCorner[face];
         std::vector<Index> verts;
@@ -242,7 +242,7 @@ private:
     }
 
     // What lies on a sharp curve depends on the curve alone: of its modes the first is the tangent.
-    bool findAlong(RingItem const &edge, Vector &tangent) {
+    bool findAlong(FanItem const &edge, Vector &tangent) {
         tangent.assign(_layout.x.size(), 0.0);
         tangent[edge.neighbor] = 1;
         return iterateOne(tangent, [this](Vector &left) { removePoint(left); });
@@ -304,7 +304,7 @@ private:
             keepInside(left);
             deflate(left, axis);
         };
-        RingItem const &first = _side.items.front();
+        FanItem const &first = _side.items.front();
         bool const hasEdge = !first.isFace && Crease::IsInfinite(first.sharpness);
         if (!(hasEdge ? findAlong(first, tangents.du) && iterateOne(tangents.dv, reduce)
                       : iterateBoth(tangents, reduce))) {
@@ -472,16 +472,15 @@ LimitMask makeFreeBoundaryMask(Level const &level) {
     for (VertexSide const &side : FindVertexSides(level, 0)) {
         LimitMask::Tangents tangents = {Vector(level.numVertices, 0.0),
                                         Vector(level.numVertices, 0.0)};
-        auto const numFaces =
-            double(std::count_if(side.items.begin(), side.items.end(),
-                                 [](RingItem const &item) { return item.isFace; }));
+        auto const numFaces = double(std::count_if(
+            side.items.begin(), side.items.end(), [](FanItem const &item) { return item.isFace; }));
         double const angleOfFace = (side.isAllAround ? 2 : 1) * kPi / numFaces;
         if (!side.isAllAround) {
             tangents.du[side.items.front().neighbor] += 0.5;
             tangents.du[side.items.back().neighbor] -= 0.5;
         }
         double angle = 0;
-        for (RingItem const &item : side.items) {
+        for (FanItem const &item : side.items) {
             if (item.isFace) {
                 Index const face = level.FindFaceOfCorner(item.corner);
                 Index const first = level.faceFirstCorner[face];

@@ -30,7 +30,7 @@ void fillTags(std::vector<float> const &from, Buffer<float> &to) {
     }
 }
 
-bool isBreak(RingItem const &item) { return !item.isFace && Crease::IsInfinite(item.sharpness); }
+bool isBreak(FanItem const &item) { return !item.isFace && Crease::IsInfinite(item.sharpness); }
 
 int countBreaks(FanItems const &fan) {
     return int(std::count_if(fan.items.begin(), fan.items.end(), isBreak));
@@ -81,7 +81,7 @@ int LimitPatchGatherer::findFirstFace(VertexFan const &fan, int &firstSide) {
         int numBreaks;
     };
     std::vector<Key> keys;
-    for (RingItem const &item : _fan.items) {
+    for (FanItem const &item : _fan.items) {
         if (item.isFace && item.half < 0) {
             Index const face = _level.vertFaces[fan.begin + Index(keys.size()) - 1];
             keys.back().numbers[1] =
@@ -556,7 +556,7 @@ std::vector<VertexSide> FindVertexSides(Level const &level, Index vert) {
     std::vector<VertexSide> sides;
     int fanIndex = 0;
     ForEachFanItems(level, vert, [&](FanItems &fan) {
-        std::vector<RingItem> &items = fan.items;
+        std::vector<FanItem> &items = fan.items;
         int const numBreaks = countBreaks(fan);
         if (fan.isClosed && numBreaks > 0) {
             std::rotate(items.begin(), std::find_if(items.begin(), items.end(), isBreak),
@@ -572,7 +572,7 @@ std::vector<VertexSide> FindVertexSides(Level const &level, Index vert) {
         auto begin = items.begin();
         for (auto item = begin + 1; item != items.end(); ++item) {
             if (isBreak(*item) || item + 1 == items.end()) {
-                sides.push_back({std::vector<RingItem>(begin, item + 1), false, fanIndex});
+                sides.push_back({std::vector<FanItem>(begin, item + 1), false, fanIndex});
                 begin = item;
             }
         }

@@ -130,7 +130,7 @@ PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
 struct VertexSide {
     /// From the edge (or diagonal) where the side begins, counter-clockwise to that where it ends;
     /// of a closed fan that is one side, from its sharp edge, where it has one, to the last face.
-    std::vector<RingItem> items;
+    std::vector<FanItem> items;
     bool isAllAround;
     int fan;
 };

@@ -386,7 +386,7 @@ Status BaseMesh::followVertex(Index vert, int channel, Index const *faceValues,
     };
     int numCreasedFans = 0;
     ForEachFanItems(level, vert, [&](FanItems const &fan) {
-        auto const isCrease = [](RingItem const &item) {
+        auto const isCrease = [](FanItem const &item) {
             return Sdc::Crease::IsSemiSharp(item.sharpness);
         };
         numCreasedFans += std::any_of(fan.items.begin(), fan.items.end(), isCrease) ? 1 : 0;

@@ -16,7 +16,7 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 
-bool isSharp(RingItem const &item) { return Crease::IsSharp(item.sharpness); }
+bool isSharp(FanItem const &item) { return Crease::IsSharp(item.sharpness); }
 
 // The sharp edges that meet in a vertex: boundaries, crease edges and crease diagonals.
 struct SharpEdges {
@@ -164,8 +164,8 @@ struct SharpnessLayer {
 // Adds the corners of wide sectors between two edges of a fan that are sharp in the layer.
 void addSectorCorners(Level const &level, SharpnessLayer layer, FanItems &fan,
                       std::vector<SectorCorner> &result) {
-    std::vector<RingItem> &items = fan.items;
-    auto const isSharpInLayer = [&](RingItem const &item) { return layer.IsSharp(item.sharpness); };
+    std::vector<FanItem> &items = fan.items;
+    auto const isSharpInLayer = [&](FanItem const &item) { return layer.IsSharp(item.sharpness); };
     auto start = std::find_if(items.begin(), items.end(), isSharpInLayer);
     if (fan.isClosed && start != items.end()) {
         // One edge bounds no sector, even if other fans have sharp edges, too.
@@ -256,7 +256,7 @@ void SharpMaskFinder::AddSectorCorners(Index vert, std::vector<SectorCorner> &re
     // Of each fan, since a sector may lie between two ends of a fan on the same line.
     _layers.clear();
     ForEachFanItems(_level, vert, _fan, [this](FanItems const &fan) {
-        for (RingItem const &item : fan.items) {
+        for (FanItem const &item : fan.items) {
             if (isSharp(item)) {
                 _layers.push_back(std::min(1.0f, item.sharpness));
             }

@@ -8,15 +8,15 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 
-RingItem faceItem(Index face, Index corner, bool isHalf, int half) {
+FanItem faceItem(Index face, Index corner, bool isHalf, int half) {
     return {true, face, corner, isHalf, half, Far::INDEX_INVALID, false, 0};
 }
 
-RingItem lineItem(Index neighbor, bool isLong, float sharpness) {
+FanItem lineItem(Index neighbor, bool isLong, float sharpness) {
     return {false, Far::INDEX_INVALID, Far::INDEX_INVALID, false, -1, neighbor, isLong, sharpness};
 }
 
-RingItem edgeItem(Level const &level, Index edge, Index neighbor) {
+FanItem edgeItem(Level const &level, Index edge, Index neighbor) {
     Index const kind = level.edgeFaces[edge][1];
     float sharpness = level.GetEdgeSharpness(edge);
     if (kind < 0) {
@@ -28,7 +28,7 @@ RingItem edgeItem(Level const &level, Index edge, Index neighbor) {
 } // namespace
 
 void GatherFanItems(Level const &level, VertexFan const &fan, FanItems &result) {
-    std::vector<RingItem> &items = result.items;
+    std::vector<FanItem> &items = result.items;
     items.clear();
     result.isClosed = fan.isClosed;
     for (Index i = fan.begin; i < fan.end; ++i) {

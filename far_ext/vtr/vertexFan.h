@@ -57,7 +57,7 @@ void ForEachFan(Level const &level, Far::Index vert, FUNCTION function) {
 }
 
 /// \brief What is met on the way around a vertex: its faces, and between them edges and diagonals.
-struct RingItem {
+struct FanItem {
     bool isFace;
     Far::Index face;     ///< of a face
     Far::Index corner;   ///< of a face: where the vertex is in it
@@ -71,7 +71,7 @@ struct RingItem {
 /// \brief What is met on the way through a fan: from boundary to boundary or, when closed, from the
 /// edge before the first face to the last face.
 struct FanItems {
-    std::vector<RingItem> items;
+    std::vector<FanItem> items;
     bool isClosed;
 };
 
