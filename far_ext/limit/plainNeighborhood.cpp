@@ -158,23 +158,33 @@ void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local, bool 
 bool PlainNeighborhoodGatherer::addOuterFaces(int neighbor, PlainNeighborhood &result) {
     int const numNeighbors = int(_neighbors.size());
     Index const vert = _neighbors[neighbor];
+    Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
+    Index const before = _faces[(neighbor + numNeighbors - 1) % numNeighbors];
+    return addFacesFrom(vert, faces.FindIndex(before), false, result);
+}
+
+// The faces around a vertex in turn, from one of them on, as far as they are not there already.
+bool PlainNeighborhoodGatherer::addFacesFrom(Index vert, int first, bool isKeyOfAll,
+                                             PlainNeighborhood &result) {
+    constexpr char kIsThere = 0; // in place of a size
     Index const firstFace = _level.vertFirstFace[vert];
     int const numFaces = _level.GetNumVertexFaces(vert);
     if (numFaces < kRegularValence || numFaces >= kEndOfBytes) {
         return false;
     }
     result.key.push_back(char(numFaces));
-    Index const *const faces = _level.vertFaces.data() + firstFace;
-    Index const before = _faces[(neighbor + numNeighbors - 1) % numNeighbors];
-    int const first = int(std::find(faces, faces + numFaces, before) - faces);
     // Two edges that join the same vertices are told apart by nothing in the key.
     std::bitset<kEndOfBytes> isNeighbor;
     for (int i = 0; i < numFaces; ++i) {
-        int const k = (first + i) % numFaces;
-        FaceCorner const corner = getFaceCorner(_level, firstFace + k);
-        bool const isAdded = std::find(_faces.begin(), _faces.end(), faces[k]) != _faces.end();
-        if (!isAdded && !addFace(faces[k], corner.local, result)) {
-            return false;
+        Index const k = firstFace + (first + i) % numFaces;
+        Index const face = _level.vertFaces[k];
+        FaceCorner const corner = getFaceCorner(_level, k);
+        if (std::find(_faces.begin(), _faces.end(), face) == _faces.end()) {
+            if (!addFace(face, corner.local, result)) {
+                return false;
+            }
+        } else if (isKeyOfAll) {
+            result.key.push_back(kIsThere);
         }
         auto const number = std::size_t(_numbers.Find(corner.GetVertex(1)));
         if (isNeighbor[number]) {
@@ -230,34 +240,11 @@ bool PlainNeighborhoodGatherer::Gather(Index vert, std::vector<VertexMark> const
 
 // All faces around a vertex in turn, from that on which was added first.
 bool PlainNeighborhoodGatherer::addFacesAround(Index vert, PlainNeighborhood &result) {
-    constexpr char kIsThere = 0; // in place of a size
-    Index const firstFace = _level.vertFirstFace[vert];
-    int const numFaces = _level.GetNumVertexFaces(vert);
-    if (numFaces < kRegularValence || numFaces >= kEndOfBytes) {
-        return false;
-    }
-    result.key.push_back(char(numFaces));
-    Index const *const faces = _level.vertFaces.data() + firstFace;
+    Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
     auto const find = [this](Index face) { return std::find(_faces.begin(), _faces.end(), face); };
-    int const first = int(std::min_element(faces, faces + numFaces,
-                                           [&](Index a, Index b) { return find(a) < find(b); }) -
-                          faces);
-    std::bitset<kEndOfBytes> isNeighbor;
-    for (int i = 0; i < numFaces; ++i) {
-        int const k = (first + i) % numFaces;
-        FaceCorner const corner = getFaceCorner(_level, firstFace + k);
-        if (find(faces[k]) != _faces.end()) {
-            result.key.push_back(kIsThere);
-        } else if (!addFace(faces[k], corner.local, result)) {
-            return false;
-        }
-        auto const number = std::size_t(_numbers.Find(corner.GetVertex(1)));
-        if (isNeighbor[number]) {
-            return false;
-        }
-        isNeighbor[number] = true;
-    }
-    return true;
+    auto const first = std::min_element(faces.begin(), faces.end(),
+                                        [&](Index a, Index b) { return find(a) < find(b); });
+    return addFacesFrom(vert, int(first - faces.begin()), true, result);
 }
 
 bool PlainNeighborhoodGatherer::GatherFace(Index face, std::vector<VertexMark> const &marks,

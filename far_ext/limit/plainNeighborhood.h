@@ -60,6 +60,7 @@ private:
     int findFirstFace(Index vert);
     bool addFace(Index face, int local, PlainNeighborhood &result);
     bool addOuterFaces(int neighbor, PlainNeighborhood &result);
+    bool addFacesFrom(Index vert, int first, bool isKeyOfAll, PlainNeighborhood &result);
     bool addFacesAround(Index vert, PlainNeighborhood &result);
     void addIrregularCorners(Index face, int local, bool isRing, PlainNeighborhood &result) const;
 
