@@ -405,7 +405,7 @@ void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) 
     for (Far::Index group = begin; group < end; ++group) {
         for (int first = 0; first < kGroup; first += SIMD::kNumFaces) {
             // All faces of the group at once.
-            bool const prefetches = task.prefetches && first == 0;
+            bool const prefetches = first == 0;
             Sources sources;
             loadSources<SIMD, ACCESS>(values, task.places + group * numPlaces + first, sources);
             Far::Index const *verts = task.verts + group * numVerts + first;

@@ -253,11 +253,6 @@ void LatticeLimit::Evaluate(LimitTask const &common) const {
         task.places = set.places.data();
         task.verts = set.verts.data();
         task.weights = set.weights.data();
-        // Benchmark limit, length 3, large meshes: quads 1.5 times as fast, triangles twice; on small ones
-        // it takes longer.
-        constexpr std::size_t kLarge = std::size_t(16) << 20; // bytes
-        task.prefetches =
-            set.verts.size() * std::size_t(task.length * task.numOutputs) * sizeof(float) > kLarge;
         EvaluateLimit(task, set.numGroups);
     }
 }

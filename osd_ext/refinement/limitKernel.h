@@ -165,7 +165,9 @@ struct VertexLimitTask : LimitTask {
 /// vertex.
 struct LatticeTask : LimitTask {
     static constexpr int kNumDerivatives = 4; ///< weights of derivatives in terms of others
-    /// Of verts, how many are read behind the last of a group, and so behind the last of all.
+    /// Of verts, how many are read behind the last of a group, and so behind the last of all.  Memory is
+    /// asked for so long before outputs are written there, since the order of orbits is far from its own:
+    /// with outputs that are in no cache benchmark limit, length 3, is 1.3 to 1.8 times as fast.
     static constexpr int kNumAhead = 512;
 
     int faceSize;
@@ -176,9 +178,6 @@ struct LatticeTask : LimitTask {
         *places; ///< by group, those of all sources of its faces, as in RegularFaceGroup
     Far::Index const *verts; ///< by group, those of all outputs
     float const *weights;    ///< those of LatticeLimit
-    /// Whether memory is asked for before outputs are written there, as it should be where they are too
-    /// large for the caches: the order of orbits is far from that of memory.
-    bool prefetches;
 };
 
 /// \brief The kernels of one SimdLevel; all are instances of limitKernelTemplate.h.
