@@ -15,7 +15,7 @@ namespace {
 constexpr double kMaxRadius = 0.1;
 constexpr int kMinDepth = 2;
 constexpr int kMaxDepth = 8;
-constexpr int kMaxRest = 64;  // cells that may be left to be taken apart  // of parts
+constexpr int kMaxRest = 64;  // cells that may be left at the last depth
 constexpr int kNumSteps = 24; // after which intervals are as wide as they are
 
 Pair add(Pair const &p, Pair const &q) { return {p[0] + q[0], p[1] + q[1]}; }
