@@ -89,34 +89,6 @@ OPENSUBDIVHEX_INLINE VALUE sumRow(IrregularFace<VALUE> const &face) {
     }
 }
 
-// The same where PLACES are not known.
-template <int I, class VALUE>
-VALUE sumAnyRow(IrregularFace<VALUE> const &face) {
-    unsigned const places = face.mask.places[I];
-    if (places == IrregularFaceMask::kPlain) {
-        return sumPlainRow<IrregularFaceMask::kSize, false>(face.plain, face.all, face.v, I);
-    }
-    int vert = findFirstVertex(places, I);
-    auto const term = [&] { return face.mask.rows[I][getPlace(vert, I)] * face.v[vert]; };
-    VALUE point = term();
-    for (++vert; vert < IrregularFaceMask::kSize; ++vert) {
-        if (places >> getPlace(vert, I) & 1) {
-            point = point + term();
-        }
-    }
-    return point;
-}
-
-// The F-vertex of corner I of a face of one of the patterns, or of none.
-template <int PATTERN, int I, class VALUE>
-OPENSUBDIVHEX_INLINE VALUE sumIrregularRow(IrregularFace<VALUE> const &face) {
-    if constexpr (PATTERN < IrregularFaceMask::kNumPatterns) {
-        return sumRow<IrregularFaceMask::kPatterns[PATTERN][I], I>(face);
-    } else {
-        return sumAnyRow<I>(face);
-    }
-}
-
 template <class ACCESS, int PATTERN, int... I>
 OPENSUBDIVHEX_INLINE void
 refineIrregularFace(IrregularFaceMask const &mask, PlainFaceQuads const &plain,
@@ -128,9 +100,11 @@ refineIrregularFace(IrregularFaceMask const &mask, PlainFaceQuads const &plain,
         mask, plain, v, plain.all * (v[0] + v[1] + v[2] + v[3] + v[4] + v[5])};
     auto const refine = [&](auto local) {
         if constexpr (local + 1 < int(sizeof...(I))) {
-            ACCESS::Store(dst, corner + local, sumIrregularRow<PATTERN, local>(face));
+            ACCESS::Store(dst, corner + local,
+                          sumRow<IrregularFaceMask::kPatterns[PATTERN][local], local>(face));
         } else {
-            ACCESS::StoreExactly(dst, corner + local, sumIrregularRow<PATTERN, local>(face));
+            ACCESS::StoreExactly(dst, corner + local,
+                                 sumRow<IrregularFaceMask::kPatterns[PATTERN][local], local>(face));
         }
     };
     (refine(std::integral_constant<int, I>()), ...);

@@ -459,24 +459,36 @@ private:
     Level const *_levelOfOlderVertices = nullptr;
 };
 
-// Rows that are as those of plain hexagons are left to their mask.
+// Whether a kernel for faces of a pattern may be used for a face.  The pattern may have more places: a
+// finite point that weighs nothing adds nothing, but perhaps to the sign of a zero.
+bool isCovered(RefinementMask::IrregularFaceWeights const &face, unsigned const *pattern) {
+    for (int i = 0; i < IrregularFaceMask::kSize; ++i) {
+        if (pattern[i] == IrregularFaceMask::kPlain) {
+            if (face.areIrregular[i]) {
+                return false;
+            }
+            continue;
+        }
+        for (int j = 0; j < IrregularFaceMask::kSize; ++j) {
+            bool const isPlace = (pattern[i] >> j & 1) != 0;
+            if (!isPlace && face.weights[i][(i + j) % IrregularFaceMask::kSize] != 0) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 IrregularFaceMask makeIrregularMask(RefinementMask::IrregularFaceWeights const &type) {
     constexpr int kSize = IrregularFaceMask::kSize;
     IrregularFaceMask mask;
     for (int i = 0; i < kSize; ++i) {
-        bool const isPlain = !type.areIrregular[i];
-        mask.places[i] = isPlain ? IrregularFaceMask::kPlain : 0;
         for (int j = 0; j < kSize; ++j) {
-            double const weight = type.weights[i][(i + j) % kSize];
-            mask.rows[i][j] = Spread(float(weight));
-            // What weighs nothing has no part in the sign of a zero either.
-            mask.places[i] |= unsigned(!isPlain && weight != 0) << j;
+            mask.rows[i][j] = Spread(float(type.weights[i][(i + j) % kSize]));
         }
     }
     mask.pattern = 0;
-    while (
-        mask.pattern < IrregularFaceMask::kNumPatterns &&
-        !std::equal(mask.places, mask.places + kSize, IrregularFaceMask::kPatterns[mask.pattern])) {
+    while (!isCovered(type, IrregularFaceMask::kPatterns[mask.pattern])) {
         ++mask.pattern;
     }
     return mask;

@@ -35,39 +35,41 @@ PlainFaceMask MakePlainFaceMask(double const *weights, int size);
 struct IrregularFaceMask {
     static constexpr int kSize = 6;
 
-    /// From the corner on, each four times; but for corners with the mask of plain faces.
+    /// From the corner on, each four times.
     Quad rows[kSize][kSize];
-    /// Bit j: of row i, the weight of the vertex j places behind the corner; or kPlain.
-    unsigned places[kSize];
-    static constexpr unsigned kPlain = 0x40;
-    /// Which of kPatterns the places are; kNumPatterns if none.
+    /// Which of kPatterns has a place for each of the weights that are not 0.
     int pattern;
 
-    /// At a vertex with four or five faces, and with more.
-    static constexpr unsigned kAtFour = 0b110111;
-    static constexpr unsigned kAtSix = 0b100011;
-    /// Behind and before a vertex.
+    /// Patterns say which weights the row of a corner may have: bit j is the place of the vertex j places
+    /// behind the corner; or that the row is that of plain faces.
+    static constexpr unsigned kPlain = 0x40;
+    static constexpr unsigned kAll = 0b111111;
+    /// At a vertex, behind and before one.
+    static constexpr unsigned kAt = 0b110111;
     static constexpr unsigned kBehind = 0b110011;
     static constexpr unsigned kBefore = 0b100111;
     /// Along a quad and behind it, but for the second level.
     static constexpr unsigned kAlong = 0b011011;
     static constexpr unsigned kAlongBack = 0b101101;
     /// At a vertex among quads, along a quad and behind it, in the second level.
-    static constexpr unsigned kSecondAtFour = 0b101011;
+    static constexpr unsigned kSecondAt = 0b101011;
     static constexpr unsigned kSecondAlong = 0b111011;
     static constexpr unsigned kSecondAlongBack = 0b101111;
-    static constexpr int kNumPatterns = 9;
-    /// The places of nearly all irregular faces, for which there are kernels.
+    static constexpr int kNumPatterns = 11;
+    /// For each there is a kernel.  The first ones fit meshes of quads and of triangles; with those behind
+    /// other faces are multiplied by some zeros, and with the last one by all there are.
     static constexpr unsigned kPatterns[kNumPatterns][kSize] = {
-        {kAtFour, kBehind, kPlain, kPlain, kPlain, kBefore},
-        {kAtSix, kBehind, kPlain, kPlain, kPlain, kBefore},
-        {kAtFour, kAlong, kAlongBack, kAtFour, kAlong, kAlongBack},
-        {kSecondAtFour, kAtFour, kPlain, kPlain, kPlain, kAtFour},
-        {kAtFour, kSecondAlong, kSecondAlongBack, kAtFour, kPlain, kPlain},
-        {kAtFour, kPlain, kPlain, kAtFour, kSecondAlong, kSecondAlongBack},
+        {kAt, kBehind, kPlain, kPlain, kPlain, kBefore},
+        {kAt, kBehind, kBefore, kAt, kBehind, kBefore},
+        {kAt, kAlong, kAlongBack, kAt, kAlong, kAlongBack},
+        {kSecondAt, kAt, kPlain, kPlain, kPlain, kAt},
+        {kAt, kSecondAlong, kSecondAlongBack, kAt, kPlain, kPlain},
+        {kAt, kPlain, kPlain, kAt, kSecondAlong, kSecondAlongBack},
         {kPlain, kAlong, kAlongBack, kPlain, kPlain, kPlain},
         {kPlain, kPlain, kPlain, kPlain, kAlong, kAlongBack},
-        {kAtSix, kBehind, kBefore, kAtSix, kBehind, kBefore}};
+        {kAt, kSecondAlong, kSecondAlongBack, kAt, kSecondAlong, kSecondAlongBack},
+        {kAt, kAll, kPlain, kPlain, kPlain, kAll},
+        {kAll, kAll, kAll, kAll, kAll, kAll}};
 };
 
 /// \brief V' = vertex V + faces (sum of P), by number of faces.

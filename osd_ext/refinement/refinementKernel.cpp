@@ -140,14 +140,14 @@ struct UnrolledFaces {
         IrregularRun const *irregular;
     };
 
-    // Irregular faces of one type, with the plain ones between them and behind, until there is another
-    // type, or end.  A face at an irregular vertex stands alone: going on from one to the next takes a
+    // Irregular faces of one pattern, with the plain ones between them and behind, until there is another
+    // pattern, or end.  A face at an irregular vertex stands alone: going on from one to the next takes a
     // fifth of its instructions.
     template <int PATTERN>
-    static Rest RefineType(UnrolledFaces const faces, IrregularFaceMask const &irregularMask,
-                           Rest rest, Index end) {
-        int const type = rest.irregular->mask;
+    static Rest RefinePattern(UnrolledFaces const faces, IrregularFaceMask const *masks, Rest rest,
+                              Index end) {
         do {
+            IrregularFaceMask const &irregularMask = masks[rest.irregular->mask];
             std::ptrdiff_t const irregularEnd = std::min(rest.irregular->end, end);
             for (std::ptrdiff_t corner = rest.corner; corner != irregularEnd; corner += SIZE) {
                 refineIrregularFace<ACCESS, PATTERN>(
@@ -157,8 +157,17 @@ struct UnrolledFaces {
             ++rest.irregular;
             rest.corner = std::min(rest.irregular->begin, end);
             faces.RefinePlain(irregularEnd, rest.corner);
-        } while (rest.corner != end && rest.irregular->mask == type);
+        } while (rest.corner != end && masks[rest.irregular->mask].pattern == PATTERN);
         return rest;
+    }
+
+    // RefinePattern by pattern.  Behind pointers the compiler keeps the patterns apart: together with them
+    // plain faces take a tenth longer.
+    using PatternKernel = Rest (*)(UnrolledFaces, IrregularFaceMask const *, Rest, Index);
+    template <int... PATTERN>
+    static PatternKernel GetKernel(int pattern, std::integer_sequence<int, PATTERN...>) {
+        static constexpr PatternKernel kKernels[] = {RefinePattern<PATTERN>...};
+        return kKernels[pattern];
     }
 
     // From corner begin to end - 1; irregular are the first that end behind begin, masks are by type.
@@ -167,41 +176,10 @@ struct UnrolledFaces {
         Rest rest = {std::clamp(irregular->begin, begin, end), irregular};
         RefinePlain(begin, rest.corner);
         while (rest.corner != end) {
-            IrregularFaceMask const &irregularMask = masks[rest.irregular->mask];
-            auto const refine = [&](auto pattern) {
-                rest = RefineType<pattern>(*this, irregularMask, rest, end);
-            };
-            switch (irregularMask.pattern) {
-            case 0:
-                refine(std::integral_constant<int, 0>());
-                break;
-            case 1:
-                refine(std::integral_constant<int, 1>());
-                break;
-            case 2:
-                refine(std::integral_constant<int, 2>());
-                break;
-            case 3:
-                refine(std::integral_constant<int, 3>());
-                break;
-            case 4:
-                refine(std::integral_constant<int, 4>());
-                break;
-            case 5:
-                refine(std::integral_constant<int, 5>());
-                break;
-            case 6:
-                refine(std::integral_constant<int, 6>());
-                break;
-            case 7:
-                refine(std::integral_constant<int, 7>());
-                break;
-            case 8:
-                refine(std::integral_constant<int, 8>());
-                break;
-            default:
-                refine(std::integral_constant<int, IrregularFaceMask::kNumPatterns>());
-            }
+            PatternKernel const refine =
+                GetKernel(masks[rest.irregular->mask].pattern,
+                          std::make_integer_sequence<int, IrregularFaceMask::kNumPatterns>());
+            rest = refine(*this, masks, rest, end);
         }
     }
 

@@ -16,11 +16,24 @@ namespace OpenSubdivHex::Regression {
 
 using OsdExt::internal::IrregularFaceMask;
 
-// All weights of a mask that are not 0 are in its pattern, and no others: who changes the weights changes
-// the patterns.
+namespace {
+
+// The first patterns, which serve meshes of quads and of triangles.
+constexpr int kNumOfTriangles = 2;
+constexpr int kNumOfQuads = 8;
+
+} // namespace
+
+// Who changes weights changes the patterns, too: faces have those that are made for them, and not the last
+// one, with which they are refined as well but more slowly.
 TEST(IrregularKernel, KnowsQuadsAndTriangles) {
     constexpr int kLevel = 5;
-    for (TorusFaces faces : {TorusFaces::Quads, TorusFaces::Triangles}) {
+    for (TorusFaces faces :
+         {TorusFaces::Quads, TorusFaces::Triangles, TorusFaces::IrregularTriangles}) {
+        int const numPatterns = faces == TorusFaces::Quads ? kNumOfQuads
+                                : faces == TorusFaces::Triangles
+                                    ? kNumOfTriangles
+                                    : IrregularFaceMask::kNumPatterns - 1;
         Shape const torus = MakeTorus(7, 5, faces);
         FarExt::TopologyRefinerFactory::Options options;
         options.schemeOptions.faceMask = FarExt::FaceMask::Smooth;
@@ -44,7 +57,7 @@ TEST(IrregularKernel, KnowsQuadsAndTriangles) {
                 refinements, tileMap, prepared);
             EXPECT_EQ(prepared.masks.irregularFaces.empty(), level == 0);
             for (IrregularFaceMask const &mask : prepared.masks.irregularFaces) {
-                EXPECT_LT(mask.pattern, IrregularFaceMask::kNumPatterns);
+                EXPECT_LT(mask.pattern, numPatterns);
             }
             if (level > 0) {
                 EXPECT_EQ(prepared.masks.faces[IrregularFaceMask::kSize].opposite, 0);

@@ -19,8 +19,11 @@ void Require(bool condition, std::string const &what) {
     }
 }
 
-std::unique_ptr<FarExt::TopologyRefiner> MakeBase(BenchMesh const &mesh) {
-    auto refiner = FarExt::TopologyRefinerFactory::Create(*MakeFarBase(mesh));
+std::unique_ptr<FarExt::TopologyRefiner> MakeBase(BenchMesh const &mesh,
+                                                  FarExt::FaceMask faceMask) {
+    FarExt::TopologyRefinerFactory::Options options;
+    options.schemeOptions.faceMask = faceMask;
+    auto refiner = FarExt::TopologyRefinerFactory::Create(*MakeFarBase(mesh), options);
     Require(refiner != nullptr, "no base level");
     return refiner;
 }
@@ -31,8 +34,9 @@ std::unique_ptr<Far::TopologyRefiner> MakeFarBase(BenchMesh const &mesh) {
     return refiner;
 }
 
-std::unique_ptr<FarExt::TopologyRefiner> MakeRefined(BenchMesh const &mesh) {
-    auto refiner = MakeBase(mesh);
+std::unique_ptr<FarExt::TopologyRefiner> MakeRefined(BenchMesh const &mesh,
+                                                     FarExt::FaceMask faceMask) {
+    auto refiner = MakeBase(mesh, faceMask);
     Require(refiner->RefineUniform(mesh.level), "not refined");
     return refiner;
 }
@@ -125,7 +129,8 @@ Contestant makeTableContestant(std::string const &name, int numThreads,
 
 Contestant MakeTopologyContestant(BenchMesh const &mesh, bool isFull, int numThreads) {
     return makeRefinement<FarExt::TopologyRefiner>(
-        "FarExt", numThreads, mesh, countVertices(mesh), MakeBase,
+        "FarExt", numThreads, mesh, countVertices(mesh),
+        [](BenchMesh const &base) { return MakeBase(base); },
         [=](FarExt::TopologyRefiner &refiner) {
             FarExt::TopologyRefiner::UniformOptions options(mesh.level);
             options.fullTopologyInLastLevel = isFull;

@@ -4,6 +4,7 @@
 
 #include "suite.h"
 
+#include "far_ext/mask.h"
 #include "far_ext/topologyRefiner.h"
 
 #include <opensubdiv/far/stencilTable.h>
@@ -20,11 +21,13 @@ void Require(bool condition, std::string const &what);
 
 /// @name What several benchmarks need.  Far's refine by Catmull-Clark
 /// @{
-std::unique_ptr<FarExt::TopologyRefiner> MakeBase(BenchMesh const &mesh);
+std::unique_ptr<FarExt::TopologyRefiner>
+MakeBase(BenchMesh const &mesh, FarExt::FaceMask faceMask = FarExt::FaceMask::Average);
 std::unique_ptr<Far::TopologyRefiner> MakeFarBase(BenchMesh const &mesh);
 
 /// Refined to the level of the mesh, the last one with face-vertices alone.
-std::unique_ptr<FarExt::TopologyRefiner> MakeRefined(BenchMesh const &mesh);
+std::unique_ptr<FarExt::TopologyRefiner>
+MakeRefined(BenchMesh const &mesh, FarExt::FaceMask faceMask = FarExt::FaceMask::Average);
 std::unique_ptr<Far::TopologyRefiner> MakeFarRefined(BenchMesh const &mesh);
 /// The same with its full topology, for limits.
 std::unique_ptr<FarExt::TopologyRefiner> MakeFullyRefined(BenchMesh const &mesh);

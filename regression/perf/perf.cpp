@@ -76,6 +76,7 @@ void run(Suite::Options const &options, std::string const &command, Paths const 
     AddStencilTableBenchmarks(suite);
     AddEvaluationBenchmarks(suite);
     AddTableFreeBenchmarks(suite);
+    AddMaskBenchmarks(suite);
     AddLimitBenchmarks(suite);
     AddSurfaceBenchmarks(suite);
     AddViewBenchmarks(suite);

@@ -55,6 +55,10 @@ std::vector<Row> const &GetRows() {
             {"table-free-1", "table-free, all levels, 1 thread", "own best table", 3, 5});
         result.push_back({"table-free-2", "table-free, all levels, 2 threads",
                           "own best table, 2 threads", 3, 5});
+        result.push_back({"smooth-table-free", "table-free by Smooth, all levels, 1 thread",
+                          "own, by Average", 0.95, 1});
+        result.push_back(
+            {"smooth-table", "table by Smooth, per weight, 1 thread", "own, by Average", 0.95, 1});
         result.push_back({"limit-table-own", "limit table, per weight, 1 thread",
                           "own, table of the level", 0.5, 1});
         result.push_back({"limit-table-1", "limit table, per weight, 1 thread",

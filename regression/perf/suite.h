@@ -83,6 +83,7 @@ void AddPositionBenchmarks(Suite &suite);
 void AddStencilTableBenchmarks(Suite &suite);
 void AddEvaluationBenchmarks(Suite &suite);
 void AddTableFreeBenchmarks(Suite &suite);
+void AddMaskBenchmarks(Suite &suite);
 void AddLimitBenchmarks(Suite &suite);
 void AddSurfaceBenchmarks(Suite &suite);
 void AddViewBenchmarks(Suite &suite);
