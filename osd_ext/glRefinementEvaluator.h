@@ -109,8 +109,8 @@ public:
 
     /// \brief Writes the values of one level to elements [0, GetNumElements(level)) of \p dst.
     ///
-    /// The programs for a length are compiled when it first comes; the levels below are kept in
-    /// buffers that only the first frame takes.
+    /// The first frame of a length compiles the programs that it needs, later ones those that are missing;
+    /// the levels below are kept in buffers that only the first frame takes.
     ///
     /// \param src,dst  names of buffers
     /// \param level    0 ... GetMaxLevel(); 0 copies the control values
@@ -136,9 +136,11 @@ public:
     /// Of the vertices of a level, as RefinementEvaluator::EvaluateLimit: points, and first derivatives
     /// on side 0, whose cross product is the normal.
     ///
-    /// Six vertices at a time come in closed form from a hexagon of a level before, of which the device
-    /// has 5 bytes for each of them; those near irregular vertices and faces of level 0 and near
-    /// features are sums over their neighbourhoods, which are listed.  The first frame of a level
+    /// In faces of level 0 around which that is a regular lattice of triangles, quads or hexagons, all
+    /// vertices come from level 0 in closed form, of which the device has 4 to 5 bytes for each of them.
+    /// Elsewhere six vertices at a time come from a hexagon of a level before, with 5 bytes for each; those
+    /// near irregular vertices and faces of level 0 and near features are sums over their neighbourhoods,
+    /// which are listed.  The first frame of a level
     /// finds the masks on the processor, and refers to the refiner that was given.
     ///
     /// \param src          the name of a buffer of control values

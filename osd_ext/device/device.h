@@ -19,8 +19,8 @@ using DeviceBufferName = std::uint64_t;
 /// \brief A kernel to be run on \c count things.
 struct OPENSUBDIVHEX_API DeviceTask {
     DeviceKernel kernel = DeviceKernel::Copy;
-    int length = 0;   ///< floats of an element
-    int faceSize = 0; ///< for DeviceKernel::FaceRun
+    int length = 0;   ///< floats of an element; 1 where an invocation makes one
+    int faceSize = 0; ///< for DeviceKernel::FaceRun and LatticeLimit
     DeviceBufferName sources = 0;
     DeviceBufferName results = 0;
     DeviceBufferName indices = 0;

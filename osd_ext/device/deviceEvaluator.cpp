@@ -109,15 +109,6 @@ Status DeviceEvaluator::Prepare(Options options) {
     }
     _weights.Resize(std::int64_t(weights.size()) * kWord);
     _weights.Write(0, weights);
-    for (DeviceRefinement const &refinement : _refinements) {
-        for (DeviceFaceRun const &run : refinement.faceRuns) {
-            if (isUnrolled(run)) {
-                _faceSizes.push_back(run.size);
-            }
-        }
-    }
-    std::sort(_faceSizes.begin(), _faceSizes.end());
-    _faceSizes.erase(std::unique(_faceSizes.begin(), _faceSizes.end()), _faceSizes.end());
     return _device->EndFrame();
 }
 
@@ -198,24 +189,6 @@ Status DeviceEvaluator::check(Values const &src, std::vector<Values> const &outp
     return status;
 }
 
-// Those that a level may need.
-Status DeviceEvaluator::prepareKernels(int length) {
-    Status status;
-    for (DeviceKernel const kernel :
-         {DeviceKernel::Copy, DeviceKernel::AnyFaceRun, DeviceKernel::WeightedFaceRun,
-          DeviceKernel::Corners, DeviceKernel::VertexRun, DeviceKernel::Vertices}) {
-        if (status.IsOk()) {
-            status = _device->Prepare(kernel, length, 0);
-        }
-    }
-    for (int const faceSize : _faceSizes) {
-        if (status.IsOk()) {
-            status = _device->Prepare(DeviceKernel::FaceRun, length, faceSize);
-        }
-    }
-    return status;
-}
-
 DeviceTask DeviceEvaluator::makeTask(DeviceKernel kernel, int length, Elements const &src,
                                      Elements const &dst) const {
     DeviceTask task{kernel, length};
@@ -231,15 +204,38 @@ DeviceTask DeviceEvaluator::makeTask(DeviceKernel kernel, int length, Elements c
     return task;
 }
 
-void DeviceEvaluator::run(DeviceTask &task, std::uint32_t count) {
+void DeviceEvaluator::Frame::Add(DeviceTask &task, std::uint32_t count) {
     task.count = count;
     if (count > 0) {
-        _device->Run(task);
+        _steps.push_back({task, false});
     }
 }
 
+void DeviceEvaluator::Frame::Wait() {
+    if (!_steps.empty()) {
+        _steps.back().isAwaited = true;
+    }
+}
+
+Status DeviceEvaluator::Frame::Run(Device &device) const {
+    for (Step const &step : _steps) {
+        Status const status =
+            device.Prepare(step.task.kernel, step.task.length, step.task.faceSize);
+        if (!status.IsOk()) {
+            return status;
+        }
+    }
+    for (Step const &step : _steps) {
+        device.Run(step.task);
+        if (step.isAwaited) {
+            device.Wait();
+        }
+    }
+    return device.EndFrame();
+}
+
 // The control values by vertex of the mesh of level 0.
-auto DeviceEvaluator::toVertices(Elements const &src, int length) -> Elements {
+auto DeviceEvaluator::toVertices(Frame &frame, Elements const &src, int length) -> Elements {
     if (_numValueVertices == 0) {
         return src;
     }
@@ -248,8 +244,8 @@ auto DeviceEvaluator::toVertices(Elements const &src, int length) -> Elements {
     DeviceTask task = makeTask(DeviceKernel::Copy, length, src, result);
     task.parameters.hasIndices = 1;
     task.parameters.firstIndex = _firstValue;
-    run(task, std::uint32_t(_numValueVertices));
-    _device->Wait();
+    frame.Add(task, std::uint32_t(_numValueVertices));
+    frame.Wait();
     return result;
 }
 
@@ -266,8 +262,8 @@ void DeviceEvaluator::resizeScratch(int length, int last) {
     }
 }
 
-void DeviceEvaluator::refine(std::size_t number, Elements const &src, Elements const &dst,
-                             int length) {
+void DeviceEvaluator::refine(Frame &frame, std::size_t number, Elements const &src,
+                             Elements const &dst, int length) {
     DeviceRefinement const &refinement = _refinements[number];
     auto const makeTaskOf = [&](DeviceKernel kernel) {
         DeviceTask task = makeTask(kernel, length, src, dst);
@@ -287,16 +283,16 @@ void DeviceEvaluator::refine(std::size_t number, Elements const &src, Elements c
         task.parameters.weightOfSelf = faceRun.self;
         task.parameters.weightOfNeighbors = faceRun.neighbor;
         task.parameters.weightOfOpposite = faceRun.opposite;
-        run(task, faceRun.count);
+        frame.Add(task, faceRun.count);
     }
     if (!refinement.corners.empty()) {
         // Some corners are made again behind the runs that they are in.
-        _device->Wait();
+        frame.Wait();
         DeviceTask task = makeTaskOf(DeviceKernel::Corners);
         task.parameters.firstIndex = _places[number].corners;
-        run(task, std::uint32_t(refinement.corners.size()));
+        frame.Add(task, std::uint32_t(refinement.corners.size()));
     }
-    _device->Wait();
+    frame.Wait();
     for (DeviceVertexRun const &vertexRun : refinement.vertexRuns) {
         DeviceTask task = makeTaskOf(DeviceKernel::VertexRun);
         task.parameters.firstIndex = vertexRun.firstIndex;
@@ -304,12 +300,12 @@ void DeviceEvaluator::refine(std::size_t number, Elements const &src, Elements c
         task.parameters.addsInTurn = vertexRun.addsInTurn ? 1 : 0;
         task.parameters.vertexWeight = refinement.vertexWeight;
         task.parameters.averagesFaces = refinement.averagesFaces ? 1 : 0;
-        run(task, vertexRun.count);
+        frame.Add(task, vertexRun.count);
     }
     DeviceTask task = makeTaskOf(DeviceKernel::Vertices);
     task.parameters.firstIndex = _places[number].vertices;
-    run(task, std::uint32_t(refinement.vertices.size()));
-    _device->Wait();
+    frame.Add(task, std::uint32_t(refinement.vertices.size()));
+    frame.Wait();
 }
 
 Status DeviceEvaluator::Evaluate(Values const &src, Values const &dst, int level) {
@@ -317,48 +313,44 @@ Status DeviceEvaluator::Evaluate(Values const &src, Values const &dst, int level
     std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
     int const length = src.desc.length;
     Status status = check(src, {dst}, level, numWritten);
-    if (status.IsOk()) {
-        status = prepareKernels(length);
-    }
     if (!status.IsOk() || numWritten == 0) {
         return status;
     }
+    Frame frame;
     Elements values = {src.buffer, src.desc.offset, src.desc.stride};
     Elements const result = {dst.buffer, dst.desc.offset, dst.desc.stride};
     if (level == 0) {
         DeviceTask task = makeTask(DeviceKernel::Copy, length, values, result);
-        run(task, std::uint32_t(numWritten));
-        _device->Wait();
-        return _device->EndFrame();
+        frame.Add(task, std::uint32_t(numWritten));
+        frame.Wait();
+        return frame.Run(*_device);
     }
     resizeScratch(length, level - 1);
-    values = toVertices(values, length);
+    values = toVertices(frame, values, length);
     for (int made = 1; made <= level; ++made) {
         Elements const next = made == level ? result : getScratch(made, length);
-        refine(std::size_t(made) - 1, values, next, length);
+        refine(frame, std::size_t(made) - 1, values, next, length);
         values = next;
     }
-    return _device->EndFrame();
+    return frame.Run(*_device);
 }
 
 Status DeviceEvaluator::EvaluateAllLevels(Values const &src, Values const &dst) {
     std::int64_t const numWritten = GetNumElementsAllLevels();
     int const length = src.desc.length;
     Status status = check(src, {dst}, GetMaxLevel(), numWritten);
-    if (status.IsOk()) {
-        status = prepareKernels(length);
-    }
     if (!status.IsOk() || numWritten == 0) {
         return status;
     }
-    Elements values = toVertices({src.buffer, src.desc.offset, src.desc.stride}, length);
+    Frame frame;
+    Elements values = toVertices(frame, {src.buffer, src.desc.offset, src.desc.stride}, length);
     Elements next = {dst.buffer, dst.desc.offset, dst.desc.stride};
     for (int made = 1; made <= GetMaxLevel(); ++made) {
-        refine(std::size_t(made) - 1, values, next, length);
+        refine(frame, std::size_t(made) - 1, values, next, length);
         values = next;
         next.offset += GetNumElements(made) * next.stride;
     }
-    return _device->EndFrame();
+    return frame.Run(*_device);
 }
 
 // What is prepared late needs the refiner as it was.
@@ -371,20 +363,13 @@ Status DeviceEvaluator::checkRefiner() const {
 }
 
 // Finds the masks of a level, unless it has, and loads them.
-Status DeviceEvaluator::prepareLimit(int level, int length) {
-    Status status;
-    for (DeviceKernel const kernel :
-         {DeviceKernel::RegularLimit, DeviceKernel::OwnLimit, DeviceKernel::VertexLimit}) {
-        if (status.IsOk()) {
-            status = _device->Prepare(kernel, length, 0);
-        }
-    }
+Status DeviceEvaluator::prepareLimit(int level) {
     _limits.resize(_numElements.size());
     std::unique_ptr<Limit> &limit = _limits[std::size_t(level)];
-    if (!status.IsOk() || limit) {
-        return status;
+    if (limit) {
+        return Status();
     }
-    status = checkRefiner();
+    Status status = checkRefiner();
     if (!status.IsOk()) {
         return status;
     }
@@ -406,7 +391,9 @@ Status DeviceEvaluator::prepareLimit(int level, int length) {
         firstOwnFace + kWordsOf<DeviceOwnFace> * std::int64_t(prepared.ownFaces.size());
     std::int64_t const firstSource =
         firstVertex + kWordsOf<DeviceLimitVertex> * std::int64_t(prepared.vertices.size());
-    std::int64_t const numIndices = firstSource + std::int64_t(prepared.sources.size());
+    std::int64_t const firstLatticeIndex = firstSource + std::int64_t(prepared.sources.size());
+    std::int64_t const numIndices =
+        firstLatticeIndex + std::int64_t(prepared.latticeIndices.size());
     status = _device->CheckSize(numIndices * kWord, "the indices of the limit");
     if (status.IsOk()) {
         status = _device->CheckSize(std::int64_t(prepared.weights.size()) * kWord,
@@ -419,15 +406,17 @@ Status DeviceEvaluator::prepareLimit(int level, int length) {
     for (DeviceLimitVertex &vertex : prepared.vertices) {
         vertex.firstIndex += std::uint32_t(firstSource);
     }
-    result->numVertices = std::uint32_t(prepared.vertices.size());
     result->firstOwnFace = std::uint32_t(firstOwnFace);
     result->firstVertex = std::uint32_t(firstVertex);
+    result->firstLatticeIndex = std::uint32_t(firstLatticeIndex);
     result->levels = std::move(prepared.levels);
+    result->lattices = std::move(prepared.lattices);
     result->indices.Resize(numIndices * kWord);
     result->indices.Write(0, prepared.regularFaces);
     result->indices.Write(firstOwnFace * kWord, prepared.ownFaces);
     result->indices.Write(firstVertex * kWord, prepared.vertices);
     result->indices.Write(firstSource * kWord, prepared.sources);
+    result->indices.Write(firstLatticeIndex * kWord, prepared.latticeIndices);
     result->weights.Resize(std::int64_t(prepared.weights.size()) * kWord);
     result->weights.Write(0, prepared.weights);
     limit = std::move(result);
@@ -445,10 +434,7 @@ Status DeviceEvaluator::EvaluateLimit(Values const &src, std::vector<Values> con
                                            "there is a limit for INTERPOLATE_VERTEX alone");
     }
     if (status.IsOk()) {
-        status = prepareKernels(length);
-    }
-    if (status.IsOk()) {
-        status = prepareLimit(level, length);
+        status = prepareLimit(level);
     }
     if (!status.IsOk() || numWritten == 0) {
         return status;
@@ -457,30 +443,41 @@ Status DeviceEvaluator::EvaluateLimit(Values const &src, std::vector<Values> con
     std::transform(outputs.begin(), outputs.end(), elements.begin(), [](Values const &output) {
         return Elements{output.buffer, output.desc.offset, output.desc.stride};
     });
-    evaluateLimit({src.buffer, src.desc.offset, src.desc.stride}, elements, length, level);
-    return _device->EndFrame();
+    Frame frame;
+    evaluateLimit(frame, {src.buffer, src.desc.offset, src.desc.stride}, elements, length, level);
+    return frame.Run(*_device);
 }
 
-// Level by level, and of each the limits that its faces make; then those of the other vertices, some of
-// which faces have made, too.
-void DeviceEvaluator::evaluateLimit(Elements const &src, std::vector<Elements> const &outputs,
-                                    int length, int level) {
+// The last level from which any limit follows.
+int DeviceEvaluator::Limit::GetLastLevel() const {
+    int level = int(levels.size()) - 1;
+    auto const isNeeded = [](DeviceLimit::OfLevel const &of) {
+        return of.fVertices.count > 0 || of.ownVertices.count > 0 || of.numVertices > 0;
+    };
+    while (level > 0 && !isNeeded(levels[std::size_t(level)])) {
+        --level;
+    }
+    return level;
+}
+
+// Level by level, and of each the limits that its faces make, then those of other vertices; last those in
+// lattice faces.  Faces make vertices, too, that are made again behind them.
+void DeviceEvaluator::evaluateLimit(Frame &frame, Elements const &src,
+                                    std::vector<Elements> const &outputs, int length, int level) {
     Limit const &limit = *_limits[std::size_t(level)];
-    bool const needsLast =
-        limit.numVertices > 0 || limit.levels[std::size_t(level)].ownVertices.count > 0;
-    int const last = needsLast ? level : level - 1;
+    int const last = limit.GetLastLevel();
     resizeScratch(length, last);
     Elements values = src;
     auto const runSet = [&](DeviceTask &task, DeviceLimit::Set const &set) {
         task.parameters.firstFVertex = set.firstVertex;
         std::copy(std::begin(set.weights), std::end(set.weights), task.parameters.regularWeights);
-        runLimit(task, limit, outputs, set.count);
+        runLimit(frame, task, limit, outputs, set.count);
     };
     for (int i = 0; i <= last; ++i) {
         DeviceLimit::OfLevel const &sets = limit.levels[std::size_t(i)];
         if (i > 0) {
             Elements const next = getScratch(i, length);
-            refine(std::size_t(i) - 1, values, next, length);
+            refine(frame, std::size_t(i) - 1, values, next, length);
             values = next;
         }
         if (sets.fVertices.count > 0) {
@@ -493,15 +490,56 @@ void DeviceEvaluator::evaluateLimit(Elements const &src, std::vector<Elements> c
         task.parameters.firstIndex =
             limit.firstOwnFace + sets.ownVertices.firstFace * kWordsOf<DeviceOwnFace>;
         runSet(task, sets.ownVertices);
+        if (sets.numVertices > 0) {
+            frame.Wait();
+            task = makeTask(DeviceKernel::VertexLimit, length, values, outputs[0]);
+            task.parameters.firstIndex =
+                limit.firstVertex + sets.firstVertex * kWordsOf<DeviceLimitVertex>;
+            runLimit(frame, task, limit, outputs, sets.numVertices);
+        }
+        frame.Wait();
     }
-    _device->Wait();
-    DeviceTask task = makeTask(DeviceKernel::VertexLimit, length, values, outputs[0]);
-    task.parameters.firstIndex = limit.firstVertex;
-    runLimit(task, limit, outputs, limit.numVertices);
-    _device->Wait();
+    evaluateLattices(frame, src, outputs, length, limit);
+    frame.Wait();
 }
 
-void DeviceEvaluator::runLimit(DeviceTask &task, Limit const &limit,
+// Some floats at a time, so that invocations can be counted; and some orbits, whose weights are
+// parameters.
+void DeviceEvaluator::evaluateLattices(Frame &frame, Elements src, std::vector<Elements> outputs,
+                                       int length, Limit const &limit) {
+    constexpr int kMaxFloats = 4;
+    constexpr std::uint32_t kMaxOrbits = 4;
+    for (; length > 0; length -= kMaxFloats) {
+        auto const numFloats = std::uint32_t(std::min(length, kMaxFloats));
+        for (DeviceLimit::Lattice const &lattice : limit.lattices) {
+            std::size_t const numWeights = lattice.weights.size() / lattice.numOrbits;
+            DeviceTask task = makeTask(DeviceKernel::LatticeLimit, 1, src, outputs[0]);
+            task.faceSize = lattice.faceSize;
+            DeviceParameters &parameters = task.parameters;
+            parameters.numFaces = lattice.numFaces;
+            parameters.numFloats = numFloats;
+            parameters.firstIndex = limit.firstLatticeIndex + lattice.firstIndex;
+            parameters.firstOutput = limit.firstLatticeIndex + lattice.firstOutput;
+            for (std::uint32_t first = 0; first < lattice.numOrbits; first += kMaxOrbits) {
+                parameters.numOrbits = std::min(lattice.numOrbits - first, kMaxOrbits);
+                parameters.numPairs =
+                    std::min(lattice.numPairs - std::min(lattice.numPairs, first), kMaxOrbits);
+                std::copy_n(lattice.weights.begin() + std::ptrdiff_t(first * numWeights),
+                            parameters.numOrbits * numWeights, parameters.latticeWeights);
+                runLimit(frame, task, limit, outputs, lattice.numFaces * numFloats);
+                parameters.firstOutput +=
+                    std::uint64_t(parameters.numOrbits + parameters.numPairs) *
+                    std::uint64_t(lattice.faceSize) * lattice.numFaces;
+            }
+        }
+        src.offset += kMaxFloats;
+        for (Elements &output : outputs) {
+            output.offset += kMaxFloats;
+        }
+    }
+}
+
+void DeviceEvaluator::runLimit(Frame &frame, DeviceTask &task, Limit const &limit,
                                std::vector<Elements> const &outputs, std::uint32_t count) {
     task.indices = limit.indices.GetName();
     task.weights = limit.weights.GetName();
@@ -514,17 +552,16 @@ void DeviceEvaluator::runLimit(DeviceTask &task, Limit const &limit,
         task.parameters.dvOffset = std::uint64_t(outputs[2].offset);
         task.parameters.dvStride = std::uint64_t(outputs[2].stride);
     }
-    run(task, count);
+    frame.Add(task, count);
 }
 
 // Loads the faces of a level, unless it has.
 Status DeviceEvaluator::prepareFaces(int level) {
-    Status status = _device->Prepare(DeviceKernel::Triangles, 1, 0);
     _faces.resize(_numElements.size());
-    if (!status.IsOk() || _faces[std::size_t(level)]) {
-        return status;
+    if (_faces[std::size_t(level)]) {
+        return Status();
     }
-    status = checkRefiner();
+    Status status = checkRefiner();
     if (!status.IsOk()) {
         return status;
     }
@@ -580,6 +617,7 @@ Status DeviceEvaluator::MakeTriangleIndices(DeviceBufferName dst, int level, int
         return status;
     }
     Faces const &faces = *_faces[std::size_t(level)];
+    Frame frame;
     DeviceTask task = makeTask(DeviceKernel::Triangles, 1, {0, 0, 1}, {0, 0, 1});
     task.indices = faces.indices.GetName();
     task.listedVertices = faces.indices.GetName();
@@ -592,14 +630,14 @@ Status DeviceEvaluator::MakeTriangleIndices(DeviceBufferName dst, int level, int
         task.parameters.firstFace = faceRun.firstFace;
         task.parameters.firstCorner = faceRun.firstCorner;
         task.parameters.faceSize = faceRun.size;
-        run(task, faceRun.count);
+        frame.Add(task, faceRun.count);
     }
     if (faces.runs.empty()) {
         task.parameters.hasIndices = 1;
-        run(task, faces.firstListedVertex > 0 ? faces.firstListedVertex - 1 : 0);
+        frame.Add(task, faces.firstListedVertex > 0 ? faces.firstListedVertex - 1 : 0);
     }
-    _device->Wait();
-    return _device->EndFrame();
+    frame.Wait();
+    return frame.Run(*_device);
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -68,14 +68,34 @@ private:
         std::int64_t offset;
         std::int64_t stride;
     };
-    // The limit of a level, and its arrays: faces of both kinds, vertices and sources in one.
+    // What is run for a frame, step by step.
+    class Frame {
+    public:
+        // Adds a kernel, unless it has nothing to do.
+        void Add(DeviceTask &task, std::uint32_t count);
+        // What is added afterwards sees what was written before.
+        void Wait();
+        // Runs nothing if the device does not take all kernels.
+        FarExt::Status Run(Device &device) const;
+
+    private:
+        struct Step {
+            DeviceTask task;
+            bool isAwaited;
+        };
+        std::vector<Step> _steps;
+    };
+    // The limit of a level, and its arrays: faces of both kinds, vertices and sources, and lattices in one.
     struct Limit {
         explicit Limit(Device &device) : indices(device), weights(device) {}
 
+        int GetLastLevel() const;
+
         std::vector<DeviceLimit::OfLevel> levels;
-        std::uint32_t numVertices = 0;
-        std::uint32_t firstOwnFace = 0; // these two in indices
+        std::vector<DeviceLimit::Lattice> lattices;
+        std::uint32_t firstOwnFace = 0; // these three in indices
         std::uint32_t firstVertex = 0;
+        std::uint32_t firstLatticeIndex = 0;
         DeviceBuffer indices;
         DeviceBuffer weights;
     };
@@ -103,21 +123,22 @@ private:
                                std::vector<std::int32_t> const &values);
     FarExt::Status check(Values const &src, std::vector<Values> const &outputs, int level,
                          std::int64_t numWritten) const;
-    FarExt::Status prepareKernels(int length);
-    FarExt::Status prepareLimit(int level, int length);
+    FarExt::Status prepareLimit(int level);
     FarExt::Status prepareFaces(int level);
     FarExt::Status checkRefiner() const;
     DeviceTask makeTask(DeviceKernel kernel, int length, Elements const &src,
                         Elements const &dst) const;
-    void run(DeviceTask &task, std::uint32_t count);
-    Elements toVertices(Elements const &src, int length);
+    Elements toVertices(Frame &frame, Elements const &src, int length);
     Elements getScratch(int level, int length);
     void resizeScratch(int length, int last);
-    void refine(std::size_t number, Elements const &src, Elements const &dst, int length);
-    void evaluateLimit(Elements const &src, std::vector<Elements> const &outputs, int length,
-                       int level);
-    void runLimit(DeviceTask &task, Limit const &limit, std::vector<Elements> const &outputs,
-                  std::uint32_t count);
+    void refine(Frame &frame, std::size_t number, Elements const &src, Elements const &dst,
+                int length);
+    void evaluateLimit(Frame &frame, Elements const &src, std::vector<Elements> const &outputs,
+                       int length, int level);
+    void evaluateLattices(Frame &frame, Elements src, std::vector<Elements> outputs, int length,
+                          Limit const &limit);
+    static void runLimit(Frame &frame, DeviceTask &task, Limit const &limit,
+                         std::vector<Elements> const &outputs, std::uint32_t count);
 
     std::unique_ptr<Device> const _device;
     FarExt::TopologyRefiner const &_refiner; // for limits
@@ -128,7 +149,6 @@ private:
     std::vector<int> _numElements;              // by level
     std::vector<DeviceRefinement> _refinements; // by level of the parent
     std::vector<Places> _places;
-    std::vector<int> _faceSizes; // of unrolled runs
     DeviceBuffer _indices;
     DeviceBuffer _weights;
     // Of a face-varying channel some of whose values several vertices of its value mesh share: the

@@ -76,6 +76,7 @@ enum class DeviceKernel {
     Vertices,
     RegularLimit,
     OwnLimit,
+    LatticeLimit,
     VertexLimit,
     Triangles
 };
@@ -102,6 +103,8 @@ OPENSUBDIVHEX_KERNEL_FUNCTION void RunKernel(DeviceKernels<LENGTH, SIZE> &kernel
         kernels.makeRegularLimit(i);
     } else if constexpr (KERNEL == DeviceKernel::OwnLimit) {
         kernels.makeOwnLimit(i);
+    } else if constexpr (KERNEL == DeviceKernel::LatticeLimit) {
+        kernels.makeLatticeLimit(i);
     } else if constexpr (KERNEL == DeviceKernel::VertexLimit) {
         kernels.makeListedLimit(i);
     } else {
@@ -153,6 +156,10 @@ void RunCompiled(DeviceKernel kernel, int length, int faceSize, RUN const &run) 
         return run(CompiledKernel<DeviceKernel::RegularLimit, LENGTH, 3>());
     case DeviceKernel::OwnLimit:
         return run(CompiledKernel<DeviceKernel::OwnLimit, LENGTH, 3>());
+    case DeviceKernel::LatticeLimit:
+        return faceSize == 3   ? run(CompiledKernel<DeviceKernel::LatticeLimit, 1, 3>())
+               : faceSize == 4 ? run(CompiledKernel<DeviceKernel::LatticeLimit, 1, 4>())
+                               : run(CompiledKernel<DeviceKernel::LatticeLimit, 1, 6>());
     case DeviceKernel::VertexLimit:
         return run(CompiledKernel<DeviceKernel::VertexLimit, LENGTH, 3>());
     case DeviceKernel::Triangles:

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deviceLimit.h"
 
+#include "far_ext/limit/limitOrigins.h"
 #include "far_ext/vtr/parallel.h"
+#include "osd_ext/refinement/latticeWeights.h"
 #include "osd_ext/refinement/limitKernel.h"
 
 #include <algorithm>
@@ -16,7 +18,9 @@ using Far::Index;
 using FarExt::Status;
 using FarExt::StatusCode;
 using FarExt::internal::kRegularFaceSize;
+using FarExt::internal::LatticeFaces;
 using FarExt::internal::Level;
+using FarExt::internal::LimitOrigins;
 using FarExt::internal::LimitRow;
 using FarExt::internal::LimitRows;
 using FarExt::internal::RegularFace;
@@ -81,12 +85,52 @@ DeviceLimit::Set addFaces(Level const &level, RegularFaces::Set const &set, MAKE
     return result;
 }
 
-void addVertices(std::vector<Index> const &verts, LimitRows const &rows, DeviceLimit &limit) {
+void addLattices(LatticeFaces const &faces, DeviceLimit &limit) {
+    for (LatticeFaces::Set const &set : faces.GetSets()) {
+        DeviceLimit::Lattice &lattice = limit.lattices.emplace_back();
+        auto const numPlaces = std::size_t(set.patch.GetNumPlaces());
+        auto const numOutputs = std::size_t(set.numOutputs);
+        std::size_t const numFaces = set.faces.size();
+        std::size_t const firstIndex = limit.latticeIndices.size();
+        std::size_t const firstOutput = firstIndex + numFaces * numPlaces;
+        lattice.faceSize = set.patch.GetFaceSize();
+        lattice.numFaces = std::uint32_t(numFaces);
+        lattice.firstIndex = std::uint32_t(firstIndex);
+        lattice.firstOutput = std::uint32_t(firstOutput);
+        limit.latticeIndices.resize(firstOutput + numFaces * numOutputs);
+        std::uint32_t *const indices = limit.latticeIndices.data();
+        FarExt::internal::ParallelFor(Index(numFaces), [&](Index i) {
+            auto const face = std::size_t(i);
+            for (std::size_t place = 0; place < numPlaces; ++place) {
+                indices[firstIndex + place * numFaces + face] =
+                    std::uint32_t(set.sources[face * numPlaces + place]);
+            }
+            // What stands in the place of a vertex that another face makes comes once more, later.
+            Index const *const outputs = set.outputs.data() + face * numOutputs;
+            Index const inside = outputs[numOutputs - std::size_t(lattice.faceSize)];
+            for (std::size_t k = 0; k < numOutputs; ++k) {
+                bool const isOfOther =
+                    outputs[k] == inside && k + std::size_t(lattice.faceSize) < numOutputs;
+                indices[firstOutput + k * numFaces + face] =
+                    isOfOther ? DeviceLimit::kNoVertex : std::uint32_t(outputs[k]);
+            }
+        });
+        SourceOrbits const sources = GetAllSourceOrbits(set.patch);
+        for (LatticeFaces::Orbit const &orbit : set.orbits) {
+            lattice.numPairs += orbit.isPair ? 1 : 0;
+            AddOrbitWeights(sources, set.patch, MakePair(orbit), lattice.weights);
+        }
+        lattice.numOrbits = std::uint32_t(set.orbits.size());
+    }
+}
+
+// Adds the vertices whose limit is a sum of vertices of a level.
+void addVertices(LimitOrigins const &origins, int level, DeviceLimit &limit) {
     std::unordered_map<double const *, std::uint32_t>
         firstWeights; // of the types, by their weights
-    Index regularSources[FarExt::internal::PlainNeighborhoodGatherer::kNumRegular];
-    for (Index const vert : verts) {
-        LimitRow const row = rows.GetRow(vert, 0, regularSources);
+    Index sources[LimitOrigins::kMaxSources];
+    for (Index const vert : origins.GetVertices(level)) {
+        LimitRow const row = origins.GetRow(level, vert, sources);
         auto const [found, isNew] =
             firstWeights.try_emplace(row.du, std::uint32_t(limit.weights.size()));
         for (int i = 0; i < row.size && isNew; ++i) {
@@ -104,24 +148,28 @@ void addVertices(std::vector<Index> const &verts, LimitRows const &rows, DeviceL
 Status MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
                        FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows,
                        DeviceLimit &limit) {
-    RegularFaces regularFaces(mesh, rows.GetLevel().depth);
-    Status result = regularFaces.FindMasks(schemeOptions, rows);
+    LimitOrigins origins(mesh, rows);
+    Status result = origins.Find(schemeOptions);
     if (!result.IsOk()) {
         return result;
     }
-    std::vector<RegularFaces::OfLevel> const &levels = regularFaces.GetLevels();
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-        Level const &level = mesh.levels[i];
-        limit.levels.push_back(
-            {addFaces(level, levels[i].fVertices, makeRegularFace, limit.regularFaces),
-             addFaces(level, levels[i].ownVertices, makeOwnFace, limit.ownFaces)});
+    addLattices(origins.GetLatticeFaces(), limit);
+    for (int i = 0; i <= rows.GetLevel().depth; ++i) {
+        Level const &level = mesh.levels[std::size_t(i)];
+        RegularFaces::OfLevel const &faces = origins.GetFaces()[std::size_t(i)];
+        DeviceLimit::OfLevel &ofLevel = limit.levels.emplace_back();
+        ofLevel.fVertices = addFaces(level, faces.fVertices, makeRegularFace, limit.regularFaces);
+        ofLevel.ownVertices = addFaces(level, faces.ownVertices, makeOwnFace, limit.ownFaces);
+        ofLevel.firstVertex = std::uint32_t(limit.vertices.size());
+        addVertices(origins, i, limit);
+        ofLevel.numVertices = std::uint32_t(limit.vertices.size()) - ofLevel.firstVertex;
     }
-    addVertices(regularFaces.GetOthers(), rows, limit);
     constexpr auto kWordsOf = [](auto const &array) {
         return array.size() * sizeof(array[0]) / sizeof(std::uint32_t);
     };
     std::size_t const numWords = kWordsOf(limit.regularFaces) + kWordsOf(limit.ownFaces) +
-                                 kWordsOf(limit.vertices) + kWordsOf(limit.sources);
+                                 kWordsOf(limit.vertices) + kWordsOf(limit.sources) +
+                                 limit.latticeIndices.size();
     if (std::max(numWords, limit.weights.size()) > std::numeric_limits<std::uint32_t>::max()) {
         return FarExt::internal::Failure(
             StatusCode::TooLarge, "the limit has " + std::to_string(numWords) + " indices and " +

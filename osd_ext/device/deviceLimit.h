@@ -31,7 +31,7 @@ struct DeviceOwnFace {
     std::uint32_t around[FarExt::internal::kRegularFaceSize][FarExt::internal::kRegularFaceSize];
 };
 
-/// \brief The limit of a vertex as a sum of vertices of its level: each of \c numSources indices from
+/// \brief The limit of a vertex as a sum of vertices of a level: each of \c numSources indices from
 /// \c firstIndex on has three weights, of the point, du and dv, from \c firstWeight on.
 struct DeviceLimitVertex {
     std::uint32_t vert;
@@ -43,6 +43,21 @@ struct DeviceLimitVertex {
 /// \brief The limit of a level as a device evaluates it: positions of faces, indices and weights are
 /// in arrays of its own.
 struct DeviceLimit {
+    /// \brief Lattice faces of level 0 that have as many sides, and all that is made in them.
+    ///
+    /// Their indices are in \c latticeIndices: of each place of a source those of all faces, then of each
+    /// vertex of the orbits; kNoVertex where another face makes it.
+    struct Lattice {
+        int faceSize;
+        std::uint32_t numFaces;
+        std::uint32_t firstIndex;
+        std::uint32_t firstOutput; ///< behind the sources
+        std::uint32_t numOrbits;
+        std::uint32_t numPairs;     ///< of orbits, these first
+        std::vector<float> weights; ///< of each orbit those of AddOrbitWeights
+    };
+    static constexpr std::uint32_t kNoVertex = 0xffffffffu;
+
     /// Faces of one kind that have a mask in common.
     struct Set {
         std::uint32_t count = 0;
@@ -54,11 +69,15 @@ struct DeviceLimit {
     struct OfLevel {
         Set fVertices; ///< none of the last level
         Set ownVertices;
+        std::uint32_t firstVertex; ///< those whose limit is a sum of vertices of this level
+        std::uint32_t numVertices;
     };
+    std::vector<Lattice> lattices;
+    std::vector<std::uint32_t> latticeIndices;
     std::vector<OfLevel> levels; ///< from 0 to the last one
     std::vector<DeviceRegularFace> regularFaces;
     std::vector<DeviceOwnFace> ownFaces;
-    std::vector<DeviceLimitVertex> vertices; ///< those that no face makes
+    std::vector<DeviceLimitVertex> vertices; ///< those that no face makes, by level
     std::vector<std::uint32_t> sources;      ///< of these, the indices
     std::vector<float> weights;
 };

@@ -43,3 +43,12 @@ PARAMETER(uint, addsInTurn)    // the three F-vertices of a vertex; else the las
 PARAMETER(uint, hasDerivatives)
 
 PARAMETER_ARRAY(float, regularWeights, 54) // RegularLimitWeights, in their order
+
+// Lattice faces, and how many floats of an element are made: an invocation makes one of a face.
+PARAMETER(uint, numFaces)
+PARAMETER(uint, numFloats)
+// Their orbits that are made together, and how many of them, the first ones, are pairs.
+PARAMETER(uint, numOrbits)
+PARAMETER(uint, numPairs)
+PARAMETER(PLACE, firstOutput)               // position in indices of the first orbit's vertices
+PARAMETER_ARRAY(float, latticeWeights, 520) // those of AddOrbitWeights, for up to 4 orbits

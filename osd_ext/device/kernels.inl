@@ -13,7 +13,7 @@
 //   REFERENCE(type)      the type of an argument that the function changes, or that is large
 //   PRECISE              what keeps a compiler from other sums
 //   LENGTH               floats of an element
-//   SIZE                 vertices of the faces of a run, for makeFVerticesOfRun
+//   SIZE                 vertices of the faces, for makeFVerticesOfRun and makeLatticeLimit
 //
 // Kernels are functions of the number of an invocation, called where that is less than count.  Sums
 // are in the order of RefinementEvaluator's wherever most vertices are; products and sums are rounded
@@ -67,14 +67,16 @@ FUNCTION void addTo(REFERENCE(Element) sum, float weight, Element e) {
     }
 }
 
-FUNCTION Element getSource(uint i) {
+// Source i of those that lie so far apart.
+FUNCTION Element getElement(PLACE offset, PLACE stride, uint i) {
     Element e;
-    PLACE place = sourceOffset + PLACE(i) * sourceStride;
+    PLACE place = offset + PLACE(i) * stride;
     for (int k = 0; k < LENGTH; ++k) {
         e.x[k] = READ(sources, place + PLACE(k));
     }
     return e;
 }
+FUNCTION Element getSource(uint i) { return getElement(sourceOffset, sourceStride, i); }
 FUNCTION Element getFVertex(uint corner) {
     Element e;
     PLACE place = resultOffset + PLACE(firstFVertex + corner) * resultStride;

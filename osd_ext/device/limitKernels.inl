@@ -229,6 +229,265 @@ FUNCTION void makeOwnLimit(uint i) {
     makeLimitsOfFace(of, vert, false);
 }
 
+// Lattice faces: the arithmetic of latticeKernelTemplate.h.
+
+// The waves of an orbit around the face stand in a Six: the mean, what alternates with 4 and 6 corners,
+// then cosine and sine of each frequency.
+FUNCTION int getNumSingleWaves() { return SIZE % 2 == 0 ? 2 : 1; }
+FUNCTION int getNumFrequencies() { return (SIZE - 1) / 2; }
+// Orbits of sources, as LatticeOrbits has them: those on axes and the sums of pairs, and differences.
+FUNCTION int getNumAxes() { return SIZE == 4 ? 2 : 3; }
+FUNCTION int getNumDifferences() { return SIZE == 6 ? 2 : 3; }
+FUNCTION int getNumSums() { return getNumAxes() + getNumDifferences(); }
+
+// That of 60 degrees.
+FUNCTION float getSine() { return 0.86602540378443864676f; }
+
+FUNCTION Six findLatticeWaves(Six at) {
+    Six waves;
+    if (SIZE == 3) {
+        float sum = add(at.x[1], at.x[2]);
+        waves.x[0] = add(at.x[0], sum);
+        waves.x[1] = addProduct(at.x[0], -0.5f, sum);
+        waves.x[2] = multiply(getSine(), add(at.x[2], -at.x[1]));
+    } else if (SIZE == 4) {
+        float even = add(at.x[0], at.x[2]);
+        float odd = add(at.x[1], at.x[3]);
+        waves.x[0] = add(even, odd);
+        waves.x[1] = add(even, -odd);
+        waves.x[2] = add(at.x[0], -at.x[2]);
+        waves.x[3] = add(at.x[3], -at.x[1]);
+    } else {
+        Waves of = findWavesOfCorners(at);
+        waves.x[0] = of.mean;
+        waves.x[1] = of.alternating;
+        waves.x[2] = of.cosine1;
+        waves.x[3] = multiply(-getSine(), of.sine1);
+        waves.x[4] = of.cosine2;
+        waves.x[5] = multiply(-getSine(), of.sine2);
+    }
+    return waves;
+}
+
+FUNCTION Six findLatticeValues(Six waves) {
+    Six at;
+    if (SIZE == 3) {
+        float rest = addProduct(waves.x[0], -0.5f, waves.x[1]);
+        at.x[0] = add(waves.x[0], waves.x[1]);
+        at.x[1] = addProduct(rest, -getSine(), waves.x[2]);
+        at.x[2] = addProduct(rest, getSine(), waves.x[2]);
+    } else if (SIZE == 4) {
+        float even = add(waves.x[0], waves.x[1]);
+        float odd = add(waves.x[0], -waves.x[1]);
+        at.x[0] = add(even, waves.x[2]);
+        at.x[1] = add(odd, -waves.x[3]);
+        at.x[2] = add(even, -waves.x[2]);
+        at.x[3] = add(odd, waves.x[3]);
+    } else {
+        Waves of;
+        of.mean = waves.x[0];
+        of.alternating = waves.x[1];
+        of.cosine1 = waves.x[2];
+        of.sine1 = multiply(-getSine(), waves.x[3]);
+        of.cosine2 = waves.x[4];
+        of.sine2 = multiply(-getSine(), waves.x[5]);
+        at = addWaves(of);
+    }
+    return at;
+}
+
+// The vertices of all sources of a face, by place.
+struct LatticePlaces {
+    uint verts[42];
+};
+// The waves of the sources: getNumSums() of them, then getNumDifferences(), which are turned by a quarter.
+struct LatticeSources {
+    Six waves[9];
+};
+
+FUNCTION Six getOrbit(REFERENCE(LatticePlaces) places, int orbit, uint k) {
+    Six at;
+    for (int corner = 0; corner < SIZE; ++corner) {
+        at.x[corner] = getSourceFloat(places.verts[orbit * SIZE + corner], k);
+    }
+    return at;
+}
+
+FUNCTION void findLatticeSources(REFERENCE(LatticePlaces) places, uint k,
+                                 REFERENCE(LatticeSources) of) {
+    for (int i = 0; i < getNumAxes(); ++i) {
+        of.waves[i] = findLatticeWaves(getOrbit(places, i, k));
+    }
+    for (int i = 0; i < getNumDifferences(); ++i) {
+        Six first = getOrbit(places, getNumAxes() + 2 * i, k);
+        Six second = getOrbit(places, getNumAxes() + 2 * i + 1, k);
+        Six sum;
+        Six difference;
+        for (int corner = 0; corner < SIZE; ++corner) {
+            sum.x[corner] = add(first.x[corner], second.x[corner]);
+            difference.x[corner] = add(first.x[corner], -second.x[corner]);
+        }
+        of.waves[getNumAxes() + i] = findLatticeWaves(sum);
+        Six waves = findLatticeWaves(difference);
+        for (int j = 0; j < getNumFrequencies(); ++j) {
+            int cosine = getNumSingleWaves() + 2 * j;
+            float sine = waves.x[cosine + 1];
+            waves.x[cosine + 1] = waves.x[cosine];
+            waves.x[cosine] = -sine;
+        }
+        of.waves[getNumSums() + i] = waves;
+    }
+}
+
+// An output of both orbits of a pair.
+struct PairOfSixes {
+    Six first;
+    Six second;
+};
+
+// Output number sum, of three, of the pair whose weights begin at first.
+FUNCTION PairOfSixes weighLattice(REFERENCE(LatticeSources) of, int first, int sum) {
+    Six even;
+    Six odd;
+    int numAll = getNumSums() + getNumDifferences();
+    for (int wave = 0; wave < getNumSingleWaves(); ++wave) {
+        int at = first + 3 * numAll * wave + sum;
+        even.x[wave] = multiply(latticeWeights[at], of.waves[0].x[wave]);
+        for (int i = 1; i < getNumSums(); ++i) {
+            even.x[wave] =
+                addProduct(even.x[wave], latticeWeights[at + 3 * i], of.waves[i].x[wave]);
+        }
+        at = at + 3 * getNumSums();
+        odd.x[wave] = multiply(latticeWeights[at], of.waves[getNumSums()].x[wave]);
+        for (int i = 1; i < getNumDifferences(); ++i) {
+            odd.x[wave] = addProduct(odd.x[wave], latticeWeights[at + 3 * i],
+                                     of.waves[getNumSums() + i].x[wave]);
+        }
+    }
+    for (int i = 0; i < getNumFrequencies(); ++i) {
+        int cosine = getNumSingleWaves() + 2 * i;
+        int sine = cosine + 1;
+        int at = first + 3 * numAll * cosine + 2 * sum;
+        even.x[cosine] = multiply(latticeWeights[at], of.waves[0].x[cosine]);
+        even.x[sine] = multiply(latticeWeights[at], of.waves[0].x[sine]);
+        odd.x[sine] = multiply(latticeWeights[at + 1], of.waves[0].x[cosine]);
+        odd.x[cosine] = multiply(latticeWeights[at + 1], of.waves[0].x[sine]);
+        for (int j = 1; j < numAll; ++j) {
+            at = at + 6;
+            even.x[cosine] =
+                addProduct(even.x[cosine], latticeWeights[at], of.waves[j].x[cosine]);
+            even.x[sine] = addProduct(even.x[sine], latticeWeights[at], of.waves[j].x[sine]);
+            odd.x[sine] =
+                addProduct(odd.x[sine], latticeWeights[at + 1], of.waves[j].x[cosine]);
+            odd.x[cosine] =
+                addProduct(odd.x[cosine], latticeWeights[at + 1], of.waves[j].x[sine]);
+        }
+    }
+    Six halfSum = findLatticeValues(even);
+    Six halfDifference = findLatticeValues(odd);
+    PairOfSixes result;
+    for (int corner = 0; corner < SIZE; ++corner) {
+        float inMirror = halfDifference.x[(SIZE - corner) % SIZE];
+        result.first.x[corner] = add(halfSum.x[corner], inMirror);
+        result.second.x[corner] = add(halfSum.x[corner], -inMirror);
+    }
+    return result;
+}
+
+// The vertices of the orbits of a face that are made together, those of a pair in a row.
+struct LatticeOutputs {
+    uint verts[48];
+};
+// Where nothing is made: another face makes the vertex, or the orbit lies on an axis.
+FUNCTION uint getNoVertex() { return 0xffffffffu; }
+
+// Parameters are read before the branch: Mesa's drivers for processors read them in each.
+FUNCTION void storePoints(REFERENCE(LatticeOutputs) outputs, int first, uint k, Six point) {
+    for (int corner = 0; corner < SIZE; ++corner) {
+        uint vert = outputs.verts[first + corner];
+        PLACE place = resultOffset + PLACE(vert) * resultStride + PLACE(k);
+        if (vert != getNoVertex()) {
+            results[place] = point.x[corner];
+        }
+    }
+}
+FUNCTION void storeDerivatives(REFERENCE(LatticeOutputs) outputs, int first, uint k, Six du,
+                               Six dv) {
+    for (int corner = 0; corner < SIZE; ++corner) {
+        uint vert = outputs.verts[first + corner];
+        PLACE ofDu = duOffset + PLACE(vert) * duStride + PLACE(k);
+        PLACE ofDv = dvOffset + PLACE(vert) * dvStride + PLACE(k);
+        if (vert != getNoVertex()) {
+            duResults[ofDu] = du.x[corner];
+            dvResults[ofDv] = dv.x[corner];
+        }
+    }
+}
+
+FUNCTION int getNumLatticeWeights() {
+    return 3 * (getNumSums() + getNumDifferences()) *
+               (getNumSingleWaves() + 2 * getNumFrequencies()) +
+           4;
+}
+
+// Float k of orbit number i.  Behind the last one weights are of no orbit, and nothing is stored.
+FUNCTION void makeOrbit(REFERENCE(LatticeSources) of, REFERENCE(LatticeOutputs) outputs, int i,
+                        uint k) {
+    int first = getNumLatticeWeights() * i;
+    PairOfSixes point = weighLattice(of, first, 0);
+    storePoints(outputs, 2 * SIZE * i, k, point.first);
+    storePoints(outputs, 2 * SIZE * i + SIZE, k, point.second);
+    if (hasDerivatives != 0u) {
+        PairOfSixes du = weighLattice(of, first, 1);
+        PairOfSixes dv = weighLattice(of, first, 2);
+        int ofDerivatives = first + getNumLatticeWeights() - 4;
+        for (int corner = 0; corner < SIZE; ++corner) {
+            float u = du.second.x[corner];
+            float v = dv.second.x[corner];
+            du.second.x[corner] = addProduct(multiply(latticeWeights[ofDerivatives + 1], v),
+                                             latticeWeights[ofDerivatives], u);
+            dv.second.x[corner] = addProduct(multiply(latticeWeights[ofDerivatives + 3], v),
+                                             latticeWeights[ofDerivatives + 2], u);
+        }
+        storeDerivatives(outputs, 2 * SIZE * i, k, du.first, dv.first);
+        storeDerivatives(outputs, 2 * SIZE * i + SIZE, k, du.second, dv.second);
+    }
+}
+
+// One float of up to four orbits of a lattice face, whose indices stand place after place, of all faces in
+// turn.  With all floats, Mesa's drivers for processors would compile for half a minute.
+FUNCTION void makeLatticeLimit(uint i) {
+    uint face = i / numFloats;
+    uint k = i - face * numFloats;
+    LatticePlaces places;
+    for (int orbit = 0; orbit < getNumAxes() + 2 * getNumDifferences(); ++orbit) {
+        for (int corner = 0; corner < SIZE; ++corner) {
+            int number = orbit * SIZE + corner;
+            places.verts[number] =
+                READ(indices, firstIndex + PLACE(number) * PLACE(numFaces) + PLACE(face));
+        }
+    }
+    LatticeOutputs outputs;
+    PLACE place = firstOutput + PLACE(face);
+    for (int orbit = 0; orbit < 8; ++orbit) {
+        bool isThere = uint(orbit / 2) < (orbit % 2 == 0 ? numOrbits : numPairs);
+        for (int corner = 0; corner < SIZE; ++corner) {
+            uint vert = getNoVertex();
+            if (isThere) {
+                vert = READ(indices, place);
+                place = place + PLACE(numFaces);
+            }
+            outputs.verts[orbit * SIZE + corner] = vert;
+        }
+    }
+    LatticeSources of;
+    findLatticeSources(places, k, of);
+    makeOrbit(of, outputs, 0, k);
+    makeOrbit(of, outputs, 1, k);
+    makeOrbit(of, outputs, 2, k);
+    makeOrbit(of, outputs, 3, k);
+}
+
 // The limit of a DeviceLimitVertex.
 FUNCTION void makeListedLimit(uint i) {
     PLACE place = firstIndex + PLACE(4) * PLACE(i);
@@ -239,11 +498,15 @@ FUNCTION void makeListedLimit(uint i) {
     Element point = getZero();
     Element du = getZero();
     Element dv = getZero();
+    // Parameters are read before the loop: see storeLattice.
+    PLACE offset = sourceOffset;
+    PLACE stride = sourceStride;
+    bool isAll = hasDerivatives != 0u;
     for (uint j = 0u; j < numSources; ++j) {
-        Element e = getSource(READ(indices, next + PLACE(j)));
+        Element e = getElement(offset, stride, READ(indices, next + PLACE(j)));
         PLACE weight = first + PLACE(3) * PLACE(j);
         addTo(point, READ(weights, weight), e);
-        if (hasDerivatives != 0u) {
+        if (isAll) {
             addTo(du, READ(weights, weight + PLACE(1)), e);
             addTo(dv, READ(weights, weight + PLACE(2)), e);
         }

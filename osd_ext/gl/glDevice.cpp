@@ -27,7 +27,7 @@ constexpr std::int64_t kMaxBytes = std::int64_t(1) << 31;
 constexpr char const *kNames[] = {
     "copyElement",       "makeFVerticesOfRun", "makeFVerticesOfFace", "makeFVerticesByWeights",
     "makeListedFVertex", "makeVVertexOfRun",   "makeListedVVertex",   "makeRegularLimit",
-    "makeOwnLimit",      "makeListedLimit",    "makeTriangles"};
+    "makeOwnLimit",      "makeLatticeLimit",   "makeListedLimit",     "makeTriangles"};
 
 // What stands before the kernels, behind LENGTH and SIZE: see kernels.inl.  What is read alone may be
 // TEXTURES.

@@ -10,14 +10,11 @@ namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
 using FarExt::Status;
-using FarExt::internal::LatticeFaces;
-using FarExt::internal::LatticePatch;
+using FarExt::internal::LimitOrigins;
 using FarExt::internal::LimitRow;
 using FarExt::internal::LimitRows;
-using FarExt::internal::PlainNeighborhoodGatherer;
 using FarExt::internal::RegularFace;
 using FarExt::internal::RegularFaces;
-using FarExt::internal::RegularVertices;
 
 namespace {
 
@@ -27,10 +24,6 @@ constexpr Index kRange = 256;
 // Vertices among which groups of a type are looked for: few enough for what they depend on to stay in
 // the cache, and enough for groups to be full.
 constexpr std::size_t kWindow = 8192;
-
-// Sources of a row that are gathered again.
-constexpr int kMaxSources =
-    std::max(LatticePatch::kMaxPlaces, PlainNeighborhoodGatherer::kNumRegular);
 
 // Sets the places of a group's sources.
 void setPlaces(VertexGroup const &group, int member, LimitRow const &row, std::uint32_t *places) {
@@ -44,45 +37,18 @@ void setPlaces(VertexGroup const &group, int member, LimitRow const &row, std::u
 
 Status PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
                               FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows) {
+    LimitOrigins origins(mesh, rows);
+    Status const result = origins.Find(schemeOptions);
+    if (!result.IsOk()) {
+        return result;
+    }
+    _lattice.Prepare(origins.GetLatticeFaces());
     int const last = rows.GetLevel().depth;
-    LatticeFaces latticeFaces(mesh, last);
-    Status result = latticeFaces.FindMasks(schemeOptions, rows);
-    if (!result.IsOk()) {
-        return result;
-    }
-    _lattice.Prepare(latticeFaces);
-    RegularFaces regularFaces(mesh, last, latticeFaces.GetMarks());
-    result = regularFaces.FindMasks(schemeOptions, rows);
-    if (!result.IsOk()) {
-        return result;
-    }
-    RegularVertices const regularVertices(mesh, schemeOptions, rows, regularFaces.GetOthers());
-    std::vector<RegularFaces::OfLevel> const &levels = regularFaces.GetLevels();
-    for (std::size_t i = 0; i < levels.size(); ++i) {
+    for (int i = 0; i <= last; ++i) {
         LevelLimit &ofLevel = _levels.emplace_back();
-        ofLevel.level = &mesh.levels[i];
-        prepareFaces(levels[i], ofLevel);
-        if (int(i) < last) {
-            std::vector<Index> verts = regularVertices.GetVertices(int(i));
-            std::vector<Index> const &ofLattice = latticeFaces.GetVertices();
-            auto const isOfLattice = [&](Index vert) {
-                return i == 0 && std::binary_search(ofLattice.begin(), ofLattice.end(), vert);
-            };
-            if (i == 0) {
-                verts.insert(verts.end(), ofLattice.begin(), ofLattice.end());
-            }
-            prepareVertices(
-                verts,
-                [&](Index vert, Index *sources) {
-                    return isOfLattice(vert) ? latticeFaces.GetRow(vert, sources)
-                                             : regularVertices.GetRow(int(i), vert, sources);
-                },
-                ofLevel);
-        } else {
-            prepareVertices(
-                regularVertices.GetOthers(),
-                [&](Index vert, Index *sources) { return rows.GetRow(vert, 0, sources); }, ofLevel);
-        }
+        ofLevel.level = &mesh.levels[std::size_t(i)];
+        prepareFaces(origins.GetFaces()[std::size_t(i)], ofLevel);
+        prepareVertices(origins, ofLevel);
     }
     return result;
 }
@@ -116,10 +82,9 @@ void PreparedLimit::prepareFaces(RegularFaces::OfLevel const &faces, LevelLimit 
     }
 }
 
-// readRow(vert, sources) gives the row of a vertex, with room for kMaxSources sources.
-template <typename READ_ROW>
-void PreparedLimit::prepareVertices(std::vector<Index> const &verts, READ_ROW readRow,
-                                    LevelLimit &result) {
+void PreparedLimit::prepareVertices(LimitOrigins const &origins, LevelLimit &result) {
+    int const level = result.level->depth;
+    std::vector<Index> const verts = origins.GetVertices(level);
     struct Other {
         Index vert;
         int numSources;
@@ -128,9 +93,9 @@ void PreparedLimit::prepareVertices(std::vector<Index> const &verts, READ_ROW re
     std::vector<Other> others;
     others.reserve(verts.size());
     std::unordered_map<double const *, std::size_t> firstWeights; // of the types, by their weights
-    Index sources[kMaxSources];
+    Index sources[LimitOrigins::kMaxSources];
     for (Index const vert : verts) {
-        LimitRow const row = readRow(vert, sources);
+        LimitRow const row = origins.GetRow(level, vert, sources);
         // The sides of a vertex share the weights of its point.
         auto const [found, isNew] = firstWeights.try_emplace(row.du, _weights.size());
         for (int i = 0; i < row.size && isNew; ++i) {
@@ -163,11 +128,12 @@ void PreparedLimit::prepareVertices(std::vector<Index> const &verts, READ_ROW re
     FarExt::internal::ParallelForRange(
         Index(result.vertexGroups.size()), [] { return FarExt::internal::Nothing(); },
         [&](FarExt::internal::Nothing, Index begin, Index end) {
-            Index ofVertex[kMaxSources];
+            Index ofVertex[LimitOrigins::kMaxSources];
             for (Index i = begin; i < end; ++i) {
                 VertexGroup const &group = result.vertexGroups[std::size_t(i)];
                 for (int k = 0; k < VertexGroup::kSize; ++k) {
-                    setPlaces(group, k, readRow(group.verts[k], ofVertex), result.places.data());
+                    setPlaces(group, k, origins.GetRow(level, group.verts[k], ofVertex),
+                              result.places.data());
                 }
             }
         },

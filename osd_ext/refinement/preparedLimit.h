@@ -5,9 +5,7 @@
 #include "latticeLimit.h"
 #include "limitKernel.h"
 
-#include "far_ext/limit/limitRows.h"
-#include "far_ext/limit/regularFaces.h"
-#include "far_ext/limit/regularVertices.h"
+#include "far_ext/limit/limitOrigins.h"
 
 #include <cstdint>
 #include <vector>
@@ -78,9 +76,7 @@ private:
 
     static void prepareFaces(FarExt::internal::RegularFaces::OfLevel const &faces,
                              LevelLimit &result);
-    template <typename READ_ROW>
-    void prepareVertices(std::vector<Far::Index> const &verts, READ_ROW readRow,
-                         LevelLimit &result);
+    void prepareVertices(FarExt::internal::LimitOrigins const &origins, LevelLimit &result);
     void evaluateFaces(LevelLimit const &ofLevel, LimitTask const &common);
 
     static LimitTask makeTask(Elements<float const> values, bool isReadBehind, int length,

@@ -11,7 +11,9 @@
 #include "osd_ext/refinementEvaluator.h"
 #include "osd_ext/triangleIndices.h"
 #include "regression/shapes/featureShapes.h"
+#include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
 
 #include <gtest/gtest.h>
 
@@ -58,6 +60,21 @@ MakeRefiner(Shape const &shape, int level, Sdc::Options::VtxBoundaryInterpolatio
         throw std::runtime_error(shape.name + ": " + status.GetMessage());
     }
     return refiner;
+}
+
+/// Tori of lattice faces, of quads, triangles and hexagons: of these alone, and around a sharp vertex.
+inline std::vector<Shape> GetLatticeShapes() {
+    Shape const triangles = MakeTorus(9, 8, TorusFaces::Triangles);
+    std::vector<Shape> shapes = {MakeTorus(9, 8, TorusFaces::Quads), triangles,
+                                 MakeDual("hexagons", triangles)};
+    for (std::size_t i = 0; i < 3; ++i) {
+        Shape shape = shapes[i];
+        shape.name += " with a sharp vertex";
+        shape.cornerVertices = {30};
+        shape.cornerSharpness = {1.5f};
+        shapes.push_back(shape);
+    }
+    return shapes;
 }
 
 /// Names tests after what runs the kernels.
@@ -254,6 +271,22 @@ TYPED_TEST_P(DeviceEvaluator, GivesTheLimitOfEveryLevelAndLength) {
     }
 }
 
+// Lattice faces make all vertices in them from level 0.
+TYPED_TEST_P(DeviceEvaluator, GivesTheLimitInLatticeFaces) {
+    for (Shape const &shape : GetLatticeShapes()) {
+        SCOPED_TRACE(shape.name);
+        bool const isSharp = !shape.cornerVertices.empty();
+        FarExt::HexSchemeOptions schemeOptions;
+        schemeOptions.faceMask = isSharp ? FarExt::FaceMask::Smooth : FarExt::FaceMask::Average;
+        auto const refiner =
+            MakeRefiner(shape, 3, Sdc::Options::VTX_BOUNDARY_NONE, schemeOptions, true);
+        for (int level = 1; level <= 3; ++level) {
+            ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, level, 3));
+        }
+        ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, 3, isSharp ? 1 : 5));
+    }
+}
+
 TYPED_TEST_P(DeviceEvaluator, RefusesLimitsAsTheCpu) {
     Osd::BufferDescriptor const desc(0, 3, 3);
     auto const buffer = this->makeBlank(3 * 1000, 3);
@@ -346,6 +379,24 @@ TYPED_TEST_P(DeviceEvaluator, TakesRunsOfEveryFaceSize) {
     }
 }
 
+// What an evaluator keeps of the limit in lattice faces.
+TYPED_TEST_P(DeviceEvaluator, KeepsFewBytesOfLatticeFaces) {
+    for (Shape const &shape : GetLatticeShapes()) {
+        if (!shape.cornerVertices.empty()) {
+            continue;
+        }
+        SCOPED_TRACE(shape.name);
+        auto const refiner = MakeRefiner(shape, 4, Sdc::Options::VTX_BOUNDARY_NONE, {}, true);
+        auto const evaluator = TypeParam::Evaluator::Create(*refiner, {});
+        std::int64_t const numBytes = evaluator->GetNumDeviceBytes();
+        Osd::BufferDescriptor const desc(0, 1, 1);
+        auto const src = this->makeBlank(std::size_t(evaluator->GetNumElements(0)), 1);
+        auto const dst = this->makeBlank(std::size_t(evaluator->GetNumElements(4)), 1);
+        ASSERT_TRUE(evaluator->EvaluateLimit(src.get(), desc, dst.get(), desc, 4));
+        EXPECT_LE(evaluator->GetNumDeviceBytes() - numBytes, 5 * evaluator->GetNumElements(4));
+    }
+}
+
 // Long runs of faces and vertices, and what an evaluator keeps of them.
 TYPED_TEST_P(DeviceEvaluator, KeepsFewBytesOfLargeLevels) {
     auto const refiner =
@@ -422,10 +473,13 @@ TYPED_TEST_P(DeviceEvaluator, IsEvaluatedInPlace) {
 TYPED_TEST_P(DeviceEvaluator, GivesTheBitsOfTheKernelsOnTheProcessor) {
     constexpr int kLength = 3;
     Osd::BufferDescriptor const desc(0, kLength, kLength);
+    std::vector<Shape> shapes = GetLatticeShapes();
     for (Shape const &shape : GetAllShapes()) {
-        if (shape.GetNumFaces() > 100) {
-            continue;
+        if (shape.GetNumFaces() <= 100) {
+            shapes.push_back(shape);
         }
+    }
+    for (Shape const &shape : shapes) {
         SCOPED_TRACE(shape.name);
         FarExt::HexSchemeOptions schemeOptions;
         schemeOptions.faceMask = FarExt::FaceMask::Smooth;
@@ -489,9 +543,10 @@ TYPED_TEST_P(DeviceEvaluator, MakesTheTrianglesOfTheCpu) {
 }
 
 REGISTER_TYPED_TEST_SUITE_P(DeviceEvaluator, GivesTheValuesOfTheCpu, GivesTheLimitOfTheCpu,
-                            GivesTheLimitOfEveryLevelAndLength, RefusesLimitsAsTheCpu,
-                            TakesEveryLengthMaskSchemeAndMode, TakesEveryFirstStep,
-                            TakesRunsOfEveryFaceSize, KeepsFewBytesOfLargeLevels,
+                            GivesTheLimitOfEveryLevelAndLength, GivesTheLimitInLatticeFaces,
+                            RefusesLimitsAsTheCpu, TakesEveryLengthMaskSchemeAndMode,
+                            TakesEveryFirstStep, TakesRunsOfEveryFaceSize,
+                            KeepsFewBytesOfLatticeFaces, KeepsFewBytesOfLargeLevels,
                             GivesMostBitsOfTheCpu, IsEvaluatedInPlace,
                             GivesTheBitsOfTheKernelsOnTheProcessor, MakesTheTrianglesOfTheCpu);
 

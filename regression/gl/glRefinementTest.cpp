@@ -85,10 +85,14 @@ TEST_F(GlRefinement, GivesTheSameBitsFromArraysAsFromTextures) {
     Descriptor const desc(0, kLength, kLength);
     FarExt::HexSchemeOptions schemeOptions;
     schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+    std::vector<Shape> shapes = GetLatticeShapes();
     for (char const *const name : {"cube", "icosahedron", "torus"}) {
-        SCOPED_TRACE(name);
-        auto const refiner = MakeRefiner(GetShape(name), kLevel,
-                                         Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions, true);
+        shapes.push_back(GetShape(name));
+    }
+    for (Shape const &shape : shapes) {
+        SCOPED_TRACE(shape.name);
+        auto const refiner =
+            MakeRefiner(shape, kLevel, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions, true);
         auto const evaluate = [&] {
             auto const evaluator = GLRefinementEvaluator::Create(*refiner);
             std::vector<float> const blank(std::size_t(evaluator->GetNumElements(kLevel)) * kLength,
