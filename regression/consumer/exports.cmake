@@ -6,7 +6,7 @@
 # and of what is internal no more than the inline code of public headers and other layers call.
 set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report SortUnique
   RefinementMask TruncationMask PrimvarRows PrimvarLimitRows
-  LimitRows CheckLimitLevel LatticePatch LatticeFaces PlainFaces
+  LimitRows CheckLimitLevel LimitOrigins LatticePatch LatticeFaces PlainFaces
   RegularFaces RegularFaceMask RegularFaceRows RegularVertices
   FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
   FindCornerLimits PatchRefinement MarkFeatures StepRowBack MakePlainBaseCell IndexMap
