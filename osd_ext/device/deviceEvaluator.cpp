@@ -219,8 +219,7 @@ void DeviceEvaluator::Frame::Wait() {
 
 Status DeviceEvaluator::Frame::Run(Device &device) const {
     for (Step const &step : _steps) {
-        Status const status =
-            device.Prepare(step.task.kernel, step.task.length, step.task.faceSize);
+        Status status = device.Prepare(step.task.kernel, step.task.length, step.task.faceSize);
         if (!status.IsOk()) {
             return status;
         }

@@ -38,7 +38,7 @@ void setPlaces(VertexGroup const &group, int member, LimitRow const &row, std::u
 Status PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
                               FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows) {
     LimitOrigins origins(mesh, rows);
-    Status const result = origins.Find(schemeOptions);
+    Status result = origins.Find(schemeOptions);
     if (!result.IsOk()) {
         return result;
     }
