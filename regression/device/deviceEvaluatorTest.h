@@ -285,6 +285,7 @@ TYPED_TEST_P(DeviceEvaluator, GivesTheLimitInLatticeFaces) {
         }
         ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, 3, isSharp ? 1 : 5));
     }
+    this->RecordProperty("largestDifferenceInUnits", std::to_string(this->largest));
 }
 
 TYPED_TEST_P(DeviceEvaluator, RefusesLimitsAsTheCpu) {
