@@ -498,7 +498,7 @@ FUNCTION void makeListedLimit(uint i) {
     Element point = getZero();
     Element du = getZero();
     Element dv = getZero();
-    // Parameters are read before the loop: see storeLattice.
+    // Parameters are read before the loop: see storePoints().
     PLACE offset = sourceOffset;
     PLACE stride = sourceStride;
     bool isAll = hasDerivatives != 0u;
