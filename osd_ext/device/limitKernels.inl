@@ -374,13 +374,10 @@ FUNCTION PairOfSixes weighLattice(REFERENCE(LatticeSources) of, int first, int s
         odd.x[cosine] = multiply(latticeWeights[at + 1], of.waves[0].x[sine]);
         for (int j = 1; j < numAll; ++j) {
             at = at + 6;
-            even.x[cosine] =
-                addProduct(even.x[cosine], latticeWeights[at], of.waves[j].x[cosine]);
+            even.x[cosine] = addProduct(even.x[cosine], latticeWeights[at], of.waves[j].x[cosine]);
             even.x[sine] = addProduct(even.x[sine], latticeWeights[at], of.waves[j].x[sine]);
-            odd.x[sine] =
-                addProduct(odd.x[sine], latticeWeights[at + 1], of.waves[j].x[cosine]);
-            odd.x[cosine] =
-                addProduct(odd.x[cosine], latticeWeights[at + 1], of.waves[j].x[sine]);
+            odd.x[sine] = addProduct(odd.x[sine], latticeWeights[at + 1], of.waves[j].x[cosine]);
+            odd.x[cosine] = addProduct(odd.x[cosine], latticeWeights[at + 1], of.waves[j].x[sine]);
         }
     }
     Six halfSum = findLatticeValues(even);
