@@ -172,7 +172,7 @@ private:
     bool isBackFacing(std::size_t cell, int numSteps) {
         CellValues const &values = getCell(cell);
         SlopeBounds const *const bounds =
-            values.IsPlainBase() ? nullptr : &SlopeBounds::Find(values.GetType());
+            values.HasSurfaceOfType() ? &SlopeBounds::Find(values.GetType()) : nullptr;
         if ((bounds && bounds->GetNumSteps() > numSteps) || !areCornersBackFacing(cell)) {
             return false;
         }

@@ -98,8 +98,9 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
         RingCell const &cell = *item.rings->cell;
         VertexRings const &rings = item.rings->rings;
         _indices.resize(cell.GetColumns().size());
-        cell.FindIndices(
-            rings.GetCenter(0, 0), [&](int ring) { return rings.GetBlock(ring, 0); },
+        RingStep const step = cell.GetLastStep();
+        cell.GetPlaces().FindIndices(
+            rings.GetCenter(0, 0, step), [&](int ring) { return rings.GetBlock(ring, 0, step); },
             _indices.data());
         _edge = {&cell.GetType(), &cell, _edgeValues.GetPoints(), std::ptrdiff_t(_paddedSize),
                  _indices.data()};
@@ -155,13 +156,15 @@ PlaceMatrix<REAL> const &BorderEvaluator<REAL>::GetLatticeMatrix(CellType const 
 template <typename REAL>
 PlaceMatrix<REAL> BorderEvaluator<REAL>::makeMatrix(CellType const &type, RingCell const *cell,
                                                     std::vector<double> const &points) {
-    PlaceMatrix<REAL> matrix(points.size(), std::size_t(type.GetNumPoints()));
+    PlaceMatrix<REAL> matrix(points.size(),
+                             cell ? cell->GetColumns().size() : std::size_t(type.GetNumPoints()));
+    StencilOf const of = cell && cell->IsInner() ? StencilOf::Step : StencilOf::Points;
     BorderStencil stencil;
     std::vector<double> ordered;
     for (std::size_t place = 0; place < points.size(); ++place) {
-        stencil.Find(type, points[place]);
+        stencil.Find(type, points[place], of);
         if (cell) {
-            cell->Order(stencil.GetWeights(), ordered);
+            cell->GetPlaces().Order(stencil.GetWeights(), ordered);
         }
         matrix.Set(place, cell ? ordered : stencil.GetWeights());
     }

@@ -101,6 +101,29 @@ int FindCellCorner(int faceSize, int sector, Pair const &coords) {
     return corner == std::end(HalfCell::kCorners) ? -1 : int(corner - HalfCell::kCorners);
 }
 
+namespace {
+
+void add(std::vector<double> &sum, double factor, std::vector<double> const &row) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        sum[i] += factor * row[i];
+    }
+}
+
+// Turns weights of what is behind some steps into those of what it is before them, or behind the first.
+void goBack(std::vector<ChildStep const *> const &steps, StencilOf of, std::vector<double> &weights,
+            std::vector<double> &scratch) {
+    for (std::size_t i = steps.size(); i-- > 0;) {
+        if (i == 0 && of == StencilOf::Step) {
+            steps[i]->Spread(weights, scratch);
+        } else {
+            steps[i]->ApplyLeft(weights, scratch);
+        }
+        weights.swap(scratch);
+    }
+}
+
+} // namespace
+
 bool CellStencil::isLast(Place const &place) const {
     return place.depth >= kLastDepth ||
            (place.depth >= kRegularDepth && !place.type->IsWhole() &&
@@ -109,17 +132,18 @@ bool CellStencil::isLast(Place const &place) const {
 
 void CellStencil::addCorner(Place const &place, std::size_t corner, double weight,
                             bool hasDerivatives) {
-    auto const add = [](std::vector<double> &sum, double factor, std::vector<double> const &row) {
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            sum[i] += factor * row[i];
-        }
-    };
     if (!hasDerivatives) {
         add(_weights[0], weight, place.type->GetCornerPoints()[corner]);
         return;
     }
     CellType::Corner const &values = place.type->GetCorners()[corner];
     add(_weights[0], weight, values.point);
+    addDerivatives(place, corner, weight, values.derivatives);
+}
+
+// Of a corner, from those by its coordinates.
+void CellStencil::addDerivatives(Place const &place, std::size_t corner, double weight,
+                                 std::vector<double> const (&derivatives)[2]) {
     Pair toCoords[2] = {place.toCoords[0], place.toCoords[1]};
     if (place.type->IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
@@ -129,8 +153,8 @@ void CellStencil::addCorner(Place const &place, std::size_t corner, double weigh
         }
     }
     for (std::size_t k = 0; k < 2; ++k) {
-        add(_weights[1 + k], weight * toCoords[0][k], values.derivatives[0]);
-        add(_weights[1 + k], weight * toCoords[1][k], values.derivatives[1]);
+        add(_weights[1 + k], weight * toCoords[0][k], derivatives[0]);
+        add(_weights[1 + k], weight * toCoords[1][k], derivatives[1]);
     }
 }
 
@@ -141,8 +165,12 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
         return FindCellCorner(place.type->IsWhole() ? place.type->GetNumCorners() : 0, place.sector,
                               place.coords);
     };
+    // A corner that is there before the step has its derivatives from there.
+    Place const root = place;
+    int const rootCorner = _of == StencilOf::Step && hasDerivatives ? findCorner() : -1;
     int corner = -1;
-    while ((corner = findCorner()) < 0 && !isLast(place)) {
+    while (((corner = findCorner()) < 0 && !isLast(place)) ||
+           (_of == StencilOf::Step && _steps.empty())) {
         CellStep const step = FindCellStep(place.type->IsWhole(), place.sector, place.coords);
         CellMap const *const map = step.map;
         CellType::Child const &next = place.type->GetChildren()[step.child];
@@ -162,6 +190,7 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
         _steps.push_back(&next.step);
     }
 
+    hasDerivatives = hasDerivatives && rootCorner < 0;
     int const numRows = hasDerivatives ? 3 : 1;
     for (int i = 0; i < numRows; ++i) {
         _weights[i].assign(std::size_t(place.type->GetNumPoints()), 0.0);
@@ -183,19 +212,26 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
             addCorner(place, i, weights[i], hasDerivatives);
         }
     }
-    for (auto step = _steps.rbegin(); step != _steps.rend(); ++step) {
-        for (int i = 0; i < numRows; ++i) {
-            (*step)->ApplyLeft(_weights[i], _scratch);
-            _weights[i].swap(_scratch);
-        }
+    for (int i = 0; i < numRows; ++i) {
+        goBack(_steps, _of, _weights[i], _scratch);
+    }
+    if (rootCorner >= 0) {
+        _weights[1].assign(_weights[0].size(), 0.0);
+        _weights[2] = _weights[1];
+        addDerivatives(root, std::size_t(rootCorner), 1,
+                       root.type->GetDerivativesOfStep(rootCorner).rows);
     }
 }
 
-void BorderStencil::Find(CellType const &root, double point) {
+void BorderStencil::Find(CellType const &root, double point, StencilOf of) {
     _steps.clear();
     CellType const *type = &root;
     bool const isVertex = root.GetNumCorners() == 1;
-    for (int depth = 0; !isVertex && point != 0 && point != 1 && depth < kLastDepth; ++depth) {
+    auto const isAtEnd = [&] { return isVertex || point == 0 || point == 1; };
+    for (int depth = 0; depth < kLastDepth; ++depth) {
+        if (isAtEnd() && (of == StencilOf::Points || !_steps.empty())) {
+            break;
+        }
         std::vector<CellType::Child> const &children = type->GetChildren();
         std::size_t child = 0;
         if (children.size() > 1) {
@@ -207,7 +243,7 @@ void BorderStencil::Find(CellType const &root, double point) {
         type = children[child].type;
     }
     std::vector<std::vector<double>> const &ends = type->GetCornerPoints();
-    if (isVertex || point == 0 || point == 1) {
+    if (isAtEnd()) {
         _weights = ends[point == 1 && !isVertex ? 1 : 0];
     } else {
         _weights.resize(ends[0].size());
@@ -215,10 +251,7 @@ void BorderStencil::Find(CellType const &root, double point) {
             _weights[i] = (1 - point) * ends[0][i] + point * ends[1][i];
         }
     }
-    for (auto step = _steps.rbegin(); step != _steps.rend(); ++step) {
-        (*step)->ApplyLeft(_weights, _scratch);
-        _weights.swap(_scratch);
-    }
+    goBack(_steps, of, _weights, _scratch);
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

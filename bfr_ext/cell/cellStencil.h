@@ -39,6 +39,12 @@ CellStep FindCellStep(bool isWhole, int sector, Pair const &coords);
 /// \param faceSize  of a whole cell; 0: of half cells
 int FindCellCorner(int faceSize, int sector, Pair const &coords);
 
+/// What stencils are sums of.
+enum class StencilOf {
+    Points, ///< of a type
+    Step    ///< what the step of the type makes, by row of CellType::GetStep()
+};
+
 /// \brief The stencils of points of a base face and of their derivatives by u and v.
 ///
 /// The cells that have a point are followed until it is a corner of one, or they are so small that
@@ -46,11 +52,12 @@ int FindCellCorner(int faceSize, int sector, Pair const &coords);
 class CellStencil {
 public:
     /// Those of a type of base faces.
-    explicit CellStencil(CellType const &root) : _root(root) {}
+    explicit CellStencil(CellType const &root, StencilOf of = StencilOf::Points)
+        : _root(root), _of(of) {}
 
     void Find(BasePoint const &point, bool hasDerivatives);
 
-    /// By point of the type: weights of the surface's point, and of its derivatives.
+    /// By what they are sums of: weights of the surface's point, and of its derivatives.
     std::vector<double> const &GetWeights() const { return _weights[0]; }
     std::vector<double> const &GetDuWeights() const { return _weights[1]; }
     std::vector<double> const &GetDvWeights() const { return _weights[2]; }
@@ -67,8 +74,11 @@ private:
 
     bool isLast(Place const &place) const;
     void addCorner(Place const &place, std::size_t corner, double weight, bool hasDerivatives);
+    void addDerivatives(Place const &place, std::size_t corner, double weight,
+                        std::vector<double> const (&derivatives)[2]);
 
     CellType const &_root;
+    StencilOf const _of;
     std::vector<ChildStep const *> _steps;
     std::vector<double> _weights[3];
     std::vector<double> _scratch;
@@ -78,9 +88,9 @@ private:
 class BorderStencil {
 public:
     /// \param point  of an edge, from its start, 0, to its end, 1; of no matter for a vertex
-    void Find(CellType const &root, double point);
+    void Find(CellType const &root, double point, StencilOf of = StencilOf::Points);
 
-    /// By point of the type.
+    /// By what they are sums of.
     std::vector<double> const &GetWeights() const { return _weights; }
 
 private:

@@ -216,27 +216,31 @@ CellType::CornerChild CellType::findCornerChild(int corner) const {
     return {std::size_t(child), HalfCell::kCornersOfChildren[corner], &HalfCell::kChildren[child]};
 }
 
+// The derivatives that the cell before the last has.
+//
 // Differences tend to sums of the masks of the tangents, with factors that tend to those of the
 // derivatives; or grow or shrink by a rate that each step makes, where there are no derivatives: then
 // that is taken off.  Where they tend to nothing of the kind, as at some tips of cones, there is no
 // tangent plane, and they are taken as they are.
-void CellType::findParentDerivatives(int corner, Vector (&result)[2]) const {
-    // Sharp features alternate, so that two steps make a rate; those of the parent are one more.
-    constexpr int kSteps = 20;
+CellType::Derivatives CellType::findEarlierDerivatives(int corner) const {
+    // Sharp features alternate, so that two steps make a rate; those of the parent's parent are two more.
+    constexpr int kSteps = 22;
     constexpr int kStepsAlone = 5;
     constexpr double kLeastRate = 1e-4; // of two steps; less is what convergence leaves
+    Derivatives derivatives;
+    Vector(&result)[2] = derivatives.rows;
     GetCornerPoints();
     if (!_tangents.empty()) {
-        findDifferences(corner, kSteps - 1, result);
+        findDifferences(corner, kSteps - 2, result);
     }
     Projection last;
     Projection before;
     if (_tangents.empty() || !last.Find(result, _tangents[std::size_t(corner)])) {
         findDifferences(corner, kStepsAlone, result);
-        return;
+        return derivatives;
     }
     LimitMask::Tangents const &tangents = _tangents[std::size_t(corner)];
-    findDifferences(corner, kSteps - 3, result);
+    findDifferences(corner, kSteps - 4, result);
     before.Find(result, tangents);
     Pair scales;
     for (std::size_t column = 0; column < 2; ++column) {
@@ -250,15 +254,53 @@ void CellType::findParentDerivatives(int corner, Vector (&result)[2]) const {
                            scales[1] * last.factors[k][1] * tangents.dv[i];
         }
     }
+    return derivatives;
 }
 
+// What find(type, corner) gives of the child that has the corner, by the coordinates of this cell.
+//
+// turn(step, sum, result) turns a sum of the child's points to one of others.
+template <typename FIND, typename TURN>
+CellType::Derivatives const &CellType::getDerivatives(PatternOf of, int corner, FIND const &find,
+                                                      TURN const &turn) const {
+    return _patterns.Get<Derivatives>(PatternTable::GetKind<double>(of), &corner, &corner + 1, [&] {
+        CornerChild const next = findCornerChild(corner);
+        Child const &child = GetChildren()[next.child];
+        Derivatives const ofChild = find(*child.type, next.corner);
+        Derivatives result;
+        for (std::size_t k = 0; k < 2; ++k) {
+            turn(child.step, next.map->GetDerivatives(ofChild.rows, k), result.rows[k]);
+        }
+        return result;
+    });
+}
+
+namespace {
+
+void applyLeft(ChildStep const &step, Vector const &sum, Vector &row) { step.ApplyLeft(sum, row); }
+void spread(ChildStep const &step, Vector const &sum, Vector &row) { step.Spread(sum, row); }
+
+} // namespace
+
 CellType::Derivatives const &CellType::GetParentDerivatives(int corner) const {
-    return _patterns.Get<Derivatives>(PatternTable::GetKind<double>(PatternOf::ParentDerivatives),
-                                      &corner, &corner + 1, [&] {
-                                          Derivatives result;
-                                          findParentDerivatives(corner, result.rows);
-                                          return result;
-                                      });
+    auto const find = [](CellType const &child, int ofChild) {
+        return child.findEarlierDerivatives(ofChild);
+    };
+    return getDerivatives(PatternOf::ParentDerivatives, corner, find, applyLeft);
+}
+
+CellType::Derivatives const &CellType::GetParentDerivativesOfStep(int corner) const {
+    auto const find = [](CellType const &child, int ofChild) {
+        return child.findEarlierDerivatives(ofChild);
+    };
+    return getDerivatives(PatternOf::ParentDerivativesOfStep, corner, find, spread);
+}
+
+CellType::Derivatives const &CellType::GetDerivativesOfStep(int corner) const {
+    auto const find = [](CellType const &child, int ofChild) {
+        return child.GetParentDerivatives(ofChild);
+    };
+    return getDerivatives(PatternOf::DerivativesOfStep, corner, find, spread);
 }
 
 CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_t item) const {

@@ -98,6 +98,12 @@ public:
     /// this one and in terms of its points; those of this cell differ where steps make derivatives grow or
     /// shrink.
     Derivatives const &GetParentDerivatives(int corner) const;
+    /// @name The derivatives at a corner, as of GetCorners() and of GetParentDerivatives(), as sums of the
+    /// points that the step makes, by row of GetStep()
+    /// @{
+    Derivatives const &GetDerivativesOfStep(int corner) const;
+    Derivatives const &GetParentDerivativesOfStep(int corner) const;
+    /// @}
 
     /// \brief An edge or a vertex of a base face, with which of the face's points its points are.
     struct BorderItem {
@@ -131,7 +137,10 @@ private:
 
     CornerChild findCornerChild(int corner) const;
     void findDifferences(int corner, int numSteps, std::vector<double> (&result)[2]) const;
-    void findParentDerivatives(int corner, std::vector<double> (&result)[2]) const;
+    Derivatives findEarlierDerivatives(int corner) const;
+    template <typename FIND, typename TURN>
+    Derivatives const &getDerivatives(PatternOf of, int corner, FIND const &find,
+                                      TURN const &turn) const;
 
     CellTypes &_types;
     mutable FarExt::internal::CellPatch _cell; // of vertices, without a patch once it is not needed

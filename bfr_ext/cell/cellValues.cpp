@@ -2,6 +2,7 @@
 #include "cellValues.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -24,6 +25,7 @@ void CellValues::setBase(int numPoints, double const *controlPoints, int length)
     _paddedSize = StepMatrix::GetPaddedSize(std::size_t(length));
     _numPoints = numPoints;
     _isRefined = false;
+    _isInner = false;
     _faceSize = _plain ? GetNumChildren() - 1 : _type->GetNumCorners();
     _points.resize(std::max(_points.size(), std::size_t(numPoints) * _paddedSize));
     for (std::size_t i = 0; i < std::size_t(numPoints); ++i) {
@@ -63,6 +65,7 @@ void CellValues::SetChild(CellValues const &parent, int child) {
     _paddedSize = parent._paddedSize;
     _plain = nullptr;
     _isRefined = false;
+    _isInner = false;
     _faceSize = parent._faceSize;
     auto const grow = [&](int numPoints) {
         _numPoints = numPoints;
@@ -71,17 +74,28 @@ void CellValues::SetChild(CellValues const &parent, int child) {
     if (parent._plain) {
         FaceRings const &face = parent._plain->GetRings();
         RingCell const &cell = face.GetChild(std::size_t(child));
-        std::vector<int> const &columns = cell.GetColumns();
+        auto const copy = [&](std::vector<int> const &columns, std::vector<double> &points) {
+            for (std::size_t i = 0; i < columns.size(); ++i) {
+                double const *const from = &parent._refined[std::size_t(_indices[i]) * _paddedSize];
+                double *const to = &points[std::size_t(columns[i]) * _paddedSize];
+                for (std::size_t k = 0; k < _paddedSize; k += StepMatrix::kPadding) {
+                    std::copy_n(from + k, StepMatrix::kPadding, to + k);
+                }
+            }
+        };
         _type = &cell.GetType();
         grow(_type->GetNumPoints());
-        _indices.resize(columns.size());
-        face.FindChildIndices(std::size_t(child), _indices.data());
-        for (std::size_t i = 0; i < columns.size(); ++i) {
-            double const *const from = &parent._refined[std::size_t(_indices[i]) * _paddedSize];
-            double *const to = &_points[std::size_t(columns[i]) * _paddedSize];
-            for (std::size_t k = 0; k < _paddedSize; k += StepMatrix::kPadding) {
-                std::copy_n(from + k, StepMatrix::kPadding, to + k);
-            }
+        _indices.resize(std::size_t(_numPoints));
+        face.FindChildPoints(std::size_t(child), _indices.data());
+        copy(cell.GetPoints().GetColumns(), _points);
+        if (cell.IsInner()) {
+            std::vector<int> const &columns = cell.GetColumns();
+            _indices.resize(columns.size());
+            face.FindChildIndices(std::size_t(child), _indices.data());
+            _refined.resize(std::max(_refined.size(), columns.size() * _paddedSize));
+            copy(columns, _refined);
+            _isRefined = true;
+            _isInner = true;
         }
     } else {
         CellType::Child const &link = parent._type->GetChildren()[std::size_t(child)];
@@ -113,11 +127,12 @@ void CellValues::findCoords(CellValues const &parent, int child) {
     }
 }
 
-void CellValues::sum(std::vector<double> const &weights, double *result) const {
+void CellValues::sum(std::vector<double> const &weights, std::vector<double> const &points,
+                     double *result) const {
     constexpr std::size_t kLanes = StepMatrix::kPadding;
     auto const length = std::size_t(_length);
     for (std::size_t first = 0; first < length; first += kLanes) {
-        double const *point = _points.data() + first;
+        double const *point = points.data() + first;
         double sums[kLanes] = {};
         for (double const weight : weights) {
             for (std::size_t k = 0; k < kLanes; ++k) {
@@ -130,7 +145,8 @@ void CellValues::sum(std::vector<double> const &weights, double *result) const {
 }
 
 void CellValues::EvaluateCorner(int corner, double *p) const {
-    sum(GetType().GetCornerPoints()[std::size_t(corner)], p);
+    assert(!_isInner);
+    sum(GetType().GetCornerPoints()[std::size_t(corner)], _points, p);
 }
 
 void CellValues::EvaluateCorner(int corner, double *du, double *dv) const {
@@ -152,11 +168,16 @@ void CellValues::EvaluateCorner(int corner, double *du, double *dv) const {
             }
         }
     }
-    CellType::Corner const &values = type.GetCorners()[std::size_t(corner)];
     auto const length = std::size_t(_length);
     _scratch.resize(2 * length);
-    sum(values.derivatives[0], _scratch.data());
-    sum(values.derivatives[1], _scratch.data() + length);
+    for (std::size_t i = 0; i < 2; ++i) {
+        double *const result = _scratch.data() + i * length;
+        if (_isInner) {
+            sum(type.GetDerivativesOfStep(corner).rows[i], _refined, result);
+        } else {
+            sum(type.GetCorners()[std::size_t(corner)].derivatives[i], _points, result);
+        }
+    }
     for (std::size_t k = 0; k < length; ++k) {
         du[k] = toCoords[0][0] * _scratch[k] + toCoords[1][0] * _scratch[length + k];
         dv[k] = toCoords[0][1] * _scratch[k] + toCoords[1][1] * _scratch[length + k];

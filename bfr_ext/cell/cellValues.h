@@ -32,6 +32,8 @@ public:
     CellType const &GetType() const { return _plain ? _plain->Get() : *_type; }
     /// Whether it is a plain base face, whose children alone need types.
     bool IsPlainBase() const { return _plain != nullptr; }
+    /// Whether the surface is what its type makes of the points; of others, that of the children is.
+    bool HasSurfaceOfType() const { return !_plain && !_isInner; }
     int GetNumChildren() const;
     int GetLevel() const { return _level; }
 
@@ -44,7 +46,7 @@ public:
     /// A multiple of StepMatrix::kPadding.
     std::size_t GetPaddedSize() const { return _paddedSize; }
 
-    /// Writes the surface at a corner.
+    /// Writes the surface at a corner, where it is that of the type.
     void EvaluateCorner(int corner, double *p) const;
     /// Writes the derivatives by u and v there.
     void EvaluateCorner(int corner, double *du, double *dv) const;
@@ -53,7 +55,8 @@ private:
     void setBase(int numPoints, double const *controlPoints, int length);
     void refine() const;
     void findCoords(CellValues const &parent, int child);
-    void sum(std::vector<double> const &weights, double *result) const;
+    void sum(std::vector<double> const &weights, std::vector<double> const &points,
+             double *result) const;
 
     CellType const *_type = nullptr;
     PlainFaceType const *_plain = nullptr; // of a base face that is plain, in place of the type
@@ -66,6 +69,7 @@ private:
     Pair _toCoords[2] =
         {}; // of a half cell: the derivatives of its coordinates by those of the sector
     std::vector<double> _points;
+    bool _isInner = false; // refined by rings, with other masks than those of the type
     mutable bool _isRefined = false;
     mutable std::vector<double> _refined; // the points of all children
     std::vector<int> _indices;

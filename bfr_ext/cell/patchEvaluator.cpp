@@ -20,8 +20,15 @@ struct Leaf {
         if (!ringCell) {
             return weights;
         }
-        ringCell->Order(weights, scratch);
+        ringCell->GetPlaces().Order(weights, scratch);
         return scratch;
+    }
+
+    StencilOf GetStencilOf() const {
+        return ringCell && ringCell->IsInner() ? StencilOf::Step : StencilOf::Points;
+    }
+    std::size_t GetNumPoints() const {
+        return ringCell ? ringCell->GetColumns().size() : std::size_t(type.GetNumPoints());
     }
 };
 
@@ -30,8 +37,8 @@ template <typename REAL, std::size_t COUNT, typename FIND, typename GET>
 std::array<PlaceMatrix<REAL>, COUNT> makeMatrices(Leaf const &leaf, FIND const &find,
                                                   GET const &getRow) {
     std::array<PlaceMatrix<REAL>, COUNT> matrices;
-    matrices.fill(PlaceMatrix<REAL>(leaf.places.GetSize(), std::size_t(leaf.type.GetNumPoints())));
-    CellStencil stencil(leaf.type);
+    matrices.fill(PlaceMatrix<REAL>(leaf.places.GetSize(), leaf.GetNumPoints()));
+    CellStencil stencil(leaf.type, leaf.GetStencilOf());
     std::vector<double> scratch;
     for (std::size_t row = 0; row < leaf.places.GetSize(); ++row) {
         find(stencil, leaf.places[row]);
@@ -53,20 +60,42 @@ std::array<PlaceMatrix<REAL>, COUNT> const &getMatrices(PatternOf of, Leaf const
         [&] { return makeMatrices<REAL, COUNT>(leaf, find, getRow); });
 }
 
+// Two places: derivatives, of which getRow(k) gives the rows as of the type.
+template <typename REAL, typename GET>
+PlaceMatrix<REAL> makeDerivatives(RingCell const &cell, GET const &getRow) {
+    PlaceMatrix<REAL> matrix(2, cell.GetColumns().size());
+    std::vector<double> ordered;
+    for (std::size_t k = 0; k < 2; ++k) {
+        cell.GetPlaces().Order(getRow(k), ordered);
+        matrix.Set(k, ordered);
+    }
+    return matrix;
+}
+
 // Of a child beside an edge of a face: the derivatives that the face has at the start of the edge, by the
-// coordinates in the edge's sector, as two places.
+// coordinates in the edge's sector.
 template <typename REAL>
 PlaceMatrix<REAL> const &getFaceDerivatives(RingCell const &child) {
     constexpr int kKind = PatternTable::GetKind<REAL>(PatternOf::FaceCorner);
     return child.GetPatterns().Get<PlaceMatrix<REAL>>(kKind, nullptr, nullptr, [&] {
-        CellType::Derivatives const &derivatives = child.GetType().GetParentDerivatives(0);
-        PlaceMatrix<REAL> matrix(2, child.GetColumns().size());
-        std::vector<double> ordered;
-        for (std::size_t k = 0; k < 2; ++k) {
-            child.Order(HalfCell::kFromSector.GetDerivatives(derivatives.rows, k), ordered);
-            matrix.Set(k, ordered);
-        }
-        return matrix;
+        CellType const &type = child.GetType();
+        CellType::Derivatives const &derivatives =
+            child.IsInner() ? type.GetParentDerivativesOfStep(0) : type.GetParentDerivatives(0);
+        return makeDerivatives<REAL>(child, [&](std::size_t k) {
+            return HalfCell::kFromSector.GetDerivatives(derivatives.rows, k);
+        });
+    });
+}
+
+// Of a child that is evaluated behind another step: its own at a corner.
+template <typename REAL>
+PlaceMatrix<REAL> const &getCornerDerivatives(RingCell const &child, int corner) {
+    constexpr int kKind = PatternTable::GetKind<REAL>(PatternOf::ChildCorner);
+    return child.GetPatterns().Get<PlaceMatrix<REAL>>(kKind, &corner, &corner + 1, [&] {
+        CellType::Derivatives const &derivatives = child.GetType().GetDerivativesOfStep(corner);
+        return makeDerivatives<REAL>(child, [&](std::size_t k) -> std::vector<double> const & {
+            return derivatives.rows[k];
+        });
     });
 }
 
@@ -116,8 +145,15 @@ void PatchEvaluator<REAL>::descend(CellType const &type, CellPlan const &plan, s
         evaluateCorners(type, plan[node], ownPoints.data());
     }
     StepMatrix const &step = type.GetStep();
-    std::vector<REAL> &points = getPoints(2 * depth + 1, step.GetNumRows());
-    step.Apply(ownPoints.data(), _paddedSize, points.data());
+    step.Apply(ownPoints.data(), _paddedSize, getPoints(2 * depth + 1, step.GetNumRows()).data());
+    descendToChildren(type, plan, node, depth);
+}
+
+// From what the step of the cell has made.
+template <typename REAL>
+void PatchEvaluator<REAL>::descendToChildren(CellType const &type, CellPlan const &plan,
+                                             std::size_t node, std::size_t depth) {
+    std::vector<REAL> const &points = getPoints(2 * depth + 1, 0);
     for (std::size_t const next : plan[node].children) {
         CellPlan::Node const &child = plan[next];
         CellType::Child const &link = type.GetChildren()[child.child];
@@ -168,12 +204,19 @@ void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> 
             evaluateLeaf(cell.GetType(), &cell, child, values.GetPoints(), _indices.data());
             continue;
         }
-        std::vector<REAL> &points = getPoints(2, columns.size());
+        if (cell.IsInner()) {
+            evaluateCorners(cell, child, values.GetPoints());
+        }
+        std::vector<REAL> &points = getPoints(cell.IsInner() ? 3 : 2, columns.size());
         for (std::size_t i = 0; i < columns.size(); ++i) {
             std::copy_n(values.GetPoints() + std::size_t(_indices[i]) * _paddedSize, _paddedSize,
                         &points[std::size_t(columns[i]) * _paddedSize]);
         }
-        descend(cell.GetType(), plan, next, 1);
+        if (cell.IsInner()) {
+            descendToChildren(cell.GetType(), plan, next, 1);
+        } else {
+            descend(cell.GetType(), plan, next, 1);
+        }
     }
 }
 
@@ -255,21 +298,35 @@ void PatchEvaluator<REAL>::evaluateCorners(CellType const &type, CellPlan::Node 
 template <typename REAL>
 void PatchEvaluator<REAL>::evaluateCorners(FaceRings const &face, CellPlan::Node const &cell,
                                            REAL const *points) {
-    _along.resize(2 * _size);
     for (CellPlan::CornerPlace const &corner : cell.corners) {
         RingCell const &child = face.GetChild(corner.corner + 1);
         _indices.resize(child.GetColumns().size());
         face.FindChildIndices(corner.corner + 1, _indices.data());
-        SumUpPlaces(getFaceDerivatives<REAL>(child),
-                    {points, std::ptrdiff_t(_paddedSize), _size, _indices.data(), _along.data(),
-                     std::ptrdiff_t(_size)});
-        std::ptrdiff_t const first = std::ptrdiff_t(corner.place) * _resultStride;
-        for (std::size_t i = 0; i < 2; ++i) {
-            REAL const factors[2] = {REAL(corner.toCoords[0][i]), REAL(corner.toCoords[1][i])};
-            for (std::size_t k = 0; k < _size; ++k) {
-                _derivatives[i][first + std::ptrdiff_t(k)] =
-                    factors[0] * _along[k] + factors[1] * _along[_size + k];
-            }
+        evaluateCorner(getFaceDerivatives<REAL>(child), corner, points);
+    }
+}
+
+// Of one of its children, whose indices are there.
+template <typename REAL>
+void PatchEvaluator<REAL>::evaluateCorners(RingCell const &child, CellPlan::Node const &cell,
+                                           REAL const *points) {
+    for (CellPlan::CornerPlace const &corner : cell.corners) {
+        evaluateCorner(getCornerDerivatives<REAL>(child, int(corner.corner)), corner, points);
+    }
+}
+
+template <typename REAL>
+void PatchEvaluator<REAL>::evaluateCorner(PlaceMatrix<REAL> const &derivatives,
+                                          CellPlan::CornerPlace const &corner, REAL const *points) {
+    _along.resize(2 * _size);
+    SumUpPlaces(derivatives, {points, std::ptrdiff_t(_paddedSize), _size, _indices.data(),
+                              _along.data(), std::ptrdiff_t(_size)});
+    std::ptrdiff_t const first = std::ptrdiff_t(corner.place) * _resultStride;
+    for (std::size_t i = 0; i < 2; ++i) {
+        REAL const factors[2] = {REAL(corner.toCoords[0][i]), REAL(corner.toCoords[1][i])};
+        for (std::size_t k = 0; k < _size; ++k) {
+            _derivatives[i][first + std::ptrdiff_t(k)] =
+                factors[0] * _along[k] + factors[1] * _along[_size + k];
         }
     }
 }

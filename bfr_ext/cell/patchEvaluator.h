@@ -43,10 +43,15 @@ private:
                   std::ptrdiff_t stride);
     void evaluate(PlainFaceType const &type, RingValues<REAL> const &values, CellPlan const &plan);
     void descend(CellType const &type, CellPlan const &plan, std::size_t node, std::size_t depth);
+    void descendToChildren(CellType const &type, CellPlan const &plan, std::size_t node,
+                           std::size_t depth);
     void evaluateLeaf(CellType const &type, RingCell const *ringCell, CellPlan::Node const &leaf,
                       REAL const *points, int const *indices);
     void evaluateCorners(CellType const &type, CellPlan::Node const &cell, REAL const *points);
     void evaluateCorners(FaceRings const &face, CellPlan::Node const &cell, REAL const *points);
+    void evaluateCorners(RingCell const &child, CellPlan::Node const &cell, REAL const *points);
+    void evaluateCorner(PlaceMatrix<REAL> const &derivatives, CellPlan::CornerPlace const &corner,
+                        REAL const *points);
     std::vector<REAL> &getPoints(std::size_t place, std::size_t numPoints);
 
     std::size_t _size = 0; // of a point

@@ -184,6 +184,9 @@ bool PlainFaceType::HasKey(PlainFaceKey const &key) const {
            std::memcmp(key.GetBytes(), _key.data(), _key.size()) == 0;
 }
 
+// A vertex has its neighbours in the patch.
+static_assert(PlainFaceKey::kMaxVerts <= InnerRings::kMaxFaces);
+
 // Of threads that do so at once the first one makes it for all.
 FaceRings const &PlainFaceType::makeRings() const {
     auto rings =

@@ -30,6 +30,18 @@ CellRefinement refine(CellPatch const &cell, CellRules const &rules) {
     return RefineCell(cell, rules.sdcOptions, rules.schemeOptions, rules.interpolation);
 }
 
+// The vertices of the level that a step makes, by row of it.
+std::vector<Far::Index> findStepVertices(CellRefinement const &refinement) {
+    std::vector<Far::Index> verts(refinement.step.firsts.size() - 1);
+    for (std::size_t child = 0; child < refinement.children.size(); ++child) {
+        std::vector<Far::Index> const &sources = refinement.children[child].patch.sources;
+        for (std::size_t i = 0; i < sources.size(); ++i) {
+            verts[std::size_t(refinement.rows[child][i])] = sources[i];
+        }
+    }
+    return verts;
+}
+
 // What the first step makes of an edge or a vertex.
 Cell makeItemCell(CellPatch const &item, CellRules const &rules) {
     return {std::move(refine(item, rules).children[0]), FindRingLayouts(item.patch, item.locals)};
@@ -41,9 +53,7 @@ CellKind getChildKind(CellKind kind) { return kind == CellKind::Edge ? CellKind:
 
 // Most points are in several rings.  What is in the first two is taken from there, and the rest from where
 // its place is the least, which does not depend on the numbers of faces in these rings.
-RingCell::RingCell(CellType const &type, std::vector<Far::Index> const &sources,
-                   std::vector<RingLayout> const &rings)
-    : _type(type) {
+RingPlaces::RingPlaces(std::vector<Far::Index> const &verts, std::vector<RingLayout> const &rings) {
     constexpr int kNumFirstRings = 2;
     struct Column {
         int ring;
@@ -51,16 +61,16 @@ RingCell::RingCell(CellType const &type, std::vector<Far::Index> const &sources,
         int point;
     };
     std::vector<Column> columns;
-    for (std::size_t point = 0; point < sources.size(); ++point) {
-        int const vert = sources[point];
+    for (std::size_t point = 0; point < verts.size(); ++point) {
+        int const vert = verts[point];
         Column column = {-1, 0, int(point)};
         if (vert == rings[0].center) {
             column = {0, kCenter, int(point)};
         }
         for (int ring = 0; ring < int(rings.size()); ++ring) {
-            std::vector<int> const &verts = rings[std::size_t(ring)].verts;
-            int const place = int(std::find(verts.begin(), verts.end(), vert) - verts.begin());
-            if (place < int(verts.size()) &&
+            std::vector<int> const &ofRing = rings[std::size_t(ring)].verts;
+            int const place = int(std::find(ofRing.begin(), ofRing.end(), vert) - ofRing.begin());
+            if (place < int(ofRing.size()) &&
                 (column.ring < 0 || (column.ring >= kNumFirstRings && place < column.place))) {
                 column = {ring, place, int(point)};
             }
@@ -82,7 +92,7 @@ RingCell::RingCell(CellType const &type, std::vector<Far::Index> const &sources,
     }
 }
 
-void RingCell::Order(std::vector<double> const &weights, std::vector<double> &result) const {
+void RingPlaces::Order(std::vector<double> const &weights, std::vector<double> &result) const {
     result.resize(_columns.size());
     for (std::size_t column = 0; column < _columns.size(); ++column) {
         result[column] = weights[std::size_t(_columns[column])];
@@ -94,14 +104,13 @@ std::vector<REAL> const &RingCell::GetCornerWeights() const {
     return _patterns.Get<std::vector<REAL>>(
         PatternTable::GetKind<REAL>(PatternOf::CornerWeights), nullptr, nullptr, [&] {
             std::vector<double> ordered;
-            Order(_type.GetCornerPoints()[0], ordered);
+            GetPlaces().Order(_type.GetCornerPoints()[0], ordered);
             return std::vector<REAL>(ordered.begin(), ordered.end());
         });
 }
 
-// Sizes of faces and, where their masks depend on these, what neighbours have; and the vertices, by when
-// they occur first.
-std::vector<int> RingCells::getKey(std::vector<RingLayout> const &rings) const {
+// Sizes of faces, and the vertices, by when they occur first.
+std::vector<int> RingCells::getKey(std::vector<RingLayout> const &rings) {
     std::vector<int> key;
     int numVerts = 0;
     for (RingLayout const &ring : rings) {
@@ -118,53 +127,68 @@ std::vector<int> RingCells::getKey(std::vector<RingLayout> const &rings) const {
     for (RingLayout const &ring : rings) {
         key.push_back(int(ring.faceSizes.size()));
         key.insert(key.end(), ring.faceSizes.begin(), ring.faceSizes.end());
-        if (!hasPlainMasks()) {
-            key.insert(key.end(), ring.neighbors.begin(), ring.neighbors.end());
-        }
         addVertex(ring.center);
         std::for_each(ring.verts.begin(), ring.verts.end(), addVertex);
     }
     return key;
 }
 
-std::vector<int> RingCell::GetKey() const {
-    std::vector<int> key(_columns);
+void RingPlaces::AddKey(std::vector<int> &key) const {
+    key.insert(key.end(), _columns.begin(), _columns.end());
     key.insert(key.end(), _places.begin(), _places.end());
     key.insert(key.end(), _ends.begin(), _ends.end());
+}
+
+std::vector<int> RingCell::GetKey() const {
+    std::vector<int> key;
+    _points.AddKey(key);
+    _inner.AddKey(key);
     return key;
 }
 
 // What differs in rings alone that the cell does not depend on is the same.
-RingCell const &RingCells::find(CellType const &type, std::vector<Far::Index> const &sources,
-                                std::vector<RingLayout> const &rings) {
-    auto cell = std::make_unique<RingCell const>(type, sources, rings);
-    std::vector<int> const key = cell->GetKey();
+RingCell const &RingCells::find(CellPatch cell, std::vector<RingLayout> const &rings) {
+    RingPlaces points(cell.patch.sources, rings);
+    std::unique_ptr<RingCell const> ringCell;
+    if (!_masks.AreUsed()) {
+        CellType const &type = _types.Find(std::move(cell), GetRules());
+        ringCell = std::make_unique<RingCell const>(type, RingStep::First, std::move(points));
+    } else {
+        CellRefinement refinement = refine(cell, GetRules());
+        std::vector<RingLayout> const inner = FindInnerLayouts(cell.patch, rings);
+        if (cell.kind == CellKind::Vertex) {
+            points = RingPlaces(refinement.children[0].patch.sources, inner);
+            CellType const &type = _types.Find(std::move(refinement.children[0]), GetRules());
+            ringCell = std::make_unique<RingCell const>(type, RingStep::Second, std::move(points));
+        } else {
+            RingPlaces ofStep(findStepVertices(refinement), inner);
+            CellType const &type = _types.Find(std::move(cell), GetRules());
+            ringCell = std::make_unique<RingCell const>(type, std::move(points), std::move(ofStep));
+        }
+    }
+    CellType const &type = ringCell->GetType();
+    std::vector<int> const key = ringCell->GetKey();
     constexpr int kKind = PatternTable::GetKind<double>(PatternOf::RingCell);
     return *type.GetPatterns().Get<std::unique_ptr<RingCell const>>(
-        kKind, key.data(), key.data() + key.size(), [&] { return std::move(cell); });
+        kKind, key.data(), key.data() + key.size(), [&] { return std::move(ringCell); });
 }
 
-bool RingCells::AreFacesAlike(RingLayout const &ring) const {
-    auto const areSame = [](std::vector<int> const &numbers) {
-        return std::all_of(numbers.begin(), numbers.end(),
-                           [&](int number) { return number == numbers[0]; });
-    };
+bool RingCells::AreFacesAlike(RingLayout const &ring) {
     std::vector<int> verts = ring.verts;
     std::sort(verts.begin(), verts.end());
     bool const hasVertexTwice = std::adjacent_find(verts.begin(), verts.end()) != verts.end();
-    return !hasVertexTwice && areSame(ring.faceSizes) &&
-           (hasPlainMasks() || areSame(ring.neighbors));
+    return !hasVertexTwice && std::all_of(ring.faceSizes.begin(), ring.faceSizes.end(),
+                                          [&](int size) { return size == ring.faceSizes[0]; });
 }
 
 RingItem const &RingItem::Get(CellType const &type, CellPatch const &patch, RingCells &cells) {
     constexpr int kKind = PatternTable::GetKind<double>(PatternOf::RingItem);
     return type.GetPatterns().Get<RingItem>(kKind, nullptr, nullptr, [&] {
         RingItem item;
-        bool const isPlain = item.rings.Init(patch.patch, patch.locals, cells.GetRules());
+        bool const isPlain = item.rings.Init(patch.patch, patch.locals, cells.GetMasks());
         auto const &ofItem = item.rings.GetRings();
-        bool const isInLattice =
-            std::all_of(ofItem.begin(), ofItem.end(),
-                        [](VertexRings::Ring const &ring) { return ring.isInLattice; });
+        bool const isInLattice = std::all_of(ofItem.begin(), ofItem.end(),
+                                             [](Ring const &ring) { return ring.isInLattice; });
         if (!isPlain || isInLattice) {
             return RingItem();
         }
@@ -207,7 +231,7 @@ public:
     }
 
 private:
-    VertexRings::Ring const &getRing(int vert) const {
+    Ring const &getRing(int vert) const {
         return _face._rings.GetRings()[std::size_t(vert % _numEdges)];
     }
     RingLayout const &getLayout(int vert) const { return _layouts[std::size_t(vert % _numEdges)]; }
@@ -237,8 +261,8 @@ private:
 
     // Rings that look alike from all faces have the same.
     void addVVertices(int vert) {
-        VertexRings::Ring const &ring = getRing(vert);
-        bool const areAlike = _cells.AreFacesAlike(getLayout(vert));
+        Ring const &ring = getRing(vert);
+        bool const areAlike = RingCells::AreFacesAlike(getLayout(vert));
         _face._firstVVertices.push_back(_face._vVertices.size());
         for (int turn = 0; turn < (areAlike || ring.isInLattice ? 1 : ring.GetNumFaces()); ++turn) {
             _face._vVertices.push_back(ring.isInLattice ? nullptr
@@ -258,20 +282,21 @@ private:
 
 FaceRings::FaceRings(CellPatch const &cell, RingCells &cells) {
     bool const isPlain =
-        _rings.Init(cell.patch, getCorners(cell.GetNumCorners()), cells.GetRules());
+        _rings.Init(cell.patch, getCorners(cell.GetNumCorners()), cells.GetMasks());
     assert(isPlain);
     static_cast<void>(isPlain);
     Maker(*this, cell, cells).FindCells();
 }
 
-void FaceRings::FindChildIndices(std::size_t child, int *indices) const {
+void FaceRings::findIndices(std::size_t child, RingPlaces const &places, RingStep step,
+                            int *indices) const {
     int const numRings = int(_rings.GetRings().size());
     int const first = child == 0 ? 0 : int(child) - 1;
     auto const getBlock = [&](int ring) {
         int const own = first + ring;
-        return _rings.GetBlock(own < numRings ? own : own - numRings, 0);
+        return _rings.GetBlock(own < numRings ? own : own - numRings, 0, step);
     };
-    _children[child]->FindIndices(_rings.GetCenter(first, 0), getBlock, indices);
+    places.FindIndices(_rings.GetCenter(first, 0, step), getBlock, indices);
 }
 
 // The face to the left of the edge is the first of both rings: this one, or that across the edge.
@@ -280,10 +305,13 @@ void FaceRings::FindLongEdgeIndices(int edge, bool isReversed, int *indices) con
     int const start = isReversed ? next : edge;
     int const first = isReversed ? 1 : 0;
     int const end = isReversed ? edge : next;
+    RingStep const step = _rings.GetLastStep();
     auto const getBlock = [&](int ring) {
-        return ring == 0 ? _rings.GetBlock(start, first) : _rings.GetBlock(end, -first);
+        return ring == 0 ? _rings.GetBlock(start, first, step) : _rings.GetBlock(end, -first, step);
     };
-    GetLongEdge(edge, isReversed)->FindIndices(_rings.GetCenter(start, first), getBlock, indices);
+    GetLongEdge(edge, isReversed)
+        ->GetPlaces()
+        .FindIndices(_rings.GetCenter(start, first, step), getBlock, indices);
 }
 
 template <typename REAL>
@@ -310,17 +338,18 @@ template <typename REAL>
 void RingValues<REAL>::EvaluateVertex(RingCell const &vVertex, int ring, int firstFace,
                                       REAL *result) {
     std::vector<REAL> const &weights = vVertex.GetCornerWeights<REAL>();
-    VertexRings::Ring const &ofRing = _rings->GetRings()[std::size_t(ring)];
+    Ring const &ofRing = _rings->GetRings()[std::size_t(ring)];
+    RingStep const step = _rings->GetLastStep();
     _rings->ApplyCenter(ring, firstFace, _controlPoints.data(), _points.data(), _paddedSize,
                         _center.data());
-    REAL const *const begin = &_points[_rings->GetBlock(ring, 0) * _paddedSize];
+    REAL const *const begin = &_points[_rings->GetBlock(ring, 0, step) * _paddedSize];
     std::size_t numPoints = 0;
     std::size_t first = 0;
     for (int face = 0; face < ofRing.GetNumFaces(); ++face) {
-        first += face < firstFace ? ofRing.GetBlockSize(face) : 0;
-        numPoints += ofRing.GetBlockSize(face);
+        first += face < firstFace ? ofRing.GetBlockSize(face, step) : 0;
+        numPoints += ofRing.GetBlockSize(face, step);
     }
-    std::vector<int> const &places = vVertex.GetPlaces();
+    std::vector<int> const &places = vVertex.GetPlaces().GetPlaces();
     assert(weights.size() == 1 + places.size());
     constexpr std::size_t kLanes = StepMatrix::kPadding;
     for (std::size_t lane = 0; lane < _size; lane += kLanes) {

@@ -9,22 +9,16 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief What the first step makes of a plain base face: one of its cells, or the long edge of one of its
-/// edges, or one of its V-vertices, the points of which are points of rings.
-///
-/// What these are the rings tell, and so the sizes of some faces: there are far fewer of them than types of
-/// base faces.
-class RingCell {
+/// \brief What vertices that a step makes are in the points of rings, in the order in which rings have them.
+class RingPlaces {
 public:
-    /// \param sources  by point of the type, the vertex of the level that the step makes
-    /// \param rings    which have all of these, the first one its vertex
-    RingCell(CellType const &type, std::vector<Far::Index> const &sources,
-             std::vector<RingLayout> const &rings);
+    /// Of none.
+    RingPlaces() = default;
+    /// \param verts  of the level that the step makes
+    /// \param rings  which have all of these, the first one its vertex
+    RingPlaces(std::vector<Far::Index> const &verts, std::vector<RingLayout> const &rings);
 
-    CellType const &GetType() const { return _type; }
-    /// All that a cell is but its type.
-    std::vector<int> GetKey() const;
-    /// By *column*, a point of the type, in the order in which rings have them.
+    /// \brief By *column*, in the order of rings, which of the vertices it is.
     std::vector<int> const &GetColumns() const { return _columns; }
     /// \brief By column but the first, its place behind the begin of the block of its ring's face 0.
     ///
@@ -46,9 +40,54 @@ public:
             }
         }
     }
-    /// Weights by column from those by point of the type.
+    /// Weights by column from those by vertex.
     void Order(std::vector<double> const &weights, std::vector<double> &result) const;
-    /// By column the weights of the surface at the first corner.
+    /// Appends all that tells them from others.
+    void AddKey(std::vector<int> &key) const;
+
+private:
+    std::vector<int> _columns;
+    std::vector<int> _places;
+    std::vector<std::size_t> _ends; // by ring, of columns
+};
+
+/// \brief What the first step makes of a plain base face: one of its cells, or the long edge of one of its
+/// edges, or one of its V-vertices, the points of which are points of rings.
+///
+/// What these are the rings tell, and so the sizes of some faces: there are far fewer of them than types of
+/// base faces.
+///
+/// Where rings have a second step, the masks of cells behind the first one depend on all neighbours of the
+/// vertices, and what the second step makes of them does not.  Such a cell has sums of what that makes, and the
+/// type of any cell that has the same there; a V-vertex is taken for what it becomes.
+class RingCell {
+public:
+    /// What has sums of its own points.
+    ///
+    /// \param step    that made it
+    /// \param points  of the type
+    RingCell(CellType const &type, RingStep step, RingPlaces points)
+        : _type(type), _lastStep(step), _isInner(false), _points(std::move(points)) {}
+    /// What has sums of the points behind the second step.
+    ///
+    /// \param inner  what the step of the type makes, by row of it
+    RingCell(CellType const &type, RingPlaces points, RingPlaces inner)
+        : _type(type), _lastStep(RingStep::Second), _isInner(true), _points(std::move(points)),
+          _inner(std::move(inner)) {}
+
+    CellType const &GetType() const { return _type; }
+    /// All that a cell is but its type.
+    std::vector<int> GetKey() const;
+    /// Whether its sums are of what the step of the type makes, and not of the points of the type.
+    bool IsInner() const { return _isInner; }
+    /// The step that makes what its sums are of.
+    RingStep GetLastStep() const { return _lastStep; }
+    /// What these are.
+    RingPlaces const &GetPlaces() const { return _isInner ? _inner : _points; }
+    std::vector<int> const &GetColumns() const { return GetPlaces().GetColumns(); }
+    /// The points of the type.
+    RingPlaces const &GetPoints() const { return _points; }
+    /// By column the weights of the surface at a V-vertex.
     template <typename REAL>
     std::vector<REAL> const &GetCornerWeights() const;
 
@@ -57,18 +96,20 @@ public:
 
 private:
     CellType const &_type;
-    std::vector<int> _columns;
-    std::vector<int> _places;
-    std::vector<std::size_t> _ends; // by ring, of columns
+    RingStep const _lastStep;
+    bool const _isInner;
+    RingPlaces const _points;
+    RingPlaces const _inner;
     mutable PatternTable _patterns;
 };
 
 /// The cells of plain base faces with some rules.  Any number of threads may use it.
 class RingCells {
 public:
-    RingCells(CellTypes &types, CellRules const &rules) : _types(types), _rules(rules) {}
+    RingCells(CellTypes &types, CellRules const &rules) : _types(types), _masks(rules) {}
 
-    CellRules const &GetRules() const { return _rules; }
+    CellRules const &GetRules() const { return _masks.GetRules(); }
+    InnerMasks &GetMasks() { return _masks; }
 
     /// \brief Finds a cell by its kind and the rings that tell what it is.
     ///
@@ -77,27 +118,22 @@ public:
     RingCell const &Find(FarExt::internal::CellKind kind, std::vector<RingLayout> const &rings,
                          MAKE const &make) {
         std::vector<int> const key = getKey(rings);
-        return *_found.Get<RingCell const *>(
-            int(kind), key.data(), key.data() + key.size(), [&]() -> RingCell const * {
-                auto [cell, layouts] = make();
-                std::vector<Far::Index> const sources = cell.patch.sources;
-                return &find(_types.Find(std::move(cell), _rules), sources, layouts);
-            });
+        return *_found.Get<RingCell const *>(int(kind), key.data(), key.data() + key.size(),
+                                             [&]() -> RingCell const * {
+                                                 auto [cell, layouts] = make();
+                                                 return &find(std::move(cell), layouts);
+                                             });
     }
 
     /// Whether a ring is the same from all of its faces on.
-    bool AreFacesAlike(RingLayout const &ring) const;
+    static bool AreFacesAlike(RingLayout const &ring);
 
 private:
-    // Whether the number of faces at neighbours is of no matter.
-    bool hasPlainMasks() const { return _rules.schemeOptions.faceMask != FarExt::FaceMask::Smooth; }
-    std::vector<int> getKey(std::vector<RingLayout> const &rings) const;
-
-    static RingCell const &find(CellType const &type, std::vector<Far::Index> const &sources,
-                                std::vector<RingLayout> const &rings);
+    static std::vector<int> getKey(std::vector<RingLayout> const &rings);
+    RingCell const &find(FarExt::internal::CellPatch cell, std::vector<RingLayout> const &rings);
 
     CellTypes &_types;
-    CellRules const _rules;
+    InnerMasks _masks;
     PatternTable _found; // pointers, by kind and rings
 };
 
@@ -124,8 +160,14 @@ public:
     VertexRings const &GetRings() const { return _rings; }
     /// A child of the face, in the order of RefineCell().
     RingCell const &GetChild(std::size_t child) const { return *_children[child]; }
-    /// Writes the indices of a child.
-    void FindChildIndices(std::size_t child, int *indices) const;
+    /// Writes the indices of what a child has sums of.
+    void FindChildIndices(std::size_t child, int *indices) const {
+        findIndices(child, GetChild(child).GetPlaces(), _rings.GetLastStep(), indices);
+    }
+    /// Writes those of the points of its type.
+    void FindChildPoints(std::size_t child, int *indices) const {
+        findIndices(child, GetChild(child).GetPoints(), RingStep::First, indices);
+    }
 
     /// The long edge of an edge, which may run against the face; null where it is in a lattice.
     RingCell const *GetLongEdge(int edge, bool isReversed) const {
@@ -143,6 +185,9 @@ public:
 
 private:
     class Maker;
+
+    void findIndices(std::size_t child, RingPlaces const &places, RingStep step,
+                     int *indices) const;
 
     VertexRings _rings;
     std::vector<RingCell const *> _children;

@@ -191,6 +191,8 @@ public:
 
     /// result = left A: what the points of the child weigh, in terms of the parent's.
     void ApplyLeft(std::vector<double> const &left, std::vector<double> &result) const;
+    /// What they weigh in terms of the points that the matrix makes, by row of it.
+    void Spread(std::vector<double> const &left, std::vector<double> &result) const;
 
 private:
     std::size_t getMatrixRow(std::size_t row) const {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vertexRings.h"
 
-#include "far_ext/vtr/irregularFeatures.h"
+#include "lanes.h"
+#include "patchCorners.h"
 
 #include <algorithm>
 #include <limits>
@@ -12,50 +13,6 @@ using FarExt::VertexVertexMask;
 using FarExt::internal::LimitPatch;
 
 namespace {
-
-constexpr std::size_t kLanes = StepMatrix::kPadding;
-
-// The corners of a patch, as far as rings need to know them.
-class PatchCorners {
-public:
-    explicit PatchCorners(LimitPatch const &patch) : _patch(patch) {
-        int first = 0;
-        for (int const size : patch.faceSizes) {
-            _firsts.insert(_firsts.end(), std::size_t(size), first);
-            _sizes.insert(_sizes.end(), std::size_t(size), size);
-            first += size;
-        }
-    }
-
-    int GetFaceSize(int corner) const { return _sizes[std::size_t(corner)]; }
-    int GetVertex(int corner) const { return _patch.faceVerts[std::size_t(corner)]; }
-    // So many places further on in the face.
-    int GetNext(int corner, int numPlaces) const {
-        int const first = _firsts[std::size_t(corner)];
-        return first + (corner - first + numPlaces) % GetFaceSize(corner);
-    }
-    int GetBefore(int corner) const { return GetNext(corner, GetFaceSize(corner) - 1); }
-
-    // The corners at the vertex of one, counter-clockwise from that on; none where it has a boundary.
-    std::vector<int> FindRing(int first) const {
-        std::vector<int> ring;
-        int corner = first;
-        do {
-            ring.push_back(corner);
-            corner = _patch.otherCorners[std::size_t(GetBefore(corner))];
-            if (corner < 0 || ring.size() == _sizes.size()) {
-                return {};
-            }
-        } while (corner != first);
-        return ring;
-    }
-
-private:
-    LimitPatch const &_patch;
-    // By corner, of its face: the first corner, and the size.
-    std::vector<int> _firsts;
-    std::vector<int> _sizes;
-};
 
 // Whether no masks are made by anything but sizes of faces and numbers of faces around vertices.
 bool hasFeatures(LimitPatch const &patch) {
@@ -69,43 +26,7 @@ bool hasFeatures(LimitPatch const &patch) {
            !patch.irregularVerts.empty() || patch.numHexagonalSteps != 0;
 }
 
-// Some numbers of a point, which are computed with at once.
-template <typename REAL>
-struct Lanes {
-    static Lanes Load(REAL const *from) {
-        Lanes result;
-        std::copy_n(from, kLanes, result.values);
-        return result;
-    }
-    void Store(REAL *to) const { std::copy_n(values, kLanes, to); }
-
-    Lanes operator+(Lanes const &other) const {
-        Lanes result;
-        for (std::size_t i = 0; i < kLanes; ++i) {
-            result.values[i] = values[i] + other.values[i];
-        }
-        return result;
-    }
-    Lanes operator*(REAL factor) const {
-        Lanes result;
-        for (std::size_t i = 0; i < kLanes; ++i) {
-            result.values[i] = values[i] * factor;
-        }
-        return result;
-    }
-
-    REAL values[kLanes];
-};
-
 } // namespace
-
-std::size_t VertexRings::Ring::GetNumPoints() const {
-    std::size_t size = 2 + GetBlockSize(-1) + GetBlockSize(0);
-    for (int face = 0; face < GetNumFaces(); ++face) {
-        size += GetBlockSize(face);
-    }
-    return size;
-}
 
 // Writes the program of the rings of a patch.
 class VertexRings::Builder {
@@ -118,7 +39,7 @@ public:
         if (corners.empty()) {
             return false;
         }
-        Ring ring = {{}, _rings._numPoints, false};
+        Ring ring = {{}, {_rings._numPoints, 0}, false};
         _latticeSize = _corners.GetFaceSize(firstCorner);
         _isInLattice = isRegular(corners);
         VertexVertexMask const mask = getVertexMask(corners);
@@ -142,7 +63,7 @@ public:
             before = corner;
         }
         ring.isInLattice = _isInLattice;
-        _rings._numPoints += ring.GetNumPoints();
+        _rings._numPoints += ring.GetNumPoints(RingStep::First);
         _rings._rings.push_back(std::move(ring));
         return _isInRange;
     }
@@ -247,11 +168,11 @@ private:
 };
 
 bool VertexRings::Init(LimitPatch const &patch, std::vector<int> const &corners,
-                       CellRules const &rules) {
+                       InnerMasks &masks) {
     if (hasFeatures(patch)) {
         return false;
     }
-    Builder builder(*this, patch, rules);
+    Builder builder(*this, patch, masks.GetRules());
     for (int const corner : corners) {
         if (_program.size() > std::size_t(std::numeric_limits<Number>::max())) {
             return false;
@@ -265,6 +186,13 @@ bool VertexRings::Init(LimitPatch const &patch, std::vector<int> const &corners,
     _firsts.shrink_to_fit();
     _program.shrink_to_fit();
     _weights.shrink_to_fit();
+    if (masks.AreUsed()) {
+        for (Ring &ring : _rings) {
+            ring.firstPoints[std::size_t(RingStep::Second)] = _numPoints;
+            _numPoints += ring.GetNumPoints(RingStep::Second);
+        }
+        return _inner.Init(patch, corners, masks);
+    }
     return true;
 }
 
@@ -290,7 +218,7 @@ VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL co
     Number const *const row = verts + (faceSize - 1);
     std::size_t const numRuns = row[1];
     Number const *end = row + 2;
-    for (std::size_t first = 0; first < stride; first += kLanes) {
+    for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
         auto const load = [&](std::size_t point) {
             return Lanes<REAL>::Load(points + point * stride + first);
         };
@@ -348,14 +276,16 @@ void VertexRings::applyCenter(Ring const &ring, int firstFace, REAL vertexWeight
                               REAL *result) {
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
     int const numFaces = ring.GetNumFaces();
-    for (std::size_t first = 0; first < stride; first += kLanes) {
+    for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
         REAL const *block = blocks + first;
         for (int face = 0; face < firstFace; ++face) {
-            block += ring.GetBlockSize(face) * stride;
+            block += ring.GetBlockSize(face, RingStep::First) * stride;
         }
         Lanes<REAL> sum = Lanes<REAL>::Load(block + stride);
         for (int i = firstFace + 1; i < firstFace + numFaces; ++i) {
-            block += ring.GetBlockSize(i - 1 < numFaces ? i - 1 : i - 1 - numFaces) * stride;
+            block +=
+                ring.GetBlockSize(i - 1 < numFaces ? i - 1 : i - 1 - numFaces, RingStep::First) *
+                stride;
             if (i == numFaces) {
                 block = blocks + first;
             }
@@ -375,9 +305,9 @@ void VertexRings::apply(REAL const *points, std::size_t paddedSize, REAL *result
         REAL const vertexWeight = weights[program[2]];
         REAL const faceWeight = weights[program[3]];
         program += kHeaderSize;
-        REAL *const centers = result + ring.firstPoint * stride;
+        REAL *const centers = result + ring.GetCenter(0, RingStep::First) * stride;
         REAL *const copyOfLast = centers + 2 * stride;
-        REAL *const blocks = copyOfLast + ring.GetBlockSize(-1) * stride;
+        REAL *const blocks = copyOfLast + ring.GetBlockSize(-1, RingStep::First) * stride;
         REAL *block = blocks;
         REAL *last = blocks;
         for (int const size : ring.faceSizes) {
@@ -385,8 +315,8 @@ void VertexRings::apply(REAL const *points, std::size_t paddedSize, REAL *result
             program = applyFace<PADDED_SIZE>(program, weights, center, points, paddedSize, block);
             block += (1 + std::size_t(size)) * stride;
         }
-        std::copy_n(last, ring.GetBlockSize(-1) * stride, copyOfLast);
-        std::copy_n(blocks, ring.GetBlockSize(0) * stride, block);
+        std::copy_n(last, ring.GetBlockSize(-1, RingStep::First) * stride, copyOfLast);
+        std::copy_n(blocks, ring.GetBlockSize(0, RingStep::First) * stride, block);
         for (int i = 0; i < 2; ++i) {
             applyCenter<PADDED_SIZE>(ring, i, vertexWeight, faceWeight, center, blocks, paddedSize,
                                      centers + std::size_t(i) * stride);
@@ -396,21 +326,45 @@ void VertexRings::apply(REAL const *points, std::size_t paddedSize, REAL *result
 
 template <typename REAL>
 void VertexRings::Apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
-    if (paddedSize == kLanes) {
-        apply<kLanes>(points, paddedSize, result);
+    if (paddedSize == StepMatrix::kPadding) {
+        apply<StepMatrix::kPadding>(points, paddedSize, result);
     } else {
         apply<0>(points, paddedSize, result);
     }
+    if (!_inner.IsUsed()) {
+        return;
+    }
+    for (std::size_t ring = 0; ring < _rings.size(); ++ring) {
+        REAL *block = result + GetBlock(int(ring), 0, RingStep::Second) * paddedSize;
+        for (int face = 0; face < _rings[ring].GetNumFaces(); ++face) {
+            applyFirstCenter(ring, face, points, result, paddedSize, block);
+            block += _rings[ring].GetBlockSize(face, RingStep::Second) * paddedSize;
+        }
+    }
+    _inner.Apply(_rings, paddedSize, result);
 }
 
 template <typename REAL>
 void VertexRings::ApplyCenter(int ring, int firstFace, REAL const *points, REAL const *rings,
                               std::size_t paddedSize, REAL *result) const {
+    auto const number = std::size_t(ring);
+    if (_inner.IsUsed()) {
+        InnerRings::CopyCenter(_rings[number], firstFace, rings, paddedSize, result);
+    } else {
+        applyFirstCenter(number, firstFace, points, rings, paddedSize, result);
+    }
+}
+
+// As of the first step.
+template <typename REAL>
+void VertexRings::applyFirstCenter(std::size_t ring, int firstFace, REAL const *points,
+                                   REAL const *rings, std::size_t paddedSize, REAL *result) const {
     REAL const *const weights = getWeights<REAL>();
-    Number const *const program = &_program[_firsts[std::size_t(ring)]];
-    applyCenter<0>(_rings[std::size_t(ring)], firstFace, weights[program[2]], weights[program[3]],
-                   points + program[0] * paddedSize, rings + GetBlock(ring, 0) * paddedSize,
-                   paddedSize, result);
+    Number const *const program = &_program[_firsts[ring]];
+    applyCenter<0>(_rings[ring], firstFace, weights[program[2]], weights[program[3]],
+                   points + program[0] * paddedSize,
+                   rings + _rings[ring].GetBlock(0, RingStep::First) * paddedSize, paddedSize,
+                   result);
 }
 
 template void VertexRings::Apply(float const *, std::size_t, float *) const;
@@ -419,47 +373,5 @@ template void VertexRings::ApplyCenter(int, int, float const *, float const *, s
                                        float *) const;
 template void VertexRings::ApplyCenter(int, int, double const *, double const *, std::size_t,
                                        double *) const;
-
-RingLayout RingLayout::From(int firstFace) const {
-    int const numFaces = int(faceSizes.size());
-    firstFace = (firstFace + numFaces) % numFaces;
-    int first = 0;
-    for (int face = 0; face < firstFace; ++face) {
-        first += 1 + faceSizes[std::size_t(face)];
-    }
-    RingLayout result = *this;
-    auto const rotate = [](std::vector<int> &numbers, int begin) {
-        std::rotate(numbers.begin(), numbers.begin() + begin, numbers.end());
-    };
-    rotate(result.faceSizes, firstFace);
-    rotate(result.verts, first);
-    rotate(result.neighbors, firstFace);
-    return result;
-}
-
-std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int> const &corners) {
-    PatchCorners const ofPatch(patch);
-    int const numVerts = int(patch.sources.size());
-    std::vector<RingLayout> layouts;
-    for (int const firstCorner : corners) {
-        RingLayout layout = {ofPatch.GetVertex(firstCorner), {}, {}, {}};
-        for (int const corner : ofPatch.FindRing(firstCorner)) {
-            int const size = ofPatch.GetFaceSize(corner);
-            int const neighbor = ofPatch.GetNext(corner, 1);
-            layout.faceSizes.push_back(size);
-            layout.verts.push_back(ofPatch.GetVertex(neighbor));
-            for (int i = 0; i < size; ++i) {
-                layout.verts.push_back(numVerts + ofPatch.GetNext(corner, i));
-            }
-            std::vector<int> const ofNeighbor = ofPatch.FindRing(neighbor);
-            int const numFaces = int(ofNeighbor.size());
-            FarExt::FacesAround const facesAround = FarExt::internal::FindFacesAround(
-                numFaces, [&](int i) { return ofPatch.GetFaceSize(ofNeighbor[std::size_t(i)]); });
-            layout.neighbors.push_back(numFaces * FarExt::kNumFacesAround + int(facesAround));
-        }
-        layouts.push_back(std::move(layout));
-    }
-    return layouts;
-}
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -165,6 +165,19 @@ std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns)
 
 namespace {
 
+// A patch as a level, and what a step makes of it.
+struct RefinedPatch {
+    RefinedPatch(LimitPatch const &patch, Sdc::Options sdcOptions, FaceMask faceMask) {
+        BuildPatchLevel(patch, parent);
+        RefineHexagonally(parent, sdcOptions, true, refinement, child);
+        FindIrregularFeatures(faceMask, refinement, child);
+    }
+
+    Level parent;
+    Level child;
+    Refinement refinement;
+};
+
 // What a step makes of a parent's cell, without the step.
 class CellRefiner {
 public:
@@ -274,12 +287,8 @@ private:
 CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
                           HexSchemeOptions const &schemeOptions, Interpolation interpolation) {
     ExecutorScope const alone(nullptr, 1); // patches are small
-    Level parent;
-    Level refined;
-    Refinement refinement;
-    BuildPatchLevel(cell.patch, parent);
-    RefineHexagonally(parent, sdcOptions, true, refinement, refined);
-    FindIrregularFeatures(schemeOptions.faceMask, refinement, refined);
+    RefinedPatch const refined(cell.patch, sdcOptions, schemeOptions.faceMask);
+    Refinement const &refinement = refined.refinement;
     CellRefinement result;
     result.children = CellRefiner(refinement, schemeOptions.faceMask, cell).Refine();
     std::vector<Index> verts;
@@ -296,6 +305,14 @@ CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
         result.rows.push_back(std::move(rows));
     }
     return result;
+}
+
+void UseNextMasks(LimitPatch const &patch, Sdc::Options sdcOptions,
+                  HexSchemeOptions const &schemeOptions, Interpolation interpolation,
+                  std::function<void(Refinement const &, RefinementMask const &)> const &function) {
+    ExecutorScope const alone(nullptr, 1);
+    RefinedPatch const refined(patch, sdcOptions, schemeOptions.faceMask);
+    function(refined.refinement, RefinementMask(refined.child, schemeOptions, interpolation));
 }
 
 std::vector<CornerLimit> FindCornerLimits(CellPatch const &cell, LimitMaskFinder &finder) {

@@ -4,6 +4,10 @@
 
 #include "limitMask.h"
 
+#include "far_ext/vtr/refinementMask.h"
+
+#include <functional>
+
 namespace OpenSubdivHex::FarExt::internal {
 
 /// Corners of a cell that is no whole face: the ends of the edge that made it and, beside the second
@@ -75,6 +79,12 @@ struct CellRefinement {
 OPENSUBDIVHEX_API CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
                                             HexSchemeOptions const &schemeOptions,
                                             Interpolation interpolation);
+
+/// Calls function(refinement, masks) for a hexagonal step of a patch and the masks of the step behind it.
+OPENSUBDIVHEX_API void
+UseNextMasks(LimitPatch const &patch, Sdc::Options sdcOptions,
+             HexSchemeOptions const &schemeOptions, Interpolation interpolation,
+             std::function<void(Refinement const &, RefinementMask const &)> const &function);
 
 /// \brief The limit at a corner of a cell, and the first derivatives there on the side of the cell, in
 /// terms of the vertices of the patch.  LimitStencilTableFactory says what they are derivatives by.

@@ -10,6 +10,7 @@
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
 
 #include <gtest/gtest.h>
 
@@ -595,6 +596,28 @@ TEST(SurfaceFactoryTest, TypesAreSharedByFacesThatLookAlike) {
     }
     EXPECT_EQ(cache.GetNumTypes(), 1u);
     EXPECT_EQ(surface.GetNumControlPoints(), 32);
+}
+
+TEST(SurfaceFactoryTest, CellsHaveFewTypesWhateverVerticesAreIrregular) {
+    Shape const shape = MakeTorus(24, 16, TorusFaces::IrregularTriangles);
+    for (ReferenceMask const mask : kMasks) {
+        SCOPED_TRACE(ToString(mask));
+        auto const refiner = CreateRefiner(shape, mask, 0);
+        BfrExt::SurfaceFactoryCache cache;
+        SurfaceSet<double> const surfaces(*refiner, shape.positions, &cache);
+        std::size_t const numFaceTypes = cache.GetNumTypes();
+        EXPECT_GT(numFaceTypes, std::size_t(shape.GetNumFaces()) / 2);
+        BfrExt::Tessellation const tessellation(surfaces[0].GetParameterization(), 3);
+        auto const size = 3 * std::size_t(tessellation.GetNumCoords());
+        std::vector<double> p(size), du(size), dv(size);
+        for (int face = 0; face < shape.GetNumFaces(); ++face) {
+            std::vector<double> control(3 * std::size_t(surfaces[face].GetNumControlPoints()));
+            surfaces[face].GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+            surfaces[face].Evaluate(tessellation, control.data(), 3, p.data(), du.data(), dv.data(),
+                                    3);
+        }
+        EXPECT_LT(cache.GetNumTypes() - numFaceTypes, std::size_t(shape.GetNumFaces()));
+    }
 }
 
 TEST(SurfaceFactoryTest, ThreadsMayShareACacheThatGoesFirst) {

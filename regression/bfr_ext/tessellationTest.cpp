@@ -6,6 +6,7 @@
 
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
+#include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
 #include "regression/shapes/torus.h"
 
@@ -350,14 +351,17 @@ TEST(TessellationSurface, NeighboursShareTheirPointsToTheBit) {
 TEST(TessellationSurface, PointsAreThoseOfSinglePlaces) {
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    // Of the torus, faces are plain, and derivatives grow and shrink in steps.
+    // Of tori, faces are plain; with Average, derivatives grow and shrink in steps.
     constexpr int kMaxFaces = 40;
+    Shape const irregular = MakeTorus(9, 7, TorusFaces::IrregularTriangles);
+    Shape const chamfered = MakeChamfered("chamfered", MakeTorus(7, 6, TorusFaces::Quads));
     for (auto const &[shape, mask] :
          {std::make_pair(GetFeatureShape("mixedSharpnessQuads"), ReferenceMask::Smooth),
           std::make_pair(GetFeatureShape("cornersTriangles"), ReferenceMask::Smooth),
           std::make_pair(GetFeatureShape("bowTieOfFans"), ReferenceMask::Smooth),
-          std::make_pair(MakeTorus(9, 7, TorusFaces::IrregularTriangles),
-                         ReferenceMask::Average)}) {
+          std::make_pair(irregular, ReferenceMask::Average),
+          std::make_pair(irregular, ReferenceMask::Smooth),
+          std::make_pair(chamfered, ReferenceMask::Smooth)}) {
         SCOPED_TRACE(shape.name);
         auto const refiner = CreateRefiner(shape, mask, 0, options);
         FarExt::TopologyLevel const &base = refiner->GetLevel(0);
@@ -365,9 +369,9 @@ TEST(TessellationSurface, PointsAreThoseOfSinglePlaces) {
         RandomLevels levels(base, 3);
         for (int face = 0; face < std::min(base.GetNumFaces(), kMaxFaces); ++face) {
             Surface<double> const &surface = surfaces[face];
-            // Of level 5, a face is taken apart further.
+            // Of level 6, a face is taken apart further.
             Tessellation const tessellation = face == 0
-                                                  ? Tessellation(surface.GetParameterization(), 5)
+                                                  ? Tessellation(surface.GetParameterization(), 6)
                                                   : levels.Make(base, face, 3);
             std::vector<double> control(4 * std::size_t(surface.GetNumControlPoints()));
             surface.GatherControlPoints(shape.positions.data(), 3, control.data(), {3, 4});

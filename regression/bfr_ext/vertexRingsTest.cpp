@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The first step by rings of plain faces, against steps of their patches.
+// Steps by rings of plain faces, against steps of their patches.
 #include "bfr_ext/cell/plainFace.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "regression/far_ext/referenceMatch.h"
@@ -11,7 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <random>
+#include <string>
 
 namespace OpenSubdivHex::Regression {
 
@@ -23,6 +25,8 @@ using BfrExt::internal::PlainFaceGatherer;
 using BfrExt::internal::PlainFaceType;
 using BfrExt::internal::RingCell;
 using BfrExt::internal::RingItem;
+using BfrExt::internal::RingPlaces;
+using BfrExt::internal::RingStep;
 using BfrExt::internal::RingValues;
 using BfrExt::internal::StepMatrix;
 
@@ -50,21 +54,27 @@ std::vector<double> pick(std::vector<double> const &points, std::size_t stride,
     return result;
 }
 
-/// The same of what rings have, by point of the cell's type.
-std::vector<double> pickCell(RingCell const &cell, RingValues<double> const &values,
+/// The same of what rings have, by point of a cell's type or by what its step makes.
+std::vector<double> pickCell(RingPlaces const &places, RingValues<double> const &values,
                              std::vector<int> const &indices) {
     std::vector<int> ofType(indices.size());
     for (std::size_t column = 0; column < indices.size(); ++column) {
-        ofType[std::size_t(cell.GetColumns()[column])] = indices[column];
+        ofType[std::size_t(places.GetColumns()[column])] = indices[column];
     }
     std::size_t const stride = values.GetPaddedSize();
     std::size_t const last = std::size_t(*std::max_element(indices.begin(), indices.end()));
     return pick({values.GetPoints(), values.GetPoints() + (last + 1) * stride}, stride, ofType);
 }
 
-/// What a step makes of points of a type, by point of a child.
-std::vector<double> stepTo(CellType const &type, std::size_t child,
-                           std::vector<double> const &points) {
+/// Points one behind the other, in order.
+std::vector<int> makeNumbers(std::size_t count) {
+    std::vector<int> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    return numbers;
+}
+
+/// What a step makes of points of a type, without gaps.
+std::vector<double> step(CellType const &type, std::vector<double> const &points) {
     std::size_t const padded = StepMatrix::GetPaddedSize(kSize);
     std::vector<double> own(std::size_t(type.GetNumPoints()) * padded);
     for (std::size_t i = 0; i < std::size_t(type.GetNumPoints()); ++i) {
@@ -72,14 +82,31 @@ std::vector<double> stepTo(CellType const &type, std::size_t child,
     }
     std::vector<double> ofStep(type.GetStep().GetNumRows() * padded);
     type.GetStep().Apply(own.data(), padded, ofStep.data());
+    return pick(ofStep, padded, makeNumbers(type.GetStep().GetNumRows()));
+}
+
+/// The same by point of a child.
+std::vector<double> stepTo(CellType const &type, std::size_t child,
+                           std::vector<double> const &points) {
     CellType::Child const &to = type.GetChildren()[child];
-    std::vector<double> ofChild(to.step.GetNumRows() * padded);
-    to.step.CopyPoints(ofStep.data(), padded, ofChild.data());
-    std::vector<int> all(to.step.GetNumRows());
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        all[i] = int(i);
+    std::vector<double> numbers(type.GetStep().GetNumRows());
+    std::iota(numbers.begin(), numbers.end(), 0.0);
+    std::vector<double> rows;
+    to.step.CopyNumbers(numbers, rows);
+    return pick(step(type, points), kSize, {rows.begin(), rows.end()});
+}
+
+/// Expects that two types are the same or, behind another step, that what they become is.
+void expectAlike(RingCell const &cell, CellType const &type) {
+    if (!cell.IsInner()) {
+        EXPECT_EQ(&cell.GetType(), &type);
+        return;
     }
-    return pick(ofChild, padded, all);
+    auto const &children = cell.GetType().GetChildren();
+    ASSERT_EQ(children.size(), type.GetChildren().size());
+    for (std::size_t i = 0; i < children.size(); ++i) {
+        EXPECT_EQ(children[i].type, type.GetChildren()[i].type) << "of children, number " << i;
+    }
 }
 
 void expectNear(std::vector<double> const &points, std::vector<double> const &expected) {
@@ -131,10 +158,18 @@ private:
         std::vector<int> indices;
         for (std::size_t child = 0; child < type.GetChildren().size(); ++child) {
             RingCell const &cell = face.GetChild(child);
-            ASSERT_EQ(&cell.GetType(), type.GetChildren()[child].type) << "child " << child;
+            CellType const &ofChild = *type.GetChildren()[child].type;
+            SCOPED_TRACE("child " + std::to_string(child));
+            ASSERT_EQ(_isInner, cell.IsInner());
+            expectAlike(cell, ofChild);
+            std::vector<double> const expected = stepTo(type, child, points);
+            indices.resize(cell.GetPoints().GetColumns().size());
+            face.FindChildPoints(child, indices.data());
+            expectNear(pickCell(cell.GetPoints(), values, indices), expected);
             indices.resize(cell.GetColumns().size());
             face.FindChildIndices(child, indices.data());
-            expectNear(pickCell(cell, values, indices), stepTo(type, child, points));
+            expectNear(pickCell(cell.GetPlaces(), values, indices),
+                       cell.IsInner() ? step(ofChild, expected) : expected);
         }
         int const numEdges = type.GetNumCorners();
         for (int edge = 0; edge < numEdges; ++edge) {
@@ -158,15 +193,20 @@ private:
         ASSERT_EQ(cell, item.rings->cell);
         std::vector<int> indices(cell->GetColumns().size());
         face.FindLongEdgeIndices(edge, item.isReversed, indices.data());
-        std::vector<double> const ofFace = pickCell(*cell, values, indices);
+        std::vector<double> const ofFace = pickCell(cell->GetPlaces(), values, indices);
         RingValues<double> ownValues;
         ownValues.Set(item.rings->rings, item.points.size(), item.points.data(), points.data(),
                       kSize, kSize);
-        cell->FindIndices(
-            item.rings->rings.GetCenter(0, 0),
-            [&](int ring) { return item.rings->rings.GetBlock(ring, 0); }, indices.data());
-        EXPECT_EQ(ofFace, pickCell(*cell, ownValues, indices)) << "edge " << edge;
-        expectNear(ofFace, stepTo(*item.type, 0, pick(points, kSize, item.points)));
+        RingStep const last = cell->GetLastStep();
+        cell->GetPlaces().FindIndices(
+            item.rings->rings.GetCenter(0, 0, last),
+            [&](int ring) { return item.rings->rings.GetBlock(ring, 0, last); }, indices.data());
+        EXPECT_EQ(ofFace, pickCell(cell->GetPlaces(), ownValues, indices)) << "edge " << edge;
+        CellType const &longEdge = *item.type->GetChildren()[0].type;
+        expectAlike(*cell, longEdge);
+        std::vector<double> const expected =
+            stepTo(*item.type, 0, pick(points, kSize, item.points));
+        expectNear(ofFace, cell->IsInner() ? step(longEdge, expected) : expected);
     }
 
     void expectVertex(CellType const &type, FaceRings const &face, int vert,
@@ -201,6 +241,7 @@ private:
     }
 
     CellRules const _rules;
+    bool const _isInner = _rules.schemeOptions.faceMask == FarExt::FaceMask::Smooth;
     CellTypes _types;
 };
 
@@ -215,7 +256,7 @@ protected:
 
 } // namespace
 
-TEST_P(VertexRingsTest, HaveThePointsOfTheFirstStep) {
+TEST_P(VertexRingsTest, HaveThePointsOfTheirSteps) {
     Rings rings(makeRules());
     int numFaces = 0;
     for (Shape const &shape : GetShapes()) {
@@ -226,6 +267,7 @@ TEST_P(VertexRingsTest, HaveThePointsOfTheFirstStep) {
     Shape const triangles = MakeTorus(9, 8, TorusFaces::IrregularTriangles);
     EXPECT_GT(rings.Expect(triangles), 0);
     EXPECT_GT(rings.Expect(MakeDual("dual", triangles)), 0);
+    EXPECT_GT(rings.Expect(MakeChamfered("chamfered", MakeTorus(7, 6, TorusFaces::Quads))), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Masks, VertexRingsTest,

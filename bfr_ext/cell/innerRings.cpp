@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "innerRings.h"
+
+#include "lanes.h"
+#include "patchCorners.h"
+
+#include "far_ext/vtr/irregularFeatures.h"
+
+#include <algorithm>
+#include <array>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+using FarExt::internal::LimitPatch;
+using FarExt::internal::Refinement;
+using FarExt::internal::RefinementMask;
+
+namespace {
+
+constexpr std::size_t kHexagon = 6;
+// In the block of a face.
+constexpr std::size_t kOuterCenter = 0;
+constexpr std::size_t kCenter = 1;
+constexpr std::size_t kVVertex = 2;
+constexpr std::size_t kFVerticesOfHexagon = 3;
+
+} // namespace
+
+// Finds the masks around vertices of a patch, which is refined where one is met for the first time.
+class InnerRings::MaskFinder {
+public:
+    MaskFinder(InnerMasks &masks, LimitPatch const &patch)
+        : _masks(masks), _patch(patch), _corners(patch) {}
+
+    std::vector<int> FindRing(int corner) const { return _corners.FindRing(corner); }
+
+    // Of a vertex, from the corners there.
+    Weights const &FindVertex(std::vector<int> const &ring) {
+        return find(Kind::Vertex, getKey(ring),
+                    [&](Refinement const &refinement, RefinementMask const &mask) {
+                        return toWeights(mask.GetVertexMask(
+                            refinement.GetVertexChildVertex(_corners.GetVertex(ring[0]))));
+                    });
+    }
+    Weights const &FindFVertex() {
+        constexpr int kNumFaces = 3;
+        return find(Kind::FVertex, {}, [](Refinement const &, RefinementMask const &mask) {
+            FarExt::VertexVertexMask const plain = mask.GetPlainVertexMask(kNumFaces);
+            return std::vector<double>{plain.vertexWeight, plain.faceWeight};
+        });
+    }
+    Weights const &FindFace(int size) {
+        return find(Kind::Face, {size}, [&](Refinement const &, RefinementMask const &mask) {
+            double const *const weights = mask.GetPlainFaceWeights(size);
+            return std::vector<double>(weights, weights + size);
+        });
+    }
+    // Of the E-face of the edge from a corner on, the faces beside it being those of that corner and of the
+    // one before it around the vertex.
+    Weights const &FindHexagon(std::vector<int> const &ring, int corner, int before) {
+        std::vector<int> key = getKey(ring);
+        std::vector<int> const ofNeighbor = getKey(FindRing(_corners.GetNext(corner, 1)));
+        key.insert(key.end(), ofNeighbor.begin(), ofNeighbor.end());
+        key.push_back(_corners.GetFaceSize(before));
+        key.push_back(_corners.GetFaceSize(corner));
+        return find(Kind::Hexagon, key,
+                    [&](Refinement const &refinement, RefinementMask const &mask) {
+                        return findHexagon(corner, refinement, mask);
+                    });
+    }
+
+private:
+    enum class Kind { Vertex, FVertex, Face, Hexagon };
+
+    // What masks around a vertex depend on.
+    std::vector<int> getKey(std::vector<int> const &ring) const {
+        int const numFaces = int(ring.size());
+        return {numFaces, int(FarExt::internal::FindFacesAround(numFaces, [&](int i) {
+                    return _corners.GetFaceSize(ring[std::size_t(i)]);
+                }))};
+    }
+
+    template <typename MAKE>
+    Weights const &find(Kind kind, std::vector<int> const &key, MAKE const &make) {
+        return _masks._weights.Get<Weights>(int(kind), key.data(), key.data() + key.size(), [&] {
+            std::vector<double> weights;
+            CellRules const &rules = _masks.GetRules();
+            FarExt::internal::UseNextMasks(
+                _patch, rules.sdcOptions, rules.schemeOptions, rules.interpolation,
+                [&](Refinement const &refinement, RefinementMask const &mask) {
+                    weights = make(refinement, mask);
+                });
+            return Weights(std::move(weights));
+        });
+    }
+
+    static std::vector<double> toWeights(RefinementMask::VertexMask const &mask) {
+        return {mask.weights[mask.numSources - 1], mask.faceWeight};
+    }
+
+    // From the V-vertex at the corner on, a row for each F-vertex.
+    std::vector<double> findHexagon(int corner, Refinement const &refinement,
+                                    RefinementMask const &mask) const {
+        Far::Index const face =
+            refinement.GetEdgeChildFace(refinement.parent->faceEdges[Far::Index(corner)]);
+        Far::ConstIndexArray const verts = refinement.child->GetFaceVertices(face);
+        Far::Index const vert = refinement.GetVertexChildVertex(_corners.GetVertex(corner));
+        auto const first = std::size_t(std::find(verts.begin(), verts.end(), vert) - verts.begin());
+        std::vector<double> weights;
+        weights.reserve(kHexagon * kHexagon);
+        std::vector<double> scratch;
+        for (std::size_t row = 0; row < kHexagon; ++row) {
+            double const *const ofRow =
+                mask.GetFaceVertexWeights(face, int((first + row) % kHexagon), scratch);
+            for (std::size_t i = 0; i < kHexagon; ++i) {
+                weights.push_back(ofRow[(first + i) % kHexagon]);
+            }
+        }
+        return weights;
+    }
+
+    InnerMasks &_masks;
+    LimitPatch const &_patch;
+    PatchCorners const _corners;
+};
+
+bool InnerRings::Init(LimitPatch const &patch, std::vector<int> const &corners, InnerMasks &masks) {
+    MaskFinder finder(masks, patch);
+    _fVertex = &finder.FindFVertex();
+    PatchCorners const ofPatch(patch);
+    for (int const first : corners) {
+        std::vector<int> const ring = finder.FindRing(first);
+        if (ring.size() > kMaxFaces) {
+            return false;
+        }
+        Center center = {&finder.FindVertex(ring), {}};
+        center.spokes.reserve(ring.size());
+        int before = ring.back();
+        for (int const corner : ring) {
+            center.spokes.push_back({&finder.FindHexagon(ring, corner, before),
+                                     &finder.FindFace(ofPatch.GetFaceSize(corner))});
+            before = corner;
+        }
+        _rings.push_back(std::move(center));
+    }
+    return true;
+}
+
+// Writes the F-vertices of a block: of the E-face and of the F-face.
+template <std::size_t PADDED_SIZE, typename REAL>
+void InnerRings::applyFaces(Spoke const &spoke, std::size_t faceSize, REAL const *outer,
+                            REAL const *lastBefore, REAL const *firstBefore, std::size_t paddedSize,
+                            REAL *inner) {
+    std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
+    REAL const *const weights = spoke.hexagon->Get(REAL());
+    REAL const *const mask = spoke.face->Get(REAL());
+    std::array<REAL const *, kHexagon> const hexagon = {inner + kOuterCenter * stride,
+                                                        firstBefore,
+                                                        lastBefore,
+                                                        outer,
+                                                        outer + 2 * stride,
+                                                        outer + stride};
+    for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
+        std::array<Lanes<REAL>, kHexagon> verts;
+        for (std::size_t i = 0; i < kHexagon; ++i) {
+            verts[i] = Lanes<REAL>::Load(hexagon[i] + first);
+        }
+        REAL *to = inner + kFVerticesOfHexagon * stride + first;
+        for (std::size_t row = 0; row < kHexagon; ++row, to += stride) {
+            REAL const *const ofRow = weights + row * kHexagon;
+            Lanes<REAL> sum = verts[0] * ofRow[0];
+            for (std::size_t i = 1; i < kHexagon; ++i) {
+                sum = sum + verts[i] * ofRow[i];
+            }
+            sum.Store(to);
+        }
+        REAL const *const ofFace = outer + stride + first;
+        for (std::size_t corner = 0; corner < faceSize; ++corner, to += stride) {
+            Lanes<REAL> sum = Lanes<REAL>::Load(ofFace + corner * stride) * mask[0];
+            for (std::size_t i = 1; i < faceSize; ++i) {
+                std::size_t const vert = corner + i < faceSize ? corner + i : corner + i - faceSize;
+                sum = sum + Lanes<REAL>::Load(ofFace + vert * stride) * mask[i];
+            }
+            sum.Store(to);
+        }
+    }
+}
+
+template <std::size_t PADDED_SIZE, typename REAL>
+void InnerRings::apply(Ring const &ring, Center const &center, std::size_t paddedSize,
+                       REAL *points) const {
+    std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
+    REAL const *outer = points + ring.GetBlock(0, RingStep::First) * stride;
+    REAL const *before = points + ring.GetBlock(-1, RingStep::First) * stride;
+    REAL *const begin = points + ring.GetBlock(0, RingStep::Second) * stride;
+    REAL *inner = begin;
+    int const numFaces = ring.GetNumFaces();
+    for (int face = 0; face < numFaces; ++face) {
+        applyFaces<PADDED_SIZE>(center.spokes[std::size_t(face)],
+                                std::size_t(ring.GetFaceSize(face)), outer,
+                                before + std::size_t(ring.GetFaceSize(face - 1)) * stride,
+                                before + stride, paddedSize, inner);
+        before = outer;
+        outer += ring.GetBlockSize(face, RingStep::First) * stride;
+        inner += ring.GetBlockSize(face, RingStep::Second) * stride;
+    }
+    // The V-vertices of F-vertices need the next block.
+    REAL const *const weights = _fVertex->Get(REAL());
+    outer = points + ring.GetBlock(0, RingStep::First) * stride;
+    REAL *last = begin;
+    inner = begin;
+    for (int face = 0; face < numFaces; ++face) {
+        std::size_t const size = ring.GetBlockSize(face, RingStep::Second) * stride;
+        REAL const *const next = face + 1 < numFaces ? inner + size : begin;
+        for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
+            auto const load = [&](REAL const *block, std::size_t place) {
+                return Lanes<REAL>::Load(block + place * stride + first);
+            };
+            Lanes<REAL> const sum = load(inner, kFVerticesOfHexagon + kHexagon) +
+                                    load(inner, kFVerticesOfHexagon + kHexagon - 1) +
+                                    load(next, kFVerticesOfHexagon + 1);
+            (load(outer, 1) * weights[0] + sum * weights[1])
+                .Store(inner + kVVertex * stride + first);
+        }
+        writeCenter<PADDED_SIZE>(ring, center, face, begin, paddedSize, inner);
+        outer += ring.GetBlockSize(face, RingStep::First) * stride;
+        last = inner;
+        inner += size;
+    }
+    std::copy_n(last, ring.GetBlockSize(-1, RingStep::Second) * stride,
+                points + ring.GetBlock(-1, RingStep::Second) * stride);
+    std::copy_n(begin, ring.GetBlockSize(0, RingStep::Second) * stride, inner);
+    for (int face = 0; face < 2; ++face) {
+        CopyCenter(ring, face, points, paddedSize,
+                   points + ring.GetCenter(face, RingStep::Second) * stride);
+    }
+}
+
+template <typename REAL>
+void InnerRings::Apply(std::vector<Ring> const &rings, std::size_t paddedSize, REAL *points) const {
+    for (std::size_t ring = 0; ring < rings.size(); ++ring) {
+        if (paddedSize == StepMatrix::kPadding) {
+            apply<StepMatrix::kPadding>(rings[ring], _rings[ring], paddedSize, points);
+        } else {
+            apply<0>(rings[ring], _rings[ring], paddedSize, points);
+        }
+    }
+}
+
+// Writes the vertex of a ring from a face on, to the block of that.
+template <std::size_t PADDED_SIZE, typename REAL>
+void InnerRings::writeCenter(Ring const &ring, Center const &center, int face, REAL const *blocks,
+                             std::size_t paddedSize, REAL *block) {
+    std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
+    REAL const *const weights = center.vertex->Get(REAL());
+    int const numFaces = ring.GetNumFaces();
+    for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
+        REAL const *from = block + first;
+        Lanes<REAL> sum = Lanes<REAL>::Load(from + kFVerticesOfHexagon * stride);
+        for (int i = face + 1; i < face + numFaces; ++i) {
+            int const before = i - 1 < numFaces ? i - 1 : i - 1 - numFaces;
+            from = i == numFaces ? blocks + first
+                                 : from + ring.GetBlockSize(before, RingStep::Second) * stride;
+            sum = sum + Lanes<REAL>::Load(from + kFVerticesOfHexagon * stride);
+        }
+        (Lanes<REAL>::Load(block + kOuterCenter * stride + first) * weights[0] + sum * weights[1])
+            .Store(block + kCenter * stride + first);
+    }
+}
+
+template <typename REAL>
+void InnerRings::CopyCenter(Ring const &ring, int firstFace, REAL const *points,
+                            std::size_t paddedSize, REAL *result) {
+    REAL const *block = points + ring.GetBlock(0, RingStep::Second) * paddedSize;
+    for (int face = 0; face < firstFace; ++face) {
+        block += ring.GetBlockSize(face, RingStep::Second) * paddedSize;
+    }
+    std::copy_n(block + kCenter * paddedSize, paddedSize, result);
+}
+
+template void InnerRings::Apply(std::vector<Ring> const &, std::size_t, float *) const;
+template void InnerRings::Apply(std::vector<Ring> const &, std::size_t, double *) const;
+template void InnerRings::CopyCenter(Ring const &, int, float const *, std::size_t, float *);
+template void InnerRings::CopyCenter(Ring const &, int, double const *, std::size_t, double *);
+
+} // namespace OpenSubdivHex::BfrExt::internal

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_INNER_RINGS_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_INNER_RINGS_H
+
+#include "cellType.h"
+#include "ringLayout.h"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief The masks of the second step around vertices of the base mesh, which with FaceMask::Smooth depend on
+/// how many faces the ends of edges have.
+///
+/// Few differ from each other, and are kept.  Any number of threads may use them.
+class InnerMasks {
+public:
+    /// Weights in both precisions.
+    struct Weights {
+        explicit Weights(std::vector<double> weights)
+            : doubles(std::move(weights)), floats(doubles.begin(), doubles.end()) {}
+        double const *Get(double /*precision*/) const { return doubles.data(); }
+        float const *Get(float /*precision*/) const { return floats.data(); }
+
+        std::vector<double> doubles;
+        std::vector<float> floats;
+    };
+
+    explicit InnerMasks(CellRules const &rules) : _rules(rules) {}
+
+    CellRules const &GetRules() const { return _rules; }
+    /// \brief Whether rings have a second step, behind which cells depend on one vertex of the base mesh at most.
+    ///
+    /// Else masks depend on no neighbours, and cells are of few types behind the first step.
+    bool AreUsed() const {
+        return _rules.schemeOptions.faceMask == FarExt::FaceMask::Smooth &&
+               _rules.interpolation == FarExt::Interpolation::Vertex;
+    }
+
+private:
+    friend class InnerRings;
+
+    CellRules const _rules;
+    PatternTable _weights; // by what is made, and what it depends on
+};
+
+/// \brief The second step by its masks, around vertices of the base mesh, from the points of their rings.
+///
+/// As those of a ring, points are sums that depend on the ring alone.  The vertex of the ring is summed up
+/// from one of its faces on wherever it is needed: what a face adds begins with that face.
+///
+/// The block of a face has the vertex of the ring from the face on, as the first step makes it and as the
+/// second one does; the V-vertex of the face's F-vertex there; the F-vertices of the E-face of the edge where
+/// the face begins, from the vertex of the ring on and counter-clockwise; and those of the F-face.
+class InnerRings {
+public:
+    /// Around a vertex; each of them has a sum of all.
+    static constexpr std::size_t kMaxFaces = 32;
+
+    /// Whether there are any.
+    bool IsUsed() const { return !_rings.empty(); }
+
+    /// \brief Finds what the second step makes around corners of a patch, where rings are.
+    ///
+    /// \return  false around vertices of more than kMaxFaces, of which plain base faces have none
+    bool Init(FarExt::internal::LimitPatch const &patch, std::vector<int> const &corners,
+              InnerMasks &masks);
+
+    /// \brief Writes their points behind those of the first step, where the vertices of the rings from all
+    /// faces on are there already.
+    ///
+    /// \param rings       of the same corners
+    /// \param paddedSize  numbers of a point, a multiple of StepMatrix::kPadding
+    template <typename REAL>
+    void Apply(std::vector<Ring> const &rings, std::size_t paddedSize, REAL *points) const;
+    /// Writes the vertex of a ring, from any face on, as it is among \p points, those of all rings.
+    template <typename REAL>
+    static void CopyCenter(Ring const &ring, int firstFace, REAL const *points,
+                           std::size_t paddedSize, REAL *result);
+
+private:
+    using Weights = InnerMasks::Weights;
+
+    class MaskFinder;
+    struct Spoke {
+        Weights const *hexagon; // of its E-face, a row for each F-vertex
+        Weights const *face;    // of the F-face behind it: of the F-vertex at place 0
+    };
+    struct Center {
+        Weights const *vertex; // its own, and that of F-vertices
+        std::vector<Spoke> spokes;
+    };
+
+    template <std::size_t PADDED_SIZE, typename REAL>
+    static void applyFaces(Spoke const &spoke, std::size_t faceSize, REAL const *outer,
+                           REAL const *lastBefore, REAL const *firstBefore, std::size_t paddedSize,
+                           REAL *inner);
+    template <std::size_t PADDED_SIZE, typename REAL>
+    static void writeCenter(Ring const &ring, Center const &center, int face, REAL const *blocks,
+                            std::size_t paddedSize, REAL *block);
+    template <std::size_t PADDED_SIZE, typename REAL>
+    void apply(Ring const &ring, Center const &center, std::size_t paddedSize, REAL *points) const;
+
+    std::vector<Center> _rings;
+    Weights const *_fVertex = nullptr; // as of a center, of vertices with three faces
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

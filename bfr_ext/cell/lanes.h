@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_LANES_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_LANES_H
+
+#include "stepMatrix.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// Some numbers of a point, which are computed with at once.
+template <typename REAL>
+struct Lanes {
+    static constexpr std::size_t kCount = StepMatrix::kPadding;
+
+    static Lanes Load(REAL const *from) {
+        Lanes result;
+        std::copy_n(from, kCount, result.values);
+        return result;
+    }
+    void Store(REAL *to) const { std::copy_n(values, kCount, to); }
+
+    Lanes operator+(Lanes const &other) const {
+        Lanes result;
+        for (std::size_t i = 0; i < kCount; ++i) {
+            result.values[i] = values[i] + other.values[i];
+        }
+        return result;
+    }
+    Lanes operator*(REAL factor) const {
+        Lanes result;
+        for (std::size_t i = 0; i < kCount; ++i) {
+            result.values[i] = values[i] * factor;
+        }
+        return result;
+    }
+
+    REAL values[kCount];
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ringLayout.h"
+
+#include "patchCorners.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+using FarExt::internal::LimitPatch;
+
+namespace {
+
+// The vertices that a step makes of a patch, which has vertices of a level.
+class MadeVertices {
+public:
+    explicit MadeVertices(LimitPatch const &patch) : _numVerts(int(patch.sources.size())) {
+        for (int vert = 0; vert < _numVerts; ++vert) {
+            _vVertices[patch.sources[std::size_t(vert)]] = vert;
+        }
+        PatchCorners const corners(patch);
+        auto const getVertex = [&](int corner) {
+            return patch.sources[std::size_t(corners.GetVertex(corner))];
+        };
+        for (int corner = 0; corner < int(patch.faceVerts.size()); ++corner) {
+            _fVertices[{getVertex(corner), getVertex(corners.GetNext(corner, 1))}] =
+                _numVerts + corner;
+        }
+    }
+
+    // The V-vertex of a vertex of the level.
+    int FindVVertex(int vert) const { return find(_vVertices, vert); }
+    // The F-vertex at a vertex in the face that has another one behind it.
+    int FindFVertex(int vert, int next) const {
+        return find(_fVertices, std::make_pair(vert, next));
+    }
+
+private:
+    template <typename MAP>
+    static int find(MAP const &map, typename MAP::key_type const &key) {
+        auto const found = map.find(key);
+        return found == map.end() ? RingLayout::kNone : found->second;
+    }
+
+    int const _numVerts;
+    std::map<int, int> _vVertices;
+    std::map<std::pair<int, int>, int> _fVertices;
+};
+
+} // namespace
+
+RingLayout RingLayout::From(int firstFace) const {
+    int const numFaces = int(faceSizes.size());
+    firstFace = (firstFace + numFaces) % numFaces;
+    int first = 0;
+    for (int face = 0; face < firstFace; ++face) {
+        first += 1 + faceSizes[std::size_t(face)];
+    }
+    RingLayout result = *this;
+    auto const rotate = [](std::vector<int> &numbers, int begin) {
+        std::rotate(numbers.begin(), numbers.begin() + begin, numbers.end());
+    };
+    rotate(result.faceSizes, firstFace);
+    rotate(result.verts, first);
+    return result;
+}
+
+std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int> const &corners) {
+    PatchCorners const ofPatch(patch);
+    int const numVerts = int(patch.sources.size());
+    std::vector<RingLayout> layouts;
+    layouts.reserve(corners.size());
+    for (int const firstCorner : corners) {
+        RingLayout layout = {ofPatch.GetVertex(firstCorner), {}, {}};
+        for (int const corner : ofPatch.FindRing(firstCorner)) {
+            int const size = ofPatch.GetFaceSize(corner);
+            layout.faceSizes.push_back(size);
+            layout.verts.push_back(ofPatch.GetVertex(ofPatch.GetNext(corner, 1)));
+            for (int i = 0; i < size; ++i) {
+                layout.verts.push_back(numVerts + ofPatch.GetNext(corner, i));
+            }
+        }
+        layouts.push_back(std::move(layout));
+    }
+    return layouts;
+}
+
+std::vector<RingLayout> FindInnerLayouts(LimitPatch const &patch,
+                                         std::vector<RingLayout> const &rings) {
+    MadeVertices const made(patch);
+    std::vector<RingLayout> layouts;
+    layouts.reserve(rings.size());
+    for (RingLayout const &ring : rings) {
+        RingLayout layout = {made.FindVVertex(ring.center), ring.faceSizes, {}};
+        auto const addFVertices = [&](int const *verts, int size) {
+            for (int i = 0; i < size; ++i) {
+                layout.verts.push_back(made.FindFVertex(verts[i], verts[(i + 1) % size]));
+            }
+        };
+        // Of a face: the neighbour where it begins, and its F-vertices.
+        int const *block = ring.verts.data();
+        int sizeBefore = ring.faceSizes.back();
+        int const *before = &ring.verts.back() - sizeBefore;
+        for (int const size : ring.faceSizes) {
+            std::array<int, 6> const hexagon = {ring.center, before[1], before[sizeBefore],
+                                                block[0],    block[2],  block[1]};
+            layout.verts.push_back(RingLayout::kNone);
+            layout.verts.push_back(layout.center);
+            layout.verts.push_back(made.FindVVertex(block[1]));
+            addFVertices(hexagon.data(), int(hexagon.size()));
+            addFVertices(block + 1, size);
+            before = block;
+            sizeBefore = size;
+            block += 1 + size;
+        }
+        layouts.push_back(std::move(layout));
+    }
+    return layouts;
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal

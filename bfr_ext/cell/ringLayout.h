@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_RING_LAYOUT_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_RING_LAYOUT_H
+
+#include "far_ext/limit/limitPatch.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// The step that has made the points of rings.
+enum class RingStep { First, Second };
+
+/// \brief A ring of VertexRings or InnerRings, as far as its points do not depend on where they come from.
+///
+/// The points of a ring lie one behind the other.  First come two for its vertex, whose sums begin with
+/// face 0 and face 1; then the *blocks* of the faces, counter-clockwise.  The last face has its block
+/// before that of face 0, and face 0 has its own behind that of the last, too, so that the blocks
+/// from any of these on are one behind the other.
+struct Ring {
+    std::vector<int> faceSizes;
+    std::size_t firstPoints[2]; ///< by step: of all rings, that which is its vertex from face 0 on
+    /// Whether the faces around the vertex and its neighbours are a piece of a regular lattice.
+    bool isInLattice;
+
+    int GetNumFaces() const { return int(faceSizes.size()); }
+    /// The size of a face; face -1 is the last.
+    int GetFaceSize(int face) const {
+        return face < 0 ? faceSizes.back() : faceSizes[std::size_t(face)];
+    }
+    std::size_t GetBlockSize(int face, RingStep step) const {
+        return GetNumOthers(step) + std::size_t(GetFaceSize(face));
+    }
+    /// What a block has besides the F-vertices of its face, which come last.
+    static constexpr std::size_t GetNumOthers(RingStep step) {
+        return step == RingStep::First ? 1 : 9;
+    }
+    std::size_t GetNumPoints(RingStep step) const {
+        std::size_t size = 2 + GetBlockSize(-1, step) + GetBlockSize(0, step);
+        for (int face = 0; face < GetNumFaces(); ++face) {
+            size += GetBlockSize(face, step);
+        }
+        return size;
+    }
+    /// The point of its vertex, from face 0 or 1 on.
+    std::size_t GetCenter(int firstFace, RingStep step) const {
+        return firstPoints[std::size_t(step)] + std::size_t(firstFace);
+    }
+    /// The first point of the block of face -1, 0 or 1.
+    std::size_t GetBlock(int face, RingStep step) const {
+        std::size_t const first = GetCenter(2, step);
+        if (face < 0) {
+            return first;
+        }
+        return first + GetBlockSize(-1, step) + (face == 0 ? 0 : GetBlockSize(0, step));
+    }
+};
+
+/// \brief What is where in a ring, in vertices of the level that the step makes.
+///
+/// What a step makes of two sets of rings is alike where their layouts are, but for the numbers of
+/// vertices.
+struct RingLayout {
+    /// What is not a vertex of the level, or of no matter.
+    static constexpr int kNone = -1;
+
+    int center;
+    std::vector<int> faceSizes;
+    std::vector<int> verts; ///< from the block of face 0 to that of the last
+
+    /// The same of the first step from another face on.
+    RingLayout From(int firstFace) const;
+};
+/// Those of the first step from a patch.
+///
+/// \param corners  those of VertexRings::Init(), which finds rings there
+std::vector<RingLayout> FindRingLayouts(FarExt::internal::LimitPatch const &patch,
+                                        std::vector<int> const &corners);
+/// Those of the second step, from a patch that the first one makes.
+///
+/// \param rings  those of the first step
+std::vector<RingLayout> FindInnerLayouts(FarExt::internal::LimitPatch const &patch,
+                                         std::vector<RingLayout> const &rings);
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif
