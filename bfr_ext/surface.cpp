@@ -300,7 +300,7 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
                 cells.EvaluateCorner(cell, corner->corner, point.data());
                 write(corner->place, 0, point.data());
             }
-            if (results[1]) {
+            if (results[1] && corner->isCellInSector) {
                 cells[cell].EvaluateCorner(corner->corner, point.data(), point.data() + length);
                 write(corner->place, 1, point.data());
                 write(corner->place, 2, point.data() + length);
@@ -330,7 +330,7 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
         cells.SetBase(*_type, control.data(), pointDesc.size);
     }
     visit(visit, 0, internal::RefinedCells::kBase);
-    // Derivatives at points of neighbours alone.
+    // Derivatives at points of neighbours alone, and where no cell lies on the side that they are from.
     for (std::size_t i = 0; results[1] && i < isDone.size(); ++i) {
         if (!isDone[i]) {
             Tessellation::SectorCoords const &place = tessellation._places[i];

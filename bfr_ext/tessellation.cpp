@@ -241,7 +241,7 @@ std::vector<int> Tessellation::setPlaces(CellMesh const &mesh, std::vector<int> 
         polygon.Write(vert.sector, {start, end}, &_coords[2 * place]);
         _places.push_back({vert.sector, start, end});
         if (_tree && vert.cell >= 0) {
-            _tree->corners.push_back({vert.cell, vert.corner, int(place)});
+            _tree->corners.push_back({vert.cell, vert.corner, int(place), vert.isCellInSector});
         }
     }
     if (_tree) {

@@ -245,6 +245,7 @@ private:
         int cell;
         int corner;
         int place;
+        bool isCellInSector; // of the place
     };
     // What the tessellation of a tree has besides.
     struct Tree {

@@ -403,4 +403,44 @@ TEST(TessellationSurface, PointsAreThoseOfSinglePlaces) {
     }
 }
 
+// On the lines from the centre to corners derivatives are different on both sides; trees have cells there
+// on one side, the other, or both.
+TEST(TessellationSurface, DerivativesOfTreesAreThoseOfSinglePlaces) {
+    constexpr int kFaceSize = 3;
+    constexpr int kNumFaces = 6;
+    Shape const shape = MakeTorus(9, 7, TorusFaces::IrregularTriangles);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    std::vector<BfrExt::CellTree> trees = {BfrExt::CellTree(kFaceSize, 4)};
+    for (int refined = 0; refined <= kFaceSize; ++refined) {
+        BfrExt::CellTree &tree = trees.emplace_back(kFaceSize);
+        int const cell = tree.Refine(0) + refined;
+        int const first = tree.Refine(cell);
+        for (int child = 0; child < tree.GetNumChildren(cell); ++child) {
+            tree.Refine(first + child);
+        }
+    }
+    for (int face = 0; face < kNumFaces; ++face) {
+        Surface<double> const &surface = surfaces[face];
+        std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+        surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+        for (BfrExt::CellTree const &tree : trees) {
+            Tessellation const tessellation(tree);
+            auto const numPlaces = std::size_t(tessellation.GetNumCoords());
+            std::vector<double> p(3 * numPlaces), du(3 * numPlaces), dv(3 * numPlaces);
+            surface.Evaluate(tessellation, control.data(), 3, p.data(), du.data(), dv.data(), 3);
+            std::vector<double> const coords = getCoords(tessellation);
+            for (std::size_t i = 0; i < numPlaces; ++i) {
+                SurfacePoint const expected = surfaces.Evaluate(face, &coords[2 * i]);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    ASSERT_NEAR(p[3 * i + k], expected.p[k], 1e-12);
+                    // From other cells with the same corner they are as close as steps make them.
+                    ASSERT_NEAR(du[3 * i + k], expected.du[k], 1e-5);
+                    ASSERT_NEAR(dv[3 * i + k], expected.dv[k], 1e-5);
+                }
+            }
+        }
+    }
+}
+
 } // namespace OpenSubdivHex::Regression
