@@ -148,7 +148,7 @@ public:
         /// That number.
         std::size_t GetMaxMemory() const { return _maxMemory; }
 
-        /// \brief Sets how many types of faces and cells are kept at a time, each of about 12 kilobytes;
+        /// \brief Sets how many types of faces and cells are kept at a time, each of some kilobytes;
         /// 0: all, in the cache of the factory.
         ///
         /// A stream that may not keep all has a cache of its own, which is forgotten as a whole when it
