@@ -262,7 +262,8 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
                                           resultDesc.stride);
         }
     }
-    if (_type->IsInLattice() && tessellation.IsUniform() && !tessellation._section) {
+    if (_type->IsInLattice() && tessellation.IsUniform() && !tessellation._section &&
+        _type->GetLatticeBorder().isAlike) {
         evaluateLatticeBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
         return;
     }
@@ -411,7 +412,7 @@ void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
     }
 }
 
-// All edges are of one type, and all vertices: so they are evaluated together.
+// Where all edges are of one type, and all vertices, so that they are evaluated together.
 template <typename REAL>
 void Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
                                           REAL const controlPoints[],

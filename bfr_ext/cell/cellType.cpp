@@ -342,6 +342,13 @@ CellType::LatticeBorder const &CellType::GetLatticeBorder() const {
                 border.items[item].push_back(&GetBorderItem(turns.data(), item));
             }
         }
+        border.isAlike = true;
+        for (std::size_t item = 0; item < 2 * numEdges; ++item) {
+            CellType const *const type = border.items[item < numEdges ? 0 : numEdges][0]->type;
+            border.isAlike = border.isAlike &&
+                             std::all_of(border.items[item].begin(), border.items[item].end(),
+                                         [&](BorderItem const *of) { return of->type == type; });
+        }
         return border;
     });
 }

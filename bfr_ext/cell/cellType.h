@@ -119,9 +119,12 @@ public:
     /// \param turns  those of FindBaseCellTurns()
     BorderItem const &GetBorderItem(int const *turns, std::size_t item) const;
     /// \brief All of them, of a face in a lattice: by edge, and behind these by vertex, what the turns
-    /// 0, 1 and so on make of it.  All edges are of one type, and all vertices.
+    /// 0, 1 and so on make of it.
     struct LatticeBorder {
         std::vector<std::vector<BorderItem const *>> items;
+        /// Whether all edges are of one type, and all vertices.  They are not where what one of them depends
+        /// on is cut off by a boundary, or has a vertex twice, as around a tube of few vertices.
+        bool isAlike;
     };
     LatticeBorder const &GetLatticeBorder() const;
     /// What has been made of this type.

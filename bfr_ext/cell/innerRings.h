@@ -64,7 +64,8 @@ public:
 
     /// \brief Finds what the second step makes around corners of a patch, where rings are.
     ///
-    /// \return  false around vertices of more than kMaxFaces, of which plain base faces have none
+    /// \return  false around vertices of more than kMaxFaces, whose faces make the second step by themselves;
+    ///          plain base faces have none
     bool Init(FarExt::internal::LimitPatch const &patch, std::vector<int> const &corners,
               InnerMasks &masks);
 

@@ -75,6 +75,8 @@ public:
         : _type(type), _lastStep(RingStep::Second), _isInner(true), _points(std::move(points)),
           _inner(std::move(inner)) {}
 
+    /// Of an inner cell that of any other one that is the same behind the step: nothing before it is the
+    /// cell's own but the order of rows.
     CellType const &GetType() const { return _type; }
     /// All that a cell is but its type.
     std::vector<int> GetKey() const;

@@ -443,4 +443,43 @@ TEST(TessellationSurface, DerivativesOfTreesAreThoseOfSinglePlaces) {
     }
 }
 
+// What the edges and vertices of a face depend on has vertices twice around a tube of few, or is cut off at
+// boundaries, though all faces around are those of a lattice: they are not all of one type.
+TEST(TessellationSurface, BordersInCutLatticesAreThoseOfSinglePlaces) {
+    constexpr int kNumFaces = 12;
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
+    std::vector<Shape> shapes = {GetFeatureShape("seamEndsInside")};
+    for (int numU : {3, 4, 5}) {
+        shapes.push_back(MakeTorus(numU, 8, TorusFaces::Triangles));
+        shapes.push_back(MakeTorus(numU, 8, TorusFaces::Quads));
+    }
+    for (Shape const &shape : shapes) {
+        for (ReferenceMask const mask :
+             {ReferenceMask::Average, ReferenceMask::Cosine, ReferenceMask::Smooth}) {
+            SCOPED_TRACE(shape.name);
+            auto const refiner = CreateRefiner(shape, mask, 0, options);
+            SurfaceSet<double> const surfaces(*refiner, shape.positions);
+            for (int face = 0; face < std::min(shape.GetNumFaces(), kNumFaces); ++face) {
+                Surface<double> const &surface = surfaces[face];
+                if (!surface.IsValid()) {
+                    continue;
+                }
+                Tessellation const tessellation(surface.GetParameterization(), 3);
+                std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+                surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+                std::vector<double> p(3 * std::size_t(tessellation.GetNumCoords()));
+                surface.Evaluate(tessellation, control.data(), 3, p.data(), 3);
+                std::vector<double> const coords = getCoords(tessellation);
+                for (std::size_t i = 0; i < std::size_t(tessellation.GetNumBoundaryCoords()); ++i) {
+                    SurfacePoint const expected = surfaces.Evaluate(face, &coords[2 * i]);
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        ASSERT_EQ(p[3 * i + k], expected.p[k]) << "face " << face << " place " << i;
+                    }
+                }
+            }
+        }
+    }
+}
+
 } // namespace OpenSubdivHex::Regression
