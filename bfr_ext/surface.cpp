@@ -263,8 +263,7 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         }
     }
     if (_type->IsInLattice() && tessellation.IsUniform() && !tessellation._section &&
-        _type->GetLatticeBorder().isAlike) {
-        evaluateLatticeBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc);
+        evaluateLatticeBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc)) {
         return;
     }
     useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
@@ -412,14 +411,17 @@ void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
     }
 }
 
-// Where all edges are of one type, and all vertices, so that they are evaluated together.
+// Evaluates all edges together, and all vertices; false where they are not of one type.
 template <typename REAL>
-void Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
+bool Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
                                           REAL const controlPoints[],
                                           PointDescriptor const &pointDesc, REAL p[],
                                           PointDescriptor const &resultDesc) const {
     using Item = typename internal::ItemSums<REAL>::Item;
     CellType::LatticeBorder const &border = _type->GetLatticeBorder();
+    if (!border.isAlike) {
+        return false;
+    }
     auto const numEdges = std::size_t(GetFaceSize());
     Item items[kMaxLatticeFaceSize];
     auto const getItem = [&](std::size_t item) -> CellType::BorderItem const & {
@@ -438,7 +440,7 @@ void Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
     evaluate(Evaluator::GetVertexMatrix(*getItem(numEdges).type));
     int const numPlaces = tessellation.GetNumEdgeCoords(0);
     if (numPlaces == 0) {
-        return;
+        return true;
     }
     for (std::size_t edge = 0; edge < numEdges; ++edge) {
         CellType::BorderItem const &item = getItem(edge);
@@ -448,6 +450,7 @@ void Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
                        item.isReversed ? -resultDesc.stride : resultDesc.stride};
     }
     evaluate(Evaluator::GetLatticeMatrix(*getItem(0).type, tessellation._levels[0]));
+    return true;
 }
 
 template <typename REAL>

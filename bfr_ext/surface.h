@@ -226,7 +226,7 @@ private:
     void evaluateBorder(Tessellation const &tessellation,
                         internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                         PointDescriptor const &resultDesc) const;
-    void evaluateLatticeBorder(Tessellation const &tessellation, REAL const controlPoints[],
+    bool evaluateLatticeBorder(Tessellation const &tessellation, REAL const controlPoints[],
                                PointDescriptor const &pointDesc, REAL p[],
                                PointDescriptor const &resultDesc) const;
     void evaluateSectionBorder(Tessellation const &tessellation,

@@ -32,7 +32,7 @@ public:
     MaskFinder(InnerMasks &masks, LimitPatch const &patch)
         : _masks(masks), _patch(patch), _corners(patch) {}
 
-    std::vector<int> FindRing(int corner) const { return _corners.FindRing(corner); }
+    PatchCorners const &GetCorners() const { return _corners; }
 
     // Of a vertex, from the corners there.
     Weights const &FindVertex(std::vector<int> const &ring) {
@@ -59,7 +59,7 @@ public:
     // one before it around the vertex.
     Weights const &FindHexagon(std::vector<int> const &ring, int corner, int before) {
         std::vector<int> key = getKey(ring);
-        std::vector<int> const ofNeighbor = getKey(FindRing(_corners.GetNext(corner, 1)));
+        std::vector<int> const ofNeighbor = getKey(_corners.FindRing(_corners.GetNext(corner, 1)));
         key.insert(key.end(), ofNeighbor.begin(), ofNeighbor.end());
         key.push_back(_corners.GetFaceSize(before));
         key.push_back(_corners.GetFaceSize(corner));
@@ -127,9 +127,8 @@ private:
 bool InnerRings::Init(LimitPatch const &patch, std::vector<int> const &corners, InnerMasks &masks) {
     MaskFinder finder(masks, patch);
     _fVertex = &finder.FindFVertex();
-    PatchCorners const ofPatch(patch);
     for (int const first : corners) {
-        std::vector<int> const ring = finder.FindRing(first);
+        std::vector<int> const ring = finder.GetCorners().FindRing(first);
         if (ring.size() > kMaxFaces) {
             return false;
         }
@@ -138,7 +137,7 @@ bool InnerRings::Init(LimitPatch const &patch, std::vector<int> const &corners, 
         int before = ring.back();
         for (int const corner : ring) {
             center.spokes.push_back({&finder.FindHexagon(ring, corner, before),
-                                     &finder.FindFace(ofPatch.GetFaceSize(corner))});
+                                     &finder.FindFace(finder.GetCorners().GetFaceSize(corner))});
             before = corner;
         }
         _rings.push_back(std::move(center));
