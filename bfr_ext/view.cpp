@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view.h"
 
+#include "cell/cellMeasures.h"
 #include "cell/cellType.h"
-#include "cell/flatness.h"
-#include "cell/slopeBounds.h"
-#include "cell/vector3.h"
 
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
@@ -12,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace OpenSubdivHex::BfrExt {
@@ -62,51 +61,58 @@ public:
 
     Vector3 const &GetEye() const { return _eye; }
 
-    /// Whether the hull of some points is outside of the picture, or behind the eye.
-    bool IsOutside(CellValues const &points) const {
+    /// Whether a box is outside of the picture, or behind the eye.
+    bool IsOutside(Box const &box) const {
+        Vector3 const toLeast = Subtract(box.least, _eye);
+        Vector3 const toLargest = Subtract(box.largest, _eye);
         auto const isBeyond = [&](Vector3 const &outwards) {
-            for (int i = 0; i < points.GetNumPoints(); ++i) {
-                if (!(Dot(outwards, Subtract(ToVector3(points.GetPoint(i)), _eye)) > 0)) {
-                    return false;
-                }
-            }
-            return true;
+            return getLeast(outwards, toLeast, toLargest) > 0;
         };
         return std::any_of(std::begin(_planes), std::end(_planes), isBeyond) ||
                isBeyond(Scale(_forward, -1));
     }
 
-    /// \brief How many pixels long a line of length 1 in the hull of some points is at most.
+    /// \brief How many pixels long a line of length 1 in a box is at most.
     ///
     /// A piece of it at depth z, and by an angle with the secant s away from the axis, has s/z times the
-    /// pixels that it would have at depth 1.  Or, at distance r = s z, s^2/r times these.
-    double GetPixelsPerUnit(CellValues const &points) const {
-        double leastDepth = std::numeric_limits<double>::infinity();
-        double largestSquare = 1; // of secants
-        Vector3 least = {leastDepth, leastDepth, leastDepth};
-        Vector3 largest = Scale(least, -1);
-        for (int i = 0; i < points.GetNumPoints(); ++i) {
-            Vector3 const toPoint = Subtract(ToVector3(points.GetPoint(i)), _eye);
-            double const depth = Dot(_forward, toPoint);
-            leastDepth = std::min(leastDepth, depth);
-            largestSquare = std::max(largestSquare, Dot(toPoint, toPoint) / (depth * depth));
-            for (std::size_t k = 0; k < 3; ++k) {
-                least[k] = std::min(least[k], toPoint[k]);
-                largest[k] = std::max(largest[k], toPoint[k]);
-            }
-        }
+    /// pixels that it would have at depth 1.  Or, at distance r = s z, s^2/r times these.  Secants are largest
+    /// at corners of the box, since places where they are no larger than a number are a convex cone.
+    double GetPixelsPerUnit(Box const &box) const {
+        Vector3 const toLeast = Subtract(box.least, _eye);
+        Vector3 const toLargest = Subtract(box.largest, _eye);
         Vector3 nearest;
         for (std::size_t k = 0; k < 3; ++k) {
-            nearest[k] = std::max({least[k], -largest[k], 0.0});
+            nearest[k] = std::max({toLeast[k], -toLargest[k], 0.0});
         }
         double const byDistance = _largestSecant * _largestSecant / GetLength(nearest);
-        double const byDepth = leastDepth > 0
-                                   ? std::min(std::sqrt(largestSquare), _largestSecant) / leastDepth
-                                   : std::numeric_limits<double>::infinity();
+        double const leastDepth = getLeast(_forward, toLeast, toLargest);
+        if (!(leastDepth > 0)) {
+            return _pixelsAtDepth1 * byDistance;
+        }
+        constexpr unsigned kNumCorners = 8;
+        double largestSquare = 1; // of secants
+        for (unsigned corner = 0; corner < kNumCorners; ++corner) {
+            Vector3 toCorner;
+            for (unsigned k = 0; k < 3; ++k) {
+                toCorner[k] = (corner >> k & 1U) != 0 ? toLargest[k] : toLeast[k];
+            }
+            double const depth = Dot(_forward, toCorner);
+            largestSquare = std::max(largestSquare, Dot(toCorner, toCorner) / (depth * depth));
+        }
+        double const byDepth = std::min(std::sqrt(largestSquare), _largestSecant) / leastDepth;
         return _pixelsAtDepth1 * std::min(byDepth, byDistance);
     }
 
 private:
+    // The least product with a direction, of all places of a box.
+    static double getLeast(Vector3 const &direction, Vector3 const &least, Vector3 const &largest) {
+        double sum = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            sum += std::min(direction[k] * least[k], direction[k] * largest[k]);
+        }
+        return sum;
+    }
+
     Vector3 _eye = {};
     Vector3 _forward = {};
     std::array<Vector3, 4> _planes = {}; // through the eye and the sides of the picture, outwards
@@ -116,154 +122,271 @@ private:
 
 namespace {
 
-/// Refines one face.
+/// That of a cell's points.
+Box getBox(CellValues const &values) {
+    Box box;
+    for (int i = 0; i < values.GetNumPoints(); ++i) {
+        box.Add(values.GetPoint(i));
+    }
+    return box;
+}
+
+/// Writes the cell of a base face.
+using SetBase = std::function<void(RefinedCells &)>;
+
+/// \brief Refines one face.
+///
+/// Cells are made where something is asked of them that is not known yet.
 class TreeMaker {
 public:
-    TreeMaker(ViewGeometry const &geometry, View::Options const &options, CellTree const *previous,
-              CellTree &tree, std::vector<CellVisibility> *visibility)
-        : _geometry(geometry), _options(options), _previous(previous), _tree(tree),
-          _visibility(visibility) {}
+    /// \param setBase   is called once at most
+    /// \param measures  those of the face, which it adds to
+    TreeMaker(ViewGeometry const &geometry, View::Options const &options, SetBase const &setBase,
+              FaceMeasures &measures, CellTree const *previous, CellTree &tree,
+              std::vector<CellVisibility> *visibility)
+        : _geometry(geometry), _options(options), _setBase(setBase), _measures(measures),
+          _previous(previous), _tree(tree), _visibility(visibility) {}
 
-    /// \param cells  of the base face, which it refines
-    void Make(RefinedCells &cells) {
-        _cells = &cells;
-        visit(RefinedCells::kBase, 0, _previous ? 0 : -1);
+    void Make() {
+        if (_measures.cells.empty()) {
+            _measures.cells.emplace_back();
+        }
+        Node base = {nullptr, 0, true, 0};
+        visit(base, 0, _previous ? 0 : -1);
     }
 
 private:
-    void visit(std::size_t cell, int treeCell, int previousCell) {
-        CellVisibility const found = find(cell);
+    static constexpr std::size_t kNotMade = std::size_t(-1);
+
+    /// A cell that is looked at.
+    struct Node {
+        Node *parent;
+        int child; ///< which of that
+        bool isWhole;
+        std::size_t measures;
+        std::size_t cell = kNotMade;
+    };
+
+    void visit(Node &node, int treeCell, int previousCell) {
+        CellVisibility const found = find(node);
         if (_visibility) {
             _visibility->resize(std::size_t(_tree.GetNumCells()));
             (*_visibility)[std::size_t(treeCell)] = found;
         }
         if (found != CellVisibility::Visible ||
-            getCell(cell).GetLevel() >= _options.GetMaxLevel()) {
+            _tree.GetLevel(treeCell) >= _options.GetMaxLevel()) {
             return;
         }
         bool const wasRefined = previousCell >= 0 && _previous->IsRefined(previousCell);
-        if (!isToRefine(cell, wasRefined ? _options.GetHysteresis() : 1)) {
+        if (!isToRefine(node, wasRefined ? _options.GetHysteresis() : 1)) {
             return;
         }
-        std::size_t const firstChild = _cells->GetFirstChild(cell);
-        std::size_t const numCells = _cells->GetSize();
         int const first = _tree.Refine(treeCell);
-        for (int i = 0; i < _tree.GetNumChildren(treeCell); ++i) {
-            visit(firstChild + std::size_t(i), first + i,
-                  wasRefined ? _previous->GetFirstChild(previousCell) + i : -1);
-            _cells->Drop(numCells); // what was made within the child
+        int const numChildren = getNumChildren(node);
+        for (int i = 0; i < numChildren; ++i) {
+            Node child = makeChild(node, i);
+            bool const areMade = node.cell != kNotMade && _cells.HasChildren(node.cell);
+            std::size_t const numCells = _cells.GetSize();
+            visit(child, first + i, wasRefined ? _previous->GetFirstChild(previousCell) + i : -1);
+            if (areMade) {
+                _cells.Drop(numCells); // what was made within the child
+            }
         }
     }
 
-    CellValues const &getCell(std::size_t cell) const { return (*_cells)[cell]; }
+    int getNumChildren(Node const &node) const {
+        return node.isWhole ? _tree.GetFaceSize() + 1 : 4;
+    }
 
-    CellVisibility find(std::size_t cell) {
+    Node makeChild(Node &parent, int child) {
+        int first = getMeasures(parent).firstChild;
+        if (first == 0) {
+            first = int(_measures.cells.size());
+            getMeasures(parent).firstChild = first;
+            _measures.cells.resize(_measures.cells.size() + std::size_t(getNumChildren(parent)));
+        }
+        return {&parent, child, parent.isWhole && child == 0, std::size_t(first + child)};
+    }
+
+    CellMeasures &getMeasures(Node const &node) { return _measures.cells[node.measures]; }
+
+    std::size_t makeCell(Node &node) {
+        if (node.cell == kNotMade && !node.parent) {
+            _setBase(_cells);
+            node.cell = RefinedCells::kBase;
+        } else if (node.cell == kNotMade) {
+            node.cell = _cells.GetFirstChild(makeCell(*node.parent)) + std::size_t(node.child);
+        }
+        return node.cell;
+    }
+
+    CellValues const &makeValues(Node &node) { return _cells[makeCell(node)]; }
+
+    Box const &findBox(Node &node) {
+        if (!getMeasures(node).box.HasPoints()) {
+            Box const box = getBox(makeValues(node));
+            getMeasures(node).box = box;
+        }
+        return getMeasures(node).box;
+    }
+
+    CellVisibility find(Node &node) {
         if (!_options.IsCulling()) {
             return CellVisibility::Visible;
         }
-        if (_geometry.IsOutside(getCell(cell))) {
+        if (_geometry.IsOutside(findBox(node))) {
             return CellVisibility::Outside;
         }
-        return isBackFacing(cell, SlopeBounds::kMaxSteps) ? CellVisibility::BackFacing
+        return isBackFacing(node, SlopeBounds::kMaxSteps) ? CellVisibility::BackFacing
                                                           : CellVisibility::Visible;
     }
 
     // Whether the cell faces away, or all cells do that some steps make of it.
-    bool isBackFacing(std::size_t cell, int numSteps) {
-        CellValues const &values = getCell(cell);
-        SlopeBounds const *const bounds =
-            values.HasSurfaceOfType() ? &SlopeBounds::Find(values.GetType()) : nullptr;
-        if ((bounds && bounds->GetNumSteps() > numSteps) || !areCornersBackFacing(cell)) {
+    bool isBackFacing(Node &node, int numSteps) {
+        CellFacing &facing = findFacing(node);
+        if (facing.numSteps > numSteps || !areCornersBackFacing(facing)) {
             return false;
         }
-        if (bounds && bounds->Exist() && areSlopesBackFacing(values, *bounds)) {
+        if (facing.numSteps == 0 && areSlopesBackFacing(node, facing)) {
             return true;
         }
         if (numSteps == 0) {
             return false;
         }
-        std::size_t const first = _cells->GetFirstChild(cell);
-        for (int i = 0; i < values.GetNumChildren(); ++i) {
-            if (!isBackFacing(first + std::size_t(i), numSteps - 1)) {
+        for (int i = 0; i < getNumChildren(node); ++i) {
+            Node child = makeChild(node, i);
+            if (!isBackFacing(child, numSteps - 1)) {
                 return false;
             }
         }
         return true;
     }
 
-    void findCorners(std::size_t cell) {
-        CellValues const &values = getCell(cell);
+    // Of a cell whose type has no bounds, only the children are asked.
+    static SlopeBounds const *findSlopeBounds(CellValues const &values) {
+        return values.HasSurfaceOfType() ? &SlopeBounds::Find(values.GetType()) : nullptr;
+    }
+
+    CellFacing &findFacing(Node &node) {
+        if (getMeasures(node).facing < 0) {
+            SlopeBounds const *const bounds = findSlopeBounds(makeValues(node));
+            CellFacing facing = {};
+            if (!bounds || !bounds->Exist()) {
+                facing.numSteps = bounds ? std::max(bounds->GetNumSteps(), 1) : 1;
+            }
+            if (facing.numSteps <= SlopeBounds::kMaxSteps) {
+                findCorners(node);
+                facing.corner = ToVector3(_corners.data());
+                for (std::size_t i = 3; i + 3 < _corners.size(); i += 3) {
+                    Vector3 const part =
+                        Cross(Subtract(ToVector3(&_corners[i]), facing.corner),
+                              Subtract(ToVector3(&_corners[i + 3]), facing.corner));
+                    facing.area = Subtract(facing.area, Scale(part, -1));
+                }
+            }
+            getMeasures(node).facing = int(_measures.facings.size());
+            _measures.facings.push_back(facing);
+        }
+        return _measures.facings[std::size_t(getMeasures(node).facing)];
+    }
+
+    void findCorners(Node &node) {
+        std::size_t const cell = makeCell(node);
+        CellValues const &values = _cells[cell];
         int const numCorners =
             values.IsPlainBase() ? values.GetNumChildren() - 1 : values.GetType().GetNumCorners();
         _corners.resize(3 * std::size_t(numCorners));
         for (int i = 0; i < numCorners; ++i) {
-            _cells->EvaluateCorner(cell, i, &_corners[3 * std::size_t(i)]);
+            _cells.EvaluateCorner(cell, i, &_corners[3 * std::size_t(i)]);
         }
     }
 
     // Whether the polygon of the corners does, which others of the surface are likely to do as well then.
-    bool areCornersBackFacing(std::size_t cell) {
-        findCorners(cell);
-        Vector3 const first = ToVector3(_corners.data());
-        Vector3 area = {};
-        for (std::size_t i = 3; i + 3 < _corners.size(); i += 3) {
-            Vector3 const part = Cross(Subtract(ToVector3(&_corners[i]), first),
-                                       Subtract(ToVector3(&_corners[i + 3]), first));
-            area = {area[0] + part[0], area[1] + part[1], area[2] + part[2]};
-        }
-        return Dot(area, Subtract(_geometry.GetEye(), first)) < 0;
+    bool areCornersBackFacing(CellFacing const &facing) const {
+        return Dot(facing.area, Subtract(_geometry.GetEye(), facing.corner)) < 0;
     }
 
     // With m the unit normal of the slopes, all normals are m + s w, with w of length 1 at most in their
     // plane.  With c the mean of the points and r how far they are from it, (m + s w) . (eye - p) is at
     // most m . (eye - c) - m . (p - c) + s (|part of eye - c in the plane| + r).
-    bool areSlopesBackFacing(CellValues const &values, SlopeBounds const &bounds) const {
-        SlopeBounds::Normals const normals = bounds.GetNormals(values);
-        int const numPoints = values.GetNumPoints();
-        Vector3 center = {};
-        for (int i = 0; i < numPoints; ++i) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                center[k] += values.GetPoint(i)[k] / double(numPoints);
-            }
+    bool areSlopesBackFacing(Node &node, CellFacing &facing) {
+        if (!facing.hasNormals) {
+            findNormals(makeValues(node), facing);
         }
-        double radius = 0;
-        double depth = 0;
-        for (int i = 0; i < numPoints; ++i) {
-            Vector3 const d = Subtract(ToVector3(values.GetPoint(i)), center);
-            radius = std::max(radius, GetLength(d));
-            depth = std::max(depth, -Dot(normals.middle, d));
-        }
-        Vector3 const toEye = Subtract(_geometry.GetEye(), center);
-        double const height = Dot(normals.middle, toEye);
-        double const across = GetLength(Subtract(toEye, Scale(normals.middle, height)));
-        return height + depth + normals.spread * (across + radius) < 0;
+        Vector3 const toEye = Subtract(_geometry.GetEye(), facing.center);
+        double const height = Dot(facing.normals.middle, toEye);
+        double const across = GetLength(Subtract(toEye, Scale(facing.normals.middle, height)));
+        return height + facing.depth + facing.normals.spread * (across + facing.radius) < 0;
     }
 
-    bool isToRefine(std::size_t cell, double fraction) {
-        findCorners(cell);
-        double const pixels = _geometry.GetPixelsPerUnit(getCell(cell));
-        if (_options.GetEdgeLength() > 0) {
+    static void findNormals(CellValues const &values, CellFacing &facing) {
+        facing.hasNormals = true;
+        facing.normals = findSlopeBounds(values)->GetNormals(values);
+        int const numPoints = values.GetNumPoints();
+        for (int i = 0; i < numPoints; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                facing.center[k] += values.GetPoint(i)[k] / double(numPoints);
+            }
+        }
+        for (int i = 0; i < numPoints; ++i) {
+            Vector3 const d = Subtract(ToVector3(values.GetPoint(i)), facing.center);
+            facing.radius = std::max(facing.radius, GetLength(d));
+            facing.depth = std::max(facing.depth, -Dot(facing.normals.middle, d));
+        }
+    }
+
+    bool isToRefine(Node &node, double fraction) {
+        double const pixels = _geometry.GetPixelsPerUnit(findBox(node));
+        if (_options.GetEdgeLength() > 0 &&
+            findLongestSide(node) * pixels > fraction * _options.GetEdgeLength()) {
+            return true;
+        }
+        return _options.GetFlatness() > 0 &&
+               isThicker(node, fraction * _options.GetFlatness() / pixels);
+    }
+
+    double findLongestSide(Node &node) {
+        if (getMeasures(node).longestSide < 0) {
+            findCorners(node);
+            double longest = 0;
             for (std::size_t i = 0; i < _corners.size(); i += 3) {
                 std::size_t const next = i + 3 < _corners.size() ? i + 3 : 0;
                 Vector3 const side = Subtract(ToVector3(&_corners[next]), ToVector3(&_corners[i]));
-                if (GetLength(side) * pixels > fraction * _options.GetEdgeLength()) {
-                    return true;
-                }
+                longest = std::max(longest, GetLength(side));
             }
+            getMeasures(node).longestSide = longest;
         }
-        return _options.GetFlatness() > 0 &&
-               !_flatness.IsFlat(*_cells, cell, _corners,
-                                 fraction * _options.GetFlatness() / pixels);
+        return getMeasures(node).longestSide;
+    }
+
+    bool isThicker(Node &node, double length) {
+        Flatness::Bounds const known = getMeasures(node).thickness;
+        if (length < known.least || known.most <= length) {
+            return known.most > length;
+        }
+        findCorners(node);
+        Flatness::Bounds const found = _flatness.Find(_cells, node.cell, _corners, length);
+        getMeasures(node).thickness = {std::max(known.least, found.least),
+                                       std::min(known.most, found.most)};
+        return found.most > length;
     }
 
     ViewGeometry const &_geometry;
     View::Options const &_options;
+    SetBase const &_setBase;
+    FaceMeasures &_measures;
     CellTree const *const _previous;
     CellTree &_tree;
     std::vector<CellVisibility> *const _visibility;
-    RefinedCells *_cells = nullptr;
+    RefinedCells &_cells = GetCellsOfThread();
     std::vector<double> _corners; // of the surface, of the cell that is looked at
     Flatness _flatness;
+
+    // What they have taken of memory is kept for the next face.
+    static RefinedCells &GetCellsOfThread() {
+        static thread_local RefinedCells cells;
+        return cells;
+    }
 };
 
 /// Refines an edge, whose points depend on its curve alone.
@@ -309,7 +432,7 @@ private:
         values.EvaluateCorner(0, ends);
         values.EvaluateCorner(1, ends + 3);
         double const length = GetLength(Subtract(ToVector3(ends + 3), ToVector3(ends)));
-        double const pixels = _geometry.GetPixelsPerUnit(values);
+        double const pixels = _geometry.GetPixelsPerUnit(getBox(values));
         return (_options.GetEdgeLength() > 0 && length * pixels > _options.GetEdgeLength()) ||
                (_options.GetFlatness() > 0 &&
                 !IsStraight(parts, ends, ends + 3, _options.GetFlatness() / pixels));
@@ -354,24 +477,39 @@ template <typename REAL>
 CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[],
                         typename Surface<REAL>::PointDescriptor const &pointDesc,
                         CellTree const *previous, std::vector<CellVisibility> *visibility) const {
-    CellTree tree(surface.GetFaceSize());
+    internal::FaceMeasures measures;
+    return makeTree(
+        surface.GetFaceSize(),
+        [&](internal::RefinedCells &cells) {
+            setBase(surface, controlPoints, pointDesc.stride, cells);
+        },
+        measures, previous, visibility);
+}
+
+template <typename REAL>
+void View::setBase(Surface<REAL> const &surface, REAL const *controlPoints, std::ptrdiff_t stride,
+                   internal::RefinedCells &cells) {
+    std::vector<double> const points =
+        gather(controlPoints, stride, std::size_t(surface.GetNumControlPoints()));
+    if (internal::PlainFaceType const *const plain = surface._type.GetPlain()) {
+        cells.SetBase(*plain, points.data(), 3);
+    } else {
+        cells.SetBase(*surface._type, points.data(), 3);
+    }
+}
+
+CellTree View::makeTree(int faceSize, std::function<void(internal::RefinedCells &)> const &setBase,
+                        internal::FaceMeasures &measures, CellTree const *previous,
+                        std::vector<CellVisibility> *visibility) const {
+    CellTree tree(faceSize);
     if (visibility) {
         visibility->clear();
     }
     if (IsValid()) {
-        bool const hasPrevious = previous && previous->GetFaceSize() == tree.GetFaceSize();
-        std::vector<double> const points =
-            gather(controlPoints, pointDesc.stride, std::size_t(surface.GetNumControlPoints()));
-        // What they have taken of memory is kept for the next face.
-        static thread_local internal::RefinedCells cells;
-        if (internal::PlainFaceType const *const plain = surface._type.GetPlain()) {
-            cells.SetBase(*plain, points.data(), 3);
-        } else {
-            cells.SetBase(*surface._type, points.data(), 3);
-        }
-        internal::TreeMaker(*_geometry, _options, hasPrevious ? previous : nullptr, tree,
-                            visibility)
-            .Make(cells);
+        bool const hasPrevious = previous && previous->GetFaceSize() == faceSize;
+        internal::TreeMaker(*_geometry, _options, setBase, measures,
+                            hasPrevious ? previous : nullptr, tree, visibility)
+            .Make();
     }
     if (visibility) {
         visibility->resize(std::size_t(tree.GetNumCells()));
@@ -421,6 +559,52 @@ template <typename REAL>
 CellForest View::MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],
                             typename Surface<REAL>::PointDescriptor const &pointDesc,
                             CellForest const *previous, Counts *counts) const {
+    return makeForest(factory, nullptr, meshPoints, pointDesc.stride, previous, counts);
+}
+
+template <typename REAL>
+CellForest View::MakeForest(ViewBounds &bounds, REAL const meshPoints[],
+                            typename Surface<REAL>::PointDescriptor const &pointDesc,
+                            CellForest const *previous, Counts *counts) const {
+    bounds.setPoints(meshPoints, pointDesc.stride);
+    return makeForest(bounds.GetFactory(), &bounds, meshPoints, pointDesc.stride, previous, counts);
+}
+
+// The surface of one face after the other, with its control points.
+template <typename REAL>
+class View::FaceSurface {
+public:
+    FaceSurface(SurfaceFactory const &factory, REAL const *meshPoints, std::ptrdiff_t stride)
+        : _factory(factory), _meshPoints(meshPoints), _stride(stride) {}
+
+    // Whether there is one.
+    bool Init(Index face) {
+        if (face != _face) {
+            _face = face;
+            _surface.Clear();
+            if (_factory.init(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
+                _points.resize(3 * std::size_t(_surface.GetNumControlPoints()));
+                _surface.GatherControlPoints(_meshPoints, {3, int(_stride)}, _points.data(), 3);
+            }
+        }
+        return _surface.IsValid();
+    }
+    Surface<REAL> const &Get() const { return _surface; }
+    REAL const *GetControlPoints() const { return _points.data(); }
+
+private:
+    SurfaceFactory const &_factory;
+    REAL const *const _meshPoints;
+    std::ptrdiff_t const _stride;
+    Index _face = Far::INDEX_INVALID;
+    Surface<REAL> _surface;
+    std::vector<REAL> _points;
+};
+
+template <typename REAL>
+CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
+                            REAL const *meshPoints, std::ptrdiff_t stride,
+                            CellForest const *previous, Counts *counts) const {
     using FarExt::internal::Level;
     FarExt::TopologyLevel const base = factory.GetLevel();
     Level const &level = factory.GetLevel().GetLevel();
@@ -428,29 +612,41 @@ CellForest View::MakeForest(SurfaceFactory const &factory, REAL const meshPoints
     bool const hasPrevious = previous && previous->GetNumFaces() == forest.GetNumFaces();
     std::vector<std::vector<CellVisibility>> visibility(std::size_t(forest.GetNumFaces()));
     struct State {
-        Surface<REAL> surface;
-        std::vector<REAL> points;
+        FaceSurface<REAL> surface;
+        internal::FaceMeasures measures;
     };
     constexpr Index kFacesOfRange = 16;
     FarExt::internal::ParallelForRange(
-        forest.GetNumFaces(), [] { return State(); },
+        forest.GetNumFaces(),
+        [&] {
+            return State{{factory, meshPoints, stride}, {}};
+        },
         [&](State &state, Index begin, Index end) {
-            auto &[surface, points] = state;
             for (Index face = begin; face < end; ++face) {
-                if (!factory.init(face, FarExt::Interpolation::Vertex, -1, surface).IsOk()) {
+                state.measures.Clear();
+                internal::FaceMeasures &measures =
+                    bounds ? bounds->_measures->faces[std::size_t(face)] : state.measures;
+                if (measures.cells.empty() && !state.surface.Init(face)) {
                     continue;
                 }
-                points.resize(3 * std::size_t(surface.GetNumControlPoints()));
-                surface.GatherControlPoints(meshPoints, {3, pointDesc.stride}, points.data(), 3);
+                std::size_t const memory = measures.GetMemory();
                 CellTree const *const last = hasPrevious ? &previous->GetTree(face) : nullptr;
-                forest.SetTree(face, MakeTree(surface, points.data(), 3, last,
+                auto const setBase = [&](internal::RefinedCells &cells) {
+                    state.surface.Init(face);
+                    View::setBase(state.surface.Get(), state.surface.GetControlPoints(), 3, cells);
+                };
+                forest.SetTree(face, makeTree(level.GetFaceSize(face), setBase, measures, last,
                                               &visibility[std::size_t(face)]));
-                for (int local = 0; local < surface.GetFaceSize(); ++local) {
+                if (bounds) {
+                    bounds->trim(face, memory);
+                }
+                for (int local = 0; local < level.GetFaceSize(face); ++local) {
                     Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
                     bool const isFirst =
                         level.edgeFaces[edge][0] == face && level.edgeFaceLocals[edge][0] == local;
-                    if (isFirst && base.IsEdgeInfSharp(edge)) {
-                        forest.SetEdge(edge, MakeEdge(surface, local, points.data(), 3));
+                    if (isFirst && base.IsEdgeInfSharp(edge) && state.surface.Init(face)) {
+                        forest.SetEdge(edge, MakeEdge(state.surface.Get(), local,
+                                                      state.surface.GetControlPoints(), 3));
                     }
                 }
             }
@@ -492,7 +688,13 @@ template int View::FindLevels(Surface<double> const &, double const[],
 template CellForest View::MakeForest(SurfaceFactory const &, float const[],
                                      Surface<float>::PointDescriptor const &, CellForest const *,
                                      Counts *) const;
+template CellForest View::MakeForest(ViewBounds &, float const[],
+                                     Surface<float>::PointDescriptor const &, CellForest const *,
+                                     Counts *) const;
 template CellForest View::MakeForest(SurfaceFactory const &, double const[],
+                                     Surface<double>::PointDescriptor const &, CellForest const *,
+                                     Counts *) const;
+template CellForest View::MakeForest(ViewBounds &, double const[],
                                      Surface<double>::PointDescriptor const &, CellForest const *,
                                      Counts *) const;
 

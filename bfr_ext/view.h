@@ -4,14 +4,18 @@
 
 #include "cellForest.h"
 #include "surfaceFactory.h"
+#include "viewBounds.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
+class RefinedCells;
 class ViewGeometry;
+struct FaceMeasures;
 } // namespace internal
 
 /// \brief A pinhole camera, as glTF and USD have it: what is in the picture, and how large.
@@ -43,14 +47,14 @@ enum class CellVisibility : unsigned char {
 /// type; of base faces and their children outside of lattices it is that of the cells in them.  The range
 /// of all these heights, in which the corners and all points on the sides of the cell are, too, is taken
 /// for the distance between surface and facets.  It
-/// is seen at the least depth, and furthest from the axis, that the control points have in the picture.
+/// is seen at the least depth, and furthest from the axis, that the box of the control points has in the picture.
 /// Sharp edges and boundaries, whose curve may bend in the plane of a cell, get points of their own
 /// (MakeEdge()).
 ///
 /// **Lengths.**  A cell can be refined, too, until its sides are shorter than some pixels.
 ///
 /// **Culling** leaves cells as they are which are not seen, and is never wrong: meshes stay closed, and
-/// what is culled is coarse.  A cell is outside of the picture if all its control points are on the
+/// what is culled is coarse.  A cell is outside of the picture if the box of its control points is on the
 /// outer side of one of the planes through its sides, or behind the eye: so is their hull, and with it
 /// the surface.  A cell faces away if (Du x Dv) . (eye - p) < 0 for all its points p.  That is shown
 /// where the lattice is regular and derivatives are bounded by the second differences of control
@@ -59,7 +63,8 @@ enum class CellVisibility : unsigned char {
 /// visible.
 ///
 /// **Animation.**  Given the tree of the last frame, a cell that is refined there stays refined until the
-/// error is below a fraction of what is allowed, so that nothing flickers.
+/// error is below a fraction of what is allowed, so that nothing flickers.  What does not depend on the
+/// camera, which is most, a ViewBounds keeps from frame to frame.
 ///
 /// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API View {
@@ -188,8 +193,28 @@ public:
     CellForest MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],
                           typename Surface<REAL>::PointDescriptor const &pointDesc,
                           CellForest const *previous = nullptr, Counts *counts = nullptr) const;
+    /// \brief The same with what views have found before, and for the next ones.
+    ///
+    /// \param bounds  of the mesh
+    template <typename REAL>
+    CellForest MakeForest(ViewBounds &bounds, REAL const meshPoints[],
+                          typename Surface<REAL>::PointDescriptor const &pointDesc,
+                          CellForest const *previous = nullptr, Counts *counts = nullptr) const;
 
 private:
+    template <typename REAL>
+    class FaceSurface;
+
+    template <typename REAL>
+    static void setBase(Surface<REAL> const &surface, REAL const *controlPoints,
+                        std::ptrdiff_t stride, internal::RefinedCells &cells);
+    CellTree makeTree(int faceSize, std::function<void(internal::RefinedCells &)> const &setBase,
+                      internal::FaceMeasures &measures, CellTree const *previous,
+                      std::vector<CellVisibility> *visibility) const;
+    template <typename REAL>
+    CellForest makeForest(SurfaceFactory const &factory, ViewBounds *bounds, REAL const *meshPoints,
+                          std::ptrdiff_t stride, CellForest const *previous, Counts *counts) const;
+
     Camera _camera;
     Options _options;
     std::shared_ptr<internal::ViewGeometry const> _geometry; // null of an invalid one

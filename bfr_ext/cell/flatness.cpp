@@ -44,14 +44,6 @@ bool isStraight(CellValues const &values, Line const &line, double length, int n
 
 } // namespace
 
-// Makes a range as long as is allowed, on both sides by as large a part of what a bound has beyond it.
-Flatness::Range Flatness::widen(Range const &range, Range const &bound, double length) {
-    double const below = range.min - bound.min;
-    double const above = bound.max - range.max;
-    double const factor = std::max(0.0, length - range.GetLength()) / (below + above);
-    return {range.min - factor * below, range.max + factor * above};
-}
-
 // The plane through the first corner with the mean normal of all.
 Flatness::Plane Flatness::findPlane(std::vector<double> const &corners) {
     Vector3 const origin = ToVector3(corners.data());
@@ -65,55 +57,45 @@ Flatness::Plane Flatness::findPlane(std::vector<double> const &corners) {
     return {origin, length > 0 ? Scale(area, 1 / length) : Vector3{0, 0, 1}};
 }
 
-bool Flatness::IsFlat(RefinedCells &cells, std::size_t cell, std::vector<double> const &corners,
-                      double length) {
+Flatness::Bounds Flatness::Find(RefinedCells &cells, std::size_t cell,
+                                std::vector<double> const &corners, double length) {
+    constexpr double kMargin = 0.03125;    // of the window, on either side
+    constexpr double kRounding = 1 - 1e-9; // what is attained may be beyond bounds by a last digit
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     _plane = findPlane(corners);
     _attained = {0, 0};
     for (std::size_t i = 0; i < corners.size(); i += 3) {
         _attained.Add(_plane.GetHeight(&corners[i]));
     }
-    if (_attained.GetLength() > length) {
-        return false;
-    }
-    _parts.clear();
-    if (cells.GetHeightBounds(cell)) {
-        _parts.push_back({cell, kNumBoundedSteps, {0, 0}});
-    } else if (findHeights(cells[cell]).GetLength() <= length) {
-        return true;
-    } else {
-        refine(cells, {cell, kNumSteps, {0, 0}},
-               _parts); // its own range is too far from what the surface has
-    }
+    Bounds bounds = {kRounding * _attained.GetLength(), kInfinity};
+    auto const isDecided = [&] { return length < bounds.least || bounds.most <= length; };
+    int const numSteps = cells.GetHeightBounds(cell) ? kNumBoundedSteps : kNumSteps;
+    _parts.assign(1, {cell, numSteps, {-kInfinity, kInfinity}});
     Range closed = {0, 0}; // of all that is not refined
-    while (!_parts.empty()) {
+    while (!_parts.empty() && !isDecided()) {
         Range bound = closed;
         for (Part &part : _parts) {
-            part.range = findRange(cells, part.cell);
-            if (_attained.GetLength() > length) {
-                return false;
-            }
+            part.range = findRange(cells, part.cell).Cut(part.range);
             bound.Add(part.range);
         }
         closed.Add(_attained);
         bound.Add(_attained);
-        if (bound.GetLength() <= length) {
-            return true;
-        }
-        Range const window = widen(closed, bound, length);
+        bounds.most = std::min(bounds.most, bound.GetLength());
+        double const margin = kMargin * closed.GetLength();
+        Range const window = {closed.min - margin, closed.max + margin};
+        auto const open = std::partition(_parts.begin(), _parts.end(), [&](Part const &part) {
+            return part.numStepsLeft == 0 || window.Has(part.range);
+        });
+        std::for_each(_parts.begin(), open, [&](Part const &part) { closed.Add(part.range); });
+        bounds.least = std::max(bounds.least, kRounding * closed.GetLength());
         _next.clear();
-        for (Part const &part : _parts) {
-            if (part.numStepsLeft == 0 || window.Has(part.range)) {
-                closed.Add(part.range);
-            } else {
-                refine(cells, part, _next);
-            }
-        }
-        if (closed.GetLength() > length) {
-            return false;
+        if (!isDecided()) {
+            std::for_each(open, _parts.end(),
+                          [&](Part const &part) { refine(cells, part, _next); });
         }
         std::swap(_parts, _next);
     }
-    return true;
+    return isDecided() ? bounds : Bounds{bounds.most, bounds.most};
 }
 
 Flatness::Range Flatness::findHeights(CellValues const &values) {
@@ -156,7 +138,7 @@ void Flatness::refine(RefinedCells &cells, Part const &parent, std::vector<Part>
     for (int i = 0; i < numChildren; ++i) {
         std::size_t const child = first + std::size_t(i);
         int const numSteps = cells.GetHeightBounds(child) ? kNumBoundedSteps : kNumSteps;
-        children.push_back({child, std::min(parent.numStepsLeft - 1, numSteps), {0, 0}});
+        children.push_back({child, std::min(parent.numStepsLeft - 1, numSteps), parent.range});
     }
     // Of all children the first alone has corners that the cell has not.
     if (!cells.GetHeightBounds(parent.cell)) {

@@ -31,6 +31,8 @@ public:
 
     CellValues const &operator[](std::size_t cell) const { return _cells[cell].values; }
     int GetNumChildren(std::size_t cell) const { return _cells[cell].values.GetNumChildren(); }
+    /// Whether its children are made.
+    bool HasChildren(std::size_t cell) const { return _cells[cell].firstChild > 0; }
     /// The first child; others follow it.
     std::size_t GetFirstChild(std::size_t cell) {
         return _cells[cell].firstChild > 0 ? _cells[cell].firstChild : makeChildren(cell);

@@ -716,7 +716,7 @@ TEST(View, FlatnessIsABoundAndCloseToTheSurface) {
                         corners.insert(corners.end(), corner.begin(), corner.end());
                     }
                     auto const isFlat = [&](double length) {
-                        return flatness.IsFlat(refined, cell, corners, length);
+                        return flatness.Find(refined, cell, corners, length).most <= length;
                     };
                     ASSERT_FALSE(isFlat(size * (1 - 1e-6)));
                     double ratio = 1.01;

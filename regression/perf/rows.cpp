@@ -92,6 +92,9 @@ std::vector<Row> const &GetRows() {
              "Bfr::Surface::Evaluate, the same", 1, 3});
         result.push_back({"view", "surfaces for a camera, with their points, 1 thread",
                           "own, uniform level that is as close", 1, 4});
+        result.push_back({"view-bounds",
+                          "surfaces for a further camera, bounds kept, with their points, 1 thread",
+                          "own, uniform level that is as close", 1, 4});
         result.push_back({"polygons-1", "polygons with their base faces, per corner, 1 thread",
                           "loop over Far::TopologyLevel", 0.5, 1});
         result.push_back({"polygons-2", "polygons with their base faces, per corner, 2 threads",

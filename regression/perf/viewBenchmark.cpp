@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Surfaces refined for a camera against the same of one level everywhere that is as close to the limit:
-// what a picture takes, with its points and facets.
+// what a picture takes, with its points and facets.  The first of a mesh finds all about its cells; further
+// ones have that.
 #include "makers.h"
 #include "suite.h"
 
@@ -96,10 +97,14 @@ Contestant makeContestant(std::string const &name, WORK work) {
     return contestant;
 }
 
+constexpr double kShift = 0.01; // of the eye, over its distance
+
 Contest makeContest(BenchMesh const &mesh) {
     auto const workspace = std::make_shared<Workspace>(mesh);
     auto const uniform = std::make_shared<BfrExt::PatchStream<float>>(
         *workspace->factory, BfrExt::PatchLevels(workspace->level));
+    auto const bounds = std::make_shared<BfrExt::ViewBounds>(*workspace->factory);
+    workspace->view.MakeForest(*bounds, workspace->positions.data(), 3);
     Contest contest;
     contest.contestants.push_back(makeContestant("BfrExt::View, points", [=] {
         BfrExt::CellForest const forest =
@@ -108,7 +113,16 @@ Contest makeContest(BenchMesh const &mesh) {
     }));
     contest.contestants.push_back(
         makeContestant("BfrExt::PatchStream", [=] { return workspace->Stream(*uniform); }));
-    contest.pairings = {{"view", 0, {1}}};
+    // Cameras go around, so that none finds what is known for it.
+    auto const numViews = std::make_shared<int>(0);
+    contest.contestants.push_back(makeContestant("BfrExt::ViewBounds, points", [=] {
+        BfrExt::Camera camera = workspace->camera;
+        camera.eye[0] += kShift * double(++*numViews) * (camera.eye[2] - camera.target[2]);
+        BfrExt::View const view(camera, workspace->view.GetOptions());
+        BfrExt::CellForest const forest = view.MakeForest(*bounds, workspace->positions.data(), 3);
+        return workspace->Stream(BfrExt::PatchStream<float>(*workspace->factory, forest));
+    }));
+    contest.pairings = {{"view", 0, {1}}, {"view-bounds", 2, {1}}};
     return contest;
 }
 

@@ -68,6 +68,7 @@ CellView::CellView(Mesh const &mesh, std::unique_ptr<FarExt::TopologyRefiner> re
     _factory = SurfaceFactory::Create(*_refiner,
                                       SurfaceFactory::Options().SetExternalCache(&_cache), &status);
     requireOk(_factory != nullptr, status);
+    _bounds.emplace(*_factory);
     _evaluator = makeEvaluator(*_refiner, FarExt::INTERPOLATE_VERTEX, 0);
     if (uvChannel >= 0) {
         FVarChannel const &channel = mesh.channels[std::size_t(uvChannel)];
@@ -99,7 +100,7 @@ std::vector<float> CellView::findPoints(std::vector<float> const &controlPoints)
 void CellView::Refine(BfrExt::View const &view, std::vector<float> const &controlPoints) {
     BfrExt::View::Counts counts;
     std::vector<float> const points = findPoints(controlPoints);
-    _forest = view.MakeForest<float>(*_factory, points.data(), kLength,
+    _forest = view.MakeForest<float>(*_bounds, points.data(), kLength,
                                      _forest ? &*_forest : nullptr, &counts);
     _statistics.counts = std::move(counts);
     ForEachFace(int(_faces.size()), [&](int number) {

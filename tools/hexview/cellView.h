@@ -74,6 +74,7 @@ private:
     std::vector<float> _uvs; // of the channel; empty without
     int _uvWidth = 0;
     std::vector<Face> _faces;
+    std::optional<BfrExt::ViewBounds> _bounds;
     std::optional<BfrExt::CellForest> _forest;
     Statistics _statistics;
     DrawnTopology _topology;

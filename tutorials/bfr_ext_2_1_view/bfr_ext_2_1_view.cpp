@@ -72,6 +72,8 @@ int main() {
     // Faces may be half a pixel away from the surface.
     BfrExt::View::Options viewOptions;
     viewOptions.SetFlatness(0.5).SetCulling(true).SetMaxLevel(9);
+    // What does not depend on the camera is found in the first frame that asks for it.
+    BfrExt::ViewBounds bounds(*factory);
     std::optional<BfrExt::CellForest> last;
     bool areClosed = true;
     for (int frame = 0; frame < 4; ++frame) {
@@ -84,7 +86,7 @@ int main() {
         BfrExt::View const view(camera, viewOptions);
         BfrExt::View::Counts counts;
         BfrExt::CellForest forest =
-            view.MakeForest(*factory, cube.positions.data(), 3, last ? &*last : nullptr, &counts);
+            view.MakeForest(bounds, cube.positions.data(), 3, last ? &*last : nullptr, &counts);
 
         int numPolygons = 0;
         bool isClosed = true;

@@ -110,6 +110,7 @@ CellSurface::CellSurface(FarExt::TopologyRefiner const &refiner) {
     if (!status.IsOk()) {
         throw std::runtime_error(status.GetMessage());
     }
+    _bounds.emplace(*_factory);
 }
 
 void CellSurface::Update(std::vector<float> const &positions, Camera const &camera, int height,
@@ -126,7 +127,7 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
         OpenSubdiv::Osd::BufferDescriptor const desc(0, 3, 3);
         _evaluator->Evaluate(positions.data(), desc, _points.data(), desc, base.GetDepth());
     }
-    _forest = view.MakeForest(*_factory, _points.data(), 3, _forest ? &*_forest : nullptr);
+    _forest = view.MakeForest(*_bounds, _points.data(), 3, _forest ? &*_forest : nullptr);
 
     // Points on edges are numbered by the forest, and those inside of faces follow.
     Mesh mesh;

@@ -45,6 +45,7 @@ private:
     std::unique_ptr<BfrExt::SurfaceFactory> _factory;
     std::unique_ptr<OsdExt::RefinementEvaluator> _evaluator; // to a surface level beyond 0
     std::vector<float> _points;                              // of the surface level
+    std::optional<BfrExt::ViewBounds> _bounds;               // of cells, from frame to frame
     std::optional<BfrExt::CellForest> _forest;
     std::unique_ptr<FarExt::TopologyRefiner> _polygons; // as a mesh that is not refined
     std::unique_ptr<Surface> _surface;

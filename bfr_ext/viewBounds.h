@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_VIEW_BOUNDS_H
+#define OPENSUBDIVHEX_BFR_EXT_VIEW_BOUNDS_H
+
+#include "surfaceFactory.h"
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt {
+
+class View;
+
+namespace internal {
+struct MeshMeasures;
+} // namespace internal
+
+/// \brief What views find of the cells of a mesh that no camera changes, for the next views of it.
+///
+/// How flat cells are, how large and where, and where they face, takes most of the time of
+/// View::MakeForest().  It is kept by base face, together with the positions that it was found for: where
+/// the next view has other ones, what depends on them is found anew.  Forests are the same, to the last cell,
+/// as those that are made without.
+///
+/// **Memory** is what Options::SetMaxMemory() says, and three doubles for each vertex of the mesh.  Each
+/// cell that a view asked for takes about 100 bytes; for culling, 150 more, and there cells up to three steps
+/// on are asked for.  What has no room is found anew by each view.
+///
+/// One thread at a time may use it; View::MakeForest() has threads of its own.  std::bad_alloc passes
+/// through.
+class OPENSUBDIVHEX_API ViewBounds {
+public:
+    /// A face or a vertex of the base mesh.
+    using Index = Far::Index;
+
+    /// \brief How much is kept.
+    class Options {
+    public:
+        /// 256 MiB at most.
+        Options() : _maxMemory(std::size_t(1) << 28) {}
+
+        /// Sets how many bytes all cells may take.
+        Options &SetMaxMemory(std::size_t bytes) {
+            _maxMemory = bytes;
+            return *this;
+        }
+        /// That number.
+        std::size_t GetMaxMemory() const { return _maxMemory; }
+
+    private:
+        std::size_t _maxMemory;
+    };
+
+    /// Of no cells yet.
+    ///
+    /// \param factory  of the mesh, which must live as long
+    /// \param options  how much is kept
+    explicit ViewBounds(SurfaceFactory const &factory, Options options = Options());
+    ~ViewBounds();
+
+    ViewBounds(ViewBounds const &) = delete;
+    ViewBounds &operator=(ViewBounds const &) = delete;
+
+    /// The factory that was given.
+    SurfaceFactory const &GetFactory() const { return _factory; }
+    /// The options.
+    Options const &GetOptions() const { return _options; }
+    /// Memory that cells take, in bytes.
+    std::size_t GetMemory() const;
+    /// Forgets all.
+    void Clear();
+
+private:
+    friend class View;
+
+    template <typename REAL>
+    void setPoints(REAL const *meshPoints, std::ptrdiff_t stride);
+    void forget(std::vector<char> const &isChanged);
+    void trim(Index face, std::size_t memoryBefore);
+
+    SurfaceFactory const &_factory;
+    Options const _options;
+    std::vector<double> _points; // the positions, once there are some
+    std::unique_ptr<internal::MeshMeasures> _measures;
+};
+
+} // namespace OpenSubdivHex::BfrExt
+
+#endif

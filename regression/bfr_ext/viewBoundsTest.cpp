@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What is kept from view to view, against views that find all anew.
+#include "surfaceFixture.h"
+
+#include "bfr_ext/surfaceFactory.h"
+#include "bfr_ext/view.h"
+#include "bfr_ext/viewBounds.h"
+#include "far_ext/executor.h"
+#include "regression/far_ext/referenceMatch.h"
+#include "regression/shapes/featureShapes.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace OpenSubdivHex::Regression {
+
+using BfrExt::Camera;
+using BfrExt::CellForest;
+using BfrExt::CellTree;
+using BfrExt::Polyline;
+using BfrExt::SurfaceFactory;
+using BfrExt::View;
+using BfrExt::ViewBounds;
+
+namespace {
+
+/// A mesh whose points are moved, and cameras around it.
+struct Scene {
+    explicit Scene(Shape const &shape)
+        : refiner(MakeRefiner(shape)), factory(SurfaceFactory::Create(*refiner)),
+          positions(shape.positions) {}
+
+    static std::unique_ptr<FarExt::TopologyRefiner> MakeRefiner(Shape const &shape) {
+        Sdc::Options options;
+        options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+        return CreateRefiner(shape, ReferenceMask::Smooth, 0, options);
+    }
+
+    Camera MakeCamera() {
+        std::uniform_real_distribution<double> uniform(-1, 1);
+        Camera camera;
+        for (std::size_t k = 0; k < 3; ++k) {
+            camera.eye[k] = (k == 2 ? 4 : 0) + uniform(random);
+            camera.target[k] = uniform(random);
+        }
+        camera.width = 320;
+        camera.height = 200;
+        return camera;
+    }
+
+    void Move(std::size_t vertex) { positions[3 * vertex] += 0.1; }
+
+    std::unique_ptr<FarExt::TopologyRefiner> refiner;
+    std::unique_ptr<SurfaceFactory> factory;
+    std::vector<double> positions;
+    std::mt19937 random{7};
+};
+
+void expectSame(CellForest const &forest, CellForest const &other) {
+    ASSERT_EQ(forest.GetNumFaces(), other.GetNumFaces());
+    ASSERT_EQ(forest.GetNumBoundaryPoints(), other.GetNumBoundaryPoints());
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        CellTree const &tree = forest.GetTree(face);
+        CellTree const &otherTree = other.GetTree(face);
+        ASSERT_EQ(tree.GetNumCells(), otherTree.GetNumCells()) << "face " << face;
+        for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
+            ASSERT_EQ(tree.GetFirstChild(cell), otherTree.GetFirstChild(cell)) << "face " << face;
+        }
+        std::vector<Polyline> const edges = forest.GetFacePolylines(face);
+        std::vector<Polyline> const otherEdges = other.GetFacePolylines(face);
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            ASSERT_TRUE(edges[i].Contains(otherEdges[i]) && otherEdges[i].Contains(edges[i]));
+        }
+    }
+}
+
+std::vector<Shape> getShapes() {
+    std::vector<Shape> shapes = {GetShape("icosahedron"), MakePrism(7), GetShape("torus")};
+    for (char const *const name : {"mixedSharpnessQuads", "creasedBall"}) {
+        shapes.push_back(GetFeatureShape(name));
+    }
+    return shapes;
+}
+
+} // namespace
+
+// Whatever was asked of them before, by whatever views, and whatever they had room for.
+TEST(ViewBounds, ForestsAreThoseMadeWithoutThem) {
+    constexpr int kNumViews = 8;
+    constexpr std::size_t kAmple = std::size_t(1) << 28;
+    for (Shape const &shape : getShapes()) {
+        SCOPED_TRACE(shape.name);
+        for (std::size_t const maxMemory : {std::size_t(0), std::size_t(20000), kAmple}) {
+            Scene scene(shape);
+            ViewBounds bounds(*scene.factory, ViewBounds::Options().SetMaxMemory(maxMemory));
+            CellForest previous(*scene.refiner);
+            for (int i = 0; i < kNumViews; ++i) {
+                if (i % 4 == 3) {
+                    scene.Move(std::size_t(i) % (scene.positions.size() / 3));
+                }
+                View const view(scene.MakeCamera(), View::Options()
+                                                        .SetFlatness(i % 3 == 2 ? 0 : 2.0 / (1 + i))
+                                                        .SetEdgeLength(i % 3 == 0 ? 0 : 20)
+                                                        .SetCulling(i % 2 == 1)
+                                                        .SetMaxLevel(3));
+                View::Counts counts;
+                View::Counts expectedCounts;
+                CellForest const expected = view.MakeForest(*scene.factory, scene.positions.data(),
+                                                            3, &previous, &expectedCounts);
+                FarExt::ExecutorScope const threads(nullptr, 1 + i % 2);
+                CellForest const forest =
+                    view.MakeForest(bounds, scene.positions.data(), 3, &previous, &counts);
+                ASSERT_NO_FATAL_FAILURE(expectSame(forest, expected)) << "view " << i;
+                EXPECT_EQ(counts.cellsByLevel, expectedCounts.cellsByLevel);
+                EXPECT_EQ(counts.outside, expectedCounts.outside);
+                EXPECT_EQ(counts.backFacing, expectedCounts.backFacing);
+                EXPECT_LE(bounds.GetMemory(), maxMemory);
+                previous = forest;
+            }
+            EXPECT_TRUE(bounds.GetMemory() > 0 || maxMemory < kAmple);
+            bounds.Clear();
+            EXPECT_EQ(bounds.GetMemory(), std::size_t(0));
+        }
+    }
+}
+
+// Of a mesh of which one vertex moves, faces elsewhere need nothing that is not there.
+TEST(ViewBounds, WhatDidNotMoveIsKept) {
+    Scene scene(GetShape("torus"));
+    ViewBounds bounds(*scene.factory);
+    Camera const camera = scene.MakeCamera();
+    View const fine(camera, View::Options().SetFlatness(0.5));
+    View const coarse(camera, View::Options().SetMaxLevel(0)); // asks for nothing
+    fine.MakeForest(bounds, scene.positions.data(), 3);
+    std::size_t const all = bounds.GetMemory();
+    fine.MakeForest(bounds, scene.positions.data(), 3);
+    EXPECT_EQ(bounds.GetMemory(), all);
+    scene.Move(0);
+    coarse.MakeForest(bounds, scene.positions.data(), 3);
+    std::size_t const kept = bounds.GetMemory();
+    EXPECT_LT(kept, all);
+    EXPECT_GT(kept, all / 4);
+    fine.MakeForest(bounds, scene.positions.data(), 3);
+    EXPECT_GT(bounds.GetMemory(), kept);
+    std::vector<float> const rounded(scene.positions.begin(), scene.positions.end());
+    coarse.MakeForest(bounds, rounded.data(), 3);
+    EXPECT_LT(bounds.GetMemory(), kept);
+}
+
+} // namespace OpenSubdivHex::Regression
