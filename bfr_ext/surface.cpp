@@ -83,7 +83,7 @@ void Surface<REAL>::Clear() {
 
 template <typename REAL>
 int Surface<REAL>::GetControlPointIndices(Index meshPointIndices[]) const {
-    std::copy_n(_points.begin(), GetNumControlPoints(), meshPointIndices);
+    std::copy_n(getPoints(), GetNumControlPoints(), meshPointIndices);
     return GetNumControlPoints();
 }
 
@@ -98,7 +98,7 @@ template <typename REAL>
 void Surface<REAL>::BoundControlPointsFromMesh(REAL const meshPoints[],
                                                PointDescriptor const &meshPointDesc,
                                                REAL minExtent[], REAL maxExtent[]) const {
-    bound(GetNumControlPoints(), meshPoints, _points.data(), meshPointDesc, minExtent, maxExtent);
+    bound(GetNumControlPoints(), meshPoints, getPoints(), meshPointDesc, minExtent, maxExtent);
 }
 
 template <typename REAL>
@@ -488,7 +488,7 @@ template <typename REAL>
 void Surface<REAL>::ApplyStencilFromMesh(REAL const stencil[], REAL const meshPoints[],
                                          PointDescriptor const &meshPointDesc,
                                          REAL result[]) const {
-    sumUp(stencil, GetNumControlPoints(), meshPoints, _points.data(), meshPointDesc, result);
+    sumUp(stencil, GetNumControlPoints(), meshPoints, getPoints(), meshPointDesc, result);
 }
 
 template class Surface<float>;

@@ -17,7 +17,6 @@ namespace BfrExt {
 
 namespace internal {
 class CellType;
-class CellTypes;
 class PlainFaceType;
 template <typename REAL>
 class BorderEvaluator;
@@ -134,9 +133,10 @@ public:
     template <typename REAL_MESH>
     void GatherControlPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
                              REAL controlPoints[], PointDescriptor const &controlPointDesc) const {
+        Index const *const points = getPoints();
         for (int k = 0; k < _numControlPoints; ++k) {
             REAL_MESH const *const from =
-                meshPoints + std::ptrdiff_t(_points[std::size_t(k)]) * meshPointDesc.stride;
+                meshPoints + std::ptrdiff_t(points[k]) * meshPointDesc.stride;
             for (int i = 0; i < meshPointDesc.size; ++i) {
                 controlPoints[i] = REAL(from[i]);
             }
@@ -211,6 +211,16 @@ private:
     friend class SurfaceFactory;
     friend class View;
 
+    void set(std::shared_ptr<void const> const &owner, internal::BaseType const &type, int size,
+             int numControlPoints, Index const *keptPoints) {
+        if (_owner != owner) {
+            _owner = owner;
+        }
+        _type = type;
+        _numControlPoints = numControlPoints;
+        _keptPoints = keptPoints;
+        _parameterization = Parameterization(size);
+    }
     internal::BasePoint findPoint(REAL const uv[2]) const;
     bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
                           PointDescriptor const &pointDesc, REAL p[]) const;
@@ -233,13 +243,16 @@ private:
                                internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                PointDescriptor const &resultDesc) const;
 
+    // The control points, and then the turns.
+    Index const *getPoints() const { return _keptPoints ? _keptPoints : _ownPoints.data(); }
     // By edge and then by vertex, how the face has what it shares with its neighbours.
-    int const *getTurns() const { return _points.data() + _numControlPoints; }
+    int const *getTurns() const { return getPoints() + _numControlPoints; }
 
-    std::shared_ptr<internal::CellTypes const> _types; // which has the type
+    std::shared_ptr<void const> _owner; // of the type, and of points that are kept
     internal::BaseType _type;
     int _numControlPoints = 0;
-    std::vector<Index> _points; // the control points, and then the turns
+    Index const *_keptPoints = nullptr; // null: its own
+    std::vector<Index> _ownPoints;
     Parameterization _parameterization;
 };
 

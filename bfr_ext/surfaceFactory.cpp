@@ -2,12 +2,14 @@
 #include "surfaceFactory.h"
 
 #include "cell/cellType.h"
+#include "cell/keptFaces.h"
 #include "cell/plainFace.h"
 
 #include "far_ext/limit/limitRows.h"
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace OpenSubdivHex::BfrExt {
 
@@ -20,6 +22,9 @@ using FarExt::internal::FVarChannel;
 using FarExt::internal::Level;
 
 namespace {
+
+// Of data of vertices.
+constexpr int kNumInterpolations = 2;
 
 // Vertices with fewer faces have limit stencils, whatever their features.
 constexpr int kManyFaces = 64;
@@ -47,6 +52,11 @@ SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options o
         _plainTypes[std::size_t(interpolation)] =
             &_types->GetPlainFaces(getRules(refiner, interpolation));
     }
+    auto kept = std::make_shared<KeptFaces>(
+        _types, GetNumFaces(), std::size_t(kNumInterpolations + refiner.GetNumFVarChannels()),
+        options.GetMemoryOfFaces());
+    _kept = kept.get();
+    _owner = std::move(kept);
     FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
     for (int channel = -1; channel < refiner.GetNumFVarChannels(); ++channel) {
         _marks.push_back(FarExt::internal::MarkFeatures(
@@ -72,9 +82,13 @@ std::unique_ptr<SurfaceFactory> SurfaceFactory::Create(FarExt::TopologyRefiner c
     return std::unique_ptr<SurfaceFactory>(new SurfaceFactory(refiner, options));
 }
 
+// Level 0 stays.
+bool SurfaceFactory::hasRefinedAgain() const {
+    return _level.GetDepth() > 0 && _refiner.GetNumRefinements() != _numRefinements;
+}
+
 Status SurfaceFactory::checkIsFace(Index face) const {
-    // Level 0 stays.
-    if (_level.GetDepth() > 0 && _refiner.GetNumRefinements() != _numRefinements) {
+    if (hasRefinedAgain()) {
         return FarExt::internal::Failure(
             StatusCode::InvalidArgument,
             "the refiner has refined again since the factory was made");
@@ -162,54 +176,73 @@ Status SurfaceFactory::init(Index face, Interpolation interpolation, int channel
     auto const depth = std::size_t(_level.GetDepth());
     Level const &level = hierarchy.GetMesh(channel).levels[depth];
     Index const levelFace = values ? values->levels[depth].valueFaces[face] : face;
+    std::vector<Index> &points = surface._ownPoints;
+    internal::BaseType type;
     // What it has taken of memory is kept for the next face.
     static thread_local internal::PlainFaceGatherer gatherer;
     if (internal::PlainFaceType const *const plain =
             gatherer.Find(*_plainTypes[std::size_t(interpolation)], level,
-                          _marks.begin()[channel + 1], levelFace, surface._points)) {
-        surface._type = internal::BaseType(*plain);
-    } else if (internal::CellType const *const type =
-                   findType(level, levelFace, face, interpolation, surface._points, result)) {
-        surface._type = internal::BaseType(*type);
+                          _marks.begin()[channel + 1], levelFace, points)) {
+        type = internal::BaseType(*plain);
+    } else if (internal::CellType const *const cellType =
+                   findType(level, levelFace, face, interpolation, points, result)) {
+        type = internal::BaseType(*cellType);
     } else {
         surface.Clear();
         return result;
     }
-    if (surface._types != _types) {
-        surface._types = _types;
-    }
     int const size = level.GetFaceSize(levelFace);
-    surface._numControlPoints = int(surface._points.size()) - 2 * size;
-    surface._parameterization = Parameterization(size);
+    int const numPoints = int(points.size()) - 2 * size;
+    surface.set(_owner, type, size, numPoints, nullptr);
     // Vertices of the value mesh of a later level are its values.
     if (values && depth == 0) {
-        std::for_each_n(surface._points.begin(), surface._numControlPoints,
+        std::for_each_n(points.begin(), numPoints,
                         [&](Index &point) { point = values->valuesOfVertices[point]; });
     }
     return result;
 }
 
 template <typename REAL>
+bool SurfaceFactory::initKept(Index face, Interpolation interpolation, int channel,
+                              Surface<REAL> &surface, Status *status) const {
+    auto const kind = std::size_t(channel < 0 ? int(interpolation) : kNumInterpolations + channel);
+    KeptFaces::Face const *kept = hasRefinedAgain() ? nullptr : _kept->Find(kind, face);
+    if (!kept) {
+        Status const result = init(face, interpolation, channel, surface);
+        if (!result.IsOk()) {
+            return FarExt::internal::Report(result, status);
+        }
+        kept = _kept->Add(kind, face, surface._type, surface.GetFaceSize(), surface._ownPoints);
+    }
+    if (kept) {
+        surface.set(_owner, kept->type, kept->size, kept->numPoints, kept->GetPoints());
+    }
+    if (status) {
+        *status = Status();
+    }
+    return true;
+}
+
+template <typename REAL>
 bool SurfaceFactory::InitVertexSurface(Index face, Surface<REAL> *surface, Status *status) const {
-    return FarExt::internal::Report(init(face, Interpolation::Vertex, -1, *surface), status);
+    return initKept(face, Interpolation::Vertex, -1, *surface, status);
 }
 
 template <typename REAL>
 bool SurfaceFactory::InitVaryingSurface(Index face, Surface<REAL> *surface, Status *status) const {
-    return FarExt::internal::Report(init(face, Interpolation::Varying, -1, *surface), status);
+    return initKept(face, Interpolation::Varying, -1, *surface, status);
 }
 
 template <typename REAL>
 bool SurfaceFactory::InitFaceVaryingSurface(Index face, Surface<REAL> *surface, FVarID channel,
                                             Status *status) const {
-    Status result = FarExt::internal::CheckChannel(channel, GetNumFVarChannels());
-    if (result.IsOk()) {
-        result = init(face, FarExt::internal::GetChannelInterpolation(_refiner, channel), channel,
-                      *surface);
-    } else {
+    Status const result = FarExt::internal::CheckChannel(channel, GetNumFVarChannels());
+    if (!result.IsOk()) {
         surface->Clear();
+        return FarExt::internal::Report(result, status);
     }
-    return FarExt::internal::Report(result, status);
+    return initKept(face, FarExt::internal::GetChannelInterpolation(_refiner, channel), channel,
+                    *surface, status);
 }
 
 template Status SurfaceFactory::init(Index, Interpolation, int, Surface<float> &) const;

@@ -8,6 +8,7 @@
 #include "far_ext/topologyRefiner.h"
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,9 @@ enum class VertexMark : unsigned char;
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
+class CellTypes;
+template <typename TYPE>
+class KeptFaces;
 class PlainFaceTypes;
 } // namespace internal
 
@@ -36,6 +40,10 @@ class PlainFaceTypes;
 ///
 /// Two kinds of faces have no surface: holes, and with VTX_BOUNDARY_NONE those at a boundary, where
 /// the border of every level lies elsewhere.
+///
+/// What the surface of a face is made of is kept when one is made the second time, so that making more is a
+/// look-up, as in the frames of an animation: some 200 bytes a face, as far as Options::SetMemoryOfFaces()
+/// allows.
 ///
 /// Any number of threads may call its functions at once.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API SurfaceFactory {
@@ -67,9 +75,19 @@ public:
         /// That cache.
         SurfaceFactoryCache *GetExternalCache() const { return _externalCache; }
 
+        /// Sets the memory, in bytes, for what surfaces are made of, which is kept as long as the factory and
+        /// surfaces that it made.  What there is no memory for is found again for each surface.
+        Options &SetMemoryOfFaces(std::size_t memory) {
+            _memoryOfFaces = memory;
+            return *this;
+        }
+        /// That memory; by default 64 mebibytes, enough for some 300,000 faces.
+        std::size_t GetMemoryOfFaces() const { return _memoryOfFaces; }
+
     private:
         FVarID _defaultFVarID = 0;
         SurfaceFactoryCache *_externalCache = nullptr;
+        std::size_t _memoryOfFaces = std::size_t(64) << 20;
     };
 
     /// \brief Makes a factory for \p refiner, which must live as long.
@@ -143,15 +161,21 @@ private:
 
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
 
+    bool hasRefinedAgain() const;
     FarExt::Status checkIsFace(Index face) const;
     FarExt::Status checkFace(Index face) const;
     internal::CellType const *findType(FarExt::internal::Level const &level, Index levelFace,
                                        Index face, FarExt::Interpolation interpolation,
                                        std::vector<Index> &points, FarExt::Status &status) const;
     // With the causes of the public functions, which report them; a channel is in range, -1: none.
+    // Nothing is kept.
     template <typename REAL>
     FarExt::Status init(Index face, FarExt::Interpolation interpolation, int channel,
                         Surface<REAL> &surface) const;
+    // The same for what is kept, with a report.
+    template <typename REAL>
+    bool initKept(Index face, FarExt::Interpolation interpolation, int channel,
+                  Surface<REAL> &surface, FarExt::Status *status) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;
@@ -161,6 +185,10 @@ private:
     // Of the vertices of the mesh, and of the value mesh of each channel; empty where all are plain.
     std::vector<std::vector<FarExt::internal::VertexMark>> _marks;
     std::array<internal::PlainFaceTypes *, 2> _plainTypes; // by interpolation
+    // The faces that are kept: of the mesh, by interpolation, and then of each channel.
+    using KeptFaces = internal::KeptFaces<internal::BaseType>;
+    KeptFaces *_kept;
+    std::shared_ptr<void const> _owner; // of these and of the types, as surfaces have it
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -61,7 +61,7 @@ void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
             return;
         }
     }
-    CellType::BorderItem const &item = getType().GetBorderItem(_turns, _numEdges + vert);
+    CellType::BorderItem const &item = getItem(_numEdges + vert);
     if (item.rings) {
         _vertexValues.Set(item.rings->rings, item.points.size(), item.points.data(), _points,
                           _stride, _size);
@@ -89,7 +89,7 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
             return;
         }
     }
-    CellType::BorderItem const &item = getType().GetBorderItem(_turns, edge);
+    CellType::BorderItem const &item = getItem(edge);
     if (item.type->IsInLattice()) {
         _edge = {item.type, nullptr, _points, _stride, item.points.data()};
     } else if (item.rings) {

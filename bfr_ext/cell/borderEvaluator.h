@@ -71,7 +71,10 @@ private:
             PatternTable::GetKind<REAL>(of), &key, &key + 1,
             [&] { return makeMatrix(type, cell, makePoints()); });
     }
-    CellType const &getType() const { return _plain ? _plain->Get() : *_type; }
+    // What a plain face has no rings for.
+    CellType::BorderItem const &getItem(std::size_t item) const {
+        return _plain ? _plain->GetLatticeItem(_turns, item) : _type->GetBorderItem(_turns, item);
+    }
     void setEdge(std::size_t edge);
     void sumUp(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t resultStride) const {
         SumUpPlaces(matrix,

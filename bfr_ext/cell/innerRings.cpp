@@ -59,7 +59,9 @@ public:
     // one before it around the vertex.
     Weights const &FindHexagon(std::vector<int> const &ring, int corner, int before) {
         std::vector<int> key = getKey(ring);
-        std::vector<int> const ofNeighbor = getKey(_corners.FindRing(_corners.GetNext(corner, 1)));
+        std::vector<int> ringOfNeighbor;
+        _corners.FindRing(_corners.GetNext(corner, 1), ringOfNeighbor);
+        std::vector<int> const ofNeighbor = getKey(ringOfNeighbor);
         key.insert(key.end(), ofNeighbor.begin(), ofNeighbor.end());
         key.push_back(_corners.GetFaceSize(before));
         key.push_back(_corners.GetFaceSize(corner));
@@ -127,9 +129,9 @@ private:
 bool InnerRings::Init(LimitPatch const &patch, std::vector<int> const &corners, InnerMasks &masks) {
     MaskFinder finder(masks, patch);
     _fVertex = &finder.FindFVertex();
+    std::vector<int> ring;
     for (int const first : corners) {
-        std::vector<int> const ring = finder.GetCorners().FindRing(first);
-        if (ring.size() > kMaxFaces) {
+        if (!finder.GetCorners().FindRing(first, ring) || ring.size() > kMaxFaces) {
             return false;
         }
         Center center = {&finder.FindVertex(ring), {}};

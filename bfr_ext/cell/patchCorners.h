@@ -13,42 +13,49 @@ namespace OpenSubdivHex::BfrExt::internal {
 class PatchCorners {
 public:
     explicit PatchCorners(FarExt::internal::LimitPatch const &patch) : _patch(patch) {
+        _faces.reserve(patch.faceVerts.size());
         int first = 0;
         for (int const size : patch.faceSizes) {
-            _firsts.insert(_firsts.end(), std::size_t(size), first);
-            _sizes.insert(_sizes.end(), std::size_t(size), size);
+            for (int i = 0; i < size; ++i) {
+                _faces.push_back({first, size});
+            }
             first += size;
         }
     }
 
-    int GetFaceSize(int corner) const { return _sizes[std::size_t(corner)]; }
+    int GetFaceSize(int corner) const { return _faces[std::size_t(corner)].size; }
     int GetVertex(int corner) const { return _patch.faceVerts[std::size_t(corner)]; }
-    /// So many places further on in the face.
+    /// So many places further on in the face, at most its size.
     int GetNext(int corner, int numPlaces) const {
-        int const first = _firsts[std::size_t(corner)];
-        return first + (corner - first + numPlaces) % GetFaceSize(corner);
+        Face const &face = _faces[std::size_t(corner)];
+        int const next = corner + numPlaces;
+        return next < face.first + face.size ? next : next - face.size;
     }
     int GetBefore(int corner) const { return GetNext(corner, GetFaceSize(corner) - 1); }
 
-    /// The corners at the vertex of one, counter-clockwise from that on; none where it has a boundary.
-    std::vector<int> FindRing(int first) const {
-        std::vector<int> ring;
+    /// Finds the corners at the vertex of one, counter-clockwise from that on.
+    /// \return  false where the vertex has a boundary; then the result is of no use
+    bool FindRing(int first, std::vector<int> &ring) const {
+        ring.clear();
         int corner = first;
         do {
             ring.push_back(corner);
             corner = _patch.otherCorners[std::size_t(GetBefore(corner))];
-            if (corner < 0 || ring.size() == _sizes.size()) {
-                return {};
+            if (corner < 0 || ring.size() == _faces.size()) {
+                return false;
             }
         } while (corner != first);
-        return ring;
+        return true;
     }
 
 private:
+    struct Face {
+        int first; // corner
+        int size;
+    };
+
     FarExt::internal::LimitPatch const &_patch;
-    // By corner, of its face: the first corner, and the size.
-    std::vector<int> _firsts;
-    std::vector<int> _sizes;
+    std::vector<Face> _faces; // by corner
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

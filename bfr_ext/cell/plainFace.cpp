@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plainFace.h"
 
+#include "patchCorners.h"
+
 #include "far_ext/vtr/indexSet.h"
 
 #include <algorithm>
@@ -9,6 +11,7 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
+using FarExt::internal::CellKind;
 using FarExt::internal::CellPatch;
 using FarExt::internal::IndexMap;
 using FarExt::internal::Level;
@@ -58,6 +61,9 @@ public:
 
     int GetNumInner() const { return _numInner; }
     int GetNumPoints() const { return _numLeft; }
+    // How many faces vertex inner has so far, and where among its faces those that it has not begin.
+    int GetNumFaces(int inner) const { return _verts[_inner[inner]].numFaces; }
+    int GetFirstNewFace(int inner) const { return _verts[_inner[inner]].numFacesBefore; }
 
     // Adds the faces that vertex inner has not yet, of which getSize(face) tells the size.
     template <typename SIZE>
@@ -189,8 +195,8 @@ static_assert(PlainFaceKey::kMaxVerts <= InnerRings::kMaxFaces);
 
 // Of threads that do so at once the first one makes it for all.
 FaceRings const &PlainFaceType::makeRings() const {
-    auto rings =
-        std::make_unique<FaceRings const>(makeCell(), _types._types.GetRingCells(_types._rules));
+    auto rings = std::make_unique<FaceRings const>(makeCell(false),
+                                                   _types._types.GetRingCells(_types._rules));
     FaceRings const *expected = nullptr;
     if (_rings.compare_exchange_strong(expected, rings.get(), std::memory_order_acq_rel)) {
         return *rings.release();
@@ -200,23 +206,120 @@ FaceRings const &PlainFaceType::makeRings() const {
 
 // Threads that do so at once find the same.
 CellType const &PlainFaceType::make() const {
-    CellType const &type = _types._types.Find(makeCell(), _types._rules);
+    CellType const &type = _types._types.Find(makeCell(true), _types._rules);
     if (!_type.exchange(&type, std::memory_order_acq_rel)) {
         --_types._numUnmade;
     }
     return type;
 }
 
-CellPatch PlainFaceType::makeCell() const {
+CellPatch PlainFaceType::makeCell(bool hasSignature) const {
     std::vector<int> faceSizes;
     std::vector<Far::Index> faceVerts;
+    faceSizes.reserve(_patch.faces.size());
+    faceVerts.reserve(_patch.faces.size());
     for (std::size_t i = 0; i < _patch.faces.size(); i += 1 + _patch.faces[i]) {
         faceSizes.push_back(_patch.faces[i]);
         auto const first = _patch.faces.begin() + std::ptrdiff_t(i) + 1;
         faceVerts.insert(faceVerts.end(), first, first + _patch.faces[i]);
     }
-    return FarExt::internal::MakePlainBaseCell(faceSizes, faceVerts, _patch.numVerts,
-                                               GetNumPoints());
+    return FarExt::internal::MakePlainBaseCell(std::move(faceSizes), std::move(faceVerts),
+                                               _patch.numVerts, GetNumPoints(), hasSignature);
+}
+
+namespace {
+
+// Finds the vertices of a patch in another one, from a corner of both on; false where one of the patches has
+// vertices that are the same, and the other has not.
+bool findVertices(CellPatch const &part, int firstCorner, CellPatch const &all, int firstOfAll,
+                  std::vector<int> &verts) {
+    constexpr int kNone = -1;
+    FarExt::internal::LimitPatch const &patch = part.patch;
+    PatchCorners const corners(patch);
+    PatchCorners const ofAll(all.patch);
+    std::vector<int> found(patch.faceVerts.size(), kNone); // by corner
+    std::vector<int> ofVerts(all.patch.sources.size(), kNone);
+    verts.assign(patch.sources.size(), kNone);
+    // Of a face, from one of its corners on.
+    auto const add = [&](int corner, int cornerOfAll) {
+        int const size = corners.GetFaceSize(corner);
+        for (int i = 0; i < size; ++i) {
+            int const vert = corners.GetVertex(corners.GetNext(corner, i));
+            int const other = ofAll.GetNext(cornerOfAll, i);
+            int &number = verts[std::size_t(vert)];
+            int &back = ofVerts[std::size_t(ofAll.GetVertex(other))];
+            if (number == kNone && back == kNone) {
+                number = ofAll.GetVertex(other);
+                back = vert;
+            }
+            if (number != ofAll.GetVertex(other) || back != vert) {
+                return false;
+            }
+            found[std::size_t(corners.GetNext(corner, i))] = other;
+        }
+        return true;
+    };
+    if (!add(firstCorner, firstOfAll)) {
+        return false;
+    }
+    // Faces are joined to some before.
+    for (std::size_t corner = 0; corner < found.size(); ++corner) {
+        int const next = patch.otherCorners[corner];
+        if (next >= 0 && found[std::size_t(next)] == kNone) {
+            int const other = all.patch.otherCorners[std::size_t(found[corner])];
+            if (other < 0 || !add(next, other)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+} // namespace
+
+CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell, int const *turns,
+                                                    std::size_t item) const {
+    auto const numEdges = std::size_t(cell.GetNumCorners());
+    bool const isEdge = item < numEdges;
+    LatticeItem const &lattice =
+        _types._types.GetRingCells(_types._rules)
+            .FindLatticeItem(isEdge ? CellKind::Edge : CellKind::Vertex, cell.GetNumCorners(), [&] {
+                CellPatch patch = std::move(GatherBorder(cell, turns)[item]);
+                CellType const &type = _types._types.Find(CellPatch(patch), _types._rules);
+                return LatticeItem{std::move(patch), &type};
+            });
+    // The corner of the face, or of another one, that is the first of the item.
+    PatchCorners const corners(cell.patch);
+    auto corner = int(isEdge ? item : item - numEdges);
+    for (int i = 0; i < turns[item]; ++i) {
+        corner = isEdge ? cell.patch.otherCorners[std::size_t(corner)]
+                        : corners.GetNext(cell.patch.otherCorners[std::size_t(corner)], 1);
+    }
+    CellType::BorderItem result = {lattice.type, {}, isEdge && turns[item] == 1, nullptr};
+    return findVertices(lattice.cell, lattice.cell.locals[0], cell, corner, result.points)
+               ? result
+               : Get().GetBorderItem(turns, item);
+}
+
+CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
+                                                          std::size_t item) const {
+    auto const get = [&](std::size_t i, auto const &make) -> CellType::BorderItem const & {
+        return _latticeItems.Get<CellType::BorderItem>(int(i), turns + i, turns + i + 1, make);
+    };
+    return get(item, [&] {
+        CellPatch const cell = makeCell(false);
+        // The others are asked for, too.
+        FaceRings const &rings = GetRings();
+        int const numEdges = cell.GetNumCorners();
+        for (int i = 0; i < 2 * numEdges; ++i) {
+            bool const isInLattice =
+                i < numEdges ? rings.IsEdgeInLattice(i) : rings.IsVertexInLattice(i - numEdges);
+            if (isInLattice && std::size_t(i) != item) {
+                get(std::size_t(i), [&] { return makeLatticeItem(cell, turns, std::size_t(i)); });
+            }
+        }
+        return makeLatticeItem(cell, turns, item);
+    });
 }
 
 PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, PlainFaceType::Patch patch) {
@@ -329,10 +432,15 @@ int PlainFaceGatherer::getSize(int vert, int face) const {
     return size[face];
 }
 
-// The points of a patch of this key, where no vertices are the same; -1 where there is none such.
-int PlainFaceGatherer::countPoints() const {
+// The points of a patch of this key, where no vertices are the same; -1 where there is none such.  The faces of
+// a vertex that those before it have not are new.
+int PlainFaceGatherer::countPoints(NewFaces *newFaces) const {
     GrowingPatch patch(_faceSize);
     for (int i = 0; i < _numVerts; ++i) {
+        if (i >= patch.GetNumInner()) {
+            return -1;
+        }
+        newFaces[i] = {patch.GetFirstNewFace(i), _verts[i].numFaces - patch.GetNumFaces(i)};
         if (!patch.Add(i, _verts[i].numFaces, [&](int face) { return getSize(i, face); })) {
             return -1;
         }
@@ -342,15 +450,16 @@ int PlainFaceGatherer::countPoints() const {
 
 // As LimitPatchGatherer::GatherCell() does.
 PlainFaceType const *PlainFaceGatherer::addType(PlainFaceTypes &types, Level const &level) const {
-    // What it has taken of memory is kept for the next type.
-    static thread_local IndexMap numbers;
-    static thread_local IndexMap faces;
-    numbers.Clear();
-    faces.Clear();
-    int const numExpected = countPoints();
+    NewFaces newFaces[PlainFaceKey::kMaxVerts];
+    int const numExpected = countPoints(newFaces);
     if (numExpected < 0) {
         return nullptr;
     }
+    // The first vertex has the face itself.
+    newFaces[0] = {0, newFaces[0].count + 1};
+    // What it has taken of memory is kept for the next type.
+    static thread_local IndexMap numbers;
+    numbers.Clear();
     PlainFaceType::Patch patch = {_numVerts, {}, {}};
     patch.points.reserve(std::size_t(numExpected - _numVerts));
     patch.faces.reserve(kMaxFacesOfMost * (1 + std::size_t(_faceSize)));
@@ -358,15 +467,10 @@ PlainFaceType const *PlainFaceGatherer::addType(PlainFaceTypes &types, Level con
         numbers.FindOrSet(_verts[i].vert, i);
     }
     Index numPoints = _numVerts;
-    Index numFaces = 0;
     for (int i = 0; i < _numVerts; ++i) {
-        for (int k = 0; k < _verts[i].numFaces; ++k) {
+        for (int k = newFaces[i].first; k < newFaces[i].first + newFaces[i].count; ++k) {
             Index const place = _verts[i].GetPlace(k);
             Index const face = level.vertFaces[place];
-            if (faces.FindOrSet(face, numFaces) != numFaces) {
-                continue;
-            }
-            ++numFaces;
             Far::ConstIndexArray const verts = level.GetFaceVertices(face);
             int const size = verts.size();
             patch.faces.push_back(std::uint8_t(size));

@@ -82,11 +82,16 @@ public:
         FaceRings const *const rings = _rings.load(std::memory_order_acquire);
         return rings ? *rings : makeRings();
     }
+    /// \brief As CellType::GetBorderItem() of an edge or, behind these, of a vertex that the rings have in a
+    /// lattice, without the CellType of the face.
+    CellType::BorderItem const &GetLatticeItem(int const *turns, std::size_t item) const;
 
 private:
     CellType const &make() const;
     FaceRings const &makeRings() const;
-    FarExt::internal::CellPatch makeCell() const;
+    FarExt::internal::CellPatch makeCell(bool hasSignature) const;
+    CellType::BorderItem makeLatticeItem(FarExt::internal::CellPatch const &cell, int const *turns,
+                                         std::size_t item) const;
 
     PlainFaceTypes &_types;
     std::vector<std::uint8_t> const _key;
@@ -94,6 +99,7 @@ private:
     bool const _isInLattice;
     mutable std::atomic<FaceRings const *> _rings{nullptr};
     mutable std::atomic<CellType const *> _type{nullptr};
+    mutable PatternTable _latticeItems; // by item and turn
 };
 
 /// The types of plain base faces that have been met with some rules.  Any number of threads may use them.
@@ -148,6 +154,12 @@ private:
         int numFaces;
     };
 
+    // Faces of a vertex, from one of their places on.
+    struct NewFaces {
+        int first;
+        int count;
+    };
+
     bool addVertex(FarExt::internal::Level const &level,
                    std::vector<FarExt::internal::VertexMark> const &marks, Index vert, Index face,
                    int turn);
@@ -155,7 +167,7 @@ private:
                       std::vector<FarExt::internal::VertexMark> const &marks, Index face);
     bool findKey(FarExt::internal::Level const &level);
     int getSize(int vert, int face) const;
-    int countPoints() const;
+    int countPoints(NewFaces *newFaces) const;
     PlainFaceType const *addType(PlainFaceTypes &types, FarExt::internal::Level const &level) const;
     bool areDistinct(Index const *points, int numPoints);
 

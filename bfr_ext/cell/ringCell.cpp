@@ -109,28 +109,29 @@ std::vector<REAL> const &RingCell::GetCornerWeights() const {
         });
 }
 
-// Sizes of faces, and the vertices, by when they occur first.
-std::vector<int> RingCells::getKey(std::vector<RingLayout> const &rings) {
-    std::vector<int> key;
-    int numVerts = 0;
-    for (RingLayout const &ring : rings) {
-        numVerts = std::max(numVerts, 1 + *std::max_element(ring.verts.begin(), ring.verts.end()));
+void RingKey::Clear() {
+    _numbers.clear();
+    std::fill(_firstOccurrences.begin(), _firstOccurrences.end(), kNone);
+    _numVerts = 0;
+}
+
+void RingKey::addVertex(int vert) {
+    auto const place = std::size_t(vert);
+    if (place >= _firstOccurrences.size()) {
+        _firstOccurrences.resize(2 * place + 1, kNone);
     }
-    constexpr int kNone = -1;
-    std::vector<int> numbers(std::size_t(numVerts), kNone);
-    int next = 0;
-    auto const addVertex = [&](int vert) {
-        int &number = numbers[std::size_t(vert)];
-        number = number == kNone ? next++ : number;
-        key.push_back(number);
-    };
-    for (RingLayout const &ring : rings) {
-        key.push_back(int(ring.faceSizes.size()));
-        key.insert(key.end(), ring.faceSizes.begin(), ring.faceSizes.end());
-        addVertex(ring.center);
-        std::for_each(ring.verts.begin(), ring.verts.end(), addVertex);
+    int &number = _firstOccurrences[place];
+    if (number == kNone) {
+        number = _numVerts++;
     }
-    return key;
+    _numbers.push_back(number);
+}
+
+void RingKey::Add(RingLayout const &ring) {
+    _numbers.push_back(int(ring.faceSizes.size()));
+    _numbers.insert(_numbers.end(), ring.faceSizes.begin(), ring.faceSizes.end());
+    addVertex(ring.center);
+    std::for_each(ring.verts.begin(), ring.verts.end(), [&](int vert) { addVertex(vert); });
 }
 
 void RingPlaces::AddKey(std::vector<int> &key) const {
@@ -207,34 +208,43 @@ public:
           _layouts(FindRingLayouts(cell.patch, getCorners(_numEdges))) {}
 
     void FindCells() {
-        _face._children.push_back(&findChild(CellKind::Whole, _layouts, 0, 0));
+        _face._whole = &findChild(CellKind::Whole, _layouts, 0, 0);
+        _face._edges.reserve(_layouts.size());
+        _face._verts.reserve(_layouts.size());
         for (int edge = 0; edge < _numEdges; ++edge) {
-            _face._children.push_back(&findChild(CellKind::Half,
-                                                 {getLayout(edge), getLayout(edge + 1)},
-                                                 std::size_t(edge) + 1, edge));
-        }
-        for (int edge = 0; edge < _numEdges; ++edge) {
-            bool const isInLattice = getRing(edge).isInLattice && getRing(edge + 1).isInLattice;
-            for (int const isReversed : {0, 1}) {
-                _face._longEdges.push_back(
-                    isInLattice ? nullptr
-                                : &findItem(CellKind::LongEdge,
-                                            {getLayout(edge + isReversed).From(isReversed),
-                                             getLayout(edge + 1 - isReversed).From(-isReversed)},
-                                            edge, isReversed));
-            }
+            _key.Clear();
+            _key.Add(getLayout(edge));
+            _key.Add(getLayout(edge + 1));
+            _face._edges.push_back(&_cells.FindEdge(_key, [&] { return makeEdge(edge); }));
         }
         for (int vert = 0; vert < _numEdges; ++vert) {
-            addVVertices(vert);
+            _key.Clear();
+            _key.Add(getLayout(vert));
+            _face._verts.push_back(&_cells.FindVertex(_key, [&] { return makeVertex(vert); }));
         }
-        _face._firstVVertices.push_back(_face._vVertices.size());
     }
 
 private:
-    Ring const &getRing(int vert) const {
-        return _face._rings.GetRings()[std::size_t(vert % _numEdges)];
-    }
     RingLayout const &getLayout(int vert) const { return _layouts[std::size_t(vert % _numEdges)]; }
+
+    RingEdge makeEdge(int edge) {
+        RingLayout const &start = getLayout(edge);
+        RingLayout const &end = getLayout(edge + 1);
+        return {&findChild(CellKind::Half, {start, end}, std::size_t(edge) + 1, edge),
+                {&findItem(CellKind::LongEdge, {start, end}, edge, 0),
+                 &findItem(CellKind::LongEdge, {end.From(1), start.From(-1)}, edge, 1)}};
+    }
+
+    RingVertex makeVertex(int vert) {
+        RingLayout const &ring = getLayout(vert);
+        int const numTurns = RingCells::AreFacesAlike(ring) ? 1 : int(ring.faceSizes.size());
+        RingVertex result;
+        for (int turn = 0; turn < numTurns; ++turn) {
+            result.vVertices.push_back(
+                &findItem(CellKind::Vertex, {ring.From(-turn)}, _numEdges + vert, turn));
+        }
+        return result;
+    }
 
     RingCell const &findChild(CellKind kind, std::vector<RingLayout> const &rings,
                               std::size_t child, int firstRing) {
@@ -259,24 +269,12 @@ private:
         });
     }
 
-    // Rings that look alike from all faces have the same.
-    void addVVertices(int vert) {
-        Ring const &ring = getRing(vert);
-        bool const areAlike = RingCells::AreFacesAlike(getLayout(vert));
-        _face._firstVVertices.push_back(_face._vVertices.size());
-        for (int turn = 0; turn < (areAlike || ring.isInLattice ? 1 : ring.GetNumFaces()); ++turn) {
-            _face._vVertices.push_back(ring.isInLattice ? nullptr
-                                                        : &findItem(CellKind::Vertex,
-                                                                    {getLayout(vert).From(-turn)},
-                                                                    _numEdges + vert, turn));
-        }
-    }
-
     FaceRings &_face;
     CellPatch const &_cell;
     RingCells &_cells;
     int const _numEdges;
     std::vector<RingLayout> const _layouts;
+    RingKey _key;
     std::optional<CellRefinement> _refinement;
 };
 

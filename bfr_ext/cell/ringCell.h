@@ -105,6 +105,47 @@ private:
     mutable PatternTable _patterns;
 };
 
+/// \brief What tells the cells that rings make: the sizes of faces, and the vertices, by when they occur first.
+class RingKey {
+public:
+    void Clear();
+    /// Adds a ring of the first step.
+    void Add(RingLayout const &ring);
+
+    std::vector<int> const &Get() const { return _numbers; }
+
+private:
+    static constexpr int kNone = -1;
+
+    void addVertex(int vert);
+
+    std::vector<int> _numbers;
+    std::vector<int> _firstOccurrences; // by vertex
+    int _numVerts = 0;
+};
+
+/// An edge or a vertex in a lattice, of any face, with its patch.
+struct LatticeItem {
+    FarExt::internal::CellPatch cell;
+    CellType const *type;
+};
+
+/// What the first step makes of an edge of plain base faces, seen from one of them.
+struct RingEdge {
+    RingCell const *half;         ///< the cell on the side of the face
+    RingCell const *longEdges[2]; ///< as the face runs, and against it
+};
+
+/// What the first step makes of a vertex of plain base faces.
+struct RingVertex {
+    /// By how many faces lie before that which asks; one alone if these make no difference.
+    std::vector<RingCell const *> vVertices;
+
+    RingCell const &Get(int turn) const {
+        return *vVertices[vVertices.size() == 1 ? 0 : std::size_t(turn)];
+    }
+};
+
 /// The cells of plain base faces with some rules.  Any number of threads may use it.
 class RingCells {
 public:
@@ -119,24 +160,52 @@ public:
     template <typename MAKE>
     RingCell const &Find(FarExt::internal::CellKind kind, std::vector<RingLayout> const &rings,
                          MAKE const &make) {
-        std::vector<int> const key = getKey(rings);
-        return *_found.Get<RingCell const *>(int(kind), key.data(), key.data() + key.size(),
-                                             [&]() -> RingCell const * {
-                                                 auto [cell, layouts] = make();
-                                                 return &find(std::move(cell), layouts);
-                                             });
+        RingKey key;
+        for (RingLayout const &ring : rings) {
+            key.Add(ring);
+        }
+        return *find<RingCell const *>(_found, int(kind), key, [&]() -> RingCell const * {
+            auto [cell, layouts] = make();
+            return &find(std::move(cell), layouts);
+        });
+    }
+    /// \brief Finds what make() gave of an edge whose ends have rings that are told by \p key, that of its
+    /// start before that of its end and both from the face on.
+    template <typename MAKE>
+    RingEdge const &FindEdge(RingKey const &key, MAKE const &make) {
+        return find<RingEdge>(_edges, 0, key, make);
+    }
+    /// The same of a vertex, whose ring is told from the face on.
+    template <typename MAKE>
+    RingVertex const &FindVertex(RingKey const &key, MAKE const &make) {
+        return find<RingVertex>(_vertices, 0, key, make);
+    }
+
+    /// \brief What make() gave first of a kind of items in the lattice of a size of faces: mostly all look like
+    /// it.
+    template <typename MAKE>
+    LatticeItem const &FindLatticeItem(FarExt::internal::CellKind kind, int faceSize,
+                                       MAKE const &make) {
+        return _latticeItems.Get<LatticeItem>(int(kind), &faceSize, &faceSize + 1, make);
     }
 
     /// Whether a ring is the same from all of its faces on.
     static bool AreFacesAlike(RingLayout const &ring);
 
 private:
-    static std::vector<int> getKey(std::vector<RingLayout> const &rings);
+    template <typename FOUND, typename MAKE>
+    static FOUND const &find(PatternTable &table, int kind, RingKey const &key, MAKE const &make) {
+        std::vector<int> const &numbers = key.Get();
+        return table.Get<FOUND>(kind, numbers.data(), numbers.data() + numbers.size(), make);
+    }
     RingCell const &find(FarExt::internal::CellPatch cell, std::vector<RingLayout> const &rings);
 
     CellTypes &_types;
     InnerMasks _masks;
     PatternTable _found; // pointers, by kind and rings
+    PatternTable _edges;
+    PatternTable _vertices;
+    PatternTable _latticeItems;
 };
 
 /// \brief An edge or a vertex of a base face that has rings of its own, since the face itself is not plain or
@@ -160,8 +229,18 @@ public:
     FaceRings(FarExt::internal::CellPatch const &cell, RingCells &cells);
 
     VertexRings const &GetRings() const { return _rings; }
+    /// Whether a vertex and its neighbours are in a regular lattice, or both vertices of an edge.
+    bool IsVertexInLattice(int vert) const {
+        return _rings.GetRings()[std::size_t(vert)].isInLattice;
+    }
+    bool IsEdgeInLattice(int edge) const {
+        return IsVertexInLattice(edge) &&
+               IsVertexInLattice(edge + 1 < int(_edges.size()) ? edge + 1 : 0);
+    }
     /// A child of the face, in the order of RefineCell().
-    RingCell const &GetChild(std::size_t child) const { return *_children[child]; }
+    RingCell const &GetChild(std::size_t child) const {
+        return child == 0 ? *_whole : *_edges[child - 1]->half;
+    }
     /// Writes the indices of what a child has sums of.
     void FindChildIndices(std::size_t child, int *indices) const {
         findIndices(child, GetChild(child).GetPlaces(), _rings.GetLastStep(), indices);
@@ -173,16 +252,15 @@ public:
 
     /// The long edge of an edge, which may run against the face; null where it is in a lattice.
     RingCell const *GetLongEdge(int edge, bool isReversed) const {
-        return _longEdges[2 * std::size_t(edge) + (isReversed ? 1 : 0)];
+        return IsEdgeInLattice(edge) ? nullptr
+                                     : _edges[std::size_t(edge)]->longEdges[isReversed ? 1 : 0];
     }
     /// Writes the indices of a long edge.
     void FindLongEdgeIndices(int edge, bool isReversed, int *indices) const;
 
     /// The V-vertex of a vertex with so many faces before this one; null where it is in a lattice.
     RingCell const *GetVVertex(int vert, int turn) const {
-        auto const first = _firstVVertices[std::size_t(vert)];
-        std::size_t const numTurns = _firstVVertices[std::size_t(vert) + 1] - first;
-        return _vVertices[first + (numTurns == 1 ? 0 : std::size_t(turn))];
+        return IsVertexInLattice(vert) ? nullptr : &_verts[std::size_t(vert)]->Get(turn);
     }
 
 private:
@@ -192,10 +270,9 @@ private:
                      int *indices) const;
 
     VertexRings _rings;
-    std::vector<RingCell const *> _children;
-    std::vector<RingCell const *> _longEdges; // by edge, as the face runs and against it
-    std::vector<RingCell const *> _vVertices; // by vertex, of any turn, or by turn
-    std::vector<std::size_t> _firstVVertices;
+    RingCell const *_whole = nullptr;
+    std::vector<RingEdge const *> _edges;
+    std::vector<RingVertex const *> _verts;
 };
 
 /// The points of rings, evaluated.

@@ -73,9 +73,17 @@ std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int
     int const numVerts = int(patch.sources.size());
     std::vector<RingLayout> layouts;
     layouts.reserve(corners.size());
+    std::vector<int> ring;
     for (int const firstCorner : corners) {
         RingLayout layout = {ofPatch.GetVertex(firstCorner), {}, {}};
-        for (int const corner : ofPatch.FindRing(firstCorner)) {
+        ofPatch.FindRing(firstCorner, ring);
+        std::size_t numVertsOfRing = 0;
+        for (int const corner : ring) {
+            numVertsOfRing += 1 + std::size_t(ofPatch.GetFaceSize(corner));
+        }
+        layout.faceSizes.reserve(ring.size());
+        layout.verts.reserve(numVertsOfRing);
+        for (int const corner : ring) {
             int const size = ofPatch.GetFaceSize(corner);
             layout.faceSizes.push_back(size);
             layout.verts.push_back(ofPatch.GetVertex(ofPatch.GetNext(corner, 1)));

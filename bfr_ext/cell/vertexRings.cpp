@@ -31,15 +31,42 @@ bool hasFeatures(LimitPatch const &patch) {
 // Writes the program of the rings of a patch.
 class VertexRings::Builder {
 public:
-    Builder(VertexRings &rings, LimitPatch const &patch, CellRules const &rules)
-        : _rings(rings), _corners(patch), _rules(rules) {}
+    // What it has taken of memory is kept for the next patch.
+    struct Scratch {
+        // A point, and which of the runs it belongs to.
+        struct RunPoint {
+            int point;
+            std::size_t run;
+        };
+        struct Run {
+            double weight;
+            int numPoints;
+        };
+
+        std::vector<Number> program;
+        std::vector<double> weights;
+        std::vector<std::pair<int, int>> masks; // by size, the first of its weights
+        std::vector<int> ring;
+        std::vector<int> neighborRing;
+        std::vector<Run> runs;
+        std::vector<RunPoint> points;
+    };
+
+    Builder(VertexRings &rings, LimitPatch const &patch, CellRules const &rules, Scratch &scratch)
+        : _rings(rings), _corners(patch), _rules(rules), _scratch(scratch) {
+        _scratch.program.clear();
+        _scratch.weights.clear();
+        _scratch.masks.clear();
+    }
 
     bool Add(int firstCorner) {
-        std::vector<int> const corners = _corners.FindRing(firstCorner);
-        if (corners.empty()) {
+        std::vector<int> &corners = _scratch.ring;
+        if (_scratch.program.size() > kLastNumber || !_corners.FindRing(firstCorner, corners)) {
             return false;
         }
+        _rings._firsts.push_back(Number(_scratch.program.size()));
         Ring ring = {{}, {_rings._numPoints, 0}, false};
+        ring.faceSizes.reserve(corners.size());
         _latticeSize = _corners.GetFaceSize(firstCorner);
         _isInLattice = isRegular(corners);
         VertexVertexMask const mask = getVertexMask(corners);
@@ -68,15 +95,19 @@ public:
         return _isInRange;
     }
 
+    void Finish() {
+        std::vector<double> const &weights = _scratch.weights;
+        _rings._program = _scratch.program;
+        _rings._weights = weights;
+        _rings._floatWeights.assign(weights.begin(), weights.end());
+    }
+
 private:
-    struct Run {
-        double weight;
-        std::vector<int> points;
-    };
+    static constexpr std::size_t kLastNumber = std::numeric_limits<Number>::max();
 
     void add(int number) {
-        _isInRange = _isInRange && number <= int(std::numeric_limits<Number>::max());
-        _rings._program.push_back(Number(number));
+        _isInRange = _isInRange && std::size_t(number) <= kLastNumber;
+        _scratch.program.push_back(Number(number));
     }
 
     // Whether so many faces meet at a vertex as in a lattice, all of them of its size.
@@ -93,66 +124,80 @@ private:
 
     // The first of the weights of a face's mask.
     int findMask(int size) {
-        for (auto const &[other, first] : _masks) {
+        for (auto const &[other, first] : _scratch.masks) {
             if (other == size) {
                 return first;
             }
         }
-        int const first = int(_rings._weights.size());
-        _rings._weights.resize(_rings._weights.size() + std::size_t(size));
+        int const first = int(_scratch.weights.size());
+        _scratch.weights.resize(_scratch.weights.size() + std::size_t(size));
         FarExt::ComputeFaceVertexMask(_rules.schemeOptions.faceMask, _rules.interpolation, size,
-                                      &_rings._weights[std::size_t(first)]);
-        _masks.emplace_back(size, first);
+                                      &_scratch.weights[std::size_t(first)]);
+        _scratch.masks.emplace_back(size, first);
         return first;
     }
     int findWeight(double weight) {
-        auto const found = std::find(_rings._weights.begin(), _rings._weights.end(), weight);
-        if (found == _rings._weights.end()) {
-            _rings._weights.push_back(weight);
-            return int(_rings._weights.size()) - 1;
+        std::vector<double> &weights = _scratch.weights;
+        auto const found = std::find(weights.begin(), weights.end(), weight);
+        if (found == weights.end()) {
+            weights.push_back(weight);
+            return int(weights.size()) - 1;
         }
-        return int(found - _rings._weights.begin());
+        return int(found - weights.begin());
     }
 
     // A V-vertex in terms of the patch: first its own weight, and then runs of points that have the same
     // weight, those at the vertex of the ring first.
     bool addNeighbor(int firstCorner) {
-        std::vector<int> const corners = _corners.FindRing(firstCorner);
-        if (corners.empty()) {
+        std::vector<int> &corners = _scratch.neighborRing;
+        if (!_corners.FindRing(firstCorner, corners)) {
             return false;
         }
         _isInLattice = _isInLattice && isRegular(corners);
         VertexVertexMask const mask = getVertexMask(corners);
-        auto const getWeight = [&](int corner, int place) {
-            auto const first = std::size_t(findMask(_corners.GetFaceSize(corner)));
-            return mask.faceWeight * _rings._weights[first + std::size_t(place)];
+        auto const getWeight = [&](int firstWeight, int place) {
+            return mask.faceWeight * _scratch.weights[std::size_t(firstWeight + place)];
         };
         double ownWeight = mask.vertexWeight;
-        std::vector<Run> runs;
+        std::vector<Scratch::Run> &runs = _scratch.runs;
+        std::vector<Scratch::RunPoint> &points = _scratch.points;
+        runs.clear();
+        points.clear();
         auto const addPoint = [&](int corner, double weight) {
-            auto run = std::find_if(runs.begin(), runs.end(),
-                                    [&](Run const &other) { return other.weight == weight; });
-            if (run == runs.end()) {
-                run = runs.insert(runs.end(), {weight, {}});
+            std::size_t run = 0;
+            while (run < runs.size() && runs[run].weight != weight) {
+                ++run;
             }
-            run->points.push_back(_corners.GetVertex(corner));
+            if (run == runs.size()) {
+                runs.push_back({weight, 0});
+            }
+            ++runs[run].numPoints;
+            points.push_back({_corners.GetVertex(corner), run});
         };
-        int before = corners.back();
+        int sizeBefore = _corners.GetFaceSize(corners.back());
+        int maskBefore = findMask(sizeBefore);
         for (int const corner : corners) {
-            ownWeight += getWeight(corner, 0);
+            int const size = _corners.GetFaceSize(corner);
+            int const ofFace = findMask(size);
+            ownWeight += getWeight(ofFace, 0);
             addPoint(_corners.GetNext(corner, 1),
-                     getWeight(corner, 1) + getWeight(before, _corners.GetFaceSize(before) - 1));
-            for (int i = 2; i + 1 < _corners.GetFaceSize(corner); ++i) {
-                addPoint(_corners.GetNext(corner, i), getWeight(corner, i));
+                     getWeight(ofFace, 1) + getWeight(maskBefore, sizeBefore - 1));
+            for (int i = 2; i + 1 < size; ++i) {
+                addPoint(_corners.GetNext(corner, i), getWeight(ofFace, i));
             }
-            before = corner;
+            sizeBefore = size;
+            maskBefore = ofFace;
         }
         add(findWeight(ownWeight));
         add(int(runs.size()));
-        for (Run const &run : runs) {
-            add(findWeight(run.weight));
-            add(int(run.points.size()));
-            std::for_each(run.points.begin(), run.points.end(), [&](int point) { add(point); });
+        for (std::size_t run = 0; run < runs.size(); ++run) {
+            add(findWeight(runs[run].weight));
+            add(runs[run].numPoints);
+            for (Scratch::RunPoint const &point : points) {
+                if (point.run == run) {
+                    add(point.point);
+                }
+            }
         }
         return true;
     }
@@ -160,7 +205,7 @@ private:
     VertexRings &_rings;
     PatchCorners const _corners;
     CellRules const &_rules;
-    std::vector<std::pair<int, int>> _masks; // by size, the first of its weights
+    Scratch &_scratch;
     bool _isInRange = true;
     // Of the ring that is added: the size of its first face, and whether it is in a lattice so far.
     int _latticeSize = 0;
@@ -172,20 +217,16 @@ bool VertexRings::Init(LimitPatch const &patch, std::vector<int> const &corners,
     if (hasFeatures(patch)) {
         return false;
     }
-    Builder builder(*this, patch, masks.GetRules());
+    static thread_local Builder::Scratch scratch;
+    Builder builder(*this, patch, masks.GetRules(), scratch);
+    _firsts.reserve(corners.size());
+    _rings.reserve(corners.size());
     for (int const corner : corners) {
-        if (_program.size() > std::size_t(std::numeric_limits<Number>::max())) {
-            return false;
-        }
-        _firsts.push_back(Number(_program.size()));
         if (!builder.Add(corner)) {
             return false;
         }
     }
-    _floatWeights.assign(_weights.begin(), _weights.end());
-    _firsts.shrink_to_fit();
-    _program.shrink_to_fit();
-    _weights.shrink_to_fit();
+    builder.Finish();
     if (masks.AreUsed()) {
         for (Ring &ring : _rings) {
             ring.firstPoints[std::size_t(RingStep::Second)] = _numPoints;

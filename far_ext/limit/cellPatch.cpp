@@ -6,6 +6,7 @@
 #include "far_ext/vtr/irregularFeatures.h"
 
 #include <numeric>
+#include <utility>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -79,8 +80,8 @@ void GatherBaseCell(Level const &level, Index face, CellPatch &cell) {
     gather(gatherer, level, face, cell);
 }
 
-CellPatch MakePlainBaseCell(std::vector<int> const &faceSizes, std::vector<Index> const &faceVerts,
-                            int numInner, int numPoints) {
+CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceVerts, int numInner,
+                            int numPoints, bool hasSignature) {
     auto const size = std::size_t(faceSizes[0]);
     auto const end = std::size_t(numPoints);
     CellPatch cell;
@@ -90,8 +91,6 @@ CellPatch MakePlainBaseCell(std::vector<int> const &faceSizes, std::vector<Index
     LimitPatch &patch = cell.patch;
     patch.sources.resize(end);
     std::iota(patch.sources.begin(), patch.sources.end(), 0);
-    patch.faceSizes = faceSizes;
-    patch.faceVerts = faceVerts;
     patch.otherCorners.assign(faceVerts.size(), Index(kFreeBoundary));
     patch.edgeSharpness.resize(faceVerts.size());
     patch.diagonalSharpness.resize(faceSizes.size());
@@ -114,7 +113,11 @@ CellPatch MakePlainBaseCell(std::vector<int> const &faceSizes, std::vector<Index
         }
         first += faceSize;
     }
-    LimitPatchGatherer::AddSignature(patch);
+    patch.faceSizes = std::move(faceSizes);
+    patch.faceVerts = std::move(faceVerts);
+    if (hasSignature) {
+        LimitPatchGatherer::AddSignature(patch);
+    }
     return cell;
 }
 

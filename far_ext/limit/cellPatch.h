@@ -48,9 +48,10 @@ OPENSUBDIVHEX_API void GatherBaseCell(Level const &level, Far::Index face, CellP
 ///
 /// \param faceSizes, faceVerts  of the patch, the base face first
 /// \param numInner              points all of whose faces are in the patch, the first ones
-OPENSUBDIVHEX_API CellPatch MakePlainBaseCell(std::vector<int> const &faceSizes,
-                                              std::vector<Far::Index> const &faceVerts,
-                                              int numInner, int numPoints);
+/// \param hasSignature          whether the patch has its signature, without which it can only be refined
+OPENSUBDIVHEX_API CellPatch MakePlainBaseCell(std::vector<int> faceSizes,
+                                              std::vector<Far::Index> faceVerts, int numInner,
+                                              int numPoints, bool hasSignature);
 
 /// \brief Writes what the edges and vertices of a base face are in its own eyes, which all faces that
 /// share one need to number it alike: its *turns*.

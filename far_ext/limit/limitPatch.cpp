@@ -255,6 +255,9 @@ void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
 
 void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
     std::vector<int> &signature = patch.signature;
+    // Most patches have no tags.
+    constexpr std::size_t kNumSizes = 10;
+    signature.reserve(patch.faceSizes.size() + 2 * patch.faceVerts.size() + kNumSizes);
     auto const add = [&](auto const &numbers) {
         signature.push_back(int(numbers.size()));
         for (auto number : numbers) {

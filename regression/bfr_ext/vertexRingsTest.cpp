@@ -147,6 +147,9 @@ public:
         return numFaces;
     }
 
+    /// Edges and vertices of these that are in a lattice.
+    int numLatticeItems = 0;
+
 private:
     void expectFace(PlainFaceType const &plain, std::vector<int> const &turns,
                     std::vector<double> const &points) {
@@ -174,10 +177,29 @@ private:
         int const numEdges = type.GetNumCorners();
         for (int edge = 0; edge < numEdges; ++edge) {
             expectEdge(type, face, edge, turns, values, points);
+            ASSERT_EQ(face.IsEdgeInLattice(edge), !face.GetLongEdge(edge, false));
+            if (face.IsEdgeInLattice(edge)) {
+                expectLatticeItem(plain, edge, turns);
+            }
         }
         for (int vert = 0; vert < numEdges; ++vert) {
             expectVertex(type, face, vert, turns, values, points);
+            ASSERT_EQ(face.IsVertexInLattice(vert), !face.GetVVertex(vert, 0));
+            if (face.IsVertexInLattice(vert)) {
+                expectLatticeItem(plain, numEdges + vert, turns);
+            }
         }
+    }
+
+    void expectLatticeItem(PlainFaceType const &plain, int item, std::vector<int> const &turns) {
+        ++numLatticeItems;
+        auto const number = std::size_t(item);
+        CellType::BorderItem const &own = plain.GetLatticeItem(turns.data(), number);
+        CellType::BorderItem const &expected = plain.Get().GetBorderItem(turns.data(), number);
+        EXPECT_EQ(own.type, expected.type) << "item " << item;
+        EXPECT_EQ(own.points, expected.points) << "item " << item;
+        EXPECT_EQ(own.isReversed, expected.isReversed) << "item " << item;
+        EXPECT_EQ(own.rings, expected.rings) << "item " << item;
     }
 
     void expectEdge(CellType const &type, FaceRings const &face, int edge,
@@ -264,6 +286,7 @@ TEST_P(VertexRingsTest, HaveThePointsOfTheirSteps) {
         numFaces += shape.GetNumFaces() < 1000 ? rings.Expect(shape) : 0;
     }
     EXPECT_GT(numFaces, 100);
+    EXPECT_GT(rings.numLatticeItems, 100);
     Shape const triangles = MakeTorus(9, 8, TorusFaces::IrregularTriangles);
     EXPECT_GT(rings.Expect(triangles), 0);
     EXPECT_GT(rings.Expect(MakeDual("dual", triangles)), 0);

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What surfaces of faces are made of, kept from the second time on, and surfaces that are made of it.
+#include "surfaceFixture.h"
+
+#include "bfr_ext/cell/keptFaces.h"
+#include "regression/far_ext/referenceMatch.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/shapeDescriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace OpenSubdivHex::Regression {
+namespace {
+
+using Kept = BfrExt::internal::KeptFaces<int>;
+using Indices = std::vector<Far::Index>;
+
+constexpr std::size_t kEnough = 1 << 20;
+
+// Of a triangle.
+Indices makePoints(int first) { return {first, first + 1, first + 2, 0, 0, 1, 2, 3, 4}; }
+
+struct Found {
+    Indices indices; // control points
+    std::vector<double> point;
+
+    bool operator==(Found const &other) const {
+        return indices == other.indices && point == other.point;
+    }
+};
+
+template <typename INIT>
+Found find(BfrExt::Surface<double> &surface, Shape const &shape, INIT const &init) {
+    EXPECT_TRUE(init(surface));
+    Found found;
+    found.indices.resize(std::size_t(surface.GetNumControlPoints()));
+    EXPECT_EQ(surface.GetControlPointIndices(found.indices.data()), surface.GetNumControlPoints());
+    // Of values, too, whatever they stand for.
+    std::vector<double> control;
+    for (Far::Index const index : found.indices) {
+        control.push_back(shape.positions[std::size_t(index) % shape.positions.size()]);
+    }
+    // At a vertex and on an edge, for what neighbours share.
+    for (double const u : {0.0, 0.25}) {
+        double const uv[2] = {u, 0};
+        found.point.push_back(0);
+        surface.Evaluate(uv, control.data(), 1, &found.point.back());
+    }
+    return found;
+}
+
+/// What surfaces of all faces and kinds of data are made of, several times.
+std::vector<Found> findAll(BfrExt::SurfaceFactory const &factory, Shape const &shape) {
+    std::vector<Found> result;
+    BfrExt::Surface<double> surface;
+    for (int round = 0; round < 3; ++round) {
+        for (int face = 0; face < factory.GetNumFaces(); ++face) {
+            result.push_back(find(surface, shape,
+                                  [&](auto &of) { return factory.InitVertexSurface(face, &of); }));
+            result.push_back(find(surface, shape,
+                                  [&](auto &of) { return factory.InitVaryingSurface(face, &of); }));
+            for (int channel = 0; channel < factory.GetNumFVarChannels(); ++channel) {
+                result.push_back(find(surface, shape, [&](auto &of) {
+                    return factory.InitFaceVaryingSurface(face, &of, channel);
+                }));
+            }
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+TEST(KeptFacesTest, AreThoseThatWereAddedTwice) {
+    Kept kept(nullptr, 5, 2, kEnough);
+    EXPECT_FALSE(kept.Find(1, 3));
+    Indices const points = makePoints(10);
+    EXPECT_FALSE(kept.Add(1, 3, 7, 3, points));
+    EXPECT_FALSE(kept.Find(1, 3));
+    Kept::Face const *const face = kept.Add(1, 3, 7, 3, points);
+    ASSERT_TRUE(face);
+    EXPECT_EQ(face->type, 7);
+    EXPECT_EQ(face->size, 3);
+    EXPECT_EQ(face->numPoints, 3);
+    EXPECT_EQ(Indices(face->GetPoints(), face->GetPoints() + points.size()), points);
+    EXPECT_EQ(kept.Add(1, 3, 8, 3, makePoints(20)), face);
+    EXPECT_EQ(kept.Find(1, 3), face);
+    EXPECT_FALSE(kept.Find(0, 3));
+    for (int const none : {-1, 2, 4, 5}) {
+        EXPECT_FALSE(kept.Find(1, none)) << none;
+    }
+}
+
+TEST(KeptFacesTest, TakeNoMoreMemoryThanTheyMay) {
+    constexpr int kNumFaces = 10000;
+    for (std::size_t const memory : {std::size_t(0), std::size_t(1000), kEnough / 4}) {
+        Kept kept(nullptr, kNumFaces, 1, memory);
+        std::size_t numKept = 0;
+        for (int face = 0; face < kNumFaces; ++face) {
+            EXPECT_FALSE(kept.Add(0, face, face, 3, makePoints(face)));
+            Kept::Face const *const added = kept.Add(0, face, face, 3, makePoints(face));
+            ASSERT_EQ(kept.Find(0, face), added);
+            numKept += added ? 1 : 0;
+        }
+        EXPECT_LE(numKept * (sizeof(Kept::Face) + 9 * sizeof(Far::Index)), memory);
+        EXPECT_EQ(numKept > 0, memory > 1000);
+        for (int face = 0; face < kNumFaces; ++face) {
+            Kept::Face const *const found = kept.Find(0, face);
+            ASSERT_TRUE(!found || found->GetPoints()[0] == face);
+        }
+    }
+}
+
+// With memory for all faces, for some and for none, and surfaces that stay when the factory goes.
+TEST(KeptFacesTest, MakeTheSameSurfaces) {
+    int numChannels = 0;
+    for (char const *const name : {"texturedFin", "leftHanded", "dartsTriangles"}) {
+        Shape const &shape = GetFeatureShape(name);
+        SCOPED_TRACE(name);
+        Sdc::Options sdcOptions;
+        sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, sdcOptions);
+        numChannels += refiner->GetNumFVarChannels();
+        BfrExt::SurfaceFactory::Options options;
+        options.SetMemoryOfFaces(0);
+        auto const without = BfrExt::SurfaceFactory::Create(*refiner, options);
+        std::vector<Found> const expected = findAll(*without, shape);
+        for (std::size_t const memory : {std::size_t(1) << 17, std::size_t(1) << 26}) {
+            options.SetMemoryOfFaces(memory);
+            auto factory = BfrExt::SurfaceFactory::Create(*refiner, options);
+            std::vector<Found> results[3];
+            std::vector<std::thread> threads;
+            threads.reserve(3);
+            for (std::vector<Found> &result : results) {
+                threads.emplace_back([&] { result = findAll(*factory, shape); });
+            }
+            for (std::thread &thread : threads) {
+                thread.join();
+            }
+            for (std::vector<Found> const &result : results) {
+                EXPECT_TRUE(result == expected);
+            }
+            BfrExt::Surface<double> surface;
+            ASSERT_TRUE(factory->InitVertexSurface(0, &surface));
+            BfrExt::Surface<double> const copy = surface;
+            surface.Clear();
+            EXPECT_FALSE(surface.IsValid());
+            factory.reset();
+            surface = copy;
+            EXPECT_TRUE(find(surface, shape, [](auto &) { return true; }) == expected[0]);
+        }
+    }
+    EXPECT_GT(numChannels, 0);
+}
+
+} // namespace OpenSubdivHex::Regression
