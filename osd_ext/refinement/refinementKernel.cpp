@@ -150,6 +150,8 @@ struct UnrolledFaces {
             IrregularFaceMask const &irregularMask = masks[rest.irregular->mask];
             std::ptrdiff_t const irregularEnd = std::min(rest.irregular->end, end);
             for (std::ptrdiff_t corner = rest.corner; corner != irregularEnd; corner += SIZE) {
+                prefetchAhead(faces.verts + corner);
+                prefetchAhead(ACCESS::At(faces.dst, corner));
                 refineIrregularFace<ACCESS, PATTERN>(
                     irregularMask, faces.mask, faces.src, faces.dst, faces.verts + corner, corner,
                     std::make_integer_sequence<int, IrregularFaceMask::kSize>());
