@@ -109,6 +109,17 @@ std::vector<REAL> const &RingCell::GetCornerWeights() const {
         });
 }
 
+RingKey::RingKey() {
+    // Of a triangle with six faces at each vertex.
+    constexpr std::size_t kUsualSize = 128;
+    _numbers.reserve(kUsualSize);
+    _firstOccurrences.resize(kUsualSize, kNone);
+}
+
+RingKey::RingKey(std::vector<RingLayout> const &rings) : RingKey() {
+    std::for_each(rings.begin(), rings.end(), [&](RingLayout const &ring) { Add(ring); });
+}
+
 void RingKey::Clear() {
     _numbers.clear();
     std::fill(_firstOccurrences.begin(), _firstOccurrences.end(), kNone);
@@ -193,9 +204,9 @@ RingItem const &RingItem::Get(CellType const &type, CellPatch const &patch, Ring
         if (!isPlain || isInLattice) {
             return RingItem();
         }
-        item.cell =
-            &cells.Find(getChildKind(patch.kind), FindRingLayouts(patch.patch, patch.locals),
-                        [&] { return makeItemCell(patch, cells.GetRules()); });
+        item.cell = &cells.Find(getChildKind(patch.kind),
+                                RingKey(FindRingLayouts(patch.patch, patch.locals)),
+                                [&] { return makeItemCell(patch, cells.GetRules()); });
         return item;
     });
 }
@@ -208,7 +219,9 @@ public:
           _layouts(FindRingLayouts(cell.patch, getCorners(_numEdges))) {}
 
     void FindCells() {
-        _face._whole = &findChild(CellKind::Whole, _layouts, 0, 0);
+        std::for_each(_layouts.begin(), _layouts.end(),
+                      [&](RingLayout const &ring) { _key.Add(ring); });
+        _face._whole = &findChild(CellKind::Whole, _key, 0, 0);
         _face._edges.reserve(_layouts.size());
         _face._verts.reserve(_layouts.size());
         for (int edge = 0; edge < _numEdges; ++edge) {
@@ -227,12 +240,13 @@ public:
 private:
     RingLayout const &getLayout(int vert) const { return _layouts[std::size_t(vert % _numEdges)]; }
 
+    // The key is that of the rings.
     RingEdge makeEdge(int edge) {
         RingLayout const &start = getLayout(edge);
         RingLayout const &end = getLayout(edge + 1);
-        return {&findChild(CellKind::Half, {start, end}, std::size_t(edge) + 1, edge),
-                {&findItem(CellKind::LongEdge, {start, end}, edge, 0),
-                 &findItem(CellKind::LongEdge, {end.From(1), start.From(-1)}, edge, 1)}};
+        return {&findChild(CellKind::Half, _key, std::size_t(edge) + 1, edge),
+                {&findItem(CellKind::LongEdge, _key, edge, 0),
+                 &findItem(CellKind::LongEdge, RingKey({end.From(1), start.From(-1)}), edge, 1)}};
     }
 
     RingVertex makeVertex(int vert) {
@@ -241,14 +255,13 @@ private:
         RingVertex result;
         for (int turn = 0; turn < numTurns; ++turn) {
             result.vVertices.push_back(
-                &findItem(CellKind::Vertex, {ring.From(-turn)}, _numEdges + vert, turn));
+                &findItem(CellKind::Vertex, RingKey({ring.From(-turn)}), _numEdges + vert, turn));
         }
         return result;
     }
 
-    RingCell const &findChild(CellKind kind, std::vector<RingLayout> const &rings,
-                              std::size_t child, int firstRing) {
-        return _cells.Find(kind, rings, [&] {
+    RingCell const &findChild(CellKind kind, RingKey const &key, std::size_t child, int firstRing) {
+        return _cells.Find(kind, key, [&] {
             if (!_refinement) {
                 _refinement = refine(_cell, _cells.GetRules());
             }
@@ -259,9 +272,8 @@ private:
     }
 
     // Of an edge or, behind these, of a vertex.
-    RingCell const &findItem(CellKind kind, std::vector<RingLayout> const &rings, int item,
-                             int turn) {
-        return _cells.Find(kind, rings, [&] {
+    RingCell const &findItem(CellKind kind, RingKey const &key, int item, int turn) {
+        return _cells.Find(kind, key, [&] {
             std::vector<int> turns(2 * std::size_t(_numEdges));
             turns[std::size_t(item)] = turn;
             return makeItemCell(GatherBorder(_cell, turns.data())[std::size_t(item)],

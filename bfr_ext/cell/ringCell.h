@@ -108,6 +108,10 @@ private:
 /// \brief What tells the cells that rings make: the sizes of faces, and the vertices, by when they occur first.
 class RingKey {
 public:
+    /// Of no rings.
+    RingKey();
+    /// Of some rings of the first step.
+    explicit RingKey(std::vector<RingLayout> const &rings);
     void Clear();
     /// Adds a ring of the first step.
     void Add(RingLayout const &ring);
@@ -158,12 +162,7 @@ public:
     ///
     /// \param make  gives the cell and, in vertices of the same level, the rings that have its points
     template <typename MAKE>
-    RingCell const &Find(FarExt::internal::CellKind kind, std::vector<RingLayout> const &rings,
-                         MAKE const &make) {
-        RingKey key;
-        for (RingLayout const &ring : rings) {
-            key.Add(ring);
-        }
+    RingCell const &Find(FarExt::internal::CellKind kind, RingKey const &key, MAKE const &make) {
         return *find<RingCell const *>(_found, int(kind), key, [&]() -> RingCell const * {
             auto [cell, layouts] = make();
             return &find(std::move(cell), layouts);

@@ -467,7 +467,11 @@ namespace {
 
 // A row of a matrix that is being formed: the sum of what was added, by column.
 struct SparseRow {
-    void Clear() { entries.clear(); }
+    void Clear() {
+        constexpr std::size_t kUsualSize = 24;
+        entries.clear();
+        entries.reserve(kUsualSize);
+    }
     void AddWithWeight(Index column, double weight) { entries.emplace_back(column, weight); }
     void AddWithWeight(SparseRow const &row, double weight) {
         for (auto const &[column, rowWeight] : row.entries) {
@@ -485,21 +489,39 @@ struct Columns {
     std::vector<Index> const &verts;
 };
 
-// Appends a row, its columns ascending, to a step.
-void addRow(SparseRow row, PatchRefinement &step) {
-    std::stable_sort(row.entries.begin(), row.entries.end(),
-                     [](auto const &a, auto const &b) { return a.first < b.first; });
-    std::size_t const first = step.verts.size();
-    for (auto const &[column, weight] : row.entries) {
-        if (step.verts.size() == first || step.verts.back() != column) {
-            step.verts.push_back(column);
-            step.weights.push_back(weight);
-        } else {
-            step.weights.back() += weight;
+// Appends rows, their columns ascending, to a step.
+class RowAppender {
+public:
+    explicit RowAppender(PatchRefinement &step)
+        : _step(step), _sums(std::size_t(step.numParentVerts)),
+          _hasSum(std::size_t(step.numParentVerts)) {}
+
+    // What a column has several times is summed up in the order in which it was added.
+    void Append(SparseRow const &row) {
+        auto const first = std::ptrdiff_t(_step.verts.size());
+        for (auto const &[column, weight] : row.entries) {
+            auto const place = std::size_t(column);
+            if (_hasSum[place]) {
+                _sums[place] += weight;
+            } else {
+                _sums[place] = weight;
+                _hasSum[place] = true;
+                _step.verts.push_back(column);
+            }
         }
+        std::sort(_step.verts.begin() + first, _step.verts.end());
+        for (auto vert = _step.verts.begin() + first; vert != _step.verts.end(); ++vert) {
+            _step.weights.push_back(_sums[std::size_t(*vert)]);
+            _hasSum[std::size_t(*vert)] = false;
+        }
+        _step.firsts.push_back(int(_step.verts.size()));
     }
-    step.firsts.push_back(int(step.verts.size()));
-}
+
+private:
+    PatchRefinement &_step;
+    std::vector<double> _sums; // by column
+    std::vector<char> _hasSum;
+};
 
 // Around a V-vertex the children of edges take the place of faces: the first edge of a closed fan
 // comes last, and so does the side that begins there.
@@ -531,9 +553,10 @@ PatchRefinement MakePatchStep(Refinement const &refinement, HexSchemeOptions con
     step.numParentVerts = refinement.parent->numVertices;
     step.firsts.push_back(0);
     std::vector<Index> const made = GetMadeVertices(refinement, part);
+    RowAppender appender(step);
     for (Index cVert : cVerts) {
         auto const place = std::lower_bound(made.begin(), made.end(), cVert);
-        addRow(std::move(sparseRows[std::size_t(place - made.begin())]), step);
+        appender.Append(sparseRows[std::size_t(place - made.begin())]);
     }
     return step;
 }
