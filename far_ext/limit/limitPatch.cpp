@@ -467,11 +467,7 @@ namespace {
 
 // A row of a matrix that is being formed: the sum of what was added, by column.
 struct SparseRow {
-    void Clear() {
-        constexpr std::size_t kUsualSize = 24;
-        entries.clear();
-        entries.reserve(kUsualSize);
-    }
+    void Clear() { entries.clear(); }
     void AddWithWeight(Index column, double weight) { entries.emplace_back(column, weight); }
     void AddWithWeight(SparseRow const &row, double weight) {
         for (auto const &[column, rowWeight] : row.entries) {
@@ -546,7 +542,9 @@ PatchRefinement MakePatchStep(Refinement const &refinement, HexSchemeOptions con
     SortUnique(wanted);
     RefinementRows::Part const part = FindPart(refinement, schemeOptions, interpolation, wanted);
     RefinementRows const rows(refinement, schemeOptions, interpolation, part);
-    std::vector<SparseRow> sparseRows(std::size_t(rows.GetNumRows()));
+    // What they have taken of memory is kept for the next step.
+    static thread_local std::vector<SparseRow> sparseRows;
+    sparseRows.resize(std::max(sparseRows.size(), std::size_t(rows.GetNumRows())));
     Interpolate<double>(rows, Columns{part.verts}, sparseRows);
 
     PatchRefinement step;
