@@ -231,8 +231,8 @@ namespace {
 
 // Finds the vertices of a patch in another one, from a corner of both on; false where one of the patches has
 // vertices that are the same, and the other has not.
-bool findVertices(CellPatch const &part, int firstCorner, CellPatch const &all, int firstOfAll,
-                  std::vector<int> &verts) {
+bool findInPatch(CellPatch const &part, int firstCorner, CellPatch const &all, int firstOfAll,
+                 std::vector<int> &verts) {
     constexpr int kNone = -1;
     FarExt::internal::LimitPatch const &patch = part.patch;
     PatchCorners const corners(patch);
@@ -296,7 +296,7 @@ CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell, int c
                         : corners.GetNext(cell.patch.otherCorners[std::size_t(corner)], 1);
     }
     CellType::BorderItem result = {lattice.type, {}, isEdge && turns[item] == 1, nullptr};
-    return findVertices(lattice.cell, lattice.cell.locals[0], cell, corner, result.points)
+    return findInPatch(lattice.cell, lattice.cell.locals[0], cell, corner, result.points)
                ? result
                : Get().GetBorderItem(turns, item);
 }
