@@ -46,6 +46,16 @@ int countSides(FanItems const &fan) {
                         : numBreaks - 1 + !isBreak(fan.items.front()) + !isBreak(fan.items.back());
 }
 
+// Whether masks of curves are used in the patch or in those that it makes.
+bool hasSharpLines(LimitPatch const &patch) {
+    return std::any_of(
+               patch.otherCorners.begin(), patch.otherCorners.end(),
+               [](Index other) { return other == kSharpBoundaryA || other == kSharpBoundaryB; }) ||
+           std::any_of(patch.edgeSharpness.begin(), patch.edgeSharpness.end(), Crease::IsSharp) ||
+           std::any_of(patch.diagonalSharpness.begin(), patch.diagonalSharpness.end(),
+                       Crease::IsSharp);
+}
+
 } // namespace
 
 // The fans one after the other, as the level has them, but closed ones from their first face on.
@@ -239,12 +249,16 @@ bool LimitPatchGatherer::hasIrregularities(LimitPatch const &patch) const {
     return false;
 }
 
-void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
-    if (_faceMask == FaceMask::Smooth) {
-        patch.numHexagonalSteps = hasIrregularities(patch)
-                                      ? std::min(_level.numHexagonalSteps, kNumStepsToConstantMasks)
-                                      : kNumStepsToConstantMasks;
+int LimitPatchGatherer::countSteps(LimitPatch const &patch) const {
+    bool const isSmooth = _faceMask == FaceMask::Smooth;
+    if (hasSharpLines(patch) || (isSmooth && hasIrregularities(patch))) {
+        return std::min(_level.numHexagonalSteps, kNumStepsToConstantMasks);
     }
+    return isSmooth ? kNumStepsToConstantMasks : 0;
+}
+
+void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
+    patch.numHexagonalSteps = countSteps(patch);
     for (Index vert = 0; vert < _numComplete; ++vert) {
         if (IrregularVertex const *const irregular =
                 _level.FindIrregularVertex(patch.sources[vert])) {

@@ -81,6 +81,7 @@ private:
     void addTags(LimitPatch &patch);
     void addSharpVertices(LimitPatch &patch);
     void addIrregularVertices(LimitPatch &patch);
+    int countSteps(LimitPatch const &patch) const;
     bool hasIrregularities(LimitPatch const &patch) const;
 
     Level const &_level;

@@ -32,15 +32,18 @@ struct SharpEdges {
     }
 };
 
+bool isNonManifold(Level const &level, Index vert) {
+    return std::binary_search(level.nonManifoldVerts.begin(), level.nonManifoldVerts.end(), vert);
+}
+
 // At a non-manifold vertex several fans may end in the same line, which counts once.  Uses the memory
 // of the fan.
 void gatherSharpEdges(Level const &level, Index vert, FanItems &fanItems, SharpEdges &result) {
     result.Clear();
-    bool const isNonManifold =
-        std::binary_search(level.nonManifoldVerts.begin(), level.nonManifoldVerts.end(), vert);
+    bool const hasLines = isNonManifold(level, vert);
     std::vector<Index> lines;
     auto const isRepeated = [&](Index edge) {
-        Index const line = isNonManifold ? level.GetEdgeLine(edge) : Far::INDEX_INVALID;
+        Index const line = hasLines ? level.GetEdgeLine(edge) : Far::INDEX_INVALID;
         if (line == Far::INDEX_INVALID) {
             return false;
         }
@@ -108,7 +111,22 @@ SharpVertex cornerMask(Index vert) {
     return {vert, Crease::RULE_CORNER, 1, 0, {vert, vert}, {0, 0}};
 }
 
-SharpVertex creaseMask(Index vert, SharpEdges const &edges, int const pair[2]) {
+// Whether one face lies alone between the edges to two vertices.
+bool isOneFaceBetween(Level const &level, Index vert, Index const neighbors[2]) {
+    for (Index i = level.vertFirstFace[vert]; i < level.vertFirstFace[vert + 1]; ++i) {
+        Index const face = level.vertFaces[i];
+        Index const corner = level.GetVertexCorner(i);
+        Index const next = level.faceVerts[level.GetNextCorner(face, corner)];
+        Index const prev = level.faceVerts[level.GetPrevCorner(face, corner)];
+        if ((next == neighbors[0] && prev == neighbors[1]) ||
+            (next == neighbors[1] && prev == neighbors[0])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+SharpVertex creaseMask(Level const &level, Index vert, SharpEdges const &edges, int const pair[2]) {
     SharpVertex mask = {vert, Crease::RULE_CREASE, 0, 0, {vert, vert}, {0, 0}};
     bool const isLong[2] = {edges.isLong[pair[0]], edges.isLong[pair[1]]};
     for (int i = 0; i < 2; ++i) {
@@ -119,11 +137,15 @@ SharpVertex creaseMask(Index vert, SharpEdges const &edges, int const pair[2]) {
             mask.neighborWeights[i] = isLong[1 - i] ? 2.0 / 8 : 1.0 / 8;
         }
     }
+    if (level.numHexagonalSteps >= kNumStepsToConstantMasks && !isLong[0] && !isLong[1] &&
+        !isNonManifold(level, vert) && !isOneFaceBetween(level, vert, mask.neighbors)) {
+        mask.neighborWeights[0] = mask.neighborWeights[1] = 3.0 / 8;
+    }
     mask.vertexWeight = 1 - mask.neighborWeights[0] - mask.neighborWeights[1];
     return mask;
 }
 
-SharpVertex maskOfRule(Crease const &creasing, Crease::Rule rule, Index vert, int numFaces,
+SharpVertex maskOfRule(Level const &level, Crease const &creasing, Crease::Rule rule, Index vert,
                        SharpEdges const &edges, std::vector<float> const &sharpness) {
     if (rule == Crease::RULE_CORNER) {
         return cornerMask(vert);
@@ -131,9 +153,9 @@ SharpVertex maskOfRule(Crease const &creasing, Crease::Rule rule, Index vert, in
     if (rule == Crease::RULE_CREASE) {
         int pair[2] = {0, 1};
         creasing.GetSharpEdgePairOfCrease(sharpness.data(), int(sharpness.size()), pair);
-        return creaseMask(vert, edges, pair);
+        return creaseMask(level, vert, edges, pair);
     }
-    SharpVertex mask = smoothMask(vert, numFaces);
+    SharpVertex mask = smoothMask(vert, level.GetNumVertexFaces(vert));
     mask.rule = rule;
     return mask;
 }
@@ -226,13 +248,12 @@ private:
 };
 
 SharpVertex SharpMaskFinder::Find(Index vert) {
-    int const numFaces = _level.GetNumVertexFaces(vert);
     float const vertSharpness = _level.GetVertexSharpness(vert);
     gatherSharpEdges(_level, vert, _fan, _edges);
     float const *const sharpness = _edges.sharpness.data();
     Crease::Rule const rule =
         _creasing.DetermineVertexVertexRule(vertSharpness, _edges.GetSize(), sharpness);
-    SharpVertex const mask = maskOfRule(_creasing, rule, vert, numFaces, _edges, _edges.sharpness);
+    SharpVertex const mask = maskOfRule(_level, _creasing, rule, vert, _edges, _edges.sharpness);
 
     float const childVertSharpness = _creasing.SubdivideVertexSharpness(vertSharpness);
     _childSharpness.resize(_edges.sharpness.size());
@@ -245,7 +266,7 @@ SharpVertex SharpMaskFinder::Find(Index vert) {
     }
     float const weight = _creasing.ComputeFractionalWeightAtVertex(
         vertSharpness, childVertSharpness, _edges.GetSize(), sharpness, _childSharpness.data());
-    return blend(mask, maskOfRule(_creasing, childRule, vert, numFaces, _edges, _childSharpness),
+    return blend(mask, maskOfRule(_level, _creasing, childRule, vert, _edges, _childSharpness),
                  weight);
 }
 

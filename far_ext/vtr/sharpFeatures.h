@@ -26,10 +26,15 @@ void RefineTags(Refinement const &refinement, Sdc::Options sdcOptions, Level &ch
 ///     A and A: V' = (6 V + V_l + V_r)/8      A and B: V' = (5 V + 2 V_A + V_B)/8
 ///     B and B: V' = (26 V + 3 V_l + 3 V_r)/32
 ///
-/// which reproduces linear functions.  Curvature of the curves has a limit, but at the vertices of level
-/// 0, where it grows by sqrt(3/2) per level: A and A meet there alone, at every second level, and move
-/// points of a parabola less than the others do.  With 3/8 for each neighbour they would not; but then
-/// one face beside a smooth border has no tangent plane, since what lies across shrinks as fast.
+/// which reproduces linear functions.  Behind the first steps A and A meet at vertices of level 0
+/// alone, in every second level, and from kNumStepsToConstantMasks steps on
+///
+///     A and A: V' = (2 V + 3 V_l + 3 V_r)/8
+///
+/// so that all points of a parabola move alike, which bounds curvature of the curves; earlier, the
+/// surface beside them would be less even.  It does not hold where one face lies between the two
+/// edges, which would have no tangent plane, since what lies across would shrink as fast as the bend of
+/// the curve, nor where several sheets share the curve: there its curvature grows by sqrt(3/2) per level.
 void ComputeSharpMasks(Sdc::Options sdcOptions, Level &level);
 
 } // namespace OpenSubdivHex::FarExt::internal

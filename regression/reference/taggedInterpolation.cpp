@@ -336,6 +336,18 @@ private:
                (1 - irregular.share) * plain;
     }
 
+    /// Whether a face has the two others on both sides of a vertex.
+    bool isFaceBetween(int v, int a, int b) const {
+        auto const &corners = _mesh.vertices[v].corners;
+        return std::any_of(corners.begin(), corners.end(), [&](Side corner) {
+            std::vector<int> const &vertices = _mesh.faces[corner.face].vertices;
+            std::size_t const size = vertices.size();
+            int const next = vertices[(std::size_t(corner.place) + 1) % size];
+            int const previous = vertices[(std::size_t(corner.place) + size - 1) % size];
+            return (next == a && previous == b) || (next == b && previous == a);
+        });
+    }
+
     Point creaseVertex(int v, SharpEdge a, SharpEdge b) const {
         Point const vertex = _values.row(v);
         Point const atA = _values.row(a.neighbor);
@@ -344,7 +356,10 @@ private:
             return (26 * vertex + 3 * atA + 3 * atB) / 32;
         }
         if (!a.isLong && !b.isLong) {
-            return (6 * vertex + atA + atB) / 8;
+            return _mesh.numHexagonalSteps < 4 || _mesh.vertices[v].isNonManifold ||
+                           isFaceBetween(v, a.neighbor, b.neighbor)
+                       ? Point((6 * vertex + atA + atB) / 8)
+                       : Point((2 * vertex + 3 * atA + 3 * atB) / 8);
         }
         return a.isLong ? Point((5 * vertex + atA + 2 * atB) / 8)
                         : Point((5 * vertex + 2 * atA + atB) / 8);
