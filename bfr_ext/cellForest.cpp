@@ -31,8 +31,12 @@ void CellForest::MatchEdges() {
     Level const &level = _level.GetLevel();
     _polylines = _edges;
     for (Index face = 0; face < GetNumFaces(); ++face) {
+        CellTree const &tree = GetTree(face);
+        if (tree.GetFaceSize() != level.GetFaceSize(face)) {
+            continue;
+        }
         for (int local = 0; local < level.GetFaceSize(face); ++local) {
-            Polyline const own = GetTree(face).GetEdgePolyline(local);
+            Polyline const own = tree.GetEdgePolyline(local);
             Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
             _polylines[std::size_t(edge)].Merge(isReversed(face, local) ? own.GetReversed() : own);
         }

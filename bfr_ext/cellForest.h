@@ -47,7 +47,8 @@ public:
     /// Sets points that an edge is to have besides those of its faces' cells, in its own direction.
     void SetEdge(Index edge, Polyline polyline) { _edges[std::size_t(edge)] = std::move(polyline); }
     /// \brief Finds the polylines of all edges, each with the points that the trees of its faces have
-    /// there, after a tree or an edge was set.
+    /// there, after a tree or an edge was set.  A tree with another number of vertices than its face has no
+    /// points there.
     void MatchEdges();
     /// \brief Whether a face has a tree with as many vertices, and the polylines of its edges have all
     /// points of that, as they have after MatchEdges(): else its tessellation is invalid.

@@ -481,6 +481,9 @@ int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeig
 template <typename REAL>
 void Surface<REAL>::ApplyStencil(REAL const stencil[], REAL const controlPoints[],
                                  PointDescriptor const &controlPointDesc, REAL result[]) const {
+    if (!IsValid()) {
+        return;
+    }
     sumUp(stencil, GetNumControlPoints(), controlPoints, nullptr, controlPointDesc, result);
 }
 
@@ -488,6 +491,9 @@ template <typename REAL>
 void Surface<REAL>::ApplyStencilFromMesh(REAL const stencil[], REAL const meshPoints[],
                                          PointDescriptor const &meshPointDesc,
                                          REAL result[]) const {
+    if (!IsValid()) {
+        return;
+    }
     sumUp(stencil, GetNumControlPoints(), meshPoints, getPoints(), meshPointDesc, result);
 }
 

@@ -125,8 +125,8 @@ public:
 
     /// Control points of the face.
     int GetNumControlPoints() const { return _numControlPoints; }
-    /// Writes which points of the mesh they are: the vertices of the face first, none twice unless the
-    /// face has it twice.
+    /// Writes which points of the mesh they are: the vertices of the face first, in its order.  No vertex
+    /// comes twice, also where the face has it twice.
     /// \return  GetNumControlPoints()
     int GetControlPointIndices(Index meshPointIndices[]) const;
     /// Copies the control points from those of the mesh.
@@ -180,12 +180,12 @@ public:
     /// Two faces that share an edge get the same points there, to the bit, if the edge has the same
     /// level, or Polyline, in both and their control points come from the same mesh: so facets of
     /// neighbours can be joined by comparing points.  Levels and polylines give a place the same point.
-    /// That holds for any threads, orders, trees and levels of the inside; not at
-    /// non-manifold edges and vertices, nor for face-varying values on the two sides of a seam.
+    /// That holds for any threads, orders, trees and levels of the inside; not at non-manifold edges and
+    /// vertices, nor for face-varying values on the two sides of a seam; and last bits may differ on edges
+    /// around a non-manifold vertex that has a closed fan of faces among others.
     ///
     /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the
-    /// cache.  Inside
-    /// of trees the control points are refined cell by cell instead, in double precision.
+    /// cache.  Inside of trees the control points are refined cell by cell instead, in double precision.
     void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;

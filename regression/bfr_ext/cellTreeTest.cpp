@@ -207,6 +207,9 @@ TEST(CellForest, TreesOfOtherFacesHaveNoTessellation) {
         EXPECT_FALSE(forest.GetTessellation(2).IsValid());
         EXPECT_EQ(forest.GetTessellation(2).GetNumFacets(), 0);
         EXPECT_TRUE(forest.GetTessellation(1).IsValid());
+        forest.MatchEdges();
+        EXPECT_FALSE(forest.IsMatched(2));
+        EXPECT_EQ(forest.GetNumBoundaryPoints(), 8); // no edge has a point of that tree
     }
     forest.SetTree(2, CellTree(4, 2));
     EXPECT_FALSE(forest.GetTessellation(2).IsValid()); // until edges are matched

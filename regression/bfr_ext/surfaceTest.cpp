@@ -516,6 +516,8 @@ TEST(SurfaceFactoryTest, WhatDoesNotFitIsNotEvaluated) {
     surface.Evaluate(uv, control.data(), 3, p, p + 3, p + 6);
     EXPECT_EQ(surface.EvaluateStencil(uv, p), 0);
     EXPECT_EQ(surface.EvaluateStencil(uv, p, p + 3, p + 6), 0);
+    surface.ApplyStencil(control.data(), control.data(), 3, p);
+    surface.ApplyStencilFromMesh(control.data(), control.data(), 3, p + 3);
     EXPECT_EQ(results, std::vector<double>(9, kUntouched));
     expectNothing(Tessellation(Parameterization(4), 1));
 
