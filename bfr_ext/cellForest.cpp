@@ -3,6 +3,8 @@
 
 #include "far_ext/vtr/hierarchy.h"
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -97,7 +99,63 @@ Tessellation CellForest::GetTessellation(Index face, Tessellation::Options optio
     if (GetTree(face).GetFaceSize() != _level.GetLevel().GetFaceSize(face)) {
         return Tessellation(Parameterization(), 0);
     }
+    std::vector<int> levels;
+    if (findLevels(face, levels)) {
+        return Tessellation(Parameterization(GetTree(face).GetFaceSize()), int(levels.size()),
+                            levels.data(), options);
+    }
     return Tessellation(GetTree(face), GetFacePolylines(face).data(), options);
+}
+
+// Those of the edges and of the inside, where there are such.
+bool CellForest::findLevels(Index face, std::vector<int> &levels) const {
+    static std::vector<Polyline> const kPolylines = [] {
+        std::vector<Polyline> polylines;
+        polylines.reserve(Polyline::kLastLevel + 1);
+        for (int edgeLevel = 0; edgeLevel <= Polyline::kLastLevel; ++edgeLevel) {
+            polylines.emplace_back(edgeLevel);
+        }
+        return polylines;
+    }();
+    Level const &level = _level.GetLevel();
+    CellTree const &tree = GetTree(face);
+    int const inside = tree.GetMaxLevel();
+    levels.clear();
+    for (int local = 0; local < tree.GetFaceSize(); ++local) {
+        // Polylines of levels are the same from both ends.
+        Polyline const &polyline =
+            GetPolyline(level.faceEdges[level.faceFirstCorner[face] + local]);
+        // Levels 0 and 1 give an edge the same.
+        auto const found =
+            std::find(kPolylines.begin() + std::min(inside, 1), kPolylines.end(), polyline);
+        if (found == kPolylines.end()) {
+            return false;
+        }
+        levels.push_back(int(found - kPolylines.begin()));
+    }
+    levels.push_back(inside);
+    return tree.HasLevels(levels.data(), inside);
+}
+
+// Writes what tells the tessellation of a face.
+void CellForest::getKey(Index face, std::vector<int> &key) const {
+    Level const &level = _level.GetLevel();
+    CellTree const &tree = GetTree(face);
+    key.assign(1, tree.GetFaceSize());
+    for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
+        key.push_back(tree.GetFirstChild(cell));
+    }
+    for (int local = 0; local < tree.GetFaceSize(); ++local) {
+        std::vector<Polyline::Place> const &places =
+            GetPolyline(level.faceEdges[level.faceFirstCorner[face] + local]).GetPlaces();
+        key.push_back(-1 - int(places.size()));
+        if (isReversed(face, local)) {
+            std::transform(places.rbegin(), places.rend(), std::back_inserter(key),
+                           [](Polyline::Place place) { return Polyline::kLength - place; });
+        } else {
+            key.insert(key.end(), places.begin(), places.end());
+        }
+    }
 }
 
 int CellForest::GetBoundaryPoints(Index face, int points[]) const {

@@ -57,7 +57,10 @@ public:
     Polyline const &GetPolyline(Index edge) const { return _polylines[std::size_t(edge)]; }
     /// Those of the edges of a face, in the direction of the face.
     std::vector<Polyline> GetFacePolylines(Index face) const;
-    /// The tessellation of a face; invalid where not IsMatched().
+    /// \brief The tessellation of a face; invalid where not IsMatched().
+    ///
+    /// It is that of levels (Tessellation::GetLevels()) where the cells and the polylines of the face are those
+    /// of some, as mostly in flat parts of a mesh: its points are evaluated faster.
     Tessellation GetTessellation(Index face,
                                  Tessellation::Options options = Tessellation::Options()) const;
 
@@ -71,7 +74,12 @@ public:
     int GetBoundaryPoints(Index face, int points[]) const;
 
 private:
+    template <typename REAL>
+    friend class PatchStream;
+
     bool isReversed(Index face, int local) const;
+    bool findLevels(Index face, std::vector<int> &levels) const;
+    void getKey(Index face, std::vector<int> &key) const;
 
     FarExt::TopologyLevel _level;
     std::vector<CellTree> _trees;

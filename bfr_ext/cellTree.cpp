@@ -14,12 +14,25 @@ CellTree::CellTree(int faceSize, int level)
 
 CellTree::CellTree(int faceSize, int const edgeLevels[], int level) : CellTree(faceSize) {
     for (int cell = 0; cell < GetNumCells(); ++cell) {
-        // A step divides the long edges of half cells, and no others.
-        bool const isOnEdge = GetBorderSide(cell) == 0;
-        if (GetLevel(cell) < (isOnEdge ? std::min(level, edgeLevels[GetEdge(cell)]) : level)) {
+        if (isToRefine(cell, edgeLevels, level)) {
             Refine(cell);
         }
     }
+}
+
+// A step divides the long edges of half cells, and no others.
+bool CellTree::isToRefine(int cell, int const edgeLevels[], int level) const {
+    bool const isOnEdge = GetBorderSide(cell) == 0;
+    return GetLevel(cell) < (isOnEdge ? std::min(level, edgeLevels[GetEdge(cell)]) : level);
+}
+
+bool CellTree::HasLevels(int const edgeLevels[], int level) const {
+    for (int cell = 0; cell < GetNumCells(); ++cell) {
+        if (IsRefined(cell) != isToRefine(cell, edgeLevels, level)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 int CellTree::GetMaxLevel() const {

@@ -39,6 +39,9 @@ public:
     /// \param level       of the inside
     CellTree(int faceSize, int const edgeLevels[], int level);
 
+    /// Whether it has the cells of CellTree(GetFaceSize(), edgeLevels, level), whatever their numbers.
+    bool HasLevels(int const edgeLevels[], int level) const;
+
     /// Vertices of the face.
     int GetFaceSize() const { return _faceSize; }
     /// All cells, with those that are refined.
@@ -84,6 +87,7 @@ private:
     };
 
     Cell const &getCell(int cell) const { return _cells[std::size_t(cell)]; }
+    bool isToRefine(int cell, int const edgeLevels[], int level) const;
     void addPoints(int cell, int start, int end, std::vector<Polyline::Place> &places) const;
 
     int _faceSize;

@@ -64,13 +64,27 @@ public:
 private:
     Tessellation const &findTessellation(Index face) {
         if (_stream._forest) {
-            _tessellation.reset();
-            return _tessellation.emplace(_stream.MakeTessellation(face));
+            return findTree(face);
         }
         _stream.getLevels(face, _levels);
         if (!_plan || _levels != _planLevels) {
             _plan.reset();
             _plan = _stream._plans->Find(_levels);
+            _planLevels = _levels;
+        }
+        return _plan->tessellation;
+    }
+
+    Tessellation const &findTree(Index face) {
+        auto const make = [&] { return _stream.MakeTessellation(face); };
+        if (!internal::PatchPlans::IsShared(_stream._forest->GetTree(face))) {
+            _tessellation.reset();
+            return _tessellation.emplace(make());
+        }
+        _stream._forest->getKey(face, _levels);
+        if (!_plan || _levels != _planLevels) {
+            _plan.reset();
+            _plan = _stream._plans->Find(_levels, make);
             _planLevels = _levels;
         }
         return _plan->tessellation;
@@ -154,7 +168,7 @@ private:
     Sink const &_sink;
     std::size_t _numPatches = 0;
     std::optional<Tessellation> _tessellation; // of a tree
-    std::vector<int> _levels;
+    std::vector<int> _levels;                  // or what tells a tree
     std::vector<int> _planLevels;
     std::shared_ptr<internal::PatchPlan const> _plan;
     std::unique_ptr<internal::FaceSections const> _sections; // of the last face that came in some

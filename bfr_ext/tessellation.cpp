@@ -226,6 +226,15 @@ internal::CellPlan const &Tessellation::getCellPlan(bool isOfDerivatives) const 
     return *plan;
 }
 
+std::size_t Tessellation::getSizeOfCells(bool hasDerivatives) const {
+    if (_tree) {
+        constexpr std::size_t kBytesOfCell = 16;
+        return std::size_t(_tree->cells.GetNumCells()) * kBytesOfCell +
+               _tree->corners.capacity() * sizeof(CellCorner);
+    }
+    return getCellPlan().GetSize() + (hasDerivatives ? getCellPlan(true).GetSize() : 0);
+}
+
 // Takes the vertices of the mesh in an order, those of the boundary first, and returns their places.
 std::vector<int> Tessellation::setPlaces(CellMesh const &mesh, std::vector<int> const &order) {
     std::vector<CellMesh::Vertex> const &verts = mesh.GetVertices();

@@ -260,6 +260,8 @@ private:
     // Which cells the places inside lie in, made when it is first asked for; of levels.
     struct LazyCellPlan;
     internal::CellPlan const &getCellPlan(bool isOfDerivatives = false) const;
+    // What the cells take, in bytes.
+    std::size_t getSizeOfCells(bool hasDerivatives) const;
 
     void initialize(Parameterization const &parameterization, int numLevels, int const levels[],
                     Options const &options);

@@ -117,7 +117,7 @@ Flatness::Range Flatness::findHeights(CellValues const &values) {
 }
 
 // Of all heights in a cell, and those that the surface has for certain.
-Flatness::Range Flatness::findRange(RefinedCells const &cells, std::size_t cell) {
+Flatness::Range Flatness::findRange(RefinedCells &cells, std::size_t cell) {
     Range const range = findHeights(cells[cell]);
     HeightBounds const *const bounds = cells.GetHeightBounds(cell);
     if (!bounds) {

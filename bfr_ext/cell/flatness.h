@@ -91,7 +91,7 @@ private:
 
     static Plane findPlane(std::vector<double> const &corners);
     Range findHeights(CellValues const &values);
-    Range findRange(RefinedCells const &cells, std::size_t cell);
+    Range findRange(RefinedCells &cells, std::size_t cell);
     void refine(RefinedCells &cells, Part const &parent, std::vector<Part> &children);
 
     Plane _plane = {};

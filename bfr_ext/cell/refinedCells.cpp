@@ -22,17 +22,8 @@ std::size_t RefinedCells::makeChildren(std::size_t cell) {
     _cells[cell].firstChild = first;
     for (int i = 0; i < numChildren; ++i) {
         _cells[first + std::size_t(i)].values.SetChild(_cells[cell].values, i);
-        findBounds(first + std::size_t(i));
     }
     return first;
-}
-
-void RefinedCells::findBounds(std::size_t cell) {
-    // Beside faces of hundreds of vertices bounds would take minutes.
-    constexpr int kMaxPoints = 128;
-    if (hasCommonType(cell) && _cells[cell].values.GetNumPoints() <= kMaxPoints) {
-        _cells[cell].bounds = &HeightBounds::Find(_cells[cell].values.GetType());
-    }
 }
 
 void RefinedCells::EvaluateCorner(std::size_t cell, int corner, double *p) {

@@ -26,7 +26,6 @@ public:
         add(1);
         _cells[kBase].values.SetBase(type, controlPoints, length);
         _firstCommonLevel = type.IsInLattice() ? 0 : kFirstCommonLevel;
-        findBounds(kBase);
     }
 
     CellValues const &operator[](std::size_t cell) const { return _cells[cell].values; }
@@ -38,7 +37,12 @@ public:
         return _cells[cell].firstChild > 0 ? _cells[cell].firstChild : makeChildren(cell);
     }
     /// Null of a cell whose type few cells are of.
-    HeightBounds const *GetHeightBounds(std::size_t cell) const { return _cells[cell].bounds; }
+    HeightBounds const *GetHeightBounds(std::size_t cell) {
+        if (!_cells[cell].bounds && hasHeightBounds(cell)) {
+            _cells[cell].bounds = &HeightBounds::Find(_cells[cell].values.GetType());
+        }
+        return _cells[cell].bounds;
+    }
 
     /// \brief Writes the surface at a corner.
     ///
@@ -57,8 +61,8 @@ private:
 
     struct Cell {
         CellValues values;
-        std::size_t firstChild = 0; // 0: not made
-        HeightBounds const *bounds = nullptr;
+        std::size_t firstChild = 0;           // 0: not made
+        HeightBounds const *bounds = nullptr; // once they are asked for
     };
 
     std::size_t add(std::size_t number);
@@ -66,7 +70,11 @@ private:
     bool hasCommonType(std::size_t cell) const {
         return _cells[cell].values.GetLevel() >= _firstCommonLevel;
     }
-    void findBounds(std::size_t cell);
+    bool hasHeightBounds(std::size_t cell) const {
+        // Beside faces of hundreds of vertices bounds would take minutes.
+        constexpr int kMaxPoints = 128;
+        return hasCommonType(cell) && _cells[cell].values.GetNumPoints() <= kMaxPoints;
+    }
 
     std::deque<Cell> _cells;
     std::size_t _size = 0;

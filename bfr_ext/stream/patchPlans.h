@@ -22,8 +22,8 @@ struct PlanOptions {
     bool hasDerivatives;
 };
 
-/// \brief What patches with the same levels have in common: their tessellation, with the cells its places
-/// lie in.
+/// \brief What patches with the same levels, or the same tree, have in common: their tessellation, with the
+/// cells its places lie in.
 struct PatchPlan {
     PatchPlan(std::vector<int> const &levels, PlanOptions const &options)
         : tessellation(Parameterization(int(levels.size()) - 1), int(levels.size()), levels.data(),
@@ -33,13 +33,15 @@ struct PatchPlan {
         : tessellation(sections, section, options.tessellation),
           hasDerivatives(options.hasDerivatives) {}
 
+    PatchPlan(Tessellation ofFace, PlanOptions const &options)
+        : tessellation(std::move(ofFace)), hasDerivatives(options.hasDerivatives) {}
+
     /// Memory, in bytes.
     std::size_t GetSize() const {
         return kBytesOfPlan + std::size_t(tessellation.GetNumCoords()) * kBytesOfCoord +
                std::size_t(tessellation.GetNumFacetVertices()) * sizeof(int) +
                std::size_t(tessellation.GetNumFacets()) * 2 * sizeof(int) +
-               tessellation.getCellPlan().GetSize() +
-               (hasDerivatives ? tessellation.getCellPlan(true).GetSize() : 0);
+               tessellation.getSizeOfCells(hasDerivatives);
     }
 
     /// \brief About what it takes in memory to make the plan of some levels, with the plan itself.
@@ -114,6 +116,31 @@ public:
         return find(levels, GetSizeOfMaking(levels),
                     [&] { return std::make_shared<PatchPlan const>(levels, _options); });
     }
+    /// \brief That of a tree, which makeTessellation() gives where it is not there.
+    ///
+    /// Threads do not wait for each other: that of small trees takes little memory.
+    ///
+    /// \param key  tells the tree and the polylines
+    template <typename MAKE>
+    std::shared_ptr<PatchPlan const> Find(std::vector<int> const &key,
+                                          MAKE const &makeTessellation) {
+        {
+            std::lock_guard<std::mutex> const lock(_mutex);
+            if (std::shared_ptr<PatchPlan const> plan = look(key)) {
+                return plan;
+            }
+        }
+        auto plan = std::make_shared<PatchPlan const>(makeTessellation(), _options);
+        std::size_t const size = plan->GetSize();
+        std::lock_guard<std::mutex> const lock(_mutex);
+        if (std::shared_ptr<PatchPlan const> other = look(key)) {
+            return other;
+        }
+        makeRoom(size);
+        return add(key, std::move(plan), size);
+    }
+    /// Whether the faces of a forest with such a tree are likely to be several.
+    static bool IsShared(CellTree const &tree) { return tree.GetNumCells() <= kMaxCellsOfShared; }
     /// That of a section.
     std::shared_ptr<PatchPlan const> Find(FaceSections const &sections, int section) {
         std::vector<int> key = sections.GetLevels();
@@ -142,19 +169,20 @@ private:
         std::size_t size;
     };
 
-    // A key is the levels, and behind them -1 - section.
-    template <typename MAKE>
-    std::shared_ptr<PatchPlan const> find(std::vector<int> const &key, std::size_t sizeOfMaking,
-                                          MAKE const &make) {
-        std::lock_guard<std::mutex> const lock(_mutex);
+    static constexpr int kMaxCellsOfShared = 128;
+
+    // The plan of a key, or null.
+    std::shared_ptr<PatchPlan const> look(std::vector<int> const &key) {
         auto const found = _places.find(key);
-        if (found != _places.end()) {
-            _plans.splice(_plans.begin(), _plans, found->second);
-            return _plans.front().plan;
+        if (found == _places.end()) {
+            return nullptr;
         }
-        makeRoom(sizeOfMaking);
-        std::shared_ptr<PatchPlan const> plan = make();
-        std::size_t const size = plan->GetSize();
+        _plans.splice(_plans.begin(), _plans, found->second);
+        return _plans.front().plan;
+    }
+
+    std::shared_ptr<PatchPlan const> add(std::vector<int> const &key,
+                                         std::shared_ptr<PatchPlan const> plan, std::size_t size) {
         _plans.push_front({key, std::move(plan), size});
         try {
             _places.emplace(key, _plans.begin());
@@ -164,6 +192,20 @@ private:
         }
         _memory += size;
         return _plans.front().plan;
+    }
+
+    // A key is the levels, and behind them -1 - section; or what tells a tree.
+    template <typename MAKE>
+    std::shared_ptr<PatchPlan const> find(std::vector<int> const &key, std::size_t sizeOfMaking,
+                                          MAKE const &make) {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        if (std::shared_ptr<PatchPlan const> plan = look(key)) {
+            return plan;
+        }
+        makeRoom(sizeOfMaking);
+        std::shared_ptr<PatchPlan const> plan = make();
+        std::size_t const size = plan->GetSize();
+        return add(key, std::move(plan), size);
     }
 
     // For something of this size, as far as plans are not in use.

@@ -36,6 +36,21 @@ Tessellation::Options getPolygonOptions(int facetSize) {
     return Tessellation::Options().SetFacetSize(facetSize);
 }
 
+/// Where facets lie, whatever the order of places and facets.
+std::multiset<std::set<std::pair<double, double>>> getFacetPlaces(Tessellation const &t) {
+    std::vector<double> coords(2 * std::size_t(t.GetNumCoords()));
+    t.GetCoords(coords.data());
+    std::multiset<std::set<std::pair<double, double>>> facets;
+    for (std::vector<int> const &facet : GetFacets(t)) {
+        std::set<std::pair<double, double>> places;
+        for (int const vert : facet) {
+            places.emplace(coords[2 * std::size_t(vert)], coords[2 * std::size_t(vert) + 1]);
+        }
+        facets.insert(std::move(places));
+    }
+    return facets;
+}
+
 /// All facets of a forest, whose vertices are numbers of points.
 struct ForestMesh {
     ForestMesh(CellForest const &forest, std::vector<bool> const &hasFace, int facetSize) {
@@ -180,6 +195,30 @@ TEST(CellTree, RefinesWhatItIsAskedTo) {
     }
 }
 
+// In whatever order they were refined.
+TEST(CellTree, KnowsTheLevelsThatItHas) {
+    std::vector<int> const edgeLevels = {1, 4, 2, 3};
+    CellTree const levels(4, edgeLevels.data(), 3);
+    CellTree tree(4);
+    auto const copy = [&](auto const &self, int from, int to) -> void {
+        if (levels.IsRefined(from)) {
+            int const first = tree.Refine(to);
+            for (int i = levels.GetNumChildren(from) - 1; i >= 0; --i) {
+                self(self, levels.GetFirstChild(from) + i, first + i);
+            }
+        }
+    };
+    copy(copy, 0, 0);
+    for (CellTree const &same : {levels, tree}) {
+        EXPECT_TRUE(same.HasLevels(edgeLevels.data(), 3));
+        EXPECT_FALSE(same.HasLevels(edgeLevels.data(), 4));
+        EXPECT_FALSE(same.HasLevels(std::vector<int>{1, 4, 2, 2}.data(), 3));
+        EXPECT_FALSE(same.HasLevels(std::vector<int>{3, 4, 2, 3}.data(), 3));
+    }
+    tree.Refine(tree.GetNumCells() - 1);
+    EXPECT_FALSE(tree.HasLevels(edgeLevels.data(), 3));
+}
+
 TEST(CellTree, TessellationsNeedAllPointsOfTheTree) {
     CellTree const tree(4, 3);
     std::vector<Polyline> edges(4, Polyline(3));
@@ -290,6 +329,41 @@ void expectReference(Shape const &shape, unsigned seed) {
 }
 
 } // namespace
+
+// Beside neighbours with other levels, or with a tree that has none.
+TEST(CellForest, TreesOfLevelsHaveTheirTessellation) {
+    auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 0, {});
+    CellForest forest(*refiner);
+    for (int face = 0; face < 6; ++face) {
+        forest.SetTree(face, CellTree(4, face == 3 ? 3 : 2));
+    }
+    CellTree partly(4, 2);
+    for (int cell = 0; cell < 2; ++cell) {
+        partly.Refine(partly.GetNumCells() - 1);
+    }
+    ASSERT_FALSE(partly.HasLevels(std::vector<int>(4, 2).data(), 2));
+    forest.SetTree(5, partly);
+    forest.MatchEdges();
+    int numOfLevels = 0;
+    for (int face = 0; face < 6; ++face) {
+        Tessellation const found = forest.GetTessellation(face, getPolygonOptions(0));
+        Tessellation const ofTree(forest.GetTree(face), forest.GetFacePolylines(face).data(),
+                                  getPolygonOptions(0));
+        EXPECT_EQ(getFacetPlaces(found), getFacetPlaces(ofTree)) << "face " << face;
+        std::vector<int> levels(5);
+        if (found.GetLevels(levels.data()) == 0) {
+            continue;
+        }
+        ++numOfLevels;
+        EXPECT_EQ(levels[4], face == 3 ? 3 : 2);
+        for (int edge = 0; edge < 4; ++edge) {
+            EXPECT_EQ(Polyline(levels[std::size_t(edge)]),
+                      forest.GetFacePolylines(face)[std::size_t(edge)]);
+        }
+    }
+    EXPECT_GE(numOfLevels, 4);
+    EXPECT_EQ(forest.GetTessellation(5).GetLevels(nullptr), 0);
+}
 
 TEST(CellForest, PolygonsAreThoseOfTheReference) {
     for (Shape const &shape : GetManifoldShapes()) {

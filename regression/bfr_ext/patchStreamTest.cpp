@@ -234,6 +234,52 @@ TEST(PatchStreamTest, HandsOutCellsOfTreesAndFurtherValues) {
     }
 }
 
+// Few trees, which faces share, between edges that are refined alike on many faces and else on some.
+TEST(PatchStreamTest, HandsOutTreesThatFacesShare) {
+    Shape const &shape = GetShape("torus");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    BfrExt::CellForest forest(*refiner);
+    std::mt19937 random(3);
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        BfrExt::CellTree tree(forest.GetTree(face).GetFaceSize(), int(random() % 3));
+        if (random() % 2 == 0) {
+            tree.Refine(tree.GetNumCells() - 1);
+        }
+        forest.SetTree(face, tree);
+    }
+    forest.MatchEdges();
+    for (std::size_t const memory : {std::size_t(1), std::size_t(100000), std::size_t(1) << 24}) {
+        PatchStream<double> const stream(*factory, forest,
+                                         PatchStream<double>::Options().SetMaxMemory(memory));
+        std::mutex mutex;
+        int numPatches = 0;
+        ASSERT_TRUE(
+            stream.Run(shape.positions.data(), 3, [&](PatchStream<double>::Patch const &patch) {
+                std::lock_guard<std::mutex> const lock(mutex);
+                ++numPatches;
+                Tessellation const expected = forest.GetTessellation(patch.face);
+                EXPECT_EQ(patch.tessellation.GetNumCoords(), expected.GetNumCoords());
+                std::vector<double> coords[2];
+                for (Tessellation const *t : {&patch.tessellation, &expected}) {
+                    std::vector<double> &of = coords[t == &expected ? 1 : 0];
+                    of.resize(2 * std::size_t(t->GetNumCoords()));
+                    t->GetCoords(of.data());
+                }
+                EXPECT_EQ(coords[0], coords[1]) << "face " << patch.face;
+                Surface<double> surface;
+                factory->InitVertexSurface(patch.face, &surface);
+                std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+                surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+                std::vector<double> points(3 * std::size_t(expected.GetNumCoords()));
+                surface.Evaluate(expected, control.data(), 3, points.data(), 3);
+                EXPECT_TRUE(std::equal(points.begin(), points.end(), patch.points));
+                return true;
+            }));
+        EXPECT_EQ(numPatches, shape.GetNumFaces());
+    }
+}
+
 TEST(PatchStreamTest, TakesPointsOfAnySize) {
     Shape const &shape = GetShape("cube");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
