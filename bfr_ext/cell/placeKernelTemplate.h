@@ -43,46 +43,47 @@ struct PlainLanes {
     REAL values[kSize];
 };
 
-///
-/// In memory they are aligned as numbers are.  They are read and written as InMemory and never by
-/// std::memcpy(), with which compilers would keep all sums in memory.
 template <typename REAL, std::size_t BYTES>
 struct LanesOf {
     using Type = PlainLanes<REAL, BYTES>;
-    using InMemory = Type;
 };
 #if defined(__GNUC__)
 template <>
 struct LanesOf<float, 16> {
     using Type = float __attribute__((vector_size(16)));
-    using InMemory = float __attribute__((vector_size(16), aligned(4), may_alias));
 };
 template <>
 struct LanesOf<double, 16> {
     using Type = double __attribute__((vector_size(16)));
-    using InMemory = double __attribute__((vector_size(16), aligned(8), may_alias));
 };
 template <>
 struct LanesOf<float, 32> {
     using Type = float __attribute__((vector_size(32)));
-    using InMemory = float __attribute__((vector_size(32), aligned(4), may_alias));
 };
 template <>
 struct LanesOf<double, 32> {
     using Type = double __attribute__((vector_size(32)));
-    using InMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
 };
 template <>
 struct LanesOf<float, 64> {
     using Type = float __attribute__((vector_size(64)));
-    using InMemory = float __attribute__((vector_size(64), aligned(4), may_alias));
 };
 template <>
 struct LanesOf<double, 64> {
     using Type = double __attribute__((vector_size(64)));
-    using InMemory = double __attribute__((vector_size(64), aligned(8), may_alias));
 };
 #endif
+
+/// Lanes as they lie in memory, aligned no more than numbers are.  They are read and written as such and
+/// never by std::memcpy(), with which compilers would keep all sums in memory.
+template <typename LANES>
+struct
+#if defined(__GNUC__)
+    __attribute__((packed, may_alias))
+#endif
+    LanesInMemory {
+    LANES lanes;
+};
 
 #if defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
@@ -108,9 +109,15 @@ template <std::size_t BYTES, typename REAL>
 class TileSums {
 public:
     using Lanes = typename LanesOf<REAL, BYTES>::Type;
-    using InMemory = typename LanesOf<REAL, BYTES>::InMemory;
     static constexpr std::size_t kSize = BYTES / sizeof(REAL);
     static_assert(sizeof(Lanes) == BYTES);
+
+    static Lanes Load(REAL const *from) {
+        return reinterpret_cast<LanesInMemory<Lanes> const *>(from)->lanes;
+    }
+    static void Store(Lanes const &lanes, REAL *to) {
+        reinterpret_cast<LanesInMemory<Lanes> *>(to)->lanes = lanes;
+    }
 
     /// The numbers of the places of a block, component by component.
     using Numbers = REAL[3][PlaceMatrix<REAL>::kMaxWidth];
@@ -159,21 +166,19 @@ private:
     void form(REAL const *weights, Numbers &numbers, std::size_t first) const {
         Lanes sums[NUM_COMPONENTS][NUM_LANES] = {};
         for (std::size_t i = 0; i < numPoints; ++i) {
-            auto const *const lanes = reinterpret_cast<InMemory const *>(weights);
-            weights += width;
             auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i);
             REAL const *const point = points + place * stride;
             for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                Lanes const ofLane = lanes[lane];
+                Lanes const ofLane = Load(weights + lane * kSize);
                 for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
                     sums[k][lane] += ofLane * point[k];
                 }
             }
+            weights += width;
         }
         for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            auto *results = reinterpret_cast<InMemory *>(numbers[k] + first);
             for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                *results++ = sums[k][lane];
+                Store(sums[k][lane], numbers[k] + first + lane * kSize);
             }
         }
     }
@@ -289,7 +294,6 @@ public:
 private:
     using Tiles = TileSums<BYTES, REAL>;
     using Lanes = typename Tiles::Lanes;
-    using InMemory = typename Tiles::InMemory;
     static constexpr std::size_t kMaxWidth = PlaceMatrix<REAL>::kMaxWidth;
 
     template <std::size_t NUM_COMPONENTS>
@@ -356,15 +360,15 @@ private:
             typename Tiles::Numbers const &numbers = _numbers[image];
 #ifdef OPENSUBDIVHEX_HAS_SHUFFLES
             constexpr std::make_index_sequence<Tiles::kSize> kIndices;
-            auto *to = reinterpret_cast<InMemory *>(_slots[image * kMaxWidth]);
-            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
-                Lanes const x = *reinterpret_cast<InMemory const *>(numbers[0] + i);
-                Lanes const y = *reinterpret_cast<InMemory const *>(numbers[1] + i);
-                Lanes const z = *reinterpret_cast<InMemory const *>(numbers[2] + i);
-                *to++ = interleave<0>(x, y, z, kIndices);
-                *to++ = interleave<1>(x, y, z, kIndices);
-                *to++ = interleave<2>(x, y, z, kIndices);
-                *to++ = interleave<3>(x, y, z, kIndices);
+            REAL *to = _slots[image * kMaxWidth];
+            for (std::size_t i = 0; i < width; i += Tiles::kSize, to += 4 * Tiles::kSize) {
+                Lanes const x = Tiles::Load(numbers[0] + i);
+                Lanes const y = Tiles::Load(numbers[1] + i);
+                Lanes const z = Tiles::Load(numbers[2] + i);
+                Tiles::Store(interleave<0>(x, y, z, kIndices), to);
+                Tiles::Store(interleave<1>(x, y, z, kIndices), to + Tiles::kSize);
+                Tiles::Store(interleave<2>(x, y, z, kIndices), to + 2 * Tiles::kSize);
+                Tiles::Store(interleave<3>(x, y, z, kIndices), to + 3 * Tiles::kSize);
             }
 #else
             for (std::size_t i = 0; i < width; ++i) {
@@ -408,28 +412,26 @@ private:
     template <std::size_t NUM_COMPONENTS>
     void joinTwo(std::size_t width) {
         for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            auto *const even = reinterpret_cast<InMemory *>(_numbers[0][k]);
-            auto *const odd = reinterpret_cast<InMemory *>(_numbers[1][k]);
-            for (std::size_t i = 0; i < width / Tiles::kSize; ++i) {
-                Lanes const ofEven = even[i];
-                Lanes const ofOdd = odd[i];
-                even[i] = ofEven + ofOdd;
-                odd[i] = ofEven - ofOdd;
+            REAL *const even = _numbers[0][k];
+            REAL *const odd = _numbers[1][k];
+            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
+                Lanes const ofEven = Tiles::Load(even + i);
+                Lanes const ofOdd = Tiles::Load(odd + i);
+                Tiles::Store(ofEven + ofOdd, even + i);
+                Tiles::Store(ofEven - ofOdd, odd + i);
             }
         }
     }
     template <std::size_t NUM_COMPONENTS>
     void joinFour(std::size_t width) {
         for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            InMemory *numbers[4];
-            for (std::size_t i = 0; i < 4; ++i) {
-                numbers[i] = reinterpret_cast<InMemory *>(_numbers[i][k]);
-            }
-            for (std::size_t i = 0; i < width / Tiles::kSize; ++i) {
-                Lanes ofParts[4] = {numbers[0][i], numbers[1][i], numbers[2][i], numbers[3][i]};
+            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
+                Lanes ofParts[4] = {
+                    Tiles::Load(_numbers[0][k] + i), Tiles::Load(_numbers[1][k] + i),
+                    Tiles::Load(_numbers[2][k] + i), Tiles::Load(_numbers[3][k] + i)};
                 mirrorFour(ofParts);
                 for (std::size_t image = 0; image < 4; ++image) {
-                    numbers[image][i] = ofParts[image];
+                    Tiles::Store(ofParts[image], _numbers[image][k] + i);
                 }
             }
         }
@@ -459,7 +461,6 @@ public:
 private:
     using Tiles = TileSums<BYTES, REAL>;
     using Lanes = typename Tiles::Lanes;
-    using InMemory = typename Tiles::InMemory;
     static constexpr std::size_t kSize = Tiles::kSize;
 
     template <std::size_t NUM_COMPONENTS>
@@ -496,7 +497,7 @@ private:
         Lanes sums[NUM_ITEMS][NUM_COMPONENTS] = {};
         std::size_t const numPoints = _matrix.GetNumPoints();
         for (std::size_t i = 0; i < numPoints; ++i, weights += width) {
-            Lanes const ofPoint = *reinterpret_cast<InMemory const *>(weights);
+            Lanes const ofPoint = Tiles::Load(weights);
             for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
                 REAL const *const point =
                     _sums.points + component + items[item].indices[i] * _sums.stride;
@@ -508,7 +509,7 @@ private:
         REAL numbers[NUM_ITEMS][NUM_COMPONENTS][kSize];
         for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
             for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                *reinterpret_cast<InMemory *>(numbers[item][k]) = sums[item][k];
+                Tiles::Store(sums[item][k], numbers[item][k]);
             }
         }
         std::size_t const count = std::min(kSize, _matrix.GetNumPlaces() - first);

@@ -4,6 +4,7 @@
 #include "bfr_ext/cell/plainFace.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "regression/far_ext/referenceMatch.h"
+#include "regression/shapes/flatShapes.h"
 #include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
 #include "regression/shapes/torus.h"
@@ -286,11 +287,13 @@ TEST_P(VertexRingsTest, HaveThePointsOfTheirSteps) {
         numFaces += shape.GetNumFaces() < 1000 ? rings.Expect(shape) : 0;
     }
     EXPECT_GT(numFaces, 100);
-    EXPECT_GT(rings.numLatticeItems, 100);
     Shape const triangles = MakeTorus(9, 8, TorusFaces::IrregularTriangles);
     EXPECT_GT(rings.Expect(triangles), 0);
     EXPECT_GT(rings.Expect(MakeDual("dual", triangles)), 0);
     EXPECT_GT(rings.Expect(MakeChamfered("chamfered", MakeTorus(7, 6, TorusFaces::Quads))), 0);
+    // Beside its corners are edges and vertices in the lattice of the rest.
+    EXPECT_GT(rings.Expect(MakeBox(6, 6, 6)), 0);
+    EXPECT_GT(rings.numLatticeItems, 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Masks, VertexRingsTest,
