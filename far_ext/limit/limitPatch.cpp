@@ -294,6 +294,10 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
     add(patch.nonManifoldVerts);
     add(patch.lineCorners);
     add(patch.lines);
+    for (SharpVertex const &sharp : patch.sharpVerts) {
+        auto const [first, second] = std::minmax(sharp.neighbors[0], sharp.neighbors[1]);
+        signature.insert(signature.end(), {sharp.vert, first, second});
+    }
     for (SectorCorner const &sector : patch.sectorCorners) {
         signature.insert(signature.end(),
                          {sector.corner, getBits(sector.sectorSize), getBits(sector.weight)});

@@ -43,8 +43,8 @@ struct LimitPatch {
     /// As of the level, as long as it matters for the masks of this patch or of those that it makes.
     int numHexagonalSteps = 0;
 
-    /// All of the above but the sources, the sides, the masks of sharpVerts and irregularVerts, which
-    /// follow from the rest.
+    /// All of the above but the sources, the sides, the weights of sharpVerts and irregularVerts, which
+    /// follow from the rest.  Which copies of a line's vertices sharpVerts have as neighbors does not.
     std::vector<int> signature;
 };
 

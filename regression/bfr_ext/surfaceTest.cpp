@@ -603,6 +603,46 @@ TEST(SurfaceFactoryTest, TypesAreSharedByFacesThatLookAlike) {
     EXPECT_EQ(surface.GetNumControlPoints(), 32);
 }
 
+// Lines that several sheets share have copies of their vertices, with other numbers around each face.
+TEST(SurfaceFactoryTest, TypesDoNotDependOnWhichFaceComesFirst) {
+    Shape shape;
+    shape.name = "three quads on four vertices";
+    shape.closed = false;
+    shape.positions = {0, 0, 0, 1, 0, 1, 1, 1, 0, 0, 1, 2};
+    shape.faceSizes = {4, 4, 4};
+    shape.faceVertices = {1, 3, 2, 0, 2, 0, 1, 3, 3, 1, 0, 2};
+    FarExt::HexSchemeOptions options;
+    options.firstStep = FarExt::FirstStep::Truncate;
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 1,
+                                       getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY), options);
+    FarExt::TopologyLevel const level = refiner->GetLevel(1);
+    // Copies have different values here, so that it shows which one was taken.
+    std::vector<double> points(3 * std::size_t(level.GetNumVertices()));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        points[i] = std::sin(1.7 * double(i));
+    }
+    auto const evaluate = [&](int firstFace) {
+        std::vector<std::vector<double>> result(std::size_t(level.GetNumFaces()));
+        auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+        for (int i = 0; i < level.GetNumFaces(); ++i) {
+            int const face = (firstFace + i) % level.GetNumFaces();
+            BfrExt::Surface<double> surface;
+            EXPECT_TRUE(factory->InitVertexSurface(face, &surface));
+            std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+            surface.GatherControlPoints(points.data(), 3, control.data(), 3);
+            BfrExt::Tessellation const tessellation(surface.GetParameterization(), 1);
+            std::vector<double> &ofFace = result[std::size_t(face)];
+            ofFace.resize(3 * std::size_t(tessellation.GetNumCoords()));
+            surface.Evaluate(tessellation, control.data(), 3, ofFace.data(), 3);
+        }
+        return result;
+    };
+    auto const expected = evaluate(0);
+    for (int face = 1; face < level.GetNumFaces(); ++face) {
+        EXPECT_EQ(evaluate(face), expected) << "with face " << face << " first";
+    }
+}
+
 TEST(SurfaceFactoryTest, CellsHaveFewTypesWhateverVerticesAreIrregular) {
     Shape const shape = MakeTorus(24, 16, TorusFaces::IrregularTriangles);
     for (ReferenceMask const mask : kMasks) {
