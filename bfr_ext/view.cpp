@@ -378,12 +378,12 @@ private:
     CellTree const *const _previous;
     CellTree &_tree;
     std::vector<CellVisibility> *const _visibility;
-    RefinedCells &_cells = GetCellsOfThread();
+    RefinedCells &_cells = getCellsOfThread();
     std::vector<double> _corners; // of the surface, of the cell that is looked at
     Flatness _flatness;
 
     // What they have taken of memory is kept for the next face.
-    static RefinedCells &GetCellsOfThread() {
+    static RefinedCells &getCellsOfThread() {
         static thread_local RefinedCells cells;
         return cells;
     }

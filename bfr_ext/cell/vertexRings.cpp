@@ -156,7 +156,8 @@ private:
         _isInLattice = _isInLattice && isRegular(corners);
         VertexVertexMask const mask = getVertexMask(corners);
         auto const getWeight = [&](int firstWeight, int place) {
-            return mask.faceWeight * _scratch.weights[std::size_t(firstWeight + place)];
+            return mask.faceWeight *
+                   _scratch.weights[std::size_t(firstWeight) + std::size_t(place)];
         };
         double ownWeight = mask.vertexWeight;
         std::vector<Scratch::Run> &runs = _scratch.runs;
