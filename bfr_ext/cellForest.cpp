@@ -14,6 +14,8 @@ using FarExt::internal::Level;
 
 CellForest::CellForest(FarExt::TopologyRefiner const &refiner)
     : _level(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel())) {
+    _trees.reserve(std::size_t(_level.GetNumFaces()));
+    _isMatched.resize(std::size_t(_level.GetNumFaces()));
     for (Index face = 0; face < _level.GetNumFaces(); ++face) {
         _trees.emplace_back(_level.GetFaceVertices(face).size());
     }
@@ -34,11 +36,16 @@ void CellForest::MatchEdges() {
     _polylines = _edges;
     for (Index face = 0; face < GetNumFaces(); ++face) {
         CellTree const &tree = GetTree(face);
-        if (tree.GetFaceSize() != level.GetFaceSize(face)) {
+        bool const isOfFace = tree.GetFaceSize() == level.GetFaceSize(face);
+        _isMatched[std::size_t(face)] = isOfFace;
+        if (!isOfFace || !tree.IsRefined(0)) {
             continue;
         }
         for (int local = 0; local < level.GetFaceSize(face); ++local) {
             Polyline const own = tree.GetEdgePolyline(local);
+            if (own.GetNumPoints() == 0) {
+                continue;
+            }
             Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
             _polylines[std::size_t(edge)].Merge(isReversed(face, local) ? own.GetReversed() : own);
         }
@@ -68,6 +75,9 @@ void CellForest::MatchEdges() {
 }
 
 bool CellForest::IsMatched(Index face) const {
+    if (_isMatched[std::size_t(face)]) {
+        return true;
+    }
     Level const &level = _level.GetLevel();
     CellTree const &tree = GetTree(face);
     if (tree.GetFaceSize() != level.GetFaceSize(face)) {

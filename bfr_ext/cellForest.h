@@ -7,9 +7,14 @@
 #include "far_ext/topologyRefiner.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt {
+
+namespace internal {
+class KeptPlans;
+}
 
 /// \brief A tree of cells for each face of a base mesh, and the polylines that its edges become: the
 /// tessellation of a mesh, without gaps.
@@ -40,7 +45,10 @@ public:
     /// Faces of that level.
     int GetNumFaces() const { return int(_trees.size()); }
     /// Sets the tree of a face, which has the vertices of that.
-    void SetTree(Index face, CellTree tree) { _trees[std::size_t(face)] = std::move(tree); }
+    void SetTree(Index face, CellTree tree) {
+        _trees[std::size_t(face)] = std::move(tree);
+        _isMatched[std::size_t(face)] = false;
+    }
     /// The tree of a face.
     CellTree const &GetTree(Index face) const { return _trees[std::size_t(face)]; }
 
@@ -76,6 +84,7 @@ public:
 private:
     template <typename REAL>
     friend class PatchStream;
+    friend class View;
 
     bool isReversed(Index face, int local) const;
     bool findLevels(Index face, std::vector<int> &levels) const;
@@ -83,9 +92,11 @@ private:
 
     FarExt::TopologyLevel _level;
     std::vector<CellTree> _trees;
-    std::vector<Polyline> _edges;     // what was set
-    std::vector<Polyline> _polylines; // the same with the points of faces
-    std::vector<Number> _firstPoints; // by edge; then their end
+    std::vector<char> _isMatched;                // by face; where it is not known, too, it is false
+    std::vector<Polyline> _edges;                // what was set
+    std::vector<Polyline> _polylines;            // the same with the points of faces
+    std::vector<Number> _firstPoints;            // by edge; then their end
+    std::shared_ptr<internal::KeptPlans> _plans; // of forests of the same mesh; null: none
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -115,8 +115,15 @@ private:
         _surface.GatherControlPoints(meshPoints, desc, _controlPoints.data(), desc.size);
     }
 
+    // Faces of a forest are kept, as its trees are: the next frame has them, too.
+    Status initSurface(Index face, FarExt::Interpolation interpolation, int channel) {
+        return _stream._forest && !_ownFactory
+                   ? _factory->initKept(face, interpolation, channel, _surface)
+                   : _factory->init(face, interpolation, channel, _surface);
+    }
+
     bool evaluatePoints(Index face, Tessellation const &tessellation, Status &status) {
-        status = _factory->init(face, FarExt::Interpolation::Vertex, -1, _surface);
+        status = initSurface(face, FarExt::Interpolation::Vertex, -1);
         if (!status.IsOk()) {
             return false;
         }
@@ -142,7 +149,7 @@ private:
                 values.channel == Values::kVarying ? FarExt::Interpolation::Varying
                                                    : FarExt::internal::GetChannelInterpolation(
                                                          _factory->GetMesh(), values.channel);
-            status = _factory->init(face, interpolation, values.channel, _surface);
+            status = initSurface(face, interpolation, values.channel);
             if (!status.IsOk()) {
                 return false;
             }
@@ -196,9 +203,11 @@ PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, CellForest const &
 
 template <typename REAL>
 std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::makePlans() const {
-    return std::make_shared<internal::PatchPlans>(
-        internal::PlanOptions{_options.GetTessellationOptions(), _options.HasDerivatives()},
-        _options.GetMaxMemory());
+    internal::PlanOptions const options = {_options.GetTessellationOptions(),
+                                           _options.HasDerivatives()};
+    return _forest && _forest->_plans
+               ? _forest->_plans->Find(options, _options.GetMaxMemory())
+               : std::make_shared<internal::PatchPlans>(options, _options.GetMaxMemory());
 }
 
 // Null where those of the factory are kept.

@@ -31,6 +31,8 @@ using internal::CellType;
 
 // Matrices of finer levels leave the cache.
 constexpr int kLastLevelOfMatrices = 6;
+// Of finer ones, trees have too few.
+constexpr int kLastLevelOfSelection = 3;
 
 constexpr std::size_t kMaxLatticeFaceSize = 6;
 
@@ -203,24 +205,28 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
     if (!IsValid() || !tessellation.IsValid() || tessellation.GetFaceSize() != GetFaceSize()) {
         return;
     }
-    if (tessellation._tree) {
+    if (tessellation._tree && !tessellation._cellPlan) {
         evaluateTree(tessellation, controlPoints, pointDesc, results, resultDesc);
         return;
     }
     int const numBorderPlaces = tessellation.GetNumBoundaryCoords();
-    std::vector<int> const &levels = tessellation._levels;
-    auto const getPattern = [&](PatternOf of) -> Pattern const & {
+    // Of levels, which make() gives a tessellation of.
+    auto const getPattern = [&](PatternOf of, std::vector<int> const &levels,
+                                auto const &make) -> Pattern const & {
         return _type->GetPatterns().template Get<Pattern>(
             PatternTable::GetKind<REAL>(of), levels.data(), levels.data() + levels.size(), [&] {
+                Tessellation const &uniform = make();
                 std::vector<internal::BasePoint> places;
-                for (Tessellation::SectorCoords const &place : tessellation._places) {
+                for (Tessellation::SectorCoords const &place : uniform._places) {
                     places.push_back(internal::MakeBasePoint(GetFaceSize(), place.sector,
                                                              {place.start, place.end}));
                 }
-                return of == PatternOf::Face ? Pattern(*_type, places, std::size_t(numBorderPlaces))
-                                             : Pattern(*_type, places);
+                return of == PatternOf::Face
+                           ? Pattern(*_type, places, std::size_t(uniform.GetNumBoundaryCoords()))
+                           : Pattern(*_type, places);
             });
     };
+    auto const getOwn = [&]() -> Tessellation const & { return tessellation; };
     auto const sumUp = [&](internal::MirrorMatrix<REAL> const &matrix, REAL *result) {
         internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
                                        nullptr, result, resultDesc.stride});
@@ -240,14 +246,27 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         return;
     }
     // Few types, and few levels, have matrices of a face: others go by cells.
-    if (_type->IsInLattice() && tessellation.IsUniform() && levels[0] <= kLastLevelOfMatrices &&
-        !tessellation._section) {
-        sumUp(getPattern(PatternOf::Face).matrices[0],
+    bool const isPattern = _type->IsInLattice() && !tessellation._section;
+    std::vector<int> const &levels = tessellation._levels;
+    bool const isUniform =
+        isPattern && tessellation.IsUniform() && levels[0] <= kLastLevelOfMatrices;
+    if (isUniform) {
+        sumUp(getPattern(PatternOf::Face, levels, getOwn).matrices[0],
               results[0] + std::ptrdiff_t(numBorderPlaces) * resultDesc.stride);
-        if (results[1]) {
-            Pattern const &pattern = getPattern(PatternOf::FaceDerivatives);
-            sumUp(pattern.matrices[0], results[1]);
-            sumUp(pattern.matrices[1], results[2]);
+    } else if (isPattern && tessellation.getLevelOfPlaces(false) <= kLastLevelOfSelection) {
+        Tessellation::Selection const &selection = tessellation.getSelection();
+        Pattern const &pattern = getPattern(PatternOf::Face, selection.levels, [&] {
+            return Tessellation(Parameterization(GetFaceSize()), selection.levels[0]);
+        });
+        static thread_local std::vector<REAL> uniform;
+        auto const size = std::size_t(pointDesc.size);
+        uniform.resize(size * std::size_t(selection.numUniformPlaces));
+        internal::SumUpPlaces(pattern.matrices[0], {controlPoints, pointDesc.stride, size, nullptr,
+                                                    uniform.data(), std::ptrdiff_t(size)});
+        REAL *result = results[0] + std::ptrdiff_t(numBorderPlaces) * resultDesc.stride;
+        for (int const place : selection.places) {
+            std::copy_n(&uniform[std::size_t(place) * size], size, result);
+            result += resultDesc.stride;
         }
     } else {
         if (!_type->IsInLattice()) {
@@ -256,13 +275,17 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         }
         evaluator.Evaluate(*_type, tessellation.getCellPlan(), pointDesc.size, controlPoints,
                            pointDesc.stride, results[0], resultDesc.stride);
-        if (results[1]) {
-            evaluator.EvaluateDerivatives(*_type, tessellation.getCellPlan(true), pointDesc.size,
-                                          controlPoints, pointDesc.stride, results[1], results[2],
-                                          resultDesc.stride);
-        }
     }
-    if (_type->IsInLattice() && tessellation.IsUniform() && !tessellation._section &&
+    if (isUniform && results[1]) {
+        Pattern const &pattern = getPattern(PatternOf::FaceDerivatives, levels, getOwn);
+        sumUp(pattern.matrices[0], results[1]);
+        sumUp(pattern.matrices[1], results[2]);
+    } else if (results[1]) {
+        evaluator.EvaluateDerivatives(*_type, tessellation.getCellPlan(true), pointDesc.size,
+                                      controlPoints, pointDesc.stride, results[1], results[2],
+                                      resultDesc.stride);
+    }
+    if (_type->IsInLattice() && !tessellation._section &&
         evaluateLatticeBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc)) {
         return;
     }
@@ -364,14 +387,14 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation,
         int const first = tessellation._firstEdgeCoords[edge];
         evaluator.EvaluateVertex(edge, getResult(first));
         int const numPlaces = tessellation.GetNumEdgeCoords(int(edge));
-        if (tessellation._tree) {
+        int const level = tessellation.getEdgeLevel(edge);
+        if (level < 0) {
             for (int place = first + 1; place <= first + numPlaces; ++place) {
                 Tessellation::SectorCoords const &coords = tessellation._places[std::size_t(place)];
                 evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, getResult(place));
             }
         } else if (numPlaces > 0) {
-            evaluator.EvaluateEdge(edge, tessellation._levels[edge], numPlaces,
-                                   getResult(first + 1), resultDesc.stride);
+            evaluator.EvaluateEdge(edge, level, numPlaces, getResult(first + 1), resultDesc.stride);
         }
     }
 }
@@ -411,7 +434,8 @@ void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
     }
 }
 
-// Evaluates all edges together, and all vertices; false where they are not of one type.
+// Evaluates all vertices together, and all edges of a level; false where they are not of one type, or an
+// edge has no level.
 template <typename REAL>
 bool Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
                                           REAL const controlPoints[],
@@ -423,13 +447,21 @@ bool Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
         return false;
     }
     auto const numEdges = std::size_t(GetFaceSize());
+    int maxLevel = 0;
+    for (std::size_t edge = 0; edge < numEdges; ++edge) {
+        int const level = tessellation.getEdgeLevel(edge);
+        if (level < 0) {
+            return false;
+        }
+        maxLevel = std::max(maxLevel, level);
+    }
     Item items[kMaxLatticeFaceSize];
     auto const getItem = [&](std::size_t item) -> CellType::BorderItem const & {
         return *border.items[item][std::size_t(getTurns()[item])];
     };
-    auto const evaluate = [&](internal::PlaceMatrix<REAL> const &matrix) {
+    auto const evaluate = [&](internal::PlaceMatrix<REAL> const &matrix, std::size_t numItems) {
         internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
-                                       items, numEdges});
+                                       items, numItems});
     };
     auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
     for (std::size_t edge = 0; edge < numEdges; ++edge) {
@@ -437,19 +469,24 @@ bool Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
                        getResult(tessellation._firstEdgeCoords[edge]), 0};
     }
     using Evaluator = internal::BorderEvaluator<REAL>;
-    evaluate(Evaluator::GetVertexMatrix(*getItem(numEdges).type));
-    int const numPlaces = tessellation.GetNumEdgeCoords(0);
-    if (numPlaces == 0) {
-        return true;
+    evaluate(Evaluator::GetVertexMatrix(*getItem(numEdges).type), numEdges);
+    constexpr int kFirstLevelWithPoints = 2;
+    for (int level = kFirstLevelWithPoints; level <= maxLevel; ++level) {
+        std::size_t numItems = 0;
+        for (std::size_t edge = 0; edge < numEdges; ++edge) {
+            if (tessellation.getEdgeLevel(edge) == level) {
+                CellType::BorderItem const &item = getItem(edge);
+                int const first = tessellation._firstEdgeCoords[edge];
+                int const numPlaces = tessellation.GetNumEdgeCoords(int(edge));
+                items[numItems++] = {item.points.data(),
+                                     getResult(item.isReversed ? first + numPlaces : first + 1),
+                                     item.isReversed ? -resultDesc.stride : resultDesc.stride};
+            }
+        }
+        if (numItems > 0) {
+            evaluate(Evaluator::GetLatticeMatrix(*getItem(0).type, level), numItems);
+        }
     }
-    for (std::size_t edge = 0; edge < numEdges; ++edge) {
-        CellType::BorderItem const &item = getItem(edge);
-        int const first = tessellation._firstEdgeCoords[edge];
-        items[edge] = {item.points.data(),
-                       getResult(item.isReversed ? first + numPlaces : first + 1),
-                       item.isReversed ? -resultDesc.stride : resultDesc.stride};
-    }
-    evaluate(Evaluator::GetLatticeMatrix(*getItem(0).type, tessellation._levels[0]));
     return true;
 }
 

@@ -203,34 +203,31 @@ Status SurfaceFactory::init(Index face, Interpolation interpolation, int channel
 }
 
 template <typename REAL>
-bool SurfaceFactory::initKept(Index face, Interpolation interpolation, int channel,
-                              Surface<REAL> &surface, Status *status) const {
+Status SurfaceFactory::initKept(Index face, Interpolation interpolation, int channel,
+                                Surface<REAL> &surface) const {
     auto const kind = std::size_t(channel < 0 ? int(interpolation) : kNumInterpolations + channel);
     KeptFaces::Face const *kept = hasRefinedAgain() ? nullptr : _kept->Find(kind, face);
     if (!kept) {
-        Status const result = init(face, interpolation, channel, surface);
+        Status result = init(face, interpolation, channel, surface);
         if (!result.IsOk()) {
-            return FarExt::internal::Report(result, status);
+            return result;
         }
         kept = _kept->Add(kind, face, surface._type, surface.GetFaceSize(), surface._ownPoints);
     }
     if (kept) {
         surface.set(_owner, kept->type, kept->size, kept->numPoints, kept->GetPoints());
     }
-    if (status) {
-        *status = Status();
-    }
-    return true;
+    return Status();
 }
 
 template <typename REAL>
 bool SurfaceFactory::InitVertexSurface(Index face, Surface<REAL> *surface, Status *status) const {
-    return initKept(face, Interpolation::Vertex, -1, *surface, status);
+    return FarExt::internal::Report(initKept(face, Interpolation::Vertex, -1, *surface), status);
 }
 
 template <typename REAL>
 bool SurfaceFactory::InitVaryingSurface(Index face, Surface<REAL> *surface, Status *status) const {
-    return initKept(face, Interpolation::Varying, -1, *surface, status);
+    return FarExt::internal::Report(initKept(face, Interpolation::Varying, -1, *surface), status);
 }
 
 template <typename REAL>
@@ -241,12 +238,16 @@ bool SurfaceFactory::InitFaceVaryingSurface(Index face, Surface<REAL> *surface, 
         surface->Clear();
         return FarExt::internal::Report(result, status);
     }
-    return initKept(face, FarExt::internal::GetChannelInterpolation(_refiner, channel), channel,
-                    *surface, status);
+    return FarExt::internal::Report(
+        initKept(face, FarExt::internal::GetChannelInterpolation(_refiner, channel), channel,
+                 *surface),
+        status);
 }
 
 template Status SurfaceFactory::init(Index, Interpolation, int, Surface<float> &) const;
 template Status SurfaceFactory::init(Index, Interpolation, int, Surface<double> &) const;
+template Status SurfaceFactory::initKept(Index, Interpolation, int, Surface<float> &) const;
+template Status SurfaceFactory::initKept(Index, Interpolation, int, Surface<double> &) const;
 template bool SurfaceFactory::InitVertexSurface(Index, Surface<float> *, Status *) const;
 template bool SurfaceFactory::InitVertexSurface(Index, Surface<double> *, Status *) const;
 template bool SurfaceFactory::InitVaryingSurface(Index, Surface<float> *, Status *) const;

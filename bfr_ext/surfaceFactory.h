@@ -172,10 +172,10 @@ private:
     template <typename REAL>
     FarExt::Status init(Index face, FarExt::Interpolation interpolation, int channel,
                         Surface<REAL> &surface) const;
-    // The same for what is kept, with a report.
+    // The same with what is kept.
     template <typename REAL>
-    bool initKept(Index face, FarExt::Interpolation interpolation, int channel,
-                  Surface<REAL> &surface, FarExt::Status *status) const;
+    FarExt::Status initKept(Index face, FarExt::Interpolation interpolation, int channel,
+                            Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;

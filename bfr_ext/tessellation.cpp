@@ -10,7 +10,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <mutex>
+#include <tuple>
 
 #include <opensubdiv/far/types.h>
 
@@ -21,6 +23,25 @@ using internal::CellMesh;
 namespace {
 
 constexpr int kInvalid = OpenSubdiv::Far::INDEX_INVALID;
+
+// Others are mostly those of one face, so that what is made for them is not used again.
+constexpr int kMaxCellsOfPlan = 128;
+
+// By edge, the level of which it has the polyline; -1: none.
+std::vector<int> findEdgeLevels(std::vector<Polyline> const &edges) {
+    std::vector<int> levels;
+    levels.reserve(edges.size());
+    for (Polyline const &edge : edges) {
+        // Levels 0 and 1 give an edge the same.
+        int level = 0;
+        while (level <= Polyline::kLastLevel &&
+               Polyline(level).GetNumPoints() < edge.GetNumPoints()) {
+            ++level;
+        }
+        levels.push_back(level <= Polyline::kLastLevel && Polyline(level) == edge ? level : -1);
+    }
+    return levels;
+}
 
 // Cuts convex polygons, with vertices in straight lines, into triangles that all have an area.
 class Triangulator {
@@ -123,8 +144,12 @@ Tessellation::Tessellation(CellTree const &tree, Polyline const edges[], Options
     }
     _parameterization = Parameterization(tree.GetFaceSize());
     CellMesh const mesh(tree, polylines.data());
-    _tree = std::make_shared<Tree>(Tree{tree, std::move(polylines), {}});
+    std::vector<int> edgeLevels = findEdgeLevels(polylines);
+    _tree = std::make_shared<Tree>(Tree{tree, std::move(polylines), std::move(edgeLevels), {}});
     setCells(mesh);
+    if (tree.GetNumCells() <= kMaxCellsOfPlan) {
+        _cellPlan = std::make_shared<LazyCellPlan>();
+    }
 }
 
 Tessellation::Tessellation(internal::FaceSections const &sections, int section,
@@ -151,7 +176,7 @@ Tessellation::Tessellation(internal::FaceSections const &sections, int section,
     CellMesh const mesh(tree, edges.data(), shape);
     _levels = sections.GetLevels();
     if (_levels.empty()) {
-        _tree = std::make_shared<Tree>(Tree{tree, std::move(edges), {}});
+        _tree = std::make_shared<Tree>(Tree{tree, std::move(edges), {}, {}});
     } else {
         _cellPlan = std::make_shared<LazyCellPlan>();
     }
@@ -206,31 +231,70 @@ void Tessellation::initialize(Parameterization const &parameterization, int numL
 struct Tessellation::LazyCellPlan {
     std::once_flag once[2];
     std::unique_ptr<internal::CellPlan const> plans[2];
+    std::once_flag onceSelection;
+    Selection selection;
 };
+
+// The highest of the places that a plan has.
+int Tessellation::getLevelOfPlaces(bool isOfDerivatives) const {
+    if (!_tree) {
+        return isOfDerivatives ? *std::max_element(_levels.begin(), _levels.end()) : _levels.back();
+    }
+    int level = _tree->cells.GetMaxLevel();
+    for (Polyline const &edge : _tree->edges) {
+        // Places of a level are multiples of that of its first one.
+        for (int const place : edge.GetPlaces()) {
+            while (isOfDerivatives && place % (Polyline::kLength >> level) != 0) {
+                ++level;
+            }
+        }
+    }
+    return level;
+}
 
 internal::CellPlan const &Tessellation::getCellPlan(bool isOfDerivatives) const {
     using internal::CellPlan;
     std::unique_ptr<CellPlan const> &plan = _cellPlan->plans[isOfDerivatives ? 1 : 0];
     std::call_once(_cellPlan->once[isOfDerivatives ? 1 : 0], [&] {
-        int const level =
-            isOfDerivatives ? *std::max_element(_levels.begin(), _levels.end()) : _levels.back();
         std::vector<internal::LeafPlaces::Place> places;
         places.reserve(_places.size());
         for (SectorCoords const &place : _places) {
             places.push_back({place.sector, {place.start, place.end}});
         }
-        plan = std::make_unique<CellPlan const>(GetFaceSize(), level, places,
-                                                isOfDerivatives ? CellPlan::Use::Derivatives
-                                                                : CellPlan::Use::Points);
+        plan = std::make_unique<CellPlan const>(
+            GetFaceSize(), getLevelOfPlaces(isOfDerivatives), places,
+            isOfDerivatives ? CellPlan::Use::Derivatives : CellPlan::Use::Points);
     });
     return *plan;
+}
+
+Tessellation::Selection const &Tessellation::getSelection() const {
+    Selection &selection = _cellPlan->selection;
+    std::call_once(_cellPlan->onceSelection, [&] {
+        Tessellation const uniform(_parameterization, getLevelOfPlaces(false));
+        selection.levels = uniform._levels;
+        std::map<std::tuple<int, double, double>, int> numbers;
+        int const numOnBorder = uniform.GetNumBoundaryCoords();
+        selection.numUniformPlaces = uniform.GetNumCoords() - numOnBorder;
+        for (int place = numOnBorder; place < uniform.GetNumCoords(); ++place) {
+            SectorCoords const &coords = uniform._places[std::size_t(place)];
+            numbers[{coords.sector, coords.start, coords.end}] = place - numOnBorder;
+        }
+        for (int place = GetNumBoundaryCoords(); place < GetNumCoords(); ++place) {
+            SectorCoords const &coords = _places[std::size_t(place)];
+            selection.places.push_back(numbers.at({coords.sector, coords.start, coords.end}));
+        }
+    });
+    return selection;
 }
 
 std::size_t Tessellation::getSizeOfCells(bool hasDerivatives) const {
     if (_tree) {
         constexpr std::size_t kBytesOfCell = 16;
+        constexpr std::size_t kBytesOfPlace = 32; // of a plan, with the share of a leaf
         return std::size_t(_tree->cells.GetNumCells()) * kBytesOfCell +
-               _tree->corners.capacity() * sizeof(CellCorner);
+               _tree->corners.capacity() * sizeof(CellCorner) +
+               (_cellPlan ? _places.size() * kBytesOfPlace : 0);
     }
     return getCellPlan().GetSize() + (hasDerivatives ? getCellPlan(true).GetSize() : 0);
 }

@@ -582,7 +582,7 @@ public:
         if (face != _face) {
             _face = face;
             _surface.Clear();
-            if (_factory.init(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
+            if (_factory.initKept(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
                 _points.resize(3 * std::size_t(_surface.GetNumControlPoints()));
                 _surface.GatherControlPoints(_meshPoints, {3, int(_stride)}, _points.data(), 3);
             }
@@ -609,6 +609,7 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
     FarExt::TopologyLevel const base = factory.GetLevel();
     Level const &level = factory.GetLevel().GetLevel();
     CellForest forest(factory.GetMesh());
+    forest._plans = bounds ? bounds->_plans : nullptr;
     bool const hasPrevious = previous && previous->GetNumFaces() == forest.GetNumFaces();
     std::vector<std::vector<CellVisibility>> visibility(std::size_t(forest.GetNumFaces()));
     struct State {

@@ -13,6 +13,7 @@ namespace OpenSubdivHex::BfrExt {
 class View;
 
 namespace internal {
+class KeptPlans;
 struct MeshMeasures;
 } // namespace internal
 
@@ -25,7 +26,8 @@ struct MeshMeasures;
 ///
 /// **Memory** is what Options::SetMaxMemory() says, and three doubles for each vertex of the mesh.  Each
 /// cell that a view asked for takes about 100 bytes; for culling, 150 more, and there cells up to three steps
-/// on are asked for.  What has no room is found anew by each view.
+/// on are asked for.  What has no room is found anew by each view.  Besides there are the tessellations of the
+/// last PatchStream of a forest, as far as that keeps them, for those of the next forest.
 ///
 /// One thread at a time may use it; View::MakeForest() has threads of its own.  std::bad_alloc passes
 /// through.
@@ -83,6 +85,7 @@ private:
     Options const _options;
     std::vector<double> _points; // the positions, once there are some
     std::unique_ptr<internal::MeshMeasures> _measures;
+    std::shared_ptr<internal::KeptPlans> _plans; // of streams of the forests
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -8,10 +8,10 @@
 
 #include <atomic>
 #include <list>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
+#include <unordered_map>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -20,6 +20,13 @@ namespace OpenSubdivHex::BfrExt::internal {
 struct PlanOptions {
     Tessellation::Options tessellation;
     bool hasDerivatives;
+
+    friend bool operator==(PlanOptions const &a, PlanOptions const &b) {
+        return a.tessellation.GetFacetSize() == b.tessellation.GetFacetSize() &&
+               a.tessellation.GetFacetStride() == b.tessellation.GetFacetStride() &&
+               a.tessellation.GetCoordStride() == b.tessellation.GetCoordStride() &&
+               a.hasDerivatives == b.hasDerivatives;
+    }
 };
 
 /// \brief What patches with the same levels, or the same tree, have in common: their tessellation, with the
@@ -82,6 +89,7 @@ public:
     PatchPlans(PlanOptions const &options, std::size_t maxMemory)
         : _options(options), _maxMemory(maxMemory) {}
 
+    PlanOptions const &GetOptions() const { return _options; }
     std::size_t GetMaxMemory() const { return _maxMemory; }
     /// PatchPlan::GetSizeOfMaking().
     std::size_t GetSizeOfMaking(std::vector<int> const &levels) const {
@@ -163,6 +171,16 @@ private:
     static constexpr std::size_t kMinLeaves = 4096;
     static constexpr std::size_t kMaxLeaves = std::size_t(1) << 24;
 
+    struct Hash {
+        std::size_t operator()(std::vector<int> const &key) const {
+            std::size_t hash = key.size();
+            for (int const number : key) {
+                hash = (hash ^ std::size_t(number)) * 0x9e3779b97f4a7c15;
+                hash ^= hash >> 29;
+            }
+            return hash;
+        }
+    };
     struct Entry {
         std::vector<int> key;
         std::shared_ptr<PatchPlan const> plan;
@@ -226,7 +244,30 @@ private:
     std::size_t _memory = 0;
     std::mutex _mutex;
     std::list<Entry> _plans; // the one that was asked for last comes first
-    std::map<std::vector<int>, std::list<Entry>::iterator> _places;
+    std::unordered_map<std::vector<int>, std::list<Entry>::iterator, Hash> _places;
+};
+
+/// \brief The plans of the last stream, for those of the next forest of the same mesh: from frame to frame most
+/// trees are some that there were.  Any number of threads may use it.
+class KeptPlans {
+public:
+    /// Those of the last call, or new ones where options differ.
+    std::shared_ptr<PatchPlans> Find(PlanOptions const &options, std::size_t maxMemory) {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        if (!_plans || !(_plans->GetOptions() == options) || _plans->GetMaxMemory() != maxMemory) {
+            _plans = std::make_shared<PatchPlans>(options, maxMemory);
+        }
+        return _plans;
+    }
+    /// Forgets them.
+    void Clear() {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        _plans.reset();
+    }
+
+private:
+    std::mutex _mutex;
+    std::shared_ptr<PatchPlans> _plans;
 };
 
 /// \brief Adds up what plans take in memory, each counted once, until it is more than there is.  Any

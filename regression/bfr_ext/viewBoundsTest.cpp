@@ -3,6 +3,7 @@
 // What is kept from view to view, against views that find all anew.
 #include "surfaceFixture.h"
 
+#include "bfr_ext/patchStream.h"
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
 #include "bfr_ext/viewBounds.h"
@@ -12,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 
 namespace OpenSubdivHex::Regression {
@@ -122,6 +124,50 @@ TEST(ViewBounds, ForestsAreThoseMadeWithoutThem) {
             EXPECT_TRUE(bounds.GetMemory() > 0 || maxMemory < kAmple);
             bounds.Clear();
             EXPECT_EQ(bounds.GetMemory(), std::size_t(0));
+        }
+    }
+}
+
+// Tessellations of one stream are not those of another with other facets, nor of other trees.
+TEST(ViewBounds, StreamsOfForestsAreThoseMadeWithoutThem) {
+    struct Patches {
+        std::map<int, std::vector<double>> points;
+        std::map<int, std::vector<int>> facets;
+    };
+    for (Shape const &shape : getShapes()) {
+        SCOPED_TRACE(shape.name);
+        Scene scene(shape);
+        auto const stream = [&](CellForest const &forest, int facetSize) {
+            Patches patches;
+            BfrExt::PatchStream<double>::Options options;
+            options.SetTessellationOptions(BfrExt::Tessellation::Options().SetFacetSize(facetSize));
+            FarExt::ExecutorScope const oneThread(nullptr, 1);
+            BfrExt::PatchStream<double>(*scene.factory, forest, options)
+                .Run(scene.positions.data(), 3, [&](auto const &patch) {
+                    int const numCoords = patch.tessellation.GetNumCoords();
+                    patches.points[patch.face].assign(patch.points, patch.points + 3 * numCoords);
+                    std::vector<int> &facets = patches.facets[patch.face];
+                    facets.resize(std::size_t(patch.tessellation.GetNumFacetVertices()));
+                    patch.tessellation.GetFacetSizes(facets.data());
+                    facets.resize(std::size_t(patch.tessellation.GetNumFacetVertices() +
+                                              patch.tessellation.GetNumFacets()));
+                    patch.tessellation.GetFacets(facets.data() + patch.tessellation.GetNumFacets());
+                    return true;
+                });
+            return patches;
+        };
+        ViewBounds bounds(*scene.factory);
+        for (int i = 0; i < 6; ++i) {
+            View const view(scene.MakeCamera(),
+                            View::Options().SetFlatness(0.5 + i % 3).SetMaxLevel(4));
+            CellForest const expected = view.MakeForest(*scene.factory, scene.positions.data(), 3);
+            CellForest const forest = view.MakeForest(bounds, scene.positions.data(), 3);
+            int const facetSize = i % 2 == 0 ? 0 : 3;
+            Patches const patches = stream(forest, facetSize);
+            Patches const expectedPatches = stream(expected, facetSize);
+            ASSERT_FALSE(patches.points.empty());
+            EXPECT_EQ(patches.points, expectedPatches.points) << "view " << i;
+            EXPECT_EQ(patches.facets, expectedPatches.facets) << "view " << i;
         }
     }
 }
