@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -17,6 +18,9 @@ constexpr int kLastDepth = 40;
 
 // Vertices of the first levels have coordinates that are multiples of it.
 constexpr double kGrid = 1.0 / (1 << 16);
+
+// Places further away are taken to be there.
+constexpr double kFar = 1e100;
 
 double snap(double coordinate, double tolerance) {
     double const multiple = std::round(coordinate / kGrid) * kGrid;
@@ -50,8 +54,9 @@ void findSectorMap(BasePolygon const &polygon, int sector, Pair (&rows)[2]) {
 BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
     BasePolygon const polygon(size);
     Pair const center = polygon.GetCenter();
-    double const x = u - center[0];
-    double const y = v - center[1];
+    // Of finite coordinates the products are finite.
+    double const x = std::clamp(u - center[0], -kFar, kFar);
+    double const y = std::clamp(v - center[1], -kFar, kFar);
     BasePoint best = {};
     double bestLeast = 0;
     for (int sector = 0; sector < size; ++sector) {
@@ -214,6 +219,11 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
     }
     for (int i = 0; i < numRows; ++i) {
         goBack(_steps, _of, _weights[i], _scratch);
+    }
+    for (int i = 1; i < numRows; ++i) {
+        // Steps shrink all that rounding has left of differences between near points but their sum.
+        double const sum = std::accumulate(_weights[i].begin(), _weights[i].end(), 0.0);
+        add(_weights[i], -sum, _weights[0]);
     }
     if (rootCorner >= 0) {
         _weights[1].assign(_weights[0].size(), 0.0);

@@ -17,7 +17,8 @@ struct BasePoint {
     bool IsOnBorder() const { return coords[0] + coords[1] == 1; }
 };
 
-/// \brief Finds a point of the parameter plane in a base face of \p size sides, or the nearest there.
+/// \brief Finds a point of the parameter plane in a base face of \p size sides, or where the line from the
+/// centre to it leaves the face.  Its coordinates are not numbers where u or v is none.
 ///
 /// \param tolerance  of coordinates: those that are so close to a multiple of a small power of 1/2, as
 ///                   vertices have, are taken for it

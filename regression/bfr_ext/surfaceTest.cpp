@@ -14,6 +14,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
 #include <random>
 #include <thread>
 
@@ -248,6 +253,70 @@ TEST_P(SurfaceTest, HasAnyPlaceBetweenThoseAround) {
             double const beside[2] = {uv[0] + step, uv[1] - step};
             ASSERT_LE(GetDistance(surfaces.Evaluate(0, beside).p, p), 2e-6);
         }
+    }
+}
+
+// However small the cells are whose differences they were made of.
+TEST_P(SurfaceTest, DerivativesDoNotDependOnWhereTheMeshIs) {
+    Shape const &shape = GetFeatureShape("mixedSharpnessQuads");
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    auto const refiner = CreateRefiner(shape, GetParam(), 0, options);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    for (int face = 0; face < shape.GetNumFaces(); ++face) {
+        auto const numPoints = std::size_t(surfaces[face].GetNumControlPoints());
+        std::vector<double> const far(numPoints, 1e6);
+        // On edges and inside.
+        for (std::array<double, 2> uv : getRandomPlaces(4, 20)) {
+            for (double const v : {uv[1], 0.0}) {
+                uv[1] = v;
+                double p;
+                double du;
+                double dv;
+                surfaces[face].Evaluate(uv.data(), far.data(), 1, &p, &du, &dv);
+                ASSERT_NEAR(du, 0, 1e-6) << "face " << face << " at " << uv[0] << ", " << uv[1];
+                ASSERT_NEAR(dv, 0, 1e-6) << "face " << face << " at " << uv[0] << ", " << uv[1];
+            }
+        }
+    }
+}
+
+TEST_P(SurfaceTest, TakesPlacesOutsideToTheEdgeAndNoNumbersForNone) {
+    Shape const &shape = GetShape("icosahedron");
+    auto const refiner = CreateRefiner(shape, GetParam(), 0);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    double center[2];
+    surfaces[0].GetParameterization().GetCenterCoord(center);
+    for (Vector3 const &direction : {Vector3{1, 0, 0}, {-0.3, 0.8, 0}, {0.1, -1, 0}}) {
+        auto const evaluate = [&](double distance) {
+            double const uv[2] = {center[0] + distance * direction[0],
+                                  center[1] + distance * direction[1]};
+            return surfaces.EvaluatePosition(0, uv);
+        };
+        for (double const distance : {2.0, 1e9, 1e90}) {
+            EXPECT_LE(GetDistance(evaluate(distance), evaluate(1)), kTolerance) << distance;
+        }
+    }
+    for (double const u : {1e308, kInfinite}) {
+        for (double const v : {-u, 0.0, u}) {
+            double const uv[2] = {u, v};
+            SurfacePoint const point = surfaces.Evaluate(0, uv);
+            EXPECT_LE(GetLength(point.p), 2) << u << ", " << v;
+            EXPECT_GT(GetLength(Cross(point.du, point.dv)), 0) << u << ", " << v;
+        }
+    }
+    for (auto const &uv : {std::array{kNone, 0.25}, {0.25, kNone}, {kNone, kNone}}) {
+        SurfacePoint const point = surfaces.Evaluate(0, uv.data());
+        for (Vector3 const &vector : {point.p, point.du, point.dv}) {
+            for (double const number : vector) {
+                EXPECT_TRUE(std::isnan(number)) << uv[0] << ", " << uv[1];
+            }
+        }
+        std::vector<double> weights(std::size_t(surfaces[0].GetNumControlPoints()));
+        surfaces[0].EvaluateStencil(uv.data(), weights.data());
+        EXPECT_TRUE(std::isnan(std::accumulate(weights.begin(), weights.end(), 0.0)));
     }
 }
 
