@@ -17,6 +17,10 @@ inline Vector3 Scale(Vector3 const &a, double s) { return {a[0] * s, a[1] * s, a
 inline Vector3 Subtract(Vector3 const &a, Vector3 const &b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
+inline double Dot(Vector3 const &a, Vector3 const &b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Vector3 ToVector(double const *p) { return {p[0], p[1], p[2]}; }
 inline double GetLength(Vector3 const &a) { return std::hypot(a[0], a[1], a[2]); }
 inline double GetDistance(Vector3 const &a, Vector3 const &b) { return GetLength(Subtract(a, b)); }
 inline Vector3 Cross(Vector3 const &a, Vector3 const &b) {

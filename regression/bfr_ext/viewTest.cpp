@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Trees of cells made for a view: how far facets are from the surface, and what is left out.
+#include "picture.h"
 #include "surfaceFixture.h"
 
 #include "bfr_ext/cell/cellValues.h"
@@ -73,48 +74,10 @@ private:
 };
 
 Vector3 add(Vector3 const &a, Vector3 const &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-double dot(Vector3 const &a, Vector3 const &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector3 toVector(double const *p) { return {p[0], p[1], p[2]}; }
-
-/// A camera's picture, by its definition.
-struct Picture {
-    explicit Picture(Camera const &camera) : _camera(camera), _eye(toVector(camera.eye)) {
-        _forward = Normalize(Subtract(toVector(camera.target), _eye));
-        _right = Normalize(Cross(_forward, toVector(camera.up)));
-        _up = Cross(_right, _forward);
-    }
-
-    /// Pixels to the right of the middle and above it; infinite behind the eye.
-    std::array<double, 2> Project(Vector3 const &p) const {
-        Vector3 const d = Subtract(p, _eye);
-        double const depth = dot(d, _forward);
-        double const pixels = _camera.height / 2.0 / std::tan(_camera.fieldOfView * M_PI / 360);
-        double const infinite = std::numeric_limits<double>::infinity();
-        return depth > 0 ? std::array<double, 2>{pixels * dot(d, _right) / depth,
-                                                 pixels * dot(d, _up) / depth}
-                         : std::array<double, 2>{infinite, infinite};
-    }
-    bool HasPoint(Vector3 const &p) const {
-        std::array<double, 2> const at = Project(p);
-        return std::abs(at[0]) < _camera.width / 2.0 && std::abs(at[1]) < _camera.height / 2.0;
-    }
-    double GetDistance(Vector3 const &p, Vector3 const &q) const {
-        std::array<double, 2> const a = Project(p);
-        std::array<double, 2> const b = Project(q);
-        return std::hypot(a[0] - b[0], a[1] - b[1]);
-    }
-
-private:
-    Camera _camera;
-    Vector3 _eye;
-    Vector3 _forward = {};
-    Vector3 _right = {};
-    Vector3 _up = {};
-};
 
 /// The least coordinates and the largest.
 std::array<Vector3, 2> getBox(std::vector<double> const &positions) {
-    Vector3 least = toVector(positions.data());
+    Vector3 least = ToVector(positions.data());
     Vector3 largest = least;
     for (std::size_t i = 0; i < positions.size(); ++i) {
         least[i % 3] = std::min(least[i % 3], positions[i]);
@@ -362,7 +325,7 @@ TEST(View, FacetsAreCloseToTheSurfaceInThePicture) {
                     std::array<Vector3, 2> const plane = getPlane(getCorners(values));
                     forDescendants(values, 2, [&](CellValues const &part) {
                         for (Vector3 const &p : getCorners(part)) {
-                            double const height = dot(plane[1], Subtract(p, plane[0]));
+                            double const height = Dot(plane[1], Subtract(p, plane[0]));
                             Vector3 const foot = Subtract(p, Scale(plane[1], height));
                             if (picture.HasPoint(p)) {
                                 ASSERT_LE(picture.GetDistance(p, foot), kPixels)
@@ -456,7 +419,7 @@ TEST(View, SharpEdgesAreCloseToTheirCurves) {
                 for (int k = 1; k < 8; ++k) {
                     Vector3 const p = evaluate(k / 8.0);
                     Vector3 const d = Subtract(p, start);
-                    ASSERT_LE(picture.GetDistance(p, add(start, Scale(along, dot(along, d)))), 0.5);
+                    ASSERT_LE(picture.GetDistance(p, add(start, Scale(along, Dot(along, d)))), 0.5);
                 }
             }
         }
@@ -559,8 +522,8 @@ TEST(View, NothingThatIsSeenIsCulled) {
                 }
                 ++numCulledPoints;
                 SurfacePoint const &surface = point.surface;
-                Vector3 const toEye = Subtract(toVector(camera.eye), surface.p);
-                ASSERT_FALSE(dot(Cross(surface.du, surface.dv), toEye) > 0 &&
+                Vector3 const toEye = Subtract(ToVector(camera.eye), surface.p);
+                ASSERT_FALSE(Dot(Cross(surface.du, surface.dv), toEye) > 0 &&
                              picture.HasPoint(surface.p))
                     << "face " << point.face << ", cell " << cell << ", view " << round;
             }
@@ -604,7 +567,7 @@ TEST(View, NormalsAreWithinTheirBounds) {
                         SurfacePoint point;
                         part.EvaluateCorner(i, point.du.data(), point.dv.data());
                         Vector3 const found = GetNormal(point);
-                        double const height = dot(found, normals.middle);
+                        double const height = Dot(found, normals.middle);
                         double const across =
                             GetLength(Subtract(found, Scale(normals.middle, height)));
                         ASSERT_LE(across, normals.spread * height);
@@ -682,7 +645,7 @@ std::array<double, 2> sampleHeights(CellValues const &values, int numSteps) {
     std::array<double, 2> range = {0, 0};
     forDescendants(values, numSteps, [&](CellValues const &part) {
         for (Vector3 const &p : getCorners(part)) {
-            double const height = dot(plane[1], Subtract(p, plane[0]));
+            double const height = Dot(plane[1], Subtract(p, plane[0]));
             range = {std::min(range[0], height), std::max(range[1], height)};
         }
     });
@@ -780,7 +743,7 @@ TEST(View, TakesFarFewerPolygonsThanUniformLevels) {
     for (int face = 0; face < forest.GetNumFaces(); ++face) {
         auto const visit = [&](auto const &self, CellValues const &values) -> void {
             Vector3 const corner = getCorners(values)[0];
-            Vector3 const toEye = Subtract(toVector(camera.eye), corner);
+            Vector3 const toEye = Subtract(ToVector(camera.eye), corner);
             Vector3 const across = Normalize(Cross(toEye, {0, 1, 0}));
             std::array<double, 2> const heights = sampleHeights(values, 2);
             if (picture.GetDistance(corner, add(corner, Scale(across, heights[1] - heights[0]))) <=

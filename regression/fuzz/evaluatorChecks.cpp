@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "elementBuffer.h"
 #include "oracle.h"
 
 #include "osd_ext/compactStencilTable.h"
@@ -18,61 +19,6 @@ using OsdExt::RefinementEvaluator;
 
 namespace {
 
-constexpr float kUntouched = -12345.678f;
-
-/// Control values as floats in a buffer with some offset and stride.
-struct Buffer {
-    Buffer(int numElements, int length, Dice &dice)
-        : desc(dice.Roll(4), length, length + dice.Roll(3)),
-          floats(std::size_t(desc.offset + std::max(0, numElements * desc.stride)), kUntouched) {}
-
-    float &At(int element, int k) {
-        return floats[std::size_t(desc.offset + element * desc.stride + k)];
-    }
-
-    Descriptor desc;
-    std::vector<float> floats;
-};
-
-/// The columns of values, again and again up to some length.
-double valueAt(ReferenceValues const &values, int row, int k) {
-    return values(row, k % values.cols());
-}
-
-Buffer makeSource(ReferenceValues const &values, int length, Dice &dice) {
-    Buffer source(int(values.rows()), length, dice);
-    for (int i = 0; i < int(values.rows()); ++i) {
-        for (int k = 0; k < length; ++k) {
-            source.At(i, k) = float(valueAt(values, i, k));
-        }
-    }
-    return source;
-}
-
-/// Elements [begin, end) of a buffer are rows [first, ...) of the values, and nothing else was
-/// written.
-void checkBuffer(Buffer &buffer, int begin, int end, ReferenceValues const &expected, int first,
-                 double allowed, std::string const &name) {
-    for (int i = begin; i < end; ++i) {
-        for (int k = 0; k < buffer.desc.length; ++k) {
-            double const difference =
-                std::abs(double(buffer.At(i, k)) - valueAt(expected, first + i - begin, k));
-            if (!(difference <= allowed)) {
-                Fail(name, " gives ", buffer.At(i, k), " for element ", i, ", float ", k, ", not ",
-                     valueAt(expected, first + i - begin, k));
-            }
-        }
-    }
-    for (int j = 0; j < int(buffer.floats.size()); ++j) {
-        int const relative = j - buffer.desc.offset - begin * buffer.desc.stride;
-        bool const isElement = relative >= 0 && relative < (end - begin) * buffer.desc.stride &&
-                               relative % buffer.desc.stride < buffer.desc.length;
-        if (!isElement && buffer.floats[std::size_t(j)] != kUntouched) {
-            Fail(name, " writes float ", j, ", which is of no element");
-        }
-    }
-}
-
 bool haveSameBits(std::vector<float> const &a, std::vector<float> const &b) {
     return a.size() == b.size() &&
            (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
@@ -84,7 +30,7 @@ public:
     TableEvaluation(Far::StencilTable const &table, ReferenceValues const &base,
                     ReferenceValues const &expected, Dice &dice)
         : _table(table), _expected(expected), _length(1 + dice.Roll(9)),
-          _allowed(2e-6 * std::max(1.0, GetSize(base))), _source(makeSource(base, _length, dice)),
+          _allowed(2e-6 * std::max(1.0, GetSize(base))), _source(MakeSource(base, _length, dice)),
           _destination(table.GetNumStencils(), _length, dice) {}
 
     void Run(Dice &dice) {
@@ -92,12 +38,12 @@ public:
         // Those of OpenSubdiv write a range elsewhere: see StencilEvaluator.
         std::vector<Evaluator> const &osd = GetOsdEvaluators();
         evaluate(osd[dice.IsOneOf(64) ? osd.size() - 1 : 0], 0, numStencils);
-        std::vector<Buffer> bySimdLevel;
+        std::vector<ElementBuffer> bySimdLevel;
         for (Evaluator const &own : GetOwnEvaluators()) {
             if (own.numThreads > 1) {
                 break;
             }
-            Buffer const whole = evaluate(own, 0, numStencils);
+            ElementBuffer const whole = evaluate(own, 0, numStencils);
             bool const isOmp = bySimdLevel.size() == GetSimdLevels().size();
             if (!isOmp) {
                 bySimdLevel.push_back(whole);
@@ -107,7 +53,7 @@ public:
             }
             int const begin = dice.Roll(numStencils + 1);
             int const end = begin + dice.Roll(numStencils + 1 - begin);
-            Buffer part = evaluate(own, begin, end);
+            ElementBuffer part = evaluate(own, begin, end);
             for (int i = begin; i < end; ++i) {
                 if (std::memcmp(&part.At(i, 0), &bySimdLevel.back().At(i, 0),
                                 std::size_t(_length) * sizeof(float)) != 0) {
@@ -118,20 +64,20 @@ public:
     }
 
 private:
-    Buffer evaluate(Evaluator const &evaluator, int begin, int end) {
+    ElementBuffer evaluate(Evaluator const &evaluator, int begin, int end) {
         EvaluatorScope const scope(evaluator);
-        Buffer result = _destination;
+        ElementBuffer result = _destination;
         if (!evaluator.functions.value(
                 _source.floats.data(), _source.desc, result.floats.data(), result.desc,
                 _table.GetSizes().data(), _table.GetOffsets().data(),
                 _table.GetControlIndices().data(), _table.GetWeights().data(), begin, end)) {
             Fail(evaluator.name, " refuses stencils ", begin, " to ", end);
         }
-        checkBuffer(result, begin, end, _expected, begin, _allowed, evaluator.name);
+        CheckElements(result, begin, end, _expected, begin, _allowed, evaluator.name);
         return result;
     }
 
-    void checkCompact(OsdExt::SimdLevel simdLevel, Buffer const &expected) {
+    void checkCompact(OsdExt::SimdLevel simdLevel, ElementBuffer const &expected) {
         EvaluatorScope const scope(simdLevel, 1);
         auto const compact = OsdExt::CompactStencilTable::Create(_table);
         Descriptor const desc(0, _length, _length);
@@ -148,7 +94,7 @@ private:
         if (!OsdExt::CpuEvaluator::EvalStencils(src.get(), desc, dst.get(), desc, compact.get())) {
             Fail("CpuEvaluator refuses a compact table");
         }
-        Buffer whole = expected;
+        ElementBuffer whole = expected;
         for (int i = 0; i < _table.GetNumStencils(); ++i) {
             if (std::memcmp(dst->BindCpuBuffer() + i * _length, &whole.At(i, 0),
                             std::size_t(_length) * sizeof(float)) != 0) {
@@ -161,8 +107,8 @@ private:
     ReferenceValues const &_expected;
     int _length;
     double _allowed;
-    Buffer _source;
-    Buffer _destination;
+    ElementBuffer _source;
+    ElementBuffer _destination;
 };
 
 void checkTableEvaluators(OracleLevels const &levels, OracleLevels::Values const &values,
@@ -192,8 +138,8 @@ void checkRefinementEvaluator(OracleLevels const &levels, OracleLevels::Values c
     std::string const name = "RefinementEvaluator of mode " + std::to_string(values.mode);
     int const length = 1 + dice.Roll(9);
     double const allowed = 1e-6 * std::max(1.0, GetSize(values.levels[0]));
-    Buffer const source = makeSource(values.levels[0], length, dice);
-    Buffer all(int(evaluator->GetNumElementsAllLevels()), length, dice);
+    ElementBuffer const source = MakeSource(values.levels[0], length, dice);
+    ElementBuffer all(int(evaluator->GetNumElementsAllLevels()), length, dice);
     if (!evaluator->EvaluateAllLevels(source.floats.data(), source.desc, all.floats.data(),
                                       all.desc, &status)) {
         Fail(name, " refuses all levels: ", status.GetMessage());
@@ -205,13 +151,13 @@ void checkRefinementEvaluator(OracleLevels const &levels, OracleLevels::Values c
         if (numElements != int(expected.rows())) {
             Fail(name, " has ", numElements, " elements at level ", level);
         }
-        Buffer one(numElements, length, dice);
+        ElementBuffer one(numElements, length, dice);
         if (!evaluator->Evaluate(source.floats.data(), source.desc, one.floats.data(), one.desc,
                                  level, &status)) {
             Fail(name, " refuses level ", level, ": ", status.GetMessage());
         }
-        checkBuffer(one, 0, numElements, expected, 0, allowed,
-                    name + ", level " + std::to_string(level));
+        CheckElements(one, 0, numElements, expected, 0, allowed,
+                      name + ", level " + std::to_string(level));
         for (int i = 0; i < numElements && level > 0; ++i) {
             if (std::memcmp(&one.At(i, 0), &all.At(first + i, 0),
                             std::size_t(length) * sizeof(float)) != 0) {

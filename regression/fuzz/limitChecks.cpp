@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "elementBuffer.h"
 #include "oracle.h"
 
 #include "far_ext/limitStencilTableFactory.h"
+#include "osd_ext/refinementEvaluator.h"
 
 #include <Eigen/Geometry>
 
@@ -79,16 +81,6 @@ LimitLevel makeLimit(TopologyRefiner const &refiner, int level, ReferenceValues 
     return limit;
 }
 
-/// A vertex on a boundary of the paper's rule has no limit.
-bool isFree(TopologyRefiner const &refiner, TopologyLevel const &level, int vert) {
-    bool const isRule =
-        refiner.GetSchemeOptions().GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE;
-    auto const edges = level.GetVertexEdges(vert);
-    return isRule && std::any_of(edges.begin(), edges.end(), [&](int edge) {
-               return level.IsEdgeBoundary(edge) && !level.IsEdgeInfSharp(edge);
-           });
-}
-
 /// The points of vertices and faces are those of their children, which have the same limit.
 void checkNextLevel(OracleLevels const &levels, int depth, LimitLevel const &parent,
                     LimitLevel const &child) {
@@ -101,7 +93,7 @@ void checkNextLevel(OracleLevels const &levels, int depth, LimitLevel const &par
         (isChaikin ? 1e-5 : 1e-10) * std::max(1.0, GetSize(levels.values[0].levels[0]));
     for (int side = 0; side < parent.sides.GetNumSides(); ++side) {
         int const vert = parent.sides.GetVertex(side);
-        if (!isFree(levels.refiner, level, vert) &&
+        if (!IsOnFreeBoundary(levels.refiner, level, vert) &&
             !(GetDifference(parent.points.row(side), child.points.row(vert)) <= allowed)) {
             Fail("the limit of vertex ", vert, " is ", parent.points.row(side), " at level ", depth,
                  ", and then ", child.points.row(vert));
@@ -128,9 +120,61 @@ void checkNextLevel(OracleLevels const &levels, int depth, LimitLevel const &par
     }
 }
 
+/// RefinementEvaluator makes the points and derivatives of the table's vertices.
+class LimitEvaluation {
+public:
+    LimitEvaluation(OracleLevels const &levels, Dice &dice)
+        : _base(levels.values[0].levels[0]), _dice(dice),
+          _scope(GetSimdLevels()[std::size_t(dice.Roll(int(GetSimdLevels().size())))], 1),
+          _evaluator(OsdExt::RefinementEvaluator::Create(levels.refiner)),
+          _source(MakeSource(_base, 1 + dice.Roll(9), dice)) {}
+
+    void Check(int level, LimitLevel const &expected) {
+        std::string const name = "EvaluateLimit of level " + std::to_string(level);
+        int const count = _evaluator->GetNumElements(level);
+        ElementBuffer points = makeBuffer(count);
+        ElementBuffer du = makeBuffer(count);
+        ElementBuffer dv = makeBuffer(count);
+        ElementBuffer alone = makeBuffer(count);
+        FarExt::Status status;
+        if (!_evaluator->EvaluateLimit(_source.floats.data(), _source.desc, points.floats.data(),
+                                       points.desc, du.floats.data(), du.desc, dv.floats.data(),
+                                       dv.desc, level, &status) ||
+            !_evaluator->EvaluateLimit(_source.floats.data(), _source.desc, alone.floats.data(),
+                                       alone.desc, level, &status)) {
+            Fail(name, " refuses: ", status.GetMessage());
+        }
+        double const allowed = 2e-6 * std::max(1.0, GetSize(_base));
+        // Sums of weights of derivatives are 16 at most.
+        double const allowedOfDerivatives = 10 * allowed;
+        CheckElements(points, 0, count, expected.points, 0, allowed, name);
+        CheckElements(alone, 0, count, expected.points, 0, allowed, name + ", points alone");
+        CheckElements(du, 0, count, expected.du, 0, allowedOfDerivatives, name + ", du");
+        CheckElements(dv, 0, count, expected.dv, 0, allowedOfDerivatives, name + ", dv");
+    }
+
+private:
+    ElementBuffer makeBuffer(int count) { return ElementBuffer(count, _source.desc.length, _dice); }
+
+    ReferenceValues const &_base;
+    Dice &_dice;
+    EvaluatorScope const _scope;
+    std::unique_ptr<OsdExt::RefinementEvaluator> const _evaluator;
+    ElementBuffer const _source;
+};
+
 } // namespace
 
-void CheckLimits(OracleLevels const &levels) {
+bool IsOnFreeBoundary(TopologyRefiner const &refiner, TopologyLevel const &level, int vert) {
+    bool const isRule =
+        refiner.GetSchemeOptions().GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE;
+    auto const edges = level.GetVertexEdges(vert);
+    return isRule && std::any_of(edges.begin(), edges.end(), [&](int edge) {
+               return level.IsEdgeBoundary(edge) && !level.IsEdgeInfSharp(edge);
+           });
+}
+
+void CheckLimits(OracleLevels const &levels, Dice &dice) {
     ReferenceValues const &base = levels.values[0].levels[0];
     // A truncation has no limit of its own: level 1 is its base.
     int const first = levels.refiner.GetHexSchemeOptions().IsHexagonal() ? 0 : 1;
@@ -140,6 +184,8 @@ void CheckLimits(OracleLevels const &levels) {
     }
     LimitLevel parent = makeLimit<double>(levels.refiner, first, base);
     LimitLevel const inFloat = makeLimit<float>(levels.refiner, first, base);
+    LimitEvaluation evaluation(levels, dice);
+    evaluation.Check(first, parent);
     double const allowed = 2e-6 * std::max(1.0, GetSize(base));
     for (Eigen::Index row = 0; row < parent.points.rows(); ++row) {
         double const size =
@@ -153,6 +199,7 @@ void CheckLimits(OracleLevels const &levels) {
     for (int level = first + 1; level <= maxLevel; ++level) {
         LimitLevel child = makeLimit<double>(levels.refiner, level, base);
         checkNextLevel(levels, level - 1, parent, child);
+        evaluation.Check(level, child);
         parent = std::move(child);
     }
 }

@@ -185,7 +185,11 @@ void CheckOracleCase(OracleCase const &oracleCase) {
         CheckOrders(levels, dice);
     }
     if ((isHexagonal || isTruncation) && !oracleCase.isCoplanar && dice.IsOneOf(8)) {
-        CheckLimits(levels);
+        CheckLimits(levels, dice);
+    }
+    if (oracleCase.schemeType == FarExt::SchemeType::Hexagonal && !oracleCase.isCoplanar &&
+        oracleCase.level >= refiner->GetHexSchemeOptions().GetSurfaceLevel() && dice.IsOneOf(32)) {
+        CheckSurfaces(levels, dice);
     }
     if (dice.IsOneOf(2048)) {
         CheckThreads(oracleCase);

@@ -16,7 +16,8 @@ namespace OpenSubdivHex::Regression {
 
 /// \brief Refines the case and compares all ways to the same values with each other, and with the
 /// reference: topology, base faces, values of vertices, varying and face-varying values, tables, tables of some
-/// faces, evaluators, limits, other orders of faces and vertices, numbers of threads.
+/// faces, evaluators, limits, surfaces of base faces with their tessellations, streams and views, other orders of faces and
+/// vertices, numbers of threads.
 ///
 /// The dearer comparisons are made for a share of the cases, which OracleCase::checks chooses.
 /// Throws OracleFailure at the first difference.
@@ -80,9 +81,13 @@ void CheckTables(OracleLevels const &levels, Dice &dice);
 /// \brief Evaluators against the values and, where they are to be the same to the bit, each other.
 void CheckEvaluators(OracleLevels const &levels, Dice &dice);
 
-/// \brief Limit tables: weights that sum up and are bounded, and the same points and tangent planes
-/// from every level.
-void CheckLimits(OracleLevels const &levels);
+/// \brief Limit tables: weights that sum up and are bounded, the same points and tangent planes from
+/// every level, and points and derivatives that are those of RefinementEvaluator.
+void CheckLimits(OracleLevels const &levels, Dice &dice);
+
+/// \brief Surfaces of base faces, of one of the values: against the limits of vertices, at single places and
+/// in tessellations, streams and views.
+void CheckSurfaces(OracleLevels const &levels, Dice &dice);
 
 /// \brief Faces in other orders, begun elsewhere and turned over, and vertices of other numbers
 /// give the same surface.
@@ -90,6 +95,10 @@ void CheckOrders(OracleLevels const &levels, Dice &dice);
 
 /// One to three threads make the same bits, at a level that is large enough for them.
 void CheckThreads(OracleCase const &oracleCase);
+
+/// Whether a vertex is on a boundary of the paper's rule, and so has no limit.
+bool IsOnFreeBoundary(FarExt::TopologyRefiner const &refiner, FarExt::TopologyLevel const &level,
+                      int vert);
 
 /// The largest difference of two rows, infinite if one of them is not finite.
 double GetDifference(Eigen::RowVectorXd const &a, Eigen::RowVectorXd const &b);

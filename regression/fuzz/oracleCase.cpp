@@ -8,6 +8,7 @@
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <numeric>
 #include <set>
@@ -24,6 +25,7 @@ namespace {
 using Faces = std::vector<std::vector<int>>;
 
 constexpr int kMaxCorners = 44;
+constexpr int kMaxLatticeCorners = 150;
 constexpr float kSharpnesses[] = {10, 1, 2, 0.5f, 0.25f, 1.5f, 2.75f, 0.125f};
 
 /// Draws a mesh: a base of some kind, then some operations on it.
@@ -32,6 +34,7 @@ public:
     explicit MeshMaker(ByteSource &bytes) : _bytes(bytes) {}
 
     Faces Make() {
+        int maxCorners = kMaxCorners;
         switch (_bytes.Choose(8)) {
         case 0:
             makeGrid();
@@ -52,6 +55,10 @@ public:
             addVertices(3 + _bytes.Choose(6));
             addFace(_numVertices);
             break;
+        case 6:
+            makeLattice();
+            maxCorners = kMaxLatticeCorners;
+            break;
         default:
             makeSoup();
             break;
@@ -59,7 +66,7 @@ public:
         for (int i = _bytes.Choose(6); i > 0; --i) {
             change();
         }
-        while (countCorners() > kMaxCorners) {
+        while (countCorners() > maxCorners) {
             _faces.pop_back();
         }
         if (_faces.empty()) {
@@ -122,6 +129,33 @@ private:
             int const next = (i + 1) % n;
             _faces.push_back({i, next, n});
             _faces.push_back({next, i, n + 1});
+        }
+    }
+    /// A torus of quads, triangles or hexagons, large enough for faces that are in a regular lattice.
+    void makeLattice() {
+        int const width = 3 + _bytes.Choose(4);
+        int const height = 3 + _bytes.Choose(3);
+        int const faceSize = std::array{4, 3, 6}[std::size_t(_bytes.Choose(3))];
+        int const numColumns = faceSize == 6 ? 2 * width : width;
+        int const numRows = faceSize == 6 ? height / 2 * 2 : height;
+        addVertices(numColumns * numRows);
+        auto const vertex = [&](int x, int y) { return y % numRows * numColumns + x % numColumns; };
+        for (int y = 0; y < numRows; ++y) {
+            for (int i = 0; i < width; ++i) {
+                int const x = faceSize == 6 ? 2 * i + y % 2 : i; // of hexagons laid as bricks
+                int const a = vertex(x, y);
+                int const b = vertex(x + 1, y);
+                int const c = vertex(x + 1, y + 1);
+                int const d = vertex(x, y + 1);
+                if (faceSize == 4) {
+                    _faces.push_back({a, b, c, d});
+                } else if (faceSize == 3) {
+                    _faces.push_back({a, b, c});
+                    _faces.push_back({a, c, d});
+                } else {
+                    _faces.push_back({a, b, vertex(x + 2, y), vertex(x + 2, y + 1), c, d});
+                }
+            }
         }
     }
     /// Faces of many sizes around vertex 0, in a closed fan or an open one.

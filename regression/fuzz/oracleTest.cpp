@@ -32,9 +32,11 @@ TEST(Oracle, BytesMakeCasesOfAllKinds) {
     int numNonManifold = 0;
     int numWithAllTags = 0;
     int numRefined = 0;
+    int numLattices = 0;
     for (unsigned seed = 0; seed < 2000; ++seed) {
         OracleCase const oracleCase = makeCase(seed);
         Shape const &shape = oracleCase.shape;
+        numLattices += shape.GetNumCorners() > 100;
         faceSizes.insert(shape.faceSizes.begin(), shape.faceSizes.end());
         schemes.insert(int(oracleCase.schemeType) + 3 * int(oracleCase.firstStep) +
                        9 * int(oracleCase.isCoplanar));
@@ -59,6 +61,7 @@ TEST(Oracle, BytesMakeCasesOfAllKinds) {
     EXPECT_EQ(int(options.size()), 108);
     EXPECT_GT(numNonManifold, 300);
     EXPECT_GT(numWithAllTags, 15);
+    EXPECT_GT(numLattices, 50);
     EXPECT_GT(numRefined, 1000);
 }
 
