@@ -342,7 +342,7 @@ CellType::LatticeBorder const &CellType::GetLatticeBorder() const {
                 border.items[item].push_back(&GetBorderItem(turns.data(), item));
             }
         }
-        border.isAlike = true;
+        border.isAlike = border.items[0][0]->type->IsInLattice();
         for (std::size_t item = 0; item < 2 * numEdges; ++item) {
             CellType const *const type = border.items[item < numEdges ? 0 : numEdges][0]->type;
             border.isAlike = border.isAlike &&

@@ -122,8 +122,9 @@ public:
     /// 0, 1 and so on make of it.
     struct LatticeBorder {
         std::vector<std::vector<BorderItem const *>> items;
-        /// Whether all edges are of one type, and all vertices.  They are not where what one of them depends
-        /// on is cut off by a boundary, or has a vertex twice, as around a tube of few vertices.
+        /// Whether all edges are of one type, in a lattice themselves, and all vertices of one.  They are not
+        /// where what one of them depends on is cut off by a boundary, or has a vertex twice, as around a
+        /// tube of few vertices.
         bool isAlike;
     };
     LatticeBorder const &GetLatticeBorder() const;

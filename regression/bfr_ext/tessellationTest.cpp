@@ -453,6 +453,7 @@ TEST(TessellationSurface, BordersInCutLatticesAreThoseOfSinglePlaces) {
     for (int numU : {3, 4, 5}) {
         shapes.push_back(MakeTorus(numU, 8, TorusFaces::Triangles));
         shapes.push_back(MakeTorus(numU, 8, TorusFaces::Quads));
+        shapes.push_back(MakeTorus(numU, numU, TorusFaces::Quads));
     }
     for (Shape const &shape : shapes) {
         for (ReferenceMask const mask :
