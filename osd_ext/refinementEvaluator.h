@@ -123,6 +123,9 @@ public:
     /// its table gives, up to the rounding of floats, of which derivatives have more at each level,
     /// as they are differences of near values.
     ///
+    /// A control value that is not a number is in no more of what comes out than with that table, but in
+    /// lattices, where all vertices in a face of level 0 have it.
+    ///
     /// Where level 0 is a regular lattice of triangles, quads or hexagons, all vertices come from it:
     /// there a frame takes two to four times as long as Evaluate().  Elsewhere most come from hexagons of
     /// the levels before, six at a time: four to seven times as long on deep levels, of which the last

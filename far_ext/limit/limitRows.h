@@ -25,6 +25,15 @@ OPENSUBDIVHEX_API Status CheckLimitLevel(Hierarchy const &hierarchy,
 struct LimitRow {
     /// Whether source \p i has no part in any of the sums.
     bool IsNothing(int i) const { return weights[i] == 0 && du[i] == 0 && dv[i] == 0; }
+    /// Calls function(i) for the others: values that are no numbers are none when multiplied by 0, either.
+    template <typename FUNCTION>
+    void ForEachPart(FUNCTION const &function) const {
+        for (int i = 0; i < size; ++i) {
+            if (!IsNothing(i)) {
+                function(i);
+            }
+        }
+    }
 
     int size;
     Far::Index const *sources; ///< a vertex may come twice

@@ -133,13 +133,17 @@ void addVertices(LimitOrigins const &origins, int level, DeviceLimit &limit) {
         LimitRow const row = origins.GetRow(level, vert, sources);
         auto const [found, isNew] =
             firstWeights.try_emplace(row.du, std::uint32_t(limit.weights.size()));
-        for (int i = 0; i < row.size && isNew; ++i) {
-            limit.weights.insert(limit.weights.end(),
-                                 {float(row.weights[i]), float(row.du[i]), float(row.dv[i])});
-        }
-        limit.vertices.push_back({std::uint32_t(vert), std::uint32_t(row.size),
-                                  std::uint32_t(limit.sources.size()), found->second});
-        limit.sources.insert(limit.sources.end(), row.sources, row.sources + row.size);
+        std::size_t const firstSource = limit.sources.size();
+        row.ForEachPart([&](int i) {
+            limit.sources.push_back(std::uint32_t(row.sources[i]));
+            if (isNew) {
+                limit.weights.insert(limit.weights.end(),
+                                     {float(row.weights[i]), float(row.du[i]), float(row.dv[i])});
+            }
+        });
+        limit.vertices.push_back({std::uint32_t(vert),
+                                  std::uint32_t(limit.sources.size() - firstSource),
+                                  std::uint32_t(firstSource), found->second});
     }
 }
 

@@ -28,9 +28,10 @@ constexpr std::size_t kWindow = 8192;
 // Sets the places of a group's sources.
 void setPlaces(VertexGroup const &group, int member, LimitRow const &row, std::uint32_t *places) {
     std::uint32_t *place = places + group.firstPlace + member;
-    for (int i = 0; i < row.size; ++i, place += VertexGroup::kSize) {
+    row.ForEachPart([&](int i) {
         *place = std::uint32_t(row.sources[i]) * RegularFaceGroup::kPointStride;
-    }
+        place += VertexGroup::kSize;
+    });
 }
 
 } // namespace
@@ -98,11 +99,15 @@ void PreparedLimit::prepareVertices(LimitOrigins const &origins, LevelLimit &res
         LimitRow const row = origins.GetRow(level, vert, sources);
         // The sides of a vertex share the weights of its point.
         auto const [found, isNew] = firstWeights.try_emplace(row.du, _weights.size());
-        for (int i = 0; i < row.size && isNew; ++i) {
-            _weights.insert(_weights.end(),
-                            {float(row.weights[i]), float(row.du[i]), float(row.dv[i])});
-        }
-        others.push_back({vert, row.size, found->second});
+        int numSources = 0;
+        row.ForEachPart([&](int i) {
+            ++numSources;
+            if (isNew) {
+                _weights.insert(_weights.end(),
+                                {float(row.weights[i]), float(row.du[i]), float(row.dv[i])});
+            }
+        });
+        others.push_back({vert, numSources, found->second});
     }
     std::size_t numPlaces = 0;
     for (std::size_t begin = 0; begin < others.size(); begin += kWindow) {

@@ -15,7 +15,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -131,6 +133,35 @@ void expectLimits(TopologyRefiner const &refiner, int length, int gap = 2) {
 }
 
 } // namespace
+
+// No lattices, whose faces are made as a whole.
+TEST(LimitEvaluator, ValuesThatAreNoNumbersSpreadNoFurtherThanInTables) {
+    for (Shape const &shape : {GetShape("icosahedron"), GetFeatureShape("mixedSharpnessQuads")}) {
+        auto const refiner = createRefiner(shape, 1, true, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        auto const evaluator = RefinementEvaluator::Create(*refiner);
+        Osd::BufferDescriptor const desc(0, 1, 1);
+        for (int level = 0; level <= 1; ++level) {
+            Factory::Options options;
+            options.level = level;
+            auto const table = Factory::Create(*refiner, options);
+            ASSERT_TRUE(table);
+            for (int wrong = 0; wrong < shape.GetNumVertices(); ++wrong) {
+                std::vector<float> values = makeValues(shape.GetNumVertices());
+                values[std::size_t(wrong)] = std::numeric_limits<float>::quiet_NaN();
+                std::vector<float> points(std::size_t(table->GetNumStencils()));
+                ASSERT_TRUE(
+                    evaluator->EvaluateLimit(values.data(), desc, points.data(), desc, level));
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    auto const first = table->GetControlIndices().begin() + table->GetOffsets()[i];
+                    if (std::count(first, first + table->GetSizes()[i], wrong) == 0) {
+                        ASSERT_FALSE(std::isnan(points[i]))
+                            << shape.name << ", level " << level << ", vertex " << i;
+                    }
+                }
+            }
+        }
+    }
+}
 
 TEST(LimitEvaluator, IsThatOfLimitStencilTables) {
     for (Shape const &shape : GetAllShapes()) {
