@@ -106,8 +106,8 @@ public:
     explicit Tessellation(CellTree const &tree, Polyline const edges[] = nullptr,
                           Options options = Options());
 
-    /// Whether the arguments were as they have to be.
-    bool IsValid() const { return _parameterization.IsValid(); }
+    /// Whether the arguments were as they have to be, and it has not been moved from.
+    bool IsValid() const { return !_places.empty(); }
 
     /// The parameter plane of the face.
     Parameterization GetParameterization() const { return _parameterization; }
@@ -182,7 +182,7 @@ public:
     /// @{
 
     /// All facets.
-    int GetNumFacets() const { return int(_firstFacetIndices.size()) - 1; }
+    int GetNumFacets() const { return std::max(int(_firstFacetIndices.size()) - 1, 0); }
     /// 3, 4, or 0 for polygons.
     int GetFacetSize() const { return _facetSize; }
     /// Indices from one facet to the next; 0 for polygons.

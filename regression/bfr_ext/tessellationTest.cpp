@@ -232,6 +232,28 @@ TEST(Tessellation, IsInvalidForWrongArguments) {
     EXPECT_EQ(Tessellation(quad, -1).GetNumBoundaryCoords(), 0);
 }
 
+TEST(Tessellation, IsInvalidWhereItIsMovedFrom) {
+    for (bool const isTree : {false, true}) {
+        Tessellation from =
+            isTree ? Tessellation(BfrExt::CellTree(4, 2)) : Tessellation(Parameterization(4), 2);
+        int const numFacets = from.GetNumFacets();
+        Tessellation const to = std::move(from);
+        EXPECT_TRUE(to.IsValid());
+        EXPECT_EQ(to.GetNumFacets(), numFacets);
+        // NOLINTBEGIN(bugprone-use-after-move, clang-analyzer-cplusplus.Move)
+        EXPECT_FALSE(from.IsValid());
+        EXPECT_EQ(from.GetNumFacets(), 0);
+        EXPECT_EQ(from.GetNumCoords(), 0);
+        SurfaceSet<double> const surfaces(
+            *CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 0), GetShape("cube").positions);
+        std::vector<double> const control(3 * std::size_t(surfaces[0].GetNumControlPoints()), 1);
+        double untouched = 77;
+        surfaces[0].Evaluate(from, control.data(), 3, &untouched, 3);
+        EXPECT_EQ(untouched, 77);
+        // NOLINTEND(bugprone-use-after-move, clang-analyzer-cplusplus.Move)
+    }
+}
+
 // Refused before any memory is taken for them.
 TEST(Tessellation, IsInvalidForMoreIndicesThanAnIntCounts) {
     // A face of n sides has n (4^12 - 1)/3 half cells at level 12, of two triangles each.

@@ -542,9 +542,8 @@ void removeNormals(Arguments const &arguments, Mesh *mesh, Statistics *statistic
 }
 
 void print(std::string const &text) {
-    if (!(std::cout << text << std::flush)) {
-        throw FileError("standard output", "cannot be written");
-    }
+    std::cout << text;
+    FlushOutput();
 }
 
 void writeStatistics(Statistics const &statistics, std::string const &path) {

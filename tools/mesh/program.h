@@ -18,6 +18,13 @@ namespace OpenSubdivHex::Tools {
 
 enum ExitCode { kSuccess = 0, kFailure = 1, kBadUsage = 2 };
 
+/// Throws FileError where what was written to standard output has not come there.
+inline void FlushOutput() {
+    if (!std::cout.flush()) {
+        throw FileError("standard output", "cannot be written");
+    }
+}
+
 /// \brief What main does: reads the command line into \p app, calls work() and gives the exit code.
 ///
 /// Whatever they throw ends the program with one line, "PROGRAM: cause"; a CLI::ParseError, which
@@ -37,7 +44,10 @@ int RunProgram(CLI::App &app, int argc, char const *const *argv, WORK work) {
             app.parse(argc, argv);
             work();
         } catch (CLI::ParseError const &error) {
-            return app.exit(error) == 0 ? kSuccess : kBadUsage;
+            if (app.exit(error) != 0) {
+                return kBadUsage;
+            }
+            FlushOutput(); // help, or the version
         }
     } catch (std::bad_alloc const &) {
         return fail("not enough memory");

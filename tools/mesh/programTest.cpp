@@ -57,6 +57,19 @@ TEST(Program, TellsBadUsage) {
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
 }
 
+TEST(Program, TellsThatHelpCannotBeWritten) {
+    CLI::App app("", "program");
+    char const *const arguments[] = {"program", "--help"};
+    // As to a full disk.
+    std::streambuf *const output = std::cout.rdbuf(nullptr);
+    testing::internal::CaptureStderr();
+    int const status = RunProgram(app, 2, arguments, [] {});
+    std::cout.rdbuf(output);
+    EXPECT_EQ(status, kFailure);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+              "program: standard output: cannot be written\n");
+}
+
 TEST(Program, NumbersAreOneArgument) {
     std::vector<float> numbers;
     std::string input;
