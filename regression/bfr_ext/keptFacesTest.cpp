@@ -10,6 +10,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cstdint>
+#include <numeric>
 #include <thread>
 
 namespace OpenSubdivHex::Regression {
@@ -110,6 +113,62 @@ TEST(KeptFacesTest, TakeNoMoreMemoryThanTheyMay) {
         for (int face = 0; face < kNumFaces; ++face) {
             Kept::Face const *const found = kept.Find(0, face);
             ASSERT_TRUE(!found || found->GetPoints()[0] == face);
+        }
+    }
+}
+
+TEST(KeptFacesTest, LieWhereTheirTypesMay) {
+    using KeptPointers = BfrExt::internal::KeptFaces<int const *>;
+    KeptPointers kept(nullptr, 100, 1, kEnough);
+    int const type = 1;
+    // The largest takes more than a block.
+    for (int face = 0; face < 100; ++face) {
+        Indices points(std::size_t(face == 50 ? 30001 : 7 + face));
+        std::iota(points.begin(), points.end(), face);
+        kept.Add(0, face, &type, 3, points);
+        KeptPointers::Face const *const added = kept.Add(0, face, &type, 3, points);
+        ASSERT_TRUE(added);
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(added) % alignof(KeptPointers::Face), 0u);
+        EXPECT_EQ(added->type, &type);
+        EXPECT_EQ(Indices(added->GetPoints(), added->GetPoints() + points.size()), points);
+    }
+}
+
+TEST(KeptFacesTest, AreTheSameForAllThreads) {
+    constexpr int kNumFaces = 20000;
+    constexpr int kNumThreads = 2;
+    Kept kept(nullptr, kNumFaces, 1, 8 * kEnough);
+    std::vector<Kept::Face const *> added[kNumThreads];
+    for (int face = 0; face < kNumFaces; ++face) {
+        ASSERT_FALSE(kept.Add(0, face, face, 3, makePoints(face)));
+    }
+    // Each face is added by all at once.
+    std::vector<std::atomic<int>> numReady(kNumFaces);
+    std::vector<std::thread> threads;
+    threads.reserve(kNumThreads);
+    for (std::vector<Kept::Face const *> &ofThread : added) {
+        threads.emplace_back([&] {
+            for (int face = 0; face < kNumFaces; ++face) {
+                Indices const points = makePoints(face);
+                std::atomic<int> &ready = numReady[std::size_t(face)];
+                ++ready;
+                while (ready < kNumThreads) {
+                    std::this_thread::yield();
+                }
+                ofThread.push_back(kept.Add(0, face, face, 3, points));
+            }
+        });
+    }
+    for (std::thread &thread : threads) {
+        thread.join();
+    }
+    for (int face = 0; face < kNumFaces; ++face) {
+        Kept::Face const *const found = kept.Find(0, face);
+        ASSERT_TRUE(found);
+        ASSERT_EQ(found->type, face);
+        ASSERT_EQ(Indices(found->GetPoints(), found->GetPoints() + 9), makePoints(face));
+        for (std::vector<Kept::Face const *> const &ofThread : added) {
+            ASSERT_EQ(ofThread[std::size_t(face)], found) << face;
         }
     }
 }
