@@ -39,7 +39,7 @@ template <typename REAL>
 class PlaceMatrix {
 public:
     static constexpr std::size_t kLanes = 64 / sizeof(REAL);
-    static constexpr std::size_t kMaxWidth = 4 * kLanes;
+    static constexpr std::size_t kMaxWidth = 6 * kLanes;
 
     PlaceMatrix() = default;
     PlaceMatrix(std::size_t numPlaces, std::size_t numPoints)

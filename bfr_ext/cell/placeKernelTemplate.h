@@ -119,35 +119,50 @@ public:
         reinterpret_cast<LanesInMemory<Lanes> *>(to)->lanes = lanes;
     }
 
+    /// Stores kSize slots, from those of the components.
+    static void StoreSlots(Lanes const &x, Lanes const &y, Lanes const &z, REAL *to) {
+#ifdef OPENSUBDIVHEX_HAS_SHUFFLES
+        constexpr std::make_index_sequence<kSize> kIndices;
+        Store(interleave<0>(x, y, z, kIndices), to);
+        Store(interleave<1>(x, y, z, kIndices), to + kSize);
+        Store(interleave<2>(x, y, z, kIndices), to + 2 * kSize);
+        Store(interleave<3>(x, y, z, kIndices), to + 3 * kSize);
+#else
+        REAL numbers[3][kSize];
+        Store(x, numbers[0]);
+        Store(y, numbers[1]);
+        Store(z, numbers[2]);
+        for (std::size_t i = 0; i < kSize; ++i, to += 4) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                to[k] = numbers[k < 3 ? k : 2][i];
+            }
+        }
+#endif
+    }
+
     /// The numbers of the places of a block, component by component.
     using Numbers = REAL[3][PlaceMatrix<REAL>::kMaxWidth];
+
+    /// The same place by place, of three components and one of no matter.
+    using Slots = REAL[PlaceMatrix<REAL>::kMaxWidth][4];
 
     /// \param begin   the first place of the block
     /// \param count   places of the block that are wanted, the first ones
     /// \param points  as those of PlaceSums, from the first component on that is wanted
-    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES>
+    /// \param result  Numbers, or Slots of three components
+    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
     static void Form(PlaceMatrix<REAL> const &matrix, std::size_t begin, std::size_t count,
                      REAL const *points, std::ptrdiff_t stride, int const *indices,
-                     Numbers &numbers) {
+                     RESULT &result) {
         TileSums const tiles{matrix.GetNumPoints(), matrix.GetWidth(begin), points, stride,
                              indices};
         REAL const *const weights = matrix.GetBlock(begin);
         std::size_t const end = (count + kSize - 1) / kSize * kSize;
         std::size_t first = 0;
         for (; first + kMaxTile * kSize <= end; first += kMaxTile * kSize) {
-            tiles.form<kMaxTile, NUM_COMPONENTS, HAS_INDICES>(weights + first, numbers, first);
+            tiles.form<kMaxTile, NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
         }
-        if (first + 3 * kSize <= end) {
-            tiles.form<3, NUM_COMPONENTS, HAS_INDICES>(weights + first, numbers, first);
-            first += 3 * kSize;
-        }
-        if (first + 2 * kSize <= end) {
-            tiles.form<2, NUM_COMPONENTS, HAS_INDICES>(weights + first, numbers, first);
-            first += 2 * kSize;
-        }
-        if (first < end) {
-            tiles.form<1, NUM_COMPONENTS, HAS_INDICES>(weights + first, numbers, first);
-        }
+        tiles.formLast<kMaxTile - 1, NUM_COMPONENTS, HAS_INDICES>(weights, first, end, result);
     }
 
     std::size_t numPoints;
@@ -159,28 +174,60 @@ public:
 private:
     // Registers of places at most, so that the sums of all components are in registers: there are 32 of
     // the widest ones, and else 16.
-    static constexpr std::size_t kMaxTile = BYTES == 64 ? 4 : 3;
+    static constexpr std::size_t kMaxTile = BYTES == 64 ? 6 : 3;
+
+    /// What is left, of NUM_LANES registers of places at most.
+    template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
+    void formLast(REAL const *weights, std::size_t first, std::size_t end, RESULT &result) const {
+        if constexpr (NUM_LANES > 0) {
+            if (first + NUM_LANES * kSize == end) {
+                form<NUM_LANES, NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
+            } else {
+                formLast<NUM_LANES - 1, NUM_COMPONENTS, HAS_INDICES>(weights, first, end, result);
+            }
+        }
+    }
 
     /// NUM_LANES registers of places, from the first on, of each component.
-    template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES>
-    void form(REAL const *weights, Numbers &numbers, std::size_t first) const {
-        Lanes sums[NUM_COMPONENTS][NUM_LANES] = {};
+    template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
+    void form(REAL const *weights, std::size_t first, RESULT &result) const {
+        Lanes sums[NUM_LANES][NUM_COMPONENTS] = {};
+        weights += first;
         for (std::size_t i = 0; i < numPoints; ++i) {
             auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i);
             REAL const *const point = points + place * stride;
             for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                Lanes const ofLane = Load(weights + lane * kSize);
+                Lanes ofLane = Load(weights + lane * kSize);
+                keepInRegister(ofLane);
                 for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    sums[k][lane] += ofLane * point[k];
+                    sums[lane][k] += ofLane * point[k];
                 }
             }
             weights += width;
         }
-        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                Store(sums[k][lane], numbers[k] + first + lane * kSize);
-            }
+        for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
+            storeSums(sums[lane], first + lane * kSize, result);
         }
+    }
+
+    /// GCC would read the lanes again for each component, and machines read less than they multiply.
+    static void keepInRegister(Lanes &lanes) {
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
+        asm("" : "+v"(lanes));
+#else
+        static_cast<void>(lanes);
+#endif
+    }
+
+    template <std::size_t NUM_COMPONENTS>
+    static void storeSums(Lanes const (&sums)[NUM_COMPONENTS], std::size_t first,
+                          Numbers &numbers) {
+        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+            Store(sums[k], numbers[k] + first);
+        }
+    }
+    static void storeSums(Lanes const (&sums)[3], std::size_t first, Slots &slots) {
+        StoreSlots(sums[0], sums[1], sums[2], slots[first]);
     }
 };
 
@@ -243,31 +290,47 @@ private:
     template <std::size_t NUM_COMPONENTS>
     void formComponents(std::size_t component, PlaceOfRow const *firstRow,
                         PlaceOfRow const *lastRow) {
+        REAL *const results = _sums.results + component;
+        if constexpr (NUM_COMPONENTS == 3) {
+            form<3>(component, _slots);
+            write(firstRow, lastRow, [&](std::size_t i, std::ptrdiff_t place) {
+                std::memcpy(results + place, _slots[i], 3 * sizeof(REAL));
+            });
+        } else {
+            form<NUM_COMPONENTS>(component, _numbers);
+            write(firstRow, lastRow, [&](std::size_t i, std::ptrdiff_t place) {
+                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                    results[place + std::ptrdiff_t(k)] = _numbers[k][i];
+                }
+            });
+        }
+    }
+
+    template <std::size_t NUM_COMPONENTS, typename RESULT>
+    void form(std::size_t component, RESULT &result) const {
         REAL const *const points = _sums.points + component;
         if (_sums.indices) {
             Tiles::template Form<NUM_COMPONENTS, true>(_matrix, _begin, _count, points,
-                                                       _sums.stride, _sums.indices, _numbers);
+                                                       _sums.stride, _sums.indices, result);
         } else {
             Tiles::template Form<NUM_COMPONENTS, false>(_matrix, _begin, _count, points,
-                                                        _sums.stride, nullptr, _numbers);
+                                                        _sums.stride, nullptr, result);
         }
-        REAL *const results = _sums.results + component;
+    }
+
+    /// Calls function(place of the block, place in the results) for all that are wanted.
+    template <typename FUNCTION>
+    void write(PlaceOfRow const *firstRow, PlaceOfRow const *lastRow,
+               FUNCTION const &function) const {
+        std::ptrdiff_t const stride = _sums.resultStride;
         if (!_sums.rows) {
             for (std::size_t i = 0; i < _count; ++i) {
-                write<NUM_COMPONENTS>(i, results + std::ptrdiff_t(_begin + i) * _sums.resultStride);
+                function(i, std::ptrdiff_t(_begin + i) * stride);
             }
             return;
         }
         for (PlaceOfRow const *row = firstRow; row != lastRow; ++row) {
-            write<NUM_COMPONENTS>(std::size_t(row->row) - _begin,
-                                  results + std::ptrdiff_t(row->place) * _sums.resultStride);
-        }
-    }
-
-    template <std::size_t NUM_COMPONENTS>
-    void write(std::size_t i, REAL *result) const {
-        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            result[k] = _numbers[k][i];
+            function(std::size_t(row->row) - _begin, std::ptrdiff_t(row->place) * stride);
         }
     }
 
@@ -276,6 +339,7 @@ private:
     std::size_t _begin = 0;
     std::size_t _count = 0; // places of the block, up to the last one that is wanted
     typename Tiles::Numbers _numbers;
+    typename Tiles::Slots _slots;
 };
 
 /// The same of a mirrored matrix.
@@ -358,25 +422,10 @@ private:
     void interleaveNumbers(std::size_t width) {
         for (std::size_t image = 0; image < _matrix.GetParts().size(); ++image) {
             typename Tiles::Numbers const &numbers = _numbers[image];
-#ifdef OPENSUBDIVHEX_HAS_SHUFFLES
-            constexpr std::make_index_sequence<Tiles::kSize> kIndices;
-            REAL *to = _slots[image * kMaxWidth];
-            for (std::size_t i = 0; i < width; i += Tiles::kSize, to += 4 * Tiles::kSize) {
-                Lanes const x = Tiles::Load(numbers[0] + i);
-                Lanes const y = Tiles::Load(numbers[1] + i);
-                Lanes const z = Tiles::Load(numbers[2] + i);
-                Tiles::Store(interleave<0>(x, y, z, kIndices), to);
-                Tiles::Store(interleave<1>(x, y, z, kIndices), to + Tiles::kSize);
-                Tiles::Store(interleave<2>(x, y, z, kIndices), to + 2 * Tiles::kSize);
-                Tiles::Store(interleave<3>(x, y, z, kIndices), to + 3 * Tiles::kSize);
+            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
+                Tiles::StoreSlots(Tiles::Load(numbers[0] + i), Tiles::Load(numbers[1] + i),
+                                  Tiles::Load(numbers[2] + i), _slots[image * kMaxWidth + i]);
             }
-#else
-            for (std::size_t i = 0; i < width; ++i) {
-                for (std::size_t k = 0; k < 4; ++k) {
-                    _slots[image * kMaxWidth + i][k] = numbers[k < 3 ? k : 2][i];
-                }
-            }
-#endif
         }
     }
 
