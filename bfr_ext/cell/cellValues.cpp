@@ -27,11 +27,13 @@ void CellValues::setBase(int numPoints, double const *controlPoints, int length)
     _isRefined = false;
     _isInner = false;
     _faceSize = _plain ? GetNumChildren() - 1 : _type->GetNumCorners();
-    _points.resize(std::max(_points.size(), std::size_t(numPoints) * _paddedSize));
+    // Behind them one of zeros, for rings.
+    _points.resize(std::max(_points.size(), (std::size_t(numPoints) + 1) * _paddedSize));
     for (std::size_t i = 0; i < std::size_t(numPoints); ++i) {
         StepMatrix::Pad(controlPoints + i * std::size_t(length), std::size_t(length),
                         &_points[i * _paddedSize]);
     }
+    std::fill_n(&_points[std::size_t(numPoints) * _paddedSize], _paddedSize, 0.0);
 }
 
 int CellValues::GetNumChildren() const {

@@ -333,7 +333,7 @@ void RingValues<REAL>::Set(VertexRings const &rings, std::size_t numPoints, int 
     auto const grow = [](std::vector<REAL> &numbers, std::size_t count) {
         numbers.resize(std::max(numbers.size(), count));
     };
-    grow(_controlPoints, numPoints * _paddedSize);
+    grow(_controlPoints, (numPoints + 1) * _paddedSize);
     grow(_points, rings.GetNumPoints() * _paddedSize);
     grow(_center, _paddedSize);
     REAL *to = _controlPoints.data();
@@ -341,6 +341,7 @@ void RingValues<REAL>::Set(VertexRings const &rings, std::size_t numPoints, int 
         std::ptrdiff_t const point = indices ? indices[i] : std::ptrdiff_t(i);
         StepMatrix::Pad(points + point * stride, size, to);
     }
+    std::fill_n(to, _paddedSize, REAL(0));
     rings.Apply(_controlPoints.data(), _paddedSize, _points.data());
 }
 
@@ -353,29 +354,31 @@ void RingValues<REAL>::EvaluateVertex(RingCell const &vVertex, int ring, int fir
     _rings->ApplyCenter(ring, firstFace, _controlPoints.data(), _points.data(), _paddedSize,
                         _center.data());
     REAL const *const begin = &_points[_rings->GetBlock(ring, 0, step) * _paddedSize];
-    std::size_t numPoints = 0;
-    std::size_t first = 0;
-    for (int face = 0; face < ofRing.GetNumFaces(); ++face) {
-        first += face < firstFace ? ofRing.GetBlockSize(face, step) : 0;
-        numPoints += ofRing.GetBlockSize(face, step);
-    }
+    std::size_t const first = ofRing.GetOffset(firstFace, step);
+    std::size_t const numPoints = ofRing.GetOffset(ofRing.GetNumFaces(), step);
     std::vector<int> const &places = vVertex.GetPlaces().GetPlaces();
     assert(weights.size() == 1 + places.size());
     constexpr std::size_t kLanes = StepMatrix::kPadding;
+    constexpr std::size_t kNumSums = 4; // that do not wait for each other
+    std::size_t const numInFours = places.size() / kNumSums * kNumSums;
     for (std::size_t lane = 0; lane < _size; lane += kLanes) {
-        REAL sums[kLanes];
-        for (std::size_t i = 0; i < kLanes; ++i) {
-            sums[i] = weights[0] * _center[lane + i];
-        }
-        for (std::size_t k = 0; k < places.size(); ++k) {
+        Lanes<REAL> sums[kNumSums] = {Lanes<REAL>::Load(&_center[lane]) * weights[0]};
+        auto const add = [&](std::size_t k, Lanes<REAL> &sum) {
             std::size_t const place = first + std::size_t(places[k]);
             REAL const *const point =
                 begin + (place < numPoints ? place : place - numPoints) * _paddedSize + lane;
-            for (std::size_t i = 0; i < kLanes; ++i) {
-                sums[i] += weights[k + 1] * point[i];
+            sum = sum + Lanes<REAL>::Load(point) * weights[k + 1];
+        };
+        for (std::size_t k = 0; k < numInFours; k += kNumSums) {
+            for (std::size_t i = 0; i < kNumSums; ++i) {
+                add(k + i, sums[i]);
             }
         }
-        std::copy_n(sums, std::min(kLanes, _size - lane), result + lane);
+        for (std::size_t k = numInFours; k < places.size(); ++k) {
+            add(k, sums[k - numInFours]);
+        }
+        Lanes<REAL> const sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        std::copy_n(sum.values, std::min(kLanes, _size - lane), result + lane);
     }
 }
 

@@ -32,16 +32,20 @@ struct Ring {
     std::size_t GetBlockSize(int face, RingStep step) const {
         return GetNumOthers(step) + std::size_t(GetFaceSize(face));
     }
+    /// The points of the blocks from face 0 up to another one, or of all.
+    std::size_t GetOffset(int endFace, RingStep step) const {
+        std::size_t size = 0;
+        for (int face = 0; face < endFace; ++face) {
+            size += GetBlockSize(face, step);
+        }
+        return size;
+    }
     /// What a block has besides the F-vertices of its face, which come last.
     static constexpr std::size_t GetNumOthers(RingStep step) {
         return step == RingStep::First ? 1 : 9;
     }
     std::size_t GetNumPoints(RingStep step) const {
-        std::size_t size = 2 + GetBlockSize(-1, step) + GetBlockSize(0, step);
-        for (int face = 0; face < GetNumFaces(); ++face) {
-            size += GetBlockSize(face, step);
-        }
-        return size;
+        return 2 + GetBlockSize(-1, step) + GetBlockSize(0, step) + GetOffset(GetNumFaces(), step);
     }
     /// The point of its vertex, from face 0 or 1 on.
     std::size_t GetCenter(int firstFace, RingStep step) const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vertexRings.h"
 
-#include "lanes.h"
 #include "patchCorners.h"
 
 #include <algorithm>
@@ -53,7 +52,8 @@ public:
     };
 
     Builder(VertexRings &rings, LimitPatch const &patch, CellRules const &rules, Scratch &scratch)
-        : _rings(rings), _corners(patch), _rules(rules), _scratch(scratch) {
+        : _rings(rings), _corners(patch), _rules(rules), _scratch(scratch),
+          _zero(int(patch.sources.size())) {
         _scratch.program.clear();
         _scratch.weights.clear();
         _scratch.masks.clear();
@@ -193,11 +193,15 @@ private:
         add(int(runs.size()));
         for (std::size_t run = 0; run < runs.size(); ++run) {
             add(findWeight(runs[run].weight));
-            add(runs[run].numPoints);
+            int const numSteps = (runs[run].numPoints + int(kRunStep) - 1) / int(kRunStep);
+            add(numSteps);
             for (Scratch::RunPoint const &point : points) {
                 if (point.run == run) {
                     add(point.point);
                 }
+            }
+            for (int i = runs[run].numPoints; i < numSteps * int(kRunStep); ++i) {
+                add(_zero);
             }
         }
         return true;
@@ -207,6 +211,7 @@ private:
     PatchCorners const _corners;
     CellRules const &_rules;
     Scratch &_scratch;
+    int const _zero; // the point behind those of the patch
     bool _isInRange = true;
     // Of the ring that is added: the size of its first face, and whether it is in a lattice so far.
     int _latticeSize = 0;
@@ -248,90 +253,84 @@ float const *VertexRings::getWeights() const {
 }
 
 // Writes the block of a face, and returns where the program goes on.
-template <std::size_t PADDED_SIZE, typename REAL>
+template <typename REAL>
 VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL const *weights,
-                                                  REAL const *center, REAL const *points,
-                                                  std::size_t paddedSize, REAL *result) {
-    std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
+                                                  Lanes<REAL> const &center, REAL const *points,
+                                                  std::size_t stride, REAL *result) {
     constexpr std::size_t kTriangle = 3;
     std::size_t const faceSize = program[0];
     REAL const *const mask = weights + program[1];
     Number const *const verts = program + 2; // behind that which has the ring
     Number const *const row = verts + (faceSize - 1);
-    std::size_t const numRuns = row[1];
-    Number const *end = row + 2;
-    for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
-        auto const load = [&](std::size_t point) {
-            return Lanes<REAL>::Load(points + point * stride + first);
+    auto const load = [&](std::size_t point) { return Lanes<REAL>::Load(points + point * stride); };
+    auto const store = [&](Lanes<REAL> const &sum, std::size_t place) {
+        sum.Store(result + place * stride);
+    };
+    Lanes<REAL> sum = load(verts[0]) * weights[row[0]];
+    Number const *run = row + 2;
+    for (std::size_t i = row[1]; i > 0; --i) {
+        REAL const weight = weights[run[0]];
+        std::size_t numSteps = run[1];
+        run += 2;
+        static_assert(kRunStep == 4);
+        auto const loadStep = [&] {
+            return (load(run[0]) + load(run[1])) + (load(run[2]) + load(run[3]));
         };
-        auto const store = [&](Lanes<REAL> const &sum, std::size_t place) {
-            sum.Store(result + place * stride + first);
-        };
-        Lanes<REAL> sum = load(verts[0]) * weights[row[0]];
-        Number const *run = row + 2;
-        for (std::size_t i = 0; i < numRuns; ++i) {
-            std::size_t const numPoints = run[1];
-            Number const *const ofRun = run + 2;
-            Lanes<REAL> ofPoints = load(ofRun[0]);
-            for (std::size_t k = 1; k < numPoints; ++k) {
-                ofPoints = ofPoints + load(ofRun[k]);
-            }
-            sum = sum + ofPoints * weights[run[0]];
-            run = ofRun + numPoints;
+        Lanes<REAL> ofPoints = loadStep();
+        for (run += kRunStep; --numSteps > 0; run += kRunStep) {
+            ofPoints = ofPoints + loadStep();
         }
-        end = run;
-        store(sum, 0);
-        Lanes<REAL> const x = Lanes<REAL>::Load(center + first);
-        if (faceSize == kTriangle) {
-            Lanes<REAL> const y = load(verts[0]);
-            Lanes<REAL> const z = load(verts[1]);
-            store(x * mask[0] + (y + z) * mask[1], 1);
-            store(y * mask[0] + (z + x) * mask[1], 2);
-            store(z * mask[0] + (x + y) * mask[1], 3);
-            continue;
-        }
-        auto const getVertex = [&](std::size_t place) {
-            std::size_t const corner = place < faceSize ? place : place - faceSize;
-            return corner == 0 ? x : load(verts[corner - 1]);
-        };
-        // Masks are symmetrical.
-        for (std::size_t corner = 0; corner < faceSize; ++corner) {
-            Lanes<REAL> ofCorner = getVertex(corner) * mask[0];
-            std::size_t i = 1;
-            for (; 2 * i < faceSize; ++i) {
-                ofCorner =
-                    ofCorner + (getVertex(corner + i) + getVertex(corner + faceSize - i)) * mask[i];
-            }
-            if (2 * i == faceSize) {
-                ofCorner = ofCorner + getVertex(corner + i) * mask[i];
-            }
-            store(ofCorner, 1 + corner);
-        }
+        sum = sum + ofPoints * weight;
     }
-    return end;
+    store(sum, 0);
+    if (faceSize == kTriangle) {
+        Lanes<REAL> const y = load(verts[0]);
+        Lanes<REAL> const z = load(verts[1]);
+        store(center * mask[0] + (y + z) * mask[1], 1);
+        store(y * mask[0] + (z + center) * mask[1], 2);
+        store(z * mask[0] + (center + y) * mask[1], 3);
+        return run;
+    }
+    auto const getVertex = [&](std::size_t place) {
+        std::size_t const corner = place < faceSize ? place : place - faceSize;
+        return corner == 0 ? center : load(verts[corner - 1]);
+    };
+    // Masks are symmetrical.
+    for (std::size_t corner = 0; corner < faceSize; ++corner) {
+        Lanes<REAL> ofCorner = getVertex(corner) * mask[0];
+        std::size_t i = 1;
+        for (; 2 * i < faceSize; ++i) {
+            ofCorner =
+                ofCorner + (getVertex(corner + i) + getVertex(corner + faceSize - i)) * mask[i];
+        }
+        if (2 * i == faceSize) {
+            ofCorner = ofCorner + getVertex(corner + i) * mask[i];
+        }
+        store(ofCorner, 1 + corner);
+    }
+    return run;
 }
 
 // Writes the V-vertex of a ring, from one of its faces on.
-template <std::size_t PADDED_SIZE, typename REAL>
+template <typename REAL>
 void VertexRings::applyCenter(Ring const &ring, int firstFace, REAL vertexWeight, REAL faceWeight,
                               REAL const *center, REAL const *blocks, std::size_t paddedSize,
                               REAL *result) {
-    std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
-    int const numFaces = ring.GetNumFaces();
-    for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
-        REAL const *block = blocks + first;
-        for (int face = 0; face < firstFace; ++face) {
-            block += ring.GetBlockSize(face, RingStep::First) * stride;
-        }
-        Lanes<REAL> sum = Lanes<REAL>::Load(block + stride);
-        for (int i = firstFace + 1; i < firstFace + numFaces; ++i) {
-            block +=
-                ring.GetBlockSize(i - 1 < numFaces ? i - 1 : i - 1 - numFaces, RingStep::First) *
-                stride;
-            if (i == numFaces) {
-                block = blocks + first;
+    REAL const *const end =
+        blocks + ring.GetOffset(ring.GetNumFaces(), RingStep::First) * paddedSize;
+    REAL const *const begin = blocks + ring.GetOffset(firstFace, RingStep::First) * paddedSize;
+    for (std::size_t first = 0; first < paddedSize; first += Lanes<REAL>::kCount) {
+        REAL const *block = begin;
+        int face = firstFace;
+        Lanes<REAL> sum = Lanes<REAL>::Load(block + paddedSize + first);
+        for (int i = 1; i < ring.GetNumFaces(); ++i) {
+            block += ring.GetBlockSize(face, RingStep::First) * paddedSize;
+            ++face;
+            if (block == end) {
+                block = blocks;
+                face = 0;
             }
-            sum = sum + Lanes<REAL>::Load(block + stride);
+            sum = sum + Lanes<REAL>::Load(block + paddedSize + first);
         }
         (Lanes<REAL>::Load(center + first) * vertexWeight + sum * faceWeight).Store(result + first);
     }
@@ -343,26 +342,37 @@ void VertexRings::apply(REAL const *points, std::size_t paddedSize, REAL *result
     REAL const *const weights = getWeights<REAL>();
     Number const *program = _program.data();
     for (Ring const &ring : _rings) {
-        REAL const *const center = points + program[0] * stride;
-        REAL const vertexWeight = weights[program[2]];
-        REAL const faceWeight = weights[program[3]];
-        program += kHeaderSize;
         REAL *const centers = result + ring.GetCenter(0, RingStep::First) * stride;
         REAL *const copyOfLast = centers + 2 * stride;
-        REAL *const blocks = copyOfLast + ring.GetBlockSize(-1, RingStep::First) * stride;
-        REAL *block = blocks;
+        REAL *const blocks = result + ring.GetBlock(0, RingStep::First) * stride;
         REAL *last = blocks;
-        for (int const size : ring.faceSizes) {
-            last = block;
-            program = applyFace<PADDED_SIZE>(program, weights, center, points, paddedSize, block);
-            block += (1 + std::size_t(size)) * stride;
+        REAL *end = blocks;
+        Number const *face = program;
+        for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
+            auto const center = Lanes<REAL>::Load(points + program[0] * stride + first);
+            Lanes<REAL> sums[2] =
+                {}; // of the F-vertices at the vertex, from face 0 and from face 1 on
+            face = program + kHeaderSize;
+            end = blocks;
+            for (std::size_t i = 0; i < program[1]; ++i) {
+                last = end;
+                end += (1 + std::size_t(face[0])) * stride;
+                face = applyFace(face, weights, center, points + first, stride, last + first);
+                auto const ofFace = Lanes<REAL>::Load(last + stride + first);
+                sums[0] = i == 0 ? ofFace : sums[0] + ofFace;
+                sums[1] = i <= 1 ? ofFace : sums[1] + ofFace;
+            }
+            if (program[1] > 1) {
+                sums[1] = sums[1] + Lanes<REAL>::Load(blocks + stride + first);
+            }
+            for (std::size_t i = 0; i < 2; ++i) {
+                (center * weights[program[2]] + sums[i] * weights[program[3]])
+                    .Store(centers + i * stride + first);
+            }
         }
-        std::copy_n(last, ring.GetBlockSize(-1, RingStep::First) * stride, copyOfLast);
-        std::copy_n(blocks, ring.GetBlockSize(0, RingStep::First) * stride, block);
-        for (int i = 0; i < 2; ++i) {
-            applyCenter<PADDED_SIZE>(ring, i, vertexWeight, faceWeight, center, blocks, paddedSize,
-                                     centers + std::size_t(i) * stride);
-        }
+        std::copy(last, end, copyOfLast);
+        std::copy(blocks, blocks + ring.GetBlockSize(0, RingStep::First) * stride, end);
+        program = face;
     }
 }
 
@@ -403,10 +413,9 @@ void VertexRings::applyFirstCenter(std::size_t ring, int firstFace, REAL const *
                                    REAL const *rings, std::size_t paddedSize, REAL *result) const {
     REAL const *const weights = getWeights<REAL>();
     Number const *const program = &_program[_firsts[ring]];
-    applyCenter<0>(_rings[ring], firstFace, weights[program[2]], weights[program[3]],
-                   points + program[0] * paddedSize,
-                   rings + _rings[ring].GetBlock(0, RingStep::First) * paddedSize, paddedSize,
-                   result);
+    applyCenter(_rings[ring], firstFace, weights[program[2]], weights[program[3]],
+                points + program[0] * paddedSize,
+                rings + _rings[ring].GetBlock(0, RingStep::First) * paddedSize, paddedSize, result);
 }
 
 template void VertexRings::Apply(float const *, std::size_t, float *) const;

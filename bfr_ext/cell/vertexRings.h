@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_VERTEX_RINGS_H
 
 #include "innerRings.h"
+#include "lanes.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -45,6 +46,7 @@ public:
 
     /// \brief Writes the points of all rings from those of the patch.
     ///
+    /// \param points      of the patch, and behind them one whose numbers are 0
     /// \param paddedSize  numbers of a point, a multiple of StepMatrix::kPadding
     template <typename REAL>
     void Apply(REAL const *points, std::size_t paddedSize, REAL *result) const;
@@ -62,14 +64,18 @@ private:
     // What the program of a ring begins with: its vertex, its number of faces and the two weights of its
     // V-vertex.
     static constexpr std::size_t kHeaderSize = 4;
+    // Points that are added up at once: what a run has less is filled up with zeros, since loops of different
+    // lengths cost more than sums.
+    static constexpr std::size_t kRunStep = 4;
 
     class Builder;
     template <typename REAL>
     REAL const *getWeights() const;
-    template <std::size_t PADDED_SIZE, typename REAL>
-    static Number const *applyFace(Number const *program, REAL const *weights, REAL const *center,
-                                   REAL const *points, std::size_t paddedSize, REAL *result);
-    template <std::size_t PADDED_SIZE, typename REAL>
+    template <typename REAL>
+    static Number const *applyFace(Number const *program, REAL const *weights,
+                                   Lanes<REAL> const &center, REAL const *points,
+                                   std::size_t stride, REAL *result);
+    template <typename REAL>
     static void applyCenter(Ring const &ring, int firstFace, REAL vertexWeight, REAL faceWeight,
                             REAL const *center, REAL const *blocks, std::size_t paddedSize,
                             REAL *result);
