@@ -84,6 +84,13 @@ void Surface<REAL>::Clear() {
 }
 
 template <typename REAL>
+void Surface<REAL>::prefetch() const {
+    if (internal::PlainFaceType const *const plain = _type.GetPlain()) {
+        plain->PrefetchRings();
+    }
+}
+
+template <typename REAL>
 int Surface<REAL>::GetControlPointIndices(Index meshPointIndices[]) const {
     std::copy_n(getPoints(), GetNumControlPoints(), meshPointIndices);
     return GetNumControlPoints();

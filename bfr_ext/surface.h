@@ -6,6 +6,7 @@
 
 #include <opensubdiv/far/types.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -133,12 +134,18 @@ public:
     template <typename REAL_MESH>
     void GatherControlPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
                              REAL controlPoints[], PointDescriptor const &controlPointDesc) const {
+        prefetch();
         Index const *const points = getPoints();
         for (int k = 0; k < _numControlPoints; ++k) {
             REAL_MESH const *const from =
                 meshPoints + std::ptrdiff_t(points[k]) * meshPointDesc.stride;
-            for (int i = 0; i < meshPointDesc.size; ++i) {
-                controlPoints[i] = REAL(from[i]);
+            if (meshPointDesc.size == 3) { // by far the most
+                controlPoints[0] = REAL(from[0]);
+                controlPoints[1] = REAL(from[1]);
+                controlPoints[2] = REAL(from[2]);
+            } else {
+                std::transform(from, from + meshPointDesc.size, controlPoints,
+                               [](REAL_MESH number) { return REAL(number); });
             }
             controlPoints += controlPointDesc.stride;
         }
@@ -222,6 +229,8 @@ private:
         _keptPoints = keptPoints;
         _parameterization = Parameterization(size);
     }
+    // Has what evaluates it brought to the cache, while control points are gathered.
+    void prefetch() const;
     internal::BasePoint findPoint(REAL const uv[2]) const;
     bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
                           PointDescriptor const &pointDesc, REAL p[]) const;

@@ -4,6 +4,7 @@
 
 #include "far_ext/limit/limitPatch.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -12,6 +13,28 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// The step that has made the points of rings.
 enum class RingStep { First, Second };
 
+/// \brief The sizes of the faces of a ring.  Those of most are the same, and take no memory of their own, which
+/// would mostly not be in the cache.
+class RingFaceSizes {
+public:
+    /// \param sizes  of one face at least
+    explicit RingFaceSizes(std::vector<int> const &sizes)
+        : _numFaces(int(sizes.size())), _firstSize(sizes[0]) {
+        if (std::any_of(sizes.begin(), sizes.end(), [&](int size) { return size != sizes[0]; })) {
+            _sizes = sizes;
+        }
+    }
+
+    int GetNumFaces() const { return _numFaces; }
+    bool AreSame() const { return _sizes.empty(); }
+    int operator[](int face) const { return AreSame() ? _firstSize : _sizes[std::size_t(face)]; }
+
+private:
+    int _numFaces;
+    int _firstSize;
+    std::vector<int> _sizes; // none where they are the same
+};
+
 /// \brief A ring of VertexRings or InnerRings, as far as its points do not depend on where they come from.
 ///
 /// The points of a ring lie one behind the other.  First come two for its vertex, whose sums begin with
@@ -19,21 +42,22 @@ enum class RingStep { First, Second };
 /// before that of face 0, and face 0 has its own behind that of the last, too, so that the blocks
 /// from any of these on are one behind the other.
 struct Ring {
-    std::vector<int> faceSizes;
+    RingFaceSizes faceSizes;
     std::size_t firstPoints[2]; ///< by step: of all rings, that which is its vertex from face 0 on
     /// Whether the faces around the vertex and its neighbours are a piece of a regular lattice.
     bool isInLattice;
 
-    int GetNumFaces() const { return int(faceSizes.size()); }
+    int GetNumFaces() const { return faceSizes.GetNumFaces(); }
     /// The size of a face; face -1 is the last.
-    int GetFaceSize(int face) const {
-        return face < 0 ? faceSizes.back() : faceSizes[std::size_t(face)];
-    }
+    int GetFaceSize(int face) const { return faceSizes[face < 0 ? GetNumFaces() - 1 : face]; }
     std::size_t GetBlockSize(int face, RingStep step) const {
         return GetNumOthers(step) + std::size_t(GetFaceSize(face));
     }
     /// The points of the blocks from face 0 up to another one, or of all.
     std::size_t GetOffset(int endFace, RingStep step) const {
+        if (faceSizes.AreSame()) {
+            return std::size_t(endFace) * GetBlockSize(0, step);
+        }
         std::size_t size = 0;
         for (int face = 0; face < endFace; ++face) {
             size += GetBlockSize(face, step);

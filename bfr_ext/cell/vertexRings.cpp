@@ -4,6 +4,7 @@
 #include "patchCorners.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -46,6 +47,7 @@ public:
         std::vector<double> weights;
         std::vector<std::pair<int, int>> masks; // by size, the first of its weights
         std::vector<int> ring;
+        std::vector<int> faceSizes;
         std::vector<int> neighborRing;
         std::vector<Run> runs;
         std::vector<RunPoint> points;
@@ -64,9 +66,9 @@ public:
         if (_scratch.program.size() > kLastNumber || !_corners.FindRing(firstCorner, corners)) {
             return false;
         }
-        _rings._firsts.push_back(Number(_scratch.program.size()));
-        Ring ring = {{}, {_rings._numPoints, 0}, false};
-        ring.faceSizes.reserve(corners.size());
+        _rings._firsts.push_back(std::uint32_t(_scratch.program.size()));
+        std::vector<int> &sizes = _scratch.faceSizes;
+        sizes.clear();
         _latticeSize = _corners.GetFaceSize(firstCorner);
         _isInLattice = isRegular(corners);
         VertexVertexMask const mask = getVertexMask(corners);
@@ -78,7 +80,7 @@ public:
         int before = corners.back();
         for (int const corner : corners) {
             int const size = _corners.GetFaceSize(corner);
-            ring.faceSizes.push_back(size);
+            sizes.push_back(size);
             add(size);
             add(findMask(size));
             for (int i = 1; i < size; ++i) {
@@ -89,7 +91,7 @@ public:
             }
             before = corner;
         }
-        ring.isInLattice = _isInLattice;
+        Ring ring = {RingFaceSizes(sizes), {_rings._numPoints, 0}, _isInLattice};
         _rings._numPoints += ring.GetNumPoints(RingStep::First);
         _rings._rings.push_back(std::move(ring));
         return _isInRange;
@@ -97,9 +99,20 @@ public:
 
     void Finish() {
         std::vector<double> const &weights = _scratch.weights;
-        _rings._program = _scratch.program;
-        _rings._weights = weights;
-        _rings._floatWeights.assign(weights.begin(), weights.end());
+        std::vector<float> const floats(weights.begin(), weights.end());
+        std::vector<std::uint64_t> &block = _rings._block;
+        auto const getNumWords = [](auto const &array) {
+            return (array.size() * sizeof(array[0]) + sizeof(block[0]) - 1) / sizeof(block[0]);
+        };
+        _rings._firstOfProgram = std::uint32_t(getNumWords(floats));
+        _rings._firstDouble = _rings._firstOfProgram + std::uint32_t(getNumWords(_scratch.program));
+        block.resize(_rings._firstDouble + getNumWords(weights));
+        auto const copy = [&](auto const &array, std::size_t first) {
+            std::memcpy(&block[first], array.data(), array.size() * sizeof(array[0]));
+        };
+        copy(floats, 0);
+        copy(_scratch.program, _rings._firstOfProgram);
+        copy(weights, _rings._firstDouble);
     }
 
 private:
@@ -243,20 +256,12 @@ bool VertexRings::Init(LimitPatch const &patch, std::vector<int> const &corners,
     return true;
 }
 
-template <>
-double const *VertexRings::getWeights() const {
-    return _weights.data();
-}
-template <>
-float const *VertexRings::getWeights() const {
-    return _floatWeights.data();
-}
-
 // Writes the block of a face, and returns where the program goes on.
-template <typename REAL>
+template <std::size_t PADDED_SIZE, typename REAL>
 VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL const *weights,
                                                   Lanes<REAL> const &center, REAL const *points,
-                                                  std::size_t stride, REAL *result) {
+                                                  std::size_t paddedSize, REAL *result) {
+    std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
     constexpr std::size_t kTriangle = 3;
     std::size_t const faceSize = program[0];
     REAL const *const mask = weights + program[1];
@@ -339,8 +344,8 @@ void VertexRings::applyCenter(Ring const &ring, int firstFace, REAL vertexWeight
 template <std::size_t PADDED_SIZE, typename REAL>
 void VertexRings::apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
-    REAL const *const weights = getWeights<REAL>();
-    Number const *program = _program.data();
+    REAL const *const weights = getWeights(REAL());
+    Number const *program = getProgram();
     for (Ring const &ring : _rings) {
         REAL *const centers = result + ring.GetCenter(0, RingStep::First) * stride;
         REAL *const copyOfLast = centers + 2 * stride;
@@ -357,7 +362,8 @@ void VertexRings::apply(REAL const *points, std::size_t paddedSize, REAL *result
             for (std::size_t i = 0; i < program[1]; ++i) {
                 last = end;
                 end += (1 + std::size_t(face[0])) * stride;
-                face = applyFace(face, weights, center, points + first, stride, last + first);
+                face = applyFace<PADDED_SIZE>(face, weights, center, points + first, paddedSize,
+                                              last + first);
                 auto const ofFace = Lanes<REAL>::Load(last + stride + first);
                 sums[0] = i == 0 ? ofFace : sums[0] + ofFace;
                 sums[1] = i <= 1 ? ofFace : sums[1] + ofFace;
@@ -411,8 +417,8 @@ void VertexRings::ApplyCenter(int ring, int firstFace, REAL const *points, REAL 
 template <typename REAL>
 void VertexRings::applyFirstCenter(std::size_t ring, int firstFace, REAL const *points,
                                    REAL const *rings, std::size_t paddedSize, REAL *result) const {
-    REAL const *const weights = getWeights<REAL>();
-    Number const *const program = &_program[_firsts[ring]];
+    REAL const *const weights = getWeights(REAL());
+    Number const *const program = getProgram() + _firsts[ring];
     applyCenter(_rings[ring], firstFace, weights[program[2]], weights[program[3]],
                 points + program[0] * paddedSize,
                 rings + _rings[ring].GetBlock(0, RingStep::First) * paddedSize, paddedSize, result);

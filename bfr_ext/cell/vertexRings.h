@@ -32,6 +32,11 @@ public:
               InnerMasks &masks);
 
     std::vector<Ring> const &GetRings() const { return _rings; }
+    /// Has what Apply() reads in single precision brought to the cache, while something else is done.
+    void Prefetch() const {
+        PrefetchArray(_rings);
+        PrefetchArray(_block);
+    }
     /// Points of all rings, of all steps.
     std::size_t GetNumPoints() const { return _numPoints; }
     /// The last step that made points.
@@ -69,12 +74,20 @@ private:
     static constexpr std::size_t kRunStep = 4;
 
     class Builder;
-    template <typename REAL>
-    REAL const *getWeights() const;
-    template <typename REAL>
+    float const *getWeights(float /*precision*/) const {
+        return reinterpret_cast<float const *>(_block.data());
+    }
+    double const *getWeights(double /*precision*/) const {
+        return reinterpret_cast<double const *>(_block.data() + _firstDouble);
+    }
+    // What Apply() does, ring by ring.
+    Number const *getProgram() const {
+        return reinterpret_cast<Number const *>(_block.data() + _firstOfProgram);
+    }
+    template <std::size_t PADDED_SIZE, typename REAL>
     static Number const *applyFace(Number const *program, REAL const *weights,
                                    Lanes<REAL> const &center, REAL const *points,
-                                   std::size_t stride, REAL *result);
+                                   std::size_t paddedSize, REAL *result);
     template <typename REAL>
     static void applyCenter(Ring const &ring, int firstFace, REAL vertexWeight, REAL faceWeight,
                             REAL const *center, REAL const *blocks, std::size_t paddedSize,
@@ -87,10 +100,12 @@ private:
 
     std::size_t _numPoints = 0;
     std::vector<Ring> _rings;
-    std::vector<Number> _firsts;  // by ring, in the program
-    std::vector<Number> _program; // what Apply() does, ring by ring
-    std::vector<double> _weights; // those that differ
-    std::vector<float> _floatWeights;
+    std::vector<std::uint32_t> _firsts; // by ring, in the program
+    // The weights that differ in single precision, the program, and the weights in double precision: all that a
+    // face needs is read from end to end, and mostly not in the cache.
+    std::vector<std::uint64_t> _block;
+    std::uint32_t _firstOfProgram = 0;
+    std::uint32_t _firstDouble = 0;
     InnerRings _inner;
 };
 
