@@ -226,21 +226,18 @@ void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ri
                                         CellPlan::Node const &leaf, REAL const *points,
                                         int const *indices) {
     Leaf const ofLeaf = {type, ringCell, *leaf.leaf};
-    auto const sumUp = [&](PlaceMatrix<REAL> const &matrix, REAL *results) {
-        SumUpPlaces(matrix, {points, std::ptrdiff_t(_paddedSize), _size, indices, results,
-                             _resultStride, leaf.rows.data(), leaf.rows.size()});
-    };
     using Place = LeafPlaces::Place;
     if (_results) {
-        sumUp(getMatrices<REAL, 1>(
-                  PatternOf::Leaf, ofLeaf,
-                  [](CellStencil &stencil, Place const &place) {
-                      stencil.Find({place.sector, place.coords, {}}, false);
-                  },
-                  [](CellStencil const &stencil, std::size_t) -> std::vector<double> const & {
-                      return stencil.GetWeights();
-                  })[0],
-              _results);
+        PlaceMatrix<REAL> const &matrix = getMatrices<REAL, 1>(
+            PatternOf::Leaf, ofLeaf,
+            [](CellStencil &stencil, Place const &place) {
+                stencil.Find({place.sector, place.coords, {}}, false);
+            },
+            [](CellStencil const &stencil, std::size_t) -> std::vector<double> const & {
+                return stencil.GetWeights();
+            })[0];
+        SumUpPlaces(matrix, {points, std::ptrdiff_t(_paddedSize), _size, indices, _results,
+                             _resultStride, leaf.rows.data(), leaf.rows.size()});
         return;
     }
     auto const &matrices = getMatrices<REAL, 2>(
@@ -254,21 +251,19 @@ void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ri
         [](CellStencil const &stencil, std::size_t i) -> std::vector<double> const & {
             return i == 0 ? stencil.GetDuWeights() : stencil.GetDvWeights();
         });
-    sumUp(matrices[0], _derivatives[0]);
-    sumUp(matrices[1], _derivatives[1]);
-    REAL factors[2][2];
+    DerivativeSums<REAL> sums = {points,
+                                 std::ptrdiff_t(_paddedSize),
+                                 _size,
+                                 indices,
+                                 {},
+                                 {_derivatives[0], _derivatives[1]},
+                                 _resultStride,
+                                 leaf.rows.data(),
+                                 leaf.rows.size()};
     for (std::size_t i = 0; i < 2; ++i) {
-        std::copy_n(leaf.toCoords[i].begin(), 2, factors[i]);
+        std::copy_n(leaf.toCoords[i].begin(), 2, sums.factors[i]);
     }
-    for (PlaceOfRow const &row : leaf.rows) {
-        REAL *const du = _derivatives[0] + std::ptrdiff_t(row.place) * _resultStride;
-        REAL *const dv = _derivatives[1] + std::ptrdiff_t(row.place) * _resultStride;
-        for (std::size_t k = 0; k < _size; ++k) {
-            REAL const along[2] = {du[k], dv[k]};
-            du[k] = factors[0][0] * along[0] + factors[1][0] * along[1];
-            dv[k] = factors[0][1] * along[0] + factors[1][1] * along[1];
-        }
-    }
+    SumUpPlaces(matrices, sums);
 }
 
 template <typename REAL>

@@ -46,6 +46,16 @@ void SumUpPlaces(MirrorMatrix<double> const &matrix, PlaceSums<double> const &su
     sumUpWidest(matrix, sums);
 }
 
+void SumUpPlaces(std::array<PlaceMatrix<float>, 2> const &matrices,
+                 DerivativeSums<float> const &sums) {
+    sumUpWidest(matrices, sums);
+}
+
+void SumUpPlaces(std::array<PlaceMatrix<double>, 2> const &matrices,
+                 DerivativeSums<double> const &sums) {
+    sumUpWidest(matrices, sums);
+}
+
 void SumUpPlaces(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums) {
     sumUpWidest(matrix, sums);
 }

@@ -19,6 +19,16 @@ void SumUpPlacesAvx512(MirrorMatrix<double> const &matrix, PlaceSums<double> con
     sumUpPlaces<64>(matrix, sums);
 }
 
+void SumUpPlacesAvx512(std::array<PlaceMatrix<float>, 2> const &matrices,
+                       DerivativeSums<float> const &sums) {
+    sumUpPlaces<64>(matrices, sums);
+}
+
+void SumUpPlacesAvx512(std::array<PlaceMatrix<double>, 2> const &matrices,
+                       DerivativeSums<double> const &sums) {
+    sumUpPlaces<64>(matrices, sums);
+}
+
 void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums) {
     sumUpPlaces<64>(matrix, sums);
 }

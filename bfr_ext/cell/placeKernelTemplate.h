@@ -165,6 +165,29 @@ public:
         tiles.formLast<kMaxTile - 1, NUM_COMPONENTS, HAS_INDICES>(weights, first, end, result);
     }
 
+    /// \brief The same of derivatives, of which two matrices make what DerivativeSums joins.
+    ///
+    /// \param results  Numbers or Slots, by u and by v
+    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
+    static void FormDerivatives(std::array<PlaceMatrix<REAL>, 2> const &matrices, std::size_t begin,
+                                std::size_t count, DerivativeSums<REAL> const &sums,
+                                std::size_t component, RESULT (&results)[2]) {
+        constexpr std::size_t kLanesOfTile = kMaxTile >= 6 ? 4 : 1; // of two matrices
+        TileSums const tiles{matrices[0].GetNumPoints(), matrices[0].GetWidth(begin),
+                             sums.points + component, sums.stride, sums.indices};
+        REAL const *const weights[2] = {matrices[0].GetBlock(begin), matrices[1].GetBlock(begin)};
+        std::size_t const end = (count + kSize - 1) / kSize * kSize;
+        std::size_t first = 0;
+        for (; first + kLanesOfTile * kSize <= end; first += kLanesOfTile * kSize) {
+            tiles.formDerivatives<kLanesOfTile, NUM_COMPONENTS, HAS_INDICES>(weights, first,
+                                                                             sums.factors, results);
+        }
+        for (; first < end; first += kSize) {
+            tiles.formDerivatives<1, NUM_COMPONENTS, HAS_INDICES>(weights, first, sums.factors,
+                                                                  results);
+        }
+    }
+
     std::size_t numPoints;
     std::size_t width; // of the block
     REAL const *points;
@@ -207,6 +230,36 @@ private:
         }
         for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
             storeSums(sums[lane], first + lane * kSize, result);
+        }
+    }
+
+    template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
+    void formDerivatives(REAL const *const (&weights)[2], std::size_t first,
+                         REAL const (&factors)[2][2], RESULT (&results)[2]) const {
+        Lanes sums[NUM_LANES][2][NUM_COMPONENTS] = {};
+        std::size_t place = first;
+        for (std::size_t i = 0; i < numPoints; ++i, place += width) {
+            REAL const *const point =
+                points + std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i) * stride;
+            for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
+                for (std::size_t matrix = 0; matrix < 2; ++matrix) {
+                    Lanes ofLane = Load(weights[matrix] + place + lane * kSize);
+                    keepInRegister(ofLane);
+                    for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                        sums[lane][matrix][k] += ofLane * point[k];
+                    }
+                }
+            }
+        }
+        for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
+            for (std::size_t i = 0; i < 2; ++i) {
+                Lanes derivatives[NUM_COMPONENTS];
+                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                    derivatives[k] =
+                        sums[lane][0][k] * factors[0][i] + sums[lane][1][k] * factors[1][i];
+                }
+                storeSums(derivatives, first + lane * kSize, results[i]);
+            }
         }
     }
 
@@ -256,6 +309,59 @@ void mirrorFour(NUMBER (&numbers)[4]) {
     numbers[3] = differences[0] - differences[1];
 }
 
+/// Places of a block of a matrix.
+struct PlaceBlock {
+    std::size_t begin;
+    std::size_t count; ///< up to the last one that is wanted
+    /// Those that are wanted; null: all.
+    PlaceOfRow const *firstRow;
+    PlaceOfRow const *lastRow;
+};
+
+/// Calls function(block) for all blocks with places that are wanted.
+template <typename REAL, typename SUMS, typename FUNCTION>
+void forBlocks(PlaceMatrix<REAL> const &matrix, SUMS const &sums, FUNCTION const &function) {
+    std::size_t const numPlaces = matrix.GetNumPlaces();
+    PlaceOfRow const *row = sums.rows;
+    for (std::size_t begin = 0; begin < numPlaces; begin += PlaceMatrix<REAL>::kMaxWidth) {
+        PlaceBlock block = {begin, std::min(matrix.GetWidth(begin), numPlaces - begin), row, row};
+        if (sums.rows) {
+            row =
+                std::lower_bound(row, sums.rows + sums.numRows, int(begin + block.count),
+                                 [](PlaceOfRow const &other, int end) { return other.row < end; });
+            if (row == block.firstRow) {
+                continue;
+            }
+            block.lastRow = row;
+            block.count = std::size_t(row[-1].row) + 1 - begin;
+        }
+        function(block);
+    }
+}
+
+/// Writes what is wanted of a block, from TileSums::Slots or TileSums::Numbers.
+template <std::size_t NUM_COMPONENTS, typename REAL, typename NUMBERS>
+void writePlaces(PlaceBlock const &block, NUMBERS const &numbers, REAL *results,
+                 std::ptrdiff_t stride) {
+    auto const write = [&](std::size_t i, std::ptrdiff_t place) {
+        if constexpr (NUM_COMPONENTS == 3) {
+            std::memcpy(results + place * stride, numbers[i], 3 * sizeof(REAL));
+        } else {
+            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                results[place * stride + std::ptrdiff_t(k)] = numbers[k][i];
+            }
+        }
+    };
+    if (!block.firstRow) {
+        for (std::size_t i = 0; i < block.count; ++i) {
+            write(i, std::ptrdiff_t(block.begin + i));
+        }
+    }
+    for (PlaceOfRow const *row = block.firstRow; row != block.lastRow; ++row) {
+        write(std::size_t(row->row) - block.begin, std::ptrdiff_t(row->place));
+    }
+}
+
 /// Sums of the places of a matrix, block by block.
 template <std::size_t BYTES, typename REAL>
 class BlockSums {
@@ -264,82 +370,87 @@ public:
         : _matrix(matrix), _sums(sums) {}
 
     void Form() {
-        std::size_t const numPlaces = _matrix.GetNumPlaces();
-        PlaceOfRow const *row = _sums.rows;
-        for (_begin = 0; _begin < numPlaces; _begin += PlaceMatrix<REAL>::kMaxWidth) {
-            _count = std::min(_matrix.GetWidth(_begin), numPlaces - _begin);
-            PlaceOfRow const *const firstRow = row;
-            if (_sums.rows) {
-                row = std::lower_bound(
-                    row, _sums.rows + _sums.numRows, int(_begin + _count),
-                    [](PlaceOfRow const &other, int end) { return other.row < end; });
-                if (row == firstRow) {
-                    continue;
-                }
-                _count = std::size_t(row[-1].row) + 1 - _begin;
-            }
+        forBlocks(_matrix, _sums, [&](PlaceBlock const &block) {
             forComponents(_sums.size, [&](auto number, std::size_t component) {
-                this->template formComponents<number()>(component, firstRow, row);
+                if (_sums.indices) {
+                    this->template formComponents<number(), true>(component, block);
+                } else {
+                    this->template formComponents<number(), false>(component, block);
+                }
             });
-        }
+        });
     }
 
 private:
     using Tiles = TileSums<BYTES, REAL>;
 
-    template <std::size_t NUM_COMPONENTS>
-    void formComponents(std::size_t component, PlaceOfRow const *firstRow,
-                        PlaceOfRow const *lastRow) {
-        REAL *const results = _sums.results + component;
+    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES>
+    void formComponents(std::size_t component, PlaceBlock const &block) {
+        auto const form = [&](auto &result) {
+            Tiles::template Form<NUM_COMPONENTS, HAS_INDICES>(_matrix, block.begin, block.count,
+                                                              _sums.points + component,
+                                                              _sums.stride, _sums.indices, result);
+            writePlaces<NUM_COMPONENTS>(block, result, _sums.results + component,
+                                        _sums.resultStride);
+        };
         if constexpr (NUM_COMPONENTS == 3) {
-            form<3>(component, _slots);
-            write(firstRow, lastRow, [&](std::size_t i, std::ptrdiff_t place) {
-                std::memcpy(results + place, _slots[i], 3 * sizeof(REAL));
-            });
+            form(_slots);
         } else {
-            form<NUM_COMPONENTS>(component, _numbers);
-            write(firstRow, lastRow, [&](std::size_t i, std::ptrdiff_t place) {
-                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    results[place + std::ptrdiff_t(k)] = _numbers[k][i];
-                }
-            });
-        }
-    }
-
-    template <std::size_t NUM_COMPONENTS, typename RESULT>
-    void form(std::size_t component, RESULT &result) const {
-        REAL const *const points = _sums.points + component;
-        if (_sums.indices) {
-            Tiles::template Form<NUM_COMPONENTS, true>(_matrix, _begin, _count, points,
-                                                       _sums.stride, _sums.indices, result);
-        } else {
-            Tiles::template Form<NUM_COMPONENTS, false>(_matrix, _begin, _count, points,
-                                                        _sums.stride, nullptr, result);
-        }
-    }
-
-    /// Calls function(place of the block, place in the results) for all that are wanted.
-    template <typename FUNCTION>
-    void write(PlaceOfRow const *firstRow, PlaceOfRow const *lastRow,
-               FUNCTION const &function) const {
-        std::ptrdiff_t const stride = _sums.resultStride;
-        if (!_sums.rows) {
-            for (std::size_t i = 0; i < _count; ++i) {
-                function(i, std::ptrdiff_t(_begin + i) * stride);
-            }
-            return;
-        }
-        for (PlaceOfRow const *row = firstRow; row != lastRow; ++row) {
-            function(std::size_t(row->row) - _begin, std::ptrdiff_t(row->place) * stride);
+            form(_numbers);
         }
     }
 
     PlaceMatrix<REAL> const &_matrix;
     PlaceSums<REAL> const &_sums;
-    std::size_t _begin = 0;
-    std::size_t _count = 0; // places of the block, up to the last one that is wanted
     typename Tiles::Numbers _numbers;
     typename Tiles::Slots _slots;
+};
+
+/// The same of derivatives.
+template <std::size_t BYTES, typename REAL>
+class DerivativeBlockSums {
+public:
+    using Matrices = std::array<PlaceMatrix<REAL>, 2>;
+
+    DerivativeBlockSums(Matrices const &matrices, DerivativeSums<REAL> const &sums)
+        : _matrices(matrices), _sums(sums) {}
+
+    void Form() {
+        forBlocks(_matrices[0], _sums, [&](PlaceBlock const &block) {
+            forComponents(_sums.size, [&](auto number, std::size_t component) {
+                if (_sums.indices) {
+                    this->template formComponents<number(), true>(component, block);
+                } else {
+                    this->template formComponents<number(), false>(component, block);
+                }
+            });
+        });
+    }
+
+private:
+    using Tiles = TileSums<BYTES, REAL>;
+
+    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES>
+    void formComponents(std::size_t component, PlaceBlock const &block) {
+        auto const form = [&](auto &results) {
+            Tiles::template FormDerivatives<NUM_COMPONENTS, HAS_INDICES>(
+                _matrices, block.begin, block.count, _sums, component, results);
+            for (std::size_t i = 0; i < 2; ++i) {
+                writePlaces<NUM_COMPONENTS>(block, results[i], _sums.results[i] + component,
+                                            _sums.resultStride);
+            }
+        };
+        if constexpr (NUM_COMPONENTS == 3) {
+            form(_slots);
+        } else {
+            form(_numbers);
+        }
+    }
+
+    Matrices const &_matrices;
+    DerivativeSums<REAL> const &_sums;
+    typename Tiles::Numbers _numbers[2];
+    typename Tiles::Slots _slots[2];
 };
 
 /// The same of a mirrored matrix.
@@ -584,6 +695,11 @@ void sumUpPlaces(PlaceMatrix<REAL> const &matrix, ItemSums<REAL> const &sums) {
 template <std::size_t BYTES, typename REAL>
 void sumUpPlaces(PlaceMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums) {
     BlockSums<BYTES, REAL>(matrix, sums).Form();
+}
+template <std::size_t BYTES, typename REAL>
+void sumUpPlaces(std::array<PlaceMatrix<REAL>, 2> const &matrices,
+                 DerivativeSums<REAL> const &sums) {
+    DerivativeBlockSums<BYTES, REAL>(matrices, sums).Form();
 }
 template <std::size_t BYTES, typename REAL>
 void sumUpPlaces(MirrorMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums) {

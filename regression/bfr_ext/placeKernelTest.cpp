@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <random>
 #include <vector>
 
@@ -63,6 +65,43 @@ public:
             sums.numRows = _rows.size();
         }
         function(_matrix, sums);
+        return results;
+    }
+
+    /// Derivatives by u and behind them those by v, which this matrix and one of other stencils make.
+    using DerivativeFunction = void (*)(std::array<PlaceMatrix<REAL>, 2> const &,
+                                        BfrExt::internal::DerivativeSums<REAL> const &);
+    std::vector<REAL> FormDerivatives(DerivativeFunction function) const {
+        std::size_t const numResults = _numPlaces * _stride;
+        std::vector<REAL> results(2 * numResults, REAL(kUntouched));
+        std::array<PlaceMatrix<REAL>, 2> const matrices = {_matrix, makeOther()};
+        function(matrices, {_points.data(),
+                            std::ptrdiff_t(_stride),
+                            _size,
+                            _indices.empty() ? nullptr : _indices.data(),
+                            {{kFactors[0][0], kFactors[0][1]}, {kFactors[1][0], kFactors[1][1]}},
+                            {results.data(), results.data() + numResults},
+                            std::ptrdiff_t(_stride),
+                            _rows.empty() ? nullptr : _rows.data(),
+                            _rows.size()});
+        return results;
+    }
+
+    /// The same from the sums of each matrix.
+    std::vector<REAL> JoinSums() const {
+        Sums other(*this);
+        other._matrix = makeOther();
+        std::vector<REAL> const sums[2] = {Form(BfrExt::internal::SumUpPlacesPortable),
+                                           other.Form(BfrExt::internal::SumUpPlacesPortable)};
+        std::vector<REAL> results;
+        for (std::size_t derivative = 0; derivative < 2; ++derivative) {
+            for (std::size_t i = 0; i < sums[0].size(); ++i) {
+                REAL volatile const first = sums[0][i] * kFactors[0][derivative];
+                REAL volatile const second = sums[1][i] * kFactors[1][derivative];
+                results.push_back(sums[0][i] == REAL(kUntouched) ? REAL(kUntouched)
+                                                                 : first + second);
+            }
+        }
         return results;
     }
 
@@ -127,6 +166,19 @@ public:
     }
 
 private:
+    static constexpr REAL kFactors[2][2] = {{REAL(0.3), REAL(-1.7)}, {REAL(2.1), REAL(0.9)}};
+
+    // A matrix of the stencils in another order.
+    PlaceMatrix<REAL> makeOther() const {
+        PlaceMatrix<REAL> other(_numPlaces, _matrix.GetNumPoints());
+        for (std::size_t place = 0; place < _numPlaces; ++place) {
+            std::vector<double> stencil = _stencils[_numPlaces - 1 - place];
+            std::reverse(stencil.begin(), stencil.end());
+            other.Set(place, stencil);
+        }
+        return other;
+    }
+
     // Which points each of some items has.
     std::vector<std::vector<int>> makeItems(std::size_t numItems) const {
         std::vector<std::vector<int>> items(numItems);
@@ -159,6 +211,21 @@ void expectSameBits(Sums<REAL> const &sums) {
     }
     if (__builtin_cpu_supports("avx512f")) {
         ASSERT_EQ(sums.Form(BfrExt::internal::SumUpPlacesAvx512), expected);
+    }
+#endif
+}
+
+template <typename REAL>
+void expectSameBitsOfDerivatives(Sums<REAL> const &sums) {
+    std::vector<REAL> const expected = sums.JoinSums();
+    ASSERT_EQ(sums.FormDerivatives(BfrExt::internal::SumUpPlaces), expected);
+    ASSERT_EQ(sums.FormDerivatives(BfrExt::internal::SumUpPlacesPortable), expected);
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("avx2")) {
+        ASSERT_EQ(sums.FormDerivatives(BfrExt::internal::SumUpPlacesAvx2), expected);
+    }
+    if (__builtin_cpu_supports("avx512f")) {
+        ASSERT_EQ(sums.FormDerivatives(BfrExt::internal::SumUpPlacesAvx512), expected);
     }
 #endif
 }
@@ -203,7 +270,9 @@ void expectSameBits() {
                                  std::to_string(numPoints) + " points of " + std::to_string(size) +
                                  " numbers");
                     for (bool const isPicked : {false, true}) {
-                        expectSameBits(Sums<REAL>(numPlaces, numPoints, size, gap, isPicked));
+                        Sums<REAL> const sums(numPlaces, numPoints, size, gap, isPicked);
+                        expectSameBits(sums);
+                        expectSameBitsOfDerivatives(sums);
                     }
                 }
             }
