@@ -190,7 +190,7 @@ public:
     /// neighbours can be joined by comparing points.  Levels and polylines give a place the same point.
     /// That holds for any threads, orders, trees and levels of the inside; not at non-manifold edges and
     /// vertices, nor for face-varying values on the two sides of a seam; and last bits may differ on edges
-    /// around a non-manifold vertex that has a closed fan of faces among others.
+    /// and at vertices of the faces around a non-manifold vertex that has a closed fan of faces among others.
     ///
     /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the
     /// cache.  Inside of trees the control points are refined cell by cell instead, in double precision.

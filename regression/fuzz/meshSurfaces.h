@@ -19,7 +19,8 @@ struct MeshSurfaces {
     MeshSurfaces(OracleLevels const &levels, OracleLevels::Values const &values);
 
     bool Has(int face) const { return surfaces[std::size_t(face)].IsValid(); }
-    /// Whether all that its neighbours share with a face is the same to the bit.
+    /// Whether all that its neighbours share with a face is the same to the bit.  Around non-manifold
+    /// vertices last bits may differ.
     bool IsJoined(int face) const;
     /// Of the face.
     REAL const *GetControlPoints(int face) const { return controlPoints[std::size_t(face)].data(); }

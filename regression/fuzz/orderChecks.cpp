@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 namespace OpenSubdivHex::Regression {
 
@@ -89,6 +90,21 @@ ReferenceValues limitPoints(FarExt::TopologyRefiner const &refiner, ReferenceVal
     return points;
 }
 
+/// Whether a value comes back behind others around a vertex.  Which of its faces have it in common then
+/// depends on the face that comes first, as in Far.
+bool comesBack(TopologyLevel const &base, int vert, int channel) {
+    auto const faces = base.GetVertexFaces(vert);
+    auto const locals = base.GetVertexFaceLocalIndices(vert);
+    std::vector<int> runs;
+    for (int i = 0; i < faces.size(); ++i) {
+        int const value = base.GetFaceFVarValues(faces[i], channel)[locals[i]];
+        if (runs.empty() || runs.back() != value) {
+            runs.push_back(value);
+        }
+    }
+    return std::set<int>(runs.begin(), runs.end()).size() < runs.size();
+}
+
 void checkOrder(OracleLevels const &levels, Reordered const &other, ReferenceValues const *limits) {
     FarExt::Status status;
     auto const refiner = CreateRefiner(other.oracleCase, &status);
@@ -164,6 +180,11 @@ void checkOrder(OracleLevels const &levels, Reordered const &other, ReferenceVal
         std::vector<int> const otherCorners = valuesOf(refiner->GetLevel(1), numFaces);
         auto const place = [=](std::size_t corner) { return perCorner * corner + perCorner - 1; };
         for (std::size_t c = 0; c < other.corners.size(); ++c) {
+            // A truncation alone has new values on edges.
+            int const vert = levels.oracleCase.shape.faceVertices[c];
+            if (isTruncation && comesBack(levels.refiner.GetLevel(0), vert, channel)) {
+                continue;
+            }
             check(levels.values[i].levels[1].row(ownCorners[place(c)]),
                   otherValues[1].row(otherCorners[place(std::size_t(other.corners[c]))]),
                   "the value of channel " + std::to_string(channel) + " at corner " +

@@ -351,11 +351,20 @@ MeshSurfaces<REAL>::MeshSurfaces(OracleLevels const &levels,
 
 template <typename REAL>
 bool MeshSurfaces<REAL>::IsJoined(int face) const {
+    if (values.mode == FarExt::INTERPOLATE_FACE_VARYING) {
+        return false; // there may be seams
+    }
     TopologyLevel const &base = factory->GetLevel();
-    auto const verts = base.GetFaceVertices(face);
-    return values.mode != FarExt::INTERPOLATE_FACE_VARYING &&
-           std::none_of(verts.begin(), verts.end(),
-                        [&](int vert) { return base.IsVertexNonManifold(vert); });
+    for (int const vert : base.GetFaceVertices(face)) {
+        for (int const beside : base.GetVertexFaces(vert)) {
+            for (int const around : base.GetFaceVertices(beside)) {
+                if (base.IsVertexNonManifold(around)) {
+                    return false;
+                }
+            }
+        }
+    }
+    return true;
 }
 
 template <typename REAL>
