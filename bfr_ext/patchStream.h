@@ -235,6 +235,7 @@ public:
 
 private:
     friend class PatchNumbering;
+    class VertexPoints;
     class Worker;
     struct Batch;
 

@@ -218,6 +218,8 @@ public:
 private:
     friend class SurfaceFactory;
     friend class View;
+    template <typename>
+    friend class PatchStream;
 
     void set(std::shared_ptr<void const> const &owner, internal::BaseType const &type, int size,
              int numControlPoints, Index const *keptPoints) {

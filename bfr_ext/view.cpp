@@ -89,16 +89,25 @@ public:
         if (!(leastDepth > 0)) {
             return _pixelsAtDepth1 * byDistance;
         }
-        constexpr unsigned kNumCorners = 8;
-        double largestSquare = 1; // of secants
-        for (unsigned corner = 0; corner < kNumCorners; ++corner) {
-            Vector3 toCorner;
-            for (unsigned k = 0; k < 3; ++k) {
-                toCorner[k] = (corner >> k & 1U) != 0 ? toLargest[k] : toLeast[k];
-            }
-            double const depth = Dot(_forward, toCorner);
-            largestSquare = std::max(largestSquare, Dot(toCorner, toCorner) / (depth * depth));
+        // What each axis adds to the depth and to the square of the distance, at either end.
+        Vector3 depths[2];
+        Vector3 squares[2];
+        for (std::size_t k = 0; k < 3; ++k) {
+            depths[0][k] = _forward[k] * toLeast[k];
+            depths[1][k] = _forward[k] * toLargest[k];
+            squares[0][k] = toLeast[k] * toLeast[k];
+            squares[1][k] = toLargest[k] * toLargest[k];
         }
+        constexpr unsigned kNumCorners = 8;
+        double ofCorners[kNumCorners]; // squares of secants
+        for (unsigned corner = 0; corner < kNumCorners; ++corner) {
+            unsigned const ends[3] = {corner & 1U, corner >> 1U & 1U, corner >> 2U};
+            double const depth = depths[ends[0]][0] + depths[ends[1]][1] + depths[ends[2]][2];
+            double const square = squares[ends[0]][0] + squares[ends[1]][1] + squares[ends[2]][2];
+            ofCorners[corner] = square / (depth * depth);
+        }
+        double const largestSquare =
+            std::max(1.0, *std::max_element(std::begin(ofCorners), std::end(ofCorners)));
         double const byDepth = std::min(std::sqrt(largestSquare), _largestSecant) / leastDepth;
         return _pixelsAtDepth1 * std::min(byDepth, byDistance);
     }
@@ -611,7 +620,8 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
     CellForest forest(factory.GetMesh());
     forest._plans = bounds ? bounds->_plans : nullptr;
     bool const hasPrevious = previous && previous->GetNumFaces() == forest.GetNumFaces();
-    std::vector<std::vector<CellVisibility>> visibility(std::size_t(forest.GetNumFaces()));
+    std::vector<std::vector<CellVisibility>> visibility(counts ? std::size_t(forest.GetNumFaces())
+                                                               : 0);
     struct State {
         FaceSurface<REAL> surface;
         internal::FaceMeasures measures;
@@ -636,8 +646,11 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                     state.surface.Init(face);
                     View::setBase(state.surface.Get(), state.surface.GetControlPoints(), 3, cells);
                 };
-                forest.SetTree(face, makeTree(level.GetFaceSize(face), setBase, measures, last,
-                                              &visibility[std::size_t(face)]));
+                CellTree tree = makeTree(level.GetFaceSize(face), std::cref(setBase), measures,
+                                         last, counts ? &visibility[std::size_t(face)] : nullptr);
+                if (tree.IsRefined(0)) {
+                    forest.SetTree(face, std::move(tree));
+                }
                 if (bounds) {
                     bounds->trim(face, memory);
                 }

@@ -12,7 +12,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 namespace {
 
 // Of the intervals of a half cell that is one part, of what is bounded in all; its long side is 1.
-constexpr double kMaxRadius = 0.1;
+constexpr double kMaxRadius = 0.03;
 constexpr int kMinDepth = 2;
 constexpr int kMaxDepth = 8;
 constexpr int kMaxRest = 64;  // cells that may be left at the last depth

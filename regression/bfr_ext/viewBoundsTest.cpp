@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <random>
 
@@ -137,6 +138,16 @@ TEST(ViewBounds, StreamsOfForestsAreThoseMadeWithoutThem) {
     for (Shape const &shape : getShapes()) {
         SCOPED_TRACE(shape.name);
         Scene scene(shape);
+        // To the bit what the surface of a face gives, whichever faces were before.
+        auto const evaluate = [&](int face, BfrExt::Tessellation const &tessellation) {
+            BfrExt::Surface<double> surface;
+            scene.factory->InitVertexSurface(face, &surface);
+            std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+            surface.GatherControlPoints(scene.positions.data(), 3, control.data(), 3);
+            std::vector<double> points(3 * std::size_t(tessellation.GetNumCoords()));
+            surface.Evaluate(tessellation, control.data(), 3, points.data(), 3);
+            return points;
+        };
         auto const stream = [&](CellForest const &forest, int facetSize) {
             Patches patches;
             BfrExt::PatchStream<double>::Options options;
@@ -145,6 +156,8 @@ TEST(ViewBounds, StreamsOfForestsAreThoseMadeWithoutThem) {
             BfrExt::PatchStream<double>(*scene.factory, forest, options)
                 .Run(scene.positions.data(), 3, [&](auto const &patch) {
                     int const numCoords = patch.tessellation.GetNumCoords();
+                    EXPECT_EQ(evaluate(patch.face, patch.tessellation),
+                              std::vector<double>(patch.points, patch.points + 3 * numCoords));
                     patches.points[patch.face].assign(patch.points, patch.points + 3 * numCoords);
                     std::vector<int> &facets = patches.facets[patch.face];
                     facets.resize(std::size_t(patch.tessellation.GetNumFacetVertices()));
@@ -159,7 +172,7 @@ TEST(ViewBounds, StreamsOfForestsAreThoseMadeWithoutThem) {
         ViewBounds bounds(*scene.factory);
         for (int i = 0; i < 6; ++i) {
             View const view(scene.MakeCamera(),
-                            View::Options().SetFlatness(0.5 + i % 3).SetMaxLevel(4));
+                            View::Options().SetFlatness(std::pow(6.0, i % 3)).SetMaxLevel(4));
             CellForest const expected = view.MakeForest(*scene.factory, scene.positions.data(), 3);
             CellForest const forest = view.MakeForest(bounds, scene.positions.data(), 3);
             int const facetSize = i % 2 == 0 ? 0 : 3;
