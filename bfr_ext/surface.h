@@ -193,7 +193,8 @@ public:
     /// and at vertices of the faces around a non-manifold vertex that has a closed fan of faces among others.
     ///
     /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the
-    /// cache.  Inside of trees the control points are refined cell by cell instead, in double precision.
+    /// cache.  Inside of trees of more than 128 cells the control points are refined cell by cell instead,
+    /// in double precision.
     void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;
