@@ -41,18 +41,27 @@ struct Side {
 constexpr Side kSides[] = {{kEFaceSideA, kVertexA, kQuadA}, {kEFaceSideB, kVertexB, kQuadB}};
 
 // Calls add(side, local, kind) for the irregular corners of a face, in any order.  There are numRows rows
-// beside quads; the second is for corners that are not at the quad, where nothing else is irregular.
+// beside quads; the second is for the corners of V-vertices, which are an edge away from the quad, where
+// these are not irregular and there is one quad.
 template <typename ADD>
 void forEachCorner(Mark mark, int numRows, ADD const &add) {
+    auto const isIrregular = [mark](int local) {
+        return (mark & (local == kEFaceSideA.startVertex ? kVertexA : kVertexB)) != 0;
+    };
     for (Side const &side : kSides) {
         int const atQuad = side.places.fFaceEdge;
         if (mark & side.quad) {
             add(side, atQuad, IrregularCorner::kAlongQuad);
             add(side, atQuad + 1, IrregularCorner::kBehindQuad);
         }
-        if (mark == side.quad && numRows == QuadMask::kNumRows) {
-            add(side, atQuad + 2, IrregularCorner::kOneBehindQuad);
-            add(side, atQuad + 5, IrregularCorner::kOneBeforeQuad);
+        if ((mark & (kQuadA | kQuadB)) != side.quad || numRows < QuadMask::kNumRows) {
+            continue;
+        }
+        if (int const local = (atQuad + 2) % kHexagon; !isIrregular(local)) {
+            add(side, local, IrregularCorner::kOneBehindQuad);
+        }
+        if (int const local = (atQuad + 5) % kHexagon; !isIrregular(local)) {
+            add(side, local, IrregularCorner::kOneBeforeQuad);
         }
     }
     for (Side const &side : kSides) {

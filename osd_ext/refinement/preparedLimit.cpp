@@ -98,16 +98,16 @@ void PreparedLimit::prepareVertices(LimitOrigins const &origins, LevelLimit &res
     for (Index const vert : verts) {
         LimitRow const row = origins.GetRow(level, vert, sources);
         // The sides of a vertex share the weights of its point.
-        auto const [found, isNew] = firstWeights.try_emplace(row.du, _weights.size());
+        auto const firstWeight = firstWeights.try_emplace(row.du, _weights.size());
         int numSources = 0;
         row.ForEachPart([&](int i) {
             ++numSources;
-            if (isNew) {
+            if (firstWeight.second) {
                 _weights.insert(_weights.end(),
                                 {float(row.weights[i]), float(row.du[i]), float(row.dv[i])});
             }
         });
-        others.push_back({vert, numSources, found->second});
+        others.push_back({vert, numSources, firstWeight.first->second});
     }
     std::size_t numPlaces = 0;
     for (std::size_t begin = 0; begin < others.size(); begin += kWindow) {

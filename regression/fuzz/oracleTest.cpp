@@ -109,4 +109,23 @@ TEST(Oracle, PrintsStatements) {
     }
 }
 
+// Gaps that are closed give F-vertices a fourth face, so that a hexagon beside a quad has an irregular vertex at
+// one end.
+TEST(Oracle, HexagonsBesideQuadsAndIrregularVertices) {
+    OracleCase oracleCase;
+    oracleCase.shape.positions = {-1, 0, 0, -1, -1, 1, 0, -1, 1, -1, 0, -1, 0, -1, -1, 1, 0, 1};
+    oracleCase.shape.faceSizes = {4, 4};
+    oracleCase.shape.faceVertices = {0, 1, 3, 2, 4, 5, 1, 0};
+    oracleCase.sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    oracleCase.mask = ReferenceMask::Smooth;
+    oracleCase.schemeType = FarExt::SchemeType::Hexagonal;
+    oracleCase.firstStep = FarExt::FirstStep::None;
+    oracleCase.level = 3;
+    oracleCase.isCoplanar = true;
+    oracleCase.angleTolerance = 0.1;
+    oracleCase.closeGaps = true;
+    oracleCase.checks = 11708;
+    EXPECT_NO_THROW(CheckOracleCase(oracleCase));
+}
+
 } // namespace OpenSubdivHex::Regression
