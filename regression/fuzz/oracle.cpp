@@ -119,9 +119,12 @@ void checkReference(OracleLevels const &levels, OracleLevels::Values const &valu
                            levels.refiner.GetFVarLinearInterpolation(values.channel) ==
                                Sdc::Options::FVAR_LINEAR_ALL);
     ReferenceValues const &base = values.levels[0];
+    bool const isChaikin =
+        levels.oracleCase.sdcOptions.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
     checkRows(values.levels,
               isLinear ? match.InterpolateVaryingAll(base)
                        : match.InterpolateAll(levels.oracleCase.mask, base),
+              isChaikin ? kChaikinTolerance : kTolerance,
               "values of mode " + std::to_string(values.mode));
 }
 
