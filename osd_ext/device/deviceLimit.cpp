@@ -131,19 +131,19 @@ void addVertices(LimitOrigins const &origins, int level, DeviceLimit &limit) {
     Index sources[LimitOrigins::kMaxSources];
     for (Index const vert : origins.GetVertices(level)) {
         LimitRow const row = origins.GetRow(level, vert, sources);
-        auto const [found, isNew] =
+        auto const firstWeight =
             firstWeights.try_emplace(row.du, std::uint32_t(limit.weights.size()));
         std::size_t const firstSource = limit.sources.size();
         row.ForEachPart([&](int i) {
             limit.sources.push_back(std::uint32_t(row.sources[i]));
-            if (isNew) {
+            if (firstWeight.second) {
                 limit.weights.insert(limit.weights.end(),
                                      {float(row.weights[i]), float(row.du[i]), float(row.dv[i])});
             }
         });
         limit.vertices.push_back({std::uint32_t(vert),
                                   std::uint32_t(limit.sources.size() - firstSource),
-                                  std::uint32_t(firstSource), found->second});
+                                  std::uint32_t(firstSource), firstWeight.first->second});
     }
 }
 
