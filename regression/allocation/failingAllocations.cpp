@@ -116,8 +116,11 @@ extern "C" void *__wrap_malloc(std::size_t size) {
 }
 extern "C" void __wrap_free(void *memory) { release(memory); }
 
-// The other forms call these.
+// The other forms call these; AddressSanitizer has one of its own that does not throw.
 void *operator new(std::size_t size) { return allocateOrThrow(size); }
+void *operator new(std::size_t size, std::nothrow_t const &) noexcept {
+    return allocate(size, alignof(std::max_align_t));
+}
 void *operator new(std::size_t size, std::align_val_t alignment) {
     return allocateOrThrow(size, std::size_t(alignment));
 }
