@@ -50,8 +50,8 @@ private:
 /// \brief Evaluates the surfaces of base faces, some at a time, hands each to a *sink* and forgets it.
 ///
 /// So the memory does not depend on how much comes out: it is what Options::SetMaxMemory() says and
-/// what the cache of the factory has.  What comes out is a patch for each base face that is no hole:
-/// its tessellation, and the points of that; with them derivatives, and values of varying and
+/// what the cache of the factory has; for a CellForest also a point for each vertex of the mesh, and the faces
+/// that the factory keeps.  What comes out is a patch for each base face that is no hole: its tessellation, and the points of that; with them derivatives, and values of varying and
 /// face-varying data, where they are asked for.
 ///
 /// A face whose tessellation would take more memory than a fourth of that has a patch for each of its

@@ -339,6 +339,22 @@ void forBlocks(PlaceMatrix<REAL> const &matrix, SUMS const &sums, FUNCTION const
     }
 }
 
+/// Calls function(number, hasIndices, component, block) for all components, as forComponents() does, of all
+/// such blocks.  Whether the points have indices is an integral constant, too.
+template <typename REAL, typename SUMS, typename FUNCTION>
+void forBlockComponents(PlaceMatrix<REAL> const &matrix, SUMS const &sums,
+                        FUNCTION const &function) {
+    forBlocks(matrix, sums, [&](PlaceBlock const &block) {
+        forComponents(sums.size, [&](auto number, std::size_t component) {
+            if (sums.indices) {
+                function(number, std::true_type(), component, block);
+            } else {
+                function(number, std::false_type(), component, block);
+            }
+        });
+    });
+}
+
 /// Writes what is wanted of a block, from TileSums::Slots or TileSums::Numbers.
 template <std::size_t NUM_COMPONENTS, typename REAL, typename NUMBERS>
 void writePlaces(PlaceBlock const &block, NUMBERS const &numbers, REAL *results,
@@ -370,15 +386,11 @@ public:
         : _matrix(matrix), _sums(sums) {}
 
     void Form() {
-        forBlocks(_matrix, _sums, [&](PlaceBlock const &block) {
-            forComponents(_sums.size, [&](auto number, std::size_t component) {
-                if (_sums.indices) {
-                    this->template formComponents<number(), true>(component, block);
-                } else {
-                    this->template formComponents<number(), false>(component, block);
-                }
+        forBlockComponents(
+            _matrix, _sums,
+            [&](auto number, auto hasIndices, std::size_t component, PlaceBlock const &block) {
+                this->template formComponents<number(), hasIndices()>(component, block);
             });
-        });
     }
 
 private:
@@ -416,15 +428,11 @@ public:
         : _matrices(matrices), _sums(sums) {}
 
     void Form() {
-        forBlocks(_matrices[0], _sums, [&](PlaceBlock const &block) {
-            forComponents(_sums.size, [&](auto number, std::size_t component) {
-                if (_sums.indices) {
-                    this->template formComponents<number(), true>(component, block);
-                } else {
-                    this->template formComponents<number(), false>(component, block);
-                }
+        forBlockComponents(
+            _matrices[0], _sums,
+            [&](auto number, auto hasIndices, std::size_t component, PlaceBlock const &block) {
+                this->template formComponents<number(), hasIndices()>(component, block);
             });
-        });
     }
 
 private:
