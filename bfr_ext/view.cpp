@@ -6,6 +6,7 @@
 
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/pi.h"
 
 #include <algorithm>
 #include <array>
@@ -23,7 +24,6 @@ public:
     /// Whether the camera has a picture.  Of one that looks along what is up, that is replaced.
     bool Set(Camera &camera) {
         constexpr double kHalfTurn = 180;
-        constexpr double kPi = 3.14159265358979323846;
         _eye = ToVector3(camera.eye);
         Vector3 const toTarget = Subtract(ToVector3(camera.target), _eye);
         double const distance = GetLength(toTarget);
@@ -45,7 +45,7 @@ public:
         }
         Vector3 const rightAxis = Scale(right, 1 / GetLength(right));
         Vector3 const upAxis = Cross(rightAxis, _forward);
-        double const top = std::tan(camera.fieldOfView / 2 * kPi / kHalfTurn);
+        double const top = std::tan(camera.fieldOfView / 2 * FarExt::internal::kPi / kHalfTurn);
         double const side = top * camera.width / camera.height;
         // A point at depth 1 is outside from side or top on.
         for (std::size_t i = 0; i < 2; ++i) {

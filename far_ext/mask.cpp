@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mask.h"
 
+#include "vtr/pi.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,9 +11,7 @@ namespace OpenSubdivHex::FarExt {
 namespace {
 
 // Cosine in extended precision, so that those of 60 and 90 degrees come out exact in double.
-long double cosOfTurn(int j, int n) {
-    return std::cos(2.0L * 3.141592653589793238462643383279502884L * j / n);
-}
+long double cosOfTurn(int j, int n) { return std::cos(2.0L * internal::kLongPi * j / n); }
 
 long double averageWeight(int j, int n) {
     bool const isNeighbor = (j == 1 || j == n - 1);
@@ -101,7 +101,7 @@ double ComputeSectorShrink(FaceMask mask, double sectorSize) {
     bool const isAverage = mask == FaceMask::Average;
     double const alpha = isAverage ? 0.98 : 1.31;
     double const beta = isAverage ? 0.305 : 0.515;
-    return 1 / (alpha + beta * std::cos(3.14159265358979323846 / sectorSize));
+    return 1 / (alpha + beta * std::cos(internal::kPi / sectorSize));
 }
 
 VertexVertexMask ComputeVertexVertexMask(Interpolation interpolation, int numFaces) {

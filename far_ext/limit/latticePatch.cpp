@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "latticePatch.h"
 
+#include "far_ext/vtr/pi.h"
+
 #include <cmath>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -9,7 +11,6 @@ using Far::Index;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kTolerance = 1e-6; ///< of places, which are 1 apart
 
 using Point = LatticePatch::Point;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitMask.h"
 
+#include "far_ext/vtr/pi.h"
+
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -12,8 +14,6 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 using Vector = std::vector<double>;
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Steps that lead from a patch back to one that looks the same, as one linear map.
 class Cycle {

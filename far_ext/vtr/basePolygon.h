@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_VTR_BASE_POLYGON_H
 #define OPENSUBDIVHEX_FAR_EXT_VTR_BASE_POLYGON_H
 
+#include "pi.h"
+
 #include <array>
 #include <cmath>
 
@@ -48,8 +50,6 @@ public:
     }
 
 private:
-    static constexpr double kPi = 3.14159265358979323846;
-
     int const _size;
     double const _radius;
     double const _centerY;

@@ -2,6 +2,7 @@
 #include "coplanarEdges.h"
 
 #include "parallel.h"
+#include "pi.h"
 #include "refinementRows.h"
 
 #include <cmath>
@@ -80,7 +81,7 @@ auto CoplanarEdges::faceNormal(Index face) const -> Vector {
 }
 
 bool CoplanarEdges::isParallel(Vector const &normal0, Vector const &normal1) const {
-    constexpr double kDegrees = 180 / 3.14159265358979323846;
+    constexpr double kDegrees = 180 / kPi;
     double const angle = std::atan2(length(cross(normal0, normal1)), dot(normal0, normal1));
     return length(normal0) > 0 && length(normal1) > 0 && angle * kDegrees <= _angleTolerance;
 }

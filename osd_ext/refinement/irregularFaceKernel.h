@@ -11,8 +11,6 @@
 namespace OpenSubdivHex::OsdExt::internal {
 namespace {
 
-constexpr int kMinPlainSize = 3;
-
 // The weights of a plain face, in registers.
 struct PlainFaceQuads {
     explicit PlainFaceQuads(PlainFaceMask const &mask)
@@ -30,7 +28,7 @@ template <int SIZE, bool HAS_OPPOSITE, class VALUE>
 OPENSUBDIVHEX_INLINE VALUE sumPlainRow(PlainFaceQuads const &mask, VALUE const &all, VALUE const *v,
                                        int i) {
     VALUE point = all + mask.self * v[i];
-    if (SIZE > kMinPlainSize) {
+    if (SIZE > PlainFaceMask::kMinSize) {
         point = point + mask.neighbor * (v[(i + SIZE - 1) % SIZE] + v[(i + 1) % SIZE]);
     }
     if (HAS_OPPOSITE) {

@@ -2,6 +2,7 @@
 #include "limitKernel.h"
 
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/pi.h"
 #include "osd_ext/simdLevel.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
+using FarExt::internal::kPi;
 using FarExt::internal::kRegularFaceSize;
 using FarExt::internal::Level;
 using FarExt::internal::RegularFace;
@@ -19,7 +21,6 @@ using FarExt::internal::RegularFaceRows;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kSine = 0.86602540378443864676; ///< of 60 degrees
 constexpr int kPairs = 2;                        ///< among the sources, those between corners
 

@@ -22,7 +22,6 @@ using FarExt::internal::SortUnique;
 
 namespace {
 
-constexpr int kMinPlainSize = 3;
 constexpr int kMaxUnrolledSize = 6;
 /// Corners of a tile in the last level that is refined, a sixteenth of the level's between these
 /// bounds: 1.5 MiB of new points of length 3 at most.
@@ -568,7 +567,7 @@ PlainFaceMask MakePlainFaceMask(double const *weights, int size) {
         mask.weights.insert(mask.weights.end(), weights, weights + size);
         return mask;
     }
-    double const all = weights[size > kMinPlainSize ? 2 : 1];
+    double const all = weights[size > PlainFaceMask::kMinSize ? 2 : 1];
     mask.self = float(weights[0] - all);
     mask.neighbor = float(weights[1] - all);
     // Of two that are the same but for rounding, none is there for the kernel.

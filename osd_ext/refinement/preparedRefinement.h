@@ -18,6 +18,8 @@ namespace OpenSubdivHex::OsdExt::internal {
 /// So are all masks of 3 to 6 sides, the opposite vertex being there with 6 alone, and Average of
 /// any size.
 struct PlainFaceMask {
+    static constexpr int kMinSize = 3; ///< of faces; of such a face all are neighbors
+
     float self = 0;
     float neighbor = 0;
     float opposite = 0;
