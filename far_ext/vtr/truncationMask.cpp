@@ -78,29 +78,30 @@ auto TruncationMask::getShares(Index vert, SharpVertex const *sharp) const -> Ru
 // along it in a corner: those of a sector and of its mirror image.
 int TruncationMask::countSector(Index corner) const {
     // They are counted to both sides of the edge, up to sharp ones or all around.
+    auto const isBorderAt = [&](Index at) { return isBorder(_parent, _parent.faceEdges[at]); };
     Index const edge = _parent.faceEdges[corner];
     int count = 0;
-    auto const isLast = [&](Index bound) {
+    FaceCorner next = {_parent.edgeFaces[edge][_parent.GetSideCorner(edge, 0) == corner ? 0 : 1],
+                       corner};
+    bool isBorderBefore = false;
+    do {
         ++count;
-        return bound == edge || isBorder(_parent, bound);
-    };
-    FaceCorner at = {_parent.edgeFaces[edge][_parent.GetSideCorner(edge, 0) == corner ? 0 : 1],
-                     corner};
-    Index in = _parent.GetPrevCorner(at.face, at.corner);
-    while (!isLast(_parent.faceEdges[in])) {
-        at = getOtherSide(_parent, in);
-        in = _parent.GetPrevCorner(at.face, at.corner);
+        Index const in = _parent.GetPrevCorner(next.face, next.corner);
+        isBorderBefore = isBorderAt(in);
+        next = _parent.IsBoundary(_parent.faceEdges[in])
+                   ? FaceCorner{Far::INDEX_INVALID, Far::INDEX_INVALID}
+                   : getOtherSide(_parent, in);
+    } while (!isBorderBefore && next.corner != corner);
+    if (next.corner == corner) {
+        return count;
     }
-    Index const lastBound = _parent.faceEdges[in];
-    bool isDart = lastBound == edge;
-    if (!isDart) {
-        Index out = corner;
-        do {
-            at = getOtherSide(_parent, out);
-            out = _parent.GetNextCorner(at.face, at.corner);
-        } while (!isLast(_parent.faceEdges[out]));
-        isDart = _parent.faceEdges[out] == lastBound;
-    }
+    Index out = corner;
+    do {
+        ++count;
+        FaceCorner const at = getOtherSide(_parent, out);
+        out = _parent.GetNextCorner(at.face, at.corner);
+    } while (!isBorderAt(out));
+    bool const isDart = out == next.corner;
     return isDart ? count : 2 * count;
 }
 

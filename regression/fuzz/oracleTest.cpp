@@ -128,4 +128,19 @@ TEST(Oracle, HexagonsBesideQuadsAndIrregularVertices) {
     EXPECT_NO_THROW(CheckOracleCase(oracleCase));
 }
 
+// A vertex at both ends of one boundary edge is on no dart.
+TEST(Oracle, TruncatedVertexWithABoundaryEdgeToItself) {
+    OracleCase oracleCase;
+    oracleCase.shape.positions = {0.375, 1.75, 0.875, 0.25, -0.5, -0.75, -1.625, -1.5, -1.25};
+    oracleCase.shape.faceSizes = {3, 4};
+    oracleCase.shape.faceVertices = {2, 0, 1, 2, 2, 1, 0};
+    oracleCase.sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    oracleCase.mask = ReferenceMask::Average;
+    oracleCase.schemeType = FarExt::SchemeType::Hexagonal;
+    oracleCase.firstStep = FarExt::FirstStep::Truncate;
+    oracleCase.level = 1;
+    oracleCase.checks = 43784;
+    EXPECT_NO_THROW(CheckOracleCase(oracleCase));
+}
+
 } // namespace OpenSubdivHex::Regression
