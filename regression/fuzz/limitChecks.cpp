@@ -85,12 +85,9 @@ LimitLevel makeLimit(TopologyRefiner const &refiner, int level, ReferenceValues 
 void checkNextLevel(OracleLevels const &levels, int depth, LimitLevel const &parent,
                     LimitLevel const &child) {
     TopologyLevel const &level = levels.refiner.GetLevel(depth);
-    // Chaikin's sharpness is a float that depends, in its last bit, on the edge that a sum begins
-    // with.
-    bool const isChaikin =
-        levels.refiner.GetSchemeOptions().GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
     double const allowed =
-        (isChaikin ? 1e-5 : 1e-10) * std::max(1.0, GetSize(levels.values[0].levels[0]));
+        levels.oracleCase.GetTolerance(1e-10) * std::max(1.0, GetSize(levels.values[0].levels[0]));
+    double const allowedOfNormals = 1000 * levels.oracleCase.GetTolerance(1e-9);
     for (int side = 0; side < parent.sides.GetNumSides(); ++side) {
         int const vert = parent.sides.GetVertex(side);
         if (!IsOnFreeBoundary(levels.refiner, level, vert) &&
@@ -113,7 +110,7 @@ void checkNextLevel(OracleLevels const &levels, int depth, LimitLevel const &par
             Eigen::Vector3d(child.du.row(cRow)).cross(Eigen::Vector3d(child.dv.row(cRow)));
         double const area = parent.du.row(row).norm() * parent.dv.row(row).norm();
         if (normal.norm() > 0.05 * area && area > 1e-3 &&
-            !((normal.normalized() - cNormal.normalized()).norm() < (isChaikin ? 1e-2 : 1e-6))) {
+            !((normal.normalized() - cNormal.normalized()).norm() < allowedOfNormals)) {
             Fail("the normal of face ", face, " is ", normal.normalized().transpose(), " at level ",
                  depth, ", and then ", cNormal.normalized().transpose());
         }

@@ -29,6 +29,7 @@ struct MeshSurfaces {
     /// What points are the same up to.
     double GetTolerance() const;
 
+    OracleCase const &oracleCase;
     OracleLevels::Values const &values;
     int pointSize; ///< numbers
     std::unique_ptr<BfrExt::SurfaceFactory> factory;

@@ -23,8 +23,6 @@ namespace {
 
 /// What is the same up to some roundings, in double precision.
 constexpr double kTolerance = 1e-12;
-// Chaikin's rule makes means of sharpness, floats that depend on the order of their sums.
-constexpr double kChaikinTolerance = 1e-7;
 
 /// Far prints what it finds about meshes unless it is told not to.
 void silenceFar() {
@@ -119,12 +117,10 @@ void checkReference(OracleLevels const &levels, OracleLevels::Values const &valu
                            levels.refiner.GetFVarLinearInterpolation(values.channel) ==
                                Sdc::Options::FVAR_LINEAR_ALL);
     ReferenceValues const &base = values.levels[0];
-    bool const isChaikin =
-        levels.oracleCase.sdcOptions.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
     checkRows(values.levels,
               isLinear ? match.InterpolateVaryingAll(base)
                        : match.InterpolateAll(levels.oracleCase.mask, base),
-              isChaikin ? kChaikinTolerance : kTolerance,
+              levels.oracleCase.GetTolerance(kTolerance),
               "values of mode " + std::to_string(values.mode));
 }
 

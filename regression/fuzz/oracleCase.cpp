@@ -410,6 +410,11 @@ char const *toString(bool value) { return value ? "true" : "false"; }
 
 } // namespace
 
+double OracleCase::GetTolerance(double rounding) const {
+    bool const isChaikin = sdcOptions.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
+    return isChaikin ? std::max(1e-5, rounding) : rounding;
+}
+
 std::string Print(OracleCase const &oracleCase) {
     static char const *const kBoundaryNames[] = {"NONE", "EDGE_ONLY", "EDGE_AND_CORNER"};
     static char const *const kLinearNames[] = {"NONE",          "CORNERS_ONLY", "CORNERS_PLUS1",

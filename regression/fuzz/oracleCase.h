@@ -26,6 +26,12 @@ struct OracleCase {
     double angleTolerance = 0.1; ///< of a coplanar refinement
     bool closeGaps = true;       ///< of a coplanar refinement
     unsigned checks = 0;         ///< a number that all choices of checks follow from
+
+    /// \brief What values are the same up to, as a part of their size, where it is \p rounding but with
+    /// Chaikin's rule.
+    ///
+    /// That makes means of sharpness, floats whose last bits depend on the order of a sum.
+    double GetTolerance(double rounding) const;
 };
 
 /// Any bytes make a case.  Its mesh is what a Far::TopologyDescriptor may hold: no index is out of

@@ -112,10 +112,7 @@ void checkOrder(OracleLevels const &levels, Reordered const &other, ReferenceVal
         Fail("refused in another order: ", status.GetMessage());
     }
     ReferenceValues const base = GetPositions(other.oracleCase.shape);
-    // Chaikin's sharpness is a float, the last bit of which depends on the order of a sum.
-    bool const isChaikin =
-        refiner->GetSchemeOptions().GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
-    double const allowed = (isChaikin ? 1e-5 : 1e-12) * std::max(1.0, GetSize(base));
+    double const allowed = other.oracleCase.GetTolerance(1e-12) * std::max(1.0, GetSize(base));
     auto const others = InterpolateLevels(*refiner, base);
     auto const &own = levels.values[0].levels;
     auto const check = [&](Eigen::RowVectorXd const &a, Eigen::RowVectorXd const &b,

@@ -323,7 +323,7 @@ void checkSurfaces(OracleLevels const &levels, OracleLevels::Values const &value
 template <typename REAL>
 MeshSurfaces<REAL>::MeshSurfaces(OracleLevels const &levels,
                                  OracleLevels::Values const &valuesOfCase)
-    : values(valuesOfCase), pointSize(int(values.levels[0].cols())) {
+    : oracleCase(levels.oracleCase), values(valuesOfCase), pointSize(int(values.levels[0].cols())) {
     Status status;
     factory = BfrExt::SurfaceFactory::Create(levels.refiner, &status);
     if (!factory) {
@@ -383,7 +383,7 @@ ReferenceValues MeshSurfaces<REAL>::Evaluate(int face, REAL const uv[2]) const {
 
 template <typename REAL>
 double MeshSurfaces<REAL>::GetTolerance() const {
-    return (sizeof(REAL) == sizeof(double) ? 4e-9 : 1e-4) *
+    return oracleCase.GetTolerance(sizeof(REAL) == sizeof(double) ? 4e-9 : 1e-4) *
            std::max(1.0, GetSize(values.levels[0]));
 }
 
