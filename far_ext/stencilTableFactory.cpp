@@ -198,19 +198,14 @@ std::vector<std::vector<Index>> findRows(StencilPlan const &plan, StencilSelecti
 
 template <typename OPTIONS>
 StencilPlan makePlan(TopologyRefiner const &refiner, OPTIONS const &options) {
-    int const channel =
-        options.interpolationMode == INTERPOLATE_FACE_VARYING ? options.fvarChannel : -1;
-    int const lastLevel = std::min(options.maxLevel, refiner.GetMaxLevel());
-    int const firstStored = options.generateIntermediateLevels ? 1 : std::max(1, lastLevel);
-    StencilPlan plan = {refiner.GetHierarchy(),
-                        refiner.GetHexSchemeOptions(),
-                        channel,
-                        internal::GetModeInterpolation(refiner, options.interpolationMode, channel),
-                        options.factorizeIntermediateLevels,
-                        lastLevel,
-                        firstStored,
-                        options.factorizeIntermediateLevels ? 1 : firstStored,
-                        0};
+    StencilPlan plan = {refiner.GetHierarchy(), refiner.GetHexSchemeOptions()};
+    plan.channel = options.interpolationMode == INTERPOLATE_FACE_VARYING ? options.fvarChannel : -1;
+    plan.interpolation =
+        internal::GetModeInterpolation(refiner, options.interpolationMode, plan.channel);
+    plan.factorize = options.factorizeIntermediateLevels;
+    plan.lastLevel = std::min(options.maxLevel, refiner.GetMaxLevel());
+    plan.firstStored = options.generateIntermediateLevels ? 1 : std::max(1, plan.lastLevel);
+    plan.firstBuilt = plan.factorize ? 1 : plan.firstStored;
     if (options.generateControlVerts) {
         plan.numControlStencils = plan.GetNumVertices(0);
     }

@@ -16,8 +16,10 @@ constexpr double kOne = 1;
 // That of a table which stores no level.
 StencilPlan makePlan(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
                      int lastLevel) {
-    return {hierarchy, schemeOptions, -1, Interpolation::Vertex, true, lastLevel, lastLevel + 1, 1,
-            0};
+    StencilPlan plan = {hierarchy, schemeOptions};
+    plan.lastLevel = lastLevel;
+    plan.firstStored = lastLevel + 1;
+    return plan;
 }
 
 } // namespace

@@ -37,13 +37,13 @@ struct StencilPlan {
 
     Hierarchy const &hierarchy;
     HexSchemeOptions schemeOptions;
-    int channel; ///< face-varying channel, or -1
-    Interpolation interpolation;
-    bool factorize;
-    int lastLevel;
-    int firstStored;          ///< in the table, behind the control vertices
-    int firstBuilt;           ///< as a source of later levels, or to be stored
-    Index numControlStencils; ///< that come first in the table
+    int channel = -1; ///< face-varying channel, or -1
+    Interpolation interpolation = Interpolation::Vertex;
+    bool factorize = true;
+    int lastLevel = 0;
+    int firstStored = 1;          ///< in the table, behind the control vertices
+    int firstBuilt = 1;           ///< as a source of later levels, or to be stored
+    Index numControlStencils = 0; ///< that come first in the table
 };
 
 } // namespace OpenSubdivHex::FarExt::internal
