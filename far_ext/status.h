@@ -40,7 +40,8 @@ enum class ComponentType {
 
 /// \brief What a Warning is about.
 enum class WarningCode {
-    InconsistentOrientation ///< edges that both of their faces run in the same direction
+    InconsistentOrientation, ///< edges that both of their faces run in the same direction
+    NonManifoldEdges         ///< other edges that come apart, as those of three faces and more
 };
 
 /// \brief Something that was noticed without a failure: the result is what the message says.

@@ -35,8 +35,9 @@ public:
     ///
     /// Non-manifold edges and vertices are infinitely sharp, as in Far: vertices stay, unless they
     /// lie inside of a curve that three or more sheets share.  An edge that its two faces run in the
-    /// same direction is non-manifold; \p status then has a Warning of
-    /// WarningCode::InconsistentOrientation.  A vertex that a face has several times is non-manifold
+    /// same direction is non-manifold.  \p status has a Warning of these,
+    /// WarningCode::InconsistentOrientation, and one of other non-manifold edges,
+    /// WarningCode::NonManifoldEdges.  A vertex that a face has several times is non-manifold
     /// and stays.  With VTX_BOUNDARY_NONE all boundaries follow the paper's rule, whatever sharpness
     /// they have, and holes beside a boundary are not taken over, since Far tags all faces there as
     /// holes.

@@ -44,7 +44,9 @@ void BindErrors(py::module_ &module) {
         .value("LEVEL", FarExt::ComponentType::Level);
     py::enum_<FarExt::WarningCode>(module, "WarningCode", "What a StatusWarning is about.")
         .value("INCONSISTENT_ORIENTATION", FarExt::WarningCode::InconsistentOrientation,
-               "Edges that both of their faces run in the same direction.");
+               "Edges that both of their faces run in the same direction.")
+        .value("NON_MANIFOLD_EDGES", FarExt::WarningCode::NonManifoldEdges,
+               "Other edges that come apart, as those of three faces and more.");
     statusError = addClass(module, "StatusError",
                            "A failure that the library reports: a mesh or an argument that it "
                            "refuses.\n\n"

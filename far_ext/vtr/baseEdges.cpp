@@ -355,64 +355,87 @@ private:
     std::vector<std::vector<Index>> _boundaryEdges; // by range of corners
 };
 
-// Notes the edges that two faces, and no others, run in the same direction.
-class OrientationWarning {
+// Counts the edges of the base that come apart, and tells the first ones: those that two faces, and no
+// others, run in the same direction, and all others.
+class ApartEdges {
 public:
-    explicit OrientationWarning(Level const &level) : _level(level) {}
+    explicit ApartEdges(Level const &level) : _level(level) {}
 
-    void Inspect(ApartSide const *begin, ApartSide const *end) {
-        if (end - begin != 2 || getFace(begin[0]) == getFace(begin[1]) ||
-            getStart(begin[0]) != getStart(begin[1]) || getStart(begin[0]) == getEnd(begin[0])) {
-            return;
-        }
-        if (_count++ == 0) {
-            _first.assign(begin, end);
+    void Add(ApartSide const *begin, ApartSide const *end) {
+        Found &found = isInconsistent(begin, end) ? _inconsistent : _nonManifold;
+        if (found.count++ == 0) {
+            found.first.assign(begin, end);
         }
     }
     Status GetStatus() const {
         Status status;
-        if (_count > 0) {
+        if (_nonManifold.count > 0) {
+            status.AddWarning({WarningCode::NonManifoldEdges, ComponentType::Edge,
+                               _nonManifold.first[0].edge, _nonManifold.count,
+                               describeNonManifold()});
+        }
+        if (_inconsistent.count > 0) {
             status.AddWarning({WarningCode::InconsistentOrientation, ComponentType::Edge,
-                               _first[0].edge, _count, describe()});
+                               _inconsistent.first[0].edge, _inconsistent.count,
+                               describeInconsistent()});
         }
         return status;
     }
 
 private:
+    struct Found {
+        std::vector<ApartSide> first; // sides of the first edge
+        std::int64_t count = 0;
+    };
+
     Index getFace(ApartSide const &side) const { return _level.FindFaceOfCorner(side.corner); }
     Index getStart(ApartSide const &side) const { return _level.faceVerts[side.corner]; }
     Index getEnd(ApartSide const &side) const {
         return _level.faceVerts[_level.GetNextCorner(getFace(side), side.corner)];
     }
-    std::string describe() const {
-        return "inconsistent orientation, taken as non-manifold: faces run " + str(_count) +
-               (_count == 1 ? " edge" : " edges") + " in the same direction, first edge " +
-               str(_first[0].edge) + " between vertices " + str(getStart(_first[0])) + " and " +
-               str(getEnd(_first[0])) + ", of faces " + str(getFace(_first[0])) + " and " +
-               str(getFace(_first[1]));
+    bool isInconsistent(ApartSide const *begin, ApartSide const *end) const {
+        return end - begin == 2 && getFace(begin[0]) != getFace(begin[1]) &&
+               getStart(begin[0]) == getStart(begin[1]) && getStart(begin[0]) != getEnd(begin[0]);
+    }
+    std::string describeFirst(Found const &found) const {
+        ApartSide const &side = found.first[0];
+        return "first edge " + str(side.edge) + " between vertices " + str(getStart(side)) +
+               " and " + str(getEnd(side));
+    }
+    std::string describeNonManifold() const {
+        return str(_nonManifold.count) +
+               (_nonManifold.count == 1 ? " non-manifold edge comes" : " non-manifold edges come") +
+               " apart, " + describeFirst(_nonManifold);
+    }
+    std::string describeInconsistent() const {
+        return "inconsistent orientation, taken as non-manifold: faces run " +
+               str(_inconsistent.count) + (_inconsistent.count == 1 ? " edge" : " edges") +
+               " in the same direction, " + describeFirst(_inconsistent) + ", of faces " +
+               str(getFace(_inconsistent.first[0])) + " and " +
+               str(getFace(_inconsistent.first[1]));
     }
 
     Level const &_level;
-    std::vector<ApartSide> _first; // sides of the first edge
-    std::int64_t _count = 0;
+    Found _nonManifold;
+    Found _inconsistent;
 };
 
 // Gives each side of the edges of the base that come apart an edge of its own: the first of each has
 // that edge's index, the others follow the edges of the base in the order of their corners.  Adds the
-// tags, and gives a Status with a warning of edges that two faces run in the same direction.
+// tags, and gives a Status with warnings of these edges.
 Status takeApart(Index numEdges, std::vector<ApartSide> &sides, Level &level) {
     auto const isBefore = [](ApartSide const &a, ApartSide const &b) {
         return std::tie(a.edge, a.corner) < std::tie(b.edge, b.corner);
     };
     std::sort(sides.begin(), sides.end(), isBefore);
-    OrientationWarning warning(level);
+    ApartEdges apartEdges(level);
     std::vector<ApartSide> firsts;
     std::vector<ApartSide> others;
     ApartSide const *const last = sides.data() + sides.size();
     for (ApartSide const *begin = sides.data(), *end = begin; begin != last; begin = end) {
         end = std::find_if(begin, last,
                            [&](ApartSide const &side) { return side.edge != begin->edge; });
-        warning.Inspect(begin, end);
+        apartEdges.Add(begin, end);
         firsts.push_back(*begin);
         others.insert(others.end(), begin + 1, end);
     }
@@ -430,7 +453,7 @@ Status takeApart(Index numEdges, std::vector<ApartSide> &sides, Level &level) {
     }
     sides = std::move(firsts);
     sides.insert(sides.end(), others.begin(), others.end());
-    return warning.GetStatus();
+    return apartEdges.GetStatus();
 }
 
 // Numbers the edges of a level, with all their relations.

@@ -180,6 +180,7 @@ class VtxBoundaryInterpolation:
 
 class WarningCode:
     INCONSISTENT_ORIENTATION: WarningCode
+    NON_MANIFOLD_EDGES: WarningCode
     def __init__(self, value: int) -> None: ...
     def __int__(self) -> int: ...
     @property

@@ -157,6 +157,40 @@ TEST_F(StatusTest, InconsistentOrientationIsAWarning) {
     EXPECT_TRUE(status.GetWarnings().empty());
 }
 
+TEST_F(StatusTest, NonManifoldEdgesAreAWarning) {
+    // Three faces at the edge of vertices 1 and 2, four at that of 5 and 6, and an edge between 9 and 10
+    // that two faces run in the same direction.
+    Shape const shape = MakeShape(13, {{0, 1, 2},
+                                       {2, 1, 3},
+                                       {2, 1, 4},
+                                       {5, 6, 7},
+                                       {6, 5, 8},
+                                       {6, 5, 0},
+                                       {5, 6, 3},
+                                       {9, 10, 11},
+                                       {9, 10, 12}});
+    auto const base = CreateFarRefiner(shape);
+    int const edge = std::min(base->GetLevel(0).FindEdge(1, 2), base->GetLevel(0).FindEdge(5, 6));
+    ShapeDescriptor const descriptor(shape);
+    for (bool const isFromBase : {false, true}) {
+        Status status;
+        EXPECT_TRUE(
+            isFromBase ? TopologyRefinerFactory::Create(*base, &status)
+                       : TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), &status));
+        EXPECT_TRUE(status.IsOk());
+        ASSERT_EQ(status.GetWarnings().size(), 2U);
+        FarExt::Warning const &warning = status.GetWarnings()[0];
+        EXPECT_EQ(warning.code, FarExt::WarningCode::NonManifoldEdges);
+        EXPECT_EQ(warning.component, ComponentType::Edge);
+        EXPECT_EQ(warning.index, edge);
+        EXPECT_EQ(warning.count, 2);
+        EXPECT_EQ(warning.message, "2 non-manifold edges come apart, first edge " +
+                                       std::to_string(edge) + " between vertices 1 and 2");
+        EXPECT_EQ(status.GetWarnings()[1].code, FarExt::WarningCode::InconsistentOrientation);
+        EXPECT_EQ(status.GetWarnings()[1].count, 1);
+    }
+}
+
 TEST_F(StatusTest, NullArraysAreNamed) {
     Shape shape = GetShape("cube");
     shape.creaseVertexPairs = {0, 1};

@@ -6,13 +6,13 @@
 // or Far::StencilTable and an evaluator -> mesh file.
 #include "adaptive.h"
 #include "creaseAngle.h"
+#include "degenerateFaces.h"
 #include "evaluation.h"
 #include "far_ext/threads.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "far_ext/version.h"
 #include "levelMesh.h"
 #include "libraryPaths.h"
-#include "nonManifold.h"
 #include "normals.h"
 #include "osd_ext/simdLevel.h"
 #include "picture.h"
@@ -355,7 +355,7 @@ std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Arguments const &argument
     for (FarExt::Warning const &warning : status.GetWarnings()) {
         warn(arguments.input, warning.message);
     }
-    warn(arguments.input, DescribeWhatComesApart(mesh, refiner->GetLevel(0)));
+    warn(arguments.input, DescribeDegenerateFaces(mesh));
     return refiner;
 }
 
