@@ -115,6 +115,18 @@ PatchWeights combine(PatchWeights weights, double const (&factors)[2][2]) {
     return weights;
 }
 
+/// A mark for each output of a set, whether it is the mirror image of another.
+std::vector<unsigned char> markMirrored(LatticeFaces::Set const &set) {
+    std::vector<unsigned char> marks;
+    marks.reserve(std::size_t(set.numOutputs));
+    for (LatticeFaces::Orbit const &orbit : set.orbits) {
+        std::size_t const numTurns = std::size_t(set.patch.GetFaceSize());
+        marks.insert(marks.end(), numTurns, 0);
+        marks.insert(marks.end(), orbit.isPair ? numTurns : 0, 1);
+    }
+    return marks;
+}
+
 } // namespace
 
 /// The first face of a set, and what is found for it.
@@ -404,20 +416,24 @@ void LatticeFaces::setOutputs(Sample const &sample, Set &set) {
             }
         },
         kRange);
-    // In the order of the faces, whatever the threads.
     _marks.resize(std::size_t(_mesh.levels[std::size_t(_level)].numVertices), 0);
     std::size_t const inside = numOutputs - std::size_t(set.patch.GetFaceSize());
-    for (std::size_t i = 0; i < set.faces.size(); ++i) {
-        Index *const outputs = set.outputs.data() + i * numOutputs;
-        for (std::size_t k = 0; k < inside; ++k) {
-            unsigned char &mark = _marks[std::size_t(outputs[k])];
-            outputs[k] = mark ? outputs[inside] : outputs[k];
-            mark = 1;
+    std::vector<unsigned char> const isMirrored = markMirrored(set);
+    // In the order of the faces, whatever the threads.
+    auto const claim = [&](bool ofMirrored) {
+        for (std::size_t i = 0; i < set.faces.size(); ++i) {
+            Index *const outputs = set.outputs.data() + i * numOutputs;
+            for (std::size_t k = 0; k < numOutputs; ++k) {
+                if ((isMirrored[k] != 0) == ofMirrored) {
+                    unsigned char &mark = _marks[std::size_t(outputs[k])];
+                    outputs[k] = mark && k < inside ? outputs[inside] : outputs[k];
+                    mark = 1;
+                }
+            }
         }
-        for (std::size_t k = inside; k < numOutputs; ++k) {
-            _marks[std::size_t(outputs[k])] = 1;
-        }
-    }
+    };
+    claim(false);
+    claim(true);
 }
 
 void LatticeFaces::setVertices() {

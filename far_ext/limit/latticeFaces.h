@@ -41,8 +41,9 @@ public:
         int numOutputs = 0;        ///< of a face: all vertices of its orbits in turn
         /// \brief By face, the vertices.
         ///
-        /// Vertices between faces belong to the first of these.  In the others the first vertex of the
-        /// last orbit, which lies inside, stands in their place, and so comes twice or more.
+        /// Between two faces each makes half of the vertices, those that are no mirror images in it; a face
+        /// beyond which there is none makes all of them.  In place of a vertex that the other face
+        /// makes stands the first vertex of the last orbit, which lies inside, and so comes twice or more.
         Buffer<Index> outputs;
 
         // The rows of vertices of level 0, by place around the edge that is the vertex's first.

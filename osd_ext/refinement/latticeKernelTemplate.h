@@ -242,7 +242,7 @@ sumWaves(float const *weights, typename SIMD::Vector const *cosines,
 /// Writes the point and the two derivatives of an orbit, these in terms of others.
 template <class SIMD, class ACCESS, int FACE_SIZE, int NUM_OUTPUTS>
 OPENSUBDIVHEX_INLINE Far::Index const *
-storeOrbit(Elements<float> const (&outputs)[NUM_OUTPUTS], bool prefetches, Far::Index const *verts,
+storeOrbit(Elements<float> const (&outputs)[NUM_OUTPUTS], Far::Index const *verts,
            float const *derivatives, typename SIMD::Vector (&x)[NUM_OUTPUTS][FACE_SIZE]) {
     using Vector = typename SIMD::Vector;
     if (NUM_OUTPUTS > 1 && derivatives) {
@@ -256,11 +256,6 @@ storeOrbit(Elements<float> const (&outputs)[NUM_OUTPUTS], bool prefetches, Far::
                                    SIMD::Spread(derivatives[3]) * dv);
         }
     }
-    for (int k = 0; k < FACE_SIZE * RegularFaceGroup::kSize && prefetches; ++k) {
-        for (Elements<float> const &output : outputs) {
-            prefetch(ACCESS::At(output, verts[LatticeTask::kNumAhead + k]));
-        }
-    }
     for (int corner = 0; corner < FACE_SIZE; ++corner, verts += RegularFaceGroup::kSize) {
         for (int i = 0; i < NUM_OUTPUTS; ++i) {
             float *places[SIMD::kNumFaces];
@@ -272,6 +267,30 @@ storeOrbit(Elements<float> const (&outputs)[NUM_OUTPUTS], bool prefetches, Far::
     }
     return verts;
 }
+
+/// Asks for the memory of a later group, some of it with each orbit that is made.
+template <class ACCESS, int NUM_OUTPUTS>
+class LatticePrefetcher {
+public:
+    OPENSUBDIVHEX_INLINE LatticePrefetcher(LatticeTask const &task, Far::Index group, int numOrbits)
+        : _next(task.ahead + task.firstAhead[group + task.numGroupsAhead]),
+          _end(task.ahead + task.firstAhead[group + task.numGroupsAhead + 1]),
+          _numOfOrbit((_end - _next + numOrbits - 1) / numOrbits) {}
+
+    OPENSUBDIVHEX_INLINE void Prefetch(Elements<float> const (&outputs)[NUM_OUTPUTS]) {
+        Far::Index const *const end = _end - _next > _numOfOrbit ? _next + _numOfOrbit : _end;
+        for (; _next != end; ++_next) {
+            for (Elements<float> const &output : outputs) {
+                prefetch(ACCESS::At(output, *_next));
+            }
+        }
+    }
+
+private:
+    Far::Index const *_next;
+    Far::Index const *_end;
+    std::ptrdiff_t _numOfOrbit;
+};
 
 /// \brief Makes the values of orbits, by output: sums the waves of the sources with the weights of an
 /// orbit, and joins the sums to values.
@@ -400,27 +419,29 @@ void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) 
         outputs[i] = task.outputs[i];
     }
     std::ptrdiff_t const numPlaces = std::ptrdiff_t(kGroup) * FACE_SIZE * Sources::kSize;
-    std::ptrdiff_t const numVerts =
-        std::ptrdiff_t(kGroup) * FACE_SIZE * (2 * task.numPairs + task.numAxes);
+    std::ptrdiff_t const numVerts = std::ptrdiff_t(kGroup) * FACE_SIZE * task.GetNumOrbits();
     for (Far::Index group = begin; group < end; ++group) {
+        LatticePrefetcher<ACCESS, NUM_OUTPUTS> prefetcher(task, group, task.GetNumOrbits());
         for (int first = 0; first < kGroup; first += SIMD::kNumFaces) {
-            // All faces of the group at once.
-            bool const prefetches = first == 0;
             Sources sources;
             loadSources<SIMD, ACCESS>(values, task.places + group * numPlaces + first, sources);
             Far::Index const *verts = task.verts + group * numVerts + first;
             float const *weights = task.weights;
             typename Kernel::Values x;
-            for (int i = 0; i < task.numPairs; ++i, weights += kNumDerivatives) {
+            for (int i = 0; i < task.numPairs + task.numHalves; ++i, weights += kNumDerivatives) {
                 typename Kernel::Values images;
                 weights = Kernel::EvaluatePair(weights, sources, x, images);
-                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, prefetches, verts, nullptr, x);
-                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, prefetches, verts, weights,
-                                                            images);
+                prefetcher.Prefetch(outputs);
+                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, verts, nullptr, x);
+                if (i < task.numPairs) {
+                    prefetcher.Prefetch(outputs);
+                    verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, verts, weights, images);
+                }
             }
             for (int i = 0; i < task.numAxes; ++i, weights += kNumDerivatives) {
                 weights = Kernel::EvaluateAxis(weights, sources, x);
-                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, prefetches, verts, weights, x);
+                prefetcher.Prefetch(outputs);
+                verts = storeOrbit<SIMD, ACCESS, FACE_SIZE>(outputs, verts, weights, x);
             }
         }
     }

@@ -15,7 +15,8 @@ namespace OpenSubdivHex::OsdExt::internal {
 ///
 /// A face is evaluated by its symmetries: its sources are taken apart into waves around it, which the
 /// weights of a vertex multiply by a number each, and with one row of weights all vertices of an orbit
-/// are made, six of triangles, eight of quads and twelve of hexagons.
+/// are made, six of triangles, eight of quads and twelve of hexagons; or half as many on the border, where
+/// the others belong to the faces beyond.
 class LatticeLimit {
 public:
     void Prepare(FarExt::internal::LatticeFaces const &faces);
@@ -29,12 +30,20 @@ private:
         int faceSize;
         bool isCompact;
         int numPairs;
+        int numHalves;
         int numAxes;
         Far::Index numGroups;
         FarExt::internal::Buffer<std::uint32_t> places;
         FarExt::internal::Buffer<Far::Index> verts;
+        std::vector<Far::Index> ahead;
+        std::vector<Far::Index> firstAhead;
+        int numGroupsAhead;
         std::vector<float> weights;
     };
+
+    /// Adds some faces, all those that make one half of the same pairs, which are \p halves.
+    void addSet(FarExt::internal::LatticeFaces::Set const &of, std::vector<Far::Index> const &faces,
+                std::vector<int> const &halves);
 
     std::vector<Set> _sets;
 };

@@ -253,8 +253,7 @@ void EvaluateLimit(VertexLimitTask const &task, Index numGroups) {
 }
 
 void EvaluateLimit(LatticeTask const &task, Index numGroups) {
-    int const numOutputs =
-        RegularFaceGroup::kSize * task.faceSize * (2 * task.numPairs + task.numAxes);
+    int const numOutputs = RegularFaceGroup::kSize * task.faceSize * task.GetNumOrbits();
     forEachRange(task, numGroups, 1 + kLatticeOutputs / numOutputs, getKernel().evaluateLattice);
 }
 

@@ -165,19 +165,26 @@ struct VertexLimitTask : LimitTask {
 /// vertex.
 struct LatticeTask : LimitTask {
     static constexpr int kNumDerivatives = 4; ///< weights of derivatives in terms of others
-    /// Of verts, how many are read behind the last of a group, and so behind the last of all.  Memory is
-    /// asked for so long before outputs are written there, since the order of orbits is far from its own:
-    /// with outputs that are in no cache benchmark limit, length 3, is 1.3 to 1.8 times as fast.
-    static constexpr int kNumAhead = 512;
+
+    /// Of outputs.
+    int GetNumOrbits() const { return 2 * numPairs + numHalves + numAxes; }
 
     int faceSize;
     bool isCompact; ///< of sources, whether there are as many orbits as LatticeOrbits says for that
     int numPairs;   ///< orbits of outputs, these first
+    int numHalves;  ///< pairs without their mirror images
     int numAxes;
     std::uint32_t const
         *places; ///< by group, those of all sources of its faces, as in RegularFaceGroup
     Far::Index const *verts; ///< by group, those of all outputs
-    float const *weights;    ///< those of LatticeLimit
+    /// By group, vertices in whose cache lines all outputs are.  Memory is asked for some groups before it is
+    /// written, since the order of orbits is far from its own: with outputs that are in no cache
+    /// benchmark limit, length 3, is 1.3 to 1.8 times as fast.
+    Far::Index const *ahead;
+    Far::Index const
+        *firstAhead;      ///< of each group, and of numGroupsAhead + 1 behind the last: none
+    int numGroupsAhead;   ///< from that which is made to that for which memory is asked
+    float const *weights; ///< those of LatticeLimit
 };
 
 /// \brief The kernels of one SimdLevel; all are instances of limitKernelTemplate.h.
