@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinement.h"
+
+#include "creaseAngle.h"
+#include "degenerateFaces.h"
+#include "levelMesh.h"
+#include "libraryPaths.h"
+#include "normals.h"
+#include "picture.h"
+#include "pictureColors.h"
+#include "tagText.h"
+
+#include "far_ext/topologyRefinerFactory.h"
+#include "tools/mesh/fileError.h"
+#include "tools/mesh/meshCheck.h"
+#include "tools/mesh/meshContent.h"
+#include "tools/mesh/meshReader.h"
+#include "tools/mesh/meshText.h"
+#include "tools/mesh/meshWriter.h"
+#include "tools/mesh/ruleNames.h"
+#include "tools/mesh/topologyDescriptor.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <utility>
+
+namespace OpenSubdivHex::Tools {
+
+namespace {
+
+FarExt::HexSchemeOptions findSchemeOptions(Arguments const &arguments) {
+    FarExt::HexSchemeOptions options;
+    options.faceMask = FindRule<FarExt::FaceMask>(kMaskNames, arguments.mask);
+    options.schemeType = FindRule<FarExt::SchemeType>(
+        kSchemeNames, arguments.scheme == "hex" ? "hexagonal" : arguments.scheme);
+    options.firstStep = FindRule<FarExt::FirstStep>(kFirstStepNames, arguments.firstStep);
+    return options;
+}
+
+/// The data of \p mesh.
+std::vector<Primvar> findPrimvars(Mesh *mesh) {
+    std::vector<Primvar> primvars = {{FarExt::INTERPOLATE_VERTEX, 0, 3, {&mesh->positions}}};
+    if (!mesh->vertexProperties.empty()) {
+        primvars.push_back({FarExt::INTERPOLATE_VARYING, 0, 1, {}});
+        for (VertexProperty &property : mesh->vertexProperties) {
+            primvars.back().arrays.push_back(&property.values);
+        }
+    }
+    for (FVarChannel &channel : mesh->channels) {
+        primvars.push_back({FarExt::INTERPOLATE_FACE_VARYING,
+                            int(&channel - mesh->channels.data()),
+                            channel.width,
+                            {&channel.values}});
+    }
+    return primvars;
+}
+
+/// Adds to vertices the mean of the normals on their sides, as properties.
+void addMeanNormals(FarExt::LimitSides const &sides, std::vector<float> const &normals,
+                    Mesh *mesh) {
+    std::vector<float> means(mesh->positions.size());
+    for (int side = 0; side < sides.GetNumSides(); ++side) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            means[3 * std::size_t(sides.GetVertex(side)) + k] += normals[3 * std::size_t(side) + k];
+        }
+    }
+    Normalize(&means);
+    for (int k = 0; k < 3; ++k) {
+        VertexProperty property{GetPropertyName(FVarKind::Normal, k), NumberType::Float, {}};
+        for (std::size_t i = std::size_t(k); i < means.size(); i += 3) {
+            property.values.push_back(means[i]);
+        }
+        mesh->vertexProperties.push_back(std::move(property));
+    }
+}
+
+} // namespace
+
+Refinement::Refinement(Arguments const &arguments, Progress &progress)
+    : _arguments(arguments), _progress(progress) {
+    _statistics.scheme = arguments.scheme;
+    _statistics.firstStep = arguments.firstStep;
+    if (arguments.isCoplanar) {
+        _statistics.coplanar = {arguments.tolerance, arguments.hasOpenGaps};
+    }
+    _statistics.mask = arguments.mask;
+    _statistics.evaluator = isAdaptive() ? "surface" : arguments.evaluator;
+    _statistics.input = arguments.input;
+}
+
+void Refinement::Read() {
+    measure("reading", &_statistics.milliseconds.read, [&] { _mesh = ReadMesh(_arguments.input); });
+    _regions = FindRegions(_arguments.pngColors, _mesh, _arguments.input);
+}
+
+void Refinement::Validate() {
+    measure("validating", &_statistics.milliseconds.validate, [&] {
+        if (_arguments.creaseAngle) {
+            AddCreases(*_arguments.creaseAngle, &_mesh);
+        }
+        Sdc::Options const sdcOptions = chooseOptions();
+        _tagText = _arguments.printsTags ? FormatTags(_mesh, sdcOptions) : "";
+        _statistics.notRead = _mesh.notRead;
+        removeWhatIsNotWritten();
+        if (_arguments.isLimit) {
+            removeNormals();
+        }
+        _statistics.attributes = CountAttributes(_mesh);
+        createRefiner(sdcOptions);
+        _statistics.boundary = kBoundaryNames[sdcOptions.GetVtxBoundaryInterpolation()];
+        _statistics.creasingMethod = kCreasingMethodNames[sdcOptions.GetCreasingMethod()];
+        _statistics.fvarInterpolation =
+            kFVarInterpolationNames[sdcOptions.GetFVarLinearInterpolation()];
+    });
+}
+
+void Refinement::Refine() {
+    measure("refining", &_statistics.milliseconds.refine, [&] {
+        // With --adaptive, level 0 is enough where it is the surface level.
+        if (!isAdaptive() || getLastLevel() > 0) {
+            refineTopology();
+        }
+    });
+    _statistics.levels = CountLevels(*_refiner);
+    _statistics.creases = _mesh.tags.GetNumCreases();
+    _statistics.corners = _mesh.tags.GetNumCorners();
+    _statistics.holes = CountHoles(*_refiner);
+    _statistics.channels = CountChannels(*_refiner, _mesh);
+}
+
+void Refinement::Evaluate() {
+    if (getLastLevel() > 0) {
+        evaluateLevel();
+    }
+    if (isAdaptive()) {
+        refineCells();
+    } else if (getLastLevel() > 0) {
+        NormalizeNormals(&_mesh);
+    }
+    if (_arguments.isLimit) {
+        evaluateLimit();
+    }
+    CheckFinite(_mesh, _arguments.input, "level " + std::to_string(getLastLevel()) + ": ");
+}
+
+void Refinement::Draw() {
+    if (_arguments.png.empty()) {
+        return;
+    }
+    measure("rendering", &_statistics.milliseconds.render, [&] {
+        if (isAdaptive()) {
+            drawCells();
+        } else {
+            WritePicture(_refiner->GetLevel(getLastLevel()), _mesh.positions, _regions,
+                         _arguments.png);
+        }
+    });
+}
+
+void Refinement::Write() {
+    if (_arguments.output.empty()) {
+        return;
+    }
+    measure("writing", &_statistics.milliseconds.write, [&] {
+        if (!isAdaptive()) {
+            copyFaces();
+        }
+        if (isAdaptive() ? _cells->GetStatistics().faces == 0 : _mesh.faceSizes.empty()) {
+            throw FileError(_arguments.input, "all faces are holes, none is left to write");
+        }
+        if (isAdaptive()) {
+            _cells->Write();
+        } else {
+            WriteMesh(_mesh, _arguments.output);
+        }
+    });
+}
+
+template <typename WORK>
+void Refinement::measure(char const *phase, double *milliseconds, WORK &&work) {
+    _progress.SetPhase(phase);
+    auto const start = std::chrono::steady_clock::now();
+    work();
+    auto const time = std::chrono::steady_clock::now() - start;
+    *milliseconds += std::chrono::duration<double, std::milli>(time).count();
+}
+
+bool Refinement::isAdaptive() const { return _arguments.adaptive.isAdaptive; }
+
+// Cells begin with the faces of the surface level.
+int Refinement::getLastLevel() const {
+    return isAdaptive() ? _refiner->GetHexSchemeOptions().GetSurfaceLevel() : _arguments.level;
+}
+
+// Evaluators of tables give no status.
+void Refinement::requireDone(bool isDone, FarExt::Status const &status) const {
+    if (!isDone) {
+        throw FileError(_arguments.input,
+                        status.IsOk() ? "--evaluator " + _arguments.evaluator + " gives no values"
+                                      : status.GetMessage());
+    }
+}
+
+void Refinement::warn(std::string const &message) const {
+    std::cerr << "hexrefine: " << EscapeControls(_arguments.input + ": warning: " + message)
+              << "\n";
+}
+
+// The rules: those of the command line, else those of the file, else the paper's boundary and what
+// Sdc::Options has.
+Sdc::Options Refinement::chooseOptions() const {
+    MeshTags const &tags = _mesh.tags;
+    Sdc::Options options;
+    auto boundary = tags.boundary.value_or(Sdc::Options::VTX_BOUNDARY_NONE);
+    if (_arguments.boundary) {
+        boundary = FindRule<decltype(boundary)>(kBoundaryNames, *_arguments.boundary);
+    }
+    auto fvarInterpolation = tags.fvarInterpolation.value_or(options.GetFVarLinearInterpolation());
+    if (_arguments.fvarInterpolation) {
+        fvarInterpolation = FindRule<decltype(fvarInterpolation)>(kFVarInterpolationNames,
+                                                                  *_arguments.fvarInterpolation);
+    }
+    options.SetVtxBoundaryInterpolation(boundary);
+    options.SetFVarLinearInterpolation(fvarInterpolation);
+    options.SetCreasingMethod(tags.creasingMethod.value_or(options.GetCreasingMethod()));
+    return options;
+}
+
+void Refinement::removeWhatIsNotWritten() {
+    if (_arguments.output.empty()) {
+        return;
+    }
+    for (FVarChannel const &channel : _mesh.channels) {
+        _statistics.channelsLeftOut.push_back(GetName(channel.kind));
+    }
+    std::vector<FVarChannel> separated; // which will be properties of vertices
+    if (_arguments.isSeparate) {
+        separated.swap(_mesh.channels);
+    }
+    _statistics.notWritten = RemoveWhatIsNotHeld(_arguments.output, &_mesh);
+    if (_arguments.isSeparate) {
+        _mesh.channels = std::move(separated);
+    }
+    if (!_mesh.channels.empty()) {
+        _statistics.channelsLeftOut.clear(); // a format holds all or none
+    }
+    _statistics.outputFormat = std::filesystem::path(_arguments.output).extension().string();
+    _mesh.materialLibraries =
+        MoveLibraries(std::move(_mesh.materialLibraries), _arguments.input, _arguments.output);
+}
+
+// Makes room for the normals of --limit: those of vertices are removed, and named.  Face-varying ones
+// may have seams that the limit has not.
+void Refinement::removeNormals() {
+    for (FVarChannel const &channel : _mesh.channels) {
+        if (channel.kind == FVarKind::Normal) {
+            throw FileError(_arguments.input,
+                            "has normals of its own, which those of --limit would replace");
+        }
+    }
+    std::vector<VertexProperty> &properties = _mesh.vertexProperties;
+    auto const end = std::remove_if(properties.begin(), properties.end(), IsNormal);
+    if (end != properties.end()) {
+        properties.erase(end, properties.end());
+        _statistics.notRead.emplace_back("normals, those of --limit replace them");
+    }
+}
+
+void Refinement::createRefiner(Sdc::Options sdcOptions) {
+    Far::TopologyDescriptor descriptor = DescribeTopology(_mesh);
+    auto const channels = DescribeChannels(_mesh);
+    descriptor.numFVarChannels = int(channels.size());
+    descriptor.fvarChannels = channels.data();
+    FarExt::TopologyRefinerFactory::Options options;
+    options.schemeOptions = findSchemeOptions(_arguments);
+    FarExt::Status status;
+    _refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options, &status);
+    if (!_refiner) {
+        throw FileError(_arguments.input, status.GetMessage());
+    }
+    for (FarExt::Warning const &warning : status.GetWarnings()) {
+        warn(warning.message);
+    }
+    std::string const degenerateFaces = DescribeDegenerateFaces(_mesh);
+    if (!degenerateFaces.empty()) {
+        warn(degenerateFaces);
+    }
+}
+
+// The positions of the mesh are the rest pose.
+void Refinement::refineTopology() {
+    FarExt::Status status;
+    bool const needsFullTopology = _arguments.isLimit || isAdaptive() || !_arguments.png.empty();
+    FarExt::TopologyRefiner::UniformOptions uniformOptions(getLastLevel());
+    uniformOptions.fullTopologyInLastLevel = needsFullTopology;
+    if (_refiner->GetHexSchemeOptions().firstStep == FarExt::FirstStep::Truncate) {
+        uniformOptions.faceLabels = FindFaceClasses(_mesh);
+    }
+    FarExt::TopologyRefiner::CoplanarOptions options(getLastLevel());
+    options.angleTolerance = _arguments.tolerance;
+    options.closeGaps = !_arguments.hasOpenGaps;
+    options.fullTopologyInLastLevel = needsFullTopology;
+    bool const isDone = _arguments.isCoplanar
+                            ? _refiner->RefineCoplanar(_mesh.positions.data(), options, &status)
+                            : _refiner->RefineUniform(uniformOptions, &status);
+    if (!isDone) {
+        throw FileError(_arguments.input, status.GetMessage());
+    }
+}
+
+// All values but positions that --limit replaces.
+void Refinement::evaluateLevel() {
+    for (Primvar const &primvar : findPrimvars(&_mesh)) {
+        if (!_arguments.isLimit || primvar.mode != FarExt::INTERPOLATE_VERTEX) {
+            evaluatePrimvar(primvar);
+        }
+    }
+}
+
+void Refinement::evaluatePrimvar(Primvar const &primvar) {
+    auto &milliseconds = _statistics.milliseconds;
+    FarExt::Status status;
+    if (!NeedsStencils(_arguments.evaluator)) {
+        measure("evaluating", &milliseconds.evaluate, [&] {
+            requireDone(EvaluateLevels(*_refiner, _arguments.evaluator, primvar, &status), status);
+        });
+        return;
+    }
+    std::unique_ptr<Far::StencilTable const> table;
+    measure("building stencils", &milliseconds.stencils, [&] {
+        table = CreateStencils(*_refiner, primvar, &status);
+        requireDone(table != nullptr, status);
+    });
+    if (primvar.mode == FarExt::INTERPOLATE_VERTEX) {
+        _statistics.stencils = table->GetNumStencils();
+        _statistics.weights = std::int64_t(table->GetWeights().size());
+    }
+    measure("evaluating", &milliseconds.evaluate,
+            [&] { requireDone(EvaluateStencils(*table, _arguments.evaluator, primvar), status); });
+}
+
+// Replaces the positions by limit points, and finds the normals.
+void Refinement::evaluateLimit() {
+    auto &milliseconds = _statistics.milliseconds;
+    _sides.emplace(_refiner->GetLevel(getLastLevel()));
+    FarExt::Status status;
+    // Tables alone have further sides.
+    if (!NeedsStencils(_arguments.evaluator) && _sides->GetNumSides() == _sides->GetNumVertices()) {
+        measure("evaluating", &milliseconds.evaluate, [&] {
+            requireDone(EvaluateLimit(*_refiner, _arguments.evaluator, &_mesh.positions, &_normals,
+                                      &status),
+                        status);
+        });
+        return;
+    }
+    std::unique_ptr<Far::LimitStencilTable const> table;
+    measure("building limit stencils", &milliseconds.stencils, [&] {
+        table = CreateLimitStencils(*_refiner, &status);
+        requireDone(table != nullptr, status);
+    });
+    _statistics.stencils = table->GetNumStencils();
+    _statistics.weights = std::int64_t(table->GetWeights().size());
+    measure("evaluating", &milliseconds.evaluate, [&] {
+        requireDone(
+            EvaluateLimit(*table, *_sides, _arguments.evaluator, &_mesh.positions, &_normals),
+            status);
+    });
+}
+
+void Refinement::refineCells() {
+    measure("evaluating", &_statistics.milliseconds.evaluate, [&] {
+        _cells.emplace(_mesh, _arguments.output, !_arguments.png.empty());
+        _cells->Refine(_arguments.adaptive, *_refiner, _arguments.input);
+        _statistics.adaptive = _cells->GetStatistics();
+    });
+}
+
+void Refinement::drawCells() const {
+    try {
+        WriteCellPicture(_cells->GetMesh(), _cells->GetCamera(),
+                         FindCellRegions(_arguments.pngColors, _regions, _cells->GetMesh(),
+                                         _cells->GetFaceLevels()),
+                         _arguments.png);
+    } catch (std::bad_alloc const &) {
+        throw FileError(_arguments.png, "not enough memory for a picture of " +
+                                            _arguments.adaptive.resolution + " pixels");
+    }
+}
+
+// Replaces the faces of level 0 by those of the last level.  The normals of --limit come with them: those of
+// each side of a vertex where the file takes them, else their mean.
+void Refinement::copyFaces() {
+    FarExt::TopologyLevel const &level = _refiner->GetLevel(getLastLevel());
+    FarExt::LimitSides const *const sides = _sides ? &*_sides : nullptr;
+    bool const hasSides =
+        sides && (_arguments.isSeparate || FindMeshFormat(_arguments.output) == MeshFormat::Obj);
+    if (hasSides) {
+        _mesh.channels.push_back({FVarKind::Normal, 3, std::move(_normals), {}});
+    }
+    if (_arguments.isSeparate) {
+        CopySeparateFaces(level, sides, &_mesh);
+    } else if (hasSides) {
+        CopyFaces(level, *sides, &_mesh);
+    } else {
+        CopyFaces(level, &_mesh);
+        if (sides) {
+            addMeanNormals(*sides, _normals, &_mesh);
+        }
+    }
+}
+
+} // namespace OpenSubdivHex::Tools
