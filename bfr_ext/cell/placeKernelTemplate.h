@@ -157,12 +157,9 @@ public:
         TileSums const tiles{matrix.GetNumPoints(), matrix.GetWidth(begin), points, stride,
                              indices};
         REAL const *const weights = matrix.GetBlock(begin);
-        std::size_t const end = (count + kSize - 1) / kSize * kSize;
-        std::size_t first = 0;
-        for (; first + kMaxTile * kSize <= end; first += kMaxTile * kSize) {
-            tiles.form<kMaxTile, NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
-        }
-        tiles.formLast<kMaxTile - 1, NUM_COMPONENTS, HAS_INDICES>(weights, first, end, result);
+        forTiles<kMaxTile>(0, count, [&](auto numLanes, std::size_t first) {
+            tiles.template form<numLanes(), NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
+        });
     }
 
     /// \brief The same of derivatives, of which two matrices make what DerivativeSums joins.
@@ -172,20 +169,14 @@ public:
     static void FormDerivatives(std::array<PlaceMatrix<REAL>, 2> const &matrices, std::size_t begin,
                                 std::size_t count, DerivativeSums<REAL> const &sums,
                                 std::size_t component, RESULT (&results)[2]) {
-        constexpr std::size_t kLanesOfTile = kMaxTile >= 6 ? 4 : 1; // of two matrices
         TileSums const tiles{matrices[0].GetNumPoints(), matrices[0].GetWidth(begin),
                              sums.points + component, sums.stride, sums.indices};
         REAL const *const weights[2] = {matrices[0].GetBlock(begin), matrices[1].GetBlock(begin)};
-        std::size_t const end = (count + kSize - 1) / kSize * kSize;
-        std::size_t first = 0;
-        for (; first + kLanesOfTile * kSize <= end; first += kLanesOfTile * kSize) {
-            tiles.formDerivatives<kLanesOfTile, NUM_COMPONENTS, HAS_INDICES>(weights, first,
-                                                                             sums.factors, results);
-        }
-        for (; first < end; first += kSize) {
-            tiles.formDerivatives<1, NUM_COMPONENTS, HAS_INDICES>(weights, first, sums.factors,
-                                                                  results);
-        }
+        // The sums of two matrices are in registers.
+        forTiles<kMaxTile / 2>(0, count, [&](auto numLanes, std::size_t first) {
+            tiles.template formDerivatives<numLanes(), NUM_COMPONENTS, HAS_INDICES>(
+                weights, first, sums.factors, results);
+        });
     }
 
     std::size_t numPoints;
@@ -199,15 +190,15 @@ private:
     // the widest ones, and else 16.
     static constexpr std::size_t kMaxTile = BYTES == 64 ? 6 : 3;
 
-    /// What is left, of NUM_LANES registers of places at most.
-    template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
-    void formLast(REAL const *weights, std::size_t first, std::size_t end, RESULT &result) const {
+    /// Calls function(number, first) for the registers of some places, NUM_LANES at a time and then as many as are
+    /// left.  The number is an integral constant.
+    template <std::size_t NUM_LANES, typename FUNCTION>
+    static void forTiles(std::size_t first, std::size_t end, FUNCTION const &function) {
         if constexpr (NUM_LANES > 0) {
-            if (first + NUM_LANES * kSize == end) {
-                form<NUM_LANES, NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
-            } else {
-                formLast<NUM_LANES - 1, NUM_COMPONENTS, HAS_INDICES>(weights, first, end, result);
+            for (; first + (NUM_LANES - 1) * kSize < end; first += NUM_LANES * kSize) {
+                function(std::integral_constant<std::size_t, NUM_LANES>(), first);
             }
+            forTiles<NUM_LANES - 1>(first, end, function);
         }
     }
 
