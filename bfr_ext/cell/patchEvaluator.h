@@ -58,6 +58,7 @@ private:
     std::size_t _paddedSize = 0;
     std::deque<std::vector<REAL>> _points; // by depth, of a cell and of its children
     std::vector<int> _indices;
+    std::vector<REAL> _sums;  // of points of a leaf that weigh the same
     std::vector<REAL> _along; // derivatives at a corner, by two coordinates
     REAL *_results = nullptr; // points
     REAL *_derivatives[2] = {};
