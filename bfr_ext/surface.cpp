@@ -242,13 +242,13 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
     if (internal::PlainFaceType const *const plain = _type.GetPlain()) {
         useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
             internal::RingValues<REAL> &values = border.GetRingValues();
-            evaluator.Evaluate(*plain, values, tessellation.getCellPlan(), results[0],
+            evaluator.Evaluate(*plain, getTurns(), values, tessellation.getCellPlan(), results[0],
                                resultDesc.stride);
             if (results[1]) {
                 evaluator.EvaluateDerivatives(*plain, values, tessellation.getCellPlan(true),
                                               results[1], results[2], resultDesc.stride);
             }
-            evaluateBorder(tessellation, border, results[0], resultDesc);
+            evaluateBorder(tessellation, border, &evaluator, results[0], resultDesc);
         });
         return;
     }
@@ -297,7 +297,7 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         return;
     }
     useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
-        evaluateBorder(tessellation, border, results[0], resultDesc);
+        evaluateBorder(tessellation, border, nullptr, results[0], resultDesc);
     });
 }
 
@@ -377,13 +377,15 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
         }
     }
     useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
-        evaluateBorder(tessellation, border, results[0], resultDesc);
+        evaluateBorder(tessellation, border, nullptr, results[0], resultDesc);
     });
 }
 
+// But for the points inside of edges that were made with those inside of the face, if any were.
 template <typename REAL>
 void Surface<REAL>::evaluateBorder(Tessellation const &tessellation,
-                                   internal::BorderEvaluator<REAL> &evaluator, REAL p[],
+                                   internal::BorderEvaluator<REAL> &evaluator,
+                                   internal::PatchEvaluator<REAL> const *inside, REAL p[],
                                    PointDescriptor const &resultDesc) const {
     if (tessellation._section) {
         evaluateSectionBorder(tessellation, evaluator, p, resultDesc);
@@ -393,6 +395,9 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation,
     for (std::size_t edge = 0; edge < std::size_t(GetFaceSize()); ++edge) {
         int const first = tessellation._firstEdgeCoords[edge];
         evaluator.EvaluateVertex(edge, getResult(first));
+        if (inside && inside->HasEdge(edge)) {
+            continue;
+        }
         int const numPlaces = tessellation.GetNumEdgeCoords(int(edge));
         int const level = tessellation.getEdgeLevel(edge);
         if (level < 0) {

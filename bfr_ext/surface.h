@@ -21,6 +21,8 @@ class CellType;
 class PlainFaceType;
 template <typename REAL>
 class BorderEvaluator;
+template <typename REAL>
+class PatchEvaluator;
 struct BasePoint;
 
 /// The type of a base face: that of a plain one, or one that was made at once.
@@ -247,7 +249,8 @@ private:
     void useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
                    FUNCTION const &function) const;
     void evaluateBorder(Tessellation const &tessellation,
-                        internal::BorderEvaluator<REAL> &evaluator, REAL p[],
+                        internal::BorderEvaluator<REAL> &evaluator,
+                        internal::PatchEvaluator<REAL> const *inside, REAL p[],
                         PointDescriptor const &resultDesc) const;
     bool evaluateLatticeBorder(Tessellation const &tessellation, REAL const controlPoints[],
                                PointDescriptor const &pointDesc, REAL p[],

@@ -108,7 +108,7 @@ void LeafPlaces::refineHalf(int sector, std::array<Pair, 4> const &corners, int 
 
 CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use)
     : _faceSize(faceSize) {
-    _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}});
+    _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {}, {{1, 0}, {0, 1}}, {}});
     for (std::size_t i = 0; i < places.size(); ++i) {
         LeafPlaces::Place place = places[i];
         if (use == Use::Points && place.coords[0] + place.coords[1] == 1) {
@@ -141,10 +141,15 @@ CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const
         }
         leaf.rows.push_back({int(leaf.leaf->Find(place)), int(i)});
     }
+    if (use == Use::Points) {
+        addEdges(places);
+    }
     for (Node &node : _nodes) {
-        std::sort(node.rows.begin(), node.rows.end(),
-                  [](PlaceOfRow const &a, PlaceOfRow const &b) { return a.row < b.row; });
-        node.rows.shrink_to_fit();
+        for (auto *const rows : {&node.rows, &node.rowsWithEdge}) {
+            std::sort(rows->begin(), rows->end(),
+                      [](PlaceOfRow const &a, PlaceOfRow const &b) { return a.row < b.row; });
+            rows->shrink_to_fit();
+        }
         node.corners.shrink_to_fit();
     }
     _nodes.shrink_to_fit();
@@ -186,6 +191,7 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
                   {},
                   nullptr,
                   {},
+                  {},
                   {toCoords[0], toCoords[1]},
                   {}};
     if (child.isWhole) {
@@ -206,6 +212,39 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
     return _nodes.size() - 1;
 }
 
+// Those whose places half cells have that are leaves.  Others are made apart: so is an edge with finer places.
+void CellPlan::addEdges(std::vector<LeafPlaces::Place> const &places) {
+    std::vector<std::vector<PlaceOfRow>> edges(static_cast<std::size_t>(_faceSize));
+    std::vector<Node *> leaves(edges.size());
+    for (std::size_t const child : _nodes[0].children) {
+        Node &node = _nodes[child];
+        if (node.leaf && !node.isWhole) {
+            leaves[node.child - 1] = &node;
+        }
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        Pair const &coords = places[i].coords;
+        auto const edge = std::size_t(places[i].sector);
+        bool const isInEdge = coords[0] + coords[1] == 1 && coords[0] != 0 && coords[1] != 0;
+        if (!isInEdge || !leaves[edge]) {
+            continue;
+        }
+        LeafPlaces::Place const place = {0, HalfCell::kFromSector.Apply(coords)};
+        if (leaves[edge]->leaf->Has(place)) {
+            edges[edge].push_back({int(leaves[edge]->leaf->Find(place)), int(i)});
+        } else {
+            leaves[edge] = nullptr;
+        }
+    }
+    for (std::size_t edge = 0; edge < edges.size(); ++edge) {
+        if (leaves[edge] && !edges[edge].empty()) {
+            std::vector<PlaceOfRow> &rows = leaves[edge]->rowsWithEdge;
+            rows = leaves[edge]->rows;
+            rows.insert(rows.end(), edges[edge].begin(), edges[edge].end());
+        }
+    }
+}
+
 // Nodes are many, and their arrays short: what the heap takes for blocks counts.
 std::size_t CellPlan::GetSize() const {
     static constexpr std::size_t kLeastBlock = 4 * sizeof(void *);
@@ -215,7 +254,8 @@ std::size_t CellPlan::GetSize() const {
     };
     std::size_t size = getBytes(_nodes);
     for (Node const &node : _nodes) {
-        size += getBytes(node.children) + getBytes(node.rows) + getBytes(node.corners);
+        size += getBytes(node.children) + getBytes(node.rows) + getBytes(node.rowsWithEdge) +
+                getBytes(node.corners);
     }
     for (auto const &leafPlaces : _leafPlaces) {
         size += leafPlaces.second->GetMemory();

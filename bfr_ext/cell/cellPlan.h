@@ -35,6 +35,7 @@ public:
     }
     Place const &operator[](std::size_t row) const { return _places[row]; }
     std::size_t Find(Place const &place) const { return _rows.at(getKey(place)); }
+    bool Has(Place const &place) const { return _rows.count(getKey(place)) > 0; }
 
 private:
     using Key = std::tuple<int, double, double>;
@@ -76,6 +77,9 @@ public:
         /// Of leaves, with the rows that are of places, ascending.
         LeafPlaces const *leaf;
         std::vector<PlaceOfRow> rows;
+        /// Of a half cell that has all places inside of an edge of the face, in a plan for points: the same with
+        /// these.
+        std::vector<PlaceOfRow> rowsWithEdge;
         /// Of a plan for derivatives: of u and v, the derivatives by them of what those of the leaf are
         /// by, which are the coordinates in a half cell or its own u and v in a whole one; and the
         /// corners of cells that are no leaves.
@@ -86,7 +90,7 @@ public:
     enum class Use { Points, Derivatives };
 
     /// \param level   that of the places, at most
-    /// \param places  of points, those on the border of the face are made apart
+    /// \param places  of points, those on the border of the face are made apart, but for rowsWithEdge
     CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use);
 
     /// Node 0 is the face.
@@ -98,6 +102,7 @@ private:
     bool addCorner(std::size_t node, LeafPlaces::Place const &place, Pair const (&toCoords)[2],
                    int number);
     std::size_t findChild(std::size_t node, CellStep const &step, Pair const (&toCoords)[2]);
+    void addEdges(std::vector<LeafPlaces::Place> const &places);
 
     int const _faceSize;
     std::vector<Node> _nodes;

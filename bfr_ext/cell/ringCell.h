@@ -42,10 +42,20 @@ public:
     }
     /// Weights by column from those by vertex.
     void Order(std::vector<double> const &weights, std::vector<double> &result) const;
+    /// The columns of two, of vertices of the same level in terms of the same rings.
+    static RingPlaces Join(RingPlaces const &a, RingPlaces const &b);
+    std::size_t GetNumRings() const { return _ends.size(); }
+    /// Weights by column from those of \p part, one of those that were joined: 0 where that has no column.
+    std::vector<double> Spread(RingPlaces const &part, std::vector<double> const &weights) const;
     /// Appends all that tells them from others.
     void AddKey(std::vector<int> &key) const;
 
 private:
+    using Iterator = std::vector<int>::const_iterator;
+
+    // The places of a ring, ascending.
+    std::pair<Iterator, Iterator> getPlaces(std::size_t ring) const;
+
     std::vector<int> _columns;
     std::vector<int> _places;
     std::vector<std::size_t> _ends; // by ring, of columns
@@ -134,10 +144,19 @@ struct LatticeItem {
     CellType const *type;
 };
 
+/// A half cell of a base face and the long edge beside it in terms of the same points, so that one matrix makes what
+/// both have.
+struct HalfWithEdge {
+    std::unique_ptr<RingCell const> half; ///< of rings in the order of the long edge's
+    RingCell const *longEdge;
+    RingPlaces places; ///< of both
+};
+
 /// What the first step makes of an edge of plain base faces, seen from one of them.
 struct RingEdge {
-    RingCell const *half;         ///< the cell on the side of the face
-    RingCell const *longEdges[2]; ///< as the face runs, and against it
+    RingCell const *half; ///< the cell on the side of the face
+    /// The same with the long edge, as the face runs, and against it.
+    HalfWithEdge halvesWithEdge[2];
 };
 
 /// What the first step makes of a vertex of plain base faces.
@@ -179,6 +198,12 @@ public:
     RingVertex const &FindVertex(RingKey const &key, MAKE const &make) {
         return find<RingVertex>(_vertices, 0, key, make);
     }
+
+    /// \brief Makes a cell that is found nowhere.
+    ///
+    /// \param rings  as of Find()
+    std::unique_ptr<RingCell const> Make(FarExt::internal::CellPatch cell,
+                                         std::vector<RingLayout> const &rings);
 
     /// \brief What make() gave first of a kind of items in the lattice of a size of faces: mostly all look like
     /// it.
@@ -255,13 +280,25 @@ public:
         findIndices(child, GetChild(child).GetPoints(), RingStep::First, indices);
     }
 
-    /// The long edge of an edge, which may run against the face; null where it is in a lattice.
+    /// The half cell of an edge with its long edge, which may run against the face; null where it is in a lattice.
+    HalfWithEdge const *GetHalfWithEdge(int edge, bool isReversed) const {
+        return IsEdgeInLattice(edge)
+                   ? nullptr
+                   : &_edges[std::size_t(edge)]->halvesWithEdge[isReversed ? 1 : 0];
+    }
+    /// The long edge alone.
     RingCell const *GetLongEdge(int edge, bool isReversed) const {
-        return IsEdgeInLattice(edge) ? nullptr
-                                     : _edges[std::size_t(edge)]->longEdges[isReversed ? 1 : 0];
+        HalfWithEdge const *const half = GetHalfWithEdge(edge, isReversed);
+        return half ? half->longEdge : nullptr;
     }
     /// Writes the indices of a long edge.
-    void FindLongEdgeIndices(int edge, bool isReversed, int *indices) const;
+    void FindLongEdgeIndices(int edge, bool isReversed, int *indices) const {
+        findEdgeIndices(edge, isReversed, GetLongEdge(edge, isReversed)->GetPlaces(), indices);
+    }
+    /// The same with its half.
+    void FindHalfIndices(int edge, bool isReversed, int *indices) const {
+        findEdgeIndices(edge, isReversed, GetHalfWithEdge(edge, isReversed)->places, indices);
+    }
 
     /// The V-vertex of a vertex with so many faces before this one; null where it is in a lattice.
     RingCell const *GetVVertex(int vert, int turn) const {
@@ -273,6 +310,7 @@ private:
 
     void findIndices(std::size_t child, RingPlaces const &places, RingStep step,
                      int *indices) const;
+    void findEdgeIndices(int edge, bool isReversed, RingPlaces const &places, int *indices) const;
 
     VertexRings _rings;
     RingCell const *_whole = nullptr;
