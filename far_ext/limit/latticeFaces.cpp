@@ -7,6 +7,7 @@
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 #include <utility>
@@ -76,10 +77,12 @@ Point findPoint(LatticePatch const &patch, PatchWeights const &weights, std::siz
     return result;
 }
 
+using Directions = std::array<Point, 2>;
+
 /// Two directions in the plane in terms of two others.
-void solve(Point const (&directions)[2], Point const (&others)[2], double (&result)[2][2]) {
+void solve(Directions const &directions, Directions const &others, double (&result)[2][2]) {
     double const area = std::imag(std::conj(others[0]) * others[1]);
-    for (int i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < directions.size(); ++i) {
         result[i][0] = std::imag(std::conj(directions[i]) * others[1]) / area;
         result[i][1] = std::imag(std::conj(others[0]) * directions[i]) / area;
     }
@@ -114,6 +117,140 @@ PatchWeights combine(PatchWeights weights, double const (&factors)[2][2]) {
     }
     return weights;
 }
+
+/// \brief Finds the orbits of the vertices in a face by their points, and that the weights of all follow
+/// from those of one of an orbit.
+class OrbitFinder {
+public:
+    /// \param weights  the rows of the vertices, by number; they are referred to, as is the patch
+    OrbitFinder(LatticePatch const &patch, std::vector<PatchWeights> const &weights)
+        : _patch(patch), _weights(weights), _points(findPoints(patch, weights)), _finder(_points),
+          _isFound(weights.size(), 0) {}
+
+    /// Whether each vertex is of an orbit, and any orbit is on an axis.
+    bool Find() {
+        for (std::size_t i = 0; i < _weights.size(); ++i) {
+            if (!_isFound[i] && !addOrbitOf(i)) {
+                return false;
+            }
+        }
+        return !_axes.orbits.empty();
+    }
+
+    /// Those of pairs first.
+    std::vector<LatticeFaces::Orbit> GetOrbits() const {
+        return joined(_pairs.orbits, _axes.orbits);
+    }
+    /// By output of the orbits, the number of the vertex.
+    std::vector<int> GetOrder() const { return joined(_pairs.numbers, _axes.numbers); }
+
+private:
+    /// Orbits of a kind, and the numbers of all their vertices in turn.
+    struct Kind {
+        std::vector<LatticeFaces::Orbit> orbits;
+        std::vector<int> numbers;
+    };
+
+    static std::vector<Point> findPoints(LatticePatch const &patch,
+                                         std::vector<PatchWeights> const &weights) {
+        std::vector<Point> points;
+        points.reserve(weights.size());
+        for (PatchWeights const &ofVertex : weights) {
+            points.push_back(findPoint(patch, ofVertex, 0));
+        }
+        return points;
+    }
+    template <typename T>
+    static std::vector<T> joined(std::vector<T> first, std::vector<T> const &second) {
+        first.insert(first.end(), second.begin(), second.end());
+        return first;
+    }
+
+    bool addOrbitOf(std::size_t number) {
+        int first = int(number);
+        bool isPair = true;
+        for (int turns = 0; turns < _patch.GetFaceSize(); ++turns) {
+            Point const turned = _patch.Turn(_points[number], turns);
+            if (std::abs(turned.imag()) < kSamePoint && (isPair || turned.real() > 0)) {
+                first = _finder.Find(turned);
+                isPair = false;
+            }
+        }
+        if (first < 0) {
+            return false;
+        }
+        return isPair ? addPair(std::size_t(first)) : addAxis(std::size_t(first));
+    }
+
+    bool addPair(std::size_t first) {
+        Point const image = std::conj(_points[first]);
+        int const mirrored = _finder.Find(image);
+        if (mirrored < 0) {
+            return false;
+        }
+        Directions const directions = findDirections(first);
+        Directions const ofImage = findDirections(std::size_t(mirrored));
+        LatticeFaces::Orbit orbit = {true, _weights[first], {}};
+        solve(ofImage, {std::conj(directions[0]), std::conj(directions[1])}, orbit.derivatives);
+        constexpr double kSame[2][2] = {{1, 0}, {0, 1}};
+        if (!addTurns(orbit.weights, _points[first], false, kSame, _pairs.numbers) ||
+            !addTurns(orbit.weights, image, true, orbit.derivatives, _pairs.numbers)) {
+            return false;
+        }
+        _pairs.orbits.push_back(std::move(orbit));
+        return true;
+    }
+
+    bool addAxis(std::size_t first) {
+        Directions const directions = findDirections(first);
+        // Along and across, as long as du and dv.
+        double const length =
+            std::sqrt(std::abs(std::imag(std::conj(directions[0]) * directions[1])));
+        Directions const axis = {length, Point(0, length)};
+        double ofAxis[2][2];
+        solve(axis, directions, ofAxis);
+        LatticeFaces::Orbit orbit = {false, combine(_weights[first], ofAxis), {}};
+        solve(directions, axis, orbit.derivatives);
+        if (!addTurns(orbit.weights, _points[first], false, orbit.derivatives, _axes.numbers) ||
+            !isMirrorSymmetric(_patch, orbit.weights)) {
+            return false;
+        }
+        _axes.orbits.push_back(std::move(orbit));
+        return true;
+    }
+
+    /// Adds the vertices that one, or its mirror image, comes to as the face turns, if they have its
+    /// weights.
+    ///
+    /// \param derivatives  theirs in terms of its own
+    bool addTurns(PatchWeights const &first, Point point, bool isMirrored,
+                  double const (&derivatives)[2][2], std::vector<int> &numbers) {
+        for (int turns = 0; turns < _patch.GetFaceSize(); ++turns) {
+            int const number = _finder.Find(_patch.Turn(point, turns));
+            if (number < 0 ||
+                !areEqual(combine(turn(_patch, first, isMirrored, turns), derivatives),
+                          _weights[std::size_t(number)])) {
+                return false;
+            }
+            _isFound[std::size_t(number)] = 1;
+            numbers.push_back(number);
+        }
+        return true;
+    }
+
+    /// Those of the derivatives of a vertex.
+    Directions findDirections(std::size_t number) const {
+        return {findPoint(_patch, _weights[number], 1), findPoint(_patch, _weights[number], 2)};
+    }
+
+    LatticePatch const &_patch;
+    std::vector<PatchWeights> const &_weights;
+    std::vector<Point> const _points;
+    PointFinder const _finder;
+    std::vector<unsigned char> _isFound;
+    Kind _pairs;
+    Kind _axes;
+};
 
 /// A mark for each output of a set, whether it is the mirror image of another.
 std::vector<unsigned char> markMirrored(LatticeFaces::Set const &set) {
@@ -306,91 +443,17 @@ void LatticeFaces::getSources(VertexPlace const &of, Index *sources) {
 
 // Whether there are orbits, which make the rows of all outputs.
 bool LatticeFaces::setOrbits(Sample &sample, Set &set) {
-    LatticePatch const &patch = set.patch;
-    int const faceSize = patch.GetFaceSize();
-    std::vector<Point> points;
-    for (PatchWeights const &weights : sample.weights) {
-        if (weights.empty()) {
-            return false;
-        }
-        points.push_back(findPoint(patch, weights, 0));
+    bool const hasAllRows =
+        std::none_of(sample.weights.begin(), sample.weights.end(),
+                     [](PatchWeights const &weights) { return weights.empty(); });
+    OrbitFinder finder(set.patch, sample.weights);
+    if (!hasAllRows || !finder.Find()) {
+        return false;
     }
-    PointFinder const finder(points);
-    std::vector<unsigned char> isFound(points.size(), 0);
-    std::vector<Orbit> axes;
-    std::vector<int> ofAxes;
-    // Adds the vertices that one, or its mirror image, comes to as the face turns, if they have its
-    // weights: those of derivatives in terms of its own.
-    auto const addTurns = [&](PatchWeights const &first, Point point, bool isMirrored,
-                              double const(&derivatives)[2][2], std::vector<int> &numbers) {
-        for (int turns = 0; turns < faceSize; ++turns) {
-            int const number = finder.Find(patch.Turn(point, turns));
-            if (number < 0) {
-                return false;
-            }
-            if (!areEqual(combine(turn(patch, first, isMirrored, turns), derivatives),
-                          sample.weights[std::size_t(number)])) {
-                return false;
-            }
-            isFound[std::size_t(number)] = 1;
-            numbers.push_back(number);
-        }
-        return true;
-    };
-    constexpr double kSame[2][2] = {{1, 0}, {0, 1}};
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (isFound[i]) {
-            continue;
-        }
-        int first = int(i);
-        bool isPair = true;
-        for (int turns = 0; turns < faceSize; ++turns) {
-            Point const turned = patch.Turn(points[i], turns);
-            if (std::abs(turned.imag()) < kSamePoint && (isPair || turned.real() > 0)) {
-                first = finder.Find(turned);
-                isPair = false;
-            }
-        }
-        if (first < 0) {
-            return false;
-        }
-        Point const point = points[std::size_t(first)];
-        PatchWeights const &weights = sample.weights[std::size_t(first)];
-        Point const directions[2] = {findPoint(patch, weights, 1), findPoint(patch, weights, 2)};
-        Orbit orbit = {isPair, weights, {}};
-        if (isPair) {
-            int const mirrored = finder.Find(std::conj(point));
-            if (mirrored < 0) {
-                return false;
-            }
-            PatchWeights const &ofImage = sample.weights[std::size_t(mirrored)];
-            solve({findPoint(patch, ofImage, 1), findPoint(patch, ofImage, 2)},
-                  {std::conj(directions[0]), std::conj(directions[1])}, orbit.derivatives);
-            if (!addTurns(weights, point, false, kSame, sample.order) ||
-                !addTurns(weights, std::conj(point), true, orbit.derivatives, sample.order)) {
-                return false;
-            }
-            set.orbits.push_back(std::move(orbit));
-        } else {
-            // Along and across, as long as du and dv.
-            double const length =
-                std::sqrt(std::abs(std::imag(std::conj(directions[0]) * directions[1])));
-            Point const axis[2] = {length, Point(0, length)};
-            double ofAxis[2][2];
-            solve(axis, directions, ofAxis);
-            solve(directions, axis, orbit.derivatives);
-            orbit.weights = combine(weights, ofAxis);
-            if (!addTurns(orbit.weights, point, false, orbit.derivatives, ofAxes) ||
-                !isMirrorSymmetric(patch, orbit.weights)) {
-                return false;
-            }
-            axes.push_back(std::move(orbit));
-        }
-    }
-    sample.order.insert(sample.order.end(), ofAxes.begin(), ofAxes.end());
-    set.orbits.insert(set.orbits.end(), axes.begin(), axes.end());
+    set.orbits = finder.GetOrbits();
+    sample.order = finder.GetOrder();
     set.numOutputs = int(sample.order.size());
-    return !axes.empty();
+    return true;
 }
 
 void LatticeFaces::setOutputs(Sample const &sample, Set &set) {
