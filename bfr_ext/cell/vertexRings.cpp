@@ -263,20 +263,20 @@ VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL co
                                                   std::size_t paddedSize, REAL *result) {
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
     constexpr std::size_t kTriangle = 3;
-    std::size_t const faceSize = program[0];
-    REAL const *const mask = weights + program[1];
-    Number const *const verts = program + 2; // behind that which has the ring
-    Number const *const row = verts + (faceSize - 1);
+    std::size_t const faceSize = program[kFaceSize];
+    REAL const *const mask = weights + program[kMask];
+    Number const *const verts = program + kFaceHeaderSize; // behind that which has the ring
+    Number const *const neighbor = verts + (faceSize - 1);
     auto const load = [&](std::size_t point) { return Lanes<REAL>::Load(points + point * stride); };
     auto const store = [&](Lanes<REAL> const &sum, std::size_t place) {
         sum.Store(result + place * stride);
     };
-    Lanes<REAL> sum = load(verts[0]) * weights[row[0]];
-    Number const *run = row + 2;
-    for (std::size_t i = row[1]; i > 0; --i) {
-        REAL const weight = weights[run[0]];
-        std::size_t numSteps = run[1];
-        run += 2;
+    Lanes<REAL> sum = load(verts[0]) * weights[neighbor[kOwnWeight]];
+    Number const *run = neighbor + kNeighborHeaderSize;
+    for (std::size_t i = neighbor[kNumRuns]; i > 0; --i) {
+        REAL const weight = weights[run[kRunWeight]];
+        std::size_t numSteps = run[kNumSteps];
+        run += kRunHeaderSize;
         static_assert(kRunStep == 4);
         auto const loadStep = [&] {
             return (load(run[0]) + load(run[1])) + (load(run[2]) + load(run[3]));
@@ -354,25 +354,25 @@ void VertexRings::apply(REAL const *points, std::size_t paddedSize, REAL *result
         REAL *end = blocks;
         Number const *face = program;
         for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
-            auto const center = Lanes<REAL>::Load(points + program[0] * stride + first);
+            auto const center = Lanes<REAL>::Load(points + program[kVertex] * stride + first);
             Lanes<REAL> sums[2] =
                 {}; // of the F-vertices at the vertex, from face 0 and from face 1 on
-            face = program + kHeaderSize;
+            face = program + kRingHeaderSize;
             end = blocks;
-            for (std::size_t i = 0; i < program[1]; ++i) {
+            for (std::size_t i = 0; i < program[kNumFaces]; ++i) {
                 last = end;
-                end += (1 + std::size_t(face[0])) * stride;
+                end += (1 + std::size_t(face[kFaceSize])) * stride;
                 face = applyFace<PADDED_SIZE>(face, weights, center, points + first, paddedSize,
                                               last + first);
                 auto const ofFace = Lanes<REAL>::Load(last + stride + first);
                 sums[0] = i == 0 ? ofFace : sums[0] + ofFace;
                 sums[1] = i <= 1 ? ofFace : sums[1] + ofFace;
             }
-            if (program[1] > 1) {
+            if (program[kNumFaces] > 1) {
                 sums[1] = sums[1] + Lanes<REAL>::Load(blocks + stride + first);
             }
             for (std::size_t i = 0; i < 2; ++i) {
-                (center * weights[program[2]] + sums[i] * weights[program[3]])
+                (center * weights[program[kVertexWeight]] + sums[i] * weights[program[kFaceWeight]])
                     .Store(centers + i * stride + first);
             }
         }
@@ -419,8 +419,8 @@ void VertexRings::applyFirstCenter(std::size_t ring, int firstFace, REAL const *
                                    REAL const *rings, std::size_t paddedSize, REAL *result) const {
     REAL const *const weights = getWeights(REAL());
     Number const *const program = getProgram() + _firsts[ring];
-    applyCenter(_rings[ring], firstFace, weights[program[2]], weights[program[3]],
-                points + program[0] * paddedSize,
+    applyCenter(_rings[ring], firstFace, weights[program[kVertexWeight]],
+                weights[program[kFaceWeight]], points + program[kVertex] * paddedSize,
                 rings + _rings[ring].GetBlock(0, RingStep::First) * paddedSize, paddedSize, result);
 }
 

@@ -66,9 +66,20 @@ public:
 private:
     using Number = std::uint16_t;
 
-    // What the program of a ring begins with: its vertex, its number of faces and the two weights of its
-    // V-vertex.
-    static constexpr std::size_t kHeaderSize = 4;
+    // What Apply() does is a program of numbers.  Of each ring it has a header and then its faces; a face has
+    // a header, its vertices behind that of the ring, and the V-vertex of the neighbour where the face begins,
+    // which is the first of these vertices; a V-vertex has a header and runs of points that have one weight;
+    // and a run has a header and its points.  These are the places in the headers.
+    enum RingHeader : std::uint8_t {
+        kVertex,
+        kNumFaces,
+        kVertexWeight,
+        kFaceWeight,
+        kRingHeaderSize
+    };
+    enum FaceHeader : std::uint8_t { kFaceSize, kMask, kFaceHeaderSize };
+    enum NeighborHeader : std::uint8_t { kOwnWeight, kNumRuns, kNeighborHeaderSize };
+    enum RunHeader : std::uint8_t { kRunWeight, kNumSteps, kRunHeaderSize };
     // Points that are added up at once: what a run has less is filled up with zeros, since loops of different
     // lengths cost more than sums.
     static constexpr std::size_t kRunStep = 4;
@@ -80,7 +91,6 @@ private:
     double const *getWeights(double /*precision*/) const {
         return reinterpret_cast<double const *>(_block.data() + _firstDouble);
     }
-    // What Apply() does, ring by ring.
     Number const *getProgram() const {
         return reinterpret_cast<Number const *>(_block.data() + _firstOfProgram);
     }
