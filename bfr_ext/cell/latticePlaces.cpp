@@ -47,72 +47,106 @@ bool keepsPlaces(CellType const &type, std::vector<Pair> const &places) {
     return true;
 }
 
-} // namespace
-
-// A half cell is half of a regular hexagon.
-Pair ToLattice(Pair const &p) { return {p[0], p[1] * std::sqrt(0.75)}; }
-
-std::vector<Pair> PlacePoints(FarExt::internal::CellPatch const &cell) {
-    LimitPatch const &patch = cell.patch;
-    std::size_t const numFaces = patch.faceSizes.size();
-    std::vector<std::size_t> firstCorners = {0};
-    std::vector<std::size_t> faceOfCorner;
-    for (std::size_t face = 0; face < numFaces; ++face) {
-        faceOfCorner.insert(faceOfCorner.end(), std::size_t(patch.faceSizes[face]), face);
-        firstCorners.push_back(faceOfCorner.size());
+// Lays out the faces around a cell one after the other, each from the edge that it shares with one laid out
+// before.  A point gets its place from the first of its faces.
+class PointPlacer {
+public:
+    explicit PointPlacer(LimitPatch const &patch)
+        : _patch(patch), _places(patch.sources.size()), _isPlaced(patch.sources.size()),
+          _isFacePlaced(patch.faceSizes.size()) {
+        for (std::size_t face = 0; face < patch.faceSizes.size(); ++face) {
+            _faceOfCorner.insert(_faceOfCorner.end(), std::size_t(patch.faceSizes[face]), face);
+            _firstCorners.push_back(_faceOfCorner.size());
+        }
     }
-    std::vector<Place> places(patch.sources.size());
-    std::vector<bool> isPlaced(places.size());
-    std::vector<bool> isDone(numFaces);
-    std::vector<std::size_t> faces;
-    // All corners of a face follow from two of them.
-    auto const place = [&](std::size_t face, std::size_t local, Place const &start,
-                           Place const &end) {
-        auto const size = std::size_t(patch.faceSizes[face]);
-        auto const begin = patch.otherCorners.begin() + std::ptrdiff_t(firstCorners[face]);
-        auto const longEdge = std::size_t(std::find(begin, begin + std::ptrdiff_t(size),
-                                                    Far::Index(FarExt::internal::kSharpBoundaryB)) -
-                                          begin);
+
+    // All corners of a face follow from two of them, local and the one after it.
+    void PlaceFace(std::size_t face, std::size_t local, Place const &start, Place const &end) {
+        std::size_t const size = getSize(face);
+        std::size_t const longEdge = findLongEdge(face);
         bool const isHalf = longEdge < size && size == FarExt::internal::kNumHalfCellCorners;
         auto const get = [&](std::size_t corner) {
             return getTemplate(size, corner, longEdge, isHalf);
         };
         Place const scale = (end - start) / (get(local + 1) - get(local));
         for (std::size_t i = 0; i < size; ++i) {
-            auto const vert = std::size_t(patch.faceVerts[firstCorners[face] + i]);
-            if (!isPlaced[vert]) {
-                places[vert] = start + scale * (get(i) - get(local));
-                isPlaced[vert] = true;
+            auto const vert = std::size_t(_patch.faceVerts[_firstCorners[face] + i]);
+            if (!_isPlaced[vert]) {
+                _places[vert] = start + scale * (get(i) - get(local));
+                _isPlaced[vert] = true;
             }
         }
-        isDone[face] = true;
-        faces.push_back(face);
-    };
-    // Corners 1 and 2 follow one another in the face.
-    place(0, std::size_t(cell.locals[1]), toPlace(ToLattice(HalfCell::kCorners[1])),
-          toPlace(ToLattice(HalfCell::kCorners[2])));
-    for (std::size_t next = 0; next < faces.size();) {
-        std::size_t const placed = faces[next++];
-        std::size_t const first = firstCorners[placed];
-        auto const size = std::size_t(patch.faceSizes[placed]);
+        _isFacePlaced[face] = true;
+        _placedFaces.push_back(face);
+    }
+
+    // From the faces placed so far to all that edges join to them.
+    void PlaceOtherFaces() {
+        for (std::size_t next = 0; next < _placedFaces.size(); ++next) {
+            placeFacesBeside(_placedFaces[next]);
+        }
+    }
+
+    std::vector<Pair> GetPlaces() const {
+        std::vector<Pair> places;
+        places.reserve(_places.size());
+        for (Place const &p : _places) {
+            places.push_back({p.real(), p.imag()});
+        }
+        return places;
+    }
+
+private:
+    std::size_t getSize(std::size_t face) const { return std::size_t(_patch.faceSizes[face]); }
+
+    // The local index of the long edge, or the size of a face that has none.
+    std::size_t findLongEdge(std::size_t face) const {
+        auto const begin = _patch.otherCorners.begin() + std::ptrdiff_t(_firstCorners[face]);
+        auto const end = begin + _patch.faceSizes[face];
+        return std::size_t(std::find(begin, end, Far::Index(FarExt::internal::kSharpBoundaryB)) -
+                           begin);
+    }
+
+    void placeFacesBeside(std::size_t placed) {
+        std::size_t const first = _firstCorners[placed];
+        std::size_t const size = getSize(placed);
+        auto const getPlace = [&](std::size_t local) {
+            return _places[std::size_t(_patch.faceVerts[first + local % size])];
+        };
         for (std::size_t local = 0; local < size; ++local) {
-            Far::Index const other = patch.otherCorners[first + local];
-            if (other < 0 || isDone[faceOfCorner[std::size_t(other)]]) {
+            Far::Index const other = _patch.otherCorners[first + local];
+            if (other < 0) {
                 continue;
             }
-            std::size_t const face = faceOfCorner[std::size_t(other)];
-            auto const getEnd = [&](std::size_t corner) {
-                return places[std::size_t(patch.faceVerts[first + corner % size])];
-            };
-            place(face, std::size_t(other) - firstCorners[face], getEnd(local + 1), getEnd(local));
+            std::size_t const face = _faceOfCorner[std::size_t(other)];
+            if (!_isFacePlaced[face]) {
+                PlaceFace(face, std::size_t(other) - _firstCorners[face], getPlace(local + 1),
+                          getPlace(local));
+            }
         }
     }
-    std::vector<Pair> result;
-    result.reserve(places.size());
-    for (Place const &p : places) {
-        result.push_back({p.real(), p.imag()});
-    }
-    return result;
+
+    LimitPatch const &_patch;
+    std::vector<std::size_t> _firstCorners = {0};
+    std::vector<std::size_t> _faceOfCorner;
+    std::vector<Place> _places;
+    std::vector<bool> _isPlaced;
+    std::vector<bool> _isFacePlaced;
+    std::vector<std::size_t> _placedFaces; // in the order in which they were placed
+};
+
+} // namespace
+
+// A half cell is half of a regular hexagon.
+Pair ToLattice(Pair const &p) { return {p[0], p[1] * std::sqrt(0.75)}; }
+
+std::vector<Pair> PlacePoints(FarExt::internal::CellPatch const &cell) {
+    PointPlacer placer(cell.patch);
+    // Corners 1 and 2 follow one another in the face.
+    placer.PlaceFace(0, std::size_t(cell.locals[1]), toPlace(ToLattice(HalfCell::kCorners[1])),
+                     toPlace(ToLattice(HalfCell::kCorners[2])));
+    placer.PlaceOtherFaces();
+    return placer.GetPlaces();
 }
 
 std::vector<Pair> FindLatticePlaces(CellType const &type) {

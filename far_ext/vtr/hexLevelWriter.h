@@ -78,6 +78,9 @@ private:
     template <typename WRITE, typename WRITE_CLOSED_FORM>
     void fillClosedCorners(Index begin, Index end, WRITE write, WRITE_CLOSED_FORM writeClosedForm);
     void fillClosedVertices(Index begin, Index end, Index numOpenBefore);
+    void fillClosedVertexEdges(Index begin, Index end, VertexOffsets vertex);
+    void fillFacesOfAnyValence(Index begin, Index end, Index cFace);
+    void fillFacesOfValenceThree(Index begin, Index end, Index cFace);
     void fillOpenVertex(Index pVert, Index numOpenBefore);
 
     // The edge from a corner to the next, seen from the face.

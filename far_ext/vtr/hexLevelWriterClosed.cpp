@@ -426,22 +426,33 @@ void HexLevelWriter::fillClosedCorners(Index begin, Index end, WRITE write,
 // Around a V-vertex the spokes take the place of the parent's faces and the E-faces that of its
 // edges, beginning with the second one.
 void HexLevelWriter::fillClosedVertices(Index begin, Index end, Index numOpenBefore) {
-    HexIndexing const indexing = _indexing;
-    Index const cVert = indexing.GetVertexChildVertex(begin);
+    Index const cVert = _indexing.GetVertexChildVertex(begin);
     VertexOffsets const shift = _vVertexShifts[numOpenBefore];
     Index const *const pFirstFaces = &_p.vertFirstFace[begin];
     WriteArray<1>(&_c.vertFirstFace[cVert], end - begin, _pastCaches,
                   [=](Index *first, Index i) { *first = pFirstFaces[i] + shift.face; });
-    VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
-    Index const numFaces = _p.vertFirstFace[end] - _p.vertFirstFace[begin];
     if (!_c.boundaryEdges.empty()) {
         Index const *const pFirstEdges = &_p.vertFirstEdge[begin];
         WriteArray<1>(&_c.vertFirstEdge[cVert], end - begin, _pastCaches,
                       [=](Index *first, Index i) { *first = pFirstEdges[i] + shift.edge; });
+    }
+    VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
+    fillClosedVertexEdges(begin, end, vertex);
+    // Vertices of any valence come first.
+    Index const endAnyValence = std::clamp(_p.numVertsOfAnyValence, begin, end);
+    fillFacesOfAnyValence(begin, endAnyValence, vertex.face);
+    Index const numOfAnyValence = _p.vertFirstEdge[endAnyValence] - _p.vertFirstEdge[begin];
+    fillFacesOfValenceThree(endAnyValence, end, vertex.face + numOfAnyValence);
+}
+
+// The spokes around V-vertices.
+void HexLevelWriter::fillClosedVertexEdges(Index begin, Index end, VertexOffsets vertex) {
+    HexIndexing const indexing = _indexing;
+    Index const numFaces = _p.vertFirstFace[end] - _p.vertFirstFace[begin];
+    if (!_c.boundaryEdges.empty()) {
         WriteArray<1>(_c.vertEdgeLocals.data() + vertex.edge, numFaces, _pastCaches,
                       [](LocalIndex *local, Index) { *local = kVVertexEdgeLocals[0]; });
     }
-
     Index const *const pFaces = _p.vertFaces.data() + _p.vertFirstFace[begin];
     LocalIndex const *const pFaceLocals = _p.vertFaceLocals.data() + _p.vertFirstFace[begin];
     Index const *const pFirstCorner = _p.faceFirstCorner.data();
@@ -449,54 +460,59 @@ void HexLevelWriter::fillClosedVertices(Index begin, Index end, Index numOpenBef
         _c.vertEdges.data() + vertex.edge, numFaces, _pastCaches, [=](Index *edge, Index i) {
             *edge = indexing.GetCornerChildSpoke(pFirstCorner[pFaces[i]] + pFaceLocals[i]);
         });
+}
 
-    EFaceOfEdge const eFaceOf(_refinement);
-    // Vertices of any valence: written as if all were edges of one vertex, then the last of each
-    // vertex, if it has any; values of a face-varying channel need not have.
-    Index const endAnyValence = std::clamp(_p.numVertsOfAnyValence, begin, end);
+// The E-faces around V-vertices of any valence, from cFace on in vertFaces: written as if all were edges
+// of one vertex, then the last of each vertex, if it has any; values of a face-varying channel need
+// not have.
+void HexLevelWriter::fillFacesOfAnyValence(Index begin, Index end, Index cFace) {
     Index const *const pFirstEdges = &_p.vertFirstEdge[begin];
-    Index const *const pEdges = _p.vertEdges.data() + pFirstEdges[0];
-    Index const numOfAnyValence = pFirstEdges[endAnyValence - begin] - pFirstEdges[0];
+    Index const numVertices = end - begin;
+    Index const numEdges = pFirstEdges[numVertices] - pFirstEdges[0];
     auto const writeRotated = [=](auto *ofEdges, auto ofEdge) {
-        for (Index i = 1; i < numOfAnyValence; ++i) {
+        for (Index i = 1; i < numEdges; ++i) {
             ofEdges[i - 1] = ofEdge(i);
         }
-        for (Index i = 0; i < endAnyValence - begin; ++i) {
+        for (Index i = 0; i < numVertices; ++i) {
             if (pFirstEdges[i] < pFirstEdges[i + 1]) {
                 ofEdges[pFirstEdges[i + 1] - 1 - pFirstEdges[0]] =
                     ofEdge(pFirstEdges[i] - pFirstEdges[0]);
             }
         }
     };
-    Index *const faces = _c.vertFaces.data() + vertex.face;
-    LocalIndex *const locals = _c.vertFaceLocals.data() + vertex.face;
-    writeRotated(faces, [=](Index i) { return eFaceOf(pEdges[i]); });
+    EFaceOfEdge const eFaceOf(_refinement);
+    Index const *const pEdges = _p.vertEdges.data() + pFirstEdges[0];
+    writeRotated(_c.vertFaces.data() + cFace, [=](Index i) { return eFaceOf(pEdges[i]); });
+    LocalIndex *const locals = _c.vertFaceLocals.data() + cFace;
     if (_p.isHexagonal) {
-        std::fill_n(locals, numOfAnyValence, kEFaceSideA.startVertex);
-    } else {
-        LocalIndex const *const pLocals = _p.vertEdgeLocals.data() + pFirstEdges[0];
-        writeRotated(locals, [=](Index i) {
-            return pLocals[i] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex;
-        });
+        std::fill_n(locals, numEdges, kEFaceSideA.startVertex);
+        return;
     }
-    // V-vertices of the parent are the first vertex of three edges, F-vertices the first, second
-    // and second.
+    LocalIndex const *const pLocals = _p.vertEdgeLocals.data() + pFirstEdges[0];
+    writeRotated(locals, [=](Index i) {
+        return pLocals[i] == 0 ? kEFaceSideA.startVertex : kEFaceSideA.endVertex;
+    });
+}
+
+// The E-faces around V-vertices of valence three, from cFace on in vertFaces.  V-vertices of the parent
+// are the first vertex of three edges, F-vertices the first, second and second.
+void HexLevelWriter::fillFacesOfValenceThree(Index begin, Index end, Index cFace) {
     constexpr int kValence = 3;
-    Index const *const pEdgesOfThree = pEdges + numOfAnyValence;
-    WriteArray<kValence>(faces + numOfAnyValence, end - endAnyValence, _pastCaches,
+    EFaceOfEdge const eFaceOf(_refinement);
+    Index const *const pEdges = _p.vertEdges.data() + _p.vertFirstEdge[begin];
+    WriteArray<kValence>(_c.vertFaces.data() + cFace, end - begin, _pastCaches,
                          [=](Index *ofVertex, Index i) {
-                             Index const *const edges = pEdgesOfThree + kValence * std::size_t(i);
+                             Index const *const edges = pEdges + kValence * std::size_t(i);
                              WritePair(ofVertex, eFaceOf(edges[1]), eFaceOf(edges[2]));
                              ofVertex[2] = eFaceOf(edges[0]);
                          });
-    Index const endVVertices =
-        _p.isHexagonal ? std::clamp(_p.numVVertices, endAnyValence, end) : end;
-    Index const numVVertices = endVVertices - endAnyValence;
-    LocalIndex *const localsOfThree = locals + numOfAnyValence;
-    WriteArray<kValence>(localsOfThree, numVVertices, _pastCaches, [](LocalIndex *ofVertex, Index) {
+    Index const endVVertices = _p.isHexagonal ? std::clamp(_p.numVVertices, begin, end) : end;
+    Index const numVVertices = endVVertices - begin;
+    LocalIndex *const locals = _c.vertFaceLocals.data() + cFace;
+    WriteArray<kValence>(locals, numVVertices, _pastCaches, [](LocalIndex *ofVertex, Index) {
         ofVertex[0] = ofVertex[1] = ofVertex[2] = kEFaceSideA.startVertex;
     });
-    WriteArray<kValence>(localsOfThree + kValence * std::size_t(numVVertices), end - endVVertices,
+    WriteArray<kValence>(locals + kValence * std::size_t(numVVertices), end - endVVertices,
                          _pastCaches, [](LocalIndex *ofVertex, Index) {
                              ofVertex[0] = ofVertex[1] = kEFaceSideA.endVertex;
                              ofVertex[2] = kEFaceSideA.startVertex;
