@@ -459,6 +459,30 @@ TEST_F(HexrefineAttribute, MaterialLibrariesAreFoundFromOtherFolders) {
               (Names{"../my colors.mtl", "b.mtl /c.mtl ../missing.mtl"}));
 }
 
+TEST_F(HexrefineAttribute, PropertyNamedAsTheVerticesOfFacesIsNotWritten) {
+    std::string const input = makeFile(
+        "a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                 "property float z\nelement face 1\nproperty list uchar int vertex_index\n"
+                 "property float vertex_indices\nproperty float quality\nend_header\n"
+                 "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 .5 .25\n");
+    Result const result = run(input + " -l 1 -o " + getPath("out.ply"));
+    ASSERT_EQ(result.status, 0) << result.error;
+    EXPECT_NE(result.out.find("no place for it: face property vertex_indices\n"), std::string::npos)
+        << result.out;
+    EXPECT_EQ(ReadMesh(getPath("out.ply")).faceProperties.size(), 1u);
+}
+
+TEST_F(HexrefineAttribute, MissingMaterialLibrariesAreNamedFromOtherFolders) {
+    std::filesystem::create_directories(getPath("in"));
+    std::filesystem::create_directories(getPath("out"));
+    std::string const input = makeFile(
+        "in/a.obj", "mtllib my file.mtl other.MTL\nmtllib \"my file.mtl\" C:\\tmp\\b.mtl last\n"
+                    "mtllib one two\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    EXPECT_EQ(refine(input + " -l 1", "out/a.obj").materialLibraries,
+              (Names{"../in/my file.mtl ../in/other.MTL",
+                     "\"../in/my file.mtl\" C:\\tmp\\b.mtl ../in/last", "../in/one ../in/two"}));
+}
+
 TEST(PictureColors, AreThoseOfLabels) {
     Mesh mesh;
     mesh.faceSizes.assign(5, 3);

@@ -284,4 +284,21 @@ TEST_F(HexrefineChannel, SeparatesVertices) {
     expectBadUsage("\"" + cross + "\" --separate-vertices", cause);
 }
 
+TEST_F(HexrefineChannel, SeparateVerticesHaveThirdTextureCoordinates) {
+    std::string const input = makeFile(
+        "a.obj", "vt 0 0 .5\nvt 1 0 0\nvt 1 1 0\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1/1 2/2 3/3\n");
+    Result result = run(input + " -l 1 --separate-vertices -o " + getPath("out.ply"));
+    ASSERT_EQ(result.status, 0) << result.error;
+    EXPECT_EQ(result.out.find("not written"), std::string::npos) << result.out;
+    Mesh const mesh = ReadMesh(getPath("out.ply"));
+    VertexProperty const *const third = FindProperty(mesh.vertexProperties, "r");
+    ASSERT_TRUE(third);
+    EXPECT_EQ(third->values[0], 0.5f);
+    result = run(input + " -l 1 --separate-vertices -o " + getPath("out.off"));
+    ASSERT_EQ(result.status, 0) << result.error;
+    EXPECT_NE(result.out.find("not written, .off files have no place for it: vertex property r"),
+              std::string::npos)
+        << result.out;
+}
+
 } // namespace OpenSubdivHex::Tools

@@ -3,7 +3,11 @@
 
 #include "tools/mesh/meshText.h"
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <string_view>
+#include <utility>
 
 namespace OpenSubdivHex::Tools {
 
@@ -16,14 +20,55 @@ fs::path getFolder(std::string const &path) {
     return folder.empty() ? fs::path(".") : folder;
 }
 
+/// Also where the file names it as Windows does.
+bool isAbsolute(std::string_view name) {
+    bool const hasDrive =
+        name.size() > 1 && name[1] == ':' && std::isalpha(static_cast<unsigned char>(name[0]));
+    return hasDrive || fs::path(name).is_absolute();
+}
+
 /// \p name, of a file in \p from or a path from there, as a path from \p to.
 std::string move(std::string_view name, fs::path const &from, fs::path const &to) {
-    if (fs::path(name).is_absolute()) {
+    if (name.size() > 1 && name.front() == '"' && name.back() == '"') {
+        return '"' + move(name.substr(1, name.size() - 2), from, to) + '"';
+    }
+    if (isAbsolute(name)) {
         return std::string(name);
     }
     std::error_code error;
     fs::path const path = fs::proximate(from / fs::path(name), to, error);
     return error ? std::string(name) : path.generic_string();
+}
+
+bool endsName(std::string_view word) {
+    constexpr std::string_view kExtension = ".mtl";
+    if (!word.empty() && word.back() == '"') {
+        word.remove_suffix(1);
+    }
+    return word.size() >= kExtension.size() &&
+           std::equal(kExtension.begin(), kExtension.end(), word.end() - kExtension.size(),
+                      [](char expected, char c) {
+                          return expected == char(std::tolower(static_cast<unsigned char>(c)));
+                      });
+}
+
+/// \brief The names of files that words name: each goes on to the next word that ends in .mtl, so that
+/// names may have spaces.  Behind the last such word each word is a name.
+std::vector<std::string> joinNames(std::vector<std::string_view> const &words) {
+    std::vector<std::string> names;
+    for (auto word = words.begin(); word != words.end();) {
+        auto const last = std::find_if(word, words.end(), endsName);
+        std::string name(*word);
+        if (last != words.end()) {
+            while (word != last) {
+                name += ' ';
+                name += *++word;
+            }
+        }
+        ++word;
+        names.push_back(std::move(name));
+    }
+    return names;
 }
 
 } // namespace
@@ -42,8 +87,8 @@ std::vector<std::string> MoveLibraries(std::vector<std::string> libraries, std::
             continue;
         }
         std::string moved;
-        for (std::string_view word : SplitWords(library)) {
-            moved += (moved.empty() ? "" : " ") + move(word, from, to);
+        for (std::string const &name : joinNames(SplitWords(library))) {
+            moved += (moved.empty() ? "" : " ") + move(name, from, to);
         }
         library = moved;
     }

@@ -77,6 +77,19 @@ void addMeanNormals(FarExt::LimitSides const &sides, std::vector<float> const &n
     }
 }
 
+// The names of those values of channels that files like \p path have no place for as properties of vertices.
+std::vector<std::string> findValuesNotHeld(std::string const &path,
+                                           std::vector<FVarChannel> const &channels) {
+    Mesh properties;
+    for (FVarChannel const &channel : channels) {
+        for (int k = 0; k < channel.width; ++k) {
+            properties.vertexProperties.push_back(
+                {GetPropertyName(channel.kind, k), NumberType::Float, {}});
+        }
+    }
+    return RemoveWhatIsNotHeld(path, &properties);
+}
+
 } // namespace
 
 Refinement::Refinement(Arguments const &arguments, Progress &progress)
@@ -242,6 +255,8 @@ void Refinement::removeWhatIsNotWritten() {
     }
     _statistics.notWritten = RemoveWhatIsNotHeld(_arguments.output, &_mesh);
     if (_arguments.isSeparate) {
+        std::vector<std::string> const notHeld = findValuesNotHeld(_arguments.output, separated);
+        _statistics.notWritten.insert(_statistics.notWritten.end(), notHeld.begin(), notHeld.end());
         _mesh.channels = std::move(separated);
     }
     if (!_mesh.channels.empty()) {

@@ -35,9 +35,9 @@ enum class FVarKind { Uv, Normal };
 
 inline std::string GetName(FVarKind kind) { return kind == FVarKind::Uv ? "uv" : "normal"; }
 
-/// The name of the vertex property that holds number \p k of such a value: s and t; nx, ny and nz.
+/// The name of the vertex property that holds number \p k of such a value: s, t and r; nx, ny and nz.
 inline std::string GetPropertyName(FVarKind kind, int k) {
-    return kind == FVarKind::Uv ? std::string(1, "st"[k]) : std::string("n") + "xyz"[k];
+    return kind == FVarKind::Uv ? std::string(1, "str"[k]) : std::string("n") + "xyz"[k];
 }
 
 /// \brief Face-varying data: values, and the one that each face corner has.  Along a seam the faces

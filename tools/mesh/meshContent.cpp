@@ -114,7 +114,9 @@ MeshContent FindContent(MeshFormat format, Mesh const &mesh) {
             content.vertexProperties.push_back(i);
         }
         for (std::size_t i = 0; i < mesh.faceProperties.size(); ++i) {
-            content.faceProperties.push_back(i);
+            if (mesh.faceProperties[i].name != kPlyFaceVertices) {
+                content.faceProperties.push_back(i);
+            }
         }
         break;
     }

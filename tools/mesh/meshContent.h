@@ -7,6 +7,9 @@
 
 namespace OpenSubdivHex::Tools {
 
+/// The list of the vertices of a face in PLY files that are written.
+inline constexpr char const *kPlyFaceVertices = "vertex_indices";
+
 /// What files of a format hold of a mesh, beside its positions and faces.
 struct MeshContent {
     bool hasChannels = false;
@@ -21,7 +24,7 @@ struct MeshContent {
 /// \brief OBJ holds channels, labels and, of vertices, a colour (red, green and blue that are
 /// uchar, ushort, float or double) or else w; OFF normals (nx, ny, nz), colours with or without
 /// alpha that are uchar or float, texture coordinates (s, t) and colours of faces; PLY all
-/// properties.
+/// properties but one of faces that has the name of their list of vertices.
 MeshContent FindContent(MeshFormat format, Mesh const &mesh);
 
 /// \brief Removes from \p mesh what files of the format that the extension of \p path names do not

@@ -436,7 +436,7 @@ std::string makePlyHeader(Mesh const &mesh, MeshCounts const &counts) {
            "\nproperty float x\nproperty float y\nproperty float z\n" +
            describeProperties(mesh.vertexProperties).first + "element face " +
            std::to_string(counts.faces) + "\nproperty list " +
-           (counts.hasShortFaces ? "uchar" : "int") + " int vertex_indices\n" +
+           (counts.hasShortFaces ? "uchar" : "int") + " int " + kPlyFaceVertices + "\n" +
            describeProperties(mesh.faceProperties).first + "end_header\n";
 }
 
