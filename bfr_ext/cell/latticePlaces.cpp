@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <queue>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -77,13 +78,14 @@ public:
             }
         }
         _isFacePlaced[face] = true;
-        _placedFaces.push_back(face);
+        _unvisitedFaces.push(face);
     }
 
     // From the faces placed so far to all that edges join to them.
     void PlaceOtherFaces() {
-        for (std::size_t next = 0; next < _placedFaces.size(); ++next) {
-            placeFacesBeside(_placedFaces[next]);
+        while (!_unvisitedFaces.empty()) {
+            placeFacesBeside(_unvisitedFaces.front());
+            _unvisitedFaces.pop();
         }
     }
 
@@ -132,7 +134,7 @@ private:
     std::vector<Place> _places;
     std::vector<bool> _isPlaced;
     std::vector<bool> _isFacePlaced;
-    std::vector<std::size_t> _placedFaces; // in the order in which they were placed
+    std::queue<std::size_t> _unvisitedFaces; // placed, but not yet those beside them
 };
 
 } // namespace
