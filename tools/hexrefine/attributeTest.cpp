@@ -472,6 +472,17 @@ TEST_F(HexrefineAttribute, PropertyNamedAsTheVerticesOfFacesIsNotWritten) {
     EXPECT_EQ(ReadMesh(getPath("out.ply")).faceProperties.size(), 1u);
 }
 
+TEST_F(HexrefineAttribute, MaterialLibrariesOfOneStatementMayHaveAnyExtension) {
+    std::filesystem::create_directories(getPath("in/my"));
+    std::filesystem::create_directories(getPath("out"));
+    makeFile("in/wood.mat", "newmtl a\n");
+    std::string const input =
+        makeFile("in/a.obj", "mtllib wood.mat metal.mtl my colors.mtl\n"
+                             "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    EXPECT_EQ(refine(input + " -l 1", "out/a.obj").materialLibraries,
+              (Names{"../in/wood.mat ../in/metal.mtl ../in/my colors.mtl"}));
+}
+
 TEST_F(HexrefineAttribute, MissingMaterialLibrariesAreNamedFromOtherFolders) {
     std::filesystem::create_directories(getPath("in"));
     std::filesystem::create_directories(getPath("out"));

@@ -6,7 +6,7 @@
 // or Far::StencilTable and an evaluator -> mesh file.
 #include "arguments.h"
 #include "progress.h"
-#include "refinement.h"
+#include "run.h"
 #include "statistics.h"
 
 #include "far_ext/threads.h"
@@ -68,17 +68,17 @@ void report(Arguments const &arguments, Statistics const &statistics, std::strin
 }
 
 /// Does one step behind the other; what a file is to have is in its place before anything is printed.
-void run(Arguments const &arguments) {
+void refine(Arguments const &arguments) {
     std::optional<Progress> progress(std::in_place, !arguments.isQuiet && Progress::IsTerminal());
-    Refinement refinement(arguments, *progress);
-    refinement.Read();
-    refinement.Validate();
-    refinement.Refine();
-    refinement.Evaluate();
-    refinement.Draw();
-    refinement.Write();
+    Run run(arguments, *progress);
+    run.Read();
+    run.Validate();
+    run.Refine();
+    run.Evaluate();
+    run.Draw();
+    run.Write();
     progress.reset(); // its line is removed
-    report(arguments, refinement.GetStatistics(), refinement.GetTagText());
+    report(arguments, run.GetStatistics(), run.GetTagText());
 }
 
 } // namespace
@@ -103,7 +103,7 @@ int main(int argc, char **argv) {
             setSimdLevel(*arguments.simd);
         }
         try {
-            run(arguments);
+            refine(arguments);
         } catch (std::bad_alloc const &) {
             std::string const what =
                 arguments.adaptive.isAdaptive

@@ -30,7 +30,8 @@ void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh);
 /// Hexagons that a sharp crease crosses become two quads as well.
 void CopyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const &sides, Mesh *mesh);
 
-/// \brief The same, with the values of channels as properties of vertices, s and t or nx, ny and nz.
+/// \brief The same, with the values of channels as properties of vertices: s, t and, of three
+/// numbers, r; or nx, ny and nz.
 ///
 /// A vertex at which corners have different ones becomes several: the first in its place, the others
 /// behind all vertices.

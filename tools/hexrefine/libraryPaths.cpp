@@ -20,7 +20,7 @@ fs::path getFolder(std::string const &path) {
     return folder.empty() ? fs::path(".") : folder;
 }
 
-/// Also where the file names it as Windows does.
+/// Whether \p name is an absolute path, here or in Windows.
 bool isAbsolute(std::string_view name) {
     bool const hasDrive =
         name.size() > 1 && name[1] == ':' && std::isalpha(static_cast<unsigned char>(name[0]));
@@ -40,7 +40,8 @@ std::string move(std::string_view name, fs::path const &from, fs::path const &to
     return error ? std::string(name) : path.generic_string();
 }
 
-bool endsName(std::string_view word) {
+/// Whether \p word ends in .mtl, or in that and a quotation mark.
+bool endsWithExtension(std::string_view word) {
     constexpr std::string_view kExtension = ".mtl";
     if (!word.empty() && word.back() == '"') {
         word.remove_suffix(1);
@@ -52,21 +53,25 @@ bool endsName(std::string_view word) {
                       });
 }
 
-/// \brief The names of files that words name: each goes on to the next word that ends in .mtl, so that
-/// names may have spaces.  Behind the last such word each word is a name.
-std::vector<std::string> joinNames(std::vector<std::string_view> const &words) {
+bool isFile(fs::path const &folder, std::string const &name) {
+    std::error_code error;
+    return fs::is_regular_file(folder / fs::path(name), error);
+}
+
+/// \brief The names of files in \p folder that words name: each goes on until it is that of a file, or to
+/// a word that ends in .mtl, so that names may have spaces.  Behind the last such word each word is a
+/// name.
+std::vector<std::string> joinNames(std::vector<std::string_view> const &words,
+                                   fs::path const &folder) {
+    auto const behindLast = std::find_if(words.rbegin(), words.rend(), endsWithExtension).base();
     std::vector<std::string> names;
-    for (auto word = words.begin(); word != words.end();) {
-        auto const last = std::find_if(word, words.end(), endsName);
-        std::string name(*word);
-        if (last != words.end()) {
-            while (word != last) {
-                name += ' ';
-                name += *++word;
-            }
+    std::string name;
+    for (auto word = words.begin(); word != words.end(); ++word) {
+        name += (name.empty() ? "" : " ") + std::string(*word);
+        if (word >= behindLast || endsWithExtension(*word) || isFile(folder, name)) {
+            names.push_back(std::move(name));
+            name.clear();
         }
-        ++word;
-        names.push_back(std::move(name));
     }
     return names;
 }
@@ -82,12 +87,12 @@ std::vector<std::string> MoveLibraries(std::vector<std::string> libraries, std::
         return libraries;
     }
     for (std::string &library : libraries) {
-        if (fs::exists(from / fs::path(library), error)) {
+        if (isFile(from, library)) {
             library = move(library, from, to);
             continue;
         }
         std::string moved;
-        for (std::string const &name : joinNames(SplitWords(library))) {
+        for (std::string const &name : joinNames(SplitWords(library), from)) {
             moved += (moved.empty() ? "" : " ") + move(name, from, to);
         }
         library = moved;

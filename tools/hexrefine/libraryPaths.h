@@ -11,8 +11,9 @@ namespace OpenSubdivHex::Tools {
 /// \p libraries, those of the OBJ file \p input, mean: paths that are not absolute count from the
 /// folder of the file.
 ///
-/// A statement names one file, with spaces or without, where there is such a file, else files whose
-/// names end in .mtl; words behind these name a file each.  In the same folder it stays as it is.
+/// A statement names one file, with spaces or without, where there is such a file, else several: those
+/// that are there, and those whose names end in .mtl; words behind these name a file each.  In the same
+/// folder it stays as it is.
 std::vector<std::string> MoveLibraries(std::vector<std::string> libraries, std::string const &input,
                                        std::string const &output);
 

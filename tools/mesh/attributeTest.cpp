@@ -142,6 +142,20 @@ TEST_F(Attributes, PlyElementsInAnyOrder) {
                                    "digits of time that floats do not have", "element edge"}));
 }
 
+TEST_F(Attributes, PlyFilesHaveNoFacePropertyNamedAsTheListOfVertices) {
+    Mesh mesh;
+    mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    mesh.faceSizes = {3};
+    mesh.faceVertices = {0, 1, 2};
+    mesh.faceProperties = {{"vertex_indices", NumberType::Int, {7}},
+                           {"quality", NumberType::Float, {.25}}};
+    WriteMesh(mesh, getPath("a.ply"));
+    Mesh const read = ReadMesh(getPath("a.ply"));
+    EXPECT_EQ(read.faceVertices, mesh.faceVertices);
+    EXPECT_EQ(getNames(read.faceProperties), Names{"float quality"});
+    EXPECT_EQ(read.faceProperties[0].values, std::vector<double>{.25});
+}
+
 TEST_F(Attributes, RefusesBadPlyProperties) {
     std::string const header =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"

@@ -52,8 +52,8 @@ struct FVarChannel {
 };
 
 /// \brief A number that each vertex has beside its position, such as the red of its colour.  Names
-/// are those of PLY: red, green, blue and alpha; nx, ny and nz; s and t; w is the fourth coordinate
-/// of OBJ.  Values are refined as varying data.
+/// are those of PLY: red, green, blue and alpha; nx, ny and nz; s, t and r of texture coordinates; w is
+/// the fourth coordinate of OBJ.  Values are refined as varying data.
 struct VertexProperty {
     std::string name{};
     NumberType type = NumberType::Float; ///< that files hold

@@ -418,11 +418,14 @@ char *putNumber(char *out, NumberType type, double value) {
     return out;
 }
 
-/// The lines of the header for \p properties, and the bytes that an item has of them.
+/// The lines of the header for those of \p properties that are \p held, and the bytes that an item has of
+/// them.
 template <typename PROPERTY>
-std::pair<std::string, std::size_t> describeProperties(std::vector<PROPERTY> const &properties) {
+std::pair<std::string, std::size_t> describeProperties(std::vector<PROPERTY> const &properties,
+                                                       std::vector<std::size_t> const &held) {
     std::pair<std::string, std::size_t> result;
-    for (PROPERTY const &property : properties) {
+    for (std::size_t i : held) {
+        PROPERTY const &property = properties[i];
         result.first +=
             std::string("property ") + GetName(property.type) + " " + property.name + "\n";
         result.second += GetSize(property.type);
@@ -431,29 +434,33 @@ std::pair<std::string, std::size_t> describeProperties(std::vector<PROPERTY> con
 }
 
 std::string makePlyHeader(Mesh const &mesh, MeshCounts const &counts) {
+    MeshContent const content = FindContent(MeshFormat::Ply, mesh);
     return "ply\nformat binary_little_endian 1.0\nelement vertex " +
            std::to_string(counts.vertices) +
            "\nproperty float x\nproperty float y\nproperty float z\n" +
-           describeProperties(mesh.vertexProperties).first + "element face " +
-           std::to_string(counts.faces) + "\nproperty list " +
+           describeProperties(mesh.vertexProperties, content.vertexProperties).first +
+           "element face " + std::to_string(counts.faces) + "\nproperty list " +
            (counts.hasShortFaces ? "uchar" : "int") + " int " + kPlyFaceVertices + "\n" +
-           describeProperties(mesh.faceProperties).first + "end_header\n";
+           describeProperties(mesh.faceProperties, content.faceProperties).first + "end_header\n";
 }
 
 void writePlyVertices(Mesh const &mesh, WriteBytes const &write) {
+    MeshContent const content = FindContent(MeshFormat::Ply, mesh);
     auto const printVertices = [&](std::size_t begin, std::size_t end, char *out) {
         for (std::size_t i = begin; i < end; ++i) {
             for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
                 out = putBytes(out, mesh.positions[k]);
             }
-            for (VertexProperty const &property : mesh.vertexProperties) {
+            for (std::size_t k : content.vertexProperties) {
+                VertexProperty const &property = mesh.vertexProperties[k];
                 out = putNumber(out, property.type, double(property.values[i]));
             }
         }
         return out;
     };
     // Of a vertex.
-    std::size_t const numBytes = 12 + describeProperties(mesh.vertexProperties).second;
+    std::size_t const numBytes =
+        12 + describeProperties(mesh.vertexProperties, content.vertexProperties).second;
     writeItems(
         std::size_t(mesh.GetNumVertices()),
         [numBytes](std::size_t begin, std::size_t end) { return numBytes * (end - begin); },
@@ -461,6 +468,7 @@ void writePlyVertices(Mesh const &mesh, WriteBytes const &write) {
 }
 
 void writePlyFaces(Mesh const &mesh, bool hasShortFaces, WriteBytes const &write) {
+    MeshContent const content = FindContent(MeshFormat::Ply, mesh);
     auto const printFace = [&](int face, std::size_t firstCorner, char *out) {
         int const size = mesh.faceSizes[std::size_t(face)];
         if (hasShortFaces) {
@@ -471,13 +479,15 @@ void writePlyFaces(Mesh const &mesh, bool hasShortFaces, WriteBytes const &write
         for (std::size_t i = firstCorner; i < firstCorner + std::size_t(size); ++i) {
             out = putBytes(out, mesh.faceVertices[i]);
         }
-        for (FaceProperty const &property : mesh.faceProperties) {
+        for (std::size_t i : content.faceProperties) {
+            FaceProperty const &property = mesh.faceProperties[i];
             out =
                 putNumber(out, property.type, property.values[std::size_t(mesh.GetBaseFace(face))]);
         }
         return out;
     };
-    std::size_t const maxFace = 4 + describeProperties(mesh.faceProperties).second;
+    std::size_t const maxFace =
+        4 + describeProperties(mesh.faceProperties, content.faceProperties).second;
     writeFaces(
         mesh, [=](int) { return maxFace; }, 4, printFace, write);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "refinement.h"
+#include "run.h"
 
 #include "creaseAngle.h"
 #include "degenerateFaces.h"
@@ -77,7 +77,7 @@ void addMeanNormals(FarExt::LimitSides const &sides, std::vector<float> const &n
     }
 }
 
-// The names of those values of channels that files like \p path have no place for as properties of vertices.
+/// The names of those values of channels that files like \p path have no place for as properties of vertices.
 std::vector<std::string> findValuesNotHeld(std::string const &path,
                                            std::vector<FVarChannel> const &channels) {
     Mesh properties;
@@ -92,7 +92,7 @@ std::vector<std::string> findValuesNotHeld(std::string const &path,
 
 } // namespace
 
-Refinement::Refinement(Arguments const &arguments, Progress &progress)
+Run::Run(Arguments const &arguments, Progress &progress)
     : _arguments(arguments), _progress(progress) {
     _statistics.scheme = arguments.scheme;
     _statistics.firstStep = arguments.firstStep;
@@ -104,12 +104,12 @@ Refinement::Refinement(Arguments const &arguments, Progress &progress)
     _statistics.input = arguments.input;
 }
 
-void Refinement::Read() {
+void Run::Read() {
     measure("reading", &_statistics.milliseconds.read, [&] { _mesh = ReadMesh(_arguments.input); });
     _regions = FindRegions(_arguments.pngColors, _mesh, _arguments.input);
 }
 
-void Refinement::Validate() {
+void Run::Validate() {
     measure("validating", &_statistics.milliseconds.validate, [&] {
         if (_arguments.creaseAngle) {
             AddCreases(*_arguments.creaseAngle, &_mesh);
@@ -130,7 +130,7 @@ void Refinement::Validate() {
     });
 }
 
-void Refinement::Refine() {
+void Run::Refine() {
     measure("refining", &_statistics.milliseconds.refine, [&] {
         // With --adaptive, level 0 is enough where it is the surface level.
         if (!isAdaptive() || getLastLevel() > 0) {
@@ -144,7 +144,7 @@ void Refinement::Refine() {
     _statistics.channels = CountChannels(*_refiner, _mesh);
 }
 
-void Refinement::Evaluate() {
+void Run::Evaluate() {
     if (getLastLevel() > 0) {
         evaluateLevel();
     }
@@ -159,7 +159,7 @@ void Refinement::Evaluate() {
     CheckFinite(_mesh, _arguments.input, "level " + std::to_string(getLastLevel()) + ": ");
 }
 
-void Refinement::Draw() {
+void Run::Draw() {
     if (_arguments.png.empty()) {
         return;
     }
@@ -173,7 +173,7 @@ void Refinement::Draw() {
     });
 }
 
-void Refinement::Write() {
+void Run::Write() {
     if (_arguments.output.empty()) {
         return;
     }
@@ -193,7 +193,7 @@ void Refinement::Write() {
 }
 
 template <typename WORK>
-void Refinement::measure(char const *phase, double *milliseconds, WORK &&work) {
+void Run::measure(char const *phase, double *milliseconds, WORK &&work) {
     _progress.SetPhase(phase);
     auto const start = std::chrono::steady_clock::now();
     work();
@@ -201,15 +201,15 @@ void Refinement::measure(char const *phase, double *milliseconds, WORK &&work) {
     *milliseconds += std::chrono::duration<double, std::milli>(time).count();
 }
 
-bool Refinement::isAdaptive() const { return _arguments.adaptive.isAdaptive; }
+bool Run::isAdaptive() const { return _arguments.adaptive.isAdaptive; }
 
 // Cells begin with the faces of the surface level.
-int Refinement::getLastLevel() const {
+int Run::getLastLevel() const {
     return isAdaptive() ? _refiner->GetHexSchemeOptions().GetSurfaceLevel() : _arguments.level;
 }
 
 // Evaluators of tables give no status.
-void Refinement::requireDone(bool isDone, FarExt::Status const &status) const {
+void Run::requireDone(bool isDone, FarExt::Status const &status) const {
     if (!isDone) {
         throw FileError(_arguments.input,
                         status.IsOk() ? "--evaluator " + _arguments.evaluator + " gives no values"
@@ -217,14 +217,14 @@ void Refinement::requireDone(bool isDone, FarExt::Status const &status) const {
     }
 }
 
-void Refinement::warn(std::string const &message) const {
+void Run::warn(std::string const &message) const {
     std::cerr << "hexrefine: " << EscapeControls(_arguments.input + ": warning: " + message)
               << "\n";
 }
 
 // The rules: those of the command line, else those of the file, else the paper's boundary and what
 // Sdc::Options has.
-Sdc::Options Refinement::chooseOptions() const {
+Sdc::Options Run::chooseOptions() const {
     MeshTags const &tags = _mesh.tags;
     Sdc::Options options;
     auto boundary = tags.boundary.value_or(Sdc::Options::VTX_BOUNDARY_NONE);
@@ -242,7 +242,7 @@ Sdc::Options Refinement::chooseOptions() const {
     return options;
 }
 
-void Refinement::removeWhatIsNotWritten() {
+void Run::removeWhatIsNotWritten() {
     if (_arguments.output.empty()) {
         return;
     }
@@ -269,7 +269,7 @@ void Refinement::removeWhatIsNotWritten() {
 
 // Makes room for the normals of --limit: those of vertices are removed, and named.  Face-varying ones
 // may have seams that the limit has not.
-void Refinement::removeNormals() {
+void Run::removeNormals() {
     for (FVarChannel const &channel : _mesh.channels) {
         if (channel.kind == FVarKind::Normal) {
             throw FileError(_arguments.input,
@@ -284,7 +284,7 @@ void Refinement::removeNormals() {
     }
 }
 
-void Refinement::createRefiner(Sdc::Options sdcOptions) {
+void Run::createRefiner(Sdc::Options sdcOptions) {
     Far::TopologyDescriptor descriptor = DescribeTopology(_mesh);
     auto const channels = DescribeChannels(_mesh);
     descriptor.numFVarChannels = int(channels.size());
@@ -306,7 +306,7 @@ void Refinement::createRefiner(Sdc::Options sdcOptions) {
 }
 
 // The positions of the mesh are the rest pose.
-void Refinement::refineTopology() {
+void Run::refineTopology() {
     FarExt::Status status;
     bool const needsFullTopology = _arguments.isLimit || isAdaptive() || !_arguments.png.empty();
     FarExt::TopologyRefiner::UniformOptions uniformOptions(getLastLevel());
@@ -327,7 +327,7 @@ void Refinement::refineTopology() {
 }
 
 // All values but positions that --limit replaces.
-void Refinement::evaluateLevel() {
+void Run::evaluateLevel() {
     for (Primvar const &primvar : findPrimvars(&_mesh)) {
         if (!_arguments.isLimit || primvar.mode != FarExt::INTERPOLATE_VERTEX) {
             evaluatePrimvar(primvar);
@@ -335,7 +335,7 @@ void Refinement::evaluateLevel() {
     }
 }
 
-void Refinement::evaluatePrimvar(Primvar const &primvar) {
+void Run::evaluatePrimvar(Primvar const &primvar) {
     auto &milliseconds = _statistics.milliseconds;
     FarExt::Status status;
     if (!NeedsStencils(_arguments.evaluator)) {
@@ -358,7 +358,7 @@ void Refinement::evaluatePrimvar(Primvar const &primvar) {
 }
 
 // Replaces the positions by limit points, and finds the normals.
-void Refinement::evaluateLimit() {
+void Run::evaluateLimit() {
     auto &milliseconds = _statistics.milliseconds;
     _sides.emplace(_refiner->GetLevel(getLastLevel()));
     FarExt::Status status;
@@ -385,7 +385,7 @@ void Refinement::evaluateLimit() {
     });
 }
 
-void Refinement::refineCells() {
+void Run::refineCells() {
     measure("evaluating", &_statistics.milliseconds.evaluate, [&] {
         _cells.emplace(_mesh, _arguments.output, !_arguments.png.empty());
         _cells->Refine(_arguments.adaptive, *_refiner, _arguments.input);
@@ -393,7 +393,7 @@ void Refinement::refineCells() {
     });
 }
 
-void Refinement::drawCells() const {
+void Run::drawCells() const {
     try {
         WriteCellPicture(_cells->GetMesh(), _cells->GetCamera(),
                          FindCellRegions(_arguments.pngColors, _regions, _cells->GetMesh(),
@@ -407,7 +407,7 @@ void Refinement::drawCells() const {
 
 // Replaces the faces of level 0 by those of the last level.  The normals of --limit come with them: those of
 // each side of a vertex where the file takes them, else their mean.
-void Refinement::copyFaces() {
+void Run::copyFaces() {
     FarExt::TopologyLevel const &level = _refiner->GetLevel(getLastLevel());
     FarExt::LimitSides const *const sides = _sides ? &*_sides : nullptr;
     bool const hasSides =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef OPENSUBDIVHEX_TOOLS_REFINEMENT_H
-#define OPENSUBDIVHEX_TOOLS_REFINEMENT_H
+#ifndef OPENSUBDIVHEX_TOOLS_RUN_H
+#define OPENSUBDIVHEX_TOOLS_RUN_H
 
 #include "adaptive.h"
 #include "arguments.h"
@@ -17,13 +17,14 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// \brief The refinement of a mesh file: the steps of a run, which are called once each, in this order.
+/// \brief A run of the program, from a mesh file to another: steps, which are called once each, in this order.
 ///
 /// Each throws FileError.  Warnings go to the standard error stream.
-class Refinement {
+class Run {
 public:
-    /// Both are referred to.
-    Refinement(Arguments const &arguments, Progress &progress);
+    /// \param arguments  they must live as long
+    /// \param progress   the steps, and nothing else, tell it of their phases
+    Run(Arguments const &arguments, Progress &progress);
 
     /// Reads the file.
     void Read();
