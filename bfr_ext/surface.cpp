@@ -144,6 +144,29 @@ void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
 }
 
 template <typename REAL>
+void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
+                             PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
+                             REAL duu[], REAL duv[], REAL dvv[]) const {
+    if (!IsValid()) {
+        return;
+    }
+    internal::BasePoint const point = findPoint(uv);
+    CellStencil stencil(*_type);
+    stencil.FindSecond(point);
+    auto const sum = [&](std::vector<double> const &weights, REAL *result) {
+        sumUp(weights.data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc, result);
+    };
+    if (!evaluateOnBorder(point, controlPoints, pointDesc, p)) {
+        sum(stencil.GetWeights(), p);
+    }
+    sum(stencil.GetDuWeights(), du);
+    sum(stencil.GetDvWeights(), dv);
+    sum(stencil.GetDuuWeights(), duu);
+    sum(stencil.GetDuvWeights(), duv);
+    sum(stencil.GetDvvWeights(), dvv);
+}
+
+template <typename REAL>
 void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL p[],
                              PointDescriptor const &resultDesc) const {
@@ -157,6 +180,36 @@ void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const contro
                              PointDescriptor const &resultDesc) const {
     REAL *const results[3] = {p, du, dv};
     evaluate(tessellation, controlPoints, pointDesc, results, resultDesc);
+}
+
+template <typename REAL>
+void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+                             PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
+                             REAL duu[], REAL duv[], REAL dvv[],
+                             PointDescriptor const &resultDesc) const {
+    if (!canEvaluate(tessellation)) {
+        return;
+    }
+    Evaluate(tessellation, controlPoints, pointDesc, p, du, dv, resultDesc);
+    CellStencil stencil(*_type);
+    std::ptrdiff_t result = 0;
+    for (Tessellation::SectorCoords const &place : tessellation._places) {
+        stencil.FindSecond(
+            internal::MakeBasePoint(GetFaceSize(), place.sector, {place.start, place.end}));
+        auto const sum = [&](std::vector<double> const &weights, REAL *results) {
+            sumUp(weights.data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc,
+                  results + result);
+        };
+        sum(stencil.GetDuuWeights(), duu);
+        sum(stencil.GetDuvWeights(), duv);
+        sum(stencil.GetDvvWeights(), dvv);
+        result += resultDesc.stride;
+    }
+}
+
+template <typename REAL>
+bool Surface<REAL>::canEvaluate(Tessellation const &tessellation) const {
+    return IsValid() && tessellation.IsValid() && tessellation.GetFaceSize() == GetFaceSize();
 }
 
 template <typename REAL>
@@ -209,7 +262,7 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
     using internal::PatternOf;
     using internal::PatternTable;
     using Pattern = internal::CellPattern<REAL>;
-    if (!IsValid() || !tessellation.IsValid() || tessellation.GetFaceSize() != GetFaceSize()) {
+    if (!canEvaluate(tessellation)) {
         return;
     }
     if (tessellation._tree && !tessellation._cellPlan) {
@@ -524,6 +577,24 @@ int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeig
     copyWeights(stencil.GetWeights(), weights);
     copyWeights(stencil.GetDuWeights(), duWeights);
     copyWeights(stencil.GetDvWeights(), dvWeights);
+    return GetNumControlPoints();
+}
+
+template <typename REAL>
+int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[],
+                                   REAL dvWeights[], REAL duuWeights[], REAL duvWeights[],
+                                   REAL dvvWeights[]) const {
+    if (!IsValid()) {
+        return 0;
+    }
+    CellStencil stencil(*_type);
+    stencil.FindSecond(findPoint(uv));
+    copyWeights(stencil.GetWeights(), weights);
+    copyWeights(stencil.GetDuWeights(), duWeights);
+    copyWeights(stencil.GetDvWeights(), dvWeights);
+    copyWeights(stencil.GetDuuWeights(), duuWeights);
+    copyWeights(stencil.GetDuvWeights(), duvWeights);
+    copyWeights(stencil.GetDvvWeights(), dvvWeights);
     return GetNumControlPoints();
 }
 

@@ -76,9 +76,12 @@ private:
 ///  - Varying data have kinks along edges of all levels: there the differences some levels on are
 ///    given.
 ///
-/// **Second derivatives** are not offered: with FaceMask::Average curvature is unbounded, with
-/// FaceMask::Cosine it has no limit at most places, and with any mask it grows or alternates towards
-/// base vertices.
+/// **Second derivatives**, by u twice, by u and v, and by v twice, are from the same side.  Vertex data, and
+/// face-varying data that are refined like these, have them with FaceMask::Smooth: exactly at the places of
+/// vertices, elsewhere to a thousandth or so of their size.  There are none at base vertices that have not
+/// three faces, towards which they may grow, at the centres of faces that are no hexagons, and on the lines of
+/// borders and creases; and with FaceMask::Cosine there are bounded ones without a limit, with FaceMask::Average unbounded
+/// ones.  What is given in all these cases is how first derivatives change over a cell of the tenth level.
 ///
 /// Bfr evaluates *patch points*, which it makes of control points: here they are the control points,
 /// and its functions are there for programs that call them.
@@ -183,6 +186,9 @@ public:
     /// The same with first derivatives.
     void Evaluate(REAL const uv[2], REAL const controlPoints[], PointDescriptor const &pointDesc,
                   REAL p[], REAL du[], REAL dv[]) const;
+    /// The same with first and second derivatives.
+    void Evaluate(REAL const uv[2], REAL const controlPoints[], PointDescriptor const &pointDesc,
+                  REAL p[], REAL du[], REAL dv[], REAL duu[], REAL duv[], REAL dvv[]) const;
 
     /// \brief Writes the points at all places of a tessellation, of a face of this size, from one to the
     /// next by the stride of \p resultDesc; nothing where it is of another size, or invalid.
@@ -204,12 +210,20 @@ public:
     void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                   PointDescriptor const &resultDesc) const;
+    /// The same with first and second derivatives, of which the second ones are found place by place: that
+    /// takes some ten microseconds each.
+    void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+                  PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[], REAL duu[],
+                  REAL duv[], REAL dvv[], PointDescriptor const &resultDesc) const;
 
     /// Writes the weights of the control points that make the point at \p uv.
     /// \return  GetNumControlPoints()
     int EvaluateStencil(REAL const uv[2], REAL weights[]) const;
     /// The same with those of the first derivatives.
     int EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[], REAL dvWeights[]) const;
+    /// The same with those of the second derivatives.
+    int EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[], REAL dvWeights[],
+                        REAL duuWeights[], REAL duvWeights[], REAL dvvWeights[]) const;
     /// Writes the weighted sum of control points.
     void ApplyStencil(REAL const stencil[], REAL const controlPoints[],
                       PointDescriptor const &controlPointDesc, REAL result[]) const;
@@ -236,6 +250,7 @@ private:
     }
     // Has what evaluates it brought to the cache, while control points are gathered.
     void prefetch() const;
+    bool canEvaluate(Tessellation const &tessellation) const;
     internal::BasePoint findPoint(REAL const uv[2]) const;
     bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
                           PointDescriptor const &pointDesc, REAL p[]) const;

@@ -104,6 +104,11 @@ public:
         std::vector<py::object> results = evaluate(uv, points, 3);
         return py::make_tuple(results[0], results[1], results[2]);
     }
+    py::tuple EvaluateWithSecondDerivatives(py::object const &uv, py::object const &points) const {
+        std::vector<py::object> results = evaluate(uv, points, 6);
+        return py::make_tuple(results[0], results[1], results[2], results[3], results[4],
+                              results[5]);
+    }
     Points EvaluateStencil(py::object const &uv) const {
         std::vector<double> const places = takePlaces(uv);
         auto const numPlaces = py::ssize_t(places.size() / 2);
@@ -163,7 +168,7 @@ private:
         return places;
     }
 
-    /// Points, or points and derivatives.
+    /// Points, points and first derivatives, or those and second ones.
     std::vector<py::object> evaluate(py::object const &uv, py::object const &points,
                                      int numResults) const {
         int length = 0;
@@ -190,18 +195,25 @@ private:
             PointDescriptor const desc(length);
             if (pattern && numResults == 1) {
                 _surface.Evaluate(*pattern, controlPoints.data(), desc, data[0], desc);
-            } else if (pattern) {
+            } else if (pattern && numResults == 3) {
                 _surface.Evaluate(*pattern, controlPoints.data(), desc, data[0], data[1], data[2],
                                   desc);
+            } else if (pattern) {
+                _surface.Evaluate(*pattern, controlPoints.data(), desc, data[0], data[1], data[2],
+                                  data[3], data[4], data[5], desc);
             }
             for (std::size_t i = 0; i < places.size() / 2; ++i) {
                 double const *const place = places.data() + 2 * i;
                 std::size_t const first = i * std::size_t(length);
                 if (numResults == 1) {
                     _surface.Evaluate(place, controlPoints.data(), desc, data[0] + first);
-                } else {
+                } else if (numResults == 3) {
                     _surface.Evaluate(place, controlPoints.data(), desc, data[0] + first,
                                       data[1] + first, data[2] + first);
+                } else {
+                    _surface.Evaluate(place, controlPoints.data(), desc, data[0] + first,
+                                      data[1] + first, data[2] + first, data[3] + first,
+                                      data[4] + first, data[5] + first);
                 }
             }
         }
@@ -317,6 +329,11 @@ void BindSurfaces(py::module_ &module) {
         .def("evaluate_with_derivatives", &FaceSurface::EvaluateWithDerivatives,
              "evaluate_with_derivatives(uv, points)\n\nReturns (points, du, dv), each of the "
              "shape (places, length).",
+             py::arg("uv"), py::arg("points"))
+        .def("evaluate_with_second_derivatives", &FaceSurface::EvaluateWithSecondDerivatives,
+             "evaluate_with_second_derivatives(uv, points)\n\nReturns (points, du, dv, duu, duv, "
+             "dvv), each of the shape (places, length).  Second derivatives\nexist with face mask "
+             "'smooth', but for some places.",
              py::arg("uv"), py::arg("points"))
         .def("evaluate_stencil", &FaceSurface::EvaluateStencil,
              "evaluate_stencil(uv)\n\nWeights of the control points for places that are no "

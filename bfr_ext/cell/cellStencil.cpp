@@ -15,6 +15,8 @@ namespace {
 // Elsewhere it falls as the cells do, by 1.25 at least.
 constexpr int kRegularDepth = 16;
 constexpr int kLastDepth = 40;
+// In the differences between first derivatives at corners that are closer, their rounding shows.
+constexpr int kDepthOfDifferences = 10;
 
 // Vertices of the first levels have coordinates that are multiples of it.
 constexpr double kGrid = 1.0 / (1 << 16);
@@ -129,10 +131,91 @@ void goBack(std::vector<ChildStep const *> const &steps, StencilOf of, std::vect
 
 } // namespace
 
+int CellStencil::Place::FindCorner() const {
+    return FindCellCorner(type->IsWhole() ? type->GetNumCorners() : 0, sector, coords);
+}
+
+std::vector<double> CellStencil::Place::FindCornerWeights() const {
+    if (!type->IsWhole()) {
+        std::array<double, 4> const weights = HalfCell::GetCornerWeights(coords);
+        return {weights.begin(), weights.end()};
+    }
+    auto const numCorners = std::size_t(type->GetNumCorners());
+    double const inner = (1 - coords[0] - coords[1]) / double(numCorners);
+    std::vector<double> weights(numCorners, inner);
+    weights[std::size_t(sector)] += coords[0];
+    weights[(std::size_t(sector) + 1) % numCorners] += coords[1];
+    return weights;
+}
+
+std::vector<Pair> CellStencil::Place::FindCornersInPlane() const {
+    std::vector<Pair> corners;
+    if (type->IsWhole()) {
+        BasePolygon const polygon(type->GetNumCorners());
+        for (int i = 0; i < polygon.GetSize(); ++i) {
+            Pair const corner = polygon.GetCorner(i);
+            corners.push_back({std::ldexp(corner[0], -depth), std::ldexp(corner[1], -depth)});
+        }
+        return corners;
+    }
+    auto const &[x, h] = toCoords; // by u and v
+    double const determinant = x[0] * h[1] - x[1] * h[0];
+    constexpr Pair kMean = {0.5, 0.25};
+    for (Pair const &corner : HalfCell::kCorners) {
+        Pair const p = {corner[0] - kMean[0], corner[1] - kMean[1]};
+        corners.push_back(
+            {(h[1] * p[0] - x[1] * p[1]) / determinant, (x[0] * p[1] - h[0] * p[0]) / determinant});
+    }
+    return corners;
+}
+
+void CellStencil::Place::AddDerivatives(std::size_t corner, double weight,
+                                        std::vector<double> const (&derivatives)[2],
+                                        std::vector<double> *byUv) const {
+    Pair ofCorner[2] = {toCoords[0], toCoords[1]};
+    if (type->IsWhole()) {
+        // The corner has the coordinates of its own sector, larger by what the steps have made them.
+        findSectorMap(BasePolygon(type->GetNumCorners()), int(corner), ofCorner);
+        for (Pair &row : ofCorner) {
+            row = {std::ldexp(row[0], depth), std::ldexp(row[1], depth)};
+        }
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        add(byUv[k], weight * ofCorner[0][k], derivatives[0]);
+        add(byUv[k], weight * ofCorner[1][k], derivatives[1]);
+    }
+}
+
 bool CellStencil::isLast(Place const &place) const {
     return place.depth >= kLastDepth ||
            (place.depth >= kRegularDepth && !place.type->IsWhole() &&
             place.type->HasBoundedCurvature() && place.type->IsRegular());
+}
+
+CellStencil::Place CellStencil::begin(BasePoint const &point) {
+    _steps.clear();
+    return {&_root, 0, point.sector, point.coords, {point.toCoords[0], point.toCoords[1]}};
+}
+
+// To the child that has the point.
+void CellStencil::takeStep(Place &place) {
+    CellStep const step = FindCellStep(place.type->IsWhole(), place.sector, place.coords);
+    CellMap const *const map = step.map;
+    CellType::Child const &next = place.type->GetChildren()[step.child];
+    Pair const coords = map->Apply(place.coords);
+    place.coords = next.type->IsWhole() ? clampToSector(coords) : clampToHalf(coords);
+    Pair toCoords[2];
+    for (std::size_t i = 0; i < 2; ++i) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            toCoords[i][k] =
+                map->rows[i][0] * place.toCoords[0][k] + map->rows[i][1] * place.toCoords[1][k];
+        }
+    }
+    place.toCoords[0] = toCoords[0];
+    place.toCoords[1] = toCoords[1];
+    place.type = next.type;
+    ++place.depth;
+    _steps.push_back(&next.step);
 }
 
 void CellStencil::addCorner(Place const &place, std::size_t corner, double weight,
@@ -143,56 +226,28 @@ void CellStencil::addCorner(Place const &place, std::size_t corner, double weigh
     }
     CellType::Corner const &values = place.type->GetCorners()[corner];
     add(_weights[0], weight, values.point);
-    addDerivatives(place, corner, weight, values.derivatives);
+    place.AddDerivatives(corner, weight, values.derivatives, _weights + 1);
 }
 
-// Of a corner, from those by its coordinates.
-void CellStencil::addDerivatives(Place const &place, std::size_t corner, double weight,
-                                 std::vector<double> const (&derivatives)[2]) {
-    Pair toCoords[2] = {place.toCoords[0], place.toCoords[1]};
-    if (place.type->IsWhole()) {
-        // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        findSectorMap(BasePolygon(place.type->GetNumCorners()), int(corner), toCoords);
-        for (Pair &row : toCoords) {
-            row = {std::ldexp(row[0], place.depth), std::ldexp(row[1], place.depth)};
-        }
-    }
-    for (std::size_t k = 0; k < 2; ++k) {
-        add(_weights[1 + k], weight * toCoords[0][k], derivatives[0]);
-        add(_weights[1 + k], weight * toCoords[1][k], derivatives[1]);
+// Takes the steps back, and from derivatives what rounding has left.
+void CellStencil::finish(std::vector<double> *derivatives, std::size_t numDerivatives) {
+    for (std::size_t i = 0; i < numDerivatives; ++i) {
+        goBack(_steps, _of, derivatives[i], _scratch);
+        // Steps shrink all that rounding has left of differences between near points but their sum.
+        double const sum = std::accumulate(derivatives[i].begin(), derivatives[i].end(), 0.0);
+        add(derivatives[i], -sum, _weights[0]);
     }
 }
 
 void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
-    Place place = {&_root, 0, point.sector, point.coords, {point.toCoords[0], point.toCoords[1]}};
-    _steps.clear();
-    auto const findCorner = [&] {
-        return FindCellCorner(place.type->IsWhole() ? place.type->GetNumCorners() : 0, place.sector,
-                              place.coords);
-    };
+    Place place = begin(point);
     // A corner that is there before the step has its derivatives from there.
     Place const root = place;
-    int const rootCorner = _of == StencilOf::Step && hasDerivatives ? findCorner() : -1;
+    int const rootCorner = _of == StencilOf::Step && hasDerivatives ? root.FindCorner() : -1;
     int corner = -1;
-    while (((corner = findCorner()) < 0 && !isLast(place)) ||
+    while (((corner = place.FindCorner()) < 0 && !isLast(place)) ||
            (_of == StencilOf::Step && _steps.empty())) {
-        CellStep const step = FindCellStep(place.type->IsWhole(), place.sector, place.coords);
-        CellMap const *const map = step.map;
-        CellType::Child const &next = place.type->GetChildren()[step.child];
-        Pair const coords = map->Apply(place.coords);
-        place.coords = next.type->IsWhole() ? clampToSector(coords) : clampToHalf(coords);
-        Pair toCoords[2];
-        for (std::size_t i = 0; i < 2; ++i) {
-            for (std::size_t k = 0; k < 2; ++k) {
-                toCoords[i][k] =
-                    map->rows[i][0] * place.toCoords[0][k] + map->rows[i][1] * place.toCoords[1][k];
-            }
-        }
-        place.toCoords[0] = toCoords[0];
-        place.toCoords[1] = toCoords[1];
-        place.type = next.type;
-        ++place.depth;
-        _steps.push_back(&next.step);
+        takeStep(place);
     }
 
     hasDerivatives = hasDerivatives && rootCorner < 0;
@@ -202,34 +257,78 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
     }
     if (corner >= 0) {
         addCorner(place, std::size_t(corner), 1, hasDerivatives);
-    } else if (place.type->IsWhole()) {
-        auto const numCorners = std::size_t(place.type->GetNumCorners());
-        double const inner = (1 - place.coords[0] - place.coords[1]) / double(numCorners);
-        auto const sector = std::size_t(place.sector);
-        for (std::size_t i = 0; i < numCorners; ++i) {
-            double const outer = (i == sector ? place.coords[0] : 0) +
-                                 (i == (sector + 1) % numCorners ? place.coords[1] : 0);
-            addCorner(place, i, inner + outer, hasDerivatives);
-        }
     } else {
-        std::array<double, 4> const weights = HalfCell::GetCornerWeights(place.coords);
-        for (std::size_t i = 0; i < 4; ++i) {
+        std::vector<double> const weights = place.FindCornerWeights();
+        for (std::size_t i = 0; i < weights.size(); ++i) {
             addCorner(place, i, weights[i], hasDerivatives);
         }
     }
-    for (int i = 0; i < numRows; ++i) {
-        goBack(_steps, _of, _weights[i], _scratch);
-    }
-    for (int i = 1; i < numRows; ++i) {
-        // Steps shrink all that rounding has left of differences between near points but their sum.
-        double const sum = std::accumulate(_weights[i].begin(), _weights[i].end(), 0.0);
-        add(_weights[i], -sum, _weights[0]);
-    }
+    goBack(_steps, _of, _weights[0], _scratch);
+    finish(_weights + 1, hasDerivatives ? 2 : 0);
     if (rootCorner >= 0) {
         _weights[1].assign(_weights[0].size(), 0.0);
         _weights[2] = _weights[1];
-        addDerivatives(root, std::size_t(rootCorner), 1,
-                       root.type->GetDerivativesOfStep(rootCorner).rows);
+        root.AddDerivatives(std::size_t(rootCorner), 1,
+                            root.type->GetDerivativesOfStep(rootCorner).rows, _weights + 1);
+    }
+}
+
+void CellStencil::FindSecond(BasePoint const &point) {
+    Find(point, true);
+    Place place = begin(point);
+    // A corner of a cell without such derivatives is in one with them some steps on, or never.
+    while (SecondDerivatives::Find(*place.type).Exist()
+               ? place.FindCorner() < 0 && place.depth < kRegularDepth
+               : place.depth < kDepthOfDifferences) {
+        takeStep(place);
+    }
+    for (std::vector<double> &row : _secondWeights) {
+        row.assign(std::size_t(place.type->GetNumPoints()), 0.0);
+    }
+    if (SecondDerivatives::Find(*place.type).Exist()) {
+        addSecondAtCorners(place);
+    } else {
+        addSecondBetweenCorners(place);
+    }
+    finish(_secondWeights.data(), _secondWeights.size());
+}
+
+void CellStencil::addSecondAtCorners(Place const &place) {
+    SecondDerivatives const &derivatives = SecondDerivatives::Find(*place.type);
+    std::vector<double> const weights = place.FindCornerWeights();
+    for (std::size_t corner = 0; corner < weights.size(); ++corner) {
+        SecondDerivatives::Rows const byUv =
+            SecondDerivatives::ChangeCoordinates(place.toCoords, derivatives.AtCorner(corner));
+        for (std::size_t k = 0; k < byUv.size(); ++k) {
+            add(_secondWeights[k], weights[corner], byUv[k]);
+        }
+    }
+}
+
+// The slopes of the linear functions that are nearest to the first derivatives at the corners.
+void CellStencil::addSecondBetweenCorners(Place const &place) {
+    std::vector<Pair> const corners = place.FindCornersInPlane();
+    double uu = 0;
+    double uv = 0;
+    double vv = 0;
+    for (auto const &[u, v] : corners) {
+        uu += u * u;
+        uv += u * v;
+        vv += v * v;
+    }
+    double const determinant = uu * vv - uv * uv;
+    std::vector<double> byUv[2];
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        for (std::vector<double> &row : byUv) {
+            row.assign(std::size_t(place.type->GetNumPoints()), 0.0);
+        }
+        place.AddDerivatives(i, 1, place.type->GetCorners()[i].derivatives, byUv);
+        auto const [u, v] = corners[i];
+        Pair const slope = {(vv * u - uv * v) / determinant, (uu * v - uv * u) / determinant};
+        add(_secondWeights[0], slope[0], byUv[0]);
+        add(_secondWeights[1], 0.5 * slope[1], byUv[0]);
+        add(_secondWeights[1], 0.5 * slope[0], byUv[1]);
+        add(_secondWeights[2], slope[1], byUv[1]);
     }
 }
 

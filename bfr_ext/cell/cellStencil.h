@@ -4,6 +4,7 @@
 
 #include "cellType.h"
 #include "halfCell.h"
+#include "secondDerivatives.h"
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -50,6 +51,9 @@ enum class StencilOf {
 ///
 /// The cells that have a point are followed until it is a corner of one, or they are so small that
 /// the surface between their corners is bilinear as far as anyone sees.
+///
+/// Second derivatives are those of SecondDerivatives where such cells have the point, and between their
+/// corners.  Elsewhere they are those of the first derivatives from corner to corner of a cell.
 class CellStencil {
 public:
     /// Those of a type of base faces.
@@ -57,15 +61,31 @@ public:
         : _root(root), _of(of) {}
 
     void Find(BasePoint const &point, bool hasDerivatives);
+    /// Finds those of a point and of its first and second derivatives, as sums of points.
+    void FindSecond(BasePoint const &point);
 
     /// By what they are sums of: weights of the surface's point, and of its derivatives.
     std::vector<double> const &GetWeights() const { return _weights[0]; }
     std::vector<double> const &GetDuWeights() const { return _weights[1]; }
     std::vector<double> const &GetDvWeights() const { return _weights[2]; }
+    std::vector<double> const &GetDuuWeights() const { return _secondWeights[0]; }
+    std::vector<double> const &GetDuvWeights() const { return _secondWeights[1]; }
+    std::vector<double> const &GetDvvWeights() const { return _secondWeights[2]; }
 
 private:
     // Where a point is in the cells that have it, from the root on.
     struct Place {
+        // Which corner of the cell it is, or -1.
+        int FindCorner() const;
+        // How much the corners weigh between which it is.
+        std::vector<double> FindCornerWeights() const;
+        // The corners in the parameter plane, from the mean of all.
+        std::vector<Pair> FindCornersInPlane() const;
+        // Adds the derivatives by u and v at a corner, from those by its coordinates.
+        void AddDerivatives(std::size_t corner, double weight,
+                            std::vector<double> const (&derivatives)[2],
+                            std::vector<double> *byUv) const;
+
         CellType const *type;
         int depth;
         int sector; // of a whole cell
@@ -73,15 +93,19 @@ private:
         Pair toCoords[2];
     };
 
+    Place begin(BasePoint const &point);
+    void takeStep(Place &place);
     bool isLast(Place const &place) const;
     void addCorner(Place const &place, std::size_t corner, double weight, bool hasDerivatives);
-    void addDerivatives(Place const &place, std::size_t corner, double weight,
-                        std::vector<double> const (&derivatives)[2]);
+    void addSecondAtCorners(Place const &place);
+    void addSecondBetweenCorners(Place const &place);
+    void finish(std::vector<double> *derivatives, std::size_t numDerivatives);
 
     CellType const &_root;
     StencilOf const _of;
     std::vector<ChildStep const *> _steps;
     std::vector<double> _weights[3];
+    SecondDerivatives::Rows _secondWeights;
     std::vector<double> _scratch;
 };
 

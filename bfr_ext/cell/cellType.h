@@ -73,6 +73,12 @@ public:
                _rules.interpolation == FarExt::Interpolation::Vertex;
     }
 
+    /// Whether it is continuous there.
+    bool HasContinuousCurvature() const {
+        return _rules.schemeOptions.faceMask == FarExt::FaceMask::Smooth &&
+               _rules.interpolation == FarExt::Interpolation::Vertex;
+    }
+
     /// Children are in the order of RefineCell().
     std::vector<Child> const &GetChildren() const;
     /// The points that the children have, in terms of those of the type.

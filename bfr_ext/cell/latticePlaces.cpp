@@ -14,18 +14,16 @@ using FarExt::internal::LimitPatch;
 
 using Place = std::complex<double>;
 
-Pair fromLattice(Pair const &p) { return {p[0], p[1] / std::sqrt(0.75)}; }
 Place toPlace(Pair const &p) { return {p[0], p[1]}; }
 
 // The corners of a face from one on, as far as its shape goes: a regular polygon, or half a hexagon, with a
 // long edge that begins at some corner.
 Place getTemplate(std::size_t size, std::size_t corner, std::size_t longEdge, bool isHalf) {
-    constexpr double kTurn = 6.283185307179586;
     if (isHalf) {
         std::size_t const local = (corner + size - longEdge) % size;
         return toPlace(ToLattice(HalfCell::kCorners[local]));
     }
-    return std::polar(1.0, kTurn * double(corner % size) / double(size));
+    return std::polar(1.0, 2 * FarExt::internal::kPi * double(corner % size) / double(size));
 }
 
 // Whether a step makes a regular lattice of the places.
@@ -39,7 +37,7 @@ bool keepsPlaces(CellType const &type, std::vector<Pair> const &places) {
                 sum[0] += weight * places[point][0];
                 sum[1] += weight * places[point][1];
             });
-            Pair const inChild = ToLattice(HalfCell::kChildren[child].Apply(fromLattice(sum)));
+            Pair const inChild = ToLattice(HalfCell::kChildren[child].Apply(FromLattice(sum)));
             if (!(std::hypot(inChild[0] - places[i][0], inChild[1] - places[i][1]) < kTolerance)) {
                 return false;
             }
@@ -141,6 +139,7 @@ private:
 
 // A half cell is half of a regular hexagon.
 Pair ToLattice(Pair const &p) { return {p[0], p[1] * std::sqrt(0.75)}; }
+Pair FromLattice(Pair const &p) { return {p[0], p[1] / std::sqrt(0.75)}; }
 
 std::vector<Pair> PlacePoints(FarExt::internal::CellPatch const &cell) {
     PointPlacer placer(cell.patch);

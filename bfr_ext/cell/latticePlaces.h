@@ -27,6 +27,8 @@ std::vector<Pair> PlacePoints(FarExt::internal::CellPatch const &cell);
 
 /// Such coordinates of those of HalfCell.
 Pair ToLattice(Pair const &p);
+/// And back.
+Pair FromLattice(Pair const &p);
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

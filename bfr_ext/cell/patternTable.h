@@ -32,7 +32,8 @@ enum class PatternOf {
     HeightBounds,
     HeightFit,
     TermIntervals,
-    SlopeBounds
+    SlopeBounds,
+    SecondDerivatives
 };
 
 /// \brief What was made for some keys, of whatever type.

@@ -288,6 +288,18 @@ class Surface:
         uv: ArrayLike | Tessellation,
         points: ArrayLike,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+    def evaluate_with_second_derivatives(
+        self,
+        uv: ArrayLike | Tessellation,
+        points: ArrayLike,
+    ) -> tuple[
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+    ]: ...
 
 class SurfaceFactory:
     def __init__(self, refiner: TopologyRefiner) -> None: ...

@@ -83,6 +83,27 @@ def test_derivatives_are_those_of_the_points(factory):
         assert np.median(np.abs(difference - derivative)) < 1e-2
 
 
+def test_second_derivatives_are_differences_of_first_ones(factory):
+    surface = factory.vertex_surface(5)
+    inside = np.array([[0.3, 0.11], [0.62, 0.2], [0.81, 0.46]])
+    results = surface.evaluate_with_second_derivatives(inside, POSITIONS)
+    for result, first in zip(results, surface.evaluate_with_derivatives(inside, POSITIONS)):
+        np.testing.assert_array_equal(result, first)
+    step = 2e-4
+    for axis in (0, 1):
+        shift = np.eye(2)[axis] * step
+        ends = [surface.evaluate_with_derivatives(inside + sign * shift, POSITIONS)
+                for sign in (-1, 1)]
+        for kind in (0, 1):
+            difference = (ends[1][1 + kind] - ends[0][1 + kind]) / (2 * step)
+            np.testing.assert_allclose(results[3 + kind + axis], difference, atol=0.03)
+    tessellation = osh.Tessellation(surface.face_size, 1)
+    of_tessellation = surface.evaluate_with_second_derivatives(tessellation, POSITIONS)
+    of_places = surface.evaluate_with_second_derivatives(tessellation.coords, POSITIONS)
+    for found, expected in zip(of_tessellation, of_places):
+        np.testing.assert_allclose(found, expected, atol=1e-6)
+
+
 def test_stencils_are_weights_of_the_control_points(factory):
     surface = factory.vertex_surface(2)
     weights = surface.evaluate_stencil(UV)

@@ -190,8 +190,8 @@ TEST_P(ReferenceFeatureTest, PointsAreTheLimitsOfTheReference) {
 
 namespace {
 
-/// The first derivatives of the quadratic function that is nearest to some points.
-std::array<Vector3, 2> fitDerivatives(std::vector<std::array<double, 2>> const &places,
+/// The derivatives of the quadratic function that is nearest to some points: by u, by v, and the second ones.
+std::array<Vector3, 5> fitDerivatives(std::vector<std::array<double, 2>> const &places,
                                       std::vector<Vector3> const &points) {
     Eigen::MatrixXd terms(Eigen::Index(places.size()), 6);
     Eigen::MatrixXd values(Eigen::Index(places.size()), 3);
@@ -201,8 +201,25 @@ std::array<Vector3, 2> fitDerivatives(std::vector<std::array<double, 2>> const &
         values.row(Eigen::Index(i)) << points[i][0], points[i][1], points[i][2];
     }
     Eigen::MatrixXd const found = terms.colPivHouseholderQr().solve(values);
-    return {Vector3{found(1, 0), found(1, 1), found(1, 2)},
-            Vector3{found(2, 0), found(2, 1), found(2, 2)}};
+    double const factors[] = {1, 1, 2, 1, 2};
+    std::array<Vector3, 5> derivatives;
+    for (Eigen::Index i = 0; i < 5; ++i) {
+        derivatives[std::size_t(i)] =
+            Scale({found(1 + i, 0), found(1 + i, 1), found(1 + i, 2)}, factors[i]);
+    }
+    return derivatives;
+}
+
+/// How far second derivatives are from those of fitDerivatives(), over the length of the longest.
+double getDistanceOfSecond(std::array<Vector3, 3> const &found,
+                           std::array<Vector3, 5> const &expected) {
+    double distance = 0;
+    double length = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        distance = std::max(distance, GetDistance(found[i], expected[2 + i]));
+        length = std::max(length, GetLength(expected[2 + i]));
+    }
+    return distance / length;
 }
 
 /// How far a place in a polygon is from the lines between the triangles of the centre and an edge each.
@@ -229,15 +246,14 @@ double getDistanceToSectors(ReferencePolygon const &polygon, std::array<double, 
 
 // Inside of sectors, between which parameters have kinks.
 TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
-    if (GetParam() == ReferenceMask::Average) {
-        GTEST_SKIP() << "has none";
-    }
     constexpr int kLevel = 6;
     constexpr double kDistance = 0.07;
     LimitReference limits(GetParam());
     int numPlaces = 0;
     double largest = 0;
     double sum = 0;
+    double largestOfSecond = 0;
+    double sumOfSecond = 0;
     for (char const *const name : {"cube", "icosahedron", "creasedBall", "dartsQuads"}) {
         SCOPED_TRACE(name);
         auto const &plain = GetManifoldShapes();
@@ -275,9 +291,15 @@ TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
                 around.push_back({uv[0] - place.uv[0], uv[1] - place.uv[1]});
                 points.push_back(reference.FindLimit(limits, vertex));
             }
-            std::array<Vector3, 2> const expected = fitDerivatives(around, points);
+            std::array<Vector3, 5> const expected = fitDerivatives(around, points);
             SurfacePoint const point = surfaces.Evaluate(place.baseFace, place.uv.data());
             ++numPlaces;
+            if (GetParam() == ReferenceMask::Smooth) {
+                double const distance = getDistanceOfSecond(
+                    surfaces.EvaluateSecond(place.baseFace, place.uv.data()), expected);
+                largestOfSecond = std::max(largestOfSecond, distance);
+                sumOfSecond += distance;
+            }
             for (auto const &[found, wanted] :
                  {std::pair(point.du, expected[0]), std::pair(point.dv, expected[1])}) {
                 double const distance = GetDistance(found, wanted) / GetLength(wanted);
@@ -289,9 +311,13 @@ TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
         }
     }
     std::cout << numPlaces << " places, the largest distance " << largest << " of the length, "
-              << sum / numPlaces << " on average\n";
+              << sum / numPlaces << " on average; of second derivatives " << largestOfSecond
+              << " and " << sumOfSecond / numPlaces << '\n';
     EXPECT_GT(numPlaces, 60);
     EXPECT_LE(sum, 0.001 * numPlaces);
+    // Those of a fit are as far from it as its points are from each other.
+    EXPECT_LE(largestOfSecond, 0.4);
+    EXPECT_LE(sumOfSecond, 0.06 * numPlaces);
 }
 
 namespace {
@@ -309,7 +335,9 @@ INSTANTIATE_TEST_SUITE_P(TriHex, ReferenceSurfaceTest, testing::ValuesIn(kTriHex
 INSTANTIATE_TEST_SUITE_P(Masks, ReferenceFeatureTest, testing::ValuesIn(kPlainCases), getName);
 INSTANTIATE_TEST_SUITE_P(Truncate, ReferenceFeatureTest, testing::ValuesIn(kTruncateCases),
                          getName);
-INSTANTIATE_TEST_SUITE_P(Masks, ReferenceDerivativeTest, testing::ValuesIn(kMasks),
+// With Average there are none.
+INSTANTIATE_TEST_SUITE_P(Masks, ReferenceDerivativeTest,
+                         testing::Values(ReferenceMask::Cosine, ReferenceMask::Smooth),
                          [](auto const &mask) { return std::string(ToString(mask.param)); });
 
 } // namespace OpenSubdivHex::Regression

@@ -117,6 +117,15 @@ public:
     SurfacePoint Evaluate(int face, REAL const uv[2]) const {
         return EvaluateSurface((*this)[face], _positions, uv);
     }
+    /// The second derivatives: by u twice, by u and v, by v twice.
+    std::array<Vector3, 3> EvaluateSecond(int face, REAL const uv[2]) const {
+        BfrExt::Surface<REAL> const &surface = (*this)[face];
+        std::vector<REAL> points(3 * std::size_t(surface.GetNumControlPoints()));
+        surface.GatherControlPoints(_positions.data(), 3, points.data(), 3);
+        REAL v[6][3];
+        surface.Evaluate(uv, points.data(), 3, v[0], v[1], v[2], v[3], v[4], v[5]);
+        return {ToVector(v[3]), ToVector(v[4]), ToVector(v[5])};
+    }
     /// Without derivatives, which take most of the time.
     Vector3 EvaluatePosition(int face, REAL const uv[2]) const {
         BfrExt::Surface<REAL> const &surface = (*this)[face];

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "secondDerivatives.h"
+
+#include "latticePlaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+namespace {
+
+using Row = std::vector<double>;
+using Rows = SecondDerivatives::Rows;
+
+constexpr std::size_t kNumCorners = std::size(HalfCell::kCorners);
+
+// Each makes what is left half as large.
+constexpr int kNumRounds = 60;
+// Of weights, which are at most some hundred; more is left where the rows do not converge.
+constexpr double kTolerance = 1e-9;
+
+double dot(Row const &a, Row const &b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+// A quadratic function of the coordinates of HalfCell.
+struct Quadratic {
+    // *this += factor * other
+    void Add(double factor, Quadratic const &other) {
+        for (std::size_t i = 0; i < atPoints.size(); ++i) {
+            atPoints[i] += factor * other.atPoints[i];
+        }
+        for (std::size_t k = 0; k < secondDerivatives.size(); ++k) {
+            secondDerivatives[k] += factor * other.secondDerivatives[k];
+        }
+    }
+
+    Row atPoints;
+    std::array<double, SecondDerivatives::kNumRows> secondDerivatives;
+};
+
+// Functions that span all quadratic ones, orthogonal and of length 1 as vectors of what they are at the points.
+std::vector<Quadratic> findQuadratics(std::vector<Pair> const &latticePlaces) {
+    std::vector<Quadratic> quadratics = {{{}, {0, 0, 0}}, {{}, {0, 0, 0}}, {{}, {0, 0, 0}},
+                                         {{}, {2, 0, 0}}, {{}, {0, 1, 0}}, {{}, {0, 0, 2}}};
+    for (Pair const &place : latticePlaces) {
+        auto const [x, h] = FromLattice(place);
+        double const terms[] = {1, x, h, x * x, x * h, h * h};
+        for (std::size_t i = 0; i < quadratics.size(); ++i) {
+            quadratics[i].atPoints.push_back(terms[i]);
+        }
+    }
+    for (std::size_t i = 0; i < quadratics.size(); ++i) {
+        Quadratic &quadratic = quadratics[i];
+        for (std::size_t k = 0; k < i; ++k) {
+            quadratic.Add(-dot(quadratic.atPoints, quadratics[k].atPoints), quadratics[k]);
+        }
+        double const length = std::sqrt(dot(quadratic.atPoints, quadratic.atPoints));
+        quadratic.Add(1 / length - 1, Quadratic(quadratic));
+    }
+    return quadratics;
+}
+
+// The nearest rows that give the second derivatives of quadratic functions.
+void fitToQuadratics(std::vector<Quadratic> const &quadratics, Rows &rows) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        for (Quadratic const &quadratic : quadratics) {
+            double const factor = quadratic.secondDerivatives[k] - dot(rows[k], quadratic.atPoints);
+            for (std::size_t i = 0; i < rows[k].size(); ++i) {
+                rows[k][i] += factor * quadratic.atPoints[i];
+            }
+        }
+    }
+}
+
+double findLargestChange(Rows const &before, Rows const &rows) {
+    double largest = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        for (std::size_t i = 0; i < rows[k].size(); ++i) {
+            largest = std::max(largest, std::abs(rows[k][i] - before[k][i]));
+        }
+    }
+    return largest;
+}
+
+} // namespace
+
+SecondDerivatives const &SecondDerivatives::Find(CellType const &type) {
+    return type.GetPatterns().Get<SecondDerivatives>(
+        PatternTable::GetKind<double>(PatternOf::SecondDerivatives), nullptr, nullptr,
+        [&] { return SecondDerivatives(type); });
+}
+
+SecondDerivatives::Rows SecondDerivatives::ChangeCoordinates(Pair const (&map)[2],
+                                                             Rows const &rows) {
+    Rows result;
+    constexpr std::size_t kPairs[kNumRows][2] = {{0, 0}, {0, 1}, {1, 1}};
+    for (std::size_t k = 0; k < result.size(); ++k) {
+        auto const [i, j] = kPairs[k];
+        double const factors[] = {map[0][i] * map[0][j],
+                                  map[0][i] * map[1][j] + map[1][i] * map[0][j],
+                                  map[1][i] * map[1][j]};
+        result[k].resize(rows[0].size());
+        for (std::size_t point = 0; point < result[k].size(); ++point) {
+            result[k][point] = factors[0] * rows[0][point] + factors[1] * rows[1][point] +
+                               factors[2] * rows[2][point];
+        }
+    }
+    return result;
+}
+
+SecondDerivatives::SecondDerivatives(CellType const &type) {
+    std::vector<Pair> const places =
+        type.HasContinuousCurvature() ? FindLatticePlaces(type) : std::vector<Pair>();
+    if (places.empty()) {
+        return;
+    }
+    std::vector<Quadratic> const quadratics = findQuadratics(places);
+    Rows start;
+    start.fill(Row(places.size()));
+    fitToQuadratics(quadratics, start);
+    _rows.assign(kNumCorners, start);
+    double largestChange = 0;
+    for (int round = 0; round < kNumRounds; ++round) {
+        std::vector<Rows> const before = _rows;
+        largestChange = 0;
+        for (std::size_t corner = 0; corner < kNumCorners; ++corner) {
+            auto const child = std::size_t(HalfCell::kCornerChildren[corner]);
+            Rows const &ofChild = before[std::size_t(HalfCell::kCornersOfChildren[corner])];
+            Rows behindStep;
+            for (std::size_t k = 0; k < kNumRows; ++k) {
+                type.GetChildren()[child].step.ApplyLeft(ofChild[k], behindStep[k]);
+            }
+            _rows[corner] = ChangeCoordinates(HalfCell::kChildren[child].rows, behindStep);
+            fitToQuadratics(quadratics, _rows[corner]);
+            largestChange =
+                std::max(largestChange, findLargestChange(before[corner], _rows[corner]));
+        }
+    }
+    if (!(largestChange < kTolerance)) {
+        _rows.clear();
+    }
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal
