@@ -59,7 +59,7 @@ SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options o
     _owner = std::move(kept);
     FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
     for (int channel = -1; channel < refiner.GetNumFVarChannels(); ++channel) {
-        _marks.push_back(FarExt::internal::MarkFeatures(
+        _walks.push_back(std::make_unique<internal::FaceWalk>(
             hierarchy.GetMesh(channel).levels[std::size_t(_level.GetDepth())]));
     }
 }
@@ -181,8 +181,8 @@ Status SurfaceFactory::init(Index face, Interpolation interpolation, int channel
     // What it has taken of memory is kept for the next face.
     static thread_local internal::PlainFaceGatherer gatherer;
     if (internal::PlainFaceType const *const plain =
-            gatherer.Find(*_plainTypes[std::size_t(interpolation)], level,
-                          _marks.begin()[channel + 1], levelFace, points)) {
+            gatherer.Find(*_plainTypes[std::size_t(interpolation)], *_walks.begin()[channel + 1],
+                          levelFace, points)) {
         type = internal::BaseType(*plain);
     } else if (internal::CellType const *const cellType =
                    findType(level, levelFace, face, interpolation, points, result)) {

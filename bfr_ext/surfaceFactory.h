@@ -12,14 +12,11 @@
 #include <memory>
 #include <vector>
 
-namespace OpenSubdivHex::FarExt::internal {
-enum class VertexMark : unsigned char;
-}
-
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
 class CellTypes;
+class FaceWalk;
 template <typename TYPE>
 class KeptFaces;
 class PlainFaceTypes;
@@ -41,9 +38,10 @@ class PlainFaceTypes;
 /// Two kinds of faces have no surface: holes, and with VTX_BOUNDARY_NONE those at a boundary, where
 /// the border of every level lies elsewhere.
 ///
-/// What the surface of a face is made of is kept when one is made the second time, so that making more is a
-/// look-up, as in the frames of an animation: some 200 bytes a face, as far as Options::SetMemoryOfFaces()
-/// allows.
+/// When the first surface of a mesh, or of a channel, is made, the ways from vertex to vertex around its faces
+/// are found, 8 bytes a corner.  What the surface of a face is made of is kept when one is made the second
+/// time, so that making more is a look-up, as in the frames of an animation: some 200 bytes a face, as far as
+/// Options::SetMemoryOfFaces() allows.
 ///
 /// Any number of threads may call its functions at once.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API SurfaceFactory {
@@ -182,9 +180,8 @@ private:
     int const _numRefinements; // of the refiner, when the factory was made
     Options const _options;
     std::shared_ptr<internal::CellTypes> _types;
-    // Of the vertices of the mesh, and of the value mesh of each channel; empty where all are plain.
-    std::vector<std::vector<FarExt::internal::VertexMark>> _marks;
-    std::array<internal::PlainFaceTypes *, 2> _plainTypes; // by interpolation
+    std::vector<std::unique_ptr<internal::FaceWalk>> _walks; // of the mesh, and of each channel
+    std::array<internal::PlainFaceTypes *, 2> _plainTypes;   // by interpolation
     // The faces that are kept: of the mesh, by interpolation, and then of each channel.
     using KeptFaces = internal::KeptFaces<internal::BaseType>;
     KeptFaces *_kept;

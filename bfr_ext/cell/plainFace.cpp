@@ -3,8 +3,6 @@
 
 #include "patchCorners.h"
 
-#include "far_ext/vtr/indexSet.h"
-
 #include <algorithm>
 #include <cstring>
 #include <numeric>
@@ -13,30 +11,18 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 using FarExt::internal::CellKind;
 using FarExt::internal::CellPatch;
-using FarExt::internal::IndexMap;
 using FarExt::internal::Level;
-using FarExt::internal::VertexMark;
 
 namespace {
 
 constexpr int kTriangle = 3;
 constexpr int kLeastFaces = 3;
 constexpr int kEndOfBytes = 256;
-// That patches have, but for those at vertices of many faces.
-constexpr std::size_t kMaxFacesOfMost = 48;
 // In the first byte of a key: that the sizes of faces come behind the rest.
 constexpr int kHasSizes = 0x80;
 
 int getFaceSize(Level const &level, Far::Index place) {
     return level.GetFaceSize(level.vertFaces[place]);
-}
-
-// The vertex that a face at a place of vertFaces has behind that vertex.
-Far::Index getNextVertex(Level const &level, Far::Index place) {
-    Far::Index const face = level.vertFaces[place];
-    Far::Index const first = level.faceFirstCorner[face];
-    Far::Index const next = first + level.vertFaceLocals[place] + 1;
-    return level.faceVerts[next < level.faceFirstCorner[face + 1] ? next : first];
 }
 
 // Whether the faces of a key are a piece of a regular lattice.
@@ -47,122 +33,22 @@ bool isInLattice(PlainFaceKey const &key, int numVerts) {
                        [&](int number) { return number == valence; });
 }
 
-// A patch that grows from a face, the faces of one vertex at a time, no vertices being the same but where
-// that follows from their numbers of faces: all that its boundary has, counter-clockwise.
-class GrowingPatch {
-public:
-    explicit GrowingPatch(int size) : _size(size), _numLeft(size) {
-        for (int vert = 0; vert < size; ++vert) {
-            _verts[vert] = {(vert + size - 1) % size, (vert + 1) % size, 1, 1, true};
-            _inner[vert] = vert;
-        }
-        _numInner = _numMade = size;
-    }
-
-    int GetNumInner() const { return _numInner; }
-    int GetNumPoints() const { return _numLeft; }
-    // How many faces vertex inner has so far, and where among its faces those that it has not begin.
-    int GetNumFaces(int inner) const { return _verts[_inner[inner]].numFaces; }
-    int GetFirstNewFace(int inner) const { return _verts[_inner[inner]].numFacesBefore; }
-
-    // Adds the faces that vertex inner has not yet, of which getSize(face) tells the size.
-    template <typename SIZE>
-    bool Add(int inner, int numFaces, SIZE const &getSize) {
-        if (inner >= _numInner) {
+// Adds all faces of a key to a patch that has begun; false where no disc has them.
+bool grow(std::uint8_t const *key, int numVerts, GrowingPatch &patch) {
+    std::uint8_t const *const numFaces = key + 1;
+    std::uint8_t const *sizes = (key[0] & kHasSizes) != 0 ? numFaces + numVerts : nullptr;
+    for (int vert = 0; vert < numVerts; ++vert) {
+        if (!patch.Add(vert, numFaces[vert], sizes)) {
             return false;
         }
-        int const vert = _inner[inner];
-        int const numNew = numFaces - _verts[vert].numFaces;
-        int const before = _verts[vert].before;
-        int const behind = _verts[vert].behind;
-        bool const isCenter = inner < _size;
-        if (numNew < 0 || before == behind || (isCenter && !addInner(before))) {
-            return false;
+        if (sizes) {
+            sizes += numFaces[vert];
         }
-        if (numNew == 0) {
-            return join(before, behind);
-        }
-        int last = before;
-        for (int i = 0; i < numNew; ++i) {
-            ++_verts[last].numFaces;
-            int const size = getSize(_verts[vert].numFacesBefore + i);
-            bool const isLast = i + 1 == numNew;
-            for (int k = isLast ? kTriangle : kTriangle - 1; k < size; ++k) {
-                if (_numMade == kEndOfBytes) {
-                    return false;
-                }
-                link(last, _numMade);
-                last = _numMade++;
-                _verts[last].numFaces = 1;
-                ++_numLeft;
-            }
-            if (!isLast && isCenter && !addInner(last)) {
-                return false;
-            }
-        }
-        link(last, behind);
-        ++_verts[behind].numFaces;
-        if (isCenter && !_verts[behind].isInner) {
-            return addInner(behind, 1);
-        }
-        ++_verts[behind].numFacesBefore;
-        return true;
     }
+    return patch.GetNumInner() == numVerts;
+}
 
-private:
-    struct Vertex {
-        int before; // along the boundary
-        int behind;
-        int numFaces;
-        int numFacesBefore; // from where its faces begin to the boundary before
-        bool isInner;       // or will be
-    };
-
-    void link(int before, int behind) {
-        _verts[before].behind = behind;
-        _verts[behind].before = before;
-    }
-
-    // A neighbour of a vertex of the face.
-    bool addInner(int vert) { return addInner(vert, _verts[vert].numFaces); }
-    bool addInner(int vert, int numFacesBefore) {
-        if (_verts[vert].isInner) {
-            return true;
-        }
-        if (_numInner == PlainFaceKey::kMaxVerts) {
-            return false;
-        }
-        _verts[vert].isInner = true;
-        _verts[vert].numFacesBefore = numFacesBefore;
-        _inner[_numInner++] = vert;
-        return true;
-    }
-
-    // The vertex between them has all of its faces, so that they are the same.
-    bool join(int before, int behind) {
-        bool const isInner = _verts[behind].isInner;
-        if (isInner && _verts[before].isInner) {
-            return false;
-        }
-        if (isInner) {
-            _verts[behind].numFaces += _verts[before].numFaces;
-            _verts[behind].numFacesBefore += _verts[before].numFaces;
-            link(_verts[before].before, behind);
-        } else {
-            _verts[before].numFaces += _verts[behind].numFaces;
-            link(before, _verts[behind].behind);
-        }
-        --_numLeft;
-        return true;
-    }
-
-    int const _size;
-    int _numLeft;
-    int _numInner;
-    int _numMade;
-    int _inner[PlainFaceKey::kMaxVerts] = {};
-    Vertex _verts[kEndOfBytes] = {};
-};
+int getFaceSize(std::uint8_t const *key) { return key[0] & ~kHasSizes; }
 
 } // namespace
 
@@ -179,9 +65,12 @@ std::size_t PlainFaceKey::GetHash() const {
     return hash;
 }
 
-PlainFaceType::PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, Patch patch)
+PlainFaceType::PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
+                             GrowingPatch const &patch)
     : hash(key.GetHash()), _types(types), _key(key.GetBytes(), key.GetBytes() + key.GetSize()),
-      _patch(std::move(patch)), _isInLattice(isInLattice(key, _patch.numVerts)) {}
+      _numVerts(numVerts), _isInLattice(isInLattice(key, numVerts)) {
+    patch.GetPoints(_points);
+}
 
 PlainFaceType::~PlainFaceType() { delete _rings.load(); }
 
@@ -214,17 +103,22 @@ CellType const &PlainFaceType::make() const {
 }
 
 CellPatch PlainFaceType::makeCell(bool hasSignature) const {
+    GrowingPatch patch;
+    patch.Start(getFaceSize(_key.data()));
+    patch.KeepFaces();
+    grow(_key.data(), _numVerts, patch);
+    std::vector<std::uint8_t> const faces = patch.GetFaces();
     std::vector<int> faceSizes;
     std::vector<Far::Index> faceVerts;
-    faceSizes.reserve(_patch.faces.size());
-    faceVerts.reserve(_patch.faces.size());
-    for (std::size_t i = 0; i < _patch.faces.size(); i += 1 + _patch.faces[i]) {
-        faceSizes.push_back(_patch.faces[i]);
-        auto const first = _patch.faces.begin() + std::ptrdiff_t(i) + 1;
-        faceVerts.insert(faceVerts.end(), first, first + _patch.faces[i]);
+    faceSizes.reserve(faces.size());
+    faceVerts.reserve(faces.size());
+    for (std::size_t i = 0; i < faces.size(); i += 1 + faces[i]) {
+        faceSizes.push_back(faces[i]);
+        auto const first = faces.begin() + std::ptrdiff_t(i) + 1;
+        faceVerts.insert(faceVerts.end(), first, first + faces[i]);
     }
     return FarExt::internal::MakePlainBaseCell(std::move(faceSizes), std::move(faceVerts),
-                                               _patch.numVerts, GetNumPoints(), hasSignature);
+                                               _numVerts, GetNumPoints(), hasSignature);
 }
 
 namespace {
@@ -322,9 +216,10 @@ CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
     });
 }
 
-PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, PlainFaceType::Patch patch) {
+PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, int numVerts,
+                                         GrowingPatch const &patch) {
     auto const [type, isNew] =
-        _entries.Add(std::make_unique<PlainFaceType const>(*this, key, std::move(patch)),
+        _entries.Add(std::make_unique<PlainFaceType const>(*this, key, numVerts, patch),
                      [&](PlainFaceType const &other) { return other.HasKey(key); });
     if (isNew) {
         ++_numUnmade;
@@ -332,51 +227,56 @@ PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, PlainFaceType:
     return *type;
 }
 
-// The faces of a vertex begin with one of them, or so many behind it.
-bool PlainFaceGatherer::addVertex(Level const &level, std::vector<VertexMark> const &marks,
-                                  Index vert, Index face, int turn) {
+// The faces of a vertex begin with the one at a place, or so many behind it.
+bool PlainFaceGatherer::addVertex(FaceWalk const &walk, Index vert, Index place, int turn) {
+    Level const &level = walk.GetLevel();
     Index const first = level.vertFirstFace[vert];
     int const numFaces = level.vertFirstFace[vert + 1] - first;
     if (_numVerts == PlainFaceKey::kMaxVerts || numFaces < kLeastFaces || numFaces >= kEndOfBytes ||
-        (!marks.empty() && marks[std::size_t(vert)] == VertexMark::Feature)) {
+        walk.IsAtFeature(vert)) {
         return false;
     }
-    Index const *const faces = level.vertFaces.data() + first;
-    int begin = 0;
-    while (faces[begin] != face) {
-        ++begin;
-    }
-    begin += turn;
+    int const begin = place - first + turn;
     _verts[_numVerts++] = {vert, first, begin < numFaces ? begin : begin - numFaces, numFaces};
     return true;
 }
 
 // The vertices of the face and then, around one after the other, their neighbours: where the face across
 // an edge is a triangle, the ends of the edge have a neighbour in common.
-bool PlainFaceGatherer::findVertices(Level const &level, std::vector<VertexMark> const &marks,
-                                     Index face) {
-    Far::ConstIndexArray const centers = level.GetFaceVertices(face);
-    _faceSize = centers.size();
+bool PlainFaceGatherer::findVertices(FaceWalk const &walk, Index face) {
+    Level const &level = walk.GetLevel();
+    _faceSize = level.GetFaceSize(face);
     _numVerts = 0;
-    for (Index const vert : centers) {
-        if (!addVertex(level, marks, vert, face, 0)) {
-            return false;
-        }
+    FaceWalk::Next center = {level.faceVerts[level.faceFirstCorner[face]], 0};
+    center.place = level.vertFirstFace[center.vert];
+    // A face that has the vertex twice is found to be none that is plain.
+    while (level.vertFaces[center.place] != face || level.vertFaceLocals[center.place] != 0) {
+        ++center.place;
     }
     for (int i = 0; i < _faceSize; ++i) {
-        Vertex const &center = _verts[i];
+        if (!addVertex(walk, center.vert, center.place, 0)) {
+            return false;
+        }
+        center = _nexts[center.place];
+    }
+    bool const mayBeTriangles = level.faceSizes.front() == kTriangle;
+    auto const isTriangle = [&](Index place) {
+        return mayBeTriangles && getFaceSize(level, place) == kTriangle;
+    };
+    for (int i = 0; i < _faceSize; ++i) {
+        Vertex const &at = _verts[i];
         // The first two are neighbours in the face.
         int begin = 2;
-        int end = center.numFaces;
-        if (i > 0 && getFaceSize(level, center.GetPlace(1)) == kTriangle) {
+        int end = at.numFaces;
+        if (i > 0 && isTriangle(at.GetPlace(1))) {
             ++begin;
         }
-        if (i + 1 == _faceSize && getFaceSize(level, center.GetPlace(end - 1)) == kTriangle) {
+        if (i + 1 == _faceSize && isTriangle(at.GetPlace(end - 1))) {
             --end;
         }
         for (int k = begin; k < end; ++k) {
-            Index const place = center.GetPlace(k);
-            if (!addVertex(level, marks, getNextVertex(level, place), level.vertFaces[place], 1)) {
+            FaceWalk::Next const &neighbor = _nexts[at.GetPlace(k)];
+            if (!addVertex(walk, neighbor.vert, neighbor.place, 1)) {
                 return false;
             }
         }
@@ -392,7 +292,6 @@ bool PlainFaceGatherer::findKey(Level const &level) {
         _key.Add(_verts[i].numFaces);
         numSizes += _verts[i].numFaces;
     }
-    _hasSizes = false;
     if (level.faceSizes.size() == 1) {
         return true;
     }
@@ -404,92 +303,21 @@ bool PlainFaceGatherer::findKey(Level const &level) {
     for (int i = 0; i < _numVerts; ++i) {
         key.Add(_verts[i].numFaces);
     }
+    bool hasSizes = false;
     for (int i = 0; i < _numVerts; ++i) {
         for (int k = 0; k < _verts[i].numFaces; ++k) {
             int const size = getFaceSize(level, _verts[i].GetPlace(k));
             if (size >= kHasSizes) {
                 return false;
             }
-            _hasSizes = _hasSizes || size != _faceSize;
+            hasSizes = hasSizes || size != _faceSize;
             key.Add(size);
         }
     }
-    if (_hasSizes) {
+    if (hasSizes) {
         _key = key;
     }
     return true;
-}
-
-// Of a face at one of the vertices.
-int PlainFaceGatherer::getSize(int vert, int face) const {
-    if (!_hasSizes) {
-        return _faceSize;
-    }
-    std::uint8_t const *size = _key.GetBytes() + 1 + _numVerts;
-    for (int i = 0; i < vert; ++i) {
-        size += _verts[i].numFaces;
-    }
-    return size[face];
-}
-
-// The points of a patch of this key, where no vertices are the same; -1 where there is none such.  The faces of
-// a vertex that those before it have not are new.
-int PlainFaceGatherer::countPoints(NewFaces *newFaces) const {
-    GrowingPatch patch(_faceSize);
-    for (int i = 0; i < _numVerts; ++i) {
-        if (i >= patch.GetNumInner()) {
-            return -1;
-        }
-        newFaces[i] = {patch.GetFirstNewFace(i), _verts[i].numFaces - patch.GetNumFaces(i)};
-        if (!patch.Add(i, _verts[i].numFaces, [&](int face) { return getSize(i, face); })) {
-            return -1;
-        }
-    }
-    return patch.GetNumInner() == _numVerts ? patch.GetNumPoints() : -1;
-}
-
-// As LimitPatchGatherer::GatherCell() does.
-PlainFaceType const *PlainFaceGatherer::addType(PlainFaceTypes &types, Level const &level) const {
-    NewFaces newFaces[PlainFaceKey::kMaxVerts];
-    int const numExpected = countPoints(newFaces);
-    if (numExpected < 0) {
-        return nullptr;
-    }
-    // The first vertex has the face itself.
-    newFaces[0] = {0, newFaces[0].count + 1};
-    // What it has taken of memory is kept for the next type.
-    static thread_local IndexMap numbers;
-    numbers.Clear();
-    PlainFaceType::Patch patch = {_numVerts, {}, {}};
-    patch.points.reserve(std::size_t(numExpected - _numVerts));
-    patch.faces.reserve(kMaxFacesOfMost * (1 + std::size_t(_faceSize)));
-    for (int i = 0; i < _numVerts; ++i) {
-        numbers.FindOrSet(_verts[i].vert, i);
-    }
-    Index numPoints = _numVerts;
-    for (int i = 0; i < _numVerts; ++i) {
-        for (int k = newFaces[i].first; k < newFaces[i].first + newFaces[i].count; ++k) {
-            Index const place = _verts[i].GetPlace(k);
-            Index const face = level.vertFaces[place];
-            Far::ConstIndexArray const verts = level.GetFaceVertices(face);
-            int const size = verts.size();
-            patch.faces.push_back(std::uint8_t(size));
-            for (int corner = 0; corner < size; ++corner) {
-                Index const local = level.vertFaceLocals[place] + corner;
-                Index const number =
-                    numbers.FindOrSet(verts[local < size ? local : local - size], numPoints);
-                patch.faces.push_back(std::uint8_t(number));
-                if (number == numPoints) {
-                    if (++numPoints > numExpected) {
-                        return nullptr;
-                    }
-                    patch.points.push_back(
-                        {std::uint8_t(i), std::uint8_t(k), std::uint8_t(corner)});
-                }
-            }
-        }
-    }
-    return numPoints == numExpected ? &types.Add(_key, std::move(patch)) : nullptr;
 }
 
 bool PlainFaceGatherer::areDistinct(Index const *points, int numPoints) {
@@ -514,47 +342,52 @@ bool PlainFaceGatherer::areDistinct(Index const *points, int numPoints) {
     return std::adjacent_find(sorted, sorted + numPoints) == sorted + numPoints;
 }
 
-PlainFaceType const *PlainFaceGatherer::Find(PlainFaceTypes &types, Level const &level,
-                                             std::vector<VertexMark> const &marks, Index face,
-                                             std::vector<Index> &points) {
-    if (!findVertices(level, marks, face) || !findKey(level)) {
-        return nullptr;
-    }
-    PlainFaceType const *type = types.Find(_key, _key.GetHash());
-    if (!type) {
-        type = addType(types, level);
-        if (!type) {
-            return nullptr;
-        }
-    }
-    int const numPoints = type->GetNumPoints();
-    points.resize(std::size_t(numPoints) + 2 * std::size_t(_faceSize));
-    Index *to = points.data();
+// Those of a patch whose vertices differ as the key says.
+void PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) const {
     for (int i = 0; i < _numVerts; ++i) {
-        *to++ = _verts[i].vert;
+        *points++ = _verts[i].vert;
     }
-    // What is written might change the level for all that the compiler knows.
-    Index const *const faces = level.vertFaces.data();
-    auto const *const locals = level.vertFaceLocals.data();
-    Index const *const firstCorners = level.faceFirstCorner.data();
-    Index const *const faceVerts = level.faceVerts.data();
-    for (PlainFaceType::Point const &point : type->GetPoints()) {
-        Index const place = _verts[point.vert].GetPlace(point.place);
-        Index const first = firstCorners[faces[place]];
-        Index const end = firstCorners[faces[place] + 1];
-        Index const corner = first + locals[place] + point.corner;
-        *to++ = faceVerts[corner < end ? corner : corner - (end - first)];
+    for (PlainFaceType::Point const &point : type.GetPoints()) {
+        FaceWalk::Next const *next = &_nexts[_verts[point.vert].GetPlace(point.place)];
+        for (int corner = 1; corner < point.corner; ++corner) {
+            next = &_nexts[next->place];
+        }
+        *points++ = next->vert;
     }
-    if (!areDistinct(points.data(), numPoints)) {
-        return nullptr;
-    }
+}
+
+void PlainFaceGatherer::writeTurns(Level const &level, Index face, Index *turns) const {
     Index const *const edges = level.faceEdges.data() + level.faceFirstCorner[face];
     for (int i = 0; i < _faceSize; ++i) {
         bool const isFirst =
             level.edgeFaces[edges[i]][0] == face && level.edgeFaceLocals[edges[i]][0] == i;
-        to[i] = isFirst ? 0 : 1;
-        to[_faceSize + i] = _verts[i].begin;
+        turns[i] = isFirst ? 0 : 1;
+        turns[_faceSize + i] = _verts[i].begin;
     }
+}
+
+PlainFaceType const *PlainFaceGatherer::Find(PlainFaceTypes &types, FaceWalk const &walk,
+                                             Index face, std::vector<Index> &points) {
+    Level const &level = walk.GetLevel();
+    _nexts = walk.GetNexts();
+    if (!findVertices(walk, face) || !findKey(level)) {
+        return nullptr;
+    }
+    PlainFaceType const *type = types.Find(_key, _key.GetHash());
+    if (!type) {
+        _patch.Start(_faceSize);
+        if (!grow(_key.GetBytes(), _numVerts, _patch)) {
+            return nullptr;
+        }
+        type = &types.Add(_key, _numVerts, _patch);
+    }
+    int const numPoints = type->GetNumPoints();
+    points.resize(std::size_t(numPoints) + 2 * std::size_t(_faceSize));
+    writePoints(*type, points.data());
+    if (!areDistinct(points.data(), numPoints)) {
+        return nullptr;
+    }
+    writeTurns(level, face, points.data() + numPoints);
     return type;
 }
 

@@ -4,9 +4,9 @@
 
 #include "cellType.h"
 #include "entryTable.h"
+#include "faceWalk.h"
+#include "growingPatch.h"
 #include "ringCell.h"
-
-#include "far_ext/limit/plainNeighborhood.h"
 
 #include <atomic>
 #include <cstddef>
@@ -24,7 +24,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 class PlainFaceKey {
 public:
     /// Vertices at most, all of whose faces are in the patch.
-    static constexpr int kMaxVerts = 31;
+    static constexpr int kMaxVerts = GrowingPatch::kMaxInner;
     static constexpr std::size_t kMaxSize = 192;
 
     void Clear() { _size = 0; }
@@ -45,21 +45,12 @@ private:
 /// surface is made but not evaluated needs none.
 class PlainFaceType {
 public:
-    /// A control point: the vertex of the patch at which a face has it, the place of that face among
-    /// those at the vertex, and the corner there, from the vertex on.
-    struct Point {
-        std::uint8_t vert;
-        std::uint8_t place;
-        std::uint8_t corner;
-    };
-    /// \brief What the type is of.
-    struct Patch {
-        int numVerts;                    ///< the first points, all of whose faces are there
-        std::vector<Point> points;       ///< those behind them
-        std::vector<std::uint8_t> faces; ///< the size of each, and its points
-    };
+    using Point = GrowingPatch::Point;
 
-    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, Patch patch);
+    /// \param numVerts  all of whose faces are in the patch
+    /// \param patch     that of the key
+    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
+                  GrowingPatch const &patch);
     ~PlainFaceType();
     PlainFaceType(PlainFaceType const &) = delete;
     PlainFaceType &operator=(PlainFaceType const &) = delete;
@@ -67,9 +58,9 @@ public:
     std::size_t const hash; ///< of the key
 
     bool HasKey(PlainFaceKey const &key) const;
-    int GetNumPoints() const { return _patch.numVerts + int(_patch.points.size()); }
+    int GetNumPoints() const { return _numVerts + int(_points.size()); }
     /// Those behind the vertices whose faces are all there.
-    std::vector<Point> const &GetPoints() const { return _patch.points; }
+    std::vector<Point> const &GetPoints() const { return _points; }
     /// What evaluates them.
     CellType const &Get() const {
         CellType const *const type = _type.load(std::memory_order_acquire);
@@ -101,7 +92,8 @@ private:
 
     PlainFaceTypes &_types;
     std::vector<std::uint8_t> const _key;
-    Patch const _patch;
+    int const _numVerts;
+    std::vector<Point> _points;
     bool const _isInLattice;
     mutable std::atomic<FaceRings const *> _rings{nullptr};
     mutable std::atomic<CellType const *> _type{nullptr};
@@ -117,7 +109,7 @@ public:
     PlainFaceType const *Find(PlainFaceKey const &key, std::size_t hash) const {
         return _entries.Find(hash, [&](PlainFaceType const &type) { return type.HasKey(key); });
     }
-    PlainFaceType const &Add(PlainFaceKey const &key, PlainFaceType::Patch patch);
+    PlainFaceType const &Add(PlainFaceKey const &key, int numVerts, GrowingPatch const &patch);
     /// How many have no CellType yet.
     std::size_t GetNumUnmade() const { return _numUnmade; }
 
@@ -137,18 +129,15 @@ public:
 
     /// \brief Finds the type of a face among some, and adds it where there is none.
     ///
-    /// \param level   level 0 of a mesh, or of the values of a channel; another one may follow
-    /// \param marks   those of MarkFeatures()
+    /// \param walk    of level 0 of a mesh, or of the values of a channel; another one may follow
     /// \param points  the control points, and behind these the turns of FindBaseCellTurns()
     /// \return        null where the face is not plain, or may not be; then the points are of no use
-    PlainFaceType const *Find(PlainFaceTypes &types, FarExt::internal::Level const &level,
-                              std::vector<FarExt::internal::VertexMark> const &marks, Index face,
+    PlainFaceType const *Find(PlainFaceTypes &types, FaceWalk const &walk, Index face,
                               std::vector<Index> &points);
 
 private:
     // A vertex all of whose faces are in the patch, these beginning at a place of their own.
     struct Vertex {
-        // In vertFaces.
         Index GetPlace(int face) const {
             int const place = begin + face;
             return first + (place < numFaces ? place : place - numFaces);
@@ -160,30 +149,21 @@ private:
         int numFaces;
     };
 
-    // Faces of a vertex, from one of their places on.
-    struct NewFaces {
-        int first;
-        int count;
-    };
-
-    bool addVertex(FarExt::internal::Level const &level,
-                   std::vector<FarExt::internal::VertexMark> const &marks, Index vert, Index face,
-                   int turn);
-    bool findVertices(FarExt::internal::Level const &level,
-                      std::vector<FarExt::internal::VertexMark> const &marks, Index face);
+    bool addVertex(FaceWalk const &walk, Index vert, Index place, int turn);
+    bool findVertices(FaceWalk const &walk, Index face);
     bool findKey(FarExt::internal::Level const &level);
-    int getSize(int vert, int face) const;
-    int countPoints(NewFaces *newFaces) const;
-    PlainFaceType const *addType(PlainFaceTypes &types, FarExt::internal::Level const &level) const;
+    void writePoints(PlainFaceType const &type, Index *points) const;
+    void writeTurns(FarExt::internal::Level const &level, Index face, Index *turns) const;
     bool areDistinct(Index const *points, int numPoints);
 
     static constexpr std::size_t kNumStamps = 4096;
 
+    FaceWalk::Next const *_nexts = nullptr; // of the level
     int _faceSize = 0;
     int _numVerts = 0;
     Vertex _verts[PlainFaceKey::kMaxVerts] = {};
     PlainFaceKey _key;
-    bool _hasSizes = false; // in the key
+    GrowingPatch _patch;
     // By the last digits of points: the number of the search in which there was one.
     std::uint16_t _stamps[kNumStamps] = {};
     std::uint16_t _search = 0;

@@ -156,13 +156,13 @@ struct Faces {
         options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
         auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, options);
         FarExt::internal::Level const &level = refiner->GetHierarchy().mesh.levels[0];
-        auto const marks = FarExt::internal::MarkFeatures(level);
+        BfrExt::internal::FaceWalk const walk(level);
         PlainFaceGatherer gatherer;
         int numPlain = 0;
         for (int face = 0; face < level.numFaces; ++face) {
             std::vector<Far::Index> points;
             PlainFaceType const *const plain =
-                gatherer.Find(types.GetPlainFaces({}), level, marks, face, points);
+                gatherer.Find(types.GetPlainFaces({}), walk, face, points);
             if (!plain) {
                 continue;
             }

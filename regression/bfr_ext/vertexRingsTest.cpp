@@ -128,7 +128,7 @@ public:
     int Expect(Shape const &shape) {
         auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);
         FarExt::internal::Level const &level = refiner->GetHierarchy().mesh.levels[0];
-        auto const marks = FarExt::internal::MarkFeatures(level);
+        BfrExt::internal::FaceWalk const walk(level);
         std::vector<double> const points = makePoints(level.numVertices);
         PlainFaceGatherer gatherer;
         int numFaces = 0;
@@ -136,7 +136,7 @@ public:
             SCOPED_TRACE(face);
             std::vector<Far::Index> indices;
             PlainFaceType const *const plain =
-                gatherer.Find(_types.GetPlainFaces(_rules), level, marks, face, indices);
+                gatherer.Find(_types.GetPlainFaces(_rules), walk, face, indices);
             if (!plain || plain->IsInLattice()) {
                 continue;
             }

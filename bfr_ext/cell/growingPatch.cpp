@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "growingPatch.h"
+
+#include <algorithm>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+void GrowingPatch::Start(int size) {
+    for (int vert = 0; vert < size; ++vert) {
+        _verts[vert] = {(vert + size - 1) % size, (vert + 1) % size, 1, 1, vert, kNone};
+        _inner[vert] = vert;
+    }
+    _size = _numInner = _numMade = size;
+    _keepsFaces = false;
+    _faces.clear();
+}
+
+void GrowingPatch::KeepFaces() {
+    _keepsFaces = true;
+    _faces.push_back(std::uint8_t(_size));
+    for (int vert = 0; vert < _size; ++vert) {
+        _faces.push_back(std::uint8_t(vert));
+    }
+}
+
+bool GrowingPatch::Add(int inner, int numFaces, std::uint8_t const *sizes) {
+    if (inner >= _numInner) {
+        return false;
+    }
+    int const vert = _inner[inner];
+    Vertex const &center = _verts[vert];
+    int const numNew = numFaces - center.numFaces;
+    int const before = center.before;
+    int const behind = center.behind;
+    // The neighbours of the first face's vertices are inner.
+    bool const hasInnerNeighbors = inner < _size;
+    if (numNew < 0 || before == behind ||
+        (hasInnerNeighbors && !addInner(before, _verts[before].numFaces))) {
+        return false;
+    }
+    if (numNew == 0) {
+        return join(before, behind);
+    }
+    int last = before;
+    for (int i = 0; i < numNew; ++i) {
+        ++_verts[last].numFaces;
+        int const place = center.numFacesBefore + i;
+        int const size = sizes ? sizes[place] : _size;
+        bool const isLast = i + 1 == numNew;
+        int const first = last;
+        int const firstMade = _numMade;
+        for (int corner = 2; corner < (isLast ? size - 1 : size); ++corner) {
+            if (!addVertex(last,
+                           {std::uint8_t(inner), std::uint8_t(place), std::uint8_t(corner)})) {
+                return false;
+            }
+            last = _numMade - 1;
+        }
+        if (_keepsFaces) {
+            keepFace(vert, first, firstMade, isLast ? behind : kNone);
+        }
+        if (!isLast && hasInnerNeighbors && !addInner(last, _verts[last].numFaces)) {
+            return false;
+        }
+    }
+    link(last, behind);
+    ++_verts[behind].numFaces;
+    if (hasInnerNeighbors && !isInner(behind)) {
+        return addInner(behind, 1);
+    }
+    ++_verts[behind].numFacesBefore;
+    return true;
+}
+
+bool GrowingPatch::addInner(int vert, int numFacesBefore) {
+    if (isInner(vert)) {
+        return true;
+    }
+    if (_numInner == kMaxInner) {
+        return false;
+    }
+    _verts[vert].inner = _numInner;
+    _verts[vert].numFacesBefore = numFacesBefore;
+    _inner[_numInner++] = vert;
+    return true;
+}
+
+// On the boundary, behind the last one.
+bool GrowingPatch::addVertex(int last, Point const &point) {
+    if (_numMade == kMaxVerts) {
+        return false;
+    }
+    _verts[_numMade] = {kNone, kNone, 1, 0, kNone, kNone};
+    _points[_numMade] = point;
+    link(last, _numMade++);
+    return true;
+}
+
+// The vertex between them has all of its faces, so that they are the same.
+bool GrowingPatch::join(int before, int behind) {
+    if (isInner(before) && isInner(behind)) {
+        return false;
+    }
+    // One that is inner stays, else the first that was met.
+    bool const behindStays = isInner(behind) || (!isInner(before) && behind < before);
+    int const kept = behindStays ? behind : before;
+    int const gone = behindStays ? before : behind;
+    if (behindStays) {
+        _verts[kept].numFacesBefore += _verts[gone].numFaces;
+        link(_verts[gone].before, kept);
+    } else {
+        link(kept, _verts[gone].behind);
+    }
+    _verts[kept].numFaces += _verts[gone].numFaces;
+    _verts[gone].same = kept;
+    return true;
+}
+
+// A face at a vertex: that, the one before on the boundary, those made for it, and the one behind, if any.
+void GrowingPatch::keepFace(int vert, int last, int firstMade, int behind) {
+    std::size_t const first = _faces.size();
+    _faces.push_back(0);
+    _faces.push_back(std::uint8_t(vert));
+    _faces.push_back(std::uint8_t(last));
+    for (int made = firstMade; made < _numMade; ++made) {
+        _faces.push_back(std::uint8_t(made));
+    }
+    if (behind != kNone) {
+        _faces.push_back(std::uint8_t(behind));
+    }
+    _faces[first] = std::uint8_t(_faces.size() - first - 1);
+}
+
+void GrowingPatch::GetPoints(std::vector<Point> &points) const {
+    points.reserve(std::size_t(_numMade - _numInner));
+    for (int vert = _size; vert < _numMade; ++vert) {
+        if (isPoint(vert)) {
+            points.push_back(_points[vert]);
+        }
+    }
+}
+
+std::vector<std::uint8_t> GrowingPatch::GetFaces() const {
+    int numbers[kMaxVerts] = {};
+    int numPoints = 0;
+    for (int vert = 0; vert < _numMade; ++vert) {
+        numbers[vert] = isInner(vert)   ? _verts[vert].inner
+                        : isPoint(vert) ? _numInner + numPoints++
+                                        : kNone;
+    }
+    auto const getNumber = [&](int vert) {
+        while (_verts[vert].same != kNone) {
+            vert = _verts[vert].same;
+        }
+        return std::uint8_t(numbers[vert]);
+    };
+    std::vector<std::uint8_t> faces = _faces;
+    for (std::size_t i = 0; i < faces.size(); i += 1 + faces[i]) {
+        auto const first = faces.begin() + std::ptrdiff_t(i) + 1;
+        std::transform(first, first + faces[i], first, getNumber);
+    }
+    return faces;
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_GROWING_PATCH_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_GROWING_PATCH_H
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief A patch that grows from a face, the faces of one vertex at a time, no vertices being the same but
+/// where that follows from their numbers of faces.
+///
+/// It is a disc, of which it knows the boundary.  *Inner* vertices are those of the face and then their
+/// neighbours, in the order in which they are met; what the others are numbered by is the order, too.
+class GrowingPatch {
+public:
+    static constexpr int kMaxInner = 31;
+
+    /// \brief Where a vertex that is not inner was met: at an inner one, in the face at a place among those
+    /// of that vertex, and the corner there, from the inner vertex on.
+    struct Point {
+        std::uint8_t vert;
+        std::uint8_t place;
+        std::uint8_t corner;
+    };
+
+    /// Begins with a face of \p size sides.
+    void Start(int size);
+    /// \brief Adds the faces that an inner vertex has not yet.
+    ///
+    /// \param numFaces  of the vertex
+    /// \param sizes     of these faces, by their place; null: all are like the first face
+    /// \return          false where no disc has such faces, or it is too large
+    bool Add(int inner, int numFaces, std::uint8_t const *sizes);
+
+    int GetNumInner() const { return _numInner; }
+    /// Appends where the vertices that are not inner were met.
+    void GetPoints(std::vector<Point> &points) const;
+    /// Has Add() keep the faces; behind Start().
+    void KeepFaces();
+    /// The faces that were kept, each with its size and vertices, first the inner ones, then the others.
+    std::vector<std::uint8_t> GetFaces() const;
+
+private:
+    static constexpr int kMaxVerts = 256;
+
+    struct Vertex {
+        int before; // along the boundary
+        int behind;
+        int numFaces;
+        int numFacesBefore; // from where its faces begin to the boundary before
+        int inner;          // its number, or kNone
+        int same;           // a vertex before, which it turned out to be, or kNone
+    };
+    static constexpr int kNone = -1;
+
+    void link(int before, int behind) {
+        _verts[before].behind = behind;
+        _verts[behind].before = before;
+    }
+    bool isInner(int vert) const { return _verts[vert].inner != kNone; }
+    bool isPoint(int vert) const { return !isInner(vert) && _verts[vert].same == kNone; }
+    bool addInner(int vert, int numFacesBefore);
+    bool addVertex(int last, Point const &point);
+    bool join(int before, int behind);
+    void keepFace(int vert, int last, int firstMade, int behind);
+
+    int _size = 0;
+    int _numInner = 0;
+    int _numMade = 0;
+    bool _keepsFaces = false;
+    int _inner[kMaxInner] = {};
+    Vertex _verts[kMaxVerts] = {};
+    Point _points[kMaxVerts] = {}; // by vertex
+    std::vector<std::uint8_t> _faces;
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif
