@@ -14,6 +14,26 @@ constexpr int kNumStepsOfWholes = 3;
 
 Pair getMiddle(Pair const &p, Pair const &q) { return {(p[0] + q[0]) / 2, (p[1] + q[1]) / 2}; }
 
+// Sorts runs by their rows, and joins those that follow one another.
+void joinRuns(std::vector<PlaceRun> &runs) {
+    std::sort(runs.begin(), runs.end(),
+              [](PlaceRun const &a, PlaceRun const &b) { return a.row < b.row; });
+    std::size_t numJoined = 0;
+    for (PlaceRun const &run : runs) {
+        if (numJoined > 0) {
+            PlaceRun &last = runs[numJoined - 1];
+            if (run.row == last.row + last.count && run.place == last.place + last.count &&
+                run.row % PlaceRun::kMaxBlock != 0) {
+                last.count += run.count;
+                continue;
+            }
+        }
+        runs[numJoined++] = run;
+    }
+    runs.resize(numJoined);
+    runs.shrink_to_fit();
+}
+
 } // namespace
 
 LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSteps(numSteps) {
@@ -33,7 +53,11 @@ LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSt
     }
     if (faceSize == 0) {
         std::stable_sort(_places.begin(), _places.end(), [&](Place const &a, Place const &b) {
-            return findGroup(a.coords) < findGroup(b.coords);
+            Group const group = findGroup(a.coords);
+            Group const other = findGroup(b.coords);
+            // Along the first side they are in the order in which edges have them.
+            return group != other ? group < other
+                                  : group == kFirstSide && a.coords[0] < b.coords[0];
         });
     }
     for (std::size_t row = 0; row < _places.size(); ++row) {
@@ -50,8 +74,7 @@ LeafPlaces::Key LeafPlaces::getKey(Place const &place) const {
 }
 
 // Rows that are wanted are mostly the first ones: of what is not inside, cells have the last side most.
-int LeafPlaces::findGroup(Pair const &coords) {
-    enum Group { kInside, kLastSide, kFirstCorner, kFirstSide, kSecondSide, kThirdSide, kCorners };
+LeafPlaces::Group LeafPlaces::findGroup(Pair const &coords) {
     double const x = coords[0];
     double const h = coords[1];
     auto const *const corner =
@@ -139,17 +162,14 @@ CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const
         if (!leaf.isWhole) {
             place.sector = 0;
         }
-        leaf.rows.push_back({int(leaf.leaf->Find(place)), int(i)});
+        leaf.runs.push_back({int(leaf.leaf->Find(place)), int(i), 1});
     }
     if (use == Use::Points) {
         addEdges(places);
     }
     for (Node &node : _nodes) {
-        for (auto *const rows : {&node.rows, &node.rowsWithEdge}) {
-            std::sort(rows->begin(), rows->end(),
-                      [](PlaceOfRow const &a, PlaceOfRow const &b) { return a.row < b.row; });
-            rows->shrink_to_fit();
-        }
+        joinRuns(node.runs);
+        joinRuns(node.runsWithEdge);
         node.corners.shrink_to_fit();
     }
     _nodes.shrink_to_fit();
@@ -214,7 +234,7 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
 
 // Those whose places half cells have that are leaves.  Others are made apart: so is an edge with finer places.
 void CellPlan::addEdges(std::vector<LeafPlaces::Place> const &places) {
-    std::vector<std::vector<PlaceOfRow>> edges(static_cast<std::size_t>(_faceSize));
+    std::vector<std::vector<PlaceRun>> edges(static_cast<std::size_t>(_faceSize));
     std::vector<Node *> leaves(edges.size());
     for (std::size_t const child : _nodes[0].children) {
         Node &node = _nodes[child];
@@ -231,16 +251,16 @@ void CellPlan::addEdges(std::vector<LeafPlaces::Place> const &places) {
         }
         LeafPlaces::Place const place = {0, HalfCell::kFromSector.Apply(coords)};
         if (leaves[edge]->leaf->Has(place)) {
-            edges[edge].push_back({int(leaves[edge]->leaf->Find(place)), int(i)});
+            edges[edge].push_back({int(leaves[edge]->leaf->Find(place)), int(i), 1});
         } else {
             leaves[edge] = nullptr;
         }
     }
     for (std::size_t edge = 0; edge < edges.size(); ++edge) {
         if (leaves[edge] && !edges[edge].empty()) {
-            std::vector<PlaceOfRow> &rows = leaves[edge]->rowsWithEdge;
-            rows = leaves[edge]->rows;
-            rows.insert(rows.end(), edges[edge].begin(), edges[edge].end());
+            std::vector<PlaceRun> &runs = leaves[edge]->runsWithEdge;
+            runs = leaves[edge]->runs;
+            runs.insert(runs.end(), edges[edge].begin(), edges[edge].end());
         }
     }
 }
@@ -254,7 +274,7 @@ std::size_t CellPlan::GetSize() const {
     };
     std::size_t size = getBytes(_nodes);
     for (Node const &node : _nodes) {
-        size += getBytes(node.children) + getBytes(node.rows) + getBytes(node.rowsWithEdge) +
+        size += getBytes(node.children) + getBytes(node.runs) + getBytes(node.runsWithEdge) +
                 getBytes(node.corners);
     }
     for (auto const &leafPlaces : _leafPlaces) {

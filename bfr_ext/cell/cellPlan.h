@@ -40,8 +40,11 @@ public:
 private:
     using Key = std::tuple<int, double, double>;
 
+    // Of the places of half cells, in their order.
+    enum Group { kInside, kLastSide, kFirstCorner, kFirstSide, kSecondSide, kThirdSide, kCorners };
+
     Key getKey(Place const &place) const;
-    static int findGroup(Pair const &coords);
+    static Group findGroup(Pair const &coords);
     void add(Place const &place);
     void refineWhole(double scale, int numSteps);
     void refineHalf(int sector, std::array<Pair, 4> const &corners, int numSteps);
@@ -76,10 +79,10 @@ public:
         std::vector<std::size_t> children;
         /// Of leaves, with the rows that are of places, ascending.
         LeafPlaces const *leaf;
-        std::vector<PlaceOfRow> rows;
+        std::vector<PlaceRun> runs;
         /// Of a half cell that has all places inside of an edge of the face, in a plan for points: the same with
         /// these.
-        std::vector<PlaceOfRow> rowsWithEdge;
+        std::vector<PlaceRun> runsWithEdge;
         /// Of a plan for derivatives: of u and v, the derivatives by them of what those of the leaf are
         /// by, which are the coordinates in a half cell or its own u and v in a whole one; and the
         /// corners of cells that are no leaves.
@@ -90,7 +93,7 @@ public:
     enum class Use { Points, Derivatives };
 
     /// \param level   that of the places, at most
-    /// \param places  of points, those on the border of the face are made apart, but for rowsWithEdge
+    /// \param places  of points, those on the border of the face are made apart, but for runsWithEdge
     CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use);
 
     /// Node 0 is the face.

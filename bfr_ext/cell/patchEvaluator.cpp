@@ -368,15 +368,15 @@ bool PatchEvaluator<REAL>::evaluateHalf(FaceRings const &face, CellPlan::Node co
     if (!half) {
         return false;
     }
-    bool const hasEdge = !leaf.rowsWithEdge.empty();
-    std::vector<PlaceOfRow> const &rows = hasEdge ? leaf.rowsWithEdge : leaf.rows;
+    bool const hasEdge = !leaf.runsWithEdge.empty();
+    std::vector<PlaceRun> const &runs = hasEdge ? leaf.runsWithEdge : leaf.runs;
     _hasEdge[std::size_t(edge)] = hasEdge;
     _indices.resize(half->places.GetColumns().size());
     face.FindHalfIndices(edge, isReversed, _indices.data());
     Leaf const ofLeaf = {half->half->GetType(), half->half.get(), *leaf.leaf, half, isReversed};
     SumUpPlaces(getPointMatrices<REAL>(ofLeaf).matrices[0],
                 {points, std::ptrdiff_t(_paddedSize), _size, _indices.data(), _results,
-                 _resultStride, rows.data(), rows.size()});
+                 _resultStride, runs.data(), runs.size()});
     return true;
 }
 
@@ -405,7 +405,7 @@ void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ri
         addUp(matrices);
         SumUpPlaces(matrices.matrices[0],
                     {points, std::ptrdiff_t(_paddedSize), _size, indices, _results, _resultStride,
-                     leaf.rows.data(), leaf.rows.size()});
+                     leaf.runs.data(), leaf.runs.size()});
         return;
     }
     auto const &matrices = getMatrices<REAL, 2>(
@@ -427,8 +427,8 @@ void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ri
                                  {},
                                  {_derivatives[0], _derivatives[1]},
                                  _resultStride,
-                                 leaf.rows.data(),
-                                 leaf.rows.size()};
+                                 leaf.runs.data(),
+                                 leaf.runs.size()};
     for (std::size_t i = 0; i < 2; ++i) {
         std::copy_n(leaf.toCoords[i].begin(), 2, sums.factors[i]);
     }

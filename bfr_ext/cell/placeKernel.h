@@ -32,6 +32,17 @@ struct RegisterAllocator {
     friend bool operator!=(RegisterAllocator const &, RegisterAllocator const &) { return false; }
 };
 
+/// \brief Rows of a matrix that follow one another, whose places in a face follow one another, too.
+///
+/// A run ends where a block of rows does, of any matrix.
+struct PlaceRun {
+    static constexpr int kMaxBlock = 48;
+
+    int row;
+    int place;
+    int count;
+};
+
 /// \brief The stencils of places as a dense matrix.
 ///
 /// Places stand in blocks of kMaxWidth, and of what is left at the end; a block has the weights of its
@@ -41,6 +52,7 @@ class PlaceMatrix {
 public:
     static constexpr std::size_t kLanes = 64 / sizeof(REAL);
     static constexpr std::size_t kMaxWidth = 6 * kLanes;
+    static_assert(kMaxWidth % PlaceRun::kMaxBlock == 0);
 
     PlaceMatrix() = default;
     PlaceMatrix(std::size_t numPlaces, std::size_t numPoints)
@@ -73,12 +85,6 @@ private:
     std::vector<REAL, RegisterAllocator<REAL>> _weights;
 };
 
-/// Which row of a matrix is that of which place of a face.
-struct PlaceOfRow {
-    int row;
-    int place;
-};
-
 /// \brief Points, and where the weighted sums of them go that a matrix makes.
 ///
 /// Each number of the result is a sum of its own, over the points in their order and without fused
@@ -92,8 +98,8 @@ struct PlaceSums {
     REAL *results;
     std::ptrdiff_t resultStride;
     /// Those that are wanted, ascending by row; or null: all, each where its row says.
-    PlaceOfRow const *rows = nullptr;
-    std::size_t numRows = 0;
+    PlaceRun const *runs = nullptr;
+    std::size_t numRuns = 0;
 };
 
 /// \brief Points, and where derivatives by u and v go, of which two matrices make what they are by other
@@ -109,8 +115,8 @@ struct DerivativeSums {
     REAL factors[2][2];    ///< by matrix, and then of the derivative by u and by v
     REAL *results[2];      ///< by u and by v
     std::ptrdiff_t resultStride;
-    PlaceOfRow const *rows; ///< as those of PlaceSums
-    std::size_t numRows;
+    PlaceRun const *runs; ///< as those of PlaceSums
+    std::size_t numRuns;
 };
 
 /// \brief Points, and where the weighted sums of several choices of them go that one matrix makes.

@@ -305,26 +305,25 @@ struct PlaceBlock {
     std::size_t begin;
     std::size_t count; ///< up to the last one that is wanted
     /// Those that are wanted; null: all.
-    PlaceOfRow const *firstRow;
-    PlaceOfRow const *lastRow;
+    PlaceRun const *firstRun;
+    PlaceRun const *endRun;
 };
 
 /// Calls function(block) for all blocks with places that are wanted.
 template <typename REAL, typename SUMS, typename FUNCTION>
 void forBlocks(PlaceMatrix<REAL> const &matrix, SUMS const &sums, FUNCTION const &function) {
     std::size_t const numPlaces = matrix.GetNumPlaces();
-    PlaceOfRow const *row = sums.rows;
+    PlaceRun const *run = sums.runs;
     for (std::size_t begin = 0; begin < numPlaces; begin += PlaceMatrix<REAL>::kMaxWidth) {
-        PlaceBlock block = {begin, std::min(matrix.GetWidth(begin), numPlaces - begin), row, row};
-        if (sums.rows) {
-            row =
-                std::lower_bound(row, sums.rows + sums.numRows, int(begin + block.count),
-                                 [](PlaceOfRow const &other, int end) { return other.row < end; });
-            if (row == block.firstRow) {
+        PlaceBlock block = {begin, std::min(matrix.GetWidth(begin), numPlaces - begin), run, run};
+        if (sums.runs) {
+            run = std::lower_bound(run, sums.runs + sums.numRuns, int(begin + block.count),
+                                   [](PlaceRun const &other, int end) { return other.row < end; });
+            if (run == block.firstRun) {
                 continue;
             }
-            block.lastRow = row;
-            block.count = std::size_t(row[-1].row) + 1 - begin;
+            block.endRun = run;
+            block.count = std::size_t(run[-1].row + run[-1].count) - begin;
         }
         function(block);
     }
@@ -346,26 +345,45 @@ void forBlockComponents(PlaceMatrix<REAL> const &matrix, SUMS const &sums,
     });
 }
 
+/// Writes points of three numbers from their slots.  Without gaps between points, a fourth number is where the
+/// next point begins, which is written afterwards: one register is stored faster than two parts of it.
+template <typename REAL>
+void writeRun(REAL const (*slots)[4], std::size_t count, REAL *results, std::ptrdiff_t stride) {
+    constexpr std::size_t kPoint = 3 * sizeof(REAL);
+    constexpr std::size_t kSlot = 4 * sizeof(REAL);
+    std::size_t i = 0;
+    if (stride == 3) {
+        for (; i + 1 < count; ++i, results += 3) {
+            std::memcpy(results, slots[i], kSlot);
+        }
+    }
+    for (; i < count; ++i, results += stride) {
+        std::memcpy(results, slots[i], kPoint);
+    }
+}
+
 /// Writes what is wanted of a block, from TileSums::Slots or TileSums::Numbers.
 template <std::size_t NUM_COMPONENTS, typename REAL, typename NUMBERS>
 void writePlaces(PlaceBlock const &block, NUMBERS const &numbers, REAL *results,
                  std::ptrdiff_t stride) {
-    auto const write = [&](std::size_t i, std::ptrdiff_t place) {
+    auto const write = [&](std::size_t first, std::ptrdiff_t place, std::size_t count) {
+        REAL *to = results + place * stride;
         if constexpr (NUM_COMPONENTS == 3) {
-            std::memcpy(results + place * stride, numbers[i], 3 * sizeof(REAL));
+            writeRun(numbers + first, count, to, stride);
         } else {
-            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                results[place * stride + std::ptrdiff_t(k)] = numbers[k][i];
+            for (std::size_t i = first; i < first + count; ++i, to += stride) {
+                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                    to[k] = numbers[k][i];
+                }
             }
         }
     };
-    if (!block.firstRow) {
-        for (std::size_t i = 0; i < block.count; ++i) {
-            write(i, std::ptrdiff_t(block.begin + i));
-        }
+    if (!block.firstRun) {
+        write(0, std::ptrdiff_t(block.begin), block.count);
     }
-    for (PlaceOfRow const *row = block.firstRow; row != block.lastRow; ++row) {
-        write(std::size_t(row->row) - block.begin, std::ptrdiff_t(row->place));
+    for (PlaceRun const *run = block.firstRun; run != block.endRun; ++run) {
+        write(std::size_t(run->row) - block.begin, std::ptrdiff_t(run->place),
+              std::size_t(run->count));
     }
 }
 

@@ -13,7 +13,7 @@
 namespace OpenSubdivHex::Regression {
 
 using BfrExt::internal::PlaceMatrix;
-using BfrExt::internal::PlaceOfRow;
+using BfrExt::internal::PlaceRun;
 using BfrExt::internal::PlaceSums;
 
 namespace {
@@ -48,8 +48,13 @@ public:
         for (std::size_t i = 0; isPicked && i < numPoints; ++i) {
             _indices.push_back(int(2 * (numPoints - 1 - i)));
         }
-        for (std::size_t row = 0; isPicked && row < numPlaces; row += row < 40 ? 3 : 60) {
-            _rows.push_back({int(row), int(numPlaces - 1 - row)});
+        // Runs of 1 to 5 places, the last ones first.
+        int const end = int(numPlaces);
+        for (int row = 0; isPicked && row < end;) {
+            int const blockEnd = (row / PlaceRun::kMaxBlock + 1) * PlaceRun::kMaxBlock;
+            int const count = std::min({1 + row % 5, blockEnd - row, end - row});
+            _runs.push_back({row, end - row - count, count});
+            row += count + (row < 60 ? 2 : 60);
         }
     }
 
@@ -60,9 +65,9 @@ public:
         if (!_indices.empty()) {
             sums.indices = _indices.data();
         }
-        if (!_rows.empty()) {
-            sums.rows = _rows.data();
-            sums.numRows = _rows.size();
+        if (!_runs.empty()) {
+            sums.runs = _runs.data();
+            sums.numRuns = _runs.size();
         }
         function(_matrix, sums);
         return results;
@@ -82,8 +87,8 @@ public:
                             {{kFactors[0][0], kFactors[0][1]}, {kFactors[1][0], kFactors[1][1]}},
                             {results.data(), results.data() + numResults},
                             std::ptrdiff_t(_stride),
-                            _rows.empty() ? nullptr : _rows.data(),
-                            _rows.size()});
+                            _runs.empty() ? nullptr : _runs.data(),
+                            _runs.size()});
         return results;
     }
 
@@ -156,11 +161,13 @@ public:
                 results[place * _stride + k] = sum;
             }
         };
-        for (std::size_t row = 0; _rows.empty() && row < _numPlaces; ++row) {
+        for (std::size_t row = 0; _runs.empty() && row < _numPlaces; ++row) {
             form(row, row);
         }
-        for (PlaceOfRow const &row : _rows) {
-            form(std::size_t(row.row), std::size_t(row.place));
+        for (PlaceRun const &run : _runs) {
+            for (int i = 0; i < run.count; ++i) {
+                form(std::size_t(run.row + i), std::size_t(run.place + i));
+            }
         }
         return results;
     }
@@ -197,7 +204,7 @@ private:
     std::vector<std::vector<double>> _stencils;
     std::vector<REAL> _points;
     std::vector<int> _indices;
-    std::vector<PlaceOfRow> _rows;
+    std::vector<PlaceRun> _runs;
 };
 
 template <typename REAL>
