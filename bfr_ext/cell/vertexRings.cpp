@@ -26,6 +26,15 @@ bool hasFeatures(LimitPatch const &patch) {
            !patch.irregularVerts.empty() || patch.numHexagonalSteps != 0;
 }
 
+// Copies so few points that the call of a function would take longer.
+template <typename REAL>
+void copyPoints(REAL const *begin, REAL const *end, REAL *to) {
+    constexpr std::size_t kCount = Lanes<REAL>::kCount;
+    for (; begin != end; begin += kCount, to += kCount) {
+        Lanes<REAL>::Load(begin).Store(to);
+    }
+}
+
 } // namespace
 
 // Writes the program of the rings of a patch.
@@ -376,8 +385,8 @@ void VertexRings::apply(REAL const *points, std::size_t paddedSize, REAL *result
                     .Store(centers + i * stride + first);
             }
         }
-        std::copy(last, end, copyOfLast);
-        std::copy(blocks, blocks + ring.GetBlockSize(0, RingStep::First) * stride, end);
+        copyPoints(last, end, copyOfLast);
+        copyPoints(blocks, blocks + ring.GetBlockSize(0, RingStep::First) * stride, end);
         program = face;
     }
 }
