@@ -156,11 +156,10 @@ private:
         _surface.GatherControlPoints(meshPoints, desc, _controlPoints.data(), desc.size);
     }
 
-    // Faces of a forest are kept, as its trees are: the next frame has them, too.
+    // Faces are kept: the next frame has them, too.
     Status initSurface(Index face, FarExt::Interpolation interpolation, int channel) {
-        return _stream._forest && !_ownFactory
-                   ? _factory->initKept(face, interpolation, channel, _surface)
-                   : _factory->init(face, interpolation, channel, _surface);
+        return _ownFactory ? _factory->init(face, interpolation, channel, _surface)
+                           : _factory->initKept(face, interpolation, channel, _surface);
     }
 
     bool evaluatePoints(Index face, Tessellation const &tessellation, Status &status) {

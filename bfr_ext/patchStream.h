@@ -49,10 +49,11 @@ private:
 
 /// \brief Evaluates the surfaces of base faces, some at a time, hands each to a *sink* and forgets it.
 ///
-/// So the memory does not depend on how much comes out: it is what Options::SetMaxMemory() says and
-/// what the cache of the factory has; for a CellForest also a point for each vertex of the mesh, and the faces
-/// that the factory keeps.  What comes out is a patch for each base face that is no hole: its tessellation, and the points of that; with them derivatives, and values of varying and
-/// face-varying data, where they are asked for.
+/// So the memory does not depend on how much comes out: it is what Options::SetMaxMemory() says, what the cache of
+/// the factory has, and as far as SurfaceFactory::Options::SetMemoryOfFaces() allows, the faces that the factory
+/// keeps for the next frame; for a CellForest also a point for each vertex of the mesh.  What comes out is a patch
+/// for each base face that is no hole: its tessellation, and the points of that; with them derivatives, and values
+/// of varying and face-varying data, where they are asked for.
 ///
 /// A face whose tessellation would take more memory than a fourth of that has a patch for each of its
 /// *sections* (Tessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as
@@ -153,7 +154,8 @@ public:
         ///
         /// A stream that may not keep all has a cache of its own, which is forgotten as a whole when it
         /// has more types, and begun anew: so memory is bounded for meshes whose faces all differ.  Faces
-        /// that threads work at may keep as many types once more for a while.
+        /// that threads work at may keep as many types once more for a while.  The faces themselves are not kept
+        /// then.
         Options &SetMaxTypes(std::size_t count) {
             _maxTypes = count;
             return *this;
