@@ -63,6 +63,10 @@ public:
     /// \return        the one that is kept; null where none is
     Face const *Add(std::size_t kind, Index face, TYPE const &type, int size,
                     std::vector<Index> const &points) {
+        // Without this, all threads would wait for the lock with each face that there is no memory for.
+        if (_isFull.load(std::memory_order_relaxed)) {
+            return nullptr;
+        }
         Slot *const slots = getSlots(kind);
         if (!slots) {
             return nullptr;
@@ -118,6 +122,7 @@ private:
 
     bool takeMemory(std::size_t size) {
         if (size > _maxMemory - _numBytes) {
+            _isFull.store(true, std::memory_order_relaxed);
             return false;
         }
         _numBytes += size;
@@ -148,6 +153,7 @@ private:
     Face const _metOnce{}; // whose address stands for faces that are not kept yet
     std::mutex _mutex;
     std::vector<Kind> _kinds;
+    std::atomic<bool> _isFull{false}; // there was no memory for something
     std::size_t _numBytes = 0;
     std::vector<std::unique_ptr<std::byte[]>> _blocks;
     std::byte *_next = nullptr;
