@@ -32,12 +32,12 @@ public:
     template <typename GET>
     void FindIndices(std::size_t center, GET const &getBlock, int *indices) const {
         *indices++ = int(center);
-        int const *place = _places.data();
+        std::size_t begin = 0;
         for (std::size_t ring = 0; ring < _ends.size(); ++ring) {
-            int const block = int(getBlock(int(ring)));
-            for (int const *const end = _places.data() + _ends[ring]; place != end; ++place) {
-                *indices++ = block + *place;
-            }
+            std::size_t const end = _ends[ring];
+            addToAll(int(getBlock(int(ring))), _places.data() + begin, end - begin,
+                     indices + begin);
+            begin = end;
         }
     }
     /// Weights by column from those by vertex.
@@ -52,6 +52,29 @@ public:
 
 private:
     using Iterator = std::vector<int>::const_iterator;
+
+    // Writes sums of a number with some others, four at a time, the last four of which may be written twice: loops of
+    // different lengths cost more than sums.
+    static void addToAll(int number, int const *from, std::size_t count, int *to) {
+        constexpr std::size_t kStep = 4;
+        auto const addToFour = [&](std::size_t first) {
+            int sums[kStep];
+            for (std::size_t i = 0; i < kStep; ++i) {
+                sums[i] = number + from[first + i];
+            }
+            std::copy_n(sums, kStep, to + first);
+        };
+        if (count < kStep) {
+            for (std::size_t i = 0; i < count; ++i) {
+                to[i] = number + from[i];
+            }
+            return;
+        }
+        for (std::size_t first = 0; first + kStep < count; first += kStep) {
+            addToFour(first);
+        }
+        addToFour(count - kStep);
+    }
 
     // The places of a ring, ascending.
     std::pair<Iterator, Iterator> getPlaces(std::size_t ring) const;
