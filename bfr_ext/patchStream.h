@@ -65,7 +65,8 @@ private:
 ///  - With a CellForest, patches have the tessellations of its trees: each is made with its patch and
 ///    forgotten with it.
 ///  - A patch depends on its face and the options alone, to the bit: not on the number of threads, nor on
-///    which others the call makes.  So processes may share the faces of a mesh.
+///    which others the call makes.  So processes may share the faces of a mesh, on machines of which all fuse
+///    products with sums (as all with AVX2 and FMA do) or none.
 ///  - Points inside of a face are those of Surface::Evaluate() up to rounding.
 ///
 /// Several threads may call Run() of one stream at once.  std::bad_alloc passes through.

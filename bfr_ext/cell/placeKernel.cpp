@@ -15,7 +15,7 @@ Kernel<MATRIX, SUMS> chooseKernel() {
     if (__builtin_cpu_supports("avx512f")) {
         return SumUpPlacesAvx512;
     }
-    if (__builtin_cpu_supports("avx2")) {
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
         return SumUpPlacesAvx2;
     }
 #endif

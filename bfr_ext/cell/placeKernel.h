@@ -87,8 +87,9 @@ private:
 
 /// \brief Points, and where the weighted sums of them go that a matrix makes.
 ///
-/// Each number of the result is a sum of its own, over the points in their order and without fused
-/// products: so it does not depend on what is computed beside it, nor on the machine.
+/// Each number of the result is a sum of its own, over the points in their order: so it does not depend on what is
+/// computed beside it.  All kernels for machines that fuse products with sums do so, and give the same bits; the
+/// portable one, for machines that may not, gives its own.
 template <typename REAL>
 struct PlaceSums {
     REAL const *points;

@@ -8,6 +8,10 @@
 #include <type_traits>
 #include <utility>
 
+#ifdef __FMA__
+#include <immintrin.h>
+#endif
+
 // Included by one source file for each set of instructions, which must not share what the compiler
 // makes of it: hence the unnamed namespace.
 namespace OpenSubdivHex::BfrExt::internal {
@@ -119,6 +123,31 @@ public:
         reinterpret_cast<LanesInMemory<Lanes> *>(to)->lanes = lanes;
     }
 
+    /// Adds products to sums, which are rounded once where the registers are those of machines that fuse the two.
+    static void AddProducts(Lanes &sums, Lanes const &factors, REAL factor) {
+#ifdef __AVX512F__
+        if constexpr (BYTES == 64 && std::is_same_v<REAL, float>) {
+            sums = Lanes(_mm512_fmadd_ps(__m512(factors), _mm512_set1_ps(factor), __m512(sums)));
+            return;
+        }
+        if constexpr (BYTES == 64 && std::is_same_v<REAL, double>) {
+            sums = Lanes(_mm512_fmadd_pd(__m512d(factors), _mm512_set1_pd(factor), __m512d(sums)));
+            return;
+        }
+#endif
+#if defined(__AVX2__) && defined(__FMA__)
+        if constexpr (BYTES == 32 && std::is_same_v<REAL, float>) {
+            sums = Lanes(_mm256_fmadd_ps(__m256(factors), _mm256_set1_ps(factor), __m256(sums)));
+            return;
+        }
+        if constexpr (BYTES == 32 && std::is_same_v<REAL, double>) {
+            sums = Lanes(_mm256_fmadd_pd(__m256d(factors), _mm256_set1_pd(factor), __m256d(sums)));
+            return;
+        }
+#endif
+        sums += factors * factor;
+    }
+
     /// Stores kSize slots, from those of the components.
     static void StoreSlots(Lanes const &x, Lanes const &y, Lanes const &z, REAL *to) {
 #ifdef OPENSUBDIVHEX_HAS_SHUFFLES
@@ -214,7 +243,7 @@ private:
                 Lanes ofLane = Load(weights + lane * kSize);
                 keepInRegister(ofLane);
                 for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    sums[lane][k] += ofLane * point[k];
+                    AddProducts(sums[lane][k], ofLane, point[k]);
                 }
             }
             weights += width;
@@ -237,7 +266,7 @@ private:
                     Lanes ofLane = Load(weights[matrix] + place + lane * kSize);
                     keepInRegister(ofLane);
                     for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                        sums[lane][matrix][k] += ofLane * point[k];
+                        AddProducts(sums[lane][matrix][k], ofLane, point[k]);
                     }
                 }
             }
@@ -679,7 +708,7 @@ private:
                 REAL const *const point =
                     _sums.points + component + items[item].indices[i] * _sums.stride;
                 for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    sums[item][k] += ofPoint * point[k];
+                    Tiles::AddProducts(sums[item][k], ofPoint, point[k]);
                 }
             }
         }
