@@ -434,7 +434,7 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
     });
 }
 
-// But for the points inside of edges that were made with those inside of the face, if any were.
+// Makes the points on the border, but for those inside of edges that were made with those inside of the face.
 template <typename REAL>
 void Surface<REAL>::evaluateBorder(Tessellation const &tessellation,
                                    internal::BorderEvaluator<REAL> &evaluator,

@@ -232,7 +232,8 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
     return _nodes.size() - 1;
 }
 
-// Those whose places half cells have that are leaves.  Others are made apart: so is an edge with finer places.
+// Adds the edges whose places are all in half cells that are leaves.  Others are made apart: so is an edge with
+// finer places.
 void CellPlan::addEdges(std::vector<LeafPlaces::Place> const &places) {
     std::vector<std::vector<PlaceRun>> edges(static_cast<std::size_t>(_faceSize));
     std::vector<Node *> leaves(edges.size());

@@ -80,8 +80,8 @@ public:
         /// Of leaves, with the rows that are of places, ascending.
         LeafPlaces const *leaf;
         std::vector<PlaceRun> runs;
-        /// Of a half cell that has all places inside of an edge of the face, in a plan for points: the same with
-        /// these.
+        /// In a plan for points, of a half cell that has all places that the tessellation has inside of an edge
+        /// of the face: the same with these.
         std::vector<PlaceRun> runsWithEdge;
         /// Of a plan for derivatives: of u and v, the derivatives by them of what those of the leaf are
         /// by, which are the coordinates in a half cell or its own u and v in a whole one; and the

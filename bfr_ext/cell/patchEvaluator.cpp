@@ -78,7 +78,7 @@ struct LeafMatrices {
     std::array<PlaceMatrix<REAL>, COUNT> matrices;
 };
 
-// By column, points that have the same weights, but for rounding.
+// Finds, by column, points that have the same weights, but for rounding.
 std::vector<std::vector<int>> findColumns(Rows const &rows) {
     constexpr double kTolerance = 1e-12;
     std::vector<std::vector<int>> columns;
@@ -115,8 +115,10 @@ LeafMatrices<REAL, COUNT> makeMatrices(Leaf const &leaf, FIND const &find, GET c
         }
     }
     LeafMatrices<REAL, COUNT> result;
-    std::vector<std::vector<int>> const columns = findColumns(rows);
-    // Sums take time, too, and those of an edge are the same in all faces.
+    // The sums of an edge are the same in all faces, and so have a column for each point.
+    std::vector<std::vector<int>> const columns =
+        leaf.withEdge ? std::vector<std::vector<int>>() : findColumns(rows);
+    // Adding points up takes time, too.
     if (!leaf.withEdge && 2 * columns.size() <= leaf.GetNumPoints()) {
         for (std::vector<int> const &points : columns) {
             result.firsts.push_back(points[0]);
@@ -142,7 +144,7 @@ LeafMatrices<REAL, COUNT> makeMatrices(Leaf const &leaf, FIND const &find, GET c
     return result;
 }
 
-// That of a leaf, made when it is first asked for: of its points, or derivatives.
+// The matrices of a leaf for points, or for derivatives, are made when they are first asked for.
 template <typename REAL, std::size_t COUNT, typename FIND, typename GET>
 LeafMatrices<REAL, COUNT> const &getMatrices(PatternOf of, Leaf const &leaf, FIND const &find,
                                              GET const &getRow) {
@@ -160,7 +162,6 @@ LeafMatrices<REAL, COUNT> const &getMatrices(PatternOf of, Leaf const &leaf, FIN
                : look(leaf.type.GetPatterns());
 }
 
-// Of its points.
 template <typename REAL>
 LeafMatrices<REAL, 1> const &getPointMatrices(Leaf const &leaf) {
     return getMatrices<REAL, 1>(

@@ -33,6 +33,8 @@ public:
     /// @name The same of plain faces, from the points of their rings
     /// @{
 
+    /// \brief Writes points inside of edges of the face, too, where its half cells have them (HasEdge()).
+    ///
     /// \param turns  those of FindBaseCellTurns()
     void Evaluate(PlainFaceType const &type, int const *turns, RingValues<REAL> const &values,
                   CellPlan const &plan, REAL *results, std::ptrdiff_t resultStride);

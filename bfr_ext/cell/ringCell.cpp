@@ -309,7 +309,7 @@ public:
 private:
     RingLayout const &getLayout(int vert) const { return _layouts[std::size_t(vert % _numEdges)]; }
 
-    // All, from that of a vertex on.
+    // The layouts of all vertices, from a vertex on.
     std::vector<RingLayout> getLayouts(int firstRing) const {
         std::vector<RingLayout> layouts = _layouts;
         std::rotate(layouts.begin(), layouts.begin() + firstRing, layouts.end());

@@ -254,7 +254,7 @@ public:
         return find<RingVertex>(_vertices, 0, key, make);
     }
 
-    /// \brief Makes a cell that is found nowhere.
+    /// \brief Makes a cell of the caller's own, which Find() does not find.
     ///
     /// \param rings  as of Find()
     std::unique_ptr<RingCell const> Make(FarExt::internal::CellPatch cell,

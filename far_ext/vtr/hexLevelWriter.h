@@ -79,8 +79,8 @@ private:
     void fillClosedCorners(Index begin, Index end, WRITE write, WRITE_CLOSED_FORM writeClosedForm);
     void fillClosedVertices(Index begin, Index end, Index numOpenBefore);
     void fillClosedVertexEdges(Index begin, Index end, VertexOffsets vertex);
-    void fillFacesOfAnyValence(Index begin, Index end, Index cFace);
-    void fillFacesOfValenceThree(Index begin, Index end, Index cFace);
+    void fillFacesOfAnyValence(Index begin, Index end, Index firstPlace);
+    void fillFacesOfValenceThree(Index begin, Index end, Index firstPlace);
     void fillOpenVertex(Index pVert, Index numOpenBefore);
 
     // The edge from a corner to the next, seen from the face.

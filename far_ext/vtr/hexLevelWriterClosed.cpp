@@ -462,10 +462,10 @@ void HexLevelWriter::fillClosedVertexEdges(Index begin, Index end, VertexOffsets
         });
 }
 
-// The E-faces around V-vertices of any valence, from cFace on in vertFaces: written as if all were edges
+// The E-faces around V-vertices of any valence, from firstPlace on in vertFaces: written as if all were edges
 // of one vertex, then the last of each vertex, if it has any; values of a face-varying channel need
 // not have.
-void HexLevelWriter::fillFacesOfAnyValence(Index begin, Index end, Index cFace) {
+void HexLevelWriter::fillFacesOfAnyValence(Index begin, Index end, Index firstPlace) {
     Index const *const pFirstEdges = &_p.vertFirstEdge[begin];
     Index const numVertices = end - begin;
     Index const numEdges = pFirstEdges[numVertices] - pFirstEdges[0];
@@ -482,8 +482,8 @@ void HexLevelWriter::fillFacesOfAnyValence(Index begin, Index end, Index cFace) 
     };
     EFaceOfEdge const eFaceOf(_refinement);
     Index const *const pEdges = _p.vertEdges.data() + pFirstEdges[0];
-    writeRotated(_c.vertFaces.data() + cFace, [=](Index i) { return eFaceOf(pEdges[i]); });
-    LocalIndex *const locals = _c.vertFaceLocals.data() + cFace;
+    writeRotated(_c.vertFaces.data() + firstPlace, [=](Index i) { return eFaceOf(pEdges[i]); });
+    LocalIndex *const locals = _c.vertFaceLocals.data() + firstPlace;
     if (_p.isHexagonal) {
         std::fill_n(locals, numEdges, kEFaceSideA.startVertex);
         return;
@@ -494,13 +494,13 @@ void HexLevelWriter::fillFacesOfAnyValence(Index begin, Index end, Index cFace) 
     });
 }
 
-// The E-faces around V-vertices of valence three, from cFace on in vertFaces.  V-vertices of the parent
+// The E-faces around V-vertices of valence three, from firstPlace on in vertFaces.  V-vertices of the parent
 // are the first vertex of three edges, F-vertices the first, second and second.
-void HexLevelWriter::fillFacesOfValenceThree(Index begin, Index end, Index cFace) {
+void HexLevelWriter::fillFacesOfValenceThree(Index begin, Index end, Index firstPlace) {
     constexpr int kValence = 3;
     EFaceOfEdge const eFaceOf(_refinement);
     Index const *const pEdges = _p.vertEdges.data() + _p.vertFirstEdge[begin];
-    WriteArray<kValence>(_c.vertFaces.data() + cFace, end - begin, _pastCaches,
+    WriteArray<kValence>(_c.vertFaces.data() + firstPlace, end - begin, _pastCaches,
                          [=](Index *ofVertex, Index i) {
                              Index const *const edges = pEdges + kValence * std::size_t(i);
                              WritePair(ofVertex, eFaceOf(edges[1]), eFaceOf(edges[2]));
@@ -508,7 +508,7 @@ void HexLevelWriter::fillFacesOfValenceThree(Index begin, Index end, Index cFace
                          });
     Index const endVVertices = _p.isHexagonal ? std::clamp(_p.numVVertices, begin, end) : end;
     Index const numVVertices = endVVertices - begin;
-    LocalIndex *const locals = _c.vertFaceLocals.data() + cFace;
+    LocalIndex *const locals = _c.vertFaceLocals.data() + firstPlace;
     WriteArray<kValence>(locals, numVVertices, _pastCaches, [](LocalIndex *ofVertex, Index) {
         ofVertex[0] = ofVertex[1] = ofVertex[2] = kEFaceSideA.startVertex;
     });
