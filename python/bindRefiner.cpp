@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <type_traits>
 
 namespace OpenSubdivHex::Python {
 
@@ -178,6 +179,10 @@ T takeNumber(py::object const &object, char const *name, char const *typeName) {
     try {
         return object.cast<T>();
     } catch (py::cast_error const &) {
+        if (!std::is_same_v<T, bool> && PyIndex_Check(object.ptr())) {
+            throw py::value_error(std::string(name) + ": " + std::string(py::str(object)) +
+                                  " is a number that 32 bits do not hold");
+        }
         throw py::type_error(std::string(name) + ": " + typeName + " is needed, not " +
                              Py_TYPE(object.ptr())->tp_name);
     }
