@@ -33,6 +33,14 @@ Status invalidArgument(std::string const &message) {
 
 void copyElements(internal::Elements<float const> src, int length, Index count,
                   Index const *sources, float scale, internal::Elements<float> dst) {
+    if (!sources && scale == 1 && src.stride == length && dst.stride == length) {
+        FarExt::internal::ParallelForRange(count, [&](Index begin, Index end) {
+            std::copy(src.data + std::ptrdiff_t(begin) * length,
+                      src.data + std::ptrdiff_t(end) * length,
+                      dst.data + std::ptrdiff_t(begin) * length);
+        });
+        return;
+    }
     FarExt::internal::ParallelFor(count, [&](Index i) {
         float const *const from = src.data + (sources ? sources[i] : i) * src.stride;
         std::transform(from, from + length, dst.data + i * dst.stride,

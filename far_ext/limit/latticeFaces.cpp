@@ -118,6 +118,22 @@ PatchWeights combine(PatchWeights weights, double const (&factors)[2][2]) {
     return weights;
 }
 
+Directions findDirections(LatticePatch const &patch, PatchWeights const &weights) {
+    return {findPoint(patch, weights, 1), findPoint(patch, weights, 2)};
+}
+
+/// The orbit of a vertex on the axis, with derivatives along and across that are as long as du and dv.
+LatticeFaces::Orbit makeAxis(LatticePatch const &patch, PatchWeights const &weights) {
+    Directions const directions = findDirections(patch, weights);
+    double const length = std::sqrt(std::abs(std::imag(std::conj(directions[0]) * directions[1])));
+    Directions const axis = {length, Point(0, length)};
+    double ofAxis[2][2];
+    solve(axis, directions, ofAxis);
+    LatticeFaces::Orbit orbit = {false, combine(weights, ofAxis), {}};
+    solve(directions, axis, orbit.derivatives);
+    return orbit;
+}
+
 /// \brief Finds the orbits of the vertices in a face by their points, and that the weights of all follow
 /// from those of one of an orbit.
 class OrbitFinder {
@@ -188,8 +204,8 @@ private:
         if (mirrored < 0) {
             return false;
         }
-        Directions const directions = findDirections(first);
-        Directions const ofImage = findDirections(std::size_t(mirrored));
+        Directions const directions = findDirections(_patch, _weights[first]);
+        Directions const ofImage = findDirections(_patch, _weights[std::size_t(mirrored)]);
         LatticeFaces::Orbit orbit = {true, _weights[first], {}};
         solve(ofImage, {std::conj(directions[0]), std::conj(directions[1])}, orbit.derivatives);
         constexpr double kSame[2][2] = {{1, 0}, {0, 1}};
@@ -202,15 +218,7 @@ private:
     }
 
     bool addAxis(std::size_t first) {
-        Directions const directions = findDirections(first);
-        // Along and across, as long as du and dv.
-        double const length =
-            std::sqrt(std::abs(std::imag(std::conj(directions[0]) * directions[1])));
-        Directions const axis = {length, Point(0, length)};
-        double ofAxis[2][2];
-        solve(axis, directions, ofAxis);
-        LatticeFaces::Orbit orbit = {false, combine(_weights[first], ofAxis), {}};
-        solve(directions, axis, orbit.derivatives);
+        LatticeFaces::Orbit orbit = makeAxis(_patch, _weights[first]);
         if (!addTurns(orbit.weights, _points[first], false, orbit.derivatives, _axes.numbers) ||
             !isMirrorSymmetric(_patch, orbit.weights)) {
             return false;
@@ -238,11 +246,6 @@ private:
         return true;
     }
 
-    /// Those of the derivatives of a vertex.
-    Directions findDirections(std::size_t number) const {
-        return {findPoint(_patch, _weights[number], 1), findPoint(_patch, _weights[number], 2)};
-    }
-
     LatticePatch const &_patch;
     std::vector<PatchWeights> const &_weights;
     std::vector<Point> const _points;
@@ -250,6 +253,85 @@ private:
     std::vector<unsigned char> _isFound;
     Kind _pairs;
     Kind _axes;
+};
+
+/// \brief What LatticeFaces::Set::outerWeights are to fulfil for some orbits.
+class OuterWeightEquations {
+public:
+    OuterWeightEquations(LatticePatch const &patch, std::vector<LatticeFaces::Orbit> const &orbits)
+        : _patch(patch) {
+        for (LatticeFaces::Orbit const &orbit : orbits) {
+            for (std::size_t sum = 0; sum < LimitWeights().size(); ++sum) {
+                addEquations(orbit.weights, sum);
+            }
+        }
+    }
+
+    bool AreFulfilled(std::array<double, 2> const &weights) const {
+        return std::all_of(_equations.begin(), _equations.end(), [&](Equation const &equation) {
+            double const expected = weights[0] * equation.first + weights[1] * equation.second;
+            return std::abs(expected - equation.outer) < kTolerance;
+        });
+    }
+    /// By least squares.
+    std::array<double, 2> Solve() const {
+        constexpr double kNothing = 1e-18; // of squares
+        double const firstFirst = sumProducts(&Equation::first, &Equation::first);
+        double const firstSecond = sumProducts(&Equation::first, &Equation::second);
+        double const secondSecond = sumProducts(&Equation::second, &Equation::second);
+        double const outerFirst = sumProducts(&Equation::outer, &Equation::first);
+        double const outerSecond = sumProducts(&Equation::outer, &Equation::second);
+        double const area = firstFirst * secondSecond - firstSecond * firstSecond;
+        if (area > kNothing) {
+            return {(outerFirst * secondSecond - outerSecond * firstSecond) / area,
+                    (outerSecond * firstFirst - outerFirst * firstSecond) / area};
+        }
+        return {firstFirst > kNothing ? outerFirst / firstFirst : 0, 0};
+    }
+
+private:
+    /// outer = a first + b second
+    struct Equation {
+        double outer;
+        double first;
+        double second;
+    };
+
+    double sumProducts(double Equation::*factor, double Equation::*other) const {
+        double sum = 0;
+        for (Equation const &equation : _equations) {
+            sum += equation.*factor * equation.*other;
+        }
+        return sum;
+    }
+
+    void addEquations(PatchWeights const &weights, std::size_t sum) {
+        int const size = _patch.GetFaceSize();
+        auto const w = [&](int orbit, int corner) {
+            int const place = _patch.TurnPlace(orbit * size, (corner + size) % size);
+            return weights[std::size_t(place)][sum];
+        };
+        for (int i = 0; i < size; ++i) {
+            switch (size) {
+            case 3:
+                _equations.push_back({w(7, i), w(2, i), 0});
+                _equations.push_back({w(8, i), w(2, i), 0});
+                _equations.push_back({w(6, i + 1) - w(5, i), w(2, i) - w(2, i + 1), 0});
+                break;
+            case 4:
+                _equations.push_back({w(6, i), w(4, i), w(5, i + 1)});
+                _equations.push_back({w(7, i), w(5, i), w(4, i - 1)});
+                break;
+            default:
+                _equations.push_back({w(5, i), w(2, i), 0});
+                _equations.push_back({w(6, i), w(2, i), 0});
+                break;
+            }
+        }
+    }
+
+    LatticePatch const &_patch;
+    std::vector<Equation> _equations;
 };
 
 /// A mark for each output of a set, whether it is the mirror image of another.
@@ -318,7 +400,7 @@ void LatticeFaces::findFaces(int faceSize) {
     if (faces.empty()) {
         return;
     }
-    Set &set = _sets.emplace_back(Set{patch, std::move(faces), {}, {}, 0, {}, {}, {}});
+    Set &set = _sets.emplace_back(Set{patch, std::move(faces), {}, {}, {}, 0, {}, {}, {}, {}});
     auto const numPlaces = std::size_t(patch.GetNumPlaces());
     set.sources.Resize(set.faces.size() * numPlaces);
     ParallelFor(Index(set.faces.size()), [&](Index i) {
@@ -353,7 +435,7 @@ Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
     }
     std::vector<Index> ofSets(_sets.size(), Far::INDEX_INVALID); // a vertex of level 0 for each
     for (Index vert = 0; vert < _mesh.levels[0].numVertices; ++vert) {
-        if (Set const *const set = findPlace(vert).set) {
+        if (Set const *const set = FindPlace(vert).set) {
             Index &ofSet = ofSets[std::size_t(set - _sets.data())];
             if (ofSet < 0) {
                 ofSet = vert;
@@ -392,7 +474,7 @@ Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
 }
 
 // The face that begins at a vertex with the first of its edges.
-LatticeFaces::VertexPlace LatticeFaces::findPlace(Index vert) const {
+LatticeFaces::VertexPlace LatticeFaces::FindPlace(Index vert) const {
     Level const &level = _mesh.levels[0];
     Far::ConstIndexArray const edges = level.GetVertexEdges(vert);
     if (edges.empty()) {
@@ -413,7 +495,7 @@ LatticeFaces::VertexPlace LatticeFaces::findPlace(Index vert) const {
 void LatticeFaces::setVertexMask(std::vector<RefinementMask> const &masks, LimitRows const &rows,
                                  Index vert, Set &set) const {
     Index sources[LatticePatch::kMaxPlaces];
-    VertexPlace const place = findPlace(vert);
+    VertexPlace const place = FindPlace(vert);
     getSources(place, sources);
     Index regularSources[PlainNeighborhoodGatherer::kNumRegular];
     PatchWeights const weights = PatchRows(_mesh, masks, 0, sources, set.patch.GetNumPlaces())
@@ -429,6 +511,10 @@ void LatticeFaces::setVertexMask(std::vector<RefinementMask> const &masks, Limit
         }
     }
     set.vertexMask.sides.push_back(std::move(tangents));
+    Orbit corners = makeAxis(set.patch, weights);
+    if (isMirrorSymmetric(set.patch, corners.weights)) {
+        set.corners = std::move(corners);
+    }
 }
 
 // The sources of a face, turned so that a vertex is at its first corner.
@@ -453,6 +539,15 @@ bool LatticeFaces::setOrbits(Sample &sample, Set &set) {
     set.orbits = finder.GetOrbits();
     sample.order = finder.GetOrder();
     set.numOutputs = int(sample.order.size());
+    OuterWeightEquations const equations(set.patch, set.orbits);
+    std::array<double, 2> const outerWeights = equations.Solve();
+    if (equations.AreFulfilled(outerWeights)) {
+        set.outerWeights = outerWeights;
+        if (set.corners &&
+            !OuterWeightEquations(set.patch, {*set.corners}).AreFulfilled(outerWeights)) {
+            set.corners.reset();
+        }
+    }
     return true;
 }
 
@@ -501,7 +596,7 @@ void LatticeFaces::setOutputs(Sample const &sample, Set &set) {
 
 void LatticeFaces::setVertices() {
     for (Index vert = 0; vert < _mesh.levels[0].numVertices; ++vert) {
-        Set const *const set = findPlace(vert).set;
+        Set const *const set = FindPlace(vert).set;
         if (set && !set->vertexPlaces.empty()) {
             _verts.push_back(vert);
             _marks[std::size_t(vert)] = 1;
@@ -510,7 +605,7 @@ void LatticeFaces::setVertices() {
 }
 
 LimitRow LatticeFaces::GetRow(Index vert, Index sources[LatticePatch::kMaxPlaces]) const {
-    VertexPlace const place = findPlace(vert);
+    VertexPlace const place = FindPlace(vert);
     Index ofFace[LatticePatch::kMaxPlaces];
     getSources(place, ofFace);
     Set const &set = *place.set;

@@ -6,6 +6,8 @@
 #include "limitRows.h"
 #include "rowSteps.h"
 
+#include <array>
+#include <optional>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -38,7 +40,16 @@ public:
         Buffer<Index> sources; ///< by face, all places of the patch
 
         std::vector<Orbit> orbits; ///< pairs first
-        int numOutputs = 0;        ///< of a face: all vertices of its orbits in turn
+        /// \brief How the weights of outer places follow from those of nearer ones, if they do in all rows.
+        ///
+        /// With w(k, i) for the weight of place i of orbit k these are a and b in
+        ///   triangles  w(7, i) = w(8, i) = a w(2, i) and w(6, i + 1) - w(5, i) = a (w(2, i) - w(2, i + 1)),
+        ///   quads      w(6, i) = a w(4, i) + b w(5, i + 1) and w(7, i) = a w(5, i) + b w(4, i - 1),
+        ///   hexagons   w(5, i) = w(6, i) = a w(2, i),
+        /// since of the outermost faces sums alone have a part in what becomes of the face: but not where
+        /// levels are so deep that vertices of triangles lie close to a corner, from level 4 on.
+        std::optional<std::array<double, 2>> outerWeights;
+        int numOutputs = 0; ///< of a face: all vertices of its orbits in turn
         /// \brief By face, the vertices.
         ///
         /// Between two faces each makes half of the vertices, those that are no mirror images in it; a face
@@ -49,6 +60,15 @@ public:
         // The rows of vertices of level 0, by place around the edge that is the vertex's first.
         LimitMask vertexMask;
         std::vector<int> vertexPlaces;
+        /// The same as an orbit, if it has an axis, and the outer weights of others if they have such.
+        std::optional<Orbit> corners;
+    };
+
+    /// A corner of a face at which a vertex of level 0 begins, with the first of its edges.
+    struct VertexPlace {
+        Set const *set;   ///< null where there is no such face
+        std::size_t face; ///< in the set
+        int corner;
     };
 
     /// Calls function(weights) for the rows of the vertices of an orbit in turn: all places of the patch.
@@ -75,6 +95,7 @@ public:
     std::vector<Set> const &GetSets() const { return _sets; }
     /// Vertices of level 0 whose rows follow from the lattice, ascending.
     std::vector<Index> const &GetVertices() const { return _verts; }
+    VertexPlace FindPlace(Index vert) const;
     /// The row of one of these, in terms of level 0.  Valid until \p sources is used again.
     LimitRow GetRow(Index vert, Index sources[LatticePatch::kMaxPlaces]) const;
     /// A mark for each vertex of the level, whether it is among those or the outputs; empty where none
@@ -83,16 +104,9 @@ public:
 
 private:
     struct Sample;
-    struct VertexPlace {
-        Set const *set;
-        std::size_t face; ///< in the set
-        int corner;
-    };
-
     static std::vector<LimitWeights> getRow(LatticePatch const &patch, Orbit const &orbit,
                                             bool isMirrored, int turns);
     void findFaces(int faceSize);
-    VertexPlace findPlace(Index vert) const;
     static void getSources(VertexPlace const &of, Index *sources);
     void setVertexMask(std::vector<RefinementMask> const &masks, LimitRows const &rows, Index vert,
                        Set &set) const;

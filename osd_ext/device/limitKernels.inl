@@ -229,7 +229,7 @@ FUNCTION void makeOwnLimit(uint i) {
     makeLimitsOfFace(of, vert, false);
 }
 
-// Lattice faces: the arithmetic of latticeKernelTemplate.h.
+// Lattice faces: the arithmetic of latticeKernelTemplate.h, but that no sources are joined.
 
 // The waves of an orbit around the face stand in a Six: the mean, what alternates with 4 and 6 corners,
 // then cosine and sine of each frequency.

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <map>
+#include <optional>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
@@ -17,23 +19,22 @@ using FarExt::internal::LatticeFaces;
 
 namespace {
 
-// Some of the entries of some faces, which have count each, as entries of groups of faces: of each entry
-// those of all faces, the last of which fills the last group up.
-template <typename T, typename CONVERT>
-void group(std::vector<Index> const &faces, Buffer<Index> const &entries, int count,
-           std::vector<int> const &some, Buffer<T> &result, CONVERT convert) {
+// Some of the entries of some faces as entries of groups of faces: of each entry those of all faces, the
+// last of which fills the last group up.  getEntry(face, entry) gives one.
+template <typename T, typename GET_ENTRY>
+void group(std::vector<Index> const &faces, std::vector<int> const &entries, Buffer<T> &result,
+           GET_ENTRY getEntry) {
     constexpr std::size_t kSize = RegularFaceGroup::kSize;
     std::size_t const numFaces = faces.size();
     std::size_t const numGroups = (numFaces + kSize - 1) / kSize;
-    std::size_t const size = numGroups * kSize * some.size();
-    result.Resize(size);
+    result.Resize(numGroups * kSize * entries.size());
     FarExt::internal::ParallelFor(Index(numGroups), [&](Index i) {
         std::size_t const first = std::size_t(i) * kSize;
-        T *next = result.data() + first * some.size();
-        for (int const k : some) {
+        T *next = result.data() + first * entries.size();
+        for (int const entry : entries) {
             for (std::size_t face = first; face < first + kSize; ++face) {
-                auto const from = std::size_t(faces[std::min(face, numFaces - 1)]);
-                *next++ = convert(entries[from * std::size_t(count) + std::size_t(k)]);
+                *next++ =
+                    getEntry(std::size_t(faces[std::min(face, numFaces - 1)]), std::size_t(entry));
             }
         }
     });
@@ -57,6 +58,38 @@ Index *keepAhead(Index *begin, Index *end) {
         }
     }
     return kept;
+}
+
+// Whether output first[i] + 1 of all of some faces is output next[i].
+bool areConsecutive(LatticeFaces::Set const &set, std::vector<Index> const &faces,
+                    std::vector<int> const &first, std::vector<int> const &next) {
+    return std::all_of(faces.begin(), faces.end(), [&](Index face) {
+        Index const *const outputs =
+            set.outputs.data() + std::size_t(face) * std::size_t(set.numOutputs);
+        return std::equal(first.begin(), first.end(), next.begin(), next.end(),
+                          [&](int a, int b) { return outputs[a] + 1 == outputs[b]; });
+    });
+}
+
+// The same of LatticeTask::areConsecutive, for outputs that begin with number begin.
+bool isPairConsecutive(LatticeFaces::Set const &set, std::vector<Index> const &faces, int begin) {
+    int const size = set.patch.GetFaceSize();
+    std::vector<int> images;
+    std::vector<int> next;
+    for (int i = 0; i < size; ++i) {
+        images.push_back(begin + size + i);
+        next.push_back(begin + (i + size - 1) % size);
+    }
+    return areConsecutive(set, faces, images, next);
+}
+bool isOrbitConsecutive(LatticeFaces::Set const &set, std::vector<Index> const &faces, int begin) {
+    std::vector<int> first;
+    std::vector<int> next;
+    for (int i = 0; i + 1 < set.patch.GetFaceSize(); ++i) {
+        first.push_back(begin + i);
+        next.push_back(begin + i + 1);
+    }
+    return areConsecutive(set, faces, first, next);
 }
 
 int countPairs(LatticeFaces::Set const &set) {
@@ -84,47 +117,90 @@ std::vector<int> findHalves(LatticeFaces::Set const &set, Index face) {
 
 void LatticeLimit::Prepare(LatticeFaces const &faces) {
     for (LatticeFaces::Set const &of : faces.GetSets()) {
+        Corners const corners = findCorners(faces, of);
         std::map<std::vector<int>, std::vector<Index>> facesWithHalves;
         for (Index face = 0; face < Index(of.faces.size()); ++face) {
             facesWithHalves[findHalves(of, face)].push_back(face);
         }
         for (auto const &[halves, some] : facesWithHalves) {
-            addSet(of, some, halves);
+            addSet(of, corners, some, halves);
         }
     }
+    std::sort(_madeCorners.begin(), _madeCorners.end());
 }
 
-void LatticeLimit::addSet(LatticeFaces::Set const &of, std::vector<Index> const &faces,
-                          std::vector<int> const &halves) {
+LatticeLimit::Corners LatticeLimit::findCorners(LatticeFaces const &faces,
+                                                LatticeFaces::Set const &of) {
+    Corners corners;
+    auto const faceSize = std::size_t(of.patch.GetFaceSize());
+    // Of triangles one corner in six is made.
+    if (!of.corners || faceSize == 3) {
+        return corners;
+    }
+    std::optional<SourceOrbits> const compact = FindCompactSourceOrbits(of);
+    if (compact && !DependsOnThese(*compact, of.patch, *of.corners)) {
+        return corners;
+    }
+    corners.resize(of.faces.size() * faceSize, Far::INDEX_INVALID);
+    for (Index const vert : faces.GetVertices()) {
+        LatticeFaces::VertexPlace const place = faces.FindPlace(vert);
+        if (place.set == &of) {
+            corners[place.face * faceSize + std::size_t(place.corner)] = vert;
+            _madeCorners.push_back(vert);
+        }
+    }
+    return corners;
+}
+
+void LatticeLimit::addSet(LatticeFaces::Set const &of, Corners const &corners,
+                          std::vector<Index> const &faces, std::vector<int> const &halves) {
     Set &set = _sets.emplace_back();
     set.faceSize = of.patch.GetFaceSize();
     int const numPairs = countPairs(of);
     set.numHalves = int(halves.size());
     set.numPairs = numPairs - set.numHalves;
-    set.numAxes = int(of.orbits.size()) - numPairs;
+    int const numInside = int(of.orbits.size()) - numPairs;
+    set.numAxes = numInside + (corners.empty() ? 0 : 1);
     constexpr Index kSize = RegularFaceGroup::kSize;
     set.numGroups = (Index(faces.size()) + kSize - 1) / kSize;
-    SourceOrbits const sources = FindSourceOrbits(of);
-    set.isCompact = sources.isCompact;
+    std::optional<SourceOrbits> const compact = FindCompactSourceOrbits(of);
+    SourceOrbits const read = compact.value_or(GetAllSourceOrbits(of.patch));
+    bool const isJoined = !compact && of.outerWeights;
+    SourceOrbits const sources = isJoined ? GetJoinedSourceOrbits(of.patch) : read;
+    set.sourceKind = compact    ? LatticeSourceKind::Compact
+                     : isJoined ? LatticeSourceKind::Joined
+                                : LatticeSourceKind::All;
+    for (std::size_t i = 0; i < std::size(set.outerWeights); ++i) {
+        set.outerWeights[i] = isJoined ? float((*of.outerWeights)[i]) : 0;
+    }
     std::vector<int> places;
     auto const addOrbit = [&](int first, int numOrbits, std::vector<int> &entries) {
         for (int i = 0; i < numOrbits * set.faceSize; ++i) {
             entries.push_back(first * set.faceSize + i);
         }
     };
-    for (int const orbit : sources.axes) {
+    for (int const orbit : read.axes) {
         addOrbit(orbit, 1, places);
     }
-    for (int const orbit : sources.pairs) {
+    for (int const orbit : read.pairs) {
         addOrbit(orbit, 2, places);
     }
-    group(faces, of.sources, of.patch.GetNumPlaces(), places, set.places, [](Index vert) {
-        return std::uint32_t(vert) * std::uint32_t(RegularFaceGroup::kPointStride);
+    auto const numPlaces = std::size_t(of.patch.GetNumPlaces());
+    group(faces, places, set.places, [&](std::size_t face, std::size_t place) {
+        return std::uint32_t(of.sources[face * numPlaces + place]) *
+               std::uint32_t(RegularFaceGroup::kPointStride);
     });
+    auto const addWeights = [&](LatticeFaces::Orbit const &orbit) {
+        AddOrbitWeights(sources, of.patch, isJoined ? JoinSources(of.patch, orbit) : orbit,
+                        set.weights);
+    };
     std::vector<int> outputs;
     auto const addOutputs = [&](int orbit, int first, int numOrbits) {
         addOrbit(first, numOrbits, outputs);
-        AddOrbitWeights(sources, of.patch, of.orbits[std::size_t(orbit)], set.weights);
+        int const begin = first * set.faceSize;
+        set.areConsecutive.push_back(numOrbits == 2 ? isPairConsecutive(of, faces, begin)
+                                                    : isOrbitConsecutive(of, faces, begin));
+        addWeights(of.orbits[std::size_t(orbit)]);
     };
     for (int pair = 0; pair < numPairs; ++pair) {
         if (std::find(halves.begin(), halves.end(), pair) == halves.end()) {
@@ -134,10 +210,24 @@ void LatticeLimit::addSet(LatticeFaces::Set const &of, std::vector<Index> const 
     for (int const pair : halves) {
         addOutputs(pair, 2 * pair, 1);
     }
-    for (int i = 0; i < set.numAxes; ++i) {
+    // Corners stand behind the outputs of LatticeFaces.  They are made before those inside, one of which
+    // stands for what is not made.
+    auto const numOutputs = std::size_t(of.numOutputs);
+    if (!corners.empty()) {
+        addOrbit(int(numOutputs) / set.faceSize, 1, outputs);
+        set.areConsecutive.push_back(0);
+        addWeights(*of.corners);
+    }
+    for (int i = 0; i < numInside; ++i) {
         addOutputs(numPairs + i, 2 * numPairs + i, 1);
     }
-    group(faces, of.outputs, of.numOutputs, outputs, set.verts, [](Index vert) { return vert; });
+    group(faces, outputs, set.verts, [&](std::size_t face, std::size_t output) {
+        auto const faceSize = std::size_t(set.faceSize);
+        Index const *const ofFace = of.outputs.data() + face * numOutputs;
+        Index const vert =
+            output < numOutputs ? ofFace[output] : corners[face * faceSize + output - numOutputs];
+        return vert >= 0 ? vert : ofFace[numOutputs - faceSize];
+    });
     auto const numVerts = std::ptrdiff_t(outputs.size()) * kSize;
     set.numGroupsAhead = 1 + int(kNumAhead / numVerts);
     Buffer<Index> ahead;
@@ -161,15 +251,17 @@ void LatticeLimit::Evaluate(LimitTask const &common) const {
         LatticeTask task;
         static_cast<LimitTask &>(task) = common;
         task.faceSize = set.faceSize;
-        task.isCompact = set.isCompact;
+        task.sourceKind = set.sourceKind;
         task.numPairs = set.numPairs;
         task.numHalves = set.numHalves;
         task.numAxes = set.numAxes;
         task.places = set.places.data();
         task.verts = set.verts.data();
+        task.areConsecutive = set.areConsecutive.data();
         task.ahead = set.ahead.data();
         task.firstAhead = set.firstAhead.data();
         task.numGroupsAhead = set.numGroupsAhead;
+        std::copy(std::begin(set.outerWeights), std::end(set.outerWeights), task.outerWeights);
         task.weights = set.weights.data();
         EvaluateLimit(task, set.numGroups);
     }

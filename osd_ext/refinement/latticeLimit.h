@@ -6,6 +6,7 @@
 
 #include "far_ext/limit/latticeFaces.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,10 @@ class LatticeLimit {
 public:
     void Prepare(FarExt::internal::LatticeFaces const &faces);
     bool IsEmpty() const { return _sets.empty(); }
+    /// Whether a vertex of level 0 is made.
+    bool IsMade(Far::Index vert) const {
+        return std::binary_search(_madeCorners.begin(), _madeCorners.end(), vert);
+    }
 
     /// Writes the outputs of the vertices in all faces, from the values of level 0.
     void Evaluate(LimitTask const &common) const;
@@ -28,24 +33,33 @@ public:
 private:
     struct Set {
         int faceSize;
-        bool isCompact;
+        LatticeSourceKind sourceKind;
+        float outerWeights[LatticeTask::kNumOuterWeights];
         int numPairs;
         int numHalves;
         int numAxes;
         Far::Index numGroups;
         FarExt::internal::Buffer<std::uint32_t> places;
         FarExt::internal::Buffer<Far::Index> verts;
+        std::vector<unsigned char> areConsecutive;
         std::vector<Far::Index> ahead;
         std::vector<Far::Index> firstAhead;
         int numGroupsAhead;
         std::vector<float> weights;
     };
 
+    /// The vertices at the corners of faces, one by one; invalid where other faces make them.
+    using Corners = std::vector<Far::Index>;
+
+    /// Finds which corners are made; none where this takes more time than sums do.
+    Corners findCorners(FarExt::internal::LatticeFaces const &faces,
+                        FarExt::internal::LatticeFaces::Set const &of);
     /// Adds some faces, all those that make one half of the same pairs, which are \p halves.
-    void addSet(FarExt::internal::LatticeFaces::Set const &of, std::vector<Far::Index> const &faces,
-                std::vector<int> const &halves);
+    void addSet(FarExt::internal::LatticeFaces::Set const &of, Corners const &corners,
+                std::vector<Far::Index> const &faces, std::vector<int> const &halves);
 
     std::vector<Set> _sets;
+    std::vector<Far::Index> _madeCorners;
 };
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -19,16 +19,21 @@ namespace {
 
 using Complex = std::complex<double>;
 
+// Whether the vertices of an orbit depend on an orbit of sources.
+bool dependsOn(LatticePatch const &patch, LatticeFaces::Orbit const &of, int orbit) {
+    constexpr double kNothing = 1e-12;
+    int const size = patch.GetFaceSize();
+    auto const first = of.weights.begin() + std::ptrdiff_t(orbit) * size;
+    return std::any_of(first, first + size, [](LimitWeights const &weights) {
+        return std::any_of(weights.begin(), weights.end(),
+                           [](double weight) { return std::abs(weight) > kNothing; });
+    });
+}
+
 // Whether any output depends on an orbit of sources.
 bool isUsed(LatticeFaces::Set const &set, int orbit) {
-    constexpr double kNothing = 1e-12;
-    int const size = set.patch.GetFaceSize();
     return std::any_of(set.orbits.begin(), set.orbits.end(), [&](LatticeFaces::Orbit const &of) {
-        auto const first = of.weights.begin() + std::ptrdiff_t(orbit) * size;
-        return std::any_of(first, first + size, [](LimitWeights const &weights) {
-            return std::any_of(weights.begin(), weights.end(),
-                               [](double weight) { return std::abs(weight) > kNothing; });
-        });
+        return dependsOn(set.patch, of, orbit);
     });
 }
 
@@ -123,17 +128,62 @@ SourceOrbits GetAllSourceOrbits(LatticePatch const &patch) {
     return all;
 }
 
-SourceOrbits FindSourceOrbits(LatticeFaces::Set const &set) {
-    SourceOrbits const all = GetAllSourceOrbits(set.patch);
+std::optional<SourceOrbits> FindCompactSourceOrbits(LatticeFaces::Set const &set) {
     using OfCompact = LatticeOrbits<3, true>; // others have as many
-    SourceOrbits compact = all;
+    SourceOrbits compact = GetAllSourceOrbits(set.patch);
     bool const areEnough = keepUsed(compact.axes, OfCompact::kNumAxes,
                                     [&](int orbit) { return isUsed(set, orbit); }) &&
                            keepUsed(compact.pairs, OfCompact::kNumPairs, [&](int orbit) {
                                return isUsed(set, orbit) || isUsed(set, orbit + 1);
                            });
-    compact.isCompact = true;
-    return areEnough ? compact : all;
+    return areEnough ? std::optional<SourceOrbits>(compact) : std::nullopt;
+}
+
+bool DependsOnThese(SourceOrbits const &sources, LatticePatch const &patch,
+                    LatticeFaces::Orbit const &orbit) {
+    int const numOrbits = patch.GetNumPlaces() / patch.GetFaceSize();
+    std::vector<unsigned char> isSource(std::size_t(numOrbits), 0);
+    for (int const axis : sources.axes) {
+        isSource[std::size_t(axis)] = 1;
+    }
+    for (int const pair : sources.pairs) {
+        isSource[std::size_t(pair)] = isSource[std::size_t(pair) + 1] = 1;
+    }
+    for (int i = 0; i < numOrbits; ++i) {
+        if (!isSource[std::size_t(i)] && dependsOn(patch, orbit, i)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+SourceOrbits GetJoinedSourceOrbits(LatticePatch const &patch) {
+    switch (patch.GetFaceSize()) {
+    case 3:
+        return {{0, 1, 2, 5}, {3}};
+    case 4:
+        return {{0, 1}, {2, 4}};
+    default:
+        return {{0, 1, 2}, {3}};
+    }
+}
+
+LatticeFaces::Orbit JoinSources(LatticePatch const &patch, LatticeFaces::Orbit const &orbit) {
+    LatticeFaces::Orbit result = orbit;
+    int const size = patch.GetFaceSize();
+    if (size != 3) {
+        return result;
+    }
+    // Two sources that are mirror images weigh as much as their mean, but for a part that orbit 2 has.
+    for (int i = 0; i < size; ++i) {
+        LimitWeights const &first = orbit.weights[std::size_t(patch.TurnPlace(5 * size, i + 1))];
+        LimitWeights const &second = orbit.weights[std::size_t(patch.TurnPlace(6 * size, i + 2))];
+        LimitWeights &joined = result.weights[std::size_t(patch.TurnPlace(5 * size, i))];
+        for (std::size_t sum = 0; sum < joined.size(); ++sum) {
+            joined[sum] = (first[sum] + second[sum]) / 2;
+        }
+    }
+    return result;
 }
 
 LatticeFaces::Orbit MakePair(LatticeFaces::Orbit const &orbit) {

@@ -161,22 +161,30 @@ struct VertexLimitTask : LimitTask {
     float const *weights;
 };
 
+/// What has weights in lattice faces: all sources, all when outer ones are joined, or the nearest ones.
+enum class LatticeSourceKind { All, Joined, Compact };
+
 /// \brief The limit in lattice faces of one size, RegularFaceGroup::kSize of them at a time: outputs are by
 /// vertex.
 struct LatticeTask : LimitTask {
     static constexpr int kNumDerivatives = 4; ///< weights of derivatives in terms of others
+    static constexpr int kNumOuterWeights = 2;
 
     /// Of outputs.
     int GetNumOrbits() const { return 2 * numPairs + numHalves + numAxes; }
 
     int faceSize;
-    bool isCompact; ///< of sources, whether there are as many orbits as LatticeOrbits says for that
-    int numPairs;   ///< orbits of outputs, these first
-    int numHalves;  ///< pairs without their mirror images
+    LatticeSourceKind sourceKind;
+    float outerWeights[kNumOuterWeights]; ///< those of LatticeFaces::Set, to join sources
+    int numPairs;                         ///< orbits of outputs, these first
+    int numHalves;                        ///< pairs without their mirror images
     int numAxes;
     std::uint32_t const
         *places; ///< by group, those of all sources of its faces, as in RegularFaceGroup
     Far::Index const *verts; ///< by group, those of all outputs
+    /// By pair, half and axis, whether vertices of a face follow one another: of pairs, behind each mirror
+    /// image that of the corner before; of others, all.
+    unsigned char const *areConsecutive;
     /// By group, vertices in whose cache lines all outputs are.  Memory is asked for some groups before it is
     /// written, since the order of orbits is far from its own: with outputs that are in no cache
     /// benchmark limit, length 3, is 1.3 to 1.8 times as fast.

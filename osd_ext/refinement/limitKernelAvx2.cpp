@@ -29,12 +29,16 @@ struct Avx2Faces {
         StoreFloats<WIDTH>(places[0], Quad(_mm256_castps256_ps128(vector)));
         StoreFloats<WIDTH>(places[1], Quad(_mm256_extractf128_ps(vector, 1)));
     }
-    template <bool IS_EXACT>
-    static OPENSUBDIVHEX_INLINE void StorePairs(float *const *places, Vector first, Vector second) {
-        // Joining them takes as long as it saves.
-        float *const ofSecond[] = {places[0] + kPoint, places[1] + kPoint};
-        Store<kQuad>(places, first);
-        Store<IS_EXACT ? kPoint : kQuad>(ofSecond, second);
+    template <int COUNT>
+    static OPENSUBDIVHEX_INLINE void StoreRun(float *const *places, Vector const (&x)[COUNT]) {
+        // Joining points takes as long as it saves: each overwrites the first float of the next one.
+        float *next[] = {places[0], places[1]};
+        for (int i = 0; i + 1 < COUNT; ++i) {
+            Store<kQuad>(next, x[i]);
+            next[0] += kPoint;
+            next[1] += kPoint;
+        }
+        Store<kPoint>(next, x[COUNT - 1]);
     }
 
 private:

@@ -33,19 +33,39 @@ struct Avx512Faces {
     }
     template <int WIDTH>
     static OPENSUBDIVHEX_INLINE void Store(float *const *places, Vector vector) {
-        store<WIDTH>(places[0], _mm512_castps512_ps128(vector));
-        store<WIDTH>(places[1], _mm512_extractf32x4_ps(vector, 1));
-        store<WIDTH>(places[2], _mm512_extractf32x4_ps(vector, 2));
-        store<WIDTH>(places[3], _mm512_extractf32x4_ps(vector, 3));
+        __m128 ofFaces[kNumFaces];
+        split(vector, ofFaces);
+        for (int face = 0; face < kNumFaces; ++face) {
+            store<WIDTH>(places[face], ofFaces[face]);
+        }
     }
-    template <bool IS_EXACT>
-    static OPENSUBDIVHEX_INLINE void StorePairs(float *const *places, Vector first, Vector second) {
-        // Of two faces each: numbers from 16 on are floats of the second vector.
-        __m512i const ofFirstFaces =
-            _mm512_setr_epi32(0, 1, 2, 16, 17, 18, 3, 19, 4, 5, 6, 20, 21, 22, 7, 23);
-        __m512i const ofLastFaces = _mm512_add_epi32(ofFirstFaces, _mm512_set1_epi32(8));
-        storePairs<IS_EXACT>(places, _mm512_permutex2var_ps(first, ofFirstFaces, second));
-        storePairs<IS_EXACT>(places + 2, _mm512_permutex2var_ps(first, ofLastFaces, second));
+    template <int COUNT>
+    static OPENSUBDIVHEX_INLINE void StoreRun(float *const *places, Vector const (&x)[COUNT]) {
+        constexpr int kNumPairs = COUNT / 2;
+        __m256 pairs[kNumPairs][kNumFaces];
+        for (int i = 0; i < kNumPairs; ++i) {
+            joinPairs(x[2 * i], x[2 * i + 1], pairs[i]);
+        }
+        __m128 last[kNumFaces];
+        if constexpr (COUNT % 2 != 0) {
+            split(x[COUNT - 1], last);
+        }
+        // Face by face: what goes to one cache line takes less time together.
+        for (int face = 0; face < kNumFaces; ++face) {
+            for (int i = 0; i < kNumPairs; ++i) {
+                // Each two overwrite what comes behind them, but for the last ones.
+                float *const place = places[face] + std::ptrdiff_t(2 * kPoint) * i;
+                if (2 * i + 2 < COUNT) {
+                    _mm256_storeu_ps(place, pairs[i][face]);
+                } else {
+                    constexpr __mmask8 kTwoPoints = 0x3f;
+                    _mm256_mask_storeu_ps(place, kTwoPoints, pairs[i][face]);
+                }
+            }
+            if constexpr (COUNT % 2 != 0) {
+                store<kPoint>(places[face] + std::ptrdiff_t(COUNT - 1) * kPoint, last[face]);
+            }
+        }
     }
 
 private:
@@ -63,21 +83,25 @@ private:
             StoreFloats<WIDTH>(place, Quad(quad));
         }
     }
-    // Eight floats of each of two faces.
-    template <bool IS_EXACT>
-    static OPENSUBDIVHEX_INLINE void storePairs(float *const *places, Vector pairs) {
-        storePair<IS_EXACT>(places[0], _mm512_castps512_ps256(pairs));
-        storePair<IS_EXACT>(places[1],
-                            _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(pairs), 1)));
+    static OPENSUBDIVHEX_INLINE void split(Vector vector, __m128 (&ofFaces)[kNumFaces]) {
+        ofFaces[0] = _mm512_castps512_ps128(vector);
+        ofFaces[1] = _mm512_extractf32x4_ps(vector, 1);
+        ofFaces[2] = _mm512_extractf32x4_ps(vector, 2);
+        ofFaces[3] = _mm512_extractf32x4_ps(vector, 3);
     }
-    template <bool IS_EXACT>
-    static OPENSUBDIVHEX_INLINE void storePair(float *place, __m256 pair) {
-        constexpr __mmask8 kTwoPoints = 0x3f;
-        if constexpr (IS_EXACT) {
-            _mm256_mask_storeu_ps(place, kTwoPoints, pair);
-        } else {
-            _mm256_storeu_ps(place, pair);
-        }
+    // Two points of each face, side by side.
+    static OPENSUBDIVHEX_INLINE void joinPairs(Vector first, Vector second,
+                                               __m256 (&ofFaces)[kNumFaces]) {
+        // Of two faces each: numbers from 16 on are floats of the second vector.
+        __m512i const ofFirstFaces =
+            _mm512_setr_epi32(0, 1, 2, 16, 17, 18, 3, 19, 4, 5, 6, 20, 21, 22, 7, 23);
+        __m512i const ofLastFaces = _mm512_add_epi32(ofFirstFaces, _mm512_set1_epi32(8));
+        splitPairs(_mm512_permutex2var_ps(first, ofFirstFaces, second), ofFaces);
+        splitPairs(_mm512_permutex2var_ps(first, ofLastFaces, second), ofFaces + 2);
+    }
+    static OPENSUBDIVHEX_INLINE void splitPairs(Vector pairs, __m256 *ofFaces) {
+        ofFaces[0] = _mm512_castps512_ps256(pairs);
+        ofFaces[1] = _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(pairs), 1));
     }
 };
 

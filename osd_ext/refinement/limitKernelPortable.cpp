@@ -24,11 +24,13 @@ struct PortableFaces {
     static OPENSUBDIVHEX_INLINE void Store(float *const *places, Vector const &vector) {
         StoreFloats<WIDTH>(places[0], vector);
     }
-    template <bool IS_EXACT>
-    static OPENSUBDIVHEX_INLINE void StorePairs(float *const *places, Vector const &first,
-                                                Vector const &second) {
-        StoreFloats<kQuad>(places[0], first);
-        StoreFloats<IS_EXACT ? kPoint : kQuad>(places[0] + kPoint, second);
+    template <int COUNT>
+    static OPENSUBDIVHEX_INLINE void StoreRun(float *const *places, Vector const (&x)[COUNT]) {
+        float *next = places[0];
+        for (int i = 0; i + 1 < COUNT; ++i, next += kPoint) {
+            StoreFloats<kQuad>(next, x[i]);
+        }
+        StoreFloats<kPoint>(next, x[COUNT - 1]);
     }
 };
 

@@ -191,25 +191,14 @@ struct FaceElements {
         for (int i = 0; i < SIMD::kNumFaces; ++i) {
             begins[i] = ACCESS::At(output, group.firstCorners[first + i]);
         }
-        float *places[SIMD::kNumFaces];
-        auto const findPlaces = [&](int corner) {
-            std::ptrdiff_t const stride = ACCESS::kIsPoints ? kPoint : output.stride;
-            for (int i = 0; i < SIMD::kNumFaces; ++i) {
-                places[i] = begins[i] + corner * stride;
-            }
-        };
         if constexpr (ACCESS::kIsPoints) {
-            // Each two overwrite what comes behind them, but for the last ones.
-            for (int corner = 0; corner + 2 < kRegularFaceSize; corner += 2) {
-                findPlaces(corner);
-                SIMD::template StorePairs<false>(places, x[corner], x[corner + 1]);
-            }
-            findPlaces(kRegularFaceSize - 2);
-            SIMD::template StorePairs<true>(places, x[kRegularFaceSize - 2],
-                                            x[kRegularFaceSize - 1]);
+            SIMD::StoreRun(begins, x);
         } else {
             for (int corner = 0; corner < kRegularFaceSize; ++corner) {
-                findPlaces(corner);
+                float *places[SIMD::kNumFaces];
+                for (int i = 0; i < SIMD::kNumFaces; ++i) {
+                    places[i] = begins[i] + corner * output.stride;
+                }
                 SIMD::template Store<ACCESS::kWidth>(places, x[corner]);
             }
         }
@@ -418,16 +407,22 @@ struct LimitKernels {
 private:
     template <class ACCESS, int FACE_SIZE>
     static void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
-        task.isCompact ? evaluateLattice<ACCESS, FACE_SIZE, true>(task, begin, end)
-                       : evaluateLattice<ACCESS, FACE_SIZE, false>(task, begin, end);
+        switch (task.sourceKind) {
+        case LatticeSourceKind::Compact:
+            return evaluateLattice<ACCESS, FACE_SIZE, LatticeSourceKind::Compact>(task, begin, end);
+        case LatticeSourceKind::Joined:
+            return evaluateLattice<ACCESS, FACE_SIZE, LatticeSourceKind::Joined>(task, begin, end);
+        default:
+            return evaluateLattice<ACCESS, FACE_SIZE, LatticeSourceKind::All>(task, begin, end);
+        }
     }
-    template <class ACCESS, int FACE_SIZE, bool IS_COMPACT>
+    template <class ACCESS, int FACE_SIZE, LatticeSourceKind KIND>
     static void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
         if (task.numOutputs > 1) {
-            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, IS_COMPACT, LimitTask::kMaxOutputs>(
+            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, KIND, LimitTask::kMaxOutputs>(
                 task, begin, end);
         } else {
-            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, IS_COMPACT, 1>(task, begin, end);
+            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, KIND, 1>(task, begin, end);
         }
     }
 };

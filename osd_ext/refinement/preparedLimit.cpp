@@ -85,7 +85,12 @@ void PreparedLimit::prepareFaces(RegularFaces::OfLevel const &faces, LevelLimit 
 
 void PreparedLimit::prepareVertices(LimitOrigins const &origins, LevelLimit &result) {
     int const level = result.level->depth;
-    std::vector<Index> const verts = origins.GetVertices(level);
+    std::vector<Index> verts = origins.GetVertices(level);
+    if (level == 0) {
+        verts.erase(std::remove_if(verts.begin(), verts.end(),
+                                   [&](Index vert) { return _lattice.IsMade(vert); }),
+                    verts.end());
+    }
     struct Other {
         Index vert;
         int numSources;

@@ -217,21 +217,22 @@ TEST(LimitEvaluator, TakesLatticeFacesOfAnyLengthAndSimdLevel) {
     auto const saved = OsdExt::GetSimdLevel();
     for (Shape shape : {MakeTorus(9, 8, TorusFaces::Quads), MakeTorus(9, 8, TorusFaces::Triangles),
                         MakeDual("hexagons", MakeTorus(9, 8, TorusFaces::Triangles))}) {
-        for (bool const isSharp : {false, true}) {
+        for (auto faceMask :
+             {FarExt::FaceMask::Average, FarExt::FaceMask::Cosine, FarExt::FaceMask::Smooth}) {
+            // With Smooth vertices depend on fewer.
+            bool const isSharp = faceMask == FarExt::FaceMask::Smooth;
             if (isSharp) {
                 shape.cornerVertices = {30};
                 shape.cornerSharpness = {1.5f};
             }
-            // With Smooth vertices depend on fewer.
             auto const refiner =
-                createRefiner(shape, 3, true, Sdc::Options::VTX_BOUNDARY_NONE,
-                              isSharp ? FarExt::FaceMask::Smooth : FarExt::FaceMask::Average);
+                createRefiner(shape, 4, true, Sdc::Options::VTX_BOUNDARY_NONE, faceMask);
             for (auto simdLevel : {OsdExt::SimdLevel::Portable, OsdExt::SimdLevel::Avx2,
                                    OsdExt::SimdLevel::Avx512}) {
                 if (simdLevel > OsdExt::GetMaxSimdLevel()) {
                     continue;
                 }
-                SCOPED_TRACE(testing::Message() << shape.name << ", sharp " << isSharp
+                SCOPED_TRACE(testing::Message() << shape.name << ", mask " << int(faceMask)
                                                 << ", SIMD level " << int(simdLevel));
                 OsdExt::SetSimdLevel(simdLevel);
                 ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, 3, 0));
