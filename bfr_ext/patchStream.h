@@ -51,7 +51,8 @@ private:
 ///
 /// So the memory does not depend on how much comes out: it is what Options::SetMaxMemory() says, what the cache of
 /// the factory has, and as far as SurfaceFactory::Options::SetMemoryOfFaces() allows, the faces that the factory
-/// keeps for the next frame; for a CellForest also a point for each vertex of the mesh.  What comes out is a patch
+/// keeps for the next frame, with 8 bytes for each of their corners; for a CellForest also a point for each vertex
+/// of the mesh.  What comes out is a patch
 /// for each base face that is no hole: its tessellation, and the points of that; with them derivatives, and values
 /// of varying and face-varying data, where they are asked for.
 ///
@@ -65,8 +66,8 @@ private:
 ///  - With a CellForest, patches have the tessellations of its trees: each is made with its patch and
 ///    forgotten with it.
 ///  - A patch depends on its face and the options alone, to the bit: not on the number of threads, nor on
-///    which others the call makes.  So processes may share the faces of a mesh, on machines of which all fuse
-///    products with sums (as all with AVX2 and FMA do) or none.
+///    which others the call makes.  So processes may share the faces of a mesh, on machines of which all have
+///    AVX2 and FMA, or AVX-512, and a build that uses them, or none has: products are fused with sums there.
 ///  - Points inside of a face are those of Surface::Evaluate() up to rounding.
 ///
 /// Several threads may call Run() of one stream at once.  std::bad_alloc passes through.

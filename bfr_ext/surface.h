@@ -78,10 +78,12 @@ private:
 ///
 /// **Second derivatives**, by u twice, by u and v, and by v twice, are from the same side.  Vertex data, and
 /// face-varying data that are refined like these, have them with FaceMask::Smooth: exactly at the places of
-/// vertices, elsewhere to a thousandth or so of their size.  There are none at base vertices that have not
-/// three faces, towards which they may grow, at the centres of faces that are no hexagons, and on the lines of
-/// borders and creases; and with FaceMask::Cosine there are bounded ones without a limit, with FaceMask::Average unbounded
-/// ones.  What is given in all these cases is how first derivatives change over a cell of the tenth level.
+/// vertices, elsewhere to half a hundredth of their size on average.
+///  - There are none at base vertices that have not three faces, towards which they may grow, at the centres
+///    of faces that are no hexagons, and on the lines of borders and creases.
+///  - With FaceMask::Cosine they are bounded and have no limit, with FaceMask::Average they are unbounded, and
+///    varying data have kinks.
+///  - What is given in all these cases is how first derivatives change over a cell of the tenth level.
 ///
 /// Bfr evaluates *patch points*, which it makes of control points: here they are the control points,
 /// and its functions are there for programs that call them.

@@ -45,23 +45,34 @@ internal::CellRules getRules(FarExt::TopologyRefiner const &refiner, Interpolati
 
 SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options)
     : _refiner(refiner), _level(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel())),
-      _numRefinements(refiner.GetNumRefinements()), _options(options),
-      _types(options.GetExternalCache() ? options.GetExternalCache()->_types
-                                        : std::make_shared<internal::CellTypes>()) {
-    for (Interpolation const interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
-        _plainTypes[std::size_t(interpolation)] =
-            &_types->GetPlainFaces(getRules(refiner, interpolation));
-    }
-    auto kept = std::make_shared<KeptFaces>(
-        _types, GetNumFaces(), std::size_t(kNumInterpolations + refiner.GetNumFVarChannels()),
-        options.GetMemoryOfFaces());
-    _kept = kept.get();
-    _owner = std::move(kept);
+      _numRefinements(refiner.GetNumRefinements()), _options(options) {
     FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
     for (int channel = -1; channel < refiner.GetNumFVarChannels(); ++channel) {
-        _walks.push_back(std::make_unique<internal::FaceWalk>(
+        _walks.push_back(std::make_shared<internal::FaceWalk>(
             hierarchy.GetMesh(channel).levels[std::size_t(_level.GetDepth())]));
     }
+    setTypes();
+}
+
+SurfaceFactory::SurfaceFactory(SurfaceFactory const &other, Options options)
+    : _refiner(other._refiner), _level(other._level), _numRefinements(other._numRefinements),
+      _options(options), _walks(other._walks) {
+    setTypes();
+}
+
+// Sets the cache, and what is kept of it.
+void SurfaceFactory::setTypes() {
+    _types = _options.GetExternalCache() ? _options.GetExternalCache()->_types
+                                         : std::make_shared<internal::CellTypes>();
+    for (Interpolation const interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
+        _plainTypes[std::size_t(interpolation)] =
+            &_types->GetPlainFaces(getRules(_refiner, interpolation));
+    }
+    auto kept = std::make_shared<KeptFaces>(
+        _types, GetNumFaces(), std::size_t(kNumInterpolations + _refiner.GetNumFVarChannels()),
+        _options.GetMemoryOfFaces());
+    _kept = kept.get();
+    _owner = std::move(kept);
 }
 
 SurfaceFactory::~SurfaceFactory() = default;

@@ -20,6 +20,7 @@ class FaceWalk;
 template <typename TYPE>
 class KeptFaces;
 class PlainFaceTypes;
+class StreamTypes;
 } // namespace internal
 
 /// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
@@ -156,9 +157,13 @@ private:
     template <typename REAL>
     friend class PatchStream;
     friend class View;
+    friend class internal::StreamTypes;
 
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
+    // One with other options, to which this mesh need not be looked at again.
+    SurfaceFactory(SurfaceFactory const &other, Options options);
 
+    void setTypes();
     bool hasRefinedAgain() const;
     FarExt::Status checkIsFace(Index face) const;
     FarExt::Status checkFace(Index face) const;
@@ -180,11 +185,11 @@ private:
     int const _numRefinements; // of the refiner, when the factory was made
     Options const _options;
     std::shared_ptr<internal::CellTypes> _types;
-    std::vector<std::unique_ptr<internal::FaceWalk>> _walks; // of the mesh, and of each channel
-    std::array<internal::PlainFaceTypes *, 2> _plainTypes;   // by interpolation
+    std::vector<std::shared_ptr<internal::FaceWalk>> _walks; // of the mesh, and of each channel
+    std::array<internal::PlainFaceTypes *, 2> _plainTypes{}; // by interpolation
     // The faces that are kept: of the mesh, by interpolation, and then of each channel.
     using KeptFaces = internal::KeptFaces<internal::BaseType>;
-    KeptFaces *_kept;
+    KeptFaces *_kept = nullptr;
     std::shared_ptr<void const> _owner; // of these and of the types, as surfaces have it
 };
 

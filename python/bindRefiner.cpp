@@ -179,7 +179,9 @@ T takeNumber(py::object const &object, char const *name, char const *typeName) {
     try {
         return object.cast<T>();
     } catch (py::cast_error const &) {
-        if (!std::is_same_v<T, bool> && PyIndex_Check(object.ptr())) {
+        auto const number = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
+        PyErr_Clear();
+        if (!std::is_same_v<T, bool> && number) {
             throw py::value_error(std::string(name) + ": " + std::string(py::str(object)) +
                                   " is a number that 32 bits do not hold");
         }

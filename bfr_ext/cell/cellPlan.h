@@ -40,7 +40,7 @@ public:
 private:
     using Key = std::tuple<int, double, double>;
 
-    // Of the places of half cells, in their order.
+    // The groups of places that half cells have, in their order.
     enum Group { kInside, kLastSide, kFirstCorner, kFirstSide, kSecondSide, kThirdSide, kCorners };
 
     Key getKey(Place const &place) const;

@@ -2,6 +2,7 @@
 #include "cellStencil.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -135,17 +136,17 @@ int CellStencil::Place::FindCorner() const {
     return FindCellCorner(type->IsWhole() ? type->GetNumCorners() : 0, sector, coords);
 }
 
-std::vector<double> CellStencil::Place::FindCornerWeights() const {
+void CellStencil::Place::FindCornerWeights(std::vector<double> &weights) const {
     if (!type->IsWhole()) {
-        std::array<double, 4> const weights = HalfCell::GetCornerWeights(coords);
-        return {weights.begin(), weights.end()};
+        std::array<double, 4> const ofHalf = HalfCell::GetCornerWeights(coords);
+        weights.assign(ofHalf.begin(), ofHalf.end());
+        return;
     }
     auto const numCorners = std::size_t(type->GetNumCorners());
     double const inner = (1 - coords[0] - coords[1]) / double(numCorners);
-    std::vector<double> weights(numCorners, inner);
+    weights.assign(numCorners, inner);
     weights[std::size_t(sector)] += coords[0];
     weights[(std::size_t(sector) + 1) % numCorners] += coords[1];
-    return weights;
 }
 
 std::vector<Pair> CellStencil::Place::FindCornersInPlane() const {
@@ -258,9 +259,9 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
     if (corner >= 0) {
         addCorner(place, std::size_t(corner), 1, hasDerivatives);
     } else {
-        std::vector<double> const weights = place.FindCornerWeights();
-        for (std::size_t i = 0; i < weights.size(); ++i) {
-            addCorner(place, i, weights[i], hasDerivatives);
+        place.FindCornerWeights(_cornerWeights);
+        for (std::size_t i = 0; i < _cornerWeights.size(); ++i) {
+            addCorner(place, i, _cornerWeights[i], hasDerivatives);
         }
     }
     goBack(_steps, _of, _weights[0], _scratch);
@@ -274,6 +275,7 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
 }
 
 void CellStencil::FindSecond(BasePoint const &point) {
+    assert(_of == StencilOf::Points);
     Find(point, true);
     Place place = begin(point);
     // A corner of a cell without such derivatives is in one with them some steps on, or never.
@@ -295,12 +297,12 @@ void CellStencil::FindSecond(BasePoint const &point) {
 
 void CellStencil::addSecondAtCorners(Place const &place) {
     SecondDerivatives const &derivatives = SecondDerivatives::Find(*place.type);
-    std::vector<double> const weights = place.FindCornerWeights();
-    for (std::size_t corner = 0; corner < weights.size(); ++corner) {
+    place.FindCornerWeights(_cornerWeights);
+    for (std::size_t corner = 0; corner < _cornerWeights.size(); ++corner) {
         SecondDerivatives::Rows const byUv =
             SecondDerivatives::ChangeCoordinates(place.toCoords, derivatives.AtCorner(corner));
         for (std::size_t k = 0; k < byUv.size(); ++k) {
-            add(_secondWeights[k], weights[corner], byUv[k]);
+            add(_secondWeights[k], _cornerWeights[corner], byUv[k]);
         }
     }
 }

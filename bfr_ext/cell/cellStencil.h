@@ -77,8 +77,8 @@ private:
     struct Place {
         // Which corner of the cell it is, or -1.
         int FindCorner() const;
-        // How much the corners weigh between which it is.
-        std::vector<double> FindCornerWeights() const;
+        // Finds how much the corners weigh between which it is.
+        void FindCornerWeights(std::vector<double> &weights) const;
         // The corners in the parameter plane, from the mean of all.
         std::vector<Pair> FindCornersInPlane() const;
         // Adds the derivatives by u and v at a corner, from those by its coordinates.
@@ -106,6 +106,7 @@ private:
     std::vector<ChildStep const *> _steps;
     std::vector<double> _weights[3];
     SecondDerivatives::Rows _secondWeights;
+    std::vector<double> _cornerWeights;
     std::vector<double> _scratch;
 };
 

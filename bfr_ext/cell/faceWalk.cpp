@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "faceWalk.h"
 
+#include <utility>
+
 namespace OpenSubdivHex::BfrExt::internal {
 
 // A loop of several threads might take up work of its callers, which wait for this.

@@ -64,7 +64,8 @@ public:
     Face const *Add(std::size_t kind, Index face, TYPE const &type, int size,
                     std::vector<Index> const &points) {
         // Without this, all threads would wait for the lock with each face that there is no memory for.
-        if (_isFull.load(std::memory_order_relaxed)) {
+        if (_isFull.load(std::memory_order_relaxed) ||
+            _kinds[kind].isRefused.load(std::memory_order_relaxed)) {
             return nullptr;
         }
         Slot *const slots = getSlots(kind);
@@ -101,6 +102,7 @@ private:
     struct Kind {
         std::atomic<Slot *> slots{nullptr}; // by face
         std::unique_ptr<Slot[]> memory;
+        std::atomic<bool> isRefused{false}; // there was no memory for the slots
     };
     // Faces lie in blocks, one behind the other.
     static constexpr std::size_t kBlockSize = 1 << 16;
@@ -117,12 +119,12 @@ private:
             ofKind.memory.reset(new Slot[std::size_t(_numFaces)]());
             ofKind.slots.store(ofKind.memory.get(), std::memory_order_release);
         }
+        ofKind.isRefused.store(!ofKind.memory, std::memory_order_relaxed);
         return ofKind.memory.get();
     }
 
     bool takeMemory(std::size_t size) {
         if (size > _maxMemory - _numBytes) {
-            _isFull.store(true, std::memory_order_relaxed);
             return false;
         }
         _numBytes += size;
@@ -134,6 +136,7 @@ private:
         if (size > _numLeft) {
             std::size_t const blockSize = std::max(size, kBlockSize);
             if (!takeMemory(blockSize)) {
+                _isFull.store(true, std::memory_order_relaxed);
                 return nullptr;
             }
             // Not written before it is used.
@@ -153,7 +156,7 @@ private:
     Face const _metOnce{}; // whose address stands for faces that are not kept yet
     std::mutex _mutex;
     std::vector<Kind> _kinds;
-    std::atomic<bool> _isFull{false}; // there was no memory for something
+    std::atomic<bool> _isFull{false}; // there was no memory for more faces
     std::size_t _numBytes = 0;
     std::vector<std::unique_ptr<std::byte[]>> _blocks;
     std::byte *_next = nullptr;

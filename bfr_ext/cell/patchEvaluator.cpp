@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -393,6 +394,7 @@ template <typename REAL>
 void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ringCell,
                                         CellPlan::Node const &leaf, REAL const *points,
                                         int const *indices) {
+    assert(!leaf.runs.empty()); // none would stand for all
     Leaf const ofLeaf = {type, ringCell, *leaf.leaf};
     // Takes the sums of the columns, where there are such, in place of the points.
     auto const addUp = [&](auto const &matrices) {

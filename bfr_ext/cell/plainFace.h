@@ -129,7 +129,7 @@ public:
 
     /// \brief Finds the type of a face among some, and adds it where there is none.
     ///
-    /// \param walk    of level 0 of a mesh, or of the values of a channel; another one may follow
+    /// \param walk    of the surface level of a mesh, or of the values of a channel; another one may follow
     /// \param points  the control points, and behind these the turns of FindBaseCellTurns()
     /// \return        null where the face is not plain, or may not be; then the points are of no use
     PlainFaceType const *Find(PlainFaceTypes &types, FaceWalk const &walk, Index face,

@@ -155,6 +155,7 @@ VertexWeights<REAL> const &RingCell::GetVertexWeights(int numFaces) const {
 template <typename REAL>
 VertexWeights<REAL> RingCell::makeVertexWeights(int numFaces) const {
     constexpr double kTolerance = 1e-12;
+    assert(numFaces > 1);
     std::vector<double> weights;
     GetPlaces().Order(_type.GetCornerPoints()[0], weights);
     VertexWeights<REAL> result = {REAL(weights[0]), {weights.begin() + 1, weights.end()}};

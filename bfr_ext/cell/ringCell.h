@@ -94,7 +94,8 @@ struct VertexWeights {
     std::vector<REAL> ofPoints; ///< behind the center
     /// Where faces weigh the same: how many of the points are one face's; else 0.
     std::size_t numOfFace = 0;
-    std::size_t blockSize = 0; ///< of each face but the last, then
+    /// The points of each face but the last, then.
+    std::size_t blockSize = 0;
 };
 
 /// \brief What the first step makes of a plain base face: one of its cells, or the long edge of one of its
@@ -135,7 +136,7 @@ public:
     std::vector<int> const &GetColumns() const { return GetPlaces().GetColumns(); }
     /// The points of the type.
     RingPlaces const &GetPoints() const { return _points; }
-    /// Those of a V-vertex, around which there are so many faces.
+    /// Those of a V-vertex, around which there are so many faces, as the cell tells.
     template <typename REAL>
     VertexWeights<REAL> const &GetVertexWeights(int numFaces) const;
 
@@ -148,7 +149,7 @@ public:
     LEAF const &GetLeaf(int numSteps, FIND const &find) const {
         static_assert(COUNT == 1 || COUNT == 2);
         constexpr std::size_t kPrecision = sizeof(REAL) == sizeof(double) ? 1 : 0;
-        return numSteps < kMaxFoundSteps
+        return numSteps < kEndOfFoundSteps
                    ? _foundLeaves.Get<LEAF>(
                          (std::size_t(numSteps) * 2 + COUNT - 1) * 2 + kPrecision, find)
                    : find();
@@ -158,7 +159,7 @@ private:
     template <typename REAL>
     VertexWeights<REAL> makeVertexWeights(int numFaces) const;
 
-    static constexpr int kMaxFoundSteps = 5; // that leaves have less
+    static constexpr int kEndOfFoundSteps = 5; // leaves have fewer
 
     CellType const &_type;
     RingStep const _lastStep;
@@ -166,8 +167,9 @@ private:
     RingPlaces const _points;
     RingPlaces const _inner;
     mutable PatternTable _patterns;
-    mutable FoundPatterns<2 * 2 * kMaxFoundSteps> _foundLeaves; // by steps, matrices and precision
-    mutable FoundPatterns<2> _foundWeights;                     // by precision
+    mutable FoundPatterns<2 * 2 * kEndOfFoundSteps>
+        _foundLeaves;                       // by steps, matrices and precision
+    mutable FoundPatterns<2> _foundWeights; // by precision
 };
 
 /// \brief What tells the cells that rings make: the sizes of faces, and the vertices, by when they occur first.

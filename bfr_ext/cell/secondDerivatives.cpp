@@ -27,7 +27,15 @@ double dot(Row const &a, Row const &b) {
 
 // A quadratic function of the coordinates of HalfCell.
 struct Quadratic {
-    // *this += factor * other
+    void Scale(double factor) {
+        for (double &value : atPoints) {
+            value *= factor;
+        }
+        for (double &value : secondDerivatives) {
+            value *= factor;
+        }
+    }
+    // Adds so many times the other one.
     void Add(double factor, Quadratic const &other) {
         for (std::size_t i = 0; i < atPoints.size(); ++i) {
             atPoints[i] += factor * other.atPoints[i];
@@ -57,8 +65,7 @@ std::vector<Quadratic> findQuadratics(std::vector<Pair> const &latticePlaces) {
         for (std::size_t k = 0; k < i; ++k) {
             quadratic.Add(-dot(quadratic.atPoints, quadratics[k].atPoints), quadratics[k]);
         }
-        double const length = std::sqrt(dot(quadratic.atPoints, quadratic.atPoints));
-        quadratic.Add(1 / length - 1, Quadratic(quadratic));
+        quadratic.Scale(1 / std::sqrt(dot(quadratic.atPoints, quadratic.atPoints)));
     }
     return quadratics;
 }

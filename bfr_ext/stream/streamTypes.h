@@ -15,29 +15,28 @@ namespace OpenSubdivHex::BfrExt::internal {
 class StreamTypes {
 public:
     StreamTypes(SurfaceFactory const &factory, std::size_t maxTypes)
-        : _mesh(factory.GetMesh()), _maxTypes(maxTypes) {}
+        : _factory(factory), _maxTypes(maxTypes) {}
 
     /// The factory to make some surfaces with, which lives as long as it is held.
     std::shared_ptr<SurfaceFactory const> Get() {
         std::lock_guard<std::mutex> const lock(_mutex);
         if (!_generation || _generation->cache.GetNumTypes() > _maxTypes) {
             _generation.reset();
-            _generation = std::make_shared<Generation>(_mesh);
+            _generation = std::make_shared<Generation>(_factory);
         }
-        return std::shared_ptr<SurfaceFactory const>(_generation, _generation->factory.get());
+        return std::shared_ptr<SurfaceFactory const>(_generation, &_generation->factory);
     }
 
 private:
     struct Generation {
-        explicit Generation(FarExt::TopologyRefiner const &mesh)
-            : factory(SurfaceFactory::Create(
-                  mesh, SurfaceFactory::Options().SetExternalCache(&cache), nullptr)) {}
+        explicit Generation(SurfaceFactory const &of)
+            : factory(of, SurfaceFactory::Options().SetExternalCache(&cache)) {}
 
         SurfaceFactoryCache cache;
-        std::unique_ptr<SurfaceFactory> factory; // of a mesh that has been found to have surfaces
+        SurfaceFactory factory;
     };
 
-    FarExt::TopologyRefiner const &_mesh;
+    SurfaceFactory const &_factory;
     std::size_t const _maxTypes;
     std::mutex _mutex;
     std::shared_ptr<Generation> _generation;

@@ -46,8 +46,9 @@ public:
         ///   triangles  w(7, i) = w(8, i) = a w(2, i) and w(6, i + 1) - w(5, i) = a (w(2, i) - w(2, i + 1)),
         ///   quads      w(6, i) = a w(4, i) + b w(5, i + 1) and w(7, i) = a w(5, i) + b w(4, i - 1),
         ///   hexagons   w(5, i) = w(6, i) = a w(2, i),
-        /// since of the outermost faces sums alone have a part in what becomes of the face: but not where
-        /// levels are so deep that vertices of triangles lie close to a corner, from level 4 on.
+        /// since of the outermost faces sums alone have a part in what becomes of the face: but with
+        /// FaceMask::Average and Cosine not where levels are so deep that vertices of triangles lie close to a
+        /// corner, from level 4 on.
         std::optional<std::array<double, 2>> outerWeights;
         int numOutputs = 0; ///< of a face: all vertices of its orbits in turn
         /// \brief By face, the vertices.
@@ -56,11 +57,15 @@ public:
         /// beyond which there is none makes all of them.  In place of a vertex that the other face
         /// makes stands the first vertex of the last orbit, which lies inside, and so comes twice or more.
         Buffer<Index> outputs;
+        /// What stands in place of a vertex that the face does not make.
+        Index GetStandIn(std::size_t face) const {
+            return outputs[(face + 1) * std::size_t(numOutputs) - std::size_t(patch.GetFaceSize())];
+        }
 
         // The rows of vertices of level 0, by place around the edge that is the vertex's first.
         LimitMask vertexMask;
         std::vector<int> vertexPlaces;
-        /// The same as an orbit, if it has an axis, and the outer weights of others if they have such.
+        /// These rows as an orbit, if it has an axis, and the outer weights of others if they have such.
         std::optional<Orbit> corners;
     };
 

@@ -6,6 +6,7 @@
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <iterator>
 #include <map>
@@ -97,16 +98,23 @@ int countPairs(LatticeFaces::Set const &set) {
                              [](auto const &orbit) { return orbit.isPair; }));
 }
 
+// Appends the places, or outputs, of some orbits.
+void addOrbits(int first, int numOrbits, int faceSize, std::vector<int> &entries) {
+    for (int i = 0; i < numOrbits * faceSize; ++i) {
+        entries.push_back(first * faceSize + i);
+    }
+}
+
 // The pairs of a face whose mirror images all belong to other faces.
 std::vector<int> findHalves(LatticeFaces::Set const &set, Index face) {
     Index const *const outputs =
         set.outputs.data() + std::size_t(face) * std::size_t(set.numOutputs);
     int const faceSize = set.patch.GetFaceSize();
-    Index const inside = outputs[set.numOutputs - faceSize];
+    Index const standIn = set.GetStandIn(std::size_t(face));
     std::vector<int> halves;
     for (int pair = 0; pair < countPairs(set); ++pair) {
         Index const *const images = outputs + std::ptrdiff_t(2 * pair + 1) * faceSize;
-        if (std::all_of(images, images + faceSize, [&](Index vert) { return vert == inside; })) {
+        if (std::all_of(images, images + faceSize, [&](Index vert) { return vert == standIn; })) {
             halves.push_back(pair);
         }
     }
@@ -117,28 +125,46 @@ std::vector<int> findHalves(LatticeFaces::Set const &set, Index face) {
 
 void LatticeLimit::Prepare(LatticeFaces const &faces) {
     for (LatticeFaces::Set const &of : faces.GetSets()) {
-        Corners const corners = findCorners(faces, of);
+        Sources const sources = findSources(of);
+        Corners const corners = makeCorners(faces, of, sources);
         std::map<std::vector<int>, std::vector<Index>> facesWithHalves;
         for (Index face = 0; face < Index(of.faces.size()); ++face) {
             facesWithHalves[findHalves(of, face)].push_back(face);
         }
         for (auto const &[halves, some] : facesWithHalves) {
-            addSet(of, corners, some, halves);
+            Set &set = _sets.emplace_back();
+            set.faceSize = of.patch.GetFaceSize();
+            set.numGroups =
+                (Index(some.size()) + RegularFaceGroup::kSize - 1) / Index(RegularFaceGroup::kSize);
+            setSources(of, sources, some, set);
+            setOutputs(of, sources, corners, some, halves, set);
+            setAhead(set);
         }
     }
     std::sort(_madeCorners.begin(), _madeCorners.end());
 }
 
-LatticeLimit::Corners LatticeLimit::findCorners(LatticeFaces const &faces,
-                                                LatticeFaces::Set const &of) {
+LatticeLimit::Sources LatticeLimit::findSources(LatticeFaces::Set const &of) {
+    if (std::optional<SourceOrbits> const compact = FindCompactSourceOrbits(of)) {
+        return {LatticeSourceKind::Compact, *compact, *compact};
+    }
+    SourceOrbits const all = GetAllSourceOrbits(of.patch);
+    return of.outerWeights
+               ? Sources{LatticeSourceKind::Joined, all, GetJoinedSourceOrbits(of.patch)}
+               : Sources{LatticeSourceKind::All, all, all};
+}
+
+LatticeLimit::Corners LatticeLimit::makeCorners(LatticeFaces const &faces,
+                                                LatticeFaces::Set const &of,
+                                                Sources const &sources) {
     Corners corners;
     auto const faceSize = std::size_t(of.patch.GetFaceSize());
     // Of triangles one corner in six is made.
     if (!of.corners || faceSize == 3) {
         return corners;
     }
-    std::optional<SourceOrbits> const compact = FindCompactSourceOrbits(of);
-    if (compact && !DependsOnThese(*compact, of.patch, *of.corners)) {
+    if (sources.kind == LatticeSourceKind::Compact &&
+        !DependsOnThese(sources.summed, of.patch, *of.corners)) {
         return corners;
     }
     corners.resize(of.faces.size() * faceSize, Far::INDEX_INVALID);
@@ -152,51 +178,43 @@ LatticeLimit::Corners LatticeLimit::findCorners(LatticeFaces const &faces,
     return corners;
 }
 
-void LatticeLimit::addSet(LatticeFaces::Set const &of, Corners const &corners,
-                          std::vector<Index> const &faces, std::vector<int> const &halves) {
-    Set &set = _sets.emplace_back();
-    set.faceSize = of.patch.GetFaceSize();
-    int const numPairs = countPairs(of);
-    set.numHalves = int(halves.size());
-    set.numPairs = numPairs - set.numHalves;
-    int const numInside = int(of.orbits.size()) - numPairs;
-    set.numAxes = numInside + (corners.empty() ? 0 : 1);
-    constexpr Index kSize = RegularFaceGroup::kSize;
-    set.numGroups = (Index(faces.size()) + kSize - 1) / kSize;
-    std::optional<SourceOrbits> const compact = FindCompactSourceOrbits(of);
-    SourceOrbits const read = compact.value_or(GetAllSourceOrbits(of.patch));
-    bool const isJoined = !compact && of.outerWeights;
-    SourceOrbits const sources = isJoined ? GetJoinedSourceOrbits(of.patch) : read;
-    set.sourceKind = compact    ? LatticeSourceKind::Compact
-                     : isJoined ? LatticeSourceKind::Joined
-                                : LatticeSourceKind::All;
+void LatticeLimit::setSources(LatticeFaces::Set const &of, Sources const &sources,
+                              std::vector<Index> const &faces, Set &set) {
+    bool const isJoined = sources.kind == LatticeSourceKind::Joined;
+    set.sourceKind = sources.kind;
     for (std::size_t i = 0; i < std::size(set.outerWeights); ++i) {
         set.outerWeights[i] = isJoined ? float((*of.outerWeights)[i]) : 0;
     }
     std::vector<int> places;
-    auto const addOrbit = [&](int first, int numOrbits, std::vector<int> &entries) {
-        for (int i = 0; i < numOrbits * set.faceSize; ++i) {
-            entries.push_back(first * set.faceSize + i);
-        }
-    };
-    for (int const orbit : read.axes) {
-        addOrbit(orbit, 1, places);
+    for (int const orbit : sources.read.axes) {
+        addOrbits(orbit, 1, set.faceSize, places);
     }
-    for (int const orbit : read.pairs) {
-        addOrbit(orbit, 2, places);
+    for (int const orbit : sources.read.pairs) {
+        addOrbits(orbit, 2, set.faceSize, places);
     }
     auto const numPlaces = std::size_t(of.patch.GetNumPlaces());
     group(faces, places, set.places, [&](std::size_t face, std::size_t place) {
         return std::uint32_t(of.sources[face * numPlaces + place]) *
                std::uint32_t(RegularFaceGroup::kPointStride);
     });
+}
+
+void LatticeLimit::setOutputs(LatticeFaces::Set const &of, Sources const &sources,
+                              Corners const &corners, std::vector<Index> const &faces,
+                              std::vector<int> const &halves, Set &set) {
+    int const numPairs = countPairs(of);
+    int const numInside = int(of.orbits.size()) - numPairs;
+    set.numHalves = int(halves.size());
+    set.numPairs = numPairs - set.numHalves;
+    set.numAxes = numInside + (corners.empty() ? 0 : 1);
+    std::vector<int> outputs;
     auto const addWeights = [&](LatticeFaces::Orbit const &orbit) {
-        AddOrbitWeights(sources, of.patch, isJoined ? JoinSources(of.patch, orbit) : orbit,
+        bool const isJoined = sources.kind == LatticeSourceKind::Joined;
+        AddOrbitWeights(sources.summed, of.patch, isJoined ? JoinSources(of.patch, orbit) : orbit,
                         set.weights);
     };
-    std::vector<int> outputs;
     auto const addOutputs = [&](int orbit, int first, int numOrbits) {
-        addOrbit(first, numOrbits, outputs);
+        addOrbits(first, numOrbits, set.faceSize, outputs);
         int const begin = first * set.faceSize;
         set.areConsecutive.push_back(numOrbits == 2 ? isPairConsecutive(of, faces, begin)
                                                     : isOrbitConsecutive(of, faces, begin));
@@ -212,9 +230,10 @@ void LatticeLimit::addSet(LatticeFaces::Set const &of, Corners const &corners,
     }
     // Corners stand behind the outputs of LatticeFaces.  They are made before those inside, one of which
     // stands for what is not made.
+    assert(numInside > 0);
     auto const numOutputs = std::size_t(of.numOutputs);
     if (!corners.empty()) {
-        addOrbit(int(numOutputs) / set.faceSize, 1, outputs);
+        addOrbits(int(numOutputs) / set.faceSize, 1, set.faceSize, outputs);
         set.areConsecutive.push_back(0);
         addWeights(*of.corners);
     }
@@ -222,13 +241,16 @@ void LatticeLimit::addSet(LatticeFaces::Set const &of, Corners const &corners,
         addOutputs(numPairs + i, 2 * numPairs + i, 1);
     }
     group(faces, outputs, set.verts, [&](std::size_t face, std::size_t output) {
-        auto const faceSize = std::size_t(set.faceSize);
-        Index const *const ofFace = of.outputs.data() + face * numOutputs;
-        Index const vert =
-            output < numOutputs ? ofFace[output] : corners[face * faceSize + output - numOutputs];
-        return vert >= 0 ? vert : ofFace[numOutputs - faceSize];
+        if (output < numOutputs) {
+            return of.outputs[face * numOutputs + output];
+        }
+        Index const corner = corners[face * std::size_t(set.faceSize) + output - numOutputs];
+        return corner >= 0 ? corner : of.GetStandIn(face);
     });
-    auto const numVerts = std::ptrdiff_t(outputs.size()) * kSize;
+}
+
+void LatticeLimit::setAhead(Set &set) {
+    auto const numVerts = std::ptrdiff_t(set.verts.size()) / set.numGroups; // of a group
     set.numGroupsAhead = 1 + int(kNumAhead / numVerts);
     Buffer<Index> ahead;
     ahead.Resize(set.verts.size());

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_LATTICE_LIMIT_H
 #define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_LATTICE_LIMIT_H
 
+#include "latticeWeights.h"
 #include "limitKernel.h"
 
 #include "far_ext/limit/latticeFaces.h"
@@ -48,15 +49,30 @@ private:
         std::vector<float> weights;
     };
 
+    /// Which sources of a face are read, and which of these, or of what they are joined to, are summed up.
+    struct Sources {
+        LatticeSourceKind kind;
+        SourceOrbits read;
+        SourceOrbits summed;
+    };
     /// The vertices at the corners of faces, one by one; invalid where other faces make them.
     using Corners = std::vector<Far::Index>;
 
-    /// Finds which corners are made; none where this takes more time than sums do.
-    Corners findCorners(FarExt::internal::LatticeFaces const &faces,
-                        FarExt::internal::LatticeFaces::Set const &of);
-    /// Adds some faces, all those that make one half of the same pairs, which are \p halves.
-    void addSet(FarExt::internal::LatticeFaces::Set const &of, Corners const &corners,
-                std::vector<Far::Index> const &faces, std::vector<int> const &halves);
+    static Sources findSources(FarExt::internal::LatticeFaces::Set const &of);
+    /// Finds which corners are made, and keeps them; none where this takes more time than sums do.
+    Corners makeCorners(FarExt::internal::LatticeFaces const &faces,
+                        FarExt::internal::LatticeFaces::Set const &of, Sources const &sources);
+    /// @name The parts of a set, of some faces
+    /// @{
+    static void setSources(FarExt::internal::LatticeFaces::Set const &of, Sources const &sources,
+                           std::vector<Far::Index> const &faces, Set &set);
+    /// \param halves  the pairs of which these faces make one half
+    static void setOutputs(FarExt::internal::LatticeFaces::Set const &of, Sources const &sources,
+                           Corners const &corners, std::vector<Far::Index> const &faces,
+                           std::vector<int> const &halves, Set &set);
+    /// Behind these: what memory is asked for ahead.
+    static void setAhead(Set &set);
+    /// @}
 
     std::vector<Set> _sets;
     std::vector<Far::Index> _madeCorners;

@@ -30,6 +30,8 @@ def refiner():
     ({"faces": CUBE_FACES, "num_vertices": -1}, ValueError, "num_vertices: -1"),
     ({"faces": CUBE_FACES, "num_vertices": 8.0}, TypeError,
      "^num_vertices: an integer is needed, not float$"),
+    ({"faces": CUBE_FACES, "num_vertices": np.array([8, 9])}, TypeError,
+     "^num_vertices: an integer is needed, not numpy.ndarray$"),
     ({"faces": CUBE_FACES, "num_vertices": 2**40}, ValueError,
      "^num_vertices: 1099511627776 is a number that 32 bits do not hold$"),
     ({"faces": CUBE_FACES, "num_vertices": np.int64(-2**40)}, ValueError, "32 bits"),

@@ -117,6 +117,19 @@ TEST(KeptFacesTest, TakeNoMoreMemoryThanTheyMay) {
     }
 }
 
+TEST(KeptFacesTest, OfOneKindAreKeptWhereAnotherHasNoMemory) {
+    constexpr int kNumFaces = 20000;
+    constexpr std::size_t kSlots = kNumFaces * sizeof(void *);
+    Kept kept(nullptr, kNumFaces, 2, 2 * kSlots - 1);
+    Indices const points = makePoints(7);
+    kept.Add(0, 3, 1, 3, points);
+    for (int round = 0; round < 3; ++round) {
+        EXPECT_EQ(kept.Add(1, 3, 1, 3, points), nullptr);
+    }
+    EXPECT_NE(kept.Add(0, 3, 1, 3, points), nullptr);
+    EXPECT_NE(kept.Find(0, 3), nullptr);
+}
+
 TEST(KeptFacesTest, LieWhereTheirTypesMay) {
     using KeptPointers = BfrExt::internal::KeptFaces<int const *>;
     KeptPointers kept(nullptr, 100, 1, kEnough);

@@ -12,8 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
+#include <memory>
 #include <random>
 #include <string>
 #include <utility>
@@ -251,14 +251,18 @@ TEST(SecondDerivatives, InSinglePrecisionAreThoseInDouble) {
         All<double> const expected =
             evaluateAll(of.surface, of.points, Place{double(place[0]), double(place[1])});
         for (std::size_t kind = 0; kind < found.size(); ++kind) {
+            // Places that are closer than floats tell are taken for one, where second derivatives differ more.
+            double const tolerance = kind == 0 ? 2e-6 : kind <= 2 ? 1e-5 : 5e-3;
             for (std::size_t k = 0; k < 3; ++k) {
-                ASSERT_NEAR(double(found[kind][k]), expected[kind][k], 5e-3) << "kind " << kind;
+                ASSERT_NEAR(double(found[kind][k]), expected[kind][k], tolerance)
+                    << "kind " << kind;
             }
         }
     }
 }
 
 TEST(SecondDerivatives, OfAnyPlaceAreNumbers) {
+    int numFaces = 0;
     for (ReferenceMask const mask :
          {ReferenceMask::Average, ReferenceMask::Cosine, ReferenceMask::Smooth}) {
         for (Shape const &shape : GetFeatureShapes()) {
@@ -271,6 +275,7 @@ TEST(SecondDerivatives, OfAnyPlaceAreNumbers) {
                     !factory->InitVertexSurface(face, &surface)) {
                     continue;
                 }
+                ++numFaces;
                 std::vector<double> const points = gather(surface, shape.positions);
                 Place corner;
                 Place center;
@@ -286,6 +291,7 @@ TEST(SecondDerivatives, OfAnyPlaceAreNumbers) {
             }
         }
     }
+    EXPECT_GT(numFaces, 100);
 }
 
 TEST(SecondDerivatives, OfInvalidSurfacesAreNotWritten) {
