@@ -5,8 +5,8 @@
 // Mesh file -> Far::TopologyDescriptor -> FarExt::TopologyRefiner -> OsdExt::RefinementEvaluator,
 // or Far::StencilTable and an evaluator -> mesh file.
 #include "arguments.h"
+#include "job.h"
 #include "progress.h"
-#include "run.h"
 #include "statistics.h"
 
 #include "far_ext/threads.h"
@@ -70,15 +70,15 @@ void report(Arguments const &arguments, Statistics const &statistics, std::strin
 /// Does one step behind the other; what a file is to have is in its place before anything is printed.
 void refine(Arguments const &arguments) {
     std::optional<Progress> progress(std::in_place, !arguments.isQuiet && Progress::IsTerminal());
-    Run run(arguments, *progress);
-    run.Read();
-    run.Validate();
-    run.Refine();
-    run.Evaluate();
-    run.Draw();
-    run.Write();
+    Job job(arguments, *progress);
+    job.Read();
+    job.Validate();
+    job.Refine();
+    job.Evaluate();
+    job.Draw();
+    job.Write();
     progress.reset(); // its line is removed
-    report(arguments, run.GetStatistics(), run.GetTagText());
+    report(arguments, job.GetStatistics(), job.GetTagText());
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef OPENSUBDIVHEX_TOOLS_RUN_H
-#define OPENSUBDIVHEX_TOOLS_RUN_H
+#ifndef OPENSUBDIVHEX_TOOLS_JOB_H
+#define OPENSUBDIVHEX_TOOLS_JOB_H
 
 #include "adaptive.h"
 #include "arguments.h"
@@ -17,14 +17,15 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// \brief A run of the program, from a mesh file to another: steps, which are called once each, in this order.
+/// \brief What hexrefine does for its arguments, from one mesh file to another: steps, which are called once
+/// each, in this order.
 ///
 /// Each throws FileError.  Warnings go to the standard error stream.
-class Run {
+class Job {
 public:
     /// \param arguments  they must live as long
     /// \param progress   the steps, and nothing else, tell it of their phases
-    Run(Arguments const &arguments, Progress &progress);
+    Job(Arguments const &arguments, Progress &progress);
 
     /// Reads the file.
     void Read();

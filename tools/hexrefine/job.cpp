@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "run.h"
+#include "job.h"
 
 #include "creaseAngle.h"
 #include "degenerateFaces.h"
@@ -92,7 +92,7 @@ std::vector<std::string> findValuesNotHeld(std::string const &path,
 
 } // namespace
 
-Run::Run(Arguments const &arguments, Progress &progress)
+Job::Job(Arguments const &arguments, Progress &progress)
     : _arguments(arguments), _progress(progress) {
     _statistics.scheme = arguments.scheme;
     _statistics.firstStep = arguments.firstStep;
@@ -104,12 +104,12 @@ Run::Run(Arguments const &arguments, Progress &progress)
     _statistics.input = arguments.input;
 }
 
-void Run::Read() {
+void Job::Read() {
     measure("reading", &_statistics.milliseconds.read, [&] { _mesh = ReadMesh(_arguments.input); });
     _regions = FindRegions(_arguments.pngColors, _mesh, _arguments.input);
 }
 
-void Run::Validate() {
+void Job::Validate() {
     measure("validating", &_statistics.milliseconds.validate, [&] {
         if (_arguments.creaseAngle) {
             AddCreases(*_arguments.creaseAngle, &_mesh);
@@ -130,7 +130,7 @@ void Run::Validate() {
     });
 }
 
-void Run::Refine() {
+void Job::Refine() {
     measure("refining", &_statistics.milliseconds.refine, [&] {
         // With --adaptive, level 0 is enough where it is the surface level.
         if (!isAdaptive() || getLastLevel() > 0) {
@@ -144,7 +144,7 @@ void Run::Refine() {
     _statistics.channels = CountChannels(*_refiner, _mesh);
 }
 
-void Run::Evaluate() {
+void Job::Evaluate() {
     if (getLastLevel() > 0) {
         evaluateLevel();
     }
@@ -159,7 +159,7 @@ void Run::Evaluate() {
     CheckFinite(_mesh, _arguments.input, "level " + std::to_string(getLastLevel()) + ": ");
 }
 
-void Run::Draw() {
+void Job::Draw() {
     if (_arguments.png.empty()) {
         return;
     }
@@ -173,7 +173,7 @@ void Run::Draw() {
     });
 }
 
-void Run::Write() {
+void Job::Write() {
     if (_arguments.output.empty()) {
         return;
     }
@@ -193,7 +193,7 @@ void Run::Write() {
 }
 
 template <typename WORK>
-void Run::measure(char const *phase, double *milliseconds, WORK &&work) {
+void Job::measure(char const *phase, double *milliseconds, WORK &&work) {
     _progress.SetPhase(phase);
     auto const start = std::chrono::steady_clock::now();
     work();
@@ -201,15 +201,15 @@ void Run::measure(char const *phase, double *milliseconds, WORK &&work) {
     *milliseconds += std::chrono::duration<double, std::milli>(time).count();
 }
 
-bool Run::isAdaptive() const { return _arguments.adaptive.isAdaptive; }
+bool Job::isAdaptive() const { return _arguments.adaptive.isAdaptive; }
 
 // Cells begin with the faces of the surface level.
-int Run::getLastLevel() const {
+int Job::getLastLevel() const {
     return isAdaptive() ? _refiner->GetHexSchemeOptions().GetSurfaceLevel() : _arguments.level;
 }
 
 // Evaluators of tables give no status.
-void Run::requireDone(bool isDone, FarExt::Status const &status) const {
+void Job::requireDone(bool isDone, FarExt::Status const &status) const {
     if (!isDone) {
         throw FileError(_arguments.input,
                         status.IsOk() ? "--evaluator " + _arguments.evaluator + " gives no values"
@@ -217,14 +217,14 @@ void Run::requireDone(bool isDone, FarExt::Status const &status) const {
     }
 }
 
-void Run::warn(std::string const &message) const {
+void Job::warn(std::string const &message) const {
     std::cerr << "hexrefine: " << EscapeControls(_arguments.input + ": warning: " + message)
               << "\n";
 }
 
 // The rules: those of the command line, else those of the file, else the paper's boundary and what
 // Sdc::Options has.
-Sdc::Options Run::chooseOptions() const {
+Sdc::Options Job::chooseOptions() const {
     MeshTags const &tags = _mesh.tags;
     Sdc::Options options;
     auto boundary = tags.boundary.value_or(Sdc::Options::VTX_BOUNDARY_NONE);
@@ -242,7 +242,7 @@ Sdc::Options Run::chooseOptions() const {
     return options;
 }
 
-void Run::removeWhatIsNotWritten() {
+void Job::removeWhatIsNotWritten() {
     if (_arguments.output.empty()) {
         return;
     }
@@ -269,7 +269,7 @@ void Run::removeWhatIsNotWritten() {
 
 // Makes room for the normals of --limit: those of vertices are removed, and named.  Face-varying ones
 // may have seams that the limit has not.
-void Run::removeNormals() {
+void Job::removeNormals() {
     for (FVarChannel const &channel : _mesh.channels) {
         if (channel.kind == FVarKind::Normal) {
             throw FileError(_arguments.input,
@@ -284,7 +284,7 @@ void Run::removeNormals() {
     }
 }
 
-void Run::createRefiner(Sdc::Options sdcOptions) {
+void Job::createRefiner(Sdc::Options sdcOptions) {
     Far::TopologyDescriptor descriptor = DescribeTopology(_mesh);
     auto const channels = DescribeChannels(_mesh);
     descriptor.numFVarChannels = int(channels.size());
@@ -306,7 +306,7 @@ void Run::createRefiner(Sdc::Options sdcOptions) {
 }
 
 // The positions of the mesh are the rest pose.
-void Run::refineTopology() {
+void Job::refineTopology() {
     FarExt::Status status;
     bool const needsFullTopology = _arguments.isLimit || isAdaptive() || !_arguments.png.empty();
     FarExt::TopologyRefiner::UniformOptions uniformOptions(getLastLevel());
@@ -327,7 +327,7 @@ void Run::refineTopology() {
 }
 
 // All values but positions that --limit replaces.
-void Run::evaluateLevel() {
+void Job::evaluateLevel() {
     for (Primvar const &primvar : findPrimvars(&_mesh)) {
         if (!_arguments.isLimit || primvar.mode != FarExt::INTERPOLATE_VERTEX) {
             evaluatePrimvar(primvar);
@@ -335,7 +335,7 @@ void Run::evaluateLevel() {
     }
 }
 
-void Run::evaluatePrimvar(Primvar const &primvar) {
+void Job::evaluatePrimvar(Primvar const &primvar) {
     auto &milliseconds = _statistics.milliseconds;
     FarExt::Status status;
     if (!NeedsStencils(_arguments.evaluator)) {
@@ -358,7 +358,7 @@ void Run::evaluatePrimvar(Primvar const &primvar) {
 }
 
 // Replaces the positions by limit points, and finds the normals.
-void Run::evaluateLimit() {
+void Job::evaluateLimit() {
     auto &milliseconds = _statistics.milliseconds;
     _sides.emplace(_refiner->GetLevel(getLastLevel()));
     FarExt::Status status;
@@ -385,7 +385,7 @@ void Run::evaluateLimit() {
     });
 }
 
-void Run::refineCells() {
+void Job::refineCells() {
     measure("evaluating", &_statistics.milliseconds.evaluate, [&] {
         _cells.emplace(_mesh, _arguments.output, !_arguments.png.empty());
         _cells->Refine(_arguments.adaptive, *_refiner, _arguments.input);
@@ -393,7 +393,7 @@ void Run::refineCells() {
     });
 }
 
-void Run::drawCells() const {
+void Job::drawCells() const {
     try {
         WriteCellPicture(_cells->GetMesh(), _cells->GetCamera(),
                          FindCellRegions(_arguments.pngColors, _regions, _cells->GetMesh(),
@@ -407,7 +407,7 @@ void Run::drawCells() const {
 
 // Replaces the faces of level 0 by those of the last level.  The normals of --limit come with them: those of
 // each side of a vertex where the file takes them, else their mean.
-void Run::copyFaces() {
+void Job::copyFaces() {
     FarExt::TopologyLevel const &level = _refiner->GetLevel(getLastLevel());
     FarExt::LimitSides const *const sides = _sides ? &*_sides : nullptr;
     bool const hasSides =
