@@ -254,14 +254,10 @@ void Surface<REAL>::useBorder(REAL const controlPoints[], PointDescriptor const 
     function(border);
 }
 
-// The levels say which pattern it is.
 template <typename REAL>
 void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[3],
                              PointDescriptor const &resultDesc) const {
-    using internal::PatternOf;
-    using internal::PatternTable;
-    using Pattern = internal::CellPattern<REAL>;
     if (!canEvaluate(tessellation)) {
         return;
     }
@@ -269,6 +265,40 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         evaluateTree(tessellation, controlPoints, pointDesc, results, resultDesc);
         return;
     }
+    // What it has taken of memory is kept for the next face.
+    static thread_local internal::PatchEvaluator<REAL> evaluator;
+    internal::PlainFaceType const *const plain = _type.GetPlain();
+    if (!plain) {
+        evaluateInside(tessellation, evaluator, controlPoints, pointDesc, results, resultDesc);
+        if (_type->IsInLattice() && !tessellation._section &&
+            evaluateLatticeBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc)) {
+            return;
+        }
+    }
+    useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
+        if (plain) {
+            internal::RingValues<REAL> &values = border.GetRingValues();
+            evaluator.Evaluate(*plain, getTurns(), values, tessellation.getCellPlan(), results[0],
+                               resultDesc.stride);
+            if (results[1]) {
+                evaluator.EvaluateDerivatives(*plain, values, tessellation.getCellPlan(true),
+                                              results[1], results[2], resultDesc.stride);
+            }
+        }
+        evaluateBorder(tessellation, border, plain ? &evaluator : nullptr, results[0], resultDesc);
+    });
+}
+
+// The points inside of a face whose type is known, and all derivatives.  The levels say which pattern it is.
+template <typename REAL>
+void Surface<REAL>::evaluateInside(Tessellation const &tessellation,
+                                   internal::PatchEvaluator<REAL> &evaluator,
+                                   REAL const controlPoints[], PointDescriptor const &pointDesc,
+                                   REAL *const results[3],
+                                   PointDescriptor const &resultDesc) const {
+    using internal::PatternOf;
+    using internal::PatternTable;
+    using Pattern = internal::CellPattern<REAL>;
     int const numBorderPlaces = tessellation.GetNumBoundaryCoords();
     // Of levels, which make() gives a tessellation of.
     auto const getPattern = [&](PatternOf of, std::vector<int> const &levels,
@@ -291,20 +321,6 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
         internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
                                        nullptr, result, resultDesc.stride});
     };
-    static thread_local internal::PatchEvaluator<REAL> evaluator;
-    if (internal::PlainFaceType const *const plain = _type.GetPlain()) {
-        useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
-            internal::RingValues<REAL> &values = border.GetRingValues();
-            evaluator.Evaluate(*plain, getTurns(), values, tessellation.getCellPlan(), results[0],
-                               resultDesc.stride);
-            if (results[1]) {
-                evaluator.EvaluateDerivatives(*plain, values, tessellation.getCellPlan(true),
-                                              results[1], results[2], resultDesc.stride);
-            }
-            evaluateBorder(tessellation, border, &evaluator, results[0], resultDesc);
-        });
-        return;
-    }
     // Few types, and few levels, have matrices of a face: others go by cells.
     bool const isPattern = _type->IsInLattice() && !tessellation._section;
     std::vector<int> const &levels = tessellation._levels;
@@ -345,13 +361,6 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
                                       controlPoints, pointDesc.stride, results[1], results[2],
                                       resultDesc.stride);
     }
-    if (_type->IsInLattice() && !tessellation._section &&
-        evaluateLatticeBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc)) {
-        return;
-    }
-    useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
-        evaluateBorder(tessellation, border, nullptr, results[0], resultDesc);
-    });
 }
 
 // The control points are refined along the tree, as far as cells have corners that are asked for.

@@ -259,6 +259,9 @@ private:
     void evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[3],
                   PointDescriptor const &resultDesc) const;
+    void evaluateInside(Tessellation const &tessellation, internal::PatchEvaluator<REAL> &evaluator,
+                        REAL const controlPoints[], PointDescriptor const &pointDesc,
+                        REAL *const results[3], PointDescriptor const &resultDesc) const;
     void evaluateTree(Tessellation const &tessellation, REAL const controlPoints[],
                       PointDescriptor const &pointDesc, REAL *const results[3],
                       PointDescriptor const &resultDesc) const;
