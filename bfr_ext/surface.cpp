@@ -152,6 +152,7 @@ void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
     }
     internal::BasePoint const point = findPoint(uv);
     CellStencil stencil(*_type);
+    stencil.Find(point, true);
     stencil.FindSecond(point);
     auto const sum = [&](std::vector<double> const &weights, REAL *result) {
         sumUp(weights.data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc, result);
@@ -194,8 +195,10 @@ void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const contro
     CellStencil stencil(*_type);
     std::ptrdiff_t result = 0;
     for (Tessellation::SectorCoords const &place : tessellation._places) {
-        stencil.FindSecond(
-            internal::MakeBasePoint(GetFaceSize(), place.sector, {place.start, place.end}));
+        internal::BasePoint const point =
+            internal::MakeBasePoint(GetFaceSize(), place.sector, {place.start, place.end});
+        stencil.Find(point, false);
+        stencil.FindSecond(point);
         auto const sum = [&](std::vector<double> const &weights, REAL *results) {
             sumUp(weights.data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc,
                   results + result);
@@ -596,8 +599,10 @@ int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeig
     if (!IsValid()) {
         return 0;
     }
+    internal::BasePoint const point = findPoint(uv);
     CellStencil stencil(*_type);
-    stencil.FindSecond(findPoint(uv));
+    stencil.Find(point, true);
+    stencil.FindSecond(point);
     copyWeights(stencil.GetWeights(), weights);
     copyWeights(stencil.GetDuWeights(), duWeights);
     copyWeights(stencil.GetDvWeights(), dvWeights);

@@ -276,7 +276,6 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
 
 void CellStencil::FindSecond(BasePoint const &point) {
     assert(_of == StencilOf::Points);
-    Find(point, true);
     Place place = begin(point);
     // A corner of a cell without such derivatives is in one with them some steps on, or never.
     while (SecondDerivatives::Find(*place.type).Exist()

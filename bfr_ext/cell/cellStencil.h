@@ -61,7 +61,7 @@ public:
         : _root(root), _of(of) {}
 
     void Find(BasePoint const &point, bool hasDerivatives);
-    /// Finds those of a point and of its first and second derivatives, as sums of points.
+    /// Finds those of the second derivatives, as sums of points; behind Find() of the same point.
     void FindSecond(BasePoint const &point);
 
     /// By what they are sums of: weights of the surface's point, and of its derivatives.

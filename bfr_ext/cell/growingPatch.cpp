@@ -131,13 +131,15 @@ void GrowingPatch::keepFace(int vert, int last, int firstMade, int behind) {
     _faces[first] = std::uint8_t(_faces.size() - first - 1);
 }
 
-void GrowingPatch::GetPoints(std::vector<Point> &points) const {
+std::vector<GrowingPatch::Point> GrowingPatch::GetPoints() const {
+    std::vector<Point> points;
     points.reserve(std::size_t(_numMade - _numInner));
     for (int vert = _size; vert < _numMade; ++vert) {
         if (isPoint(vert)) {
             points.push_back(_points[vert]);
         }
     }
+    return points;
 }
 
 std::vector<std::uint8_t> GrowingPatch::GetFaces() const {

@@ -35,8 +35,8 @@ public:
     bool Add(int inner, int numFaces, std::uint8_t const *sizes);
 
     int GetNumInner() const { return _numInner; }
-    /// Appends where the vertices that are not inner were met.
-    void GetPoints(std::vector<Point> &points) const;
+    /// Where the vertices that are not inner were met.
+    std::vector<Point> GetPoints() const;
     /// Has Add() keep the faces; behind Start().
     void KeepFaces();
     /// The faces that were kept, each with its size and vertices, first the inner ones, then the others.

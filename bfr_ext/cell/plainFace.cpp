@@ -67,9 +67,7 @@ std::size_t PlainFaceKey::GetHash() const {
 PlainFaceType::PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
                              GrowingPatch const &patch)
     : hash(key.GetHash()), _types(types), _key(key.GetBytes(), key.GetBytes() + key.GetSize()),
-      _numVerts(numVerts), _isInLattice(isInLattice(key, numVerts)) {
-    patch.GetPoints(_points);
-}
+      _numVerts(numVerts), _points(patch.GetPoints()), _isInLattice(isInLattice(key, numVerts)) {}
 
 PlainFaceType::~PlainFaceType() { delete _rings.load(); }
 

@@ -93,7 +93,7 @@ private:
     PlainFaceTypes &_types;
     std::vector<std::uint8_t> const _key;
     int const _numVerts;
-    std::vector<Point> _points;
+    std::vector<Point> const _points;
     bool const _isInLattice;
     mutable std::atomic<FaceRings const *> _rings{nullptr};
     mutable std::atomic<CellType const *> _type{nullptr};
