@@ -398,57 +398,74 @@ private:
     }
 };
 
-/// Refines an edge, whose points depend on its curve alone.
+/// \brief Refines an edge, whose points depend on its curve alone.
+///
+/// Places are those of the edge in its own direction; parts of it may run the other way.
 class EdgeMaker {
 public:
-    EdgeMaker(ViewGeometry const &geometry, View::Options const &options)
-        : _geometry(geometry), _options(options) {}
+    /// \param previous  what the edge was in the last frame, in its own direction
+    EdgeMaker(ViewGeometry const &geometry, View::Options const &options, Polyline const &previous)
+        : _geometry(geometry), _options(options), _previous(previous) {}
 
-    /// Adds what lies inside of the edge, from start to end.
-    void Make(CellValues const &values, int start, int end,
-              std::vector<Polyline::Place> &places) const {
+    /// The places inside of the edge, ascending.
+    std::vector<Polyline::Place> Make(CellValues const &values) {
+        visit(values, 0, Polyline::kLength);
+        std::sort(_places.begin(), _places.end());
+        return std::move(_places);
+    }
+
+private:
+    // Adds the places inside of a part, which lie between start and end.
+    void visit(CellValues const &values, int start, int end) {
+        Box const box = getBox(values);
+        if (values.GetLevel() >= _options.GetMaxLevel() ||
+            (_options.IsCulling() && _geometry.IsOutside(box))) {
+            return;
+        }
         std::vector<CellType::Child> const &children = values.GetType().GetChildren();
         std::vector<CellValues> parts(children.size());
         for (std::size_t i = 0; i < parts.size(); ++i) {
             parts[i].SetChild(values, int(i));
         }
         if (parts.size() == 1) {
-            if (values.GetLevel() + 1 < _options.GetMaxLevel()) {
-                Make(parts[0], start, end, places); // the long edge that it becomes
-            }
-            return;
-        }
-        if (values.GetLevel() >= _options.GetMaxLevel() || !isToDivide(values, parts)) {
+            visit(parts[0], start, end); // the long edge that it becomes
             return;
         }
         int const first = start + (end - start) / 4;
         int const second = end - (end - start) / 4;
-        Make(parts[0], start, first, places);
-        places.push_back(Polyline::Place(first));
-        Make(parts[1], first, second, places);
-        places.push_back(Polyline::Place(second));
-        // It runs from the end.
-        std::size_t const begin = places.size();
-        Make(parts[2], 0, end - second, places);
-        std::reverse(places.begin() + std::ptrdiff_t(begin), places.end());
-        std::for_each(places.begin() + std::ptrdiff_t(begin), places.end(),
-                      [&](Polyline::Place &place) { place = Polyline::Place(end - place); });
+        if (!isToDivide(values, parts, _geometry.GetPixelsPerUnit(box),
+                        wasDividedAt(first) ? _options.GetHysteresis() : 1)) {
+            return;
+        }
+        _places.push_back(Polyline::Place(first));
+        _places.push_back(Polyline::Place(second));
+        visit(parts[0], start, first);
+        visit(parts[1], first, second);
+        visit(parts[2], end, second); // it runs from the end
     }
 
-private:
-    bool isToDivide(CellValues const &values, std::vector<CellValues> const &parts) const {
+    // No part has a place of another one inside.
+    bool wasDividedAt(int place) const {
+        std::vector<Polyline::Place> const &places = _previous.GetPlaces();
+        return std::binary_search(places.begin(), places.end(), place);
+    }
+
+    bool isToDivide(CellValues const &values, std::vector<CellValues> const &parts, double pixels,
+                    double fraction) const {
         double ends[6];
         values.EvaluateCorner(0, ends);
         values.EvaluateCorner(1, ends + 3);
         double const length = GetLength(Subtract(ToVector3(ends + 3), ToVector3(ends)));
-        double const pixels = _geometry.GetPixelsPerUnit(getBox(values));
-        return (_options.GetEdgeLength() > 0 && length * pixels > _options.GetEdgeLength()) ||
+        return (_options.GetEdgeLength() > 0 &&
+                length * pixels > fraction * _options.GetEdgeLength()) ||
                (_options.GetFlatness() > 0 &&
-                !IsStraight(parts, ends, ends + 3, _options.GetFlatness() / pixels));
+                !IsStraight(parts, ends, ends + 3, fraction * _options.GetFlatness() / pixels));
     }
 
     ViewGeometry const &_geometry;
     View::Options const &_options;
+    Polyline const &_previous;
+    std::vector<Polyline::Place> _places;
 };
 
 } // namespace
@@ -528,7 +545,8 @@ CellTree View::makeTree(int faceSize, std::function<void(internal::RefinedCells 
 
 template <typename REAL>
 Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
-                        typename Surface<REAL>::PointDescriptor const &pointDesc) const {
+                        typename Surface<REAL>::PointDescriptor const &pointDesc,
+                        Polyline const *previous) const {
     if (!IsValid()) {
         return Polyline();
     }
@@ -541,10 +559,12 @@ Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const contr
     }
     internal::CellValues values;
     values.SetBase(*item.type, points.data(), 3);
-    std::vector<Polyline::Place> places;
-    internal::EdgeMaker(*_geometry, _options).Make(values, 0, Polyline::kLength, places);
+    Polyline last; // in the direction of the item
+    if (previous) {
+        last = item.isReversed ? previous->GetReversed() : *previous;
+    }
     Polyline polyline;
-    Polyline::FromPlaces(places, &polyline);
+    Polyline::FromPlaces(internal::EdgeMaker(*_geometry, _options, last).Make(values), &polyline);
     return item.isReversed ? polyline.GetReversed() : polyline;
 }
 
@@ -620,6 +640,7 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
     CellForest forest(factory.GetMesh());
     forest._plans = bounds ? bounds->_plans : nullptr;
     bool const hasPrevious = previous && previous->GetNumFaces() == forest.GetNumFaces();
+    bool const hasPreviousEdges = hasPrevious && previous->_edges.size() == forest._edges.size();
     std::vector<std::vector<CellVisibility>> visibility(counts ? std::size_t(forest.GetNumFaces())
                                                                : 0);
     struct State {
@@ -659,8 +680,11 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                     bool const isFirst =
                         level.edgeFaces[edge][0] == face && level.edgeFaceLocals[edge][0] == local;
                     if (isFirst && base.IsEdgeInfSharp(edge) && state.surface.Init(face)) {
-                        forest.SetEdge(edge, MakeEdge(state.surface.Get(), local,
-                                                      state.surface.GetControlPoints(), 3));
+                        Polyline const *const lastEdge =
+                            hasPreviousEdges ? &previous->_edges[std::size_t(edge)] : nullptr;
+                        forest.SetEdge(edge,
+                                       MakeEdge(state.surface.Get(), local,
+                                                state.surface.GetControlPoints(), 3, lastEdge));
                     }
                 }
             }
@@ -692,9 +716,9 @@ template CellTree View::MakeTree(Surface<double> const &, double const[],
                                  Surface<double>::PointDescriptor const &, CellTree const *,
                                  std::vector<CellVisibility> *) const;
 template Polyline View::MakeEdge(Surface<float> const &, int, float const[],
-                                 Surface<float>::PointDescriptor const &) const;
+                                 Surface<float>::PointDescriptor const &, Polyline const *) const;
 template Polyline View::MakeEdge(Surface<double> const &, int, double const[],
-                                 Surface<double>::PointDescriptor const &) const;
+                                 Surface<double>::PointDescriptor const &, Polyline const *) const;
 template int View::FindLevels(Surface<float> const &, float const[],
                               Surface<float>::PointDescriptor const &, int[]) const;
 template int View::FindLevels(Surface<double> const &, double const[],

@@ -60,11 +60,13 @@ enum class CellVisibility : unsigned char {
 /// where the lattice is regular and derivatives are bounded by the second differences of control
 /// points, with FaceMask::Smooth and Cosine, of the cell or of all cells some steps on; a cell at a base
 /// vertex or base face that is no hexagon, at a feature, and with FaceMask::Average any cell, counts as
-/// visible.
+/// visible.  A part of a sharp edge or boundary is outside as a cell is, by the box of the points that its
+/// curve depends on.  The cells beside it are at a feature: so it never faces away.
 ///
 /// **Animation.**  Given the tree of the last frame, a cell that is refined there stays refined until the
-/// error is below a fraction of what is allowed, so that nothing flickers.  What does not depend on the
-/// camera, which is most, a ViewBounds keeps from frame to frame.
+/// error is below a fraction of what is allowed, so that nothing flickers; and so do sharp edges and
+/// boundaries.  What of cells does not depend on the camera, which is most, a ViewBounds keeps from frame to
+/// frame.
 ///
 /// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API View {
@@ -161,9 +163,11 @@ public:
     /// \param edge           of the face, from vertex \p edge to the next, as the polyline
     /// \param controlPoints  its control points, of 3 numbers each
     /// \param pointDesc      how they lie; the first 3 numbers of each are read
+    /// \param previous       that of the last frame, in the same direction, or null
     template <typename REAL>
     Polyline MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
-                      typename Surface<REAL>::PointDescriptor const &pointDesc) const;
+                      typename Surface<REAL>::PointDescriptor const &pointDesc,
+                      Polyline const *previous = nullptr) const;
 
     /// \brief Writes one level for each edge and one for the inside of a face, as Tessellation takes:
     /// the highest that MakeTree() has there.
@@ -187,7 +191,8 @@ public:
     /// \param meshPoints  the positions of its vertices
     /// \param pointDesc   how they lie; the first 3 numbers of each are read
     /// \param previous    the forest of the last frame, of the same mesh, or null; where its trees are
-    ///                    others in number or of another face size, they are ignored
+    ///                    others in number or of another face size, they are ignored, and so are its
+    ///                    edges if they are others in number
     /// \param counts      null, or gets what was found
     template <typename REAL>
     CellForest MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],

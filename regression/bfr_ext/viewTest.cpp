@@ -2,7 +2,9 @@
 //
 // Trees of cells made for a view: how far facets are from the surface, and what is left out.
 #include "picture.h"
+#include "surfaceCase.h"
 #include "surfaceFixture.h"
+#include "turnedFacets.h"
 
 #include "bfr_ext/cell/cellValues.h"
 #include "bfr_ext/cell/flatness.h"
@@ -12,6 +14,7 @@
 #include "bfr_ext/view.h"
 #include "far_ext/executor.h"
 #include "far_ext/limit/cellPatch.h"
+#include "far_ext/limit/limitRows.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
@@ -42,6 +45,7 @@ namespace {
 
 /// The same cells as those of a surface, made apart from it.
 struct BaseCells {
+    /// \param meshPoints  of the surface level
     BaseCells(FarExt::TopologyRefiner const &refiner, std::vector<double> const &meshPoints)
         : _refiner(refiner), _meshPoints(meshPoints) {}
 
@@ -56,15 +60,17 @@ private:
     template <typename CELLS>
     void set(int face, CELLS &cells) {
         FarExt::internal::CellPatch cell;
-        GatherBaseCell(_refiner.GetHierarchy().mesh.levels[0], face, cell);
+        int const level = _refiner.GetHexSchemeOptions().GetSurfaceLevel();
+        GatherBaseCell(_refiner.GetHierarchy().mesh.levels[std::size_t(level)], face, cell);
         std::vector<double> points;
         for (Far::Index const vert : cell.patch.sources) {
             double const *const p = &_meshPoints[3 * std::size_t(vert)];
             points.insert(points.end(), p, p + 3);
         }
-        cells.SetBase(_types.Find(std::move(cell),
-                                  {_refiner.GetSchemeOptions(), _refiner.GetHexSchemeOptions(),
-                                   FarExt::Interpolation::Vertex}),
+        cells.SetBase(_types.Find(std::move(cell), {_refiner.GetSchemeOptions(),
+                                                    FarExt::internal::GetStepsToLimit(
+                                                        _refiner.GetHexSchemeOptions()),
+                                                    FarExt::Interpolation::Vertex}),
                       points.data(), 3);
     }
 
@@ -171,6 +177,16 @@ std::vector<Shape> getShapes() {
         shapes.push_back(GetFeatureShape(name));
     }
     return shapes;
+}
+
+/// Those without tags and with tags and flaws.
+std::vector<Shape> const &getManyShapes() {
+    static std::vector<Shape> const kShapes = [] {
+        std::vector<Shape> shapes = GetManifoldShapes();
+        shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
+        return shapes;
+    }();
+    return kShapes;
 }
 
 } // namespace
@@ -375,21 +391,29 @@ TEST(View, SidesAreAsShortAsIsAskedFor) {
     }
 }
 
-// A border that bends in the plane of flat cells.
-TEST(View, SharpEdgesAreCloseToTheirCurves) {
+namespace {
+
+/// In the plane z = 0, with a border and creases that bend there.
+Shape makeFlatShape() {
     Shape shape = GetFeatureShape("mixedSharpnessQuads");
     for (std::size_t i = 2; i < shape.positions.size(); i += 3) {
         shape.positions[i] = 0;
     }
+    return shape;
+}
+
+} // namespace
+
+namespace {
+
+/// Expects that facets are no further than \p pixels from the curves of sharp edges and borders.
+void expectCloseEdges(Shape const &shape, Camera const &camera, double pixels) {
     auto const refiner = makeRefiner(shape);
     auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
     SurfaceSet<double> const surfaces(*refiner, shape.positions);
     FarExt::TopologyLevel const &base = refiner->GetLevel(0);
-    Camera camera;
-    camera.eye[2] = 30;
-    camera.fieldOfView = 30;
     Picture const picture(camera);
-    View const view(camera, View::Options().SetFlatness(0.5).SetMaxLevel(10));
+    View const view(camera, View::Options().SetFlatness(pixels).SetMaxLevel(10));
     CellForest const forest = view.MakeForest<double>(*factory, shape.positions.data(), 3);
     int numPoints = 0;
     for (int face = 0; face < base.GetNumFaces(); ++face) {
@@ -419,12 +443,40 @@ TEST(View, SharpEdgesAreCloseToTheirCurves) {
                 for (int k = 1; k < 8; ++k) {
                     Vector3 const p = evaluate(k / 8.0);
                     Vector3 const d = Subtract(p, start);
-                    ASSERT_LE(picture.GetDistance(p, add(start, Scale(along, Dot(along, d)))), 0.5);
+                    Vector3 const foot = add(start, Scale(along, Dot(along, d)));
+                    if (picture.HasPoint(p) && picture.HasPoint(foot)) {
+                        ASSERT_LE(picture.GetDistance(p, foot), pixels);
+                    }
                 }
             }
         }
     }
     EXPECT_GT(numPoints, 20);
+}
+
+/// Just over a vertex of a shape in the plane z = 0, with the rest of it in the distance.
+Camera makeNearCamera(Shape const &shape, int vertex) {
+    auto const [least, largest] = getBox(shape.positions);
+    Camera camera;
+    for (std::size_t k = 0; k < 3; ++k) {
+        camera.target[k] = (least[k] + largest[k]) / 2;
+        camera.eye[k] = shape.positions[3 * std::size_t(vertex) + k];
+    }
+    camera.eye[2] = 0.02 * GetDistance(least, largest);
+    camera.fieldOfView = 120;
+    return camera;
+}
+
+} // namespace
+
+// A border that bends in the plane of flat cells, from above and with one end much closer than the other.
+TEST(View, SharpEdgesAreCloseToTheirCurves) {
+    Shape const shape = makeFlatShape();
+    Camera fromAbove;
+    fromAbove.eye[2] = 30;
+    fromAbove.fieldOfView = 30;
+    ASSERT_NO_FATAL_FAILURE(expectCloseEdges(shape, fromAbove, 0.5));
+    ASSERT_NO_FATAL_FAILURE(expectCloseEdges(shape, makeNearCamera(shape, 0), 2));
 }
 
 namespace {
@@ -469,71 +521,271 @@ void addRandomPoints(CellValues const &base, int face, int numCells, std::mt1993
     }
 }
 
-} // namespace
-
-TEST(View, NothingThatIsSeenIsCulled) {
-    constexpr int kNumViews = 100;
-    constexpr int kMaxFaces = 2;
-    constexpr int kCellsOfFace = 40;
-    std::mt19937 random(5);
-    std::array<long, 3> numCells = {}; // by what is known of them
-    long numCulledPoints = 0;
-    BfrExt::SurfaceFactoryCache cache;
-    auto const options = BfrExt::SurfaceFactory::Options().SetExternalCache(&cache);
-    std::vector<Shape> shapes = GetManifoldShapes();
-    shapes.insert(shapes.end(), GetFeatureShapes().begin(), GetFeatureShapes().end());
-    for (Shape const &shape : shapes) {
-        SCOPED_TRACE(shape.name);
-        auto const refiner = makeRefiner(shape);
-        auto const factory = BfrExt::SurfaceFactory::Create(*refiner, options);
-        BaseCells cells(*refiner, shape.positions);
-        std::map<int, Surface<double>> surfaces;
-        std::vector<PointInCells> points;
-        for (int i = 0; i < kMaxFaces; ++i) {
-            int const face = int(random() % unsigned(shape.GetNumFaces()));
-            Surface<double> surface;
-            if (surfaces.count(face) == 0 && factory->InitVertexSurface(face, &surface)) {
-                surfaces[face] = surface;
-                addRandomPoints(cells.Make(face), face, kCellsOfFace, random, points);
-            }
+/// A sharp edge or boundary of a face, with points of its curve.
+struct CurveOfEdge {
+    /// Those at places of a polyline.
+    CurveOfEdge(Surface<double> const &surface, std::vector<double> const &positions, int local)
+        : edge(local), places(Polyline(kLevel).GetPlaces()) {
+        for (Polyline::Place const place : places) {
+            double uv[2];
+            surface.GetParameterization().GetEdgeCoord(local, double(place) / Polyline::kLength,
+                                                       uv);
+            points.push_back(EvaluateSurface(surface, positions, uv).p);
         }
-        for (int round = 0; round < kNumViews; ++round) {
-            Camera const camera = makeRandomCamera(shape.positions, random);
-            Picture const picture(camera);
-            View const view(camera, View::Options().SetFlatness(2).SetMaxLevel(3).SetCulling(true));
-            std::map<int, CellTree> trees;
-            std::map<int, std::vector<CellVisibility>> visibilities;
-            for (auto const &[face, surface] : surfaces) {
-                std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
-                surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
-                std::vector<CellVisibility> &visibility = visibilities[face];
-                CellTree const tree =
-                    view.MakeTree(surface, control.data(), 3, nullptr, &visibility);
-                ASSERT_EQ(int(visibility.size()), tree.GetNumCells());
-                for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
-                    numCells[std::size_t(visibility[std::size_t(cell)])] += !tree.IsRefined(cell);
-                }
-                trees.emplace(face, tree);
+    }
+
+    static constexpr int kLevel = 6;
+
+    int edge;
+    std::vector<Polyline::Place> places;
+    std::vector<Vector3> points;
+};
+
+/// Expects that no point is in the picture where a polyline has fewer points than it has without culling.
+void expectNoneIsSeen(CurveOfEdge const &curve, Polyline const &culled, Polyline const &all,
+                      Picture const &picture, long &numCulled) {
+    ASSERT_TRUE(all.Contains(culled));
+    std::vector<Polyline::Place> ends = culled.GetPlaces();
+    ends.insert(ends.begin(), 0);
+    ends.push_back(Polyline::kLength);
+    for (std::size_t i = 0; i < curve.places.size(); ++i) {
+        auto const end = std::lower_bound(ends.begin() + 1, ends.end(), curve.places[i]);
+        auto const isInside = [&](Polyline::Place place) {
+            return end[-1] < place && place < *end;
+        };
+        if (std::any_of(all.GetPlaces().begin(), all.GetPlaces().end(), isInside)) {
+            ++numCulled;
+            ASSERT_FALSE(picture.HasPoint(curve.points[i])) << "at place " << curve.places[i];
+        }
+    }
+}
+
+struct CullingCounts {
+    void Report() const {
+        std::cout << cells[0] << " cells are not culled, " << cells[1] << " outside, " << cells[2]
+                  << " facing away, with " << points << " points; " << ofEdges
+                  << " points of sharp edges are culled\n";
+    }
+
+    std::array<long, 3> cells = {}; ///< by what is known of them
+    long points = 0;
+    long ofEdges = 0;
+};
+
+/// Looks at some faces of a shape from many sides.
+class CullingCheck {
+public:
+    static constexpr int kNumFaces = 2;
+    static constexpr int kCellsOfFace = 40;
+
+    CullingCheck(Shape const &shape, SurfaceCase const &surfaceCase,
+                 Sdc::Options::VtxBoundaryInterpolation boundary, std::mt19937 &random,
+                 BfrExt::SurfaceFactoryCache &cache)
+        : _random(random) {
+        Sdc::Options options;
+        options.SetVtxBoundaryInterpolation(boundary);
+        _refiner = CreateSurfaceRefiner(shape, surfaceCase, 0, options);
+        auto const factory = BfrExt::SurfaceFactory::Create(
+            *_refiner, BfrExt::SurfaceFactory::Options().SetExternalCache(&cache));
+        FarExt::TopologyLevel const level = factory->GetLevel();
+        _positions = FindControlPoints(*_refiner, shape.positions);
+        BaseCells cells(*_refiner, _positions);
+        for (int i = 0; i < kNumFaces; ++i) {
+            int const face = int(random() % unsigned(level.GetNumFaces()));
+            Surface<double> surface;
+            if (_faces.count(face) > 0 || !factory->InitVertexSurface(face, &surface)) {
+                continue;
             }
-            for (PointInCells const &point : points) {
-                int const cell = point.FindLeaf(trees.at(point.face));
-                if (visibilities[point.face][std::size_t(cell)] == CellVisibility::Visible) {
-                    continue;
+            Face &made = _faces[face];
+            made.surface = surface;
+            made.control.resize(3 * std::size_t(surface.GetNumControlPoints()));
+            surface.GatherControlPoints(_positions.data(), 3, made.control.data(), 3);
+            addRandomPoints(cells.Make(face), face, kCellsOfFace, random, made.points);
+            for (int local = 0; local < surface.GetFaceSize(); ++local) {
+                if (level.IsEdgeInfSharp(level.GetFaceEdges(face)[local])) {
+                    made.edges.emplace_back(surface, _positions, local);
                 }
-                ++numCulledPoints;
-                SurfacePoint const &surface = point.surface;
-                Vector3 const toEye = Subtract(ToVector(camera.eye), surface.p);
-                ASSERT_FALSE(Dot(Cross(surface.du, surface.dv), toEye) > 0 &&
-                             picture.HasPoint(surface.p))
-                    << "face " << point.face << ", cell " << cell << ", view " << round;
             }
         }
     }
-    std::cout << shapes.size() << " shapes: " << numCells[0] << " cells are not culled, "
-              << numCells[1] << " outside, " << numCells[2] << " facing away; " << numCulledPoints
-              << " points in these\n";
-    EXPECT_GT(numCells[1], 10000);
-    EXPECT_GT(numCells[2], 1000);
+
+    void Look(int numViews, CullingCounts &counts) {
+        for (int round = 0; round < numViews; ++round) {
+            SCOPED_TRACE(testing::Message() << "view " << round);
+            Camera const camera = makeRandomCamera(_positions, _random);
+            for (auto const &[number, face] : _faces) {
+                SCOPED_TRACE(testing::Message() << "face " << number);
+                ASSERT_NO_FATAL_FAILURE(look(camera, face, counts));
+            }
+        }
+    }
+
+private:
+    struct Face {
+        Surface<double> surface;
+        std::vector<double> control;
+        std::vector<PointInCells> points;
+        std::vector<CurveOfEdge> edges;
+    };
+
+    void look(Camera const &camera, Face const &face, CullingCounts &counts) {
+        Picture const picture(camera);
+        View const view(camera, makeOptions().SetCulling(true));
+        double const *const control = face.control.data();
+        std::vector<CellVisibility> visibility;
+        CellTree const tree = view.MakeTree(face.surface, control, 3, nullptr, &visibility);
+        ASSERT_EQ(int(visibility.size()), tree.GetNumCells());
+        for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
+            counts.cells[std::size_t(visibility[std::size_t(cell)])] += !tree.IsRefined(cell);
+        }
+        for (PointInCells const &point : face.points) {
+            int const cell = point.FindLeaf(tree);
+            if (visibility[std::size_t(cell)] == CellVisibility::Visible) {
+                continue;
+            }
+            ++counts.points;
+            SurfacePoint const &surface = point.surface;
+            Vector3 const toEye = Subtract(ToVector(camera.eye), surface.p);
+            ASSERT_FALSE(Dot(Cross(surface.du, surface.dv), toEye) > 0 &&
+                         picture.HasPoint(surface.p))
+                << "cell " << cell;
+        }
+        for (CurveOfEdge const &curve : face.edges) {
+            Polyline const culled = lookAtEdge(camera, face, curve, counts);
+            // Where a face is culled, so are its edges.
+            ASSERT_TRUE(visibility[0] == CellVisibility::Visible || culled == Polyline());
+            // A piece of the curve fills the picture, without the ends of the edge.
+            Camera near = camera;
+            Vector3 const &point = curve.points[_random() % curve.points.size()];
+            std::copy(point.begin(), point.end(), near.target);
+            near.fieldOfView = 1 + double(_random() % 5);
+            lookAtEdge(near, face, curve, counts);
+        }
+    }
+
+    static Polyline lookAtEdge(Camera const &camera, Face const &face, CurveOfEdge const &curve,
+                               CullingCounts &counts) {
+        auto const make = [&](bool isCulling) {
+            return View(camera, makeOptions().SetCulling(isCulling))
+                .MakeEdge(face.surface, curve.edge, face.control.data(), 3);
+        };
+        Polyline culled = make(true);
+        expectNoneIsSeen(curve, culled, make(false), Picture(camera), counts.ofEdges);
+        return culled;
+    }
+
+    static View::Options makeOptions() { return View::Options().SetFlatness(2).SetMaxLevel(3); }
+
+    std::mt19937 &_random;
+    std::unique_ptr<FarExt::TopologyRefiner> _refiner;
+    std::vector<double> _positions;
+    std::map<int, Face> _faces;
+};
+
+} // namespace
+
+TEST(View, NothingThatIsSeenIsCulled) {
+    std::mt19937 random(5);
+    BfrExt::SurfaceFactoryCache cache;
+    CullingCounts counts;
+    for (Shape const &shape : getManyShapes()) {
+        SCOPED_TRACE(shape.name);
+        CullingCheck check(shape, kPlainCases[2], Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER,
+                           random, cache);
+        ASSERT_NO_FATAL_FAILURE(check.Look(100, counts));
+    }
+    counts.Report();
+    EXPECT_GT(counts.cells[1], 10000);
+    EXPECT_GT(counts.cells[2], 1000);
+    EXPECT_GT(counts.ofEdges, 1000);
+}
+
+namespace {
+
+/// A unit square alone, whose border is smooth.
+struct RoundedSquare {
+    RoundedSquare() : shape(MakeTiling(Tiling::Quads, 1, 1)) {
+        Sdc::Options options;
+        options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, options);
+        factory = BfrExt::SurfaceFactory::Create(*refiner);
+        factory->InitVertexSurface(0, &surface);
+        control.resize(3 * std::size_t(surface.GetNumControlPoints()));
+        surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+    }
+
+    Shape const shape;
+    std::unique_ptr<FarExt::TopologyRefiner> refiner;
+    std::unique_ptr<BfrExt::SurfaceFactory> factory;
+    Surface<double> surface;
+    std::vector<double> control;
+};
+
+} // namespace
+
+TEST(View, EdgesAreReversedInAMirror) {
+    RoundedSquare const square;
+    auto const make = [&](double x) {
+        Camera camera;
+        std::copy_n(std::array<double, 3>{x, -0.3, 0.1}.data(), 3, camera.eye);
+        std::copy_n(std::array<double, 3>{0.5, 0.5, 0}.data(), 3, camera.target);
+        std::copy_n(std::array<double, 3>{0, 0, 1}.data(), 3, camera.up);
+        return View(camera).MakeEdge(square.surface, 0, square.control.data(), 3);
+    };
+    EXPECT_GT(make(0.125).GetNumPoints(), 10);
+    EXPECT_NE(make(0.125), make(0.875));
+    EXPECT_EQ(make(0.125), make(0.875).GetReversed());
+}
+
+// The ends of an edge, and all places between them, lie outside of what shows a part of its curve.
+TEST(View, EdgesThatBendIntoThePictureAreSeen) {
+    RoundedSquare const square;
+    for (int edge = 0; edge < 4; ++edge) {
+        CurveOfEdge const curve(square.surface, square.shape.positions, edge);
+        Camera camera;
+        std::copy_n(curve.points[curve.points.size() / 2].data(), 3, camera.target);
+        std::copy_n(camera.target, 3, camera.eye);
+        camera.eye[2] += 5;
+        camera.fieldOfView = 0.1;
+        camera.height = camera.width;
+        auto const make = [&](bool isCulling) {
+            return View(camera, View::Options().SetMaxLevel(6).SetCulling(isCulling))
+                .MakeEdge(square.surface, edge, square.control.data(), 3);
+        };
+        long numCulled = 0;
+        ASSERT_NO_FATAL_FAILURE(
+            expectNoneIsSeen(curve, make(true), make(false), Picture(camera), numCulled));
+        EXPECT_GT(make(true).GetNumPoints(), 2);
+        EXPECT_GT(numCulled, 2);
+    }
+}
+
+// The shapes have these surfaces in turn, each of which takes its time.
+TEST(View, NothingThatIsSeenIsCulledOfOtherSurfaces) {
+    std::mt19937 random(6);
+    BfrExt::SurfaceFactoryCache cache;
+    SurfaceCase const cases[] = {kPlainCases[1], kTruncateCases[2], kPlainCases[0],
+                                 kTruncateCases[1], kTruncateCases[0]};
+    CullingCounts counts[std::size(cases)];
+    std::size_t next = 0;
+    for (Shape const &shape : getManyShapes()) {
+        SCOPED_TRACE(shape.name);
+        std::size_t const i = next % std::size(cases);
+        if (cases[i].HasFirstStep() && shape.name == "dihedron5") {
+            continue; // truncated, it is no more than a point
+        }
+        auto const boundary = next++ % 2 == 0 ? Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
+                                              : Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER;
+        CullingCheck check(shape, cases[i], boundary, random, cache);
+        ASSERT_NO_FATAL_FAILURE(check.Look(40, counts[i]));
+    }
+    for (std::size_t i = 0; i < std::size(cases); ++i) {
+        std::cout << cases[i].GetName() << ": ";
+        counts[i].Report();
+        EXPECT_GT(counts[i].cells[1], 100);
+        EXPECT_EQ(counts[i].cells[2] > 0, cases[i].mask != ReferenceMask::Average);
+        EXPECT_GT(counts[i].ofEdges, 100);
+    }
 }
 
 // Where points lie by chance, normals differ as much as they can.
@@ -607,6 +859,85 @@ TEST(View, WhatWasRefinedStaysSo) {
     EXPECT_EQ(getNumLeaves(kept), getNumLeaves(fine));
     EXPECT_LT(getNumLeaves(dropped), getNumLeaves(fine));
     EXPECT_GT(getNumLeaves(dropped), getNumLeaves(make(2.5, nullptr)));
+}
+
+// In flat cells edges alone are divided, near the camera more than far from it.
+TEST(View, SharpEdgesThatWereDividedStaySo) {
+    Shape const shape = makeFlatShape();
+    auto const refiner = makeRefiner(shape);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    Camera const camera = makeNearCamera(shape, 0);
+    auto const makeView = [&](double pixels) {
+        return View(camera, View::Options().SetFlatness(pixels).SetMaxLevel(10).SetHysteresis(0.5));
+    };
+    auto const make = [&](double pixels, CellForest const *previous) {
+        BfrExt::ViewBounds bounds(*factory);
+        CellForest forest =
+            makeView(pixels).MakeForest<double>(bounds, shape.positions.data(), 3, previous);
+        CellForest const other =
+            makeView(pixels).MakeForest<double>(*factory, shape.positions.data(), 3, previous);
+        for (int edge = 0; edge < refiner->GetLevel(0).GetNumEdges(); ++edge) {
+            EXPECT_EQ(forest.GetPolyline(edge), other.GetPolyline(edge));
+        }
+        return forest;
+    };
+    CellForest const fine = make(0.5, nullptr);
+    CellForest const kept = make(1, &fine);
+    CellForest const dropped = make(2.5, &fine);
+    EXPECT_LT(make(1, nullptr).GetNumBoundaryPoints(), fine.GetNumBoundaryPoints());
+    EXPECT_EQ(kept.GetNumBoundaryPoints(), fine.GetNumBoundaryPoints());
+    EXPECT_LT(dropped.GetNumBoundaryPoints(), fine.GetNumBoundaryPoints());
+    EXPECT_GT(dropped.GetNumBoundaryPoints(), make(2.5, nullptr).GetNumBoundaryPoints());
+
+    // Either side of a crease knows the last frame by its own direction.
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    FarExt::TopologyLevel const &base = refiner->GetLevel(0);
+    int numOneSided = 0;
+    for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
+        if (!base.IsEdgeInfSharp(edge) || base.GetEdgeFaces(edge).size() != 2) {
+            continue;
+        }
+        std::vector<Polyline> found;
+        for (int const face : base.GetEdgeFaces(edge)) {
+            Surface<double> const &surface = surfaces[face];
+            std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+            surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+            int const local = base.GetFaceEdges(face).FindIndex(edge);
+            Polyline const last = makeView(0.5).MakeEdge(surface, local, control.data(), 3);
+            EXPECT_EQ(makeView(1).MakeEdge(surface, local, control.data(), 3, &last), last);
+            found.push_back(last);
+        }
+        EXPECT_EQ(found[0], found[1].GetReversed());
+        numOneSided += found[0] != found[1];
+    }
+    EXPECT_GT(numOneSided, 0);
+}
+
+// As many faces, but other edges, all of which were divided.
+TEST(View, IgnoresEdgesOfOtherMeshes) {
+    Shape const shape = MakeTiling(Tiling::Quads, 2, 3);
+    auto const refiner = makeRefiner(shape);
+    auto const other = makeRefiner(MakeTiling(Tiling::Quads, 6, 1));
+    ASSERT_EQ(refiner->GetLevel(0).GetNumFaces(), other->GetLevel(0).GetNumFaces());
+    ASSERT_NE(refiner->GetLevel(0).GetNumEdges(), other->GetLevel(0).GetNumEdges());
+    CellForest previous(*other);
+    for (int edge = 0; edge < other->GetLevel(0).GetNumEdges(); ++edge) {
+        previous.SetEdge(edge, Polyline(6));
+    }
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    Camera camera;
+    camera.eye[2] = 9;
+    View const view(camera, View::Options().SetFlatness(20).SetHysteresis(0));
+    auto const count = [&](CellForest const *last) {
+        return view.MakeForest<double>(*factory, shape.positions.data(), 3, last)
+            .GetNumBoundaryPoints();
+    };
+    EXPECT_EQ(count(&previous), count(nullptr));
+    CellForest own(*refiner);
+    for (int edge = 0; edge < refiner->GetLevel(0).GetNumEdges(); ++edge) {
+        own.SetEdge(edge, Polyline(6));
+    }
+    EXPECT_GT(count(&own), count(nullptr));
 }
 
 TEST(View, ForestsAreTheSameForAnyThreadsAndTypes) {
@@ -764,6 +1095,59 @@ TEST(View, TakesFarFewerPolygonsThanUniformLevels) {
     double const numUniform = forest.GetNumFaces() + numEdges * (std::pow(4, uniformLevel) - 1) / 3;
     std::cout << numPolygons << " polygons, " << numUniform << " at level " << uniformLevel << "\n";
     EXPECT_LT(10 * numPolygons, numUniform);
+}
+
+// Alone and behind a truncation, shapes have all masks in turn.  Behind a truncation faces at borders have corners
+// of a half turn, where triangles may be slivers on either side.
+TEST(View, HardlyAFacetIsTurnedOver) {
+    constexpr int kNumViews = 4;
+    std::mt19937 random(41);
+    struct Facets {
+        TurnedFacets polygons;
+        TurnedFacets triangles;
+    } facets[2]; // alone and truncated
+    std::size_t next = 0;
+    std::vector<Shape> shapes = getShapes();
+    shapes.push_back(GetShape("annulus")); // its inner border is concave
+    for (Shape const &shape : shapes) {
+        for (bool const isTruncated : {false, true}) {
+            SurfaceCase const &surfaceCase =
+                (isTruncated ? kTruncateCases : kPlainCases)[next++ % std::size(kPlainCases)];
+            Sdc::Options options;
+            options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+            auto const refiner = CreateSurfaceRefiner(shape, surfaceCase, 0, options);
+            auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+            std::vector<double> const positions = FindControlPoints(*refiner, shape.positions);
+            for (int round = 0; round < kNumViews; ++round) {
+                View const view(makeRandomCamera(positions, random),
+                                View::Options().SetMaxLevel(5).SetCulling(round % 2 == 1));
+                CellForest const forest = view.MakeForest<double>(*factory, positions.data(), 3);
+                for (int face = 0; face < forest.GetNumFaces(); ++face) {
+                    Surface<double> surface;
+                    if (!factory->InitVertexSurface(face, &surface)) {
+                        continue;
+                    }
+                    std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+                    surface.GatherControlPoints(positions.data(), 3, control.data(), 3);
+                    auto const add = [&](int facetSize, TurnedFacets &counted) {
+                        auto const ofSize = BfrExt::Tessellation::Options().SetFacetSize(facetSize);
+                        counted.Add(surface, forest.GetTessellation(face, ofSize), control);
+                    };
+                    add(0, facets[isTruncated].polygons);
+                    add(3, facets[isTruncated].triangles);
+                }
+            }
+        }
+    }
+    for (Facets const &found : facets) {
+        found.polygons.Report("polygons");
+        found.triangles.Report("triangles");
+        EXPECT_GT(found.polygons.GetNumFacets(), 10000);
+    }
+    EXPECT_LT(facets[0].polygons.GetShare(), 0.001);
+    EXPECT_LT(facets[0].triangles.GetShare(), 0.001);
+    EXPECT_LT(facets[1].polygons.GetShare(), 0.001);
+    EXPECT_LT(facets[1].triangles.GetShare(), 0.02);
 }
 
 } // namespace OpenSubdivHex::Regression
