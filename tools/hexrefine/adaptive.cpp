@@ -100,7 +100,8 @@ void AddAdaptiveOptions(CLI::App &app, AdaptiveArguments *arguments) {
     auto *const adaptive = app.add_flag("--adaptive", arguments->isAdaptive,
                                         "Refine parts of the mesh as far as a camera needs them, "
                                         "in place of --level, with vertices "
-                                        "on the limit surface and without gaps");
+                                        "on the limit surface and without gaps; not with --limit, "
+                                        "--evaluator, --simd, --coplanar or --separate-vertices");
     AddNumbers(app, "--camera", &arguments->camera, 6, 6,
                "Eye and target of the camera of --adaptive, with y up")
         ->type_name("EX,EY,EZ,TX,TY,TZ")
@@ -133,7 +134,8 @@ void AddAdaptiveOptions(CLI::App &app, AdaptiveArguments *arguments) {
         ->needs(adaptive)
         ->capture_default_str();
     app.add_flag("--cull", arguments->isCulling,
-                 "Leave coarse what is outside of the picture or faces away for certain")
+                 "Leave coarse what is outside of the picture or, with --mask smooth and cosine, "
+                 "faces away for certain")
         ->needs(adaptive);
     app.add_option("--max-level", arguments->maxLevel, "The last level that --adaptive makes")
         ->check([](std::string const &word) {
@@ -149,10 +151,17 @@ void AddAdaptiveOptions(CLI::App &app, AdaptiveArguments *arguments) {
 }
 
 void CheckAdaptiveOptions(CLI::App const &app, AdaptiveArguments const &arguments) {
-    for (char const *const option :
-         {"--level", "--limit", "--evaluator", "--simd", "--coplanar", "--separate-vertices"}) {
+    struct Refused {
+        char const *option;
+        char const *reason;
+    };
+    for (auto const &[option, reason] :
+         {Refused{"--level", ", which refines up to --max-level"},
+          Refused{"--limit", ", whose vertices are limit points already"},
+          Refused{"--evaluator", ""}, Refused{"--simd", ""}, Refused{"--coplanar", ""},
+          Refused{"--separate-vertices", ""}}) {
         if (arguments.isAdaptive && app.count(option) > 0) {
-            throw CLI::ValidationError(option, "is not for --adaptive");
+            throw CLI::ValidationError(option, std::string("is not for --adaptive") + reason);
         }
     }
 }

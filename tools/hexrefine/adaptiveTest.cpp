@@ -221,9 +221,18 @@ TEST_F(HexrefineAdaptive, BadArgumentsAreNamed) {
     expectBadUsage(cube + " --adaptive --resolution 65537x10", "65536");
     expectBadUsage(cube + " --adaptive --pixel-error 0", "--pixel-error");
     expectBadUsage(cube + " --adaptive --max-level 13", "--max-level");
-    expectBadUsage(cube + " --adaptive -l 3", "--level");
-    expectBadUsage(cube + " --adaptive --limit", "--limit");
-    expectBadUsage(cube + " --adaptive --simd portable", "--simd: is not for --adaptive");
+    expectBadUsage(cube + " --adaptive -l 3",
+                   "--level: is not for --adaptive, which refines up to --max-level");
+    expectBadUsage(cube + " --adaptive --limit",
+                   "--limit: is not for --adaptive, whose vertices are limit points already");
+    Result const help = run("--help");
+    for (std::string const option :
+         {"--evaluator primvar", "--simd portable", "--coplanar", "--separate-vertices -o x.ply"}) {
+        std::string const name = option.substr(0, option.find(' '));
+        expectBadUsage(cube + " --adaptive " + option, name + ": is not for --adaptive\n");
+        std::size_t const list = help.out.find("not with");
+        EXPECT_LT(help.out.find(name, list), help.out.find("--camera", list)) << help.out;
+    }
     expectBadUsage(cube + " --png a.png --png-colors levels", "--adaptive");
     expectFailure(cube + " --adaptive --camera 1,2,3,1,2,3", cube, "camera");
     expectFailure(cube + " --adaptive --scheme doo-sabin", cube, "--adaptive");
@@ -327,6 +336,52 @@ TEST_F(HexrefineAdaptive, BeginsBehindAFirstStep) {
     EXPECT_GT(numOpen, 2);
     Result const json = run(octahedron + " --adaptive --quiet --stats - " + options);
     EXPECT_EQ(Json::parse(json.out)["firstStep"], "truncate");
+}
+
+// Creases and borders, too, which have points of their own.
+TEST_F(HexrefineAdaptive, CullsSharpEdges) {
+    std::string const behind = " --camera 5,0,0,10,0,0";
+    std::string const cube = CUBE_FILE;
+    EXPECT_GT(refine(cube, behind, "all.ply").GetNumVertices(), 1000);
+    Mesh const culled = refine(cube, behind + " --cull", "culled.ply");
+    EXPECT_EQ(culled.GetNumVertices(), 8);
+    EXPECT_EQ(culled.GetNumFaces(), 6);
+    // Half of the cube is in the picture.
+    std::string const beside = " --camera 6,0,0,6,6,4 --fov 90";
+    Mesh const half = refine(cube, beside + " --cull", "half.ply");
+    EXPECT_LT(half.GetNumVertices(), refine(cube, beside, "all.ply").GetNumVertices());
+    ASSERT_NO_FATAL_FAILURE(expectClosed(half));
+}
+
+// Normals of a file say how the control mesh is to look, not where the surface faces.
+TEST_F(HexrefineAdaptive, LeavesNormalsOut) {
+    std::string const corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    std::string const obj =
+        makeFile("normals.obj", corners + "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nvn 0 1 0\n"
+                                          "f 1/1/1 2/2/1 3/3/1\nf 1/1/2 3/3/1 4/2/2\n");
+    std::string const ply =
+        makeFile("normals.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                 "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+                 "property float w\nelement face 1\n"
+                 "property list uchar int vertex_indices\nend_header\n"
+                 "0 0 0 0 0 1 2\n1 0 0 0 0 1 2\n1 1 0 0 1 0 2\n0 1 0 0 1 0 2\n4 0 1 2 3\n");
+    for (std::string const &input : {obj, ply}) {
+        for (char const *const output : {"out.obj", "out.ply"}) {
+            Result const result =
+                run(input + " --adaptive --boundary edge-only -o " + getPath(output));
+            EXPECT_EQ(result.status, 0) << result.error;
+            EXPECT_NE(result.out.find("not read: normals, which are not those of the surface\n"),
+                      std::string::npos)
+                << result.out;
+            Mesh const mesh = ReadMesh(getPath(output));
+            for (FVarChannel const &channel : mesh.channels) {
+                EXPECT_EQ(channel.kind, FVarKind::Uv);
+            }
+            EXPECT_EQ(FindProperty(mesh.vertexProperties, "nx"), nullptr);
+            EXPECT_EQ(FindProperty(mesh.vertexProperties, "w") != nullptr, input == ply);
+        }
+    }
 }
 
 TEST_F(HexrefineAdaptive, LeavesHolesOut) {

@@ -2,7 +2,6 @@
 #include "cellPieces.h"
 
 #include "faceLoop.h"
-#include "normals.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshCheck.h"
 
@@ -144,7 +143,6 @@ bool CellPieces::MakeNext() {
         }
     }
     CheckFinite(_piece, _input, "--adaptive: ", start);
-    NormalizeNormals(&_piece);
     return !_piece.faceSizes.empty();
 }
 
@@ -249,7 +247,6 @@ void CellPieces::addValues(Patch const &patch, std::vector<int> const &verts, st
 
 Mesh CellPieces::TakeFront() {
     CheckFinite(_front, _input, "--adaptive: ");
-    NormalizeNormals(&_front);
     return std::move(_front);
 }
 

@@ -117,10 +117,10 @@ void Job::Validate() {
         Sdc::Options const sdcOptions = chooseOptions();
         _tagText = _arguments.printsTags ? FormatTags(_mesh, sdcOptions) : "";
         _statistics.notRead = _mesh.notRead;
-        removeWhatIsNotWritten();
-        if (_arguments.isLimit) {
+        if (_arguments.isLimit || isAdaptive()) {
             removeNormals();
         }
+        removeWhatIsNotWritten();
         _statistics.attributes = CountAttributes(_mesh);
         createRefiner(sdcOptions);
         _statistics.boundary = kBoundaryNames[sdcOptions.GetVtxBoundaryInterpolation()];
@@ -267,20 +267,22 @@ void Job::removeWhatIsNotWritten() {
         MoveLibraries(std::move(_mesh.materialLibraries), _arguments.input, _arguments.output);
 }
 
-// Makes room for the normals of --limit: those of vertices are removed, and named.  Face-varying ones
-// may have seams that the limit has not.
+// Removes the normals of corners and of vertices, and names them, where vertices come to lie on the limit surface:
+// its normals are others.
 void Job::removeNormals() {
-    for (FVarChannel const &channel : _mesh.channels) {
-        if (channel.kind == FVarKind::Normal) {
-            throw FileError(_arguments.input,
-                            "has normals of its own, which those of --limit would replace");
-        }
-    }
+    std::vector<FVarChannel> &channels = _mesh.channels;
     std::vector<VertexProperty> &properties = _mesh.vertexProperties;
-    auto const end = std::remove_if(properties.begin(), properties.end(), IsNormal);
-    if (end != properties.end()) {
-        properties.erase(end, properties.end());
-        _statistics.notRead.emplace_back("normals, those of --limit replace them");
+    std::size_t const numBefore = channels.size() + properties.size();
+    channels.erase(
+        std::remove_if(channels.begin(), channels.end(),
+                       [](FVarChannel const &channel) { return channel.kind == FVarKind::Normal; }),
+        channels.end());
+    properties.erase(std::remove_if(properties.begin(), properties.end(), IsNormal),
+                     properties.end());
+    if (channels.size() + properties.size() < numBefore) {
+        _statistics.notRead.emplace_back(_arguments.isLimit
+                                             ? "normals, those of --limit replace them"
+                                             : "normals, which are not those of the surface");
     }
 }
 

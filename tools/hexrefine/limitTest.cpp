@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <sstream>
 
 namespace OpenSubdivHex::Tools {
 
@@ -105,10 +106,40 @@ TEST_F(HexrefineLimit, PlyFilesHaveNormalsOfVertices) {
     }
 }
 
-TEST_F(HexrefineLimit, RefusesWhatItCannotWrite) {
-    refine(makeCubeFile(), "-l 1", "normals.obj");
-    expectFailure("\"" + getPath("normals.obj") + "\" --limit", getPath("normals.obj"),
-                  "has normals of its own");
+// As normals of vertices in PLY files do, those of corners make room in OBJ files, whatever is written.
+TEST_F(HexrefineLimit, ReplacesNormals) {
+    std::string const cube = getContent(makeCubeFile());
+    std::string withNormals = cube.substr(0, cube.find("f ")) + "vt 0 0\nvn 0 0 5\nvn 0 3 4\n";
+    std::istringstream faces(cube.substr(cube.find("f ")));
+    int numWords = 0;
+    for (std::string word; faces >> word;) {
+        withNormals +=
+            word == "f" ? "\nf" : " " + word + "/1/" + std::to_string(1 + ++numWords % 2);
+    }
+    std::string const input = makeFile("normals.obj", withNormals + "\n");
+    for (char const *const output : {"out.obj", "out.ply", "out.off"}) {
+        SCOPED_TRACE(output);
+        Mesh const expected = refine(makeCubeFile(), "-l 2", output);
+        Result const result = run(input + " --limit -l 2 -o " + getPath(output));
+        EXPECT_EQ(result.status, 0) << result.error;
+        EXPECT_NE(result.out.find("not read: normals, those of --limit replace them\n"),
+                  std::string::npos)
+            << result.out;
+        EXPECT_EQ(result.out.find("channel normal"), std::string::npos) << result.out;
+        Mesh const mesh = ReadMesh(getPath(output));
+        EXPECT_EQ(mesh.positions, expected.positions);
+        ASSERT_EQ(mesh.vertexProperties.size(), expected.vertexProperties.size());
+        for (std::size_t i = 0; i < mesh.vertexProperties.size(); ++i) {
+            EXPECT_EQ(mesh.vertexProperties[i].values, expected.vertexProperties[i].values);
+        }
+        if (!expected.channels.empty()) {
+            ASSERT_EQ(mesh.channels.size(), 2u);
+            EXPECT_EQ(mesh.channels[0].kind, FVarKind::Uv);
+            EXPECT_EQ(mesh.channels[1].kind, FVarKind::Normal);
+            EXPECT_EQ(mesh.channels[1].values, expected.channels.at(0).values);
+            EXPECT_EQ(mesh.channels[1].faceValues, expected.channels.at(0).faceValues);
+        }
+    }
 }
 
 TEST_F(HexrefineLimit, IsTheSameByAllEvaluators) {
