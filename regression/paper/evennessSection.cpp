@@ -19,7 +19,8 @@ namespace {
 
 namespace Sdc = OpenSubdiv::Sdc;
 
-/// Level of the measures, at most: how uneven a surface is changes little from here on.
+/// Level of the measures, at most.  On quads finer levels are more uneven, by up to a half, since there are
+/// ever finer ripples around quads and irregular vertices.
 constexpr int kMeasuredLevel = 5;
 
 struct Contestant {
@@ -49,7 +50,7 @@ std::string findGrowth(AnyScheme const &scheme, int valence) {
     LocalSubdivision const subdivision =
         options ? MakeLocalSubdivision(*options, CenterKind::Vertex, valence)
                 : MakeLocalSubdivision(std::get<Sdc::SchemeType>(scheme), valence);
-    return FormatNumber(ComputeSpectrum(subdivision).GetCurvatureGrowth(), 2);
+    return FormatNumber(ComputeSpectrum(subdivision).GetCurvatureGrowth(), 4);
 }
 
 void addValences(Page *page, int level) {
@@ -78,7 +79,7 @@ void addValences(Page *page, int level) {
     for (Column const &column : columns) {
         table.header.emplace_back(column.name);
     }
-    for (int valence : {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 16}) {
+    for (int valence : {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 16, 64}) {
         table.rows.push_back({std::to_string(valence)});
         for (Column const &column : columns) {
             table.rows.back().push_back(

@@ -74,10 +74,12 @@ int limitLevel(Shape const &shape, int level) {
 
 void AddModelSection(Page *page, Settings const &settings) {
     page->BeginSection("models", "Whole models");
-    page->AddParagraph("Reflection lines break where normals do, bend sharply where curvature "
-                       "jumps, and waver where it is uneven.  Smooth has masks of its own around "
-                       "vertices with four faces or more and beside quads; the first pictures show "
-                       "it without them.");
+    page->AddParagraph(
+        "Reflection lines break where normals do, bend sharply where curvature "
+        "jumps, and waver where it is uneven.  Smooth has masks of its own around "
+        "vertices with four faces or more and beside quads; the first pictures show "
+        "it without them.  Where Suzanne and Spot are not at hand, two meshes of the tutorials "
+        "stand for them.");
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     for (Model const &model : {findModel("suzanne", {30, 10, 1}, "ring", {20, 35, 1}, false),
