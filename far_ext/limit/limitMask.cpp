@@ -2,6 +2,7 @@
 #include "limitMask.h"
 
 #include "far_ext/vtr/pi.h"
+#include "patchCycle.h"
 
 #include <cmath>
 #include <numeric>
@@ -14,30 +15,6 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 using Vector = std::vector<double>;
-
-// Steps that lead from a patch back to one that looks the same, as one linear map.
-class Cycle {
-public:
-    void Add(PatchRefinement const &step) { _steps.push_back(&step); }
-    int GetSize() const { return int(_steps.size()); }
-
-    void ApplyLeft(Vector &left) {
-        for (auto step = _steps.rbegin(); step != _steps.rend(); ++step) {
-            (*step)->ApplyLeft(left, _scratch);
-            left.swap(_scratch);
-        }
-    }
-    void ApplyRight(Vector &right) {
-        for (PatchRefinement const *step : _steps) {
-            step->ApplyRight(right, _scratch);
-            right.swap(_scratch);
-        }
-    }
-
-private:
-    std::vector<PatchRefinement const *> _steps;
-    Vector _scratch;
-};
 
 double dot(Vector const &a, Vector const &b) {
     double sum = 0;
@@ -89,6 +66,17 @@ double replace(Vector &vector, Vector &next) {
     return change;
 }
 
+// The elements of some vertices.
+template <typename T>
+std::vector<T> gather(std::vector<T> const &vector, std::vector<Index> const &verts) {
+    std::vector<T> result;
+    result.reserve(verts.size());
+    for (Index vert : verts) {
+        result.push_back(vector[vert]);
+    }
+    return result;
+}
+
 // A left and a right eigenvector of the same eigenvalue.
 struct Mode {
     Vector left;
@@ -99,7 +87,7 @@ struct Mode {
 void deflate(Vector &left, Mode const &mode) { addScaled(left, -dot(left, mode.right), mode.left); }
 
 // The mode of the eigenvalue 1: all rows of a step sum to 1.
-bool findPointMode(Cycle &cycle, int numVerts, Mode &mode) {
+bool findPointMode(PatchCycle &cycle, int numVerts, Mode &mode) {
     mode = {Vector(numVerts, 0.0), Vector(numVerts, 1.0)};
     mode.left[0] = 1;
     Vector next;
@@ -141,6 +129,14 @@ struct Layout {
                 placeOuterFaces(level, item.neighbor, !isBreak(item));
             }
         }
+    }
+
+    // Leaves out all but some vertices.
+    void Keep(std::vector<Index> const &verts) {
+        x = gather(x, verts);
+        y = gather(y, verts);
+        isInside = gather(isInside, verts);
+        isPlaced = gather(isPlaced, verts);
     }
 
     double size = 0; // in faces; half faces count half
@@ -202,32 +198,72 @@ private:
 };
 
 // Finds the masks of the tangents on one side of a vertex.
+//
+// At a vertex of a crease or a corner they depend on that side alone.  What lies beyond is left out: a
+// corner of many creases has as many sides.
 class TangentFinder {
 public:
-    TangentFinder(Level const &level, VertexSide const &side, FaceMask faceMask, Cycle &cycle,
+    TangentFinder(Level const &level, VertexSide const &side, FaceMask faceMask, PatchCycle &cycle,
                   Mode const &pointMode)
-        : _side(side), _faceMask(faceMask), _rule(findRule(level)),
-          _layout(level, side, _rule == Crease::RULE_CORNER), _cycle(cycle), _pointMode(pointMode) {
+        : _side(side), _faceMask(faceMask), _rule(findRule(level)), _numVerts(level.numVertices),
+          _layout(level, side, _rule == Crease::RULE_CORNER), _cycle(cycle),
+          _verts(cycle.Confine(findSupport(pointMode), _rule == Crease::RULE_CORNER)),
+          _pointMode({gather(pointMode.left, _verts), gather(pointMode.right, _verts)}) {
+        _layout.Keep(_verts);
     }
 
     // Returns whether the iterations converge to tangents with different directions.
     bool Find(LimitMask::Tangents &tangents) {
-        tangents = {_layout.x, _layout.y};
+        LimitMask::Tangents found = {_layout.x, _layout.y};
         bool hasConverged = false;
-        if (_rule != Crease::RULE_CORNER && _rule != Crease::RULE_CREASE) {
-            hasConverged = iterateBoth(tangents, [this](Vector &left) { removePoint(left); });
+        if (!dependsOnSide()) {
+            hasConverged = iterateBoth(found, [this](Vector &left) { removePoint(left); });
         } else if (_side.isAllAround) {
-            hasConverged = findAllAround(tangents);
+            hasConverged = findAllAround(found);
         } else {
-            hasConverged = findAlong(_side.items.front(), tangents.du) && findAcross(tangents);
+            hasConverged = findAlong(_side.items.front(), found.du) && findAcross(found);
         }
-        return hasConverged && scaleToLayout(tangents);
+        if (!hasConverged || !scaleToLayout(found)) {
+            return false;
+        }
+        tangents = {scatter(found.du), scatter(found.dv)};
+        return true;
     }
 
 private:
     static Crease::Rule findRule(Level const &level) {
         SharpVertex const *const sharp = level.FindSharpVertex(0);
         return sharp ? sharp->rule : Crease::RULE_SMOOTH;
+    }
+
+    bool dependsOnSide() const {
+        return _rule == Crease::RULE_CORNER || _rule == Crease::RULE_CREASE;
+    }
+
+    // The vertices that vectors have before they are iterated.
+    std::vector<Index> findSupport(Mode const &pointMode) const {
+        std::vector<Index> verts;
+        for (Index vert = 0; vert < _numVerts; ++vert) {
+            if (!dependsOnSide() || vert == 0 || pointMode.left[vert] != 0 ||
+                _layout.isInside[vert]) {
+                verts.push_back(vert);
+            }
+        }
+        for (FanItem const &item : _side.items) {
+            if (!item.isFace) {
+                verts.push_back(item.neighbor);
+            }
+        }
+        SortUnique(verts);
+        return verts;
+    }
+
+    Vector scatter(Vector const &vector) const {
+        Vector result(_numVerts, 0.0);
+        for (std::size_t i = 0; i < vector.size(); ++i) {
+            result[_verts[i]] = vector[i];
+        }
+        return result;
     }
 
     void removePoint(Vector &left) const { deflate(left, _pointMode); }
@@ -244,7 +280,8 @@ private:
     // What lies on a sharp curve depends on the curve alone: of its modes the first is the tangent.
     bool findAlong(FanItem const &edge, Vector &tangent) {
         tangent.assign(_layout.x.size(), 0.0);
-        tangent[edge.neighbor] = 1;
+        auto const place = std::lower_bound(_verts.begin(), _verts.end(), edge.neighbor);
+        tangent[place - _verts.begin()] = 1;
         return iterateOne(tangent, [this](Vector &left) { removePoint(left); });
     }
 
@@ -321,8 +358,8 @@ private:
         auto const reduce = [this](Vector &vector) { keepInside(vector); };
         axis.left.assign(_layout.x.size(), 1.0);
         axis.right.assign(_layout.x.size(), 1.0);
-        bool const hasConverged =
-            iterateOne(axis.left, reduce) && iterateOne(axis.right, reduce, &Cycle::ApplyRight);
+        bool const hasConverged = iterateOne(axis.left, reduce) &&
+                                  iterateOne(axis.right, reduce, &PatchCycle::ApplyRight);
         scale(axis.left, 1 / dot(axis.left, axis.right));
         return hasConverged;
     }
@@ -330,11 +367,11 @@ private:
     // Tends to the mode of the largest eigenvalue that reduce(vector) leaves.
     template <typename REDUCE>
     bool iterateOne(Vector &vector, REDUCE reduce,
-                    void (Cycle::*apply)(Vector &) = &Cycle::ApplyLeft) {
+                    void (PatchCycle::*apply)(Vector &) = &PatchCycle::ApplyLeft) {
         reduce(vector);
         normalize(vector);
         Vector next;
-        return iterate(int(vector.size()), [&] {
+        return iterate(_numVerts, [&] {
             next = vector;
             (_cycle.*apply)(next);
             reduce(next);
@@ -356,7 +393,7 @@ private:
             normalize(dv);
         };
         orthonormalize();
-        return iterate(int(du.size()), [&] {
+        return iterate(_numVerts, [&] {
             LimitMask::Tangents const previous = {du, dv};
             _cycle.ApplyLeft(du);
             _cycle.ApplyLeft(dv);
@@ -396,9 +433,11 @@ private:
     VertexSide const &_side;
     FaceMask const _faceMask;
     Crease::Rule const _rule;
-    Layout const _layout;
-    Cycle &_cycle;
-    Mode const &_pointMode;
+    Index const _numVerts; // of the patch
+    Layout _layout;
+    PatchCycle &_cycle;
+    std::vector<Index> const _verts; // that vectors have
+    Mode const _pointMode;
 };
 
 using Node = LimitMaskFinder::Node;
@@ -408,7 +447,7 @@ using Node = LimitMaskFinder::Node;
 std::optional<LimitMask> solve(std::vector<Node> const &nodes, FaceMask faceMask) {
     Level level;
     BuildPatchLevel(nodes.front().patch, level);
-    Cycle once;
+    PatchCycle once;
     for (Node const &node : nodes) {
         once.Add(node.step);
     }
@@ -422,7 +461,7 @@ std::optional<LimitMask> solve(std::vector<Node> const &nodes, FaceMask faceMask
     for (int first = 0; first < int(sides.size()); ++first) {
         // The sides of a symmetric patch may come back in another order: round and round, until
         // this one is itself again.
-        Cycle cycle;
+        PatchCycle cycle;
         int side = first;
         do {
             for (Node const &node : nodes) {

@@ -288,6 +288,38 @@ TEST(LimitVertex, PoleOfManyFaces) {
     EXPECT_LT(angleBetween(normalOf(*table, 0, GetPositions(shape)), Vector::UnitZ()), 1e-6);
 }
 
+// Each side of such a pole is a triangle with three straight edges.  The steps lead a side to the next
+// one, so that it comes back to itself after as many as there are.
+TEST(LimitVertex, PoleFullOfCreases) {
+    for (int numFaces : {4, 60, 400}) {
+        SCOPED_TRACE(testing::Message() << numFaces << " faces");
+        Shape shape = makeFans({numFaces});
+        for (int i = 1; i <= numFaces; ++i) {
+            shape.positions[3 * i + 2] = 0.2 * (i % 2);
+            shape.creaseVertexPairs.insert(shape.creaseVertexPairs.end(), {0, i});
+            shape.creaseSharpness.push_back(kInfinite);
+        }
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0,
+                                           makeOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
+        FarExt::Status status;
+        auto const table = makeTable(*refiner, 0, &status);
+        ASSERT_TRUE(table) << status.GetMessage();
+        ASSERT_NO_FATAL_FAILURE(expectSound(*table));
+        TopologyLevel const &level = refiner->GetLevel(0);
+        LimitSides const sides(level);
+        ReferenceValues const positions = GetPositions(shape);
+        for (int face = 0; face < numFaces; ++face) {
+            auto const verts = level.GetFaceVertices(face);
+            Vector const a = positions.row(verts[1]) - positions.row(verts[0]);
+            Vector const b = positions.row(verts[2]) - positions.row(verts[0]);
+            ASSERT_LT(angleBetween(normalOf(*table, sides.FindSide(level, face, 0), positions),
+                                   a.cross(b)),
+                      1e-6)
+                << "face " << face;
+        }
+    }
+}
+
 TEST(LimitVertex, RefusesWhatDoesNotConverge) {
     Shape shape = makeFans({140});
     shape.creaseVertexPairs = {0, 1};
