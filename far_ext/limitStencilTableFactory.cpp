@@ -66,6 +66,12 @@ void LimitSides::addCorner(std::size_t begin, Index corner, int half, Index side
     _corners.push_back({corner, {side, side}});
 }
 
+bool LimitSides::IsOf(TopologyLevel const &level) const {
+    LimitSides const own(level);
+    return _isValid && own._isValid && own._numVertices == _numVertices &&
+           own._furtherSides == _furtherSides && own._corners == _corners;
+}
+
 Index LimitSides::FindSide(TopologyLevel const &level, Index face, int local, int half) const {
     auto const found =
         std::lower_bound(_corners.begin(), _corners.end(), level.GetFaceFirstCorner(face) + local,

@@ -52,20 +52,34 @@ public:
         return side < _numVertices ? 0 : _furtherSides[side - _numVertices].side;
     }
 
+    /// \brief Whether these are valid and the sides of \p level, or of one that has the same.
+    ///
+    /// Finds those of \p level to compare them.
+    bool IsOf(TopologyLevel const &level) const;
+
     /// \brief The side on which a face has its vertex number \p local.
     ///
-    /// \param level  that of the constructor
+    /// \param level  that of the constructor, or one for which IsOf() is true
     /// \param half   of a hexagon with an infinitely sharp diagonal, the half that is meant, as in
     ///               kHexagonHalves; of no matter for other faces
     Index FindSide(TopologyLevel const &level, Index face, int local, int half = 0) const;
 
 private:
     struct FurtherSide {
+        bool operator==(FurtherSide const &other) const {
+            return vert == other.vert && side == other.side;
+        }
+
         Index vert;
         int side;
     };
     // The sides of the halves of a corner, of which a face without a diagonal has one.
     struct Corner {
+        bool operator==(Corner const &other) const {
+            return corner == other.corner && sides[0] == other.sides[0] &&
+                   sides[1] == other.sides[1];
+        }
+
         Index corner;
         Index sides[2];
     };

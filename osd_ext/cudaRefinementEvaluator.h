@@ -162,12 +162,12 @@ public:
     ///
     /// \param dst           an address on the device
     /// \param level         0 ... GetMaxLevel()
-    /// \param vertexOffset  added to every vertex
+    /// \param vertexOffset  added to every vertex; not negative
     /// \param status        says what was wrong; may be null
     ///
     /// \return  false, with nothing written, with InvalidArgument for a level or a buffer as in
-    ///          Evaluate(), for INTERPOLATE_FACE_VARYING, or if the refiner refined or unrefined in the
-    ///          meantime; and else as Evaluate
+    ///          Evaluate(), a negative offset, for INTERPOLATE_FACE_VARYING, or if the refiner refined or
+    ///          unrefined in the meantime; and else as Evaluate
     bool MakeTriangleIndices(unsigned *dst, int level, int vertexOffset = 0,
                              FarExt::Status *status = nullptr);
     /// @}

@@ -294,6 +294,10 @@ Status checkOptions(TopologyLevel const &level, DrawOptions const &options) {
     if (!FarExt::internal::IsInEnum(int(options.cutCreases), CreaseCuts::All)) {
         return fail("there is no CreaseCuts " + std::to_string(int(options.cutCreases)));
     }
+    if (options.vertexOffset < 0) {
+        return fail("the vertex offset is " + std::to_string(options.vertexOffset) +
+                    ", and vertices would be negative");
+    }
     if (options.sides && !level.HasFullTopology()) {
         return fail("level " + std::to_string(level.GetDepth()) +
                     " has no full topology, and so no sides: see "
@@ -302,6 +306,10 @@ Status checkOptions(TopologyLevel const &level, DrawOptions const &options) {
     if (options.sides && options.sides->GetNumVertices() != level.GetNumVertices()) {
         return fail("the sides are those of " + std::to_string(options.sides->GetNumVertices()) +
                     " vertices; the level has " + std::to_string(level.GetNumVertices()));
+    }
+    if (options.sides && !options.sides->IsOf(level)) {
+        return fail("the sides are those of another level than level " +
+                    std::to_string(level.GetDepth()) + ", whose creases split vertices elsewhere");
     }
     if (options.splitVertices && !options.sides) {
         return fail("vertices are split by sides, and none are given");

@@ -19,7 +19,7 @@ enum class CreaseCuts {
 /// the halves of FarExt::kHexagonHalves.  Only an edge of level 0 ever crosses a face, so that a
 /// hexagon is cut only where it has two base faces, or is half a hole; no cut adds vertices.
 struct DrawOptions {
-    /// Added to every vertex, for levels behind others in one buffer.
+    /// Added to every vertex, for levels behind others in one buffer.  Not negative.
     int vertexOffset = 0;
 
     /// Cuts hexagons that lie in two base faces.  Where it is false, one that is not cut for another
@@ -33,8 +33,8 @@ struct DrawOptions {
     /// Channels whose seams cut, in the order of DrawnFaces::fvarValues.
     std::vector<int> fvarChannels{};
 
-    /// The sides of the level's vertices, for DrawnFaces::sides; infinitely sharp creases then cut
-    /// in any case.  Null for none.
+    /// The sides of the level's vertices (LimitSides::IsOf), for DrawnFaces::sides; infinitely sharp
+    /// creases then cut in any case.  Null for none.
     FarExt::LimitSides const *sides = nullptr;
     /// Whether the vertices are those of \p sides in place of those of the level: a vertex that a
     /// crease splits for shading is then several, sides->GetNumSides() in all, of which
@@ -117,10 +117,10 @@ struct PolygonIndices : DrawnFaces {
 /// once.  std::bad_alloc passes through.
 ///
 /// \return  no polygons on failure: InvalidArgument (a channel that the level does not have, labels
-///          that are not one for each face of level 0, no CreaseCuts, sides of another level or of one
-///          without full topology, splitVertices without sides), Unsupported (generateBaseCoords
-///          behind other than hexagonal steps) or TooLarge (a vertexOffset, or separateVertices, by
-///          which there are more corners or vertices than 32-bit indices reach)
+///          that are not one for each face of level 0, no CreaseCuts, a negative vertexOffset, sides of
+///          another level or of one without full topology, splitVertices without sides), Unsupported
+///          (generateBaseCoords behind other than hexagonal steps) or TooLarge (a vertexOffset, or
+///          separateVertices, by which there are more corners or vertices than 32-bit indices reach)
 OPENSUBDIVHEX_API PolygonIndices CreatePolygonIndices(FarExt::TopologyLevel const &level,
                                                       DrawOptions const &options = DrawOptions(),
                                                       FarExt::Status *status = nullptr);

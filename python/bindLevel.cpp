@@ -359,7 +359,7 @@ auto listSides(Index (LimitSides::*query)(Index) const) {
 py::array_t<int> findSides(LimitSides const &self, Level const &level, int half) {
     CheckIndex(half, 2, "half");
     return TakeOver(level.ReadFull([&](TopologyLevel const &topology) {
-        if (topology.GetNumVertices() != self.GetNumVertices()) {
+        if (!self.IsOf(topology)) {
             throw py::value_error("level: the sides are those of another level");
         }
         std::vector<int> sides;
@@ -518,7 +518,7 @@ void bindDrawing(py::module_ &module) {
         "                       generate_base_coords=False, draw_holes=False)\n\n"
         "The polygons that draw a level: its faces, with hexagons cut in halves where asked.\n\n"
         "Args:\n"
-        "    vertex_offset: added to every vertex\n"
+        "    vertex_offset: added to every vertex, not negative\n"
         "    cut_base_faces: cuts hexagons that lie in two base faces\n"
         "    labels: a number for each base face, say its material: integers, shape\n"
         "        (base faces,); cuts hexagons whose halves have different ones\n"

@@ -606,6 +606,11 @@ Status DeviceEvaluator::MakeTriangleIndices(DeviceBufferName dst, int level, int
         status = FarExt::internal::Failure(StatusCode::InvalidArgument,
                                            "there are no triangles of face-varying values");
     }
+    if (status.IsOk() && vertexOffset < 0) {
+        status = FarExt::internal::Failure(StatusCode::InvalidArgument,
+                                           "the vertex offset is " + std::to_string(vertexOffset) +
+                                               ", and vertices would be negative");
+    }
     if (status.IsOk() && GetNumTriangles(level) > 0) {
         status = _device->CheckBuffer(dst, 3 * GetNumTriangles(level), "destination");
     }

@@ -42,7 +42,7 @@ Status VertexSeparator::Run() {
         });
     std::vector<Index> const numbers = addVertices(corners);
     std::int64_t const numDrawn = _numVertices + std::int64_t(_added.size());
-    if (std::max<std::int64_t>(_vertexOffset, 0) + numDrawn > kMaxIndex) {
+    if (_vertexOffset + numDrawn > kMaxIndex) {
         return fail(numDrawn, "separate vertices");
     }
     describe();

@@ -206,6 +206,14 @@ def test_limit_sides_of_a_cut_cube():
     assert not top & set(found[4:])
     with pytest.raises(ValueError, match="another level"):
         sides.find_sides(osh.TopologyRefiner(make_grid(1, 1)[1]).get_level(0))
+    # One with as many vertices.
+    smooth = refine(CUBE_FACES, 1).get_level(0)
+    with pytest.raises(ValueError, match="another level"):
+        sides.find_sides(smooth)
+    with pytest.raises(osh.StatusError, match="another level than level 0"):
+        osh.create_polygon_indices(smooth, sides=sides, split_vertices=True)
+    with pytest.raises(osh.StatusError, match="vertex offset is -1"):
+        osh.create_polygon_indices(smooth, vertex_offset=-1)
 
 
 def make_box_refiner(level, **options):

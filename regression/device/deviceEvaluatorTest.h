@@ -538,6 +538,9 @@ TYPED_TEST_P(DeviceEvaluator, MakesTheTrianglesOfTheCpu) {
                 std::vector<int> triangles(bits.size());
                 std::memcpy(triangles.data(), bits.data(), bits.size() * sizeof(int));
                 ASSERT_EQ(triangles, expected.vertices);
+                EXPECT_FALSE(evaluator->MakeTriangleIndices(this->kind.GetIntegers(*buffer), level,
+                                                            -1, &status));
+                EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
             }
         }
     }

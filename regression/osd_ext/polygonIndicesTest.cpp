@@ -266,6 +266,34 @@ TEST(PolygonIndices, RefusesWhatDoesNotFit) {
     FarExt::LimitSides const sides(refiner->GetLevel(0));
     options.sides = &sides;
     expectRefused(options, "the sides are those of 8 vertices; the level has 32");
+    // Those of a level with as many vertices, whose edges are creases.
+    Shape creased = shape;
+    for (int corner = 0; corner < shape.GetNumCorners(); ++corner) {
+        int const v = shape.faceVertices[std::size_t(corner)];
+        int const w = shape.faceVertices[std::size_t(corner % 4 < 3 ? corner + 1 : corner - 3)];
+        creased.creaseVertexPairs.insert(creased.creaseVertexPairs.end(), {v, w});
+        creased.creaseSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
+    }
+    auto const creasedRefiner = refine(creased, 1);
+    FarExt::LimitSides const smoothSides(level);
+    FarExt::LimitSides const creasedSides(creasedRefiner->GetLevel(1));
+    EXPECT_EQ(creasedSides.GetNumVertices(), smoothSides.GetNumVertices());
+    options.sides = &creasedSides;
+    expectRefused(options, "the sides are those of another level than level 1, whose creases split "
+                           "vertices elsewhere");
+    FarExt::Status status;
+    options.sides = &smoothSides;
+    EXPECT_EQ(CreatePolygonIndices(creasedRefiner->GetLevel(1), options, &status).GetNumPolygons(),
+              0);
+    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
+    // Those of another level that has the same.
+    auto const sameRefiner = refine(creased, 1);
+    EXPECT_TRUE(creasedSides.IsOf(sameRefiner->GetLevel(1)));
+    options.sides = &creasedSides;
+    EXPECT_GT(CreatePolygonIndices(sameRefiner->GetLevel(1), options).GetNumPolygons(), 0);
+    options = DrawOptions();
+    options.vertexOffset = -1;
+    expectRefused(options, "the vertex offset is -1, and vertices would be negative");
     options = DrawOptions();
     options.cutCreases = static_cast<CreaseCuts>(3);
     expectRefused(options, "there is no CreaseCuts 3");
@@ -274,7 +302,6 @@ TEST(PolygonIndices, RefusesWhatDoesNotFit) {
     options.vertexOffset = std::numeric_limits<int>::max() - 31;
     EXPECT_GT(CreatePolygonIndices(level, options).GetNumPolygons(), 0);
     ++options.vertexOffset;
-    FarExt::Status status;
     EXPECT_EQ(CreatePolygonIndices(level, options, &status).GetNumPolygons(), 0);
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::TooLarge);
     EXPECT_NE(status.GetMessage().find("2147483648"), std::string::npos) << status.GetMessage();
