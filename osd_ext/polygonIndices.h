@@ -42,8 +42,8 @@ struct DrawOptions {
     /// has them in that order.
     bool splitVertices = false;
     /// Whether vertices are those of DrawnFaces::drawnVertices, each with one value of each of
-    /// \p fvarChannels and one of \p sides: for what has one index for each corner, such as the buffers
-    /// of graphics libraries, and PLY files.
+    /// \p fvarChannels, one of \p sides and, with generateBaseCoords, one place in one base face: for
+    /// what has one index for each corner, such as the buffers of graphics libraries, and PLY files.
     bool separateVertices = false;
     /// Whether DrawnFaces::baseCoords are made; cuts as cutBaseFaces does.
     bool generateBaseCoords = false;
@@ -53,7 +53,7 @@ struct DrawOptions {
 };
 
 /// \brief The vertices that corners share where all that these have is to be the same: a vertex at a seam
-/// or a crease is several.
+/// or a crease is several, and with places one on an edge of the base mesh.
 ///
 /// The first are the vertices that corners have without DrawOptions::separateVertices, in their order:
 /// what was evaluated for these stays where it is.  Each has what its first corner has.  Behind them
@@ -68,6 +68,11 @@ struct DrawnVertices {
     std::vector<std::vector<int>> fvarValues;
     /// The sides, as DrawnFaces::sides; the first one where no drawn face has the vertex.
     std::vector<int> sides;
+    /// u and v, as DrawnFaces::baseCoords; 0 where no drawn face has the vertex.
+    std::vector<float> baseCoords;
+    /// The base face that these are in; INDEX_INVALID where no drawn face has the vertex.  Empty
+    /// without baseCoords.
+    std::vector<int> baseFaces;
 };
 
 /// \brief Index buffers of drawn faces, without their sizes: by corner, one face after the other, and

@@ -460,6 +460,12 @@ py::dict describeFaces(OsdExt::DrawnFaces &&faces, py::ssize_t width, bool isSep
         if (hasSides) {
             vertices["sides"] = TakeOver(std::move(drawn.sides));
         }
+        if (!drawn.baseFaces.empty()) {
+            auto const numVertices = py::ssize_t(drawn.baseFaces.size());
+            py::array_t<float> coords = TakeOver(std::move(drawn.baseCoords));
+            vertices["base_coords"] = coords.reshape({numVertices, py::ssize_t(2)});
+            vertices["base_faces"] = TakeOver(std::move(drawn.baseFaces));
+        }
         result["drawn_vertices"] = vertices;
     }
     return result;
@@ -526,8 +532,8 @@ void bindDrawing(py::module_ &module) {
         "    fvar_channels: whose seams cut\n"
         "    sides: the LimitSides of the level, for normals; None for none\n"
         "    split_vertices: whether vertices are those of sides\n"
-        "    separate_vertices: whether each vertex is to have one value of each channel and one\n"
-        "        side\n"
+        "    separate_vertices: whether each vertex is to have one value of each channel, one\n"
+        "        side and, with generate_base_coords, one place in one base face\n"
         "    generate_base_coords: whether places in base faces are made; cuts these\n"
         "    draw_holes: whether holes are drawn\n\n"
         "Returns a dict.  By corner, int32 of the shape (corners,): 'vertices', 'sides' with\n"
@@ -536,8 +542,8 @@ void bindDrawing(py::module_ &module) {
         "'faces',\n"
         "'base_faces', and 'labels' with labels.  With separate_vertices, 'drawn_vertices' is a\n"
         "dict with what these are, int32 of the shape (drawn vertices,): 'vertices',\n"
-        "'fvar_values' and 'sides' as by corner.  The first are the others' vertices in their "
-        "order.\n"
+        "'fvar_values', 'sides' and 'base_coords' as by corner, and with these 'base_faces'.  The\n"
+        "first are the others' vertices in their order.\n"
         "Raises StatusError.",
         &createPolygonIndices);
     defineDrawing(

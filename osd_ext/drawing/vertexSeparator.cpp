@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <string>
 
 namespace OpenSubdivHex::OsdExt::internal {
@@ -35,6 +36,7 @@ Status VertexSeparator::Run() {
     if (numCorners > kMaxIndex) {
         return fail(numCorners, "corners of separate vertices");
     }
+    findBaseFaces();
     findFirstCorners();
     std::vector<Index> const corners =
         FarExt::internal::ParallelSelect(Index(numCorners), [&](Index corner) {
@@ -61,8 +63,34 @@ bool VertexSeparator::isSame(Index a, Index b) const {
     auto const hasSame = [=](std::vector<int> const &values) {
         return values[std::size_t(a)] == values[std::size_t(b)];
     };
+    std::vector<float> const &coords = _polygons.baseCoords;
+    auto const isSamePlace = [&, i = 2 * std::size_t(a), j = 2 * std::size_t(b)] {
+        return coords[i] == coords[j] && coords[i + 1] == coords[j + 1];
+    };
     return (_polygons.sides.empty() || hasSame(_polygons.sides)) &&
+           (coords.empty() || (hasSame(_baseFaces) && isSamePlace())) &&
            std::all_of(_polygons.fvarValues.begin(), _polygons.fvarValues.end(), hasSame);
+}
+
+void VertexSeparator::findBaseFaces() {
+    if (_polygons.baseCoords.empty()) {
+        return;
+    }
+    _baseFaces.resize(_polygons.vertices.size());
+    Index const numPolygons = _polygons.GetNumPolygons();
+    auto const firsts =
+        FarExt::internal::ParallelSums<std::size_t>(numPolygons, [&](Index begin, Index end) {
+            return std::accumulate(_polygons.sizes.begin() + begin, _polygons.sizes.begin() + end,
+                                   std::size_t(0));
+        });
+    FarExt::internal::ParallelForRange(numPolygons, [&](Index begin, Index end) {
+        auto corner = _baseFaces.begin() +
+                      std::ptrdiff_t(firsts[std::size_t(begin / FarExt::internal::kParallelRange)]);
+        for (Index i = begin; i < end; ++i) {
+            corner = std::fill_n(corner, _polygons.sizes[std::size_t(i)],
+                                 _polygons.baseFaces[std::size_t(i)]);
+        }
+    });
 }
 
 // The least of all, in whatever order threads come to them.
@@ -110,6 +138,8 @@ void VertexSeparator::describe() {
     result.vertices.resize(numDrawn);
     result.sides.resize(_polygons.sides.empty() ? 0 : numDrawn);
     result.fvarValues.assign(_polygons.fvarValues.size(), std::vector<int>(numDrawn));
+    result.baseCoords.resize(_baseFaces.empty() ? 0 : 2 * numDrawn);
+    result.baseFaces.resize(_baseFaces.empty() ? 0 : numDrawn, Far::INDEX_INVALID);
     auto const describeVertex = [&](std::size_t number, Index vert, Index corner) {
         bool const isDrawn = corner < Index(_polygons.vertices.size());
         result.vertices[number] = vert;
@@ -119,6 +149,11 @@ void VertexSeparator::describe() {
         for (std::size_t i = 0; i < result.fvarValues.size(); ++i) {
             result.fvarValues[i][number] =
                 isDrawn ? _polygons.fvarValues[i][std::size_t(corner)] : 0;
+        }
+        if (isDrawn && !_baseFaces.empty()) {
+            std::copy_n(&_polygons.baseCoords[2 * std::size_t(corner)], 2,
+                        &result.baseCoords[2 * number]);
+            result.baseFaces[number] = _baseFaces[std::size_t(corner)];
         }
     };
     ParallelFor(_numVertices, [&](Index vert) {

@@ -13,7 +13,7 @@ namespace OpenSubdivHex::OsdExt::internal {
 /// \brief Makes the vertices of polygons those of DrawnVertices, by comparing what their corners have.
 ///
 /// Most vertices have the same in all corners, which is found in parallel; the corners that are left are
-/// those along one side of seams and creases.
+/// those along one side of seams and creases or, with places, of edges of the base mesh.
 class VertexSeparator {
 public:
     using Index = Far::Index;
@@ -35,6 +35,7 @@ private:
 
     Index getVertex(Index corner) const;
     bool isSame(Index a, Index b) const;
+    void findBaseFaces();
     void findFirstCorners();
     std::vector<Index> addVertices(std::vector<Index> const &corners);
     void describe();
@@ -42,6 +43,7 @@ private:
     Index const _numVertices;
     Index const _vertexOffset;
     PolygonIndices &_polygons;
+    std::vector<Index> _baseFaces; // by corner, as far as there are places in these
     std::unique_ptr<std::atomic<Index>[]>
         _firstCorners; // by vertex; the number of corners for none
     std::vector<Added> _added;

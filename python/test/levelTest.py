@@ -350,6 +350,17 @@ def test_separate_vertices_have_one_value_and_side():
         np.testing.assert_array_equal(drawn["vertices"][corners], values["vertices"])
         np.testing.assert_array_equal(drawn["sides"][corners], values["sides"])
         np.testing.assert_array_equal(drawn["fvar_values"][0][corners], values["fvar_values"][0])
+        assert "base_coords" not in drawn
+
+
+def test_separate_vertices_have_one_place():
+    level = refine(CUBE_FACES, 2).get_level(2)
+    faces = osh.create_polygon_indices(level, separate_vertices=True, generate_base_coords=True)
+    drawn, corners = faces["drawn_vertices"], faces["vertices"]
+    assert drawn["base_coords"].shape == (level.num_vertices + 12 * 2 + 8 * 2, 2)
+    np.testing.assert_array_equal(drawn["base_coords"][corners], faces["base_coords"])
+    np.testing.assert_array_equal(drawn["base_faces"][corners],
+                                  np.repeat(faces["base_faces"], faces["sizes"]))
 
 
 def test_holes_are_left_out():

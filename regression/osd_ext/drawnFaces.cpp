@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drawnFaces.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <vector>
@@ -83,8 +85,23 @@ void separateVertices(TopologyLevel const &level, DrawOptions const &options,
     int const numVertices =
         options.splitVertices ? options.sides->GetNumSides() : level.GetNumVertices();
     drawn.fvarValues.resize(options.fvarChannels.size());
+    auto const placeOf = [&](std::size_t corner) {
+        return std::array<float, 2>{polygons->baseCoords[2 * corner],
+                                    polygons->baseCoords[2 * corner + 1]};
+    };
+    auto const describePlace = [&](std::size_t vert, std::size_t corner, int baseFace) {
+        if (options.generateBaseCoords) {
+            drawn.baseFaces[vert] = baseFace;
+            std::array<float, 2> const place = placeOf(corner);
+            std::copy(place.begin(), place.end(), &drawn.baseCoords[2 * vert]);
+        }
+    };
     auto const add = [&](int vert, int side, std::vector<int> const &values) {
         drawn.vertices.push_back(vert);
+        if (options.generateBaseCoords) {
+            drawn.baseFaces.push_back(Far::INDEX_INVALID);
+            drawn.baseCoords.resize(2 * drawn.vertices.size());
+        }
         if (options.sides) {
             drawn.sides.push_back(side);
         }
@@ -95,7 +112,12 @@ void separateVertices(TopologyLevel const &level, DrawOptions const &options,
     for (int vert = 0; vert < numVertices; ++vert) {
         add(vert, vert, std::vector<int>(options.fvarChannels.size()));
     }
-    std::map<int, std::map<std::vector<int>, int>> numbers; // by vertex and what a corner has
+    std::vector<int> baseFaces; // by corner
+    for (std::size_t i = 0; i < polygons->sizes.size(); ++i) {
+        baseFaces.insert(baseFaces.end(), std::size_t(polygons->sizes[i]), polygons->baseFaces[i]);
+    }
+    using Key = std::pair<std::vector<int>, std::array<float, 2>>;
+    std::map<int, std::map<Key, int>> numbers; // by vertex and what a corner has
     for (std::size_t corner = 0; corner < polygons->vertices.size(); ++corner) {
         int const vert = polygons->vertices[corner] - options.vertexOffset;
         int const side = options.sides ? polygons->sides[corner] : -1;
@@ -103,14 +125,19 @@ void separateVertices(TopologyLevel const &level, DrawOptions const &options,
         for (std::vector<int> const &ofChannel : polygons->fvarValues) {
             values.push_back(ofChannel[corner]);
         }
-        std::vector<int> all = values;
-        all.push_back(side);
-        std::map<std::vector<int>, int> &ofVertex = numbers[vert];
+        Key all = {values, {}};
+        all.first.push_back(side);
+        if (options.generateBaseCoords) {
+            all.first.push_back(baseFaces[corner]);
+            all.second = placeOf(corner);
+        }
+        std::map<Key, int> &ofVertex = numbers[vert];
         bool const isFirst = ofVertex.empty();
         int const number =
             ofVertex.try_emplace(all, isFirst ? vert : int(drawn.vertices.size())).first->second;
         if (number == int(drawn.vertices.size())) {
             add(vert, side, values);
+            describePlace(std::size_t(number), corner, baseFaces[corner]);
         } else if (isFirst) {
             for (std::size_t k = 0; k < values.size(); ++k) {
                 drawn.fvarValues[k][std::size_t(vert)] = values[k];
@@ -118,6 +145,7 @@ void separateVertices(TopologyLevel const &level, DrawOptions const &options,
             if (options.sides) {
                 drawn.sides[std::size_t(vert)] = side;
             }
+            describePlace(std::size_t(vert), corner, baseFaces[corner]);
         }
         polygons->vertices[corner] = options.vertexOffset + number;
     }
@@ -149,7 +177,8 @@ PolygonIndices findPolygons(TopologyLevel const &level, DrawOptions const &optio
 }
 
 bool isEqual(OsdExt::DrawnVertices const &a, OsdExt::DrawnVertices const &b) {
-    return a.vertices == b.vertices && a.fvarValues == b.fvarValues && a.sides == b.sides;
+    return a.vertices == b.vertices && a.fvarValues == b.fvarValues && a.sides == b.sides &&
+           a.baseCoords == b.baseCoords && a.baseFaces == b.baseFaces;
 }
 
 // The corners of a triangle, as places in its polygon: the n corners of a regular one, whose area the

@@ -207,14 +207,17 @@ TEST(PolygonIndices, SeparateVerticesAreThoseOfBaseFaces) {
     auto const refiner = refine(cube, 3);
     TopologyLevel const &level = refiner->GetLevel(3);
     FarExt::LimitSides const sides(level);
-    // Seams alone, creases alone, both, and both where vertices are split by sides.
-    for (int kind = 0; kind < 4; ++kind) {
+    // Seams alone, creases alone, both, both where vertices are split by sides, and places alone.
+    for (int kind = 0; kind < 5; ++kind) {
         SCOPED_TRACE(kind);
         DrawOptions options;
         options.separateVertices = true;
-        options.sides = kind == 0 ? nullptr : &sides;
+        bool const hasSides = kind != 0 && kind != 4;
+        bool const hasValues = kind != 1 && kind != 4;
+        options.sides = hasSides ? &sides : nullptr;
         options.splitVertices = kind == 3;
-        if (kind != 1) {
+        options.generateBaseCoords = kind == 4;
+        if (hasValues) {
             options.fvarChannels = {0};
         }
         PolygonIndices const polygons = OsdExt::CreatePolygonIndices(level, options);
@@ -229,11 +232,16 @@ TEST(PolygonIndices, SeparateVerticesAreThoseOfBaseFaces) {
                 int const baseFace = polygons.baseFaces[std::size_t(i)];
                 ASSERT_TRUE(baseFaces[vert] < 0 || baseFaces[vert] == baseFace);
                 baseFaces[vert] = baseFace;
-                if (kind != 1) {
+                if (hasValues) {
                     ASSERT_EQ(drawn.fvarValues[0][vert], polygons.fvarValues[0][corner]);
                 }
-                if (kind != 0) {
+                if (hasSides) {
                     ASSERT_EQ(drawn.sides[vert], polygons.sides[corner]);
+                }
+                if (kind == 4) {
+                    ASSERT_EQ(drawn.baseFaces[vert], baseFace);
+                    ASSERT_EQ(drawn.baseCoords[2 * vert], polygons.baseCoords[2 * corner]);
+                    ASSERT_EQ(drawn.baseCoords[2 * vert + 1], polygons.baseCoords[2 * corner + 1]);
                 }
             }
         }
