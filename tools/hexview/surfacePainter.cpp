@@ -106,7 +106,12 @@ void SurfacePainter::Draw(ViewedSurface &surface, OrbitCamera const &camera,
         glUniform3fv(_surfaceProgram["up"], 1, glm::value_ptr(camera.GetUp()));
         glUniform1f(_surfaceProgram["size"], camera.size);
         glUniform1i(_surfaceProgram["shading"], int(settings.shading));
+        // A pixel of an edge is up to one beside the faces that it lies between: where these are steep,
+        // they would hide it.
+        glEnable(GL_POLYGON_OFFSET_FILL);
+        glPolygonOffset(1, 1);
         glDrawArrays(GL_TRIANGLES, 0, 3 * surface.GetNumTriangles());
+        glDisable(GL_POLYGON_OFFSET_FILL);
     }
     if (settings.hasEdges) {
         surface.Bind();

@@ -5,7 +5,8 @@ usage: viewTest.py pictures|window HEXVIEW MESHES
 
 pictures  draws without a window: every evaluator the same picture, every shading another one, cells
           that a view needs, frames of the animation
-window    opens a window in Xvfb, presses keys and drags with the mouse, and looks at the screen
+window    opens a window in Xvfb, presses keys and a button, drags the camera and a control vertex with
+          the mouse, and looks at the screen
 """
 
 import os
@@ -18,6 +19,8 @@ import time
 from PIL import Image, ImageChops
 
 WIDTH, HEIGHT = 480, 360
+LEFT = WIDTH * 11 // 20  # the panel ends before
+REST = 116, 308  # the button of the panel that puts the control mesh back
 TIMEOUT = 60  # seconds, of a busy machine without a GPU
 
 
@@ -207,7 +210,7 @@ class Screen:
 
     def read(self):
         """What is beside the panel."""
-        return read_screen(self.display).crop((WIDTH * 11 // 20, 0, WIDTH, HEIGHT))
+        return read_screen(self.display).crop((LEFT, 0, WIDTH, HEIGHT))
 
     def do(self, *arguments):
         subprocess.run(["xdotool", *arguments], check=True,
@@ -219,6 +222,59 @@ class Screen:
             expect(time.monotonic() < end, what)
             time.sleep(0.2)
         return self.read()
+
+
+def find_control_vertex(image):
+    """The place of the control vertex that is drawn furthest to the right."""
+    def is_blue(x, y):
+        red, green, blue = image.getpixel((x, y))
+        return blue > 150 and red < 80 and green < 130
+    for x in range(image.width - 6, 0, -1):
+        for y in range(image.height - 6):
+            if all(is_blue(x + i, y + j) for i in range(4) for j in range(4)):
+                return LEFT + x + 2, y + 2
+    return None
+
+
+def test_window_of_control_mesh(screen):
+    before = screen.read()
+    screen.do("key", "c")
+    screen.wait(find_control_vertex, "C shows the control mesh")
+    x, y = find_control_vertex(screen.read())
+    screen.do("mousemove", str(x), str(y))
+    screen.wait(lambda image: 0 in hues_of(image, 50), "the vertex under the mouse is red")
+    screen.do("mousedown", "1")
+    time.sleep(1)
+    for _ in range(5):
+        screen.do("mousemove_relative", "--", "-6", "-8")
+        time.sleep(0.2)
+    screen.do("mouseup", "1")
+    screen.do("key", "c")
+    dragged = screen.wait(lambda image: share_of_different(image, before) > 0.01 and
+                          not find_control_vertex(image), "the surface follows the vertex")
+    # Whoever turned the camera instead would move all of it.
+    far = (8, 0, dragged.width // 8, dragged.height)
+    expect(share_of_different(dragged.crop(far), before.crop(far)) < 1e-3,
+           "it stays where it is far from the vertex")
+    screen.do("mousemove", *map(str, REST), "click", "1")
+    screen.wait(lambda image: share_of_different(image, before) < 1e-3,
+                "the button puts the vertex back")
+
+
+def test_window_of_animation(screen):
+    before = screen.read()
+    screen.do("key", "a")
+    one = screen.wait(lambda image: share_of_different(image, before) > 0.01,
+                      "A twists the surface")
+    screen.wait(lambda image: share_of_different(image, one) > 0.01, "it goes on")
+    screen.do("key", "a")
+    time.sleep(1)
+    last = screen.read()
+    time.sleep(1)
+    expect(share_of_different(screen.read(), last) < 1e-3, "A stops it")
+    screen.do("mousemove", *map(str, REST), "click", "1")
+    screen.wait(lambda image: share_of_different(image, before) < 1e-3,
+                "the button brings it to rest")
 
 
 def test_window_of_cells(screen):
@@ -256,9 +312,15 @@ def test_window(program, meshes):
             screen.do("key", "4")
             fine = screen.wait(lambda image: share_of_different(image, first) > 0.02,
                                "4 shows another level")
-            screen.do("key", "e", "Tab", "Tab")
-            lines = screen.wait(lambda image: share_of_dark(image) > share_of_dark(fine) + 0.05 and
-                                share_of_different(image, fine) > 0.1, "Tab shows reflection lines")
+            test_window_of_animation(screen)
+            screen.do("key", "e")
+            plain = screen.wait(lambda image: share_of_dark(image) < share_of_dark(fine) - 0.05,
+                                "E shows no edges")
+            test_window_of_control_mesh(screen)
+            screen.do("key", "Tab", "Tab")
+            lines = screen.wait(lambda image: share_of_dark(image) > share_of_dark(plain) + 0.05 and
+                                share_of_different(image, plain) > 0.1,
+                                "Tab shows reflection lines")
             screen.do("mousemove", str(WIDTH * 3 // 4), str(HEIGHT // 8))
             time.sleep(1)
             screen.do("mousedown", "1")
