@@ -136,19 +136,44 @@ py::array_t<int> getBaseFaces(Level const &self, int half) {
     }));
 }
 
-py::array_t<float> getBaseCoords(Level const &self, int half) {
+/// That a level has no places in base faces, or in faces of the surface level.
+[[noreturn]] void throwNoPlaces(TopologyLevel const &level, bool ofSurfaceLevel) {
+    throw py::value_error("level " + std::to_string(level.GetDepth()) +
+                          (ofSurfaceLevel
+                               ? " does not come from the surface level by hexagonal steps alone"
+                               : " is not made by hexagonal steps alone, which have places in base "
+                                 "faces"));
+}
+
+py::array_t<int> getSurfaceFaces(Level const &self, int half) {
     CheckIndex(half, 2, "half");
-    std::vector<float> coords = self.Read([half](TopologyLevel const &level) {
+    return TakeOver(self.Read([half](TopologyLevel const &level) {
+        std::vector<int> faces(std::size_t(level.GetNumFaces()));
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            faces[i] = level.GetFaceSurfaceFace(Index(i), half);
+            if (faces[i] == Far::INDEX_INVALID) {
+                throwNoPlaces(level, true);
+            }
+        }
+        return faces;
+    }));
+}
+
+/// \param isSplit  (level, f): whether the halves of a face lie in two faces
+/// \param find     (level, f, half, float *): GetFaceBaseCoords or GetFaceSurfaceCoords
+template <typename IS_SPLIT, typename FIND>
+py::array_t<float> getCoords(Level const &self, int half, IS_SPLIT const &isSplitFace,
+                             FIND const &find, bool ofSurfaceLevel) {
+    CheckIndex(half, 2, "half");
+    std::vector<float> coords = self.Read([&](TopologyLevel const &level) {
         auto const none = std::numeric_limits<float>::quiet_NaN();
         std::vector<float> values(2 * std::size_t(level.GetNumFaceVertices()), none);
         float *place = values.data();
         for (Index f = 0; f < level.GetNumFaces(); ++f) {
-            bool const isSplit = level.IsFaceBaseSplit(f);
+            bool const isSplit = isSplitFace(level, f);
             float ofHalf[8];
-            if (!level.GetFaceBaseCoords(f, half, isSplit ? ofHalf : place)) {
-                throw py::value_error("level " + std::to_string(level.GetDepth()) +
-                                      " is not made by hexagonal steps alone, which have places "
-                                      "in base faces");
+            if (!find(level, f, half, isSplit ? ofHalf : place)) {
+                throwNoPlaces(level, ofSurfaceLevel);
             }
             for (int i = 0; isSplit && i < 4; ++i) {
                 std::copy_n(ofHalf + 2 * i, 2, place + 2 * kHexagonHalves[half][i]);
@@ -159,6 +184,27 @@ py::array_t<float> getBaseCoords(Level const &self, int half) {
     });
     auto const numCorners = py::ssize_t(coords.size() / 2);
     return TakeOver(std::move(coords)).reshape({numCorners, py::ssize_t(2)});
+}
+
+py::array_t<float> getBaseCoords(Level const &self, int half) {
+    return getCoords(
+        self, half, [](TopologyLevel const &level, Index f) { return level.IsFaceBaseSplit(f); },
+        [](TopologyLevel const &level, Index f, int ofHalf, float *uv) {
+            return level.GetFaceBaseCoords(f, ofHalf, uv);
+        },
+        false);
+}
+
+py::array_t<float> getSurfaceCoords(Level const &self, int half) {
+    return getCoords(
+        self, half,
+        [](TopologyLevel const &level, Index f) {
+            return level.GetFaceSurfaceFace(f, 0) != level.GetFaceSurfaceFace(f, 1);
+        },
+        [](TopologyLevel const &level, Index f, int ofHalf, float *uv) {
+            return level.GetFaceSurfaceCoords(f, ofHalf, uv);
+        },
+        true);
 }
 
 py::object areHoles(Level const &self, std::optional<int> half) {
@@ -279,6 +325,17 @@ void bindParents(py::class_<Level> &level) {
              "to (1, 0), of a quad the unit\nsquare.  float32, shape (corners, 2); nan at the two "
              "corners of a face with two base\nfaces that the half does not have: half 0 has 0, 3, "
              "4, 5, half 1 has 3, 0, 1, 2.\nRaises ValueError behind other than hexagonal steps.",
+             py::arg("half") = 0)
+        .def("get_face_surface_faces", &getSurfaceFaces,
+             "get_face_surface_faces(half=0)\n\nThe face of the surface level, 0 or behind a first "
+             "step 1, that a half of each face\nlies in: int32, shape (faces,).  A SurfaceFactory "
+             "has its surface.  Raises ValueError\nbefore that level, and behind other than "
+             "hexagonal steps.",
+             py::arg("half") = 0)
+        .def("get_face_surface_coords", &getSurfaceCoords,
+             "get_face_surface_coords(half=0)\n\nAs get_face_base_coords, in that face: where its "
+             "surface has the limits of the\nvertices.  Raises ValueError as "
+             "get_face_surface_faces.",
              py::arg("half") = 0)
         .def("is_face_base_split", makeMask(faces, false, &TopologyLevel::IsFaceBaseSplit),
              "is_face_base_split()\n\nWhether the halves of each face lie in two base faces: bool, "

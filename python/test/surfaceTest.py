@@ -66,6 +66,48 @@ def test_surfaces_behind_a_first_step_are_those_of_level_1(first_step):
         factory.vertex_surface(0)
 
 
+def test_vertices_behind_a_first_step_are_points_of_surfaces():
+    refiner = make_refiner(first_step="truncate")
+    refiner.refine_uniform(3, full_topology_in_last_level=True)
+    limit = osh.RefinementEvaluator(refiner).evaluate_limit(POSITIONS, level=3)
+    level = refiner.get_level(3)
+    vertices, sizes = level.face_vertices, np.diff(level.face_offsets)
+    coarse = make_refiner(first_step="truncate")
+    coarse.refine_uniform(1, full_topology_in_last_level=True)
+    points = osh.RefinementEvaluator(coarse).evaluate(POSITIONS)
+    factory = osh.SurfaceFactory(coarse)
+    found = 0
+    for half in (0, 1):
+        coords = level.get_face_surface_coords(half)
+        faces = np.repeat(level.get_face_surface_faces(half), sizes)
+        assert faces.min() == 0 and faces.max() == coarse.get_level(1).num_faces - 1
+        for face in (0, 17, 60):
+            here = (faces == face) & np.isfinite(coords).all(axis=1)
+            np.testing.assert_allclose(factory.vertex_surface(face).evaluate(coords[here], points),
+                                       limit[vertices[here]], atol=3e-6)
+            found += here.sum()
+    assert found > 100
+    for ask in (refiner.get_level(0).get_face_surface_faces,
+                refiner.get_level(0).get_face_surface_coords):
+        with pytest.raises(ValueError, match="level 0 does not come from the surface level"):
+            ask()
+        with pytest.raises(IndexError, match="half"):
+            ask(2)
+    # Without a first step these are base faces.
+    plain = make_refiner()
+    plain.refine_uniform(2)
+    level = plain.get_level(2)
+    for half in (0, 1):
+        np.testing.assert_array_equal(level.get_face_surface_faces(half),
+                                      level.get_face_base_faces(half))
+        np.testing.assert_array_equal(level.get_face_surface_coords(half),
+                                      level.get_face_base_coords(half))
+    other = osh.TopologyRefiner(FACES, scheme_type="doo_sabin")
+    other.refine_uniform(1)
+    with pytest.raises(ValueError, match="hexagonal steps alone"):
+        other.get_level(1).get_face_surface_faces()
+
+
 def test_derivatives_are_those_of_the_points(factory):
     surface = factory.vertex_surface(5)
     inside = UV * 0.8 + 0.1
