@@ -194,6 +194,23 @@ Contest makePreparations(BenchMesh const &mesh) {
     return contest;
 }
 
+// New control values, and the last level of them.
+std::function<void()> makeFrameOf(BenchMesh const &mesh) {
+    RefinerPointer const refiner = MakeRefined(mesh);
+    auto const own = makeEvaluator(*refiner);
+    auto const control = std::make_shared<ControlValues>(*refiner);
+    int const level = refiner->GetMaxLevel();
+    int const numControl = refiner->GetLevel(0).GetNumVertices();
+    BufferPointer const dst = makeBuffer(own->GetNumElements(level));
+    return [=] {
+        FarExt::Status status;
+        control->buffer->UpdateData(control->values.data(), 0, numControl);
+        Require(own->Evaluate(control->buffer.get(), kPacked, dst.get(), kPacked, level, &status),
+                status.GetMessage());
+        finish();
+    };
+}
+
 } // namespace
 
 std::string GetCudaDevice() {
@@ -216,6 +233,7 @@ void AddCudaBenchmarks(Suite &suite) {
         suite.AddContest({"CUDA, preparation", "vertex", mesh, Memory::Default},
                          [=] { return makePreparations(mesh); });
     }
+    AddFrameBenchmark(suite, "cuda-frame", makeFrameOf);
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -181,6 +181,29 @@ Contest makePreparations(BenchMesh const &mesh) {
     return contest;
 }
 
+// New control values, and the last level of them.
+std::function<void()> makeFrame(BenchMesh const &mesh) {
+    RefinerPointer const refiner = MakeRefined(mesh);
+    FarExt::Status status;
+    std::shared_ptr<OsdExt::GLRefinementEvaluator> const own =
+        OsdExt::GLRefinementEvaluator::Create(*refiner, &status);
+    Require(own != nullptr, status.GetMessage());
+    int const level = refiner->GetMaxLevel();
+    int const numControl = refiner->GetLevel(0).GetNumVertices();
+    std::vector<float> const control(std::size_t(numControl) * kLength, 0.5f);
+    std::shared_ptr<Osd::GLVertexBuffer> const src(
+        Osd::GLVertexBuffer::Create(kLength, numControl));
+    std::shared_ptr<Osd::GLVertexBuffer> const dst(
+        Osd::GLVertexBuffer::Create(kLength, own->GetNumElements(level)));
+    return [=] {
+        FarExt::Status frameStatus;
+        src->UpdateData(control.data(), 0, numControl);
+        Require(own->Evaluate(src.get(), kPacked, dst.get(), kPacked, level, &frameStatus),
+                frameStatus.GetMessage());
+        finish();
+    };
+}
+
 } // namespace
 
 void AddDeviceBenchmarks(Suite &suite, GlContext const &context) {
@@ -193,6 +216,7 @@ void AddDeviceBenchmarks(Suite &suite, GlContext const &context) {
         suite.AddContest({"OpenGL, preparation", "vertex", mesh, Memory::Default},
                          [=] { return makePreparations(mesh); });
     }
+    AddFrameBenchmark(suite, "gl-frame", makeFrame);
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -32,6 +32,8 @@ Shape MakeLargeMesh(bool triangles) {
                      triangles ? TorusFaces::Triangles : TorusFaces::Quads);
 }
 
+Shape MakeFrameMesh() { return makeTorus("frame", 400, 250, TorusFaces::Quads); }
+
 double CountEdges(Shape const &shape) { return shape.GetNumCorners() / 2.0; }
 
 // After the first step all faces are quads: F' = C, then F' = 4F, and V' = V + F + E.

@@ -16,6 +16,8 @@ Shape MakeIrregularMesh();
 Shape MakeSmallQuadMesh(); ///< 384 quads, for many levels
 /// As large as scans: 640,000 quads, or twice as many triangles.
 Shape MakeLargeMesh(bool triangles);
+/// 100,000 quads, and as many vertices: a control mesh that a device has to itself.
+Shape MakeFrameMesh();
 /// @}
 
 /// The number of edges of a closed shape.

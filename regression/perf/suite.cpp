@@ -5,6 +5,7 @@
 #include "meshes.h"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <iostream>
 #include <regex>
@@ -23,7 +24,8 @@ then runs twice and the second time counts, so that its pages are those it has j
 virtual machine hands free pages to its host, and who comes behind a peer that used more of them
 would wait for them. *warm* is a heap that keeps what was freed (no mmap, no trimming), so that
 pages have been touched before. *resident* means that the work takes no memory: sources, tables and
-results have been touched before. Each turn has a new object, for own and peer alike.)";
+results have been touched before. Each turn has a new object, for own and peer alike. *frame* is a
+control mesh of 100,000 quads, which has 34 million vertices at level 4.)";
 
 std::shared_ptr<Shape const> share(Shape shape) {
     return std::make_shared<Shape const>(std::move(shape));
@@ -62,6 +64,8 @@ Suite::Suite(Options options) : _options(std::move(options)), _results{_options.
     for (int level = 1; level <= (_options.isQuick ? 2 : 6); ++level) {
         _growthMeshes.push_back({smallQuad, "quad", "level " + std::to_string(level), level});
     }
+    _frameMesh = _options.isQuick ? BenchMesh{quad, "quad", "frame", 1}
+                                  : BenchMesh{share(MakeFrameMesh()), "quad", "frame", 4};
 }
 
 void Suite::add(Setting const &setting, int numTurns, std::function<void(benchmark::State &)> run) {
@@ -91,6 +95,25 @@ void Suite::AddMeasurement(Setting const &setting, std::string const &row,
             _results.figures.push_back({&GetRow(row), setting, own, peer});
             state.SetIterationTime(0);
         }
+    });
+}
+
+void AddFrameBenchmark(Suite &suite, std::string const &row,
+                       std::function<std::function<void()>(BenchMesh const &)> const &makeFrame) {
+    BenchMesh const &mesh = suite.GetFrameMesh();
+    suite.AddMeasurement({row, "", mesh, Memory::Resident}, row, [=] {
+        constexpr int kNumFrames = 5;
+        std::function<void()> const frame = makeFrame(mesh);
+        frame(); // compiles, and touches what the others use
+        std::vector<double> milliseconds;
+        for (int i = 0; i < kNumFrames; ++i) {
+            auto const start = std::chrono::steady_clock::now();
+            frame();
+            milliseconds.push_back(
+                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+                    .count());
+        }
+        return std::pair(GetMedian(milliseconds), 0.0);
     });
 }
 

@@ -40,6 +40,9 @@ public:
     /// One mesh at several levels.
     std::vector<BenchMesh> const &GetGrowthMeshes() const { return _growthMeshes; }
 
+    /// One whose level 4 is a frame of a device.
+    BenchMesh const &GetFrameMesh() const { return _frameMesh; }
+
     /// Adds a benchmark whose contestants \p makeContest makes when it is run.
     void AddContest(Setting const &setting, std::function<Contest()> const &makeContest);
 
@@ -68,6 +71,7 @@ private:
     std::vector<BenchMesh> _irregularMeshes;
     std::vector<BenchMesh> _baseMeshes;
     std::vector<BenchMesh> _growthMeshes;
+    BenchMesh _frameMesh;
     std::vector<Benchmark> _benchmarks;
     Results _results;
     bool _isComplete = true;
@@ -95,6 +99,9 @@ void AddDeviceBenchmarks(Suite &suite, GlContext const &context);
 /// The others of these, which need a device of CUDA: its name, empty where there is none.
 std::string GetCudaDevice();
 void AddCudaBenchmarks(Suite &suite);
+/// Adds a benchmark of \p row, milliseconds: the median of some frames, which \p makeFrame makes.
+void AddFrameBenchmark(Suite &suite, std::string const &row,
+                       std::function<std::function<void()>(BenchMesh const &)> const &makeFrame);
 /// @}
 
 } // namespace OpenSubdivHex::Regression
