@@ -91,6 +91,13 @@ std::string GlContext::GetRenderer() const {
     return reinterpret_cast<char const *>(name);
 }
 
+int GlContext::GetMaxComputeGroups() const {
+    GLint count = 0;
+    getFunction<PFNGLGETINTEGERI_VPROC>("glGetIntegeri_v")(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0,
+                                                           &count);
+    return count;
+}
+
 GLenum GlContext::GetGlError() const { return getFunction<GLenum (*)()>("glGetError")(); }
 
 void GlContext::BindFramebuffer() {

@@ -35,6 +35,9 @@ public:
     GLuint MakeBuffer(std::int64_t numBytes) const;
     void DeleteBuffer(GLuint buffer) const;
 
+    /// How many groups of invocations the driver dispatches at once, in the first direction.
+    int GetMaxComputeGroups() const;
+
     /// The first error since the last call; GL_NO_ERROR is 0.
     GLenum GetGlError() const;
 

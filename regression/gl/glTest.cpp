@@ -283,18 +283,29 @@ TEST_F(GlLarge, RangesEvaluateMoreStencilsThanADispatchHas) {
     std::unique_ptr<Osd::GLComputeEvaluator> const evaluator(
         Osd::GLComputeEvaluator::Create(desc, desc, Descriptor(), Descriptor()));
     ASSERT_TRUE(evaluator);
+    std::vector<float> const before(expected.size(), 9);
+    // What the guide warns of: more groups than the driver takes are an error of OpenGL, and no output,
+    // but Osd's evaluator returns true.
+    {
+        bool const isTaken = (kNumStencils + 63) / 64 <= context.GetMaxComputeGroups();
+        GlBuffer const dstBuffer = makeBuffer(before, 1);
+        EXPECT_TRUE(Osd::GLComputeEvaluator::EvalStencils(srcBuffer.get(), desc, dstBuffer.get(),
+                                                          desc, glTable.get(), evaluator.get()));
+        EXPECT_EQ(context.GetGlError(), GLenum(isTaken ? GL_NO_ERROR : GL_INVALID_VALUE));
+        expectFloats(*dstBuffer, isTaken ? expected : before);
+    }
     for (int maxStencils : {OsdExt::kMaxGLComputeStencils, 1000000}) {
-        GlBuffer const dstBuffer = makeBuffer(std::vector<float>(expected.size(), 9), 1);
+        GlBuffer const dstBuffer = makeBuffer(before, 1);
         ASSERT_TRUE(OsdExt::EvalStencilsInRanges(*evaluator, srcBuffer.get(), desc, dstBuffer.get(),
                                                  desc, *glTable, maxStencils));
         EXPECT_EQ(context.GetGlError(), GLenum(GL_NO_ERROR));
         expectFloats(*dstBuffer, expected);
     }
     for (int maxStencils : {0, -1}) {
-        GlBuffer const dstBuffer = makeBuffer(std::vector<float>(expected.size(), 9), 1);
+        GlBuffer const dstBuffer = makeBuffer(before, 1);
         EXPECT_FALSE(OsdExt::EvalStencilsInRanges(*evaluator, srcBuffer.get(), desc,
                                                   dstBuffer.get(), desc, *glTable, maxStencils));
-        expectFloats(*dstBuffer, std::vector<float>(expected.size(), 9));
+        expectFloats(*dstBuffer, before);
     }
 }
 
