@@ -93,7 +93,11 @@ void runDevice(Suite::Options options, std::string const &command, Paths const &
         throw std::runtime_error(context.GetError());
     }
     Environment environment = describeRun(command);
-    environment.emplace_back("OpenGL", context.GetRenderer());
+    std::string const renderer = context.GetRenderer();
+    bool const isProcessor = renderer.find("llvmpipe") != std::string::npos ||
+                             renderer.find("softpipe") != std::string::npos;
+    environment.emplace_back("OpenGL",
+                             renderer + (isProcessor ? ", on the processor: no GPU" : ""));
 #ifdef PERF_HAS_CUDA
     std::string const cuda = GetCudaDevice();
     environment.emplace_back("CUDA", cuda.empty() ? "no device: not measured" : cuda);
