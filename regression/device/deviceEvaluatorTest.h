@@ -106,6 +106,10 @@ protected:
         }
     }
 
+    void TearDown() override {
+        this->RecordProperty("largestDifferenceInUnits", std::to_string(largest));
+    }
+
     Buffer makeBlank(std::size_t numFloats, int stride) {
         return kind.MakeBuffer(std::vector<float>(numFloats, kBlank), stride);
     }
@@ -226,7 +230,6 @@ TYPED_TEST_P(DeviceEvaluator, GivesTheValuesOfTheCpu) {
             }
         }
     }
-    this->RecordProperty("largestDifferenceInUnits", std::to_string(this->largest));
 }
 
 TYPED_TEST_P(DeviceEvaluator, GivesTheLimitOfTheCpu) {
@@ -250,7 +253,6 @@ TYPED_TEST_P(DeviceEvaluator, GivesTheLimitOfTheCpu) {
             }
         }
     }
-    this->RecordProperty("largestDifferenceInUnits", std::to_string(this->largest));
 }
 
 // Regular faces of several levels, vertices that are listed, and every length.
@@ -285,7 +287,6 @@ TYPED_TEST_P(DeviceEvaluator, GivesTheLimitInLatticeFaces) {
         }
         ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, 3, isSharp ? 1 : 5));
     }
-    this->RecordProperty("largestDifferenceInUnits", std::to_string(this->largest));
 }
 
 TYPED_TEST_P(DeviceEvaluator, RefusesLimitsAsTheCpu) {
