@@ -112,7 +112,7 @@ TEST_F(Paper, PageIsComplete) {
     EXPECT_EQ(count(page, "class=\"off\""), 0);
     EXPECT_EQ(count(page, "class=\"ok\""), 6);
     EXPECT_EQ(count(page, "class=\"chip "), 15);
-    EXPECT_NE(page.find("<td>8</td><td>1.08; "), std::string::npos);
+    EXPECT_NE(page.find("<td>8</td><td>1.0759; "), std::string::npos);
     EXPECT_NE(page.find("<td>1</td><td>122, 192, 72</td><td>116, 216, 102</td><td>2</td>"
                         "<td>96</td>"),
               std::string::npos);
