@@ -677,15 +677,21 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                 }
                 for (int local = 0; local < level.GetFaceSize(face); ++local) {
                     Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
-                    bool const isFirst =
-                        level.edgeFaces[edge][0] == face && level.edgeFaceLocals[edge][0] == local;
-                    if (isFirst && base.IsEdgeInfSharp(edge) && state.surface.Init(face)) {
-                        Polyline const *const lastEdge =
-                            hasPreviousEdges ? &previous->_edges[std::size_t(edge)] : nullptr;
-                        forest.SetEdge(edge,
-                                       MakeEdge(state.surface.Get(), local,
-                                                state.surface.GetControlPoints(), 3, lastEdge));
+                    bool const isReversed = forest.isReversed(face, local);
+                    // The first of its faces that has a surface makes an edge, since holes have none.
+                    if (!base.IsEdgeInfSharp(edge) ||
+                        (isReversed && factory.FaceHasLimitSurface(level.edgeFaces[edge][0])) ||
+                        !state.surface.Init(face)) {
+                        continue;
                     }
+                    Polyline lastEdge; // empty where there is none
+                    if (hasPreviousEdges) {
+                        Polyline const &ofEdge = previous->_edges[std::size_t(edge)];
+                        lastEdge = isReversed ? ofEdge.GetReversed() : ofEdge;
+                    }
+                    Polyline const made = MakeEdge(state.surface.Get(), local,
+                                                   state.surface.GetControlPoints(), 3, &lastEdge);
+                    forest.SetEdge(edge, isReversed ? made.GetReversed() : made);
                 }
             }
         },

@@ -61,7 +61,7 @@ enum class CellVisibility : unsigned char {
 /// points, with FaceMask::Smooth and Cosine, of the cell or of all cells some steps on; a cell at a base
 /// vertex or base face that is no hexagon, at a feature, and with FaceMask::Average any cell, counts as
 /// visible.  A part of a sharp edge or boundary is outside as a cell is, by the box of the points that its
-/// curve depends on.  The cells beside it are at a feature: so it never faces away.
+/// curve depends on.  It is never taken for one that faces away, as no cell beside it is.
 ///
 /// **Animation.**  Given the tree of the last frame, a cell that is refined there stays refined until the
 /// error is below a fraction of what is allowed, so that nothing flickers; and so do sharp edges and
@@ -109,7 +109,8 @@ public:
         }
         /// Whether it is.
         bool IsCulling() const { return _isCulling; }
-        /// Sets the fraction of both numbers of pixels above which cells stay refined, 0 ... 1.
+        /// Sets the fraction of both numbers of pixels above which cells, and sharp edges and boundaries,
+        /// stay refined, 0 ... 1.
         Options &SetHysteresis(double fraction) {
             _hysteresis = fraction;
             return *this;
@@ -164,6 +165,8 @@ public:
     /// \param controlPoints  its control points, of 3 numbers each
     /// \param pointDesc      how they lie; the first 3 numbers of each are read
     /// \param previous       that of the last frame, in the same direction, or null
+    /// \return               without inner points if the view is invalid; of an edge that is not sharp, which
+    ///                       no forest needs, as of its curve alone
     template <typename REAL>
     Polyline MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
                       typename Surface<REAL>::PointDescriptor const &pointDesc,

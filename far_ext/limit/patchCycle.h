@@ -16,16 +16,20 @@ public:
     using Index = Far::Index;
     using Vector = std::vector<double>;
 
-    /// Adds a step behind those before; it is referred to.
+    PatchCycle() = default;
+    PatchCycle(PatchCycle const &) = delete;
+    PatchCycle &operator=(PatchCycle const &) = delete;
+
+    /// Adds a step after those before.  It is referred to, and not copied.
     void Add(PatchRefinement const &step) { _steps.push_back(&step); }
 
-    /// \brief Confines the map to \p verts of the patch and those that what left vectors have there
-    /// comes to.  Vectors have these alone from here on.  Called once at most, behind Add().
+    /// \brief Keeps the entries of \p verts in vectors, and of all vertices that weights of these come
+    /// to.  Called once at most, after all steps are added.
     ///
-    /// \param verts     ascending
-    /// \param isCorner  vertex 0 of the patch stays where it is.  Of what left vectors come to it then
-    ///                  has that of the first step alone: it is all that they would have left after
-    ///                  dozens of steps, when the rest is no longer seen beside it.
+    /// \param verts     vertices of the patch, ascending
+    /// \param isCorner  whether vertex 0 of the patch stays where it is.  Weight that comes to it is then
+    ///                  dropped after every step but the first of the cycle: it shrinks no more, and
+    ///                  after dozens of steps nothing else would be seen beside it.
     /// \return          the vertices that vectors have, ascending
     std::vector<Index> Confine(std::vector<Index> verts, bool isCorner);
 

@@ -23,10 +23,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <random>
 
 namespace OpenSubdivHex::Regression {
@@ -406,17 +408,21 @@ Shape makeFlatShape() {
 
 namespace {
 
-/// Expects that facets are no further than \p pixels from the curves of sharp edges and borders.
-void expectCloseEdges(Shape const &shape, Camera const &camera, double pixels) {
-    auto const refiner = makeRefiner(shape);
-    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
-    SurfaceSet<double> const surfaces(*refiner, shape.positions);
-    FarExt::TopologyLevel const &base = refiner->GetLevel(0);
+/// Expects that facets are no further than \p pixels from the curves of sharp edges and borders, of all faces
+/// that have a surface.
+void expectCloseEdges(FarExt::TopologyRefiner const &mesh, Shape const &shape, Camera const &camera,
+                      double pixels) {
+    auto const factory = BfrExt::SurfaceFactory::Create(mesh);
+    SurfaceSet<double> const surfaces(mesh, shape.positions);
+    FarExt::TopologyLevel const &base = mesh.GetLevel(0);
     Picture const picture(camera);
     View const view(camera, View::Options().SetFlatness(pixels).SetMaxLevel(10));
     CellForest const forest = view.MakeForest<double>(*factory, shape.positions.data(), 3);
     int numPoints = 0;
     for (int face = 0; face < base.GetNumFaces(); ++face) {
+        if (!surfaces[face].IsValid()) {
+            continue;
+        }
         auto const tessellation = forest.GetTessellation(face);
         ASSERT_TRUE(tessellation.IsValid());
         auto const edges = base.GetFaceEdges(face);
@@ -472,11 +478,48 @@ Camera makeNearCamera(Shape const &shape, int vertex) {
 // A border that bends in the plane of flat cells, from above and with one end much closer than the other.
 TEST(View, SharpEdgesAreCloseToTheirCurves) {
     Shape const shape = makeFlatShape();
+    auto const refiner = makeRefiner(shape);
     Camera fromAbove;
     fromAbove.eye[2] = 30;
     fromAbove.fieldOfView = 30;
-    ASSERT_NO_FATAL_FAILURE(expectCloseEdges(shape, fromAbove, 0.5));
-    ASSERT_NO_FATAL_FAILURE(expectCloseEdges(shape, makeNearCamera(shape, 0), 2));
+    ASSERT_NO_FATAL_FAILURE(expectCloseEdges(*refiner, shape, fromAbove, 0.5));
+    ASSERT_NO_FATAL_FAILURE(expectCloseEdges(*refiner, shape, makeNearCamera(shape, 0), 2));
+}
+
+// A crease that bends between faces of which those on one side have no surface, whichever are the first.
+TEST(View, SharpEdgesOfHolesAreCloseToTheirCurves) {
+    constexpr int kNumColumns = 6;
+    Shape shape;
+    shape.name = "bent crease";
+    for (int row = 0; row < 3; ++row) {
+        for (int i = 0; i <= kNumColumns; ++i) {
+            double const bend = row == 1 ? (i % 2 == 0 ? 0.6 : -0.6) : 0;
+            shape.positions.insert(shape.positions.end(), {double(i), row + bend, 0});
+        }
+    }
+    constexpr int kSecondRow = kNumColumns + 1; // of vertices
+    for (int row = 0; row < 2; ++row) {
+        for (int i = 0; i < kNumColumns; ++i) {
+            int const first = row * kSecondRow + i;
+            shape.faceSizes.push_back(4);
+            shape.faceVertices.insert(
+                shape.faceVertices.end(),
+                {first, first + 1, first + kSecondRow + 1, first + kSecondRow});
+            if (row == 0) {
+                shape.creaseVertexPairs.insert(shape.creaseVertexPairs.end(),
+                                               {kSecondRow + i, kSecondRow + i + 1});
+                shape.creaseSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
+            }
+        }
+    }
+    Camera camera;
+    std::copy_n(std::array<double, 3>{3, 1, 8}.data(), 3, camera.eye);
+    std::copy_n(std::array<double, 3>{3, 1, 0}.data(), 3, camera.target);
+    for (int const firstHole : {0, kNumColumns}) {
+        shape.holeFaces.resize(kNumColumns);
+        std::iota(shape.holeFaces.begin(), shape.holeFaces.end(), firstHole);
+        ASSERT_NO_FATAL_FAILURE(expectCloseEdges(*makeRefiner(shape), shape, camera, 0.5));
+    }
 }
 
 namespace {
