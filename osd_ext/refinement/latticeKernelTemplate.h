@@ -166,11 +166,12 @@ struct LatticeLoader {
             for (int i = 0; i < SIMD::kNumFaces; ++i) {
                 sources[i] = ACCESS::AtPlace(values, place[i], RegularFaceGroup::kPointStride);
             }
-            x[corner] = SIMD::template Load<ACCESS::kReach>(sources);
+            x[corner] = ACCESS::template Load<SIMD>(sources, length);
         }
     }
 
     Elements<float const> const &values;
+    int length; ///< of the elements
     std::uint32_t const *places;
 };
 
@@ -414,7 +415,7 @@ struct LatticeWriter {
                 for (int corner = 0; corner < FACE_SIZE; ++corner) {
                     float *places[SIMD::kNumFaces];
                     findPlaces(i, verts, corner, places);
-                    SIMD::template Store<ACCESS::kWidth>(places, x[i][corner]);
+                    ACCESS::template Store<SIMD>(places, x[i][corner], length);
                 }
             }
         }
@@ -439,6 +440,7 @@ struct LatticeWriter {
     }
 
     Elements<float> const (&outputs)[NUM_OUTPUTS];
+    int length; ///< of the elements
 
 private:
     OPENSUBDIVHEX_INLINE void findPlaces(int output, Far::Index const *verts, int corner,
@@ -643,14 +645,14 @@ void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) 
     std::ptrdiff_t const numPlaces =
         std::ptrdiff_t(kGroup) * FACE_SIZE * (Read::kNumAxes + 2 * Read::kNumPairs);
     using Writer = LatticeWriter<SIMD, ACCESS, FACE_SIZE, NUM_OUTPUTS>;
-    Writer const writer{outputs};
+    Writer const writer{outputs, task.length};
     std::ptrdiff_t const numVerts = std::ptrdiff_t(Writer::kNumVerts) * task.GetNumOrbits();
     for (Far::Index group = begin; group < end; ++group) {
         LatticePrefetcher<ACCESS, NUM_OUTPUTS> prefetcher(task, group, task.GetNumOrbits());
         for (int first = 0; first < kGroup; first += SIMD::kNumFaces) {
             Sources sources;
             loadSources<SIMD, ACCESS>(
-                LatticeLoader<SIMD, ACCESS, FACE_SIZE>{values,
+                LatticeLoader<SIMD, ACCESS, FACE_SIZE>{values, task.length,
                                                        task.places + group * numPlaces + first},
                 task, sources);
             Far::Index const *verts = task.verts + group * numVerts + first;

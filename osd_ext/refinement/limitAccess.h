@@ -17,13 +17,77 @@ namespace {
 
 constexpr int kPoint = RegularFaceGroup::kPointStride;
 
-/// How elements of WIDTH floats are read and written.  A quad of three packed floats takes in the
-/// first of the next element.
-template <int WIDTH, bool IS_PACKED>
+/// Of the faces that a vector holds, one.  Other SIMD levels have more, and the same functions.
+struct OneFace {
+    static constexpr int kNumFaces = 1;
+    using Vector = Quad;
+
+    static OPENSUBDIVHEX_INLINE Vector Spread(float value) {
+        return OsdExt::internal::Spread(value);
+    }
+    static OPENSUBDIVHEX_INLINE Vector MultiplyAdd(Vector const &a, Vector const &b,
+                                                   Vector const &sum) {
+        return sum + a * b;
+    }
+    static OPENSUBDIVHEX_INLINE Vector Load(float const *const *places) {
+        return LoadFloats<kQuad>(places[0]);
+    }
+    static OPENSUBDIVHEX_INLINE Vector LoadRest(float const *const *places, int length) {
+        return OsdExt::internal::LoadRest(places[0], length);
+    }
+    static OPENSUBDIVHEX_INLINE void StorePoints(float *const *places, Vector const &vector) {
+        StoreFloats<kPoint>(places[0], vector);
+    }
+    static OPENSUBDIVHEX_INLINE void StoreQuads(float *const *places, Vector const &vector) {
+        StoreFloats<kQuad>(places[0], vector);
+    }
+    static OPENSUBDIVHEX_INLINE void StoreRest(float *const *places, Vector const &vector,
+                                               int length) {
+        OsdExt::internal::StoreRest(places[0], vector, length);
+    }
+    template <int COUNT>
+    static OPENSUBDIVHEX_INLINE void StoreRun(float *const *places, Vector const (&x)[COUNT]) {
+        float *next = places[0];
+        for (int i = 0; i + 1 < COUNT; ++i, next += kPoint) {
+            StoreFloats<kQuad>(next, x[i]);
+        }
+        StoreFloats<kPoint>(next, x[COUNT - 1]);
+    }
+};
+
+/// What the kernels take of elements at a time.
+enum class LimitWidth {
+    Points, ///< three floats of elements that have no more and no gaps
+    Quads,  ///< four of any elements
+    Rest    ///< the last one to three of any
+};
+
+/// How elements are read and written, up to four floats at a time.  A quad that is read of points takes in
+/// the first float of the next one.
+template <LimitWidth WIDTH>
 struct LimitAccess {
-    static constexpr int kWidth = WIDTH;
-    static constexpr bool kIsPoints = IS_PACKED && WIDTH == RegularFaceGroup::kPointStride;
-    static constexpr int kReach = kIsPoints ? kQuad : WIDTH;
+    static constexpr bool kIsPoints = WIDTH == LimitWidth::Points;
+
+    /// \param length  of the rest; else of no matter
+    template <class SIMD>
+    static OPENSUBDIVHEX_INLINE typename SIMD::Vector Load(float const *const *places, int length) {
+        if constexpr (WIDTH == LimitWidth::Rest) {
+            return SIMD::LoadRest(places, length);
+        } else {
+            return SIMD::Load(places);
+        }
+    }
+    template <class SIMD>
+    static OPENSUBDIVHEX_INLINE void Store(float *const *places,
+                                           typename SIMD::Vector const &vector, int length) {
+        if constexpr (WIDTH == LimitWidth::Rest) {
+            SIMD::StoreRest(places, vector, length);
+        } else if constexpr (kIsPoints) {
+            SIMD::StorePoints(places, vector);
+        } else {
+            SIMD::StoreQuads(places, vector);
+        }
+    }
 
     /// The element at a place in points, or sums, that are \p pointStride floats apart.
     static OPENSUBDIVHEX_INLINE float const *AtPlace(Elements<float const> const &elements,
@@ -34,7 +98,7 @@ struct LimitAccess {
     }
     template <class FLOAT>
     static OPENSUBDIVHEX_INLINE FLOAT *At(Elements<FLOAT> const &elements, std::ptrdiff_t i) {
-        return elements.data + i * (kIsPoints ? WIDTH : elements.stride);
+        return elements.data + i * (kIsPoints ? kPoint : elements.stride);
     }
 };
 
@@ -62,21 +126,13 @@ OPENSUBDIVHEX_INLINE void forEachQuad(TASK task, FUNCTION const &function) {
         isPacked = isPacked && task.outputs[i].stride == task.length;
     }
     if (isPacked && task.length == RegularFaceGroup::kPointStride) {
-        return function(task, LimitAccess<RegularFaceGroup::kPointStride, true>());
+        return function(task, LimitAccess<LimitWidth::Points>());
     }
-    while (task.length > kQuad) {
-        function(task, LimitAccess<kQuad, false>());
-        task.Skip(kQuad);
+    for (; task.length >= kQuad; task.Skip(kQuad)) {
+        function(task, LimitAccess<LimitWidth::Quads>());
     }
-    switch (task.length) {
-    case 1:
-        return function(task, LimitAccess<1, false>());
-    case 2:
-        return function(task, LimitAccess<2, false>());
-    case 3:
-        return function(task, LimitAccess<3, false>());
-    default:
-        return function(task, LimitAccess<kQuad, false>());
+    if (task.length > 0) {
+        function(task, LimitAccess<LimitWidth::Rest>());
     }
 }
 

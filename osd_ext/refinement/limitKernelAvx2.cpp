@@ -19,32 +19,46 @@ struct Avx2Faces {
     static OPENSUBDIVHEX_INLINE Vector MultiplyAdd(Vector a, Vector b, Vector sum) {
         return _mm256_fmadd_ps(a, b, sum);
     }
-    template <int WIDTH>
     static OPENSUBDIVHEX_INLINE Vector Load(float const *const *places) {
-        return _mm256_insertf128_ps(_mm256_castps128_ps256(load<WIDTH>(places[0])),
-                                    load<WIDTH>(places[1]), 1);
+        return join(_mm_loadu_ps(places[0]), _mm_loadu_ps(places[1]));
     }
-    template <int WIDTH>
-    static OPENSUBDIVHEX_INLINE void Store(float *const *places, Vector vector) {
-        StoreFloats<WIDTH>(places[0], Quad(_mm256_castps256_ps128(vector)));
-        StoreFloats<WIDTH>(places[1], Quad(_mm256_extractf128_ps(vector, 1)));
+    static OPENSUBDIVHEX_INLINE Vector LoadRest(float const *const *places, int length) {
+        __m128i const isRead = _mm_cmpgt_epi32(_mm_set1_epi32(length), _mm_setr_epi32(0, 1, 2, 3));
+        return join(_mm_maskload_ps(places[0], isRead), _mm_maskload_ps(places[1], isRead));
+    }
+    static OPENSUBDIVHEX_INLINE void StorePoints(float *const *places, Vector vector) {
+        StoreFloats<kPoint>(places[0], getFirst(vector));
+        StoreFloats<kPoint>(places[1], getSecond(vector));
+    }
+    static OPENSUBDIVHEX_INLINE void StoreQuads(float *const *places, Vector vector) {
+        StoreFloats<kQuad>(places[0], getFirst(vector));
+        StoreFloats<kQuad>(places[1], getSecond(vector));
+    }
+    static OPENSUBDIVHEX_INLINE void StoreRest(float *const *places, Vector vector, int length) {
+        OsdExt::internal::StoreRest(places[0], getFirst(vector), length);
+        OsdExt::internal::StoreRest(places[1], getSecond(vector), length);
     }
     template <int COUNT>
     static OPENSUBDIVHEX_INLINE void StoreRun(float *const *places, Vector const (&x)[COUNT]) {
         // Joining points takes as long as it saves: each overwrites the first float of the next one.
         float *next[] = {places[0], places[1]};
         for (int i = 0; i + 1 < COUNT; ++i) {
-            Store<kQuad>(next, x[i]);
+            StoreQuads(next, x[i]);
             next[0] += kPoint;
             next[1] += kPoint;
         }
-        Store<kPoint>(next, x[COUNT - 1]);
+        StorePoints(next, x[COUNT - 1]);
     }
 
 private:
-    template <int WIDTH>
-    static OPENSUBDIVHEX_INLINE __m128 load(float const *place) {
-        return __m128(LoadFloats<WIDTH>(place));
+    static OPENSUBDIVHEX_INLINE Vector join(__m128 first, __m128 second) {
+        return _mm256_insertf128_ps(_mm256_castps128_ps256(first), second, 1);
+    }
+    static OPENSUBDIVHEX_INLINE Quad getFirst(Vector vector) {
+        return Quad(_mm256_castps256_ps128(vector));
+    }
+    static OPENSUBDIVHEX_INLINE Quad getSecond(Vector vector) {
+        return Quad(_mm256_extractf128_ps(vector, 1));
     }
 };
 

@@ -24,19 +24,30 @@ struct Avx512Faces {
     static OPENSUBDIVHEX_INLINE Vector MultiplyAdd(Vector a, Vector b, Vector sum) {
         return _mm512_fmadd_ps(a, b, sum);
     }
-    template <int WIDTH>
     static OPENSUBDIVHEX_INLINE Vector Load(float const *const *places) {
-        // Halves first: quads that are inserted one after the other wait for one another.
-        __m512d const low = _mm512_castpd256_pd512(_mm256_castps_pd(loadPair<WIDTH>(places)));
-        __m256d const high = _mm256_castps_pd(loadPair<WIDTH>(places + 2));
-        return _mm512_castpd_ps(_mm512_insertf64x4(low, high, 1));
+        return join(_mm_loadu_ps(places[0]), _mm_loadu_ps(places[1]), _mm_loadu_ps(places[2]),
+                    _mm_loadu_ps(places[3]));
     }
-    template <int WIDTH>
-    static OPENSUBDIVHEX_INLINE void Store(float *const *places, Vector vector) {
+    static OPENSUBDIVHEX_INLINE Vector LoadRest(float const *const *places, int length) {
+        __mmask8 const mask = getMask(length);
+        return join(_mm_maskz_loadu_ps(mask, places[0]), _mm_maskz_loadu_ps(mask, places[1]),
+                    _mm_maskz_loadu_ps(mask, places[2]), _mm_maskz_loadu_ps(mask, places[3]));
+    }
+    static OPENSUBDIVHEX_INLINE void StorePoints(float *const *places, Vector vector) {
+        StoreRest(places, vector, kPoint);
+    }
+    static OPENSUBDIVHEX_INLINE void StoreQuads(float *const *places, Vector vector) {
         __m128 ofFaces[kNumFaces];
         split(vector, ofFaces);
         for (int face = 0; face < kNumFaces; ++face) {
-            store<WIDTH>(places[face], ofFaces[face]);
+            _mm_storeu_ps(places[face], ofFaces[face]);
+        }
+    }
+    static OPENSUBDIVHEX_INLINE void StoreRest(float *const *places, Vector vector, int length) {
+        __m128 ofFaces[kNumFaces];
+        split(vector, ofFaces);
+        for (int face = 0; face < kNumFaces; ++face) {
+            _mm_mask_storeu_ps(places[face], getMask(length), ofFaces[face]);
         }
     }
     template <int COUNT>
@@ -58,30 +69,26 @@ struct Avx512Faces {
                 if (2 * i + 2 < COUNT) {
                     _mm256_storeu_ps(place, pairs[i][face]);
                 } else {
-                    constexpr __mmask8 kTwoPoints = 0x3f;
-                    _mm256_mask_storeu_ps(place, kTwoPoints, pairs[i][face]);
+                    _mm256_mask_storeu_ps(place, getMask(2 * kPoint), pairs[i][face]);
                 }
             }
             if constexpr (COUNT % 2 != 0) {
-                store<kPoint>(places[face] + std::ptrdiff_t(COUNT - 1) * kPoint, last[face]);
+                _mm_mask_storeu_ps(places[face] + std::ptrdiff_t(COUNT - 1) * kPoint,
+                                   getMask(kPoint), last[face]);
             }
         }
     }
 
 private:
-    template <int WIDTH>
-    static OPENSUBDIVHEX_INLINE __m256 loadPair(float const *const *places) {
-        return _mm256_insertf128_ps(_mm256_castps128_ps256(__m128(LoadFloats<WIDTH>(places[0]))),
-                                    __m128(LoadFloats<WIDTH>(places[1])), 1);
-    }
-    template <int WIDTH>
-    static OPENSUBDIVHEX_INLINE void store(float *place, __m128 quad) {
-        if constexpr (WIDTH == kPoint) {
-            constexpr __mmask8 kOnePoint = 0x7;
-            _mm_mask_storeu_ps(place, kOnePoint, quad);
-        } else {
-            StoreFloats<WIDTH>(place, Quad(quad));
-        }
+    // Of the first floats.
+    static OPENSUBDIVHEX_INLINE __mmask8 getMask(int count) { return __mmask8((1U << count) - 1); }
+    static OPENSUBDIVHEX_INLINE Vector join(__m128 first, __m128 second, __m128 third,
+                                            __m128 fourth) {
+        // Halves first: quads that are inserted one after the other wait for one another.
+        __m256 const low = _mm256_insertf128_ps(_mm256_castps128_ps256(first), second, 1);
+        __m256 const high = _mm256_insertf128_ps(_mm256_castps128_ps256(third), fourth, 1);
+        return _mm512_castpd_ps(_mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_castps_pd(low)),
+                                                   _mm256_castps_pd(high), 1));
     }
     static OPENSUBDIVHEX_INLINE void split(Vector vector, __m128 (&ofFaces)[kNumFaces]) {
         ofFaces[0] = _mm512_castps512_ps128(vector);

@@ -199,7 +199,7 @@ struct FaceElements {
                 for (int i = 0; i < SIMD::kNumFaces; ++i) {
                     places[i] = begins[i] + corner * output.stride;
                 }
-                SIMD::template Store<ACCESS::kWidth>(places, x[corner]);
+                ACCESS::template Store<SIMD>(places, x[corner], length);
             }
         }
     }
@@ -207,6 +207,7 @@ struct FaceElements {
     RegularFaceGroup const &group;
     OthersBeyond const *othersBeyond;
     int first;
+    int length; ///< of the elements
 
 private:
     OPENSUBDIVHEX_INLINE void load(Elements<float const> const &elements,
@@ -217,7 +218,7 @@ private:
             for (int i = 0; i < SIMD::kNumFaces; ++i) {
                 sources[i] = ACCESS::AtPlace(elements, places[corner][first + i], pointStride);
             }
-            x[corner] = SIMD::template Load<ACCESS::kReach>(sources);
+            x[corner] = ACCESS::template Load<SIMD>(sources, length);
         }
     }
 };
@@ -283,7 +284,8 @@ void evaluateGroups(RegularLimitTask const &given, Far::Index begin, Far::Index 
     for (Far::Index group = begin; group < end; ++group) {
         for (int first = 0; first < RegularFaceGroup::kSize; first += SIMD::kNumFaces) {
             FaceElements<SIMD, ACCESS> const faces = {
-                task.groups[group], SUMS_OTHERS ? task.othersBeyond + group : nullptr, first};
+                task.groups[group], SUMS_OTHERS ? task.othersBeyond + group : nullptr, first,
+                task.length};
             evaluateFaces<SIMD, ACCESS, HAS_DERIVATIVES, SUMS_OTHERS>(task, weights, faces);
         }
     }
@@ -291,18 +293,21 @@ void evaluateGroups(RegularLimitTask const &given, Far::Index begin, Far::Index 
 
 template <class ACCESS>
 void sumVertices(RegularLimitTask const &task, Far::Index begin, Far::Index end) {
-    constexpr int kReach = ACCESS::kReach;
     Elements<float const> const values = task.values;
+    auto const load = [&](Far::Index vert) {
+        float const *const place = ACCESS::At(values, vert);
+        return ACCESS::template Load<OneFace>(&place, task.length);
+    };
     for (Far::Index i = begin; i < end; ++i) {
         Far::Index const *const verts = task.faceVerts + task.summedFaces[i];
-        Quad const v[] = {LoadFloats<kReach>(ACCESS::At(values, verts[0])),
-                          LoadFloats<kReach>(ACCESS::At(values, verts[1])),
-                          LoadFloats<kReach>(ACCESS::At(values, verts[2])),
-                          LoadFloats<kReach>(ACCESS::At(values, verts[3])),
-                          LoadFloats<kReach>(ACCESS::At(values, verts[4])),
-                          LoadFloats<kReach>(ACCESS::At(values, verts[5]))};
-        StoreFloats<kReach>(task.sums.data + i * task.sums.stride,
-                            (v[0] + v[1]) + (v[2] + v[3]) + (v[4] + v[5]));
+        Quad const sum = (load(verts[0]) + load(verts[1])) + (load(verts[2]) + load(verts[3])) +
+                         (load(verts[4]) + load(verts[5]));
+        float *const place = task.sums.data + i * task.sums.stride;
+        if constexpr (ACCESS::kIsPoints) {
+            OneFace::StoreQuads(&place, sum); // the fourth float is read, too
+        } else {
+            ACCESS::template Store<OneFace>(&place, sum, task.length);
+        }
     }
 }
 
@@ -327,7 +332,7 @@ void evaluateVertices(VertexLimitTask const &task, Far::Index begin, Far::Index 
                 for (int i = 0; i < kNumFaces; ++i) {
                     sources[i] = ACCESS::AtPlace(values, places[i], RegularFaceGroup::kPointStride);
                 }
-                Vector const value = SIMD::template Load<ACCESS::kReach>(sources);
+                Vector const value = ACCESS::template Load<SIMD>(sources, task.length);
                 for (int i = 0; i < NUM_OUTPUTS; ++i) {
                     addProduct<SIMD>(sums[i], SIMD::Spread(weights[i]), value);
                 }
@@ -351,7 +356,7 @@ void evaluateVertices(VertexLimitTask const &task, Far::Index begin, Far::Index 
                 for (int k = 0; k < kNumFaces; ++k) {
                     dst[k] = ACCESS::At(outputs[i], group->verts[first + k]);
                 }
-                SIMD::template Store<ACCESS::kWidth>(dst, even[i] + odd[i]);
+                ACCESS::template Store<SIMD>(dst, even[i] + odd[i], task.length);
             }
         }
     }

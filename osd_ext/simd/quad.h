@@ -63,6 +63,22 @@ OPENSUBDIVHEX_INLINE void StoreFloats(float *dst, Quad const &packet) {
     }
 }
 
+/// Reads the first \p length floats, 1 to 3, and not one more; the others are 0.
+OPENSUBDIVHEX_INLINE Quad LoadRest(float const *src, int length) {
+    return Quad{src[0], length > 1 ? src[1] : 0, length > 2 ? src[2] : 0, 0};
+}
+
+/// Writes the first \p length floats, 1 to 3.
+OPENSUBDIVHEX_INLINE void StoreRest(float *dst, Quad const &packet, int length) {
+    dst[0] = packet[0];
+    if (length > 1) {
+        dst[1] = packet[1];
+    }
+    if (length > 2) {
+        dst[2] = packet[2];
+    }
+}
+
 } // namespace
 } // namespace OpenSubdivHex::OsdExt::internal
 
