@@ -20,8 +20,9 @@ from PIL import Image, ImageChops
 
 WIDTH, HEIGHT = 480, 360
 LEFT = WIDTH * 11 // 20  # the panel ends before
-REST = 116, 308  # the button of the panel that puts the control mesh back
+BUTTON = 42, 75, 120  # the colour of the panel's buttons, but for what shines through
 TIMEOUT = 60  # seconds, of a busy machine without a GPU
+INTERVAL = 0.2  # seconds between two looks at the screen
 
 
 def share_of_different(a, b, by=32):
@@ -216,12 +217,54 @@ class Screen:
         subprocess.run(["xdotool", *arguments], check=True,
                        env={**os.environ, "DISPLAY": self.display})
 
-    def wait(self, condition, what):
+    def wait(self, condition, what, meanwhile=lambda: None):
+        """The first picture that is as it should be, of what may go on changing."""
         end = time.monotonic() + TIMEOUT
-        while not condition(self.read()):
+        while not condition(image := self.read()):
             expect(time.monotonic() < end, what)
-            time.sleep(0.2)
-        return self.read()
+            meanwhile()
+            time.sleep(INTERVAL)
+        return image
+
+    def settle(self, condition=lambda image: True, what="the picture comes to rest"):
+        """The first picture that is as it should be and the same as the one before."""
+        last = None
+
+        def has_settled(image):
+            nonlocal last
+            is_same, last = image == last, image
+            return is_same and condition(image)
+        return self.wait(has_settled, what)
+
+    def drag(self, x, y, least, what):
+        """Moves the mouse that far with its button down, so that a share of pixels changes."""
+        before = self.settle()
+        self.do("mousedown", "1")
+        # A move in the frame of the press is not seen: some pixels more, until one is.
+        self.wait(lambda image: image != before, what,
+                  lambda: self.do("mousemove_relative", "1", "1"))
+        self.do("mousemove_relative", "--", str(x), str(y))
+        self.settle(lambda image: share_of_different(image, before) > least, what)
+        self.do("mouseup", "1")
+
+    def click_rest(self):
+        """Clicks the button that puts the control mesh back."""
+        place = find_last_button(read_screen(self.display).crop((0, 0, LEFT, HEIGHT)))
+        expect(place, "the panel has a button")
+        self.do("mousemove", *map(str, place), "click", "1")
+
+
+def find_last_button(panel):
+    """A place in the lowest button that is wider than the arrows of boxes are."""
+    width = 24
+    for y in reversed(range(panel.height)):
+        run = 0
+        for x in range(panel.width):
+            is_button = all(abs(a - b) <= 12 for a, b in zip(panel.getpixel((x, y)), BUTTON))
+            run = run + 1 if is_button else 0
+            if run == width:
+                return x - width // 2, y - 2
+    return None
 
 
 def find_control_vertex(image):
@@ -237,63 +280,52 @@ def find_control_vertex(image):
 
 
 def test_window_of_control_mesh(screen):
-    before = screen.read()
+    before = screen.settle()
     screen.do("key", "c")
-    screen.wait(find_control_vertex, "C shows the control mesh")
-    x, y = find_control_vertex(screen.read())
+    x, y = find_control_vertex(screen.settle(find_control_vertex, "C shows the control mesh"))
     screen.do("mousemove", str(x), str(y))
-    screen.wait(lambda image: 0 in hues_of(image, 50), "the vertex under the mouse is red")
-    screen.do("mousedown", "1")
-    time.sleep(1)
-    for _ in range(5):
-        screen.do("mousemove_relative", "--", "-6", "-8")
-        time.sleep(0.2)
-    screen.do("mouseup", "1")
+    screen.settle(lambda image: 0 in hues_of(image, 50), "the vertex under the mouse is red")
+    screen.drag(-30, -40, 0.01, "the mouse drags the vertex")
     screen.do("key", "c")
-    dragged = screen.wait(lambda image: share_of_different(image, before) > 0.01 and
-                          not find_control_vertex(image), "the surface follows the vertex")
+    dragged = screen.settle(lambda image: share_of_different(image, before) > 0.01 and
+                            not find_control_vertex(image), "the surface follows the vertex")
     # Whoever turned the camera instead would move all of it.
     far = (8, 0, dragged.width // 8, dragged.height)
     expect(share_of_different(dragged.crop(far), before.crop(far)) < 1e-3,
            "it stays where it is far from the vertex")
-    screen.do("mousemove", *map(str, REST), "click", "1")
-    screen.wait(lambda image: share_of_different(image, before) < 1e-3,
-                "the button puts the vertex back")
+    screen.click_rest()
+    screen.settle(lambda image: share_of_different(image, before) < 1e-3,
+                  "the button puts the vertex back")
 
 
 def test_window_of_animation(screen):
-    before = screen.read()
+    before = screen.settle()
     screen.do("key", "a")
     one = screen.wait(lambda image: share_of_different(image, before) > 0.01,
                       "A twists the surface")
     screen.wait(lambda image: share_of_different(image, one) > 0.01, "it goes on")
     screen.do("key", "a")
-    time.sleep(1)
-    last = screen.read()
-    time.sleep(1)
-    expect(share_of_different(screen.read(), last) < 1e-3, "A stops it")
-    screen.do("mousemove", *map(str, REST), "click", "1")
-    screen.wait(lambda image: share_of_different(image, before) < 1e-3,
-                "the button brings it to rest")
+    screen.settle(what="A stops it")
+    screen.click_rest()
+    screen.settle(lambda image: share_of_different(image, before) < 1e-3,
+                  "the button brings it to rest")
 
 
 def test_window_of_cells(screen):
-    before = screen.read()
+    before = screen.settle()
     screen.do("key", "Tab", "Tab", "Tab", "Tab")
-    one = screen.wait(lambda image: share_of_different(image, before) > 0.1 and
-                      len(hues_of(image, 1000)) == 1, "Tab shows the colour of one level")
+    one = screen.settle(lambda image: share_of_different(image, before) > 0.1 and
+                        len(hues_of(image, 1000)) == 1, "Tab shows the colour of one level")
     screen.do("key", "v")
-    cells = screen.wait(lambda image: share_of_different(image, one, 16) > 0.1,
-                        "V shows cells of several levels")
+    cells = screen.settle(lambda image: share_of_different(image, one, 16) > 0.1,
+                          "V shows cells of several levels")
     screen.do("key", "f")
     screen.do("click", "--repeat", "8", "--delay", "200", "4")
-    screen.wait(lambda image: share_of_white(image) < share_of_white(cells) - 0.05,
-                "the wheel comes nearer")
-    time.sleep(1)
-    frozen = screen.read()
+    frozen = screen.settle(lambda image: share_of_white(image) < share_of_white(cells) - 0.05,
+                           "the wheel comes nearer")
     screen.do("key", "f")
-    screen.wait(lambda image: share_of_different(image, frozen, 16) > 0.05,
-                "cells follow the camera unless they are frozen")
+    screen.settle(lambda image: share_of_different(image, frozen, 16) > 0.05,
+                  "cells follow the camera unless they are frozen")
 
 
 def test_window(program, meshes):
@@ -302,33 +334,25 @@ def test_window(program, meshes):
         viewer = subprocess.Popen([program, torus, "--width", str(WIDTH), "--height", str(HEIGHT)],
                                   env={**os.environ, "DISPLAY": screen.display})
         try:
-            first = screen.wait(lambda image: 0.1 < share_of_white(image) < 0.9,
-                                "the window shows a torus")
-            time.sleep(1)
+            first = screen.settle(lambda image: 0.1 < share_of_white(image) < 0.9,
+                                  "the window shows a torus")
             window = subprocess.run(["xdotool", "search", "--name", "hexview"], check=True,
                                     capture_output=True, text=True,
                                     env={**os.environ, "DISPLAY": screen.display}).stdout.split()[0]
             screen.do("windowfocus", "--sync", window)
             screen.do("key", "4")
-            fine = screen.wait(lambda image: share_of_different(image, first) > 0.02,
-                               "4 shows another level")
+            fine = screen.settle(lambda image: share_of_different(image, first) > 0.02,
+                                 "4 shows another level")
             test_window_of_animation(screen)
             screen.do("key", "e")
-            plain = screen.wait(lambda image: share_of_dark(image) < share_of_dark(fine) - 0.05,
-                                "E shows no edges")
+            plain = screen.settle(lambda image: share_of_dark(image) < share_of_dark(fine) - 0.05,
+                                  "E shows no edges")
             test_window_of_control_mesh(screen)
             screen.do("key", "Tab", "Tab")
-            lines = screen.wait(lambda image: share_of_dark(image) > share_of_dark(plain) + 0.05 and
-                                share_of_different(image, plain) > 0.1,
-                                "Tab shows reflection lines")
+            screen.settle(lambda image: share_of_dark(image) > share_of_dark(plain) + 0.05 and
+                          share_of_different(image, plain) > 0.1, "Tab shows reflection lines")
             screen.do("mousemove", str(WIDTH * 3 // 4), str(HEIGHT // 8))
-            time.sleep(1)
-            screen.do("mousedown", "1")
-            time.sleep(1)
-            screen.do("mousemove_relative", "--", "30", "60")
-            screen.wait(lambda image: share_of_different(image, lines) > 0.05,
-                        "the mouse turns the mesh")
-            screen.do("mouseup", "1")
+            screen.drag(30, 60, 0.05, "the mouse turns the mesh")
             test_window_of_cells(screen)
             screen.do("key", "Escape")
             expect(viewer.wait(TIMEOUT) == 0, "Esc ends the program")
