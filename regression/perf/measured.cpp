@@ -75,7 +75,7 @@ Results ReadMeasured(std::string const &path, Environment &environment) {
     if (!file) {
         throw std::runtime_error(path + ": cannot be read");
     }
-    Results results = {&GetPythonRows(), ""};
+    Results results = {"Results of the benchmarks from Python", &GetPythonRows(), ""};
     try {
         read(Json::parse(file), results, environment);
     } catch (std::exception const &exception) {

@@ -36,6 +36,17 @@ Shape MakeFrameMesh() { return makeTorus("frame", 400, 250, TorusFaces::Quads); 
 
 double CountEdges(Shape const &shape) { return shape.GetNumCorners() / 2.0; }
 
+// All vertices stay, and each corner has another one.  E' = 4E.
+double CountHexVertices(Shape const &shape, int level) {
+    double numVertices = shape.GetNumVertices();
+    double numEdges = CountEdges(shape);
+    for (int i = 0; i < level; ++i) {
+        numVertices += 2 * numEdges;
+        numEdges *= 4;
+    }
+    return numVertices;
+}
+
 // After the first step all faces are quads: F' = C, then F' = 4F, and V' = V + F + E.
 double CountCatmarkVertices(Shape const &shape, int level) {
     double numVertices = shape.GetNumVertices();

@@ -23,6 +23,9 @@ Shape MakeFrameMesh();
 /// The number of edges of a closed shape.
 double CountEdges(Shape const &shape);
 
+/// The vertices of a closed shape at \p level of the hexagonal scheme.
+double CountHexVertices(Shape const &shape, int level);
+
 /// The vertices of a closed shape after \p level steps of Catmull-Clark.
 double CountCatmarkVertices(Shape const &shape, int level);
 

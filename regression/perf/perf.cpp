@@ -104,6 +104,7 @@ void runDevice(Suite::Options options, std::string const &command, Paths const &
 #else
     environment.emplace_back("CUDA", "not built: not measured");
 #endif
+    options.title = "Results of the benchmarks of devices";
     options.rows = &GetDeviceRows();
     Suite suite(std::move(options));
     AddDeviceBenchmarks(suite, context);

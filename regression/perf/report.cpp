@@ -202,7 +202,7 @@ std::string formatRows(Results const &results) {
                 std::map<std::string, Figure> figures; // by mesh
                 std::vector<double> values;
                 for (Figure const &figure : results.figures) {
-                    if (figure.row == &row && figure.setting.memory == memory &&
+                    if (figure.row->name == row.name && figure.setting.memory == memory &&
                         figure.setting.mesh.size == size) {
                         figures.emplace(figure.setting.mesh.name, figure);
                         values.push_back(figure.value);
@@ -351,7 +351,7 @@ Environment DescribeEnvironment() {
 
 std::string FormatMarkdown(Results const &results, Environment const &environment) {
     std::ostringstream text;
-    text << "# Results of the benchmarks\n\n";
+    text << "# " << results.title << "\n\n";
     for (auto const &[name, value] : environment) {
         text << "- " << name << ": " << value << "\n";
     }
@@ -377,7 +377,7 @@ std::string FormatJson(Results const &results, Environment const &environment) {
     for (Row const &row : *results.rows) {
         Json figures = Json::array();
         for (Figure const &figure : results.figures) {
-            if (figure.row == &row) {
+            if (figure.row->name == row.name) {
                 Json entry = toJson(figure.setting);
                 entry["figure"] = toJson(figure.value);
                 if (figure.peerValue != 0) {

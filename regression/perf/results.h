@@ -60,6 +60,7 @@ struct Pairing {
 
 /// \brief What was measured, and the figures that follow from it.
 struct Results {
+    std::string title;
     /// The rows that were to be measured.
     std::vector<Row> const *rows;
     /// What is to be known of the sizes and the memory that the results name.

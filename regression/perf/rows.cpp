@@ -125,8 +125,8 @@ std::vector<Row> const &GetDeviceRows() {
         {"gl-limit", "OpenGL, limit with derivatives, length 3", "own, the level alone", 0.4, 0.6},
         {"gl-preparation", "OpenGL, preparation and upload",
          "making and uploading a table of all levels", 50, 200},
-        {"gl-frame", "OpenGL, ms of a frame of 100,000 control vertices at level 4, length 3", "-",
-         2, 1, true},
+        {"gl-frame", std::string("OpenGL, ms of a frame of ") + kFrameMesh + ", length 3", "-", 2,
+         1, true},
         {"cuda-copy", "CUDA, all levels, length 3", "copying as many bytes on the device", 0.5,
          0.75},
         {"cuda-table", "CUDA, all levels, length 3", "own kernel, table of all levels", 5, 8},
@@ -134,8 +134,8 @@ std::vector<Row> const &GetDeviceRows() {
         {"cuda-limit", "CUDA, limit with derivatives, length 3", "own, the level alone", 0.4, 0.6},
         {"cuda-preparation", "CUDA, preparation and upload",
          "making and uploading a table of all levels", 50, 200},
-        {"cuda-frame", "CUDA, ms of a frame of 100,000 control vertices at level 4, length 3", "-",
-         2, 1, true}};
+        {"cuda-frame", std::string("CUDA, ms of a frame of ") + kFrameMesh + ", length 3", "-", 2,
+         1, true}};
     return kRows;
 }
 

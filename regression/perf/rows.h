@@ -20,6 +20,9 @@ struct Row {
 /// The rows of the program perf itself, in the order in which they are printed.
 std::vector<Row> const &GetRows();
 
+/// Stands in the work of rows of frames for their mesh, which the suite puts in its place.
+constexpr char kFrameMesh[] = "{mesh}";
+
 /// Those of perf --device.
 std::vector<Row> const &GetDeviceRows();
 

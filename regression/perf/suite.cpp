@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstring>
 #include <exception>
 #include <iostream>
 #include <regex>
@@ -24,8 +26,16 @@ then runs twice and the second time counts, so that its pages are those it has j
 virtual machine hands free pages to its host, and who comes behind a peer that used more of them
 would wait for them. *warm* is a heap that keeps what was freed (no mmap, no trimming), so that
 pages have been touched before. *resident* means that the work takes no memory: sources, tables and
-results have been touched before. Each turn has a new object, for own and peer alike. *frame* is a
-control mesh of 100,000 quads, which has 34 million vertices at level 4.)";
+results have been touched before. Each turn has a new object, for own and peer alike.)";
+
+/// "1,536".
+std::string formatCount(double count) {
+    std::string text = std::to_string(std::llround(count));
+    for (std::size_t end = text.size(); end > 3; end -= 3) {
+        text.insert(end - 3, ",");
+    }
+    return text;
+}
 
 std::shared_ptr<Shape const> share(Shape shape) {
     return std::make_shared<Shape const>(std::move(shape));
@@ -33,7 +43,9 @@ std::shared_ptr<Shape const> share(Shape shape) {
 
 } // namespace
 
-Suite::Suite(Options options) : _options(std::move(options)), _results{_options.rows, kConditions} {
+Suite::Suite(Options options)
+    : _options(std::move(options)),
+      _rows(*_options.rows), _results{_options.title, &_rows, kConditions} {
     auto const quad = share(MakeQuadMesh());
     auto const triangle = share(MakeTriangleMesh());
     auto const hexagon = share(MakeHexMesh());
@@ -66,6 +78,28 @@ Suite::Suite(Options options) : _options(std::move(options)), _results{_options.
     }
     _frameMesh = _options.isQuick ? BenchMesh{quad, "quad", "frame", 1}
                                   : BenchMesh{share(MakeFrameMesh()), "quad", "frame", 4};
+    nameFrameMesh();
+}
+
+// Says what frames are of where there are rows of them.
+void Suite::nameFrameMesh() {
+    std::string const level = " at level " + std::to_string(_frameMesh.level);
+    bool hasFrames = false;
+    for (Row &row : _rows) {
+        std::size_t const place = row.work.find(kFrameMesh);
+        if (place != std::string::npos) {
+            hasFrames = true;
+            row.work.replace(place, std::strlen(kFrameMesh),
+                             formatCount(_frameMesh.shape->GetNumVertices()) + " control vertices" +
+                                 level);
+        }
+    }
+    if (hasFrames) {
+        _results.conditions += " *frame* is a\ncontrol mesh of " +
+                               formatCount(_frameMesh.shape->GetNumFaces()) + " quads, which has " +
+                               formatCount(CountHexVertices(*_frameMesh.shape, _frameMesh.level)) +
+                               " vertices" + level + ".";
+    }
 }
 
 void Suite::add(Setting const &setting, int numTurns, std::function<void(benchmark::State &)> run) {

@@ -26,6 +26,7 @@ public:
         bool isQuick = false; ///< tiny sizes and one turn, to see that everything runs
         int numTurns = 7;     ///< of large sizes; small ones have three times as many
         std::string filter;   ///< regular expression that names of benchmarks must contain
+        std::string title = "Results of the benchmarks";
         std::vector<Row> const *rows = &GetRows(); ///< that are to be measured
     };
 
@@ -40,7 +41,7 @@ public:
     /// One mesh at several levels.
     std::vector<BenchMesh> const &GetGrowthMeshes() const { return _growthMeshes; }
 
-    /// One whose level 4 is a frame of a device.
+    /// One whose last level is a frame of a device.
     BenchMesh const &GetFrameMesh() const { return _frameMesh; }
 
     /// Adds a benchmark whose contestants \p makeContest makes when it is run.
@@ -65,8 +66,10 @@ private:
     };
     void add(Setting const &setting, int numTurns, std::function<void(benchmark::State &)> run);
     void run(Memory memory);
+    void nameFrameMesh();
 
     Options _options;
+    std::vector<Row> _rows; ///< those of the options, with the mesh of frames in their work
     std::vector<BenchMesh> _meshes;
     std::vector<BenchMesh> _irregularMeshes;
     std::vector<BenchMesh> _baseMeshes;
