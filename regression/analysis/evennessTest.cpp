@@ -21,6 +21,7 @@ namespace Sdc = OpenSubdiv::Sdc;
 constexpr int kLevel = 5;
 /// Of what grows with the level, since there are ever finer ripples around quads and irregular vertices.
 constexpr int kFineLevel = 6;
+constexpr int kFinestLevel = 7;
 constexpr double kDigits = 1e-4;
 
 double measureTorus(int numU, int numV, TorusFaces faces, AnyScheme const &scheme,
@@ -140,6 +141,10 @@ TEST(Evenness, ToriOfQuads) {
         EXPECT_NEAR(measureTorus(row.numU, row.numV, TorusFaces::Quads, Sdc::SCHEME_CATMARK),
                     row.catmark, kDigits);
     }
+    // Finer ripples come with each level, and what they add becomes less.
+    EXPECT_NEAR(
+        measureTorus(9, 6, TorusFaces::Quads, HexSchemeOptions{FaceMask::Smooth}, kFinestLevel),
+        0.0728, kDigits);
 }
 
 // Quads that are two to seven times as long as wide, for which the weights were not searched; and irregular
@@ -224,6 +229,7 @@ TEST(Evenness, TrianglesTruncatedFirst) {
     AnyScheme const truncate = HexSchemeOptions{FaceMask::Smooth, FarExt::SchemeType::Hexagonal,
                                                 FarExt::FirstStep::Truncate};
     EXPECT_LT(measureTorus(14, 8, TorusFaces::Triangles, truncate), 0.027);
+    EXPECT_LT(measureTorus(14, 8, TorusFaces::Triangles, truncate, kFineLevel), 0.025);
     double const bounds[] = {0.27, 0.111, 0.047};
     double const fineBounds[] = {0.28, 0.116, 0.049};
     std::vector<Shape> const shapes = MakeTrianglePlatonics();
