@@ -19,6 +19,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -104,15 +105,20 @@ struct ForestMesh {
     int numFacets = 0;
 };
 
-/// How many random forests a shape gets: OPENSUBDIVHEX_TREES, or so many that they have 200 trees together,
-/// two at least.
-unsigned getNumRounds(Shape const &shape) {
+/// The number of random forests of each shape that OPENSUBDIVHEX_TREES asks for, if it is there.
+std::optional<unsigned> findNumRounds() {
     constexpr int kDecimal = 10;
+    char const *const text = std::getenv("OPENSUBDIVHEX_TREES");
+    return text ? std::optional<unsigned>(
+                      unsigned(std::max(1L, std::strtol(text, nullptr, kDecimal))))
+                : std::nullopt;
+}
+
+/// That number, or so many forests that they have 200 trees together, two at least.
+unsigned getNumRounds(Shape const &shape) {
     constexpr int kNumTrees = 200;
-    char const *const more = std::getenv("OPENSUBDIVHEX_TREES");
     int const numFaces = std::max(1, shape.GetNumFaces());
-    return more ? unsigned(std::max(1L, std::strtol(more, nullptr, kDecimal)))
-                : unsigned(std::max(2, (kNumTrees + numFaces - 1) / numFaces));
+    return findNumRounds().value_or(unsigned(std::max(2, (kNumTrees + numFaces - 1) / numFaces)));
 }
 
 } // namespace
@@ -389,10 +395,14 @@ namespace {
 
 /// What became of the facets of random forests.
 struct ForestCounts {
-    /// Expects that no more of them than some shares are turned over.
+    /// Expects that no more of them than some shares are turned over, which are those of the trees that
+    /// there are by default.
     void Bound(double shareOfPolygons, double shareOfTriangles) const {
         polygons.Report("polygons");
         triangles.Report("triangles");
+        if (findNumRounds()) {
+            return;
+        }
         EXPECT_LT(polygons.GetShare(), shareOfPolygons);
         EXPECT_LT(triangles.GetShare(), shareOfTriangles);
     }
@@ -558,8 +568,7 @@ TEST(CellForest, TagsAndFlawsStayClosed) {
             continue;
         }
         SCOPED_TRACE(shape.name);
-        unsigned const numRounds =
-            std::getenv("OPENSUBDIVHEX_TREES") ? getNumRounds(shape) : kNumRounds;
+        unsigned const numRounds = findNumRounds().value_or(kNumRounds);
         for (unsigned pair = 0; pair < std::min(numRounds, kNumPairs); ++pair) {
             unsigned const rule = (pair + pair / 3 + numShapes) % 3;
             unsigned const numSeeds = (numRounds - pair + kNumPairs - 1) / kNumPairs;
@@ -578,24 +587,29 @@ TEST(CellForest, TagsAndFlawsStayClosed) {
 // Trees of the faces of level 1; of features in turn one mask, since each takes its time.
 TEST(CellForest, BehindAFirstStepStaysClosed) {
     constexpr int kManyFaces = 30;
+    constexpr unsigned kNumRounds = 2;
+    constexpr unsigned kNumRoundsOfFeatures = 1;
     ForestCounts counts;
     for (Shape const &shape : GetManifoldShapes()) {
         if (shape.GetNumFaces() <= kManyFaces) {
             SCOPED_TRACE(shape.name);
             for (SurfaceCase const &surfaceCase : {kTruncateCases[2], kTriHexCases[1]}) {
-                ASSERT_NO_FATAL_FAILURE(expectSound(
-                    shape, surfaceCase, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, 0, 2, counts));
+                ASSERT_NO_FATAL_FAILURE(expectSound(shape, surfaceCase,
+                                                    Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, 0,
+                                                    findNumRounds().value_or(kNumRounds), counts));
             }
         }
     }
-    unsigned seed = 0;
+    unsigned const numRounds = findNumRounds().value_or(kNumRoundsOfFeatures);
+    unsigned numShapes = 0;
     for (Shape const &shape : GetFeatureShapes()) {
         if (shape.GetNumFaces() <= kManyFaces) {
             SCOPED_TRACE(shape.name);
             ASSERT_NO_FATAL_FAILURE(
-                expectSound(shape, kTruncateCases[seed % std::size(kTruncateCases)],
-                            Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER, seed, 1, counts));
-            ++seed;
+                expectSound(shape, kTruncateCases[numShapes % std::size(kTruncateCases)],
+                            Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER, numShapes * numRounds,
+                            numRounds, counts));
+            ++numShapes;
         }
     }
     counts.Bound(0.005, 0.012);
