@@ -734,7 +734,7 @@ TEST(View, NothingThatIsSeenIsCulled) {
         SCOPED_TRACE(shape.name);
         CullingCheck check(shape, 2, kPlainCases[2], Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER,
                            random, cache);
-        ASSERT_NO_FATAL_FAILURE(check.Look(30, counts));
+        ASSERT_NO_FATAL_FAILURE(check.Look(100, counts));
     }
     counts.Report();
     EXPECT_GT(counts.cells[1], 10000);
