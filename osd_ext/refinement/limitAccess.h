@@ -17,7 +17,9 @@ namespace {
 
 constexpr int kPoint = RegularFaceGroup::kPointStride;
 
-/// Of the faces that a vector holds, one.  Other SIMD levels have more, and the same functions.
+/// \brief The portable SIMD level, whose vectors hold four floats of one face.
+///
+/// Those of other levels hold several faces; they have the same functions.
 struct OneFace {
     static constexpr int kNumFaces = 1;
     using Vector = Quad;

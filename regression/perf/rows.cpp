@@ -126,7 +126,7 @@ std::vector<Row> const &GetDeviceRows() {
         {"gl-preparation", "OpenGL, preparation and upload",
          "making and uploading a table of all levels", 50, 200},
         {"gl-frame", std::string("OpenGL, ms of a frame of ") + kFrameMesh + ", length 3", "-", 2,
-         1, true},
+         0.5, true},
         {"cuda-copy", "CUDA, all levels, length 3", "copying as many bytes on the device", 0.5,
          0.75},
         {"cuda-table", "CUDA, all levels, length 3", "own kernel, table of all levels", 5, 8},
@@ -135,7 +135,7 @@ std::vector<Row> const &GetDeviceRows() {
         {"cuda-preparation", "CUDA, preparation and upload",
          "making and uploading a table of all levels", 50, 200},
         {"cuda-frame", std::string("CUDA, ms of a frame of ") + kFrameMesh + ", length 3", "-", 2,
-         1, true}};
+         0.5, true}};
     return kRows;
 }
 
