@@ -67,16 +67,34 @@ void report(Arguments const &arguments, Statistics const &statistics, std::strin
     }
 }
 
+/// Calls a function; lack of memory is an error of the input, with what the memory was for.
+template <typename FUNCTION>
+void withMemoryFor(std::string const &what, Arguments const &arguments, FUNCTION const &function) {
+    try {
+        function();
+    } catch (std::bad_alloc const &) {
+        throw FileError(arguments.input, "not enough memory for " + what);
+    }
+}
+
+std::string nameLevel(Arguments const &arguments) {
+    return arguments.adaptive.isAdaptive
+               ? "--adaptive up to level " + std::to_string(arguments.adaptive.maxLevel)
+               : "level " + std::to_string(arguments.level);
+}
+
 /// Does one step behind the other; what a file is to have is in its place before anything is printed.
 void refine(Arguments const &arguments) {
     std::optional<Progress> progress(std::in_place, !arguments.isQuiet && Progress::IsTerminal());
     Job job(arguments, *progress);
-    job.Read();
-    job.Validate();
-    job.Refine();
-    job.Evaluate();
-    job.Draw();
-    job.Write();
+    withMemoryFor("what the file has", arguments, [&] { job.Read(); });
+    withMemoryFor(nameLevel(arguments), arguments, [&] {
+        job.Validate();
+        job.Refine();
+        job.Evaluate();
+        job.Draw();
+        job.Write();
+    });
     progress.reset(); // its line is removed
     report(arguments, job.GetStatistics(), job.GetTagText());
 }
@@ -102,14 +120,6 @@ int main(int argc, char **argv) {
         if (arguments.simd) {
             setSimdLevel(*arguments.simd);
         }
-        try {
-            refine(arguments);
-        } catch (std::bad_alloc const &) {
-            std::string const what =
-                arguments.adaptive.isAdaptive
-                    ? "--adaptive up to level " + std::to_string(arguments.adaptive.maxLevel)
-                    : "level " + std::to_string(arguments.level);
-            throw FileError(arguments.input, "not enough memory for " + what);
-        }
+        refine(arguments);
     });
 }

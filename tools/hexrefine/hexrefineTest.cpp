@@ -470,6 +470,12 @@ TEST_F(Hexrefine, NamesLackOfMemory) {
                   "not enough memory for level 11", "ulimit -v 500000; ");
     EXPECT_EQ(listFiles(), std::vector<std::string>{"cube.obj"});
 }
+
+TEST_F(Hexrefine, NamesLackOfMemoryForFilesWithoutEnd) {
+    std::string const input = getPath("endless.obj");
+    std::filesystem::create_symlink("/dev/zero", input);
+    expectFailure(input, input, "not enough memory for what the file has", "ulimit -v 200000; ");
+}
 #endif
 
 } // namespace OpenSubdivHex::Tools
