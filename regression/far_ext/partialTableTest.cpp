@@ -95,12 +95,12 @@ void forEachOptions(TopologyRefiner const &refiner, CHECK const &check) {
 /// By direct search through all faces of the level.
 std::vector<int> findVertices(TopologyLevel const &level, std::vector<int> const &baseFaces,
                               int channel) {
+    std::set<int> const wanted(baseFaces.begin(), baseFaces.end());
     std::set<int> verts;
     auto const add = [&](IndexArray more) { verts.insert(more.begin(), more.end()); };
     for (int face = 0; face < level.GetNumFaces(); ++face) {
         auto const isWanted = [&](int half) {
-            return std::count(baseFaces.begin(), baseFaces.end(),
-                              level.GetFaceBaseFace(face, half)) > 0;
+            return wanted.count(level.GetFaceBaseFace(face, half)) > 0;
         };
         bool const isFVarSplit = channel >= 0 && level.IsFaceFVarSplit(face, channel);
         for (int half = 0; half < 2; ++half) {
