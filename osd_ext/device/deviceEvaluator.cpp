@@ -506,26 +506,33 @@ void DeviceEvaluator::evaluateLimit(Frame &frame, Elements const &src,
 // parameters.
 void DeviceEvaluator::evaluateLattices(Frame &frame, Elements src, std::vector<Elements> outputs,
                                        int length, Limit const &limit) {
-    constexpr int kMaxFloats = 4;
-    constexpr std::uint32_t kMaxOrbits = 4;
+    constexpr int kMaxFloats = kMaxCompiledLength;
+    constexpr std::uint32_t kMaxParameterOrbits = 4;
+    bool const isSerial = _device->IsSerial();
     for (; length > 0; length -= kMaxFloats) {
-        auto const numFloats = std::uint32_t(std::min(length, kMaxFloats));
+        int const numFloats = std::min(length, kMaxFloats);
+        auto const numParts = std::uint32_t(isSerial ? 1 : numFloats);
         for (DeviceLimit::Lattice const &lattice : limit.lattices) {
             std::size_t const numWeights = lattice.weights.size() / lattice.numOrbits;
-            DeviceTask task = makeTask(DeviceKernel::LatticeLimit, 1, src, outputs[0]);
+            DeviceTask task =
+                makeTask(DeviceKernel::LatticeLimit, isSerial ? numFloats : 1, src, outputs[0]);
             task.faceSize = lattice.faceSize;
             DeviceParameters &parameters = task.parameters;
             parameters.numFaces = lattice.numFaces;
-            parameters.numFloats = numFloats;
+            parameters.numParts = numParts;
             parameters.firstIndex = limit.firstLatticeIndex + lattice.firstIndex;
             parameters.firstOutput = limit.firstLatticeIndex + lattice.firstOutput;
-            for (std::uint32_t first = 0; first < lattice.numOrbits; first += kMaxOrbits) {
-                parameters.numOrbits = std::min(lattice.numOrbits - first, kMaxOrbits);
+            parameters.firstWeight = lattice.firstWeight;
+            std::uint32_t const maxOrbits = isSerial ? lattice.numOrbits : kMaxParameterOrbits;
+            for (std::uint32_t first = 0; first < lattice.numOrbits; first += maxOrbits) {
+                parameters.numOrbits = std::min(lattice.numOrbits - first, maxOrbits);
                 parameters.numPairs =
-                    std::min(lattice.numPairs - std::min(lattice.numPairs, first), kMaxOrbits);
-                std::copy_n(lattice.weights.begin() + std::ptrdiff_t(first * numWeights),
-                            parameters.numOrbits * numWeights, parameters.latticeWeights);
-                runLimit(frame, task, limit, outputs, lattice.numFaces * numFloats);
+                    std::min(lattice.numPairs - std::min(lattice.numPairs, first), maxOrbits);
+                if (!isSerial) {
+                    std::copy_n(lattice.weights.begin() + std::ptrdiff_t(first * numWeights),
+                                parameters.numOrbits * numWeights, parameters.latticeWeights);
+                }
+                runLimit(frame, task, limit, outputs, lattice.numFaces * numParts);
                 parameters.firstOutput +=
                     std::uint64_t(parameters.numOrbits + parameters.numPairs) *
                     std::uint64_t(lattice.faceSize) * lattice.numFaces;

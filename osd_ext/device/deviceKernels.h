@@ -49,6 +49,7 @@ struct DeviceKernels : DeviceArguments {
 #define READ_INDICES(binding, block, name)
 #define READ(name, place) name[place]
 #define READ_RESULT(place) results[place]
+#define ORBIT_WEIGHT(first, number) latticeWeights[(first) + (number)]
 #define FUNCTION OPENSUBDIVHEX_KERNEL_FUNCTION
 #define REFERENCE(type) type &
 #define PRECISE
@@ -57,6 +58,7 @@ struct DeviceKernels : DeviceArguments {
 #undef PRECISE
 #undef REFERENCE
 #undef FUNCTION
+#undef ORBIT_WEIGHT
 #undef READ_RESULT
 #undef READ
 #undef READ_INDICES

@@ -85,42 +85,76 @@ DeviceLimit::Set addFaces(Level const &level, RegularFaces::Set const &set, MAKE
     return result;
 }
 
+// Adds the orbits of some faces of a set: the pairs that have both halves, then the halves of others and
+// the orbits on axes.
+void addLattice(LatticeFaces::Set const &set, std::vector<int> const &halves,
+                std::vector<Index> const &faces, DeviceLimit &limit) {
+    DeviceLimit::Lattice &lattice = limit.lattices.emplace_back();
+    int const faceSize = set.patch.GetFaceSize();
+    int const numPairs = CountPairs(set);
+    std::vector<int> orbits;
+    std::vector<std::size_t> outputs;
+    auto const addOrbit = [&](int orbit, int firstOutput, int numOutputs) {
+        orbits.push_back(orbit);
+        for (int i = 0; i < numOutputs; ++i) {
+            outputs.push_back(std::size_t(firstOutput + i));
+        }
+    };
+    for (int pair = 0; pair < numPairs; ++pair) {
+        if (!std::binary_search(halves.begin(), halves.end(), pair)) {
+            addOrbit(pair, 2 * pair * faceSize, 2 * faceSize);
+        }
+    }
+    lattice.numPairs = std::uint32_t(orbits.size());
+    for (int const pair : halves) {
+        addOrbit(pair, 2 * pair * faceSize, faceSize);
+    }
+    for (int orbit = numPairs; orbit < int(set.orbits.size()); ++orbit) {
+        addOrbit(orbit, (numPairs + orbit) * faceSize, faceSize);
+    }
+    auto const numPlaces = std::size_t(set.patch.GetNumPlaces());
+    auto const numOutputs = std::size_t(set.numOutputs);
+    std::size_t const numFaces = faces.size();
+    std::size_t const firstIndex = limit.latticeIndices.size();
+    std::size_t const firstOutput = firstIndex + numFaces * numPlaces;
+    lattice.faceSize = faceSize;
+    lattice.numFaces = std::uint32_t(numFaces);
+    lattice.firstIndex = std::uint32_t(firstIndex);
+    lattice.firstOutput = std::uint32_t(firstOutput);
+    limit.latticeIndices.resize(firstOutput + numFaces * outputs.size());
+    std::uint32_t *const indices = limit.latticeIndices.data();
+    FarExt::internal::ParallelFor(Index(numFaces), [&](Index i) {
+        auto const face = std::size_t(faces[std::size_t(i)]);
+        for (std::size_t place = 0; place < numPlaces; ++place) {
+            indices[firstIndex + place * numFaces + std::size_t(i)] =
+                std::uint32_t(set.sources[face * numPlaces + place]);
+        }
+        // What stands in the place of a vertex that another face makes comes once more, later.
+        Index const standIn = set.GetStandIn(face);
+        for (std::size_t k = 0; k < outputs.size(); ++k) {
+            Index const output = set.outputs[face * numOutputs + outputs[k]];
+            bool const isOfOther = output == standIn && k + std::size_t(faceSize) < outputs.size();
+            indices[firstOutput + k * numFaces + std::size_t(i)] =
+                isOfOther ? DeviceLimit::kNoVertex : std::uint32_t(output);
+        }
+    });
+    SourceOrbits const sources = GetAllSourceOrbits(set.patch);
+    for (int const orbit : orbits) {
+        AddOrbitWeights(sources, set.patch, MakePair(set.orbits[std::size_t(orbit)]),
+                        lattice.weights);
+        constexpr std::size_t kUnit = DeviceLimit::kWeightsOfTexel;
+        lattice.weights.resize((lattice.weights.size() + kUnit - 1) / kUnit * kUnit);
+    }
+    lattice.numOrbits = std::uint32_t(orbits.size());
+    lattice.firstWeight = std::uint32_t(limit.weights.size());
+    limit.weights.insert(limit.weights.end(), lattice.weights.begin(), lattice.weights.end());
+}
+
 void addLattices(LatticeFaces const &faces, DeviceLimit &limit) {
     for (LatticeFaces::Set const &set : faces.GetSets()) {
-        DeviceLimit::Lattice &lattice = limit.lattices.emplace_back();
-        auto const numPlaces = std::size_t(set.patch.GetNumPlaces());
-        auto const numOutputs = std::size_t(set.numOutputs);
-        std::size_t const numFaces = set.faces.size();
-        std::size_t const firstIndex = limit.latticeIndices.size();
-        std::size_t const firstOutput = firstIndex + numFaces * numPlaces;
-        lattice.faceSize = set.patch.GetFaceSize();
-        lattice.numFaces = std::uint32_t(numFaces);
-        lattice.firstIndex = std::uint32_t(firstIndex);
-        lattice.firstOutput = std::uint32_t(firstOutput);
-        limit.latticeIndices.resize(firstOutput + numFaces * numOutputs);
-        std::uint32_t *const indices = limit.latticeIndices.data();
-        FarExt::internal::ParallelFor(Index(numFaces), [&](Index i) {
-            auto const face = std::size_t(i);
-            for (std::size_t place = 0; place < numPlaces; ++place) {
-                indices[firstIndex + place * numFaces + face] =
-                    std::uint32_t(set.sources[face * numPlaces + place]);
-            }
-            // What stands in the place of a vertex that another face makes comes once more, later.
-            Index const *const outputs = set.outputs.data() + face * numOutputs;
-            Index const inside = outputs[numOutputs - std::size_t(lattice.faceSize)];
-            for (std::size_t k = 0; k < numOutputs; ++k) {
-                bool const isOfOther =
-                    outputs[k] == inside && k + std::size_t(lattice.faceSize) < numOutputs;
-                indices[firstOutput + k * numFaces + face] =
-                    isOfOther ? DeviceLimit::kNoVertex : std::uint32_t(outputs[k]);
-            }
-        });
-        SourceOrbits const sources = GetAllSourceOrbits(set.patch);
-        for (LatticeFaces::Orbit const &orbit : set.orbits) {
-            lattice.numPairs += orbit.isPair ? 1 : 0;
-            AddOrbitWeights(sources, set.patch, MakePair(orbit), lattice.weights);
+        for (auto const &[halves, some] : GroupByHalves(set)) {
+            addLattice(set, halves, some, limit);
         }
-        lattice.numOrbits = std::uint32_t(set.orbits.size());
     }
 }
 

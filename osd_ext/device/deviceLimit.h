@@ -43,7 +43,8 @@ struct DeviceLimitVertex {
 /// \brief The limit of a level as a device evaluates it: positions of faces, indices and weights are
 /// in arrays of its own.
 struct DeviceLimit {
-    /// \brief Lattice faces of level 0 that have as many sides, and all that is made in them.
+    /// \brief Lattice faces of level 0 that have as many sides and the same halves (GroupByHalves), and all
+    /// that is made in them.
     ///
     /// Their indices are in \c latticeIndices: of each place of a source those of all faces, then of each
     /// vertex of the orbits; kNoVertex where another face makes it.
@@ -53,9 +54,13 @@ struct DeviceLimit {
         std::uint32_t firstIndex;
         std::uint32_t firstOutput; ///< behind the sources
         std::uint32_t numOrbits;
-        std::uint32_t numPairs;     ///< of orbits, these first
-        std::vector<float> weights; ///< of each orbit those of AddOrbitWeights
+        std::uint32_t numPairs; ///< of orbits, these first: others have no mirror images
+        /// Of each orbit those of AddOrbitWeights, and zeros behind them.
+        std::vector<float> weights;
+        std::uint32_t firstWeight; ///< where these are in DeviceLimit::weights, too
     };
+    /// The weights of an orbit are a multiple of these, and so is their position: devices read four at once.
+    static constexpr std::size_t kWeightsOfTexel = 4;
     static constexpr std::uint32_t kNoVertex = 0xffffffffu;
 
     /// Faces of one kind that have a mask in common.

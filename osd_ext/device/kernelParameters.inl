@@ -44,11 +44,11 @@ PARAMETER(uint, hasDerivatives)
 
 PARAMETER_ARRAY(float, regularWeights, 54) // RegularLimitWeights, in their order
 
-// Lattice faces, and how many floats of an element are made: an invocation makes one of a face.
+// Lattice faces, and how many invocations each has, each of which makes LENGTH floats of its elements.
 PARAMETER(uint, numFaces)
-PARAMETER(uint, numFloats)
+PARAMETER(uint, numParts)
 // Their orbits that are made together, and how many of them, the first ones, are pairs.
 PARAMETER(uint, numOrbits)
 PARAMETER(uint, numPairs)
 PARAMETER(PLACE, firstOutput)               // position in indices of the first orbit's vertices
-PARAMETER_ARRAY(float, latticeWeights, 520) // those of AddOrbitWeights, for up to 4 orbits
+PARAMETER_ARRAY(float, latticeWeights, 528) // of up to 4 orbits, unless they are in weights

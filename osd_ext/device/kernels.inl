@@ -8,6 +8,8 @@
 //   READ_FLOATS,         (binding, block, name): declare arrays that are read alone, at READ(name, place)
 //   READ_INDICES
 //   READ_RESULT          (place): reads what a kernel before has written to the results
+//   ORBIT_WEIGHT         (first, number): a weight of the orbit in a lattice whose weights begin at first,
+//                        among the parameters or in weights
 //   PARAMETER            (type, name): declares what kernelParameters.inl lists
 //   FUNCTION             what stands before a function
 //   REFERENCE(type)      the type of an argument that the function changes, or that is large

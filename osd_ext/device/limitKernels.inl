@@ -351,33 +351,36 @@ FUNCTION PairOfSixes weighLattice(REFERENCE(LatticeSources) of, int first, int s
     Six odd;
     int numAll = getNumSums() + getNumDifferences();
     for (int wave = 0; wave < getNumSingleWaves(); ++wave) {
-        int at = first + 3 * numAll * wave + sum;
-        even.x[wave] = multiply(latticeWeights[at], of.waves[0].x[wave]);
+        int at = 3 * numAll * wave + sum;
+        even.x[wave] = multiply(ORBIT_WEIGHT(first, at), of.waves[0].x[wave]);
         for (int i = 1; i < getNumSums(); ++i) {
             even.x[wave] =
-                addProduct(even.x[wave], latticeWeights[at + 3 * i], of.waves[i].x[wave]);
+                addProduct(even.x[wave], ORBIT_WEIGHT(first, at + 3 * i), of.waves[i].x[wave]);
         }
         at = at + 3 * getNumSums();
-        odd.x[wave] = multiply(latticeWeights[at], of.waves[getNumSums()].x[wave]);
+        odd.x[wave] = multiply(ORBIT_WEIGHT(first, at), of.waves[getNumSums()].x[wave]);
         for (int i = 1; i < getNumDifferences(); ++i) {
-            odd.x[wave] = addProduct(odd.x[wave], latticeWeights[at + 3 * i],
+            odd.x[wave] = addProduct(odd.x[wave], ORBIT_WEIGHT(first, at + 3 * i),
                                      of.waves[getNumSums() + i].x[wave]);
         }
     }
     for (int i = 0; i < getNumFrequencies(); ++i) {
         int cosine = getNumSingleWaves() + 2 * i;
         int sine = cosine + 1;
-        int at = first + 3 * numAll * cosine + 2 * sum;
-        even.x[cosine] = multiply(latticeWeights[at], of.waves[0].x[cosine]);
-        even.x[sine] = multiply(latticeWeights[at], of.waves[0].x[sine]);
-        odd.x[sine] = multiply(latticeWeights[at + 1], of.waves[0].x[cosine]);
-        odd.x[cosine] = multiply(latticeWeights[at + 1], of.waves[0].x[sine]);
+        int at = 3 * numAll * cosine + 2 * sum;
+        even.x[cosine] = multiply(ORBIT_WEIGHT(first, at), of.waves[0].x[cosine]);
+        even.x[sine] = multiply(ORBIT_WEIGHT(first, at), of.waves[0].x[sine]);
+        odd.x[sine] = multiply(ORBIT_WEIGHT(first, at + 1), of.waves[0].x[cosine]);
+        odd.x[cosine] = multiply(ORBIT_WEIGHT(first, at + 1), of.waves[0].x[sine]);
         for (int j = 1; j < numAll; ++j) {
             at = at + 6;
-            even.x[cosine] = addProduct(even.x[cosine], latticeWeights[at], of.waves[j].x[cosine]);
-            even.x[sine] = addProduct(even.x[sine], latticeWeights[at], of.waves[j].x[sine]);
-            odd.x[sine] = addProduct(odd.x[sine], latticeWeights[at + 1], of.waves[j].x[cosine]);
-            odd.x[cosine] = addProduct(odd.x[cosine], latticeWeights[at + 1], of.waves[j].x[sine]);
+            even.x[cosine] =
+                addProduct(even.x[cosine], ORBIT_WEIGHT(first, at), of.waves[j].x[cosine]);
+            even.x[sine] = addProduct(even.x[sine], ORBIT_WEIGHT(first, at), of.waves[j].x[sine]);
+            odd.x[sine] =
+                addProduct(odd.x[sine], ORBIT_WEIGHT(first, at + 1), of.waves[j].x[cosine]);
+            odd.x[cosine] =
+                addProduct(odd.x[cosine], ORBIT_WEIGHT(first, at + 1), of.waves[j].x[sine]);
         }
     }
     Six halfSum = findLatticeValues(even);
@@ -391,27 +394,35 @@ FUNCTION PairOfSixes weighLattice(REFERENCE(LatticeSources) of, int first, int s
     return result;
 }
 
-// The vertices of the orbits of a face that are made together, those of a pair in a row.
-struct LatticeOutputs {
-    uint verts[48];
-};
-// Where nothing is made: another face makes the vertex, or the orbit lies on an axis.
+// Where another face makes the vertex.
 FUNCTION uint getNoVertex() { return 0xffffffffu; }
 
-// Parameters are read before the branch: Mesa's drivers for processors read them in each.
-FUNCTION void storePoints(REFERENCE(LatticeOutputs) outputs, int first, uint k, Six point) {
+// The vertices of an orbit on an axis, or of one of a pair.
+struct LatticeOutputs {
+    uint verts[6];
+};
+
+FUNCTION LatticeOutputs getOutputs(PLACE place) {
+    LatticeOutputs outputs;
     for (int corner = 0; corner < SIZE; ++corner) {
-        uint vert = outputs.verts[first + corner];
+        outputs.verts[corner] = READ(indices, place + PLACE(corner) * PLACE(numFaces));
+    }
+    return outputs;
+}
+
+// Parameters are read before the branch: Mesa's drivers for processors read them in each.
+FUNCTION void storePoints(REFERENCE(LatticeOutputs) outputs, uint k, Six point) {
+    for (int corner = 0; corner < SIZE; ++corner) {
+        uint vert = outputs.verts[corner];
         PLACE place = resultOffset + PLACE(vert) * resultStride + PLACE(k);
         if (vert != getNoVertex()) {
             results[place] = point.x[corner];
         }
     }
 }
-FUNCTION void storeDerivatives(REFERENCE(LatticeOutputs) outputs, int first, uint k, Six du,
-                               Six dv) {
+FUNCTION void storeDerivatives(REFERENCE(LatticeOutputs) outputs, uint k, Six du, Six dv) {
     for (int corner = 0; corner < SIZE; ++corner) {
-        uint vert = outputs.verts[first + corner];
+        uint vert = outputs.verts[corner];
         PLACE ofDu = duOffset + PLACE(vert) * duStride + PLACE(k);
         PLACE ofDv = dvOffset + PLACE(vert) * dvStride + PLACE(k);
         if (vert != getNoVertex()) {
@@ -421,41 +432,49 @@ FUNCTION void storeDerivatives(REFERENCE(LatticeOutputs) outputs, int first, uin
     }
 }
 
-FUNCTION int getNumLatticeWeights() {
+// Those of AddOrbitWeights; and with those that DeviceLimit has behind them.
+FUNCTION int getNumWeights() {
     return 3 * (getNumSums() + getNumDifferences()) *
                (getNumSingleWaves() + 2 * getNumFrequencies()) +
            4;
 }
+FUNCTION int getNumPaddedWeights() { return (getNumWeights() + 3) / 4 * 4; }
 
-// Float k of orbit number i.  Behind the last one weights are of no orbit, and nothing is stored.
-FUNCTION void makeOrbit(REFERENCE(LatticeSources) of, REFERENCE(LatticeOutputs) outputs, int i,
-                        uint k) {
-    int first = getNumLatticeWeights() * i;
+// Float k of an orbit whose weights begin at first; of a pair that of its mirror images, too.
+FUNCTION void makeOrbit(REFERENCE(LatticeSources) of, REFERENCE(LatticeOutputs) outputs,
+                        REFERENCE(LatticeOutputs) images, int first, uint k, bool isPair) {
     PairOfSixes point = weighLattice(of, first, 0);
-    storePoints(outputs, 2 * SIZE * i, k, point.first);
-    storePoints(outputs, 2 * SIZE * i + SIZE, k, point.second);
+    storePoints(outputs, k, point.first);
+    if (isPair) {
+        storePoints(images, k, point.second);
+    }
     if (hasDerivatives != 0u) {
         PairOfSixes du = weighLattice(of, first, 1);
         PairOfSixes dv = weighLattice(of, first, 2);
-        int ofDerivatives = first + getNumLatticeWeights() - 4;
-        for (int corner = 0; corner < SIZE; ++corner) {
-            float u = du.second.x[corner];
-            float v = dv.second.x[corner];
-            du.second.x[corner] = addProduct(multiply(latticeWeights[ofDerivatives + 1], v),
-                                             latticeWeights[ofDerivatives], u);
-            dv.second.x[corner] = addProduct(multiply(latticeWeights[ofDerivatives + 3], v),
-                                             latticeWeights[ofDerivatives + 2], u);
+        storeDerivatives(outputs, k, du.first, dv.first);
+        if (isPair) {
+            int ofDerivatives = getNumWeights() - 4;
+            for (int corner = 0; corner < SIZE; ++corner) {
+                float u = du.second.x[corner];
+                float v = dv.second.x[corner];
+                du.second.x[corner] =
+                    addProduct(multiply(ORBIT_WEIGHT(first, ofDerivatives + 1), v),
+                               ORBIT_WEIGHT(first, ofDerivatives), u);
+                dv.second.x[corner] =
+                    addProduct(multiply(ORBIT_WEIGHT(first, ofDerivatives + 3), v),
+                               ORBIT_WEIGHT(first, ofDerivatives + 2), u);
+            }
+            storeDerivatives(images, k, du.second, dv.second);
         }
-        storeDerivatives(outputs, 2 * SIZE * i, k, du.first, dv.first);
-        storeDerivatives(outputs, 2 * SIZE * i + SIZE, k, du.second, dv.second);
     }
 }
 
-// One float of up to four orbits of a lattice face, whose indices stand place after place, of all faces in
-// turn.  With all floats, Mesa's drivers for processors would compile for half a minute.
+// LENGTH floats of some orbits of a lattice face, pairs first, whose indices stand place after place, of
+// all faces in turn.  Loops end behind their bodies: Mesa's drivers for processors would go through one
+// that ends before it once more.
 FUNCTION void makeLatticeLimit(uint i) {
-    uint face = i / numFloats;
-    uint k = i - face * numFloats;
+    uint face = i / numParts;
+    uint k = uint(LENGTH) * (i - face * numParts);
     LatticePlaces places;
     for (int orbit = 0; orbit < getNumAxes() + 2 * getNumDifferences(); ++orbit) {
         for (int corner = 0; corner < SIZE; ++corner) {
@@ -464,25 +483,37 @@ FUNCTION void makeLatticeLimit(uint i) {
                 READ(indices, firstIndex + PLACE(number) * PLACE(numFaces) + PLACE(face));
         }
     }
-    LatticeOutputs outputs;
-    PLACE place = firstOutput + PLACE(face);
-    for (int orbit = 0; orbit < 8; ++orbit) {
-        bool isThere = uint(orbit / 2) < (orbit % 2 == 0 ? numOrbits : numPairs);
-        for (int corner = 0; corner < SIZE; ++corner) {
-            uint vert = getNoVertex();
-            if (isThere) {
-                vert = READ(indices, place);
-                place = place + PLACE(numFaces);
-            }
-            outputs.verts[orbit * SIZE + corner] = vert;
-        }
+    LatticeSources of[LENGTH];
+    for (int j = 0; j < LENGTH; ++j) {
+        findLatticeSources(places, k + uint(j), of[j]);
     }
-    LatticeSources of;
-    findLatticeSources(places, k, of);
-    makeOrbit(of, outputs, 0, k);
-    makeOrbit(of, outputs, 1, k);
-    makeOrbit(of, outputs, 2, k);
-    makeOrbit(of, outputs, 3, k);
+    PLACE place = firstOutput + PLACE(face);
+    PLACE next = PLACE(SIZE) * PLACE(numFaces);
+    uint orbit = 0u;
+    int first = 0;
+    if (numPairs > 0u) {
+        do {
+            LatticeOutputs outputs = getOutputs(place);
+            LatticeOutputs images = getOutputs(place + next);
+            for (int j = 0; j < LENGTH; ++j) {
+                makeOrbit(of[j], outputs, images, first, k + uint(j), true);
+            }
+            place = place + next + next;
+            first = first + getNumPaddedWeights();
+            orbit = orbit + 1u;
+        } while (orbit < numPairs);
+    }
+    if (orbit < numOrbits) {
+        do {
+            LatticeOutputs outputs = getOutputs(place);
+            for (int j = 0; j < LENGTH; ++j) {
+                makeOrbit(of[j], outputs, outputs, first, k + uint(j), false);
+            }
+            place = place + next;
+            first = first + getNumPaddedWeights();
+            orbit = orbit + 1u;
+        } while (orbit < numOrbits);
+    }
 }
 
 // The limit of a DeviceLimitVertex.

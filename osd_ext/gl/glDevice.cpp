@@ -48,6 +48,15 @@ READ_FLOATS(1, ReadResults, readResults)
 #define READ(name, place) name[place]
 #define READ_RESULT(place) results[place]
 #endif
+#if !defined(SERIAL)
+#define ORBIT_WEIGHT(first, number) latticeWeights[(first) + (number)]
+#elif !defined(TEXTURES)
+#define ORBIT_WEIGHT(first, number) READ(weights, firstWeight + PLACE((first) + (number)))
+#else
+layout(binding = 4) uniform samplerBuffer fourWeights;
+#define ORBIT_WEIGHT(first, number) \
+    texelFetch(fourWeights, int(firstWeight) / 4 + (first) / 4 + (number) / 4)[(number) % 4]
+#endif
 #define ARRAY(number, block, type, name) \
     layout(std430, binding = number) buffer block { type name[]; };
 #define PARAMETER(type, name) uniform type name;
@@ -167,6 +176,8 @@ Status GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
     return Status();
 }
 
+bool GlDevice::IsSerial() { return _textures.AreFaster(); }
+
 Status GlDevice::Prepare(DeviceKernel kernel, int length, int faceSize) {
     return prepare({kernel, length, faceSize, _textures.AreFaster()});
 }
@@ -181,7 +192,7 @@ Status GlDevice::prepare(Key const &key) {
     std::string const definitions =
         "#version 430\n#define LENGTH " + str(length) + "\n#define SIZE " +
         str(faceSize == 0 ? kMinUnrolledFace : faceSize) + "\n#define KERNEL " + name + "\n" +
-        (readsTextures ? "#define TEXTURES\n" : "");
+        (readsTextures ? "#define TEXTURES\n" : "") + (IsSerial() ? "#define SERIAL\n" : "");
     std::vector<char const *> texts = {definitions.c_str(), kHead};
     texts.insert(texts.end(), std::begin(kKernelTexts), std::end(kKernelTexts));
     texts.push_back(kMain);

@@ -28,6 +28,7 @@ public:
               std::function<void(void *)> const &write) override;
     FarExt::Status CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
                                std::string const &what) const override;
+    bool IsSerial() override;
     FarExt::Status Prepare(DeviceKernel kernel, int length, int faceSize) override;
     void Run(DeviceTask const &task) override;
     void Wait() override;

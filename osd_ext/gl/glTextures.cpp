@@ -14,11 +14,11 @@ struct ReadArray {
     GLenum format;
     DeviceBufferName DeviceTask::*buffer;
 };
-constexpr ReadArray kArrays[] = {{0, GL_R32F, &DeviceTask::sources},
-                                 {1, GL_R32F, &DeviceTask::results},
-                                 {2, GL_R32UI, &DeviceTask::indices},
-                                 {3, GL_R32F, &DeviceTask::weights},
-                                 {6, GL_R32UI, &DeviceTask::listedVertices}};
+constexpr ReadArray kArrays[] = {
+    {0, GL_R32F, &DeviceTask::sources},        {1, GL_R32F, &DeviceTask::results},
+    {2, GL_R32UI, &DeviceTask::indices},       {3, GL_R32F, &DeviceTask::weights},
+    {4, GL_RGBA32F, &DeviceTask::weights}, // four at once
+    {6, GL_R32UI, &DeviceTask::listedVertices}};
 constexpr std::int64_t kBytesOfTexel = 4;
 
 std::int64_t getNumBytes(DeviceBufferName buffer) {

@@ -9,7 +9,6 @@
 #include <cassert>
 #include <cstddef>
 #include <iterator>
-#include <map>
 #include <optional>
 
 namespace OpenSubdivHex::OsdExt::internal {
@@ -93,32 +92,11 @@ bool isOrbitConsecutive(LatticeFaces::Set const &set, std::vector<Index> const &
     return areConsecutive(set, faces, first, next);
 }
 
-int countPairs(LatticeFaces::Set const &set) {
-    return int(std::count_if(set.orbits.begin(), set.orbits.end(),
-                             [](auto const &orbit) { return orbit.isPair; }));
-}
-
 // Appends the places, or outputs, of some orbits.
 void addOrbits(int first, int numOrbits, int faceSize, std::vector<int> &entries) {
     for (int i = 0; i < numOrbits * faceSize; ++i) {
         entries.push_back(first * faceSize + i);
     }
-}
-
-// The pairs of a face whose mirror images all belong to other faces.
-std::vector<int> findHalves(LatticeFaces::Set const &set, Index face) {
-    Index const *const outputs =
-        set.outputs.data() + std::size_t(face) * std::size_t(set.numOutputs);
-    int const faceSize = set.patch.GetFaceSize();
-    Index const standIn = set.GetStandIn(std::size_t(face));
-    std::vector<int> halves;
-    for (int pair = 0; pair < countPairs(set); ++pair) {
-        Index const *const images = outputs + std::ptrdiff_t(2 * pair + 1) * faceSize;
-        if (std::all_of(images, images + faceSize, [&](Index vert) { return vert == standIn; })) {
-            halves.push_back(pair);
-        }
-    }
-    return halves;
 }
 
 } // namespace
@@ -127,11 +105,7 @@ void LatticeLimit::Prepare(LatticeFaces const &faces) {
     for (LatticeFaces::Set const &of : faces.GetSets()) {
         Sources const sources = findSources(of);
         Corners const corners = makeCorners(faces, of, sources);
-        std::map<std::vector<int>, std::vector<Index>> facesWithHalves;
-        for (Index face = 0; face < Index(of.faces.size()); ++face) {
-            facesWithHalves[findHalves(of, face)].push_back(face);
-        }
-        for (auto const &[halves, some] : facesWithHalves) {
+        for (auto const &[halves, some] : GroupByHalves(of)) {
             Set &set = _sets.emplace_back();
             set.faceSize = of.patch.GetFaceSize();
             set.numGroups =
@@ -202,7 +176,7 @@ void LatticeLimit::setSources(LatticeFaces::Set const &of, Sources const &source
 void LatticeLimit::setOutputs(LatticeFaces::Set const &of, Sources const &sources,
                               Corners const &corners, std::vector<Index> const &faces,
                               std::vector<int> const &halves, Set &set) {
-    int const numPairs = countPairs(of);
+    int const numPairs = CountPairs(of);
     int const numInside = int(of.orbits.size()) - numPairs;
     set.numHalves = int(halves.size());
     set.numPairs = numPairs - set.numHalves;

@@ -46,6 +46,22 @@ bool keepUsed(std::vector<int> &orbits, int count, IS_USED isOrbitUsed) {
     return numUsed <= count;
 }
 
+std::vector<int> findHalves(LatticeFaces::Set const &set, Far::Index face) {
+    Far::Index const *const outputs =
+        set.outputs.data() + std::size_t(face) * std::size_t(set.numOutputs);
+    int const faceSize = set.patch.GetFaceSize();
+    Far::Index const standIn = set.GetStandIn(std::size_t(face));
+    std::vector<int> halves;
+    for (int pair = 0; pair < CountPairs(set); ++pair) {
+        Far::Index const *const images = outputs + std::ptrdiff_t(2 * pair + 1) * faceSize;
+        if (std::all_of(images, images + faceSize,
+                        [&](Far::Index vert) { return vert == standIn; })) {
+            halves.push_back(pair);
+        }
+    }
+    return halves;
+}
+
 /// The rows of one output of an orbit, taken apart as LatticeSources are.
 class RowWaves {
 public:
@@ -137,6 +153,19 @@ std::optional<SourceOrbits> FindCompactSourceOrbits(LatticeFaces::Set const &set
                                return isUsed(set, orbit) || isUsed(set, orbit + 1);
                            });
     return areEnough ? std::optional<SourceOrbits>(compact) : std::nullopt;
+}
+
+int CountPairs(LatticeFaces::Set const &set) {
+    return int(std::count_if(set.orbits.begin(), set.orbits.end(),
+                             [](auto const &orbit) { return orbit.isPair; }));
+}
+
+std::map<std::vector<int>, std::vector<Far::Index>> GroupByHalves(LatticeFaces::Set const &set) {
+    std::map<std::vector<int>, std::vector<Far::Index>> facesWithHalves;
+    for (Far::Index face = 0; face < Far::Index(set.faces.size()); ++face) {
+        facesWithHalves[findHalves(set, face)].push_back(face);
+    }
+    return facesWithHalves;
 }
 
 bool DependsOnThese(SourceOrbits const &sources, LatticePatch const &patch,

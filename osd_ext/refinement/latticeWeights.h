@@ -4,6 +4,7 @@
 
 #include "far_ext/limit/latticeFaces.h"
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct SourceOrbits {
 SourceOrbits GetAllSourceOrbits(FarExt::internal::LatticePatch const &patch);
 /// The orbits of a compact patch, if the faces use no others.
 std::optional<SourceOrbits> FindCompactSourceOrbits(FarExt::internal::LatticeFaces::Set const &set);
+
+/// How many orbits of a set are pairs, which come first.
+int CountPairs(FarExt::internal::LatticeFaces::Set const &set);
+/// \brief The faces of a set by their *halves*: pairs of orbits whose mirror images all belong to other faces.
+std::map<std::vector<int>, std::vector<Far::Index>>
+GroupByHalves(FarExt::internal::LatticeFaces::Set const &set);
 
 /// Whether the vertices of an orbit depend on no other sources.
 bool DependsOnThese(SourceOrbits const &sources, FarExt::internal::LatticePatch const &patch,

@@ -383,6 +383,7 @@ TYPED_TEST_P(DeviceEvaluator, TakesRunsOfEveryFaceSize) {
 
 // What an evaluator keeps of the limit in lattice faces.
 TYPED_TEST_P(DeviceEvaluator, KeepsFewBytesOfLatticeFaces) {
+    constexpr std::int64_t kMaxBytesOfWeights = 1 << 16; // which all faces have in common
     for (Shape const &shape : GetLatticeShapes()) {
         if (!shape.cornerVertices.empty()) {
             continue;
@@ -395,7 +396,8 @@ TYPED_TEST_P(DeviceEvaluator, KeepsFewBytesOfLatticeFaces) {
         auto const src = this->makeBlank(std::size_t(evaluator->GetNumElements(0)), 1);
         auto const dst = this->makeBlank(std::size_t(evaluator->GetNumElements(4)), 1);
         ASSERT_TRUE(evaluator->EvaluateLimit(src.get(), desc, dst.get(), desc, 4));
-        EXPECT_LE(evaluator->GetNumDeviceBytes() - numBytes, 5 * evaluator->GetNumElements(4));
+        EXPECT_LE(evaluator->GetNumDeviceBytes() - numBytes,
+                  4 * evaluator->GetNumElements(4) + kMaxBytesOfWeights);
     }
 }
 
