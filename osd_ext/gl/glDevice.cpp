@@ -30,7 +30,8 @@ constexpr char const *kNames[] = {
     "makeOwnLimit",      "makeLatticeLimit",   "makeListedLimit",     "makeTriangles"};
 
 // What stands before the kernels, behind LENGTH and SIZE: see kernels.inl.  What is read alone may be
-// TEXTURES.
+// TEXTURES.  Where the device is SERIAL, four weights of orbits are a texel, whatever the others
+// are: see GlTextures::Bind().
 constexpr char const *kHead = R"(
 layout(local_size_x = 64) in;
 #define PLACE uint
@@ -48,14 +49,12 @@ READ_FLOATS(1, ReadResults, readResults)
 #define READ(name, place) name[place]
 #define READ_RESULT(place) results[place]
 #endif
-#if !defined(SERIAL)
-#define ORBIT_WEIGHT(first, number) latticeWeights[(first) + (number)]
-#elif !defined(TEXTURES)
-#define ORBIT_WEIGHT(first, number) READ(weights, firstWeight + PLACE((first) + (number)))
-#else
+#ifdef SERIAL
 layout(binding = 4) uniform samplerBuffer fourWeights;
 #define ORBIT_WEIGHT(first, number) \
     texelFetch(fourWeights, int(firstWeight) / 4 + (first) / 4 + (number) / 4)[(number) % 4]
+#else
+#define ORBIT_WEIGHT(first, number) latticeWeights[(first) + (number)]
 #endif
 #define ARRAY(number, block, type, name) \
     layout(std430, binding = number) buffer block { type name[]; };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "glTextures.h"
 
+#include <algorithm>
 #include <cstring>
 #include <iterator>
 
@@ -55,17 +56,18 @@ bool GlTextures::Bind(DeviceTask const &task) {
     if (!AreFaster()) {
         return false;
     }
-    for (ReadArray const &array : kArrays) {
-        if (getNumBytes(task.*array.buffer) > getMaxTexels() * kBytesOfTexel) {
-            return false;
-        }
-    }
+    bool const areTextures =
+        std::all_of(std::begin(kArrays), std::end(kArrays), [&](ReadArray const &array) {
+            return getNumBytes(task.*array.buffer) <= getMaxTexels() * kBytesOfTexel;
+        });
     if (_names[0] == 0) {
         glGenTextures(kNumBindings, _names);
     }
-    setBuffers(task);
+    DeviceTask ofWeights;
+    ofWeights.weights = task.weights;
+    setBuffers(areTextures ? task : ofWeights);
     _areBound = true;
-    return true;
+    return areTextures;
 }
 
 void GlTextures::Unbind() {

@@ -22,7 +22,9 @@ public:
 
     /// Whether kernels should read textures.
     bool AreFaster() { return getMaxTexels() > 0; }
-    /// \brief Binds the arrays of a task, each at the number of its binding.
+    /// \brief Binds the arrays of a task, each at the number of its binding, and the weights, four at once, at 4.
+    ///
+    /// The weights are bound wherever textures are faster, even if other arrays are too large.
     ///
     /// \return  false if the kernel has to read arrays, textures being no faster or smaller than one of
     ///          these
