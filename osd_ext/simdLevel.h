@@ -17,8 +17,9 @@ namespace OpenSubdivHex::OsdExt {
 /// Levels differ in the last bits: above Portable, products are fused with sums (FMA), and the
 /// terms of a stencil are summed in another order.
 ///
-/// RefinementEvaluator knows no levels, but for its limits: its code is compiled once, for the
-/// processors that the whole library is compiled for, and its results are the same at every level.
+/// RefinementEvaluator has the same results at every level, but for its limits: where masks are those of
+/// irregular vertices and quads its code is compiled for each level, without fused products, and elsewhere
+/// once, for the processors that the whole library is compiled for.
 enum class SimdLevel {
     Portable, ///< what the compiler makes of plain C++, on any machine
     Avx2,     ///< AVX2 and FMA

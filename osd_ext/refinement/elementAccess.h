@@ -11,7 +11,7 @@
 namespace OpenSubdivHex::OsdExt::internal {
 namespace {
 
-constexpr int kQuadPair = 8;
+constexpr int kQuadPair = 8; ///< floats
 
 // Eight floats.
 struct QuadPair {
@@ -60,6 +60,8 @@ constexpr bool kReadsMore = true;
 // first of the next element.
 template <int WIDTH, bool IS_PACKED>
 struct Access {
+    static constexpr int kWidth = WIDTH;
+    static constexpr bool kIsPacked = IS_PACKED;
     static constexpr int kReach = kReadsMore && IS_PACKED && WIDTH == 3 ? kQuad : WIDTH;
 
     template <class FLOAT>

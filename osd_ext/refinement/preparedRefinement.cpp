@@ -94,27 +94,34 @@ private:
 // Lists irregular faces of runs, from first to last.
 class IrregularLister {
 public:
-    // faces: all of the level, ascending
+    // faces: all of the level, ascending; prepared has the masks
     IrregularLister(Level const &level, std::vector<RefinementMask::IrregularFace> const &faces,
-                    std::vector<IrregularRun> &runs)
+                    PreparedRefinement &prepared)
         : _firstCorners(level.faceFirstCorner.data()), _next(faces.begin()), _end(faces.end()),
-          _runs(runs) {}
+          _masks(prepared.masks.irregularFaces), _runs(prepared.irregularFaces),
+          _types(prepared.irregularTypes) {
+        _types.reserve(faces.size());
+    }
 
     void Add(Index begin, Index end) {
         while (_next != _end && _next->face < begin) {
             ++_next;
         }
         std::size_t const numBefore = _runs.size();
+        int lastPattern = 0;
         for (; _next != _end && _next->face < end; ++_next) {
             Index const corner = _firstCorners[_next->face];
             Index const endCorner = _firstCorners[_next->face + 1];
-            bool const goesOn = _runs.size() > numBefore && _runs.back().end == corner &&
-                                _runs.back().mask == _next->type;
+            int const pattern = _masks[std::size_t(_next->type)].pattern;
+            bool const goesOn =
+                _runs.size() > numBefore && _runs.back().end == corner && lastPattern == pattern;
             if (goesOn) {
                 _runs.back().end = endCorner;
             } else {
-                _runs.push_back({corner, endCorner, _next->type});
+                _runs.push_back({corner, endCorner, Index(_types.size())});
             }
+            _types.push_back(_next->type);
+            lastPattern = pattern;
         }
     }
 
@@ -122,7 +129,9 @@ private:
     Index const *const _firstCorners;
     std::vector<RefinementMask::IrregularFace>::const_iterator _next;
     std::vector<RefinementMask::IrregularFace>::const_iterator const _end;
+    std::vector<IrregularFaceMask> const &_masks;
     std::vector<IrregularRun> &_runs;
+    std::vector<int> &_types;
 };
 
 // The runs of all groups, which know their irregular faces.
@@ -248,7 +257,7 @@ void makeFaces(RefinementMask const &mask, Level const &parent,
         }
     };
     FaceRunMaker plain(parent);
-    IrregularLister irregular(parent, mask.GetIrregularFaces(), prepared.irregularFaces);
+    IrregularLister irregular(parent, mask.GetIrregularFaces(), prepared);
     for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
         Group const group = groupOfTile[run.tile];
         ForEachRun(
@@ -260,7 +269,7 @@ void makeFaces(RefinementMask const &mask, Level const &parent,
             [&](Index face, Index) { addWeighted(face, group); });
     }
     prepared.weightedFaces = makeGroups(weighted, groupOfWeighted, prepared.numTiles);
-    prepared.irregularFaces.push_back({parent.numCorners, parent.numCorners, -1});
+    prepared.irregularFaces.push_back({parent.numCorners, parent.numCorners, 0});
     prepared.plainFaces =
         addIrregular(parent, plain.Take(prepared.numTiles), prepared.irregularFaces);
 }
@@ -460,17 +469,16 @@ private:
 
 // Whether a kernel for faces of a pattern may be used for a face.  The pattern may have more places: a
 // finite point that weighs nothing adds nothing, but perhaps to the sign of a zero.
-bool isCovered(RefinementMask::IrregularFaceWeights const &face, unsigned const *pattern) {
+bool isCovered(RefinementMask::IrregularFaceWeights const &face, int pattern) {
     for (int i = 0; i < IrregularFaceMask::kSize; ++i) {
-        if (pattern[i] == IrregularFaceMask::kPlain) {
+        if (IrregularFaceMask::IsPlain(pattern, i)) {
             if (face.areIrregular[i]) {
                 return false;
             }
             continue;
         }
-        for (int j = 0; j < IrregularFaceMask::kSize; ++j) {
-            bool const isPlace = (pattern[i] >> j & 1) != 0;
-            if (!isPlace && face.weights[i][(i + j) % IrregularFaceMask::kSize] != 0) {
+        for (int vert = 0; vert < IrregularFaceMask::kSize; ++vert) {
+            if (!IrregularFaceMask::HasWeight(pattern, i, vert) && face.weights[i][vert] != 0) {
                 return false;
             }
         }
@@ -479,16 +487,16 @@ bool isCovered(RefinementMask::IrregularFaceWeights const &face, unsigned const 
 }
 
 IrregularFaceMask makeIrregularMask(RefinementMask::IrregularFaceWeights const &type) {
-    constexpr int kSize = IrregularFaceMask::kSize;
-    IrregularFaceMask mask;
-    for (int i = 0; i < kSize; ++i) {
-        for (int j = 0; j < kSize; ++j) {
-            mask.rows[i][j] = Spread(float(type.weights[i][(i + j) % kSize]));
-        }
-    }
-    mask.pattern = 0;
-    while (!isCovered(type, IrregularFaceMask::kPatterns[mask.pattern])) {
+    IrregularFaceMask mask = {};
+    while (!isCovered(type, mask.pattern)) {
         ++mask.pattern;
+    }
+    mask.rowPattern = IrregularFaceMask::FindRowPattern(mask.pattern);
+    for (int i = 0; i < IrregularFaceMask::CountRows(mask.pattern); ++i) {
+        int const corner = IrregularFaceMask::FindCornerOfRow(mask.pattern, i);
+        for (int vert = 0; vert < IrregularFaceMask::kSize; ++vert) {
+            mask.weights[vert][i] = Spread(float(type.weights[corner][vert]));
+        }
     }
     return mask;
 }

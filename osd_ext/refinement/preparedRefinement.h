@@ -36,11 +36,14 @@ PlainFaceMask MakePlainFaceMask(double const *weights, int size);
 /// faces, whose plain hexagons have no opposite weight.
 struct IrregularFaceMask {
     static constexpr int kSize = 6;
+    static constexpr int kRowStride = 8; ///< quads, so that vectors of them are aligned
 
-    /// From the corner on, each four times.
-    Quad rows[kSize][kSize];
+    /// By vertex of the face, those of the rows that are not plain, one behind the other, each weight four
+    /// times; 0 behind them.
+    alignas(64) Quad weights[kSize][kRowStride];
     /// Which of kPatterns has a place for each of the weights that are not 0.
     int pattern;
+    int rowPattern; ///< see FindRowPattern
 
     /// Patterns say which weights the row of a corner may have: bit j is the place of the vertex j places
     /// behind the corner; or that the row is that of plain faces.
@@ -58,8 +61,8 @@ struct IrregularFaceMask {
     static constexpr unsigned kSecondAlong = 0b111011;
     static constexpr unsigned kSecondAlongBack = 0b101111;
     static constexpr int kNumPatterns = 11;
-    /// For each there is a kernel.  The first ones fit meshes of quads and of triangles; with those behind
-    /// other faces are multiplied by some zeros, and with the last one by all there are.
+    /// The first ones fit meshes of quads and of triangles; with those behind other faces are multiplied by
+    /// some zeros, and with the last one by all there are.
     static constexpr unsigned kPatterns[kNumPatterns][kSize] = {
         {kAt, kBehind, kPlain, kPlain, kPlain, kBefore},
         {kAt, kBehind, kBefore, kAt, kBehind, kBefore},
@@ -72,6 +75,43 @@ struct IrregularFaceMask {
         {kAt, kSecondAlong, kSecondAlongBack, kAt, kSecondAlong, kSecondAlongBack},
         {kAt, kAll, kPlain, kPlain, kPlain, kAll},
         {kAll, kAll, kAll, kAll, kAll, kAll}};
+
+    static constexpr bool IsPlain(int pattern, int corner) {
+        return kPatterns[pattern][corner] == kPlain;
+    }
+    /// Whether the row of a corner may have a weight for vertex number \p vert of the face.
+    static constexpr bool HasWeight(int pattern, int corner, int vert) {
+        return (kPatterns[pattern][corner] >> ((vert - corner + kSize) % kSize) & 1) != 0;
+    }
+    /// The first pattern with the same plain rows.
+    static constexpr int FindRowPattern(int pattern) {
+        int result = 0;
+        for (int corner = 0; corner < kSize; ++corner) {
+            if (IsPlain(result, corner) != IsPlain(pattern, corner)) {
+                ++result;
+                corner = -1;
+            }
+        }
+        return result;
+    }
+    /// @name The rows that are not plain
+    /// @{
+    static constexpr int CountRows(int pattern) {
+        int count = 0;
+        for (int corner = 0; corner < kSize; ++corner) {
+            count += IsPlain(pattern, corner) ? 0 : 1;
+        }
+        return count;
+    }
+    /// The corner of number \p i of them.
+    static constexpr int FindCornerOfRow(int pattern, int i) {
+        int corner = 0;
+        for (int numBefore = 0; numBefore < i || IsPlain(pattern, corner); ++corner) {
+            numBefore += IsPlain(pattern, corner) ? 0 : 1;
+        }
+        return corner;
+    }
+    /// @}
 };
 
 /// \brief V' = vertex V + faces (sum of P), by number of faces.
@@ -98,12 +138,12 @@ struct WeightedFace {
     std::size_t firstWeight; ///< position in faceWeights
 };
 
-/// \brief Irregular faces, hexagons of one type that follow one another: their corners [begin, end).
+/// \brief Irregular faces, hexagons of one pattern that follow one another: their corners [begin, end).
 /// It may reach beyond the run of plain faces that it is in, where not all faces are refined.
 struct IrregularRun {
     Far::Index begin;
     Far::Index end;
-    int mask; ///< position in PlainMasks::irregularFaces
+    Far::Index firstType; ///< position in irregularTypes
 };
 
 /// \brief Plain faces [begin, end), of which some are irregular.
@@ -203,6 +243,8 @@ struct PreparedRefinement : RefinementGroups {
     std::vector<float> faceWeights; ///< of weighted faces
     /// In the runs of plain faces, ascending; behind all, one that is in no run.
     std::vector<IrregularRun> irregularFaces;
+    std::vector<int>
+        irregularTypes; ///< of each of their faces, positions in PlainMasks::irregularFaces
 
     // Of listed vertices.
     std::vector<Far::Index> listedSources;

@@ -2,12 +2,11 @@
 #include "refinementKernel.h"
 
 #include "irregularFaceKernel.h"
+#include "plainFaceKernel.h"
 
 #include "far_ext/indexing.h"
 #include "far_ext/vtr/parallel.h"
 
-#include <algorithm>
-#include <cstdint>
 #include <functional>
 
 namespace OpenSubdivHex::OsdExt::internal {
@@ -23,47 +22,12 @@ namespace {
 
 constexpr int kFVertexFaces = 3; // around an F-vertex
 
-// Asks for memory that is read or written soon, one line in each turn of a loop over it: benchmark
-// table-free, large meshes, 1.1 times as fast with it.
-template <class T>
-inline void prefetchAhead([[maybe_unused]] T const *place) {
-#if defined(__GNUC__)
-    constexpr std::uintptr_t kBytesAhead = 4096;
-    // A number, since a pointer may not lead behind the end of its array.
-    __builtin_prefetch(
-        reinterpret_cast<void const *>(reinterpret_cast<std::uintptr_t>(place) + kBytesAhead));
-#endif
-}
-
 // The vertices of F-faces, which follow one another.
 struct ConsecutiveVertices {
     Index operator[](int i) const { return first + i; }
 
     Index first;
 };
-
-// A plain face of 3 to 6 sides.
-template <class ACCESS, int SIZE, bool HAS_OPPOSITE, class VERTICES>
-inline void refineUnrolledFace(PlainFaceQuads const &mask, Elements<float const> const &src,
-                               VERTICES verts, Elements<float> const &dst, std::ptrdiff_t corner) {
-    decltype(ACCESS::Load(src, 0)) v[SIZE];
-    for (int i = 0; i < SIZE; ++i) {
-        v[i] = ACCESS::Load(src, verts[i]);
-    }
-    auto sum = v[0] + v[1];
-    for (int i = 2; i < SIZE; ++i) {
-        sum = sum + v[i];
-    }
-    auto const all = mask.all * sum;
-    for (int i = 0; i < SIZE; ++i) {
-        auto const point = sumPlainRow<SIZE, HAS_OPPOSITE>(mask, all, v, i);
-        if (i + 1 < SIZE) {
-            ACCESS::Store(dst, corner + i, point);
-        } else {
-            ACCESS::StoreExactly(dst, corner + i, point);
-        }
-    }
-}
 
 // A plain face of any size.
 template <class ACCESS>
@@ -111,105 +75,47 @@ void refineWeightedFace(float const *weights, std::ptrdiff_t rowStride,
     }
 }
 
-// Faces of 3 to 6 sides, whose corners follow one another.
-template <class ACCESS, int SIZE, bool HAS_OPPOSITE>
-struct UnrolledFaces {
-    static constexpr bool kMayBeIrregular = SIZE == IrregularFaceMask::kSize && !HAS_OPPOSITE;
+// Hexagons of a run with irregular ones.
+template <class ACCESS>
+void refineIrregularFaces(RefinementTask const &task, PlainFaceMask const &faceMask,
+                          FaceRun const &run, Index begin, Index end) {
+    PreparedRefinement const &refinement = *task.refinement;
+    IrregularFaceKernels const &kernels = GetIrregularFaceKernels();
+    IrregularFaceKernels::Kernel const *const byWidth =
+        ACCESS::kIsPacked ? kernels.packed : kernels.strided;
+    byWidth[ACCESS::kWidth - 1]({&faceMask, refinement.masks.irregularFaces.data(),
+                                 refinement.irregularTypes.data(),
+                                 refinement.irregularFaces.data() + run.firstIrregular, begin, end,
+                                 refinement.parent->faceVerts.data(), task.src, task.FVertices()});
+}
 
-    // F-faces, from corner begin to end - 1.
-    OPENSUBDIVHEX_INLINE void RefineFFaces(Index begin, Index end,
-                                           HexIndexing const indexing) const {
-        for (Index corner = begin; corner < end; corner += SIZE) {
-            prefetchAhead(ACCESS::At(dst, corner));
-            refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(
-                mask, src, ConsecutiveVertices{indexing.GetCornerChildVertex(corner)}, dst, corner);
-        }
-    }
-
-    OPENSUBDIVHEX_INLINE void RefinePlain(std::ptrdiff_t begin, std::ptrdiff_t end) const {
-        for (std::ptrdiff_t corner = begin; corner != end; corner += SIZE) {
-            prefetchAhead(verts + corner);
-            prefetchAhead(ACCESS::At(dst, corner));
-            refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(mask, src, verts + corner, dst, corner);
-        }
-    }
-
-    // What is left of the faces when all before an irregular one are done.
-    struct Rest {
-        Index corner;
-        IrregularRun const *irregular;
-    };
-
-    // Irregular faces of one pattern, with the plain ones between them and behind, until there is another
-    // pattern, or end.  A face at an irregular vertex stands alone: going on from one to the next takes a
-    // fifth of its instructions.
-    template <int PATTERN>
-    static Rest RefinePattern(UnrolledFaces const faces, IrregularFaceMask const *masks, Rest rest,
-                              Index end) {
-        do {
-            IrregularFaceMask const &irregularMask = masks[rest.irregular->mask];
-            std::ptrdiff_t const irregularEnd = std::min(rest.irregular->end, end);
-            for (std::ptrdiff_t corner = rest.corner; corner != irregularEnd; corner += SIZE) {
-                prefetchAhead(faces.verts + corner);
-                prefetchAhead(ACCESS::At(faces.dst, corner));
-                refineIrregularFace<ACCESS, PATTERN>(
-                    irregularMask, faces.mask, faces.src, faces.dst, faces.verts + corner, corner,
-                    std::make_integer_sequence<int, IrregularFaceMask::kSize>());
-            }
-            ++rest.irregular;
-            rest.corner = std::min(rest.irregular->begin, end);
-            faces.RefinePlain(irregularEnd, rest.corner);
-        } while (rest.corner != end && masks[rest.irregular->mask].pattern == PATTERN);
-        return rest;
-    }
-
-    // RefinePattern by pattern.  Behind pointers the compiler keeps the patterns apart: together with them
-    // plain faces take a tenth longer.
-    using PatternKernel = Rest (*)(UnrolledFaces, IrregularFaceMask const *, Rest, Index);
-    template <int... PATTERN>
-    static PatternKernel GetKernel(int pattern, std::integer_sequence<int, PATTERN...>) {
-        static constexpr PatternKernel kKernels[] = {RefinePattern<PATTERN>...};
-        return kKernels[pattern];
-    }
-
-    // From corner begin to end - 1; irregular are the first that end behind begin, masks are by type.
-    void RefineAny(IrregularFaceMask const *masks, IrregularRun const *irregular, Index begin,
-                   Index end) const {
-        Rest rest = {std::clamp(irregular->begin, begin, end), irregular};
-        RefinePlain(begin, rest.corner);
-        while (rest.corner != end) {
-            PatternKernel const refine =
-                GetKernel(masks[rest.irregular->mask].pattern,
-                          std::make_integer_sequence<int, IrregularFaceMask::kNumPatterns>());
-            rest = refine(*this, masks, rest, end);
-        }
-    }
-
-    PlainFaceQuads mask;
-    Elements<float const> src;
-    Elements<float> dst;
-    Index const *verts; // by corner
-};
-
-// Plain faces of 3 to 6 sides.
+// Faces of 3 to 6 sides, plain or irregular.
 template <class ACCESS, int SIZE, bool HAS_OPPOSITE>
 void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMask,
                          FaceRun const &run) {
     PreparedRefinement const &refinement = *task.refinement;
     Level const &parent = *refinement.parent;
-    using Faces = UnrolledFaces<ACCESS, SIZE, HAS_OPPOSITE>;
-    Faces const faces = {PlainFaceQuads(faceMask), task.src, task.FVertices(),
-                         parent.faceVerts.data()};
     Index const begin = parent.faceFirstCorner[std::size_t(run.begin)];
     Index const end = parent.faceFirstCorner[std::size_t(run.end)];
+    PlainFaceQuads const mask(faceMask);
+    Elements<float const> const src = task.src;
+    Elements<float> const dst = task.FVertices();
     if (run.begin < GetNumFFaces(parent)) {
-        faces.RefineFFaces(begin, end, refinement.before->ChildIndexing());
-    } else if constexpr (Faces::kMayBeIrregular) {
-        faces.RefineAny(refinement.masks.irregularFaces.data(),
-                        refinement.irregularFaces.data() + run.firstIrregular, begin, end);
-    } else {
-        faces.RefinePlain(begin, end);
+        HexIndexing const indexing = refinement.before->ChildIndexing();
+        for (Index corner = begin; corner < end; corner += SIZE) {
+            prefetchAhead(ACCESS::At(dst, corner));
+            refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(
+                mask, src, ConsecutiveVertices{indexing.GetCornerChildVertex(corner)}, dst, corner);
+        }
+        return;
     }
+    if constexpr (SIZE == IrregularFaceMask::kSize && !HAS_OPPOSITE) {
+        if (refinement.irregularFaces[std::size_t(run.firstIrregular)].begin < end) {
+            return refineIrregularFaces<ACCESS>(task, faceMask, run, begin, end);
+        }
+    }
+    refineUnrolledFaces<ACCESS, SIZE, HAS_OPPOSITE>(mask, src, parent.faceVerts.data(), dst, begin,
+                                                    end);
 }
 
 template <class ACCESS>

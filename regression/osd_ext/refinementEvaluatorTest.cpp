@@ -11,6 +11,7 @@
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
 
 #include <opensubdiv/osd/cpuVertexBuffer.h>
 
@@ -575,6 +576,35 @@ TEST(RefinementEvaluator, HasTheSameBitsForAnyNumberOfThreads) {
                 }
                 ASSERT_TRUE(haveSameBits(values.data(), expected.data(), expected.size()))
                     << numThreads << " threads, length " << length;
+            }
+        }
+    }
+}
+
+TEST(RefinementEvaluator, HasTheSameBitsAtEverySimdLevel) {
+    constexpr int kLevel = 4;
+    constexpr int kMaxLength = 9;
+    for (TorusFaces faces :
+         {TorusFaces::Quads, TorusFaces::Triangles, TorusFaces::IrregularTriangles}) {
+        auto const refiner = createRefiner(MakeTorus(7, 5, faces), FaceMask::Smooth, kLevel);
+        auto const evaluator = createEvaluator(*refiner, FarExt::INTERPOLATE_VERTEX);
+        for (int length = 1; length <= kMaxLength; ++length) {
+            std::vector<float> const src = makeControlValues(evaluator->GetNumElements(0), length);
+            for (int const stride : {length, length + 1}) {
+                std::vector<float> expected;
+                for (OsdExt::SimdLevel const simdLevel : GetSimdLevels()) {
+                    EvaluatorScope const scope(simdLevel, 1);
+                    std::vector<float> values(
+                        std::size_t(evaluator->GetNumElementsAllLevels() * stride), kGuard);
+                    ASSERT_TRUE(evaluator->EvaluateAllLevels(src.data(), packed(length),
+                                                             values.data(), {0, length, stride}));
+                    if (simdLevel == OsdExt::SimdLevel::Portable) {
+                        expected = values;
+                    }
+                    ASSERT_TRUE(haveSameBits(values.data(), expected.data(), expected.size()))
+                        << OsdExt::GetSimdLevelName(simdLevel) << ", length " << length
+                        << ", stride " << stride;
+                }
             }
         }
     }
