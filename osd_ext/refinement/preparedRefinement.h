@@ -83,14 +83,18 @@ struct IrregularFaceMask {
     static constexpr bool HasWeight(int pattern, int corner, int vert) {
         return (kPatterns[pattern][corner] >> ((vert - corner + kSize) % kSize) & 1) != 0;
     }
+    static constexpr bool HaveSamePlainRows(int a, int b) {
+        bool result = true;
+        for (int corner = 0; corner < kSize; ++corner) {
+            result &= IsPlain(a, corner) == IsPlain(b, corner);
+        }
+        return result;
+    }
     /// The first pattern with the same plain rows.
     static constexpr int FindRowPattern(int pattern) {
         int result = 0;
-        for (int corner = 0; corner < kSize; ++corner) {
-            if (IsPlain(result, corner) != IsPlain(pattern, corner)) {
-                ++result;
-                corner = -1;
-            }
+        while (!HaveSamePlainRows(result, pattern)) {
+            ++result;
         }
         return result;
     }
@@ -243,8 +247,7 @@ struct PreparedRefinement : RefinementGroups {
     std::vector<float> faceWeights; ///< of weighted faces
     /// In the runs of plain faces, ascending; behind all, one that is in no run.
     std::vector<IrregularRun> irregularFaces;
-    std::vector<int>
-        irregularTypes; ///< of each of their faces, positions in PlainMasks::irregularFaces
+    std::vector<int> irregularTypes; ///< of each of their faces, in PlainMasks::irregularFaces
 
     // Of listed vertices.
     std::vector<Far::Index> listedSources;
