@@ -4,7 +4,9 @@
 #include "indexSet.h"
 
 #include <algorithm>
-#include <map>
+#include <cstdint>
+#include <cstring>
+#include <unordered_map>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -74,63 +76,82 @@ void RefinementMask::findIrregularMasks() {
     findIrregularTypes();
 }
 
+// The irregular corners of a hexagon, which tell its type.
+struct RefinementMask::IrregularCornersOfFace {
+    struct Hash {
+        std::size_t operator()(IrregularCornersOfFace const &face) const {
+            constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
+            std::uint64_t hash = 0;
+            for (IrregularCorner const &corner : face) {
+                std::uint32_t weight = 0;
+                std::memcpy(&weight, &corner.weight, sizeof(weight));
+                for (std::uint64_t const number :
+                     {std::uint64_t(weight) << 32 | std::uint32_t(corner.numFaces),
+                      std::uint64_t(corner.corner - face.firstCorner) << 32 |
+                          std::uint64_t(corner.kind) << 16 | std::uint64_t(corner.facesAround)}) {
+                    hash = (hash ^ number) * kFactor;
+                    hash ^= hash >> 32;
+                }
+            }
+            return std::size_t(hash);
+        }
+    };
+
+    IrregularCorner const *begin() const { return first; }
+    IrregularCorner const *end() const { return last; }
+    bool operator==(IrregularCornersOfFace const &other) const {
+        return std::equal(first, last, other.first, other.last,
+                          [&](IrregularCorner const &x, IrregularCorner const &y) {
+                              return x.corner - firstCorner == y.corner - other.firstCorner &&
+                                     x.numFaces == y.numFaces && x.weight == y.weight &&
+                                     x.kind == y.kind && x.facesAround == y.facesAround;
+                          });
+    }
+
+    Index firstCorner;
+    IrregularCorner const *first;
+    IrregularCorner const *last; ///< behind them
+};
+
 // Faces that follow one another are mostly of one type.
 void RefinementMask::findIrregularTypes() {
     _irregularTypes.assign(std::size_t(_level.numFaces), kPlainType);
-    std::map<CornersOfType, int> types;
-    IrregularCornersOfFace last = {};
+    std::unordered_map<IrregularCornersOfFace, int, IrregularCornersOfFace::Hash> types;
+    IrregularCornersOfFace before = {};
+    int type = kPlainType;
     IrregularCorner const *const end =
         _level.irregularCorners.data() + _level.irregularCorners.size();
     for (IrregularCorner const *next = _level.irregularCorners.data(); next < end;) {
         Index const face = _level.FindFaceOfCorner(next->corner);
         Index const firstCorner = _level.faceFirstCorner[face];
-        IrregularCornersOfFace corners = {firstCorner, next, next + 1, last.type};
-        while (corners.end < end && corners.end->corner < firstCorner + kHexagonSize) {
-            ++corners.end;
+        IrregularCornersOfFace corners = {firstCorner, next, next + 1};
+        while (corners.last < end && corners.last->corner < firstCorner + kHexagonSize) {
+            ++corners.last;
         }
-        next = corners.end;
-        if (!areAlike(corners, last)) {
-            CornersOfType const key = getKey(corners);
-            corners.type = types.try_emplace(key, int(_irregularWeights.size())).first->second;
-            if (corners.type == int(_irregularWeights.size())) {
-                addIrregularType(key);
+        next = corners.last;
+        if (!(corners == before)) {
+            auto const found = types.try_emplace(corners, int(_irregularWeights.size()));
+            type = found.first->second;
+            if (found.second) {
+                addIrregularType(corners);
             }
         }
-        last = corners;
-        _irregularTypes[std::size_t(face)] = last.type;
-        _irregularFaces.push_back({face, last.type});
+        before = corners;
+        _irregularTypes[std::size_t(face)] = type;
+        _irregularFaces.push_back({face, type});
     }
 }
 
-bool RefinementMask::areAlike(IrregularCornersOfFace const &a, IrregularCornersOfFace const &b) {
-    return std::equal(a.begin, a.end, b.begin, b.end,
-                      [&](IrregularCorner const &x, IrregularCorner const &y) {
-                          return x.corner - a.firstCorner == y.corner - b.firstCorner &&
-                                 x.numFaces == y.numFaces && x.weight == y.weight &&
-                                 x.kind == y.kind && x.facesAround == y.facesAround;
-                      });
-}
-
-auto RefinementMask::getKey(IrregularCornersOfFace const &face) -> CornersOfType {
-    CornersOfType result;
-    result.fill({-1, 0, IrregularCorner::kAtVertex, FacesAround::Others});
-    for (IrregularCorner const *corner = face.begin; corner < face.end; ++corner) {
-        result[std::size_t(corner->corner - face.firstCorner)] = {
-            corner->numFaces, corner->weight, corner->kind, corner->facesAround};
-    }
-    return result;
-}
-
-void RefinementMask::addIrregularType(CornersOfType const &corners) {
+void RefinementMask::addIrregularType(IrregularCornersOfFace const &corners) {
     IrregularFaceWeights &type = _irregularWeights.emplace_back();
     for (int i = 0; i < kHexagonSize; ++i) {
-        double *const weights = type.weights[i];
-        std::copy_n(smoothWeights(kHexagonSize, i), kHexagonSize, weights);
-        auto const [numFaces, weight, kind, facesAround] = corners[std::size_t(i)];
-        type.areIrregular[i] = numFaces >= 0;
-        if (type.areIrregular[i]) {
-            addIrregularWeights({0, numFaces, weight, kind, facesAround}, i, weights);
-        }
+        std::copy_n(smoothWeights(kHexagonSize, i), kHexagonSize, type.weights[i]);
+        type.areIrregular[i] = false;
+    }
+    for (IrregularCorner const &corner : corners) {
+        int const i = corner.corner - corners.firstCorner;
+        type.areIrregular[i] = true;
+        addIrregularWeights(corner, i, type.weights[i]);
     }
 }
 

@@ -7,7 +7,6 @@
 #include "far_ext/hexSchemeOptions.h"
 
 #include <array>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -127,25 +126,15 @@ private:
     CornerMask findCornerMask(IrregularCorner const &irregular) const;
     void addIrregularWeights(IrregularCorner const &irregular, int corner, double *weights) const;
 
-    /// The irregular corners of a hexagon, by place: the rest of IrregularCorner; -1 faces at others.
-    using CornersOfType = std::array<std::tuple<Index, float, IrregularCorner::Kind, FacesAround>,
-                                     HexIndexing::kNumEFaceCorners>;
     static constexpr int kHexagonSize = HexIndexing::kNumEFaceCorners;
     static constexpr int kQuadSize = 4;
     static constexpr int kPlainType = -1;
-    struct IrregularCornersOfFace {
-        Index firstCorner;
-        IrregularCorner const *begin;
-        IrregularCorner const *end;
-        int type;
-    };
+    struct IrregularCornersOfFace;
     void findIrregularMasks();
     void findIrregularTypes();
-    static bool areAlike(IrregularCornersOfFace const &a, IrregularCornersOfFace const &b);
-    static CornersOfType getKey(IrregularCornersOfFace const &face);
     template <typename IS_WANTED>
     std::vector<Index> findVertices(IS_WANTED isWanted) const;
-    void addIrregularType(CornersOfType const &corners);
+    void addIrregularType(IrregularCornersOfFace const &corners);
     int getType(Index face) const { return _irregularTypes[std::size_t(face)]; }
     IrregularMasks::const_iterator findMask(Index numFaces) const;
     IrregularVertexMask const &getIrregularMask(Index numFaces, FacesAround facesAround) const {
