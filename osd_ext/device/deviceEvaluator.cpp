@@ -502,8 +502,8 @@ void DeviceEvaluator::evaluateLimit(Frame &frame, Elements const &src,
     frame.Wait();
 }
 
-// Some floats at a time, so that invocations can be counted; and some orbits, whose weights are
-// parameters.
+// Some floats at a time, so that invocations can be counted; and all orbits where the device is serial, else
+// some, whose weights are parameters.
 void DeviceEvaluator::evaluateLattices(Frame &frame, Elements src, std::vector<Elements> outputs,
                                        int length, Limit const &limit) {
     constexpr int kMaxFloats = kMaxCompiledLength;

@@ -5,12 +5,7 @@
 
 #include "irregularFaceKernelTemplate.h"
 
-#if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 sees uninitialized values in its own intrinsics.
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#pragma GCC diagnostic ignored "-Wuninitialized"
-#endif
-#include <immintrin.h>
+#include "osd_ext/simd/avx512.h"
 
 namespace OpenSubdivHex::OsdExt::internal {
 namespace {
