@@ -30,19 +30,19 @@ public:
     using Function = std::function<int(Far::Index)>;
 
     /// The same level everywhere.
-    explicit PatchLevels(int level)
-        : PatchLevels([level](Far::Index) { return level; },
-                      [level](Far::Index) { return level; }) {}
+    explicit PatchLevels(int level) : _isUniform(true), _level(level) {}
     /// A level for each face and one for each edge; as arrays, [&](int face) { return levels[face]; }.
     PatchLevels(Function ofFaces, Function ofEdges)
         : _ofFaces(std::move(ofFaces)), _ofEdges(std::move(ofEdges)) {}
 
     /// That of the inside of a face.
-    int GetFaceLevel(Far::Index face) const { return _ofFaces(face); }
+    int GetFaceLevel(Far::Index face) const { return _isUniform ? _level : _ofFaces(face); }
     /// That of an edge.
-    int GetEdgeLevel(Far::Index edge) const { return _ofEdges(edge); }
+    int GetEdgeLevel(Far::Index edge) const { return _isUniform ? _level : _ofEdges(edge); }
 
 private:
+    bool _isUniform = false;
+    int _level = 0;
     Function _ofFaces;
     Function _ofEdges;
 };

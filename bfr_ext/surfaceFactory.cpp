@@ -121,7 +121,7 @@ Status SurfaceFactory::checkFace(Index face) const {
         return result;
     }
     for (Index const vert : _level.GetFaceVertices(face)) {
-        if (isAtFreeBoundary(_level.GetLevel(), vert)) {
+        if (_walks.front()->IsAtFeature(vert) && isAtFreeBoundary(_level.GetLevel(), vert)) {
             return Status(StatusCode::Unsupported, ComponentType::Face, face,
                           "face " + std::to_string(face) + " has vertex " + std::to_string(vert) +
                               " on a boundary that VTX_BOUNDARY_NONE leaves without a limit");
