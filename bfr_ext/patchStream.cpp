@@ -457,6 +457,10 @@ Status PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKe
             "the forest has " + std::to_string(_forest->GetNumFaces()) + " trees, the mesh " +
                 std::to_string(base.GetNumFaces()) + " faces");
     }
+    if (_forest && &_forest->_level.GetLevel() != &base.GetLevel()) {
+        return FarExt::internal::Failure(StatusCode::InvalidArgument,
+                                         "the forest is that of another refiner");
+    }
     struct Checker {
         internal::PlanMemory::Counter counter;
         std::vector<int> levels;

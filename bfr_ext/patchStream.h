@@ -184,7 +184,7 @@ public:
     /// \brief A stream of the cells of trees.
     ///
     /// \param factory  makes the surfaces; it must live as long
-    /// \param forest   of the same mesh, after MatchEdges(); it must live as long
+    /// \param forest   of the same refiner, after MatchEdges(); it must live as long
     /// \param options  facets and memory
     PatchStream(SurfaceFactory const &factory, CellForest const &forest, Options const &options);
     /// The same with the default options.
@@ -199,7 +199,7 @@ public:
     /// \param status         where Run() gives false without a failure, it is Ok: the sink ended it
     /// \return               whether all patches were handed out.  Failures are, before any patch is:
     ///                       InvalidArgument for a level or options that Tessellation does not have,
-    ///                       or a forest of another mesh or that is not matched;
+    ///                       or a forest of another refiner or that is not matched;
     ///                       Unsupported for a face without a surface (SurfaceFactory) that is no hole;
     ///                       and on the way, Unsupported for a vertex without a limit stencil
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Sink const &sink,

@@ -378,7 +378,6 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
         control.insert(control.end(), point, point + pointDesc.size);
     }
     CellTree const &tree = tessellation._tree->cells;
-    std::vector<Tessellation::CellCorner> const &corners = tessellation._tree->corners;
     std::vector<double> point(2 * length);
     std::vector<bool> isDone(tessellation._places.size());
     auto const write = [&](int place, int kind, double const *from) {
@@ -386,22 +385,30 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
     };
     // What they have taken of memory is kept for the next face.
     static thread_local internal::RefinedCells cells;
-    auto const evaluateCorners = [&](int treeCell, std::size_t cell) {
+    using Corners = std::vector<Tessellation::CellCorner>;
+    auto const forEachCornerOf = [](int treeCell, Corners const &ofAll, auto const &function) {
         auto corner = std::lower_bound(
-            corners.begin(), corners.end(), treeCell,
+            ofAll.begin(), ofAll.end(), treeCell,
             [](Tessellation::CellCorner const &a, int number) { return a.cell < number; });
-        for (; corner != corners.end() && corner->cell == treeCell; ++corner) {
-            if (treeCell > 0) { // points on the border are made below
-                cells.EvaluateCorner(cell, corner->corner, point.data());
-                write(corner->place, 0, point.data());
-            }
-            if (results[1] && corner->isCellInSector) {
-                cells[cell].EvaluateCorner(corner->corner, point.data(), point.data() + length);
-                write(corner->place, 1, point.data());
-                write(corner->place, 2, point.data() + length);
-                isDone[std::size_t(corner->place)] = true;
-            }
+        for (; corner != ofAll.end() && corner->cell == treeCell; ++corner) {
+            function(*corner);
         }
+    };
+    Corners const withDerivatives =
+        results[1] ? tessellation.findCornersOfDerivatives() : Corners();
+    auto const evaluateCorners = [&](int treeCell, std::size_t cell) {
+        if (treeCell > 0) { // points on the border are made below
+            forEachCornerOf(treeCell, tessellation._tree->corners, [&](auto const &corner) {
+                cells.EvaluateCorner(cell, corner.corner, point.data());
+                write(corner.place, 0, point.data());
+            });
+        }
+        forEachCornerOf(treeCell, withDerivatives, [&](auto const &corner) {
+            cells[cell].EvaluateCorner(corner.corner, point.data(), point.data() + length);
+            write(corner.place, 1, point.data());
+            write(corner.place, 2, point.data() + length);
+            isDone[std::size_t(corner.place)] = true;
+        });
     };
     auto const visit = [&](auto const &self, int treeCell, std::size_t cell) -> void {
         evaluateCorners(treeCell, cell);
@@ -425,7 +432,7 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
         cells.SetBase(*_type, control.data(), pointDesc.size);
     }
     visit(visit, 0, internal::RefinedCells::kBase);
-    // Derivatives at points of neighbours alone, and where no cell lies on the side that they are from.
+    // Derivatives where the tree has not the cell that they are from.
     for (std::size_t i = 0; results[1] && i < isDone.size(); ++i) {
         if (!isDone[i]) {
             Tessellation::SectorCoords const &place = tessellation._places[i];

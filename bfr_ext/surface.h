@@ -134,7 +134,8 @@ public:
     /// Control points of the face.
     int GetNumControlPoints() const { return _numControlPoints; }
     /// Writes which points of the mesh they are: the vertices of the face first, in its order.  No vertex
-    /// comes twice, also where the face has it twice.
+    /// comes twice, also where the face has it twice; a face-varying value does where it belongs to several
+    /// fans of faces around its vertex, in each of which it is refined alone.
     /// \return  GetNumControlPoints()
     int GetControlPointIndices(Index meshPointIndices[]) const;
     /// Copies the control points from those of the mesh.

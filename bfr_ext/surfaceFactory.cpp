@@ -36,6 +36,15 @@ bool isAtFreeBoundary(Level const &level, Far::Index vert) {
     });
 }
 
+// Which of the vertices of a face has so many faces that it may have no limit stencil; as many as there are: none.
+int findVertexOfManyFaces(Level const &level, Far::Index face) {
+    Far::ConstIndexArray const verts = level.GetFaceVertices(face);
+    return int(
+        std::find_if(verts.begin(), verts.end(),
+                     [&](Far::Index vert) { return level.GetNumVertexFaces(vert) >= kManyFaces; }) -
+        verts.begin());
+}
+
 internal::CellRules getRules(FarExt::TopologyRefiner const &refiner, Interpolation interpolation) {
     return {refiner.GetSchemeOptions(),
             FarExt::internal::GetStepsToLimit(refiner.GetHexSchemeOptions()), interpolation};
@@ -132,6 +141,11 @@ Status SurfaceFactory::checkFace(Index face) const {
 
 bool SurfaceFactory::FaceHasLimitSurface(Index face, Status *status) const {
     Status result = checkFace(face);
+    Level const &level = _level.GetLevel();
+    if (result.IsOk() && findVertexOfManyFaces(level, face) < level.GetFaceSize(face)) {
+        std::vector<Index> points;
+        findType(level, face, face, Interpolation::Vertex, points, result);
+    }
     bool const hasSurface = result.IsOk();
     if (status) {
         *status = std::move(result);
@@ -159,13 +173,13 @@ internal::CellType const *SurfaceFactory::findType(Level const &level, Index lev
     internal::CellType const &type =
         _types->Find(std::move(cell), getRules(_refiner, interpolation));
     Far::ConstIndexArray const verts = level.GetFaceVertices(levelFace);
-    bool const hasManyFaces = std::any_of(verts.begin(), verts.end(), [&](Index vert) {
-        return level.GetNumVertexFaces(vert) >= kManyFaces;
-    });
-    if (hasManyFaces && !type.HasCorners()) {
-        status = Status(StatusCode::Unsupported, ComponentType::Face, face,
-                        "the limit of face " + std::to_string(face) +
-                            " cannot be computed: the steps around a vertex do not converge");
+    int const withManyFaces = findVertexOfManyFaces(level, levelFace);
+    if (withManyFaces < verts.size() && !type.HasCorners()) {
+        Index const vert = _level.GetFaceVertices(face)[withManyFaces];
+        status = Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
+                        "the limit of face " + std::to_string(face) + " at vertex " +
+                            std::to_string(vert) +
+                            " cannot be computed: the steps around it do not converge");
         return nullptr;
     }
     points.resize(numPoints + 2 * std::size_t(verts.size()));
@@ -255,6 +269,43 @@ bool SurfaceFactory::InitFaceVaryingSurface(Index face, Surface<REAL> *surface, 
         status);
 }
 
+template <typename REAL>
+bool SurfaceFactory::InitSurfaces(Index face, Surface<REAL> *vertex, Surface<REAL> *channels,
+                                  FVarID const ids[], int numIds, Surface<REAL> *varying,
+                                  Status *status) const {
+    FVarID const defaultId = _options.GetDefaultFVarID();
+    if (!ids && numIds == 0) {
+        ids = &defaultId;
+        numIds = 1;
+    }
+    int const numChannels = channels ? numIds : 0;
+    Status result;
+    auto const initNext = [&](Interpolation interpolation, int channel, Surface<REAL> *surface) {
+        if (surface && result.IsOk()) {
+            result = initKept(face, interpolation, channel, *surface);
+        }
+    };
+    initNext(Interpolation::Vertex, -1, vertex);
+    initNext(Interpolation::Varying, -1, varying);
+    for (int i = 0; i < numChannels && result.IsOk(); ++i) {
+        FVarID const channel = ids ? ids[i] : i;
+        result = FarExt::internal::CheckChannel(channel, GetNumFVarChannels());
+        if (result.IsOk()) {
+            initNext(FarExt::internal::GetChannelInterpolation(_refiner, channel), channel,
+                     &channels[i]);
+        }
+    }
+    if (!result.IsOk()) {
+        for (Surface<REAL> *const surface : {vertex, varying}) {
+            if (surface) {
+                surface->Clear();
+            }
+        }
+        std::for_each_n(channels, numChannels, [](Surface<REAL> &surface) { surface.Clear(); });
+    }
+    return FarExt::internal::Report(result, status);
+}
+
 template Status SurfaceFactory::init(Index, Interpolation, int, Surface<float> &) const;
 template Status SurfaceFactory::init(Index, Interpolation, int, Surface<double> &) const;
 template Status SurfaceFactory::initKept(Index, Interpolation, int, Surface<float> &) const;
@@ -267,5 +318,9 @@ template bool SurfaceFactory::InitFaceVaryingSurface(Index, Surface<float> *, FV
                                                      Status *) const;
 template bool SurfaceFactory::InitFaceVaryingSurface(Index, Surface<double> *, FVarID,
                                                      Status *) const;
+template bool SurfaceFactory::InitSurfaces(Index, Surface<float> *, Surface<float> *,
+                                           FVarID const[], int, Surface<float> *, Status *) const;
+template bool SurfaceFactory::InitSurfaces(Index, Surface<double> *, Surface<double> *,
+                                           FVarID const[], int, Surface<double> *, Status *) const;
 
 } // namespace OpenSubdivHex::BfrExt

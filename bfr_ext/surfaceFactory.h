@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt {
@@ -36,8 +37,8 @@ class StreamTypes;
 /// its evaluators make the control points.  FarExt::TopologyLevel::GetFaceBaseFace() leads from faces of
 /// GetLevel() to those of level 0, with their materials.
 ///
-/// Two kinds of faces have no surface: holes, and with VTX_BOUNDARY_NONE those at a boundary, where
-/// the border of every level lies elsewhere.
+/// Holes have no surface; nor, with VTX_BOUNDARY_NONE, have faces at a boundary, where the border of every level
+/// lies elsewhere, and the few that FaceHasLimitSurface() names.
 ///
 /// When the first surface of a mesh, or of a channel, is made, the ways from vertex to vertex around its faces
 /// are found, 8 bytes a corner.  What the surface of a face is made of is kept when one is made the second
@@ -109,6 +110,8 @@ public:
 
     /// The refiner that was given.
     FarExt::TopologyRefiner const &GetMesh() const { return _refiner; }
+    /// Its options of boundaries and creases.
+    OpenSubdiv::Sdc::Options GetSchemeOptions() const { return _refiner.GetSchemeOptions(); }
     /// The surface level, whose faces have the surfaces: level 0, or level 1 behind a first step.
     FarExt::TopologyLevel const &GetLevel() const { return _level; }
     /// Faces of that level.
@@ -121,16 +124,16 @@ public:
     ///
     /// \param status  says why not: InvalidArgument for a face out of range and for a hole, and behind
     ///                a first step for a refiner that has refined again since the factory was made;
-    ///                Unsupported for a face at a boundary with VTX_BOUNDARY_NONE
+    ///                Unsupported for a face at a boundary with VTX_BOUNDARY_NONE, and for one at a vertex
+    ///                with so many faces and a single sharp edge that it has no limit stencil
+    ///                (FarExt::LimitStencilTableFactoryReal)
     bool FaceHasLimitSurface(Index face, FarExt::Status *status = nullptr) const;
     /// The parameter plane of a face, which is in range.
     Parameterization GetFaceParameterization(Index face) const;
 
     /// @name Surfaces
     /// \return  false, and \p surface is invalid, where the face has none: with the causes of
-    ///          FaceHasLimitSurface(), InvalidArgument for a channel out of range, or Unsupported for a
-    ///          vertex with so many faces and a single sharp edge that it has no limit stencil
-    ///          (FarExt::LimitStencilTableFactoryReal)
+    ///          FaceHasLimitSurface(), or InvalidArgument for a channel out of range
     /// @{
 
     /// For vertex data, whose control points are vertices of GetLevel().
@@ -150,6 +153,51 @@ public:
     bool InitFaceVaryingSurface(Index face, Surface<REAL> *surface,
                                 FarExt::Status *status = nullptr) const {
         return InitFaceVaryingSurface(face, surface, _options.GetDefaultFVarID(), status);
+    }
+    /// \brief Some of these at once, all of which are invalid where one cannot be made.
+    ///
+    /// \param vertex    for vertex data, or null
+    /// \param channels  for face-varying data, one for each of \p ids, or null
+    /// \param ids       their channels; null: 0 ... \p numIds - 1, or for no \p numIds the default channel
+    /// \param numIds    how many they are
+    /// \param varying   for varying data, or null
+    template <typename REAL>
+    bool InitSurfaces(Index face, Surface<REAL> *vertex, Surface<REAL> *channels,
+                      FVarID const ids[] = nullptr, int numIds = 0,
+                      Surface<REAL> *varying = nullptr, FarExt::Status *status = nullptr) const;
+    /// @}
+
+    /// @name Surfaces of one's own
+    /// \return  null, with the same causes, where the face has none
+    /// @{
+
+    /// For vertex data.
+    template <typename REAL>
+    std::unique_ptr<Surface<REAL>> CreateVertexSurface(Index face,
+                                                       FarExt::Status *status = nullptr) const {
+        auto surface = std::make_unique<Surface<REAL>>();
+        return InitVertexSurface(face, surface.get(), status) ? std::move(surface) : nullptr;
+    }
+    /// For varying data.
+    template <typename REAL>
+    std::unique_ptr<Surface<REAL>> CreateVaryingSurface(Index face,
+                                                        FarExt::Status *status = nullptr) const {
+        auto surface = std::make_unique<Surface<REAL>>();
+        return InitVaryingSurface(face, surface.get(), status) ? std::move(surface) : nullptr;
+    }
+    /// For face-varying data of a channel.
+    template <typename REAL>
+    std::unique_ptr<Surface<REAL>>
+    CreateFaceVaryingSurface(Index face, FVarID channel, FarExt::Status *status = nullptr) const {
+        auto surface = std::make_unique<Surface<REAL>>();
+        return InitFaceVaryingSurface(face, surface.get(), channel, status) ? std::move(surface)
+                                                                            : nullptr;
+    }
+    /// For face-varying data of the default channel.
+    template <typename REAL>
+    std::unique_ptr<Surface<REAL>>
+    CreateFaceVaryingSurface(Index face, FarExt::Status *status = nullptr) const {
+        return CreateFaceVaryingSurface<REAL>(face, _options.GetDefaultFVarID(), status);
     }
     /// @}
 

@@ -2,6 +2,7 @@
 #include "tessellation.h"
 
 #include "cell/cellPlan.h"
+#include "cell/cellStencil.h"
 #include "cell/faceSections.h"
 
 #include "far_ext/vtr/basePolygon.h"
@@ -314,16 +315,45 @@ std::vector<int> Tessellation::setPlaces(CellMesh const &mesh, std::vector<int> 
         polygon.Write(vert.sector, {start, end}, &_coords[2 * place]);
         _places.push_back({vert.sector, start, end});
         if (_tree && vert.cell >= 0) {
-            _tree->corners.push_back({vert.cell, vert.corner, int(place), vert.isCellInSector});
+            _tree->corners.push_back({vert.cell, vert.corner, int(place)});
         }
     }
     if (_tree) {
-        std::sort(_tree->corners.begin(), _tree->corners.end(),
-                  [](CellCorner const &a, CellCorner const &b) {
-                      return a.cell != b.cell ? a.cell < b.cell : a.corner < b.corner;
-                  });
+        sortByCell(_tree->corners);
     }
     return places;
+}
+
+void Tessellation::sortByCell(std::vector<CellCorner> &corners) {
+    std::sort(corners.begin(), corners.end(), [](CellCorner const &a, CellCorner const &b) {
+        return a.cell != b.cell ? a.cell < b.cell : a.corner < b.corner;
+    });
+}
+
+std::vector<Tessellation::CellCorner> Tessellation::findCornersOfDerivatives() const {
+    CellTree const &tree = _tree->cells;
+    std::vector<CellCorner> corners;
+    corners.reserve(_places.size());
+    for (std::size_t place = 0; place < _places.size(); ++place) {
+        int const sector = _places[place].sector;
+        internal::Pair coords = {_places[place].start, _places[place].end};
+        int cell = 0;
+        bool isWhole = true;
+        int corner = -1;
+        while ((corner = internal::FindCellCorner(isWhole ? GetFaceSize() : 0, sector, coords)) <
+                   0 &&
+               tree.IsRefined(cell)) {
+            internal::CellStep const step = internal::FindCellStep(isWhole, sector, coords);
+            coords = step.map->Apply(coords); // without rounding
+            cell = tree.GetFirstChild(cell) + int(step.child);
+            isWhole = step.isChildWhole;
+        }
+        if (corner >= 0) {
+            corners.push_back({cell, corner, int(place)});
+        }
+    }
+    sortByCell(corners);
+    return corners;
 }
 
 // All that the mesh has.

@@ -245,7 +245,6 @@ private:
         int cell;
         int corner;
         int place;
-        bool isCellInSector; // of the place
     };
     // What the tessellation of a tree has besides.
     struct Tree {
@@ -271,6 +270,9 @@ private:
     int getLevelOfPlaces(bool isOfDerivatives) const;
     // Where there is a plan; of few levels, since it has all of their places.
     Selection const &getSelection() const;
+    // The places that are corners of the cells that CellStencil has their derivatives from, which with
+    // FaceMask::Average are others in other cells; ascending by cell.
+    std::vector<CellCorner> findCornersOfDerivatives() const;
     // That of which an edge has the polyline; -1: none.
     int getEdgeLevel(std::size_t edge) const {
         return _tree ? _tree->edgeLevels[edge] : _levels[edge];
@@ -284,6 +286,7 @@ private:
     void setCells(internal::CellMesh const &mesh);
     void setSection(internal::CellMesh const &mesh, internal::FaceSections const &sections);
     std::vector<int> setPlaces(internal::CellMesh const &mesh, std::vector<int> const &order);
+    static void sortByCell(std::vector<CellCorner> &corners);
     void setFacets(internal::CellMesh const &mesh, std::vector<int> const &places);
     template <typename FUNCTION>
     void transform(int facetTuples[], FUNCTION function) const;

@@ -51,6 +51,11 @@ enum class CellVisibility : unsigned char {
 /// Sharp edges and boundaries, whose curve may bend in the plane of a cell, get points of their own
 /// (MakeEdge()).
 ///
+/// Facets are what Tessellation makes of triangles or quads: hexagons are within the same distance when they are
+/// cut along the diagonal of their half cells, from corner 0 to 3, as a fan from corner 0 does.  Where a surface
+/// that is not at a boundary or sharp edge turns back in its own plane, as all around a leaf without thickness, no
+/// height tells how far its outline is from the sides of cells: SetEdgeLength() refines there.
+///
 /// **Lengths.**  A cell can be refined, too, until its sides are shorter than some pixels.
 ///
 /// **Culling** leaves cells as they are which are not seen, and is never wrong: meshes stay closed, and
@@ -128,9 +133,10 @@ public:
 
     /// \brief What a camera sees.
     ///
-    /// The view is invalid if eye and target are one place, or nothing is up; if a number is not finite,
-    /// or an angle, resolution or option is not in its range; and if both numbers of pixels are 0.  It
-    /// then refines nothing: trees have one cell, and polylines one segment.
+    /// The view is invalid if eye and target are one place, or nothing is up, also where the squares of
+    /// their distance or of what is up are beyond double precision; if a number is not finite, or an angle,
+    /// resolution or option is not in its range; and if both numbers of pixels are 0.  It then refines
+    /// nothing: trees have one cell, and polylines one segment.
     ///
     /// \param camera   where it is, and its picture
     /// \param options  what is to be reached

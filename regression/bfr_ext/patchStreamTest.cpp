@@ -461,6 +461,13 @@ TEST(PatchStreamTest, RefusesForestsThatDoNotFit) {
     expectRefused(forest, {}, "face 2");
     auto const other = CreateRefiner(GetShape("icosahedron"), ReferenceMask::Smooth, 0, {});
     expectRefused(BfrExt::CellForest(*other), {}, "20 trees");
+    // Of another mesh with six faces, and of one that is the same.
+    for (Shape const &ofOther : {MakeBipyramid(3), shape}) {
+        auto const otherRefiner = CreateRefiner(ofOther, ReferenceMask::Smooth, 0, getEdgeOnly());
+        BfrExt::CellForest ofOtherRefiner(*otherRefiner);
+        ofOtherRefiner.MatchEdges();
+        expectRefused(ofOtherRefiner, {}, "another refiner");
+    }
 }
 
 TEST(PatchStreamTest, EndsWhenTheSinkSaysSo) {

@@ -561,6 +561,96 @@ TEST(SurfaceFactoryTest, RefusesFacesWithoutASurface) {
     EXPECT_TRUE(status.IsOk());
 }
 
+TEST(SurfaceFactoryTest, RefusesFacesAtVerticesWithoutALimit) {
+    constexpr int kNumSides = 300;
+    Shape shape = MakeBipyramid(kNumSides);
+    int const north = shape.GetNumVertices() - 1;
+    shape.creaseVertexPairs = {0, north};
+    shape.creaseSharpness = {Sdc::Crease::SHARPNESS_INFINITE};
+    for (ReferenceMask const mask : {ReferenceMask::Average, ReferenceMask::Smooth}) {
+        auto const refiner = CreateRefiner(shape, mask, 0);
+        auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+        BfrExt::Surface<float> surface;
+        for (int const face : {0, 2 * (kNumSides / 2)}) { // of the north
+            FarExt::Status hasNone;
+            EXPECT_FALSE(factory->FaceHasLimitSurface(face, &hasNone));
+            FarExt::Status notMade;
+            EXPECT_FALSE(factory->InitVertexSurface(face, &surface, &notMade));
+            for (FarExt::Status const &status : {hasNone, notMade}) {
+                EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
+                EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Vertex);
+                EXPECT_EQ(status.GetComponentIndex(), north);
+                EXPECT_NE(status.GetMessage().find("face " + std::to_string(face)),
+                          std::string::npos);
+            }
+            EXPECT_TRUE(factory->FaceHasLimitSurface(face + 1));
+            EXPECT_TRUE(factory->InitVertexSurface(face + 1, &surface));
+        }
+    }
+}
+
+// Surfaces of their own, and several at once, are those of the other functions.
+TEST(SurfaceFactoryTest, MakesSurfacesAsBfrDoes) {
+    Shape const &shape = GetFeatureShape("seamsCross");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0,
+                                       getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
+    auto const factory = BfrExt::SurfaceFactory::Create(
+        *refiner, BfrExt::SurfaceFactory::Options().SetDefaultFVarID(1));
+    using Surface = BfrExt::Surface<float>;
+    int const numChannels = factory->GetNumFVarChannels();
+    ASSERT_GT(numChannels, 1);
+    auto const getPoints = [](Surface const &surface) {
+        std::vector<int> points(std::size_t(surface.GetNumControlPoints()));
+        surface.GetControlPointIndices(points.data());
+        return points;
+    };
+    for (int face = 0; face < factory->GetNumFaces(); ++face) {
+        std::vector<std::vector<int>> expected; // vertex, varying, and by channel
+        Surface one;
+        ASSERT_TRUE(factory->InitVertexSurface(face, &one));
+        expected.push_back(getPoints(one));
+        ASSERT_TRUE(factory->InitVaryingSurface(face, &one));
+        expected.push_back(getPoints(one));
+        for (int channel = 0; channel < numChannels; ++channel) {
+            ASSERT_TRUE(factory->InitFaceVaryingSurface(face, &one, channel));
+            expected.push_back(getPoints(one));
+        }
+        EXPECT_EQ(getPoints(*factory->CreateVertexSurface<float>(face)), expected[0]);
+        EXPECT_EQ(getPoints(*factory->CreateVaryingSurface<float>(face)), expected[1]);
+        EXPECT_EQ(getPoints(*factory->CreateFaceVaryingSurface<float>(face)), expected[3]);
+        EXPECT_EQ(getPoints(*factory->CreateFaceVaryingSurface<float>(face, 0)), expected[2]);
+
+        Surface vertex;
+        Surface varying;
+        std::vector<Surface> ofChannels(2);
+        int const ids[] = {1, 0};
+        ASSERT_TRUE(factory->InitSurfaces(face, &vertex, ofChannels.data(), ids, 2, &varying));
+        EXPECT_EQ(getPoints(vertex), expected[0]);
+        EXPECT_EQ(getPoints(varying), expected[1]);
+        EXPECT_EQ(getPoints(ofChannels[0]), expected[3]);
+        EXPECT_EQ(getPoints(ofChannels[1]), expected[2]);
+        ASSERT_TRUE(factory->InitSurfaces<float>(face, nullptr, ofChannels.data(), nullptr, 2));
+        EXPECT_EQ(getPoints(ofChannels[0]), expected[2]);
+        EXPECT_EQ(getPoints(ofChannels[1]), expected[3]);
+        ASSERT_TRUE(factory->InitSurfaces<float>(face, nullptr, ofChannels.data()));
+        EXPECT_EQ(getPoints(ofChannels[0]), expected[3]);
+
+        FarExt::Status status;
+        int const badIds[] = {0, numChannels};
+        EXPECT_FALSE(
+            factory->InitSurfaces(face, &vertex, ofChannels.data(), badIds, 2, &varying, &status));
+        EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+        for (Surface const *const surface : {&vertex, &varying, &ofChannels[0], &ofChannels[1]}) {
+            EXPECT_FALSE(surface->IsValid());
+        }
+    }
+    FarExt::Status status;
+    EXPECT_FALSE(factory->CreateVertexSurface<float>(-1, &status));
+    EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+    EXPECT_FALSE(factory->CreateFaceVaryingSurface<float>(0, numChannels, &status));
+    EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
+}
+
 TEST(SurfaceFactoryTest, WhatDoesNotFitIsNotEvaluated) {
     Shape const &shape = GetShape("cube");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);

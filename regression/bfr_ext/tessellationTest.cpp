@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Tessellations alone, in the parameter plane, and of neighbours, which share points to the bit.
+#include "cellFixture.h"
 #include "facets.h"
 #include "surfaceFixture.h"
 
@@ -425,13 +426,15 @@ TEST(TessellationSurface, PointsAreThoseOfSinglePlaces) {
     }
 }
 
-// On the lines from the centre to corners derivatives are different on both sides; trees have cells there
-// on one side, the other, or both.
-TEST(TessellationSurface, DerivativesOfTreesAreThoseOfSinglePlaces) {
+// On the lines from the centre to corners derivatives are different on both sides, and with FaceMask::Average in
+// all cells with a corner; trees have cells there on one side, the other, or both.
+class TreeDerivativesTest : public testing::TestWithParam<ReferenceMask> {};
+
+TEST_P(TreeDerivativesTest, AreThoseOfSinglePlaces) {
     constexpr int kFaceSize = 3;
     constexpr int kNumFaces = 6;
     Shape const shape = MakeTorus(9, 7, TorusFaces::IrregularTriangles);
-    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    auto const refiner = CreateRefiner(shape, GetParam(), 0, Sdc::Options());
     SurfaceSet<double> const surfaces(*refiner, shape.positions);
     std::vector<BfrExt::CellTree> trees = {BfrExt::CellTree(kFaceSize, 4)};
     for (int refined = 0; refined <= kFaceSize; ++refined) {
@@ -441,6 +444,10 @@ TEST(TessellationSurface, DerivativesOfTreesAreThoseOfSinglePlaces) {
         for (int child = 0; child < tree.GetNumChildren(cell); ++child) {
             tree.Refine(first + child);
         }
+    }
+    std::mt19937 random(3);
+    for (int i = 0; i < 4; ++i) {
+        trees.push_back(MakeRandomTree(kFaceSize, random));
     }
     for (int face = 0; face < kNumFaces; ++face) {
         Surface<double> const &surface = surfaces[face];
@@ -456,14 +463,18 @@ TEST(TessellationSurface, DerivativesOfTreesAreThoseOfSinglePlaces) {
                 SurfacePoint const expected = surfaces.Evaluate(face, &coords[2 * i]);
                 for (std::size_t k = 0; k < 3; ++k) {
                     ASSERT_NEAR(p[3 * i + k], expected.p[k], 1e-12);
-                    // From other cells with the same corner they are as close as steps make them.
-                    ASSERT_NEAR(du[3 * i + k], expected.du[k], 1e-5);
-                    ASSERT_NEAR(dv[3 * i + k], expected.dv[k], 1e-5);
+                    ASSERT_NEAR(du[3 * i + k], expected.du[k], 1e-10);
+                    ASSERT_NEAR(dv[3 * i + k], expected.dv[k], 1e-10);
                 }
             }
         }
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(, TreeDerivativesTest,
+                         testing::Values(ReferenceMask::Average, ReferenceMask::Cosine,
+                                         ReferenceMask::Smooth),
+                         [](auto const &mask) { return std::string(ToString(mask.param)); });
 
 // What the edges and vertices of a face depend on has vertices twice around a tube of few, or is cut off at
 // boundaries, though all faces around are those of a lattice: they are not all of one type.
