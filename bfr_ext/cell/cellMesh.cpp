@@ -35,17 +35,8 @@ int CellMesh::Find(int sector, Place const &place) const {
 
 void CellMesh::add(int sector, Place const &place, int cell, int corner) {
     std::array<std::int32_t, 3> const key = getKey(_faceSize, sector, place);
-    bool const isCellInSector = cell >= 0 && place[0] != 0;
-    auto const [found, isNew] = _numbers.emplace(key, int(_verts.size()));
-    if (isNew) {
-        _verts.push_back({int(key[0]), key[1], key[2], cell, corner, isCellInSector});
-        return;
-    }
-    Vertex &vert = _verts[std::size_t(found->second)];
-    if (isCellInSector && !vert.isCellInSector) {
-        vert.cell = cell;
-        vert.corner = corner;
-        vert.isCellInSector = true;
+    if (_numbers.emplace(key, int(_verts.size())).second) {
+        _verts.push_back({int(key[0]), key[1], key[2], cell, corner});
     }
 }
 

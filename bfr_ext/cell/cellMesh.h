@@ -18,15 +18,13 @@ class CellMesh {
 public:
     /// A vertex: its sector and the coordinates a and b there, in units of 2^-kBits.  On the line from
     /// the centre to a corner it is in the sector that begins there.
-    /// The cell is the first one that it was a corner of, if possible one in its sector, or -1 where it is
-    /// that of a neighbour alone.
+    /// The cell is the first one that it was a corner of, or -1 where it is that of a neighbour alone.
     struct Vertex {
         int sector;
         std::int32_t a;
         std::int32_t b;
         int cell;
         int corner;
-        bool isCellInSector;
     };
     using Place = CellShape::Place;
 
