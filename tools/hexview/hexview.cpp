@@ -10,7 +10,6 @@
 #include "far_ext/version.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshReader.h"
-#include "tools/mesh/meshText.h"
 #include "tools/mesh/program.h"
 #include "tools/mesh/ruleNames.h"
 #include "tools/render/pngFile.h"
@@ -50,17 +49,6 @@ struct Arguments {
     int numFrames = 0;
 };
 
-// CLI::Range, but that NaN is not in it.
-CLI::Validator makeRange(float min, float max) {
-    CLI::Range const range(min, max);
-    return {[=](std::string const &word) {
-                float number = 0;
-                return ParseFiniteFloat(word, &number) ? range(word)
-                                                       : "'" + word + "' is not a finite number";
-            },
-            range.get_description()};
-}
-
 void addOptions(CLI::App &app, Arguments *arguments) {
     constexpr int kMaxLevel = 10;
     constexpr int kMaxPixels = 8192;
@@ -90,7 +78,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
     app.add_option("--crease-angle", arguments->creaseAngle,
                    "Makes creases of the edges between faces whose normals differ by more than so "
                    "many degrees")
-        ->check(makeRange(0, 180))
+        ->check(MakeRange(0, 180))
         ->type_name("DEG");
     auto *const evaluator =
         app.add_option("--evaluator", arguments->evaluator,
@@ -106,7 +94,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                                ->excludes(evaluator);
     app.add_option("--pixel-error", arguments->cells.pixelError,
                    "How many pixels faces may be away from the limit surface")
-        ->check(makeRange(1e-3f, 1e3f))
+        ->check(MakeRange(1e-3, 1e3))
         ->type_name("PIXELS")
         ->needs(adaptive)
         ->capture_default_str();
@@ -123,16 +111,16 @@ void addOptions(CLI::App &app, Arguments *arguments) {
     app.add_flag("--no-edges", arguments->hasNoEdges, "Draws no edges of faces");
     app.add_flag("--control-mesh", arguments->hasControlMesh, "Draws the control mesh");
     app.add_option("--azimuth", arguments->azimuth, "Where the eye is, around the vertical axis")
-        ->check(makeRange(-360, 360))
+        ->check(MakeRange(-360, 360))
         ->type_name("DEG")
         ->capture_default_str();
     app.add_option("--elevation", arguments->elevation, "Where the eye is, above the horizon")
-        ->check(makeRange(-89, 89))
+        ->check(MakeRange(-89, 89))
         ->type_name("DEG")
         ->capture_default_str();
     app.add_option("--distance", arguments->distance,
                    "How far the eye is: from 1 it sees all, however the mesh turns")
-        ->check(makeRange(0.05f, 20))
+        ->check(MakeRange(0.05, 20))
         ->capture_default_str();
     app.add_option("--width", arguments->width, "Pixels of the window or the picture")
         ->check(CLI::Range(1, kMaxPixels))

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <iostream>
+#include <limits>
 #include <new>
 #include <string>
 #include <string_view>
@@ -57,6 +58,46 @@ int RunProgram(CLI::App &app, int argc, char const *const *argv, WORK work) {
         return fail("an error that says nothing of itself");
     }
     return kSuccess;
+}
+
+/// CLI::Range, but that NaN is not in it.
+inline CLI::Validator MakeRange(double min, double max) {
+    CLI::Range const range(min, max);
+    return {[=](std::string const &word) {
+                float number = 0;
+                return ParseFiniteFloat(word, &number)
+                           ? range(word)
+                           : "'" + word + "' is " + NameFloatFailure(word);
+            },
+            range.get_description()};
+}
+
+/// \brief Checks that a word is a float between \p least and \p most, and none of these.
+///
+/// \param what  such a number, for messages
+inline CLI::Validator MakeOpenRange(float least, float most, std::string const &what) {
+    auto const check = [=](std::string const &word) {
+        float number = 0;
+        if (!ParseFiniteFloat(word, &number)) {
+            return "'" + word + "' is " + NameFloatFailure(word);
+        }
+        if (number > least && number < most) {
+            return std::string();
+        }
+        // One that rounding takes there.
+        double exact = 0;
+        bool const isRounded =
+            CLI::detail::lexical_cast(word, exact) && exact > double(least) && exact < double(most);
+        return "'" + word + "' is " +
+               (isRounded ? CLI::detail::to_string(number) + " as a float, " : std::string()) +
+               "not " + what;
+    };
+    return {check, ""};
+}
+
+/// Checks that a word is a float above 0.
+inline CLI::Validator MakePositive() {
+    return MakeOpenRange(0, std::numeric_limits<float>::infinity(), "a number above 0");
 }
 
 /// \brief Adds an option with one argument, \p least to \p most finite numbers with commas between

@@ -70,6 +70,37 @@ TEST(Program, TellsThatHelpCannotBeWritten) {
               "program: standard output: cannot be written\n");
 }
 
+TEST(Program, RangesHaveFloatsAlone) {
+    auto const check = [](CLI::Validator const &range, std::string const &word) {
+        std::string const failure = range(word);
+        EXPECT_TRUE(failure.empty() || failure.find(word) != std::string::npos) << failure;
+        return failure;
+    };
+    CLI::Validator const closed = MakeRange(0, 1e6);
+    EXPECT_EQ(check(closed, "0"), "");
+    EXPECT_EQ(check(closed, "1e6"), "");
+    EXPECT_NE(check(closed, "-1e-9"), "");
+    EXPECT_NE(check(closed, "1000000.1"), "");
+    EXPECT_EQ(check(closed, "nan"), "'nan' is not a finite number");
+    EXPECT_EQ(check(closed, "inf"), "'inf' is not a finite number");
+    EXPECT_EQ(check(closed, "1e300"), "'1e300' is out of the range of floats");
+
+    CLI::Validator const open = MakeOpenRange(0, 180, "an angle");
+    EXPECT_EQ(check(open, "1e-30"), "");
+    EXPECT_EQ(check(open, "179.9999"), "");
+    EXPECT_EQ(check(open, "0"), "'0' is not an angle");
+    EXPECT_EQ(check(open, "180"), "'180' is not an angle");
+    EXPECT_EQ(check(open, "-nan"), "'-nan' is not a finite number");
+    EXPECT_EQ(check(open, "179.999999"), "'179.999999' is 180 as a float, not an angle");
+    EXPECT_EQ(check(open, "1e-300"), "'1e-300' is 0 as a float, not an angle");
+    EXPECT_EQ(check(open, "1e300"), "'1e300' is out of the range of floats");
+
+    EXPECT_EQ(check(MakePositive(), "3e38"), "");
+    EXPECT_EQ(check(MakePositive(), "x"), "'x' is not a finite number");
+    EXPECT_EQ(check(MakePositive(), "-1"), "'-1' is not a number above 0");
+    EXPECT_EQ(check(MakePositive(), "1e-300"), "'1e-300' is 0 as a float, not a number above 0");
+}
+
 TEST(Program, NumbersAreOneArgument) {
     std::vector<float> numbers;
     std::string input;

@@ -92,7 +92,7 @@ void addPanelOptions(CLI::App &app, PanelSettings *settings) {
                  "Refine parts of the mesh as far as the camera needs them, in place of --level");
     app.add_option("--pixel-error", settings->pixelError,
                    "How many pixels the polygons of --adaptive may be away from the surface")
-        ->check(CLI::Range(0.001, 1000.0))
+        ->check(MakeRange(0.001, 1000))
         ->capture_default_str();
     app.add_option("--mask", settings->mask, "Mask of the face points: average, cosine or smooth")
         ->transform(CLI::Transformer(Tools::MapRules<FarExt::FaceMask>(Tools::kMaskNames)))
@@ -162,7 +162,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
     app.add_option("--line-width", arguments->lineWidth, "Width of the wireframe in pixels")
-        ->check(CLI::PositiveNumber)
+        ->check(MakePositive())
         ->capture_default_str();
     AddNumbers(app, "--camera", &arguments->camera, 2, 3,
                "Where the camera stands, in degrees around the mesh and above the horizon, and "

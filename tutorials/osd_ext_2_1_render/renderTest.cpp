@@ -307,6 +307,10 @@ TEST_F(Render, RefusesBadUsage) {
     expectBadUsage("a.obj -o a.png --boundary round", "round");
     expectBadUsage("a.obj -o a.png --level -1", "level");
     expectBadUsage("a.obj -o a.png --adaptive --pixel-error 0", "pixel-error");
+    expectBadUsage("a.obj -o a.png --adaptive --pixel-error nan", "--pixel-error: 'nan'");
+    expectBadUsage("a.obj -o a.png --panel pixel-error=nan", "--pixel-error: 'nan'");
+    expectBadUsage("a.obj -o a.png --line-width nan", "--line-width: 'nan'");
+    expectBadUsage("a.obj -o a.png --line-width 0", "--line-width: '0' is not a number above 0");
     expectBadUsage("a.obj -o a.png --zebra --flat", "zebra");
     expectBadUsage("a.obj -o a.png --samples 0", "samples");
     expectBadUsage("a.obj -o a.png --camera 1", "camera");

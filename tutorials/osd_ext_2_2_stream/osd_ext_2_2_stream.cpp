@@ -253,10 +253,10 @@ int main(int argc, char **argv) {
         ->check(CLI::Range(1, 65536))
         ->capture_default_str();
     app.add_option("--facet-pixels", arguments.facetPixels, "Length of a facet's sides in pixels")
-        ->check(CLI::Range(0.01, 1000.0))
+        ->check(MakeRange(0.01, 1000))
         ->capture_default_str();
     app.add_option("--memory", arguments.megabytes, "Megabytes that patches may take")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(MakeRange(0, 1e6))
         ->capture_default_str();
     AddNumbers(app, "--camera", &arguments.camera, 2, 3,
                "Where the camera stands, in degrees around the mesh and above the horizon, and "

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Draws MESH twice with PROGRAM: with all patches kept, and with hardly any.  The picture is the same.
+# Bad usage is refused, with a message that names the option.
 function(draw memory result)
   set(file ${FOLDER}/stream${memory}.png)
   file(REMOVE ${file})
@@ -34,3 +35,16 @@ endif()
 if(NOT all STREQUAL few)
   message(FATAL_ERROR "the pictures differ")
 endif()
+
+function(refuse option)
+  execute_process(COMMAND ${PROGRAM} ${MESH} --output ${FOLDER}/none.png --width 4 --height 3
+      --samples 1 ${option} ${ARGN}
+    OUTPUT_VARIABLE output ERROR_VARIABLE error RESULT_VARIABLE status)
+  if(NOT status EQUAL 2 OR NOT error MATCHES "${option}: ")
+    message(FATAL_ERROR "${option} ${ARGN}: exit status ${status}, ${error}")
+  endif()
+endfunction()
+
+refuse(--memory nan)
+refuse(--memory -1)
+refuse(--facet-pixels nan)
