@@ -13,7 +13,6 @@
 #include "tools/mesh/ruleNames.h"
 
 #include <cstdlib>
-#include <filesystem>
 
 namespace OpenSubdivHex::Tools {
 
@@ -166,10 +165,8 @@ void addEvaluationOptions(CLI::App &app, Arguments *arguments) {
 
 void addReportOptions(CLI::App &app, Arguments *arguments) {
     app.add_option("--png", arguments->png, "File for a ray traced picture of the last level")
-        ->check([](std::string const &name) {
-            if (std::filesystem::path(name).extension() != ".png") {
-                return "'" + name + "' is not a .png file";
-            }
+        ->check(MakePngFile())
+        ->check([](std::string const &) {
             return std::string(HasRenderer() ? "" : "this program was built without Embree");
         })
         ->type_name("FILE");

@@ -15,8 +15,6 @@
 #include "tools/render/pngFile.h"
 #include "tools/render/unitSize.h"
 
-#include <filesystem>
-
 namespace OpenSubdivHex::Tools {
 
 namespace {
@@ -130,11 +128,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->capture_default_str();
     auto *const png =
         app.add_option("--png", arguments->png, "File for a picture, without a window")
-            ->check([](std::string const &name) {
-                return std::filesystem::path(name).extension() == ".png"
-                           ? std::string()
-                           : "'" + name + "' is not a .png file";
-            })
+            ->check(MakePngFile())
             ->type_name("FILE");
     app.add_option("--frames", arguments->numFrames,
                    "Draws so many pictures beside each other, from one end of the animation, which "

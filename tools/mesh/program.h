@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cstddef>
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <new>
@@ -100,29 +101,47 @@ inline CLI::Validator MakePositive() {
     return MakeOpenRange(0, std::numeric_limits<float>::infinity(), "a number above 0");
 }
 
-/// \brief Adds an option with one argument, \p least to \p most finite numbers with commas between
-/// them, that replace those in \p numbers.  Lists of CLI11 take what comes behind them, too.
+/// Checks that a word is the name of a .png file.
+inline CLI::Validator MakePngFile() {
+    return {[](std::string const &word) {
+                return std::filesystem::path(word).extension() == ".png"
+                           ? std::string()
+                           : "'" + word + "' is not a .png file";
+            },
+            ""};
+}
+
+/// \brief The numbers in the argument of the option \p name: \p least to \p most finite ones with commas
+/// between them.  Throws CLI::ValidationError.
+inline std::vector<float> ReadNumbers(std::string const &name, std::string const &argument,
+                                      std::size_t least, std::size_t most) {
+    std::vector<float> numbers;
+    std::string_view rest = argument;
+    for (std::size_t end = 0; end != std::string_view::npos;) {
+        end = rest.find(',');
+        std::string_view const word = rest.substr(0, end);
+        if (!ParseFiniteFloat(word, &numbers.emplace_back())) {
+            throw CLI::ValidationError(name,
+                                       "'" + std::string(word) + "' is " + NameFloatFailure(word));
+        }
+        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    }
+    if (numbers.size() < least || numbers.size() > most) {
+        throw CLI::ValidationError(
+            name, "'" + argument + "' has " + std::to_string(numbers.size()) + " numbers, not " +
+                      std::to_string(least) +
+                      (most > least ? " to " + std::to_string(most) : std::string()));
+    }
+    return numbers;
+}
+
+/// \brief Adds an option whose argument, as ReadNumbers() has it, replaces \p numbers.  Lists of CLI11 take
+/// what comes behind them, too.
 inline CLI::Option *AddNumbers(CLI::App &app, std::string const &name, std::vector<float> *numbers,
                                std::size_t least, std::size_t most,
                                std::string const &description) {
     auto const read = [=](std::string const &argument) {
-        numbers->clear();
-        std::string_view rest = argument;
-        for (std::size_t end = 0; end != std::string_view::npos;) {
-            end = rest.find(',');
-            std::string_view const word = rest.substr(0, end);
-            if (!ParseFiniteFloat(word, &numbers->emplace_back())) {
-                throw CLI::ValidationError(name, "'" + std::string(word) + "' is " +
-                                                     NameFloatFailure(word));
-            }
-            rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-        }
-        if (numbers->size() < least || numbers->size() > most) {
-            throw CLI::ValidationError(
-                name, "'" + argument + "' has " + std::to_string(numbers->size()) +
-                          " numbers, not " + std::to_string(least) +
-                          (most > least ? " to " + std::to_string(most) : std::string()));
-        }
+        *numbers = ReadNumbers(name, argument, least, most);
     };
     return app.add_option_function<std::string>(name, read, description);
 }

@@ -23,6 +23,7 @@
 #include "tools/render/pngFile.h"
 #include "tools/render/renderer.h"
 #include "tools/render/unitSize.h"
+#include "tools/render/viewOption.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>
@@ -71,7 +72,7 @@ struct Arguments {
     int height = 0;
     int numSamples = 16;
     float lineWidth = RenderOptions().lineWidth;
-    std::vector<float> camera = {30, 20};
+    View view;
     bool hasNoGround = false;
     int numFrames = 0;
     std::string animation = "turntable";
@@ -81,7 +82,6 @@ struct Arguments {
         return numColumns > 0 ? std::min(numColumns, GetNumPanels()) : GetNumPanels();
     }
     int GetNumRows() const { return (GetNumPanels() + GetNumColumns() - 1) / GetNumColumns(); }
-    View GetView() const { return {camera[0], camera[1], camera.size() > 2 ? camera[2] : 1.0f}; }
 };
 
 void addPanelOptions(CLI::App &app, PanelSettings *settings) {
@@ -128,11 +128,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->required();
     app.add_option("-o,--output", arguments->output,
                    "Picture to write; with --frames, OUT.png makes OUT_0001.png and so on")
-        ->check([](std::string const &path) {
-            return std::filesystem::path(path).extension() == ".png"
-                       ? std::string()
-                       : "'" + path + "' is not a .png file";
-        })
+        ->check(MakePngFile())
         ->type_name("FILE")
         ->required();
     addPanelOptions(app, &arguments->settings);
@@ -164,11 +160,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
     app.add_option("--line-width", arguments->lineWidth, "Width of the wireframe in pixels")
         ->check(MakePositive())
         ->capture_default_str();
-    AddNumbers(app, "--camera", &arguments->camera, 2, 3,
-               "Where the camera stands, in degrees around the mesh and above the horizon, and "
-               "a factor to enlarge")
-        ->type_name("AZIMUTH,ELEVATION[,ZOOM]")
-        ->default_str("30,20");
+    AddViewOption(app, &arguments->view);
     app.add_flag("--no-ground", arguments->hasNoGround, "No ground for shadows to fall on");
     app.add_option("--frames", arguments->numFrames, "Number of pictures of an animation")
         ->check(CLI::Range(1, 9999));
@@ -181,14 +173,6 @@ void addOptions(CLI::App &app, Arguments *arguments) {
 
 // What concerns several options together; throws CLI::ValidationError.
 void checkArguments(Arguments const &arguments) {
-    View const view = arguments.GetView();
-    if (std::abs(view.elevation) > 90) {
-        throw CLI::ValidationError("--camera", CLI::detail::to_string(view.elevation) +
-                                                   " is not between -90 and 90 degrees");
-    }
-    if (!(view.zoom > 0)) {
-        throw CLI::ValidationError("--camera", "the zoom factor is not positive");
-    }
     if (arguments.width < arguments.GetNumColumns() || arguments.height < arguments.GetNumRows()) {
         throw CLI::ValidationError("--size", arguments.size + " is too small for the panels");
     }
@@ -415,7 +399,7 @@ void run(Arguments const &arguments) {
     }
     int const numColumns = arguments.GetNumColumns();
     int const numRows = arguments.GetNumRows();
-    Camera const firstCamera(arguments.GetView(), points,
+    Camera const firstCamera(arguments.view, points,
                              float(arguments.width) * float(numRows) /
                                  (float(arguments.height) * float(numColumns)));
 

@@ -314,7 +314,8 @@ TEST_F(Render, RefusesBadUsage) {
     expectBadUsage("a.obj -o a.png --zebra --flat", "zebra");
     expectBadUsage("a.obj -o a.png --samples 0", "samples");
     expectBadUsage("a.obj -o a.png --camera 1", "camera");
-    expectBadUsage("a.obj -o a.png --camera 1,95", "95");
+    expectBadUsage("a.obj -o a.png --camera 1,95", "--camera: 95");
+    expectBadUsage("a.obj -o a.png --camera 1,2,0", "--camera: the zoom factor is not positive");
     expectBadUsage("a.obj -o a.png --animate jump", "jump");
     expectBadUsage("a.obj -o a.png --panel level=x", "level");
     expectBadUsage("a.obj -o a.png --panel size=1x1", "size");

@@ -22,6 +22,7 @@
 #include "tools/render/camera.h"
 #include "tools/render/pngFile.h"
 #include "tools/render/unitSize.h"
+#include "tools/render/viewOption.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +50,7 @@ struct Arguments {
     int numSamples = 16;
     double facetPixels = 1;
     double megabytes = 64;
-    std::vector<float> camera = {30, 20};
+    View view;
 };
 
 /// Numbers from 0 to 1, the same for the same sample of the same pixel.
@@ -166,9 +167,8 @@ void run(Arguments const &arguments) {
         throw FileError(arguments.input, status.GetMessage());
     }
     FarExt::TopologyLevel const &base = refiner->GetLevel(0);
-    Camera const camera({arguments.camera[0], arguments.camera[1],
-                         arguments.camera.size() > 2 ? arguments.camera[2] : 1.0F},
-                        mesh.positions, float(arguments.width) / float(arguments.height));
+    Camera const camera(arguments.view, mesh.positions,
+                        float(arguments.width) / float(arguments.height));
 
     // An edge becomes about two to the power of its level segments; a face is as fine as its edges.
     auto const getEdgeLevel = [&](int edge) {
@@ -241,6 +241,7 @@ int main(int argc, char **argv) {
         ->type_name("FILE")
         ->required();
     app.add_option("-o,--output", arguments.output, "Picture to write, a .png file")
+        ->check(MakePngFile())
         ->type_name("FILE")
         ->required();
     app.add_option("--width", arguments.width, "Width of the picture in pixels")
@@ -258,11 +259,7 @@ int main(int argc, char **argv) {
     app.add_option("--memory", arguments.megabytes, "Megabytes that patches may take")
         ->check(MakeRange(0, 1e6))
         ->capture_default_str();
-    AddNumbers(app, "--camera", &arguments.camera, 2, 3,
-               "Where the camera stands, in degrees around the mesh and above the horizon, and "
-               "a factor to enlarge")
-        ->type_name("AZIMUTH,ELEVATION[,ZOOM]")
-        ->default_str("30,20");
+    AddViewOption(app, &arguments.view);
     app.footer("Exit status: 0 success, 1 bad input or failed output, 2 bad usage.");
     return RunProgram(app, argc, argv, [&] { run(arguments); });
 }

@@ -36,15 +36,19 @@ if(NOT all STREQUAL few)
   message(FATAL_ERROR "the pictures differ")
 endif()
 
-function(refuse option)
-  execute_process(COMMAND ${PROGRAM} ${MESH} --output ${FOLDER}/none.png --width 4 --height 3
-      --samples 1 ${option} ${ARGN}
+function(refuse cause file)
+  execute_process(COMMAND ${PROGRAM} ${MESH} --output ${file} --width 4 --height 3 --samples 1
+      ${ARGN}
     OUTPUT_VARIABLE output ERROR_VARIABLE error RESULT_VARIABLE status)
-  if(NOT status EQUAL 2 OR NOT error MATCHES "${option}: ")
-    message(FATAL_ERROR "${option} ${ARGN}: exit status ${status}, ${error}")
+  if(NOT status EQUAL 2 OR NOT error MATCHES "${cause}")
+    message(FATAL_ERROR "${file} ${ARGN}: exit status ${status}, ${error}")
   endif()
 endfunction()
 
-refuse(--memory nan)
-refuse(--memory -1)
-refuse(--facet-pixels nan)
+refuse("--memory: 'nan'" none.png --memory nan)
+refuse("--memory: " none.png --memory -1)
+refuse("--facet-pixels: 'nan'" none.png --facet-pixels nan)
+refuse("--camera: the zoom factor is not positive" none.png --camera 30,20,0)
+refuse("--camera: the zoom factor is not positive" none.png --camera 30,20,-1)
+refuse("--camera: 95 is not between -90 and 90 degrees" none.png --camera 30,95)
+refuse("--output: 'none.jpg' is not a .png file" none.jpg)
