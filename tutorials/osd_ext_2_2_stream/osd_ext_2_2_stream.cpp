@@ -8,7 +8,8 @@
 //     first there is a box for each base face.  When a ray hits a box, the patch in it is made, with a
 //     level for each edge that follows from its size in the picture; and patches that no ray has needed
 //     for long are forgotten when they would take more memory than they may.  Since a patch is the same
-//     bits whenever it is made, the picture does not depend on that.
+//     bits whenever it is made, the picture does not depend on that; but if what most rays need is
+//     forgotten each time, it takes long.
 //
 #include "patchScene.h"
 
@@ -33,6 +34,7 @@ namespace OpenSubdivHex::Tools {
 
 namespace {
 
+constexpr char kName[] = "osd_ext_2_2_stream";
 constexpr float kPi = 3.14159265F;
 constexpr Vec3 kSurfaceColor{0.62F, 0.25F, 0.12F};
 constexpr Vec3 kGroundColor{0.55F, 0.55F, 0.55F};
@@ -190,7 +192,12 @@ void run(Arguments const &arguments) {
     };
     BfrExt::PatchStream<float> const stream(*factory,
                                             BfrExt::PatchLevels(getFaceLevel, getEdgeLevel));
-    PatchScene const scene(stream, mesh.positions, std::size_t(arguments.megabytes * 1e6));
+    PatchScene const scene(stream, mesh.positions, std::size_t(arguments.megabytes * 1e6), [&] {
+        std::fprintf(stderr,
+                     "%s: warning: patches are made again and again, which takes long, since "
+                     "--memory, %g megabytes, is less than what the picture needs\n",
+                     kName, arguments.megabytes);
+    });
 
     float ground = mesh.positions[1];
     for (std::size_t i = 1; i < mesh.positions.size(); i += 3) {
@@ -219,10 +226,12 @@ void run(Arguments const &arguments) {
     WritePng(image, arguments.output);
     PatchScene::Statistics const statistics = scene.GetStatistics();
     std::printf(
-        "%lld of %d faces were needed, %lld patches made, %lld forgotten, "
+        "%lld of %d faces were needed, %lld patches made, %lld of them again, %lld forgotten, "
         "%lld triangles made, %.1f megabytes at most\n",
         static_cast<long long>(statistics.numFaces), base.GetNumFaces(),
-        static_cast<long long>(statistics.numMade), static_cast<long long>(statistics.numForgotten),
+        static_cast<long long>(statistics.numMade),
+        static_cast<long long>(statistics.numMade - statistics.numFaces),
+        static_cast<long long>(statistics.numForgotten),
         static_cast<long long>(statistics.numTriangles), double(statistics.peakMemory) / 1e6);
 }
 
@@ -236,7 +245,7 @@ int main(int argc, char **argv) {
     Arguments arguments;
     CLI::App app("Traces paths of light, with patches of a surface that are made when a ray needs "
                  "them.",
-                 "osd_ext_2_2_stream");
+                 kName);
     app.add_option("INPUT", arguments.input, "Control mesh: .obj, .off or .ply")
         ->type_name("FILE")
         ->required();
@@ -256,7 +265,10 @@ int main(int argc, char **argv) {
     app.add_option("--facet-pixels", arguments.facetPixels, "Length of a facet's sides in pixels")
         ->check(MakeRange(0.01, 1000))
         ->capture_default_str();
-    app.add_option("--memory", arguments.megabytes, "Megabytes that patches may take")
+    app.add_option(
+           "--memory", arguments.megabytes,
+           "Megabytes that patches may take; with less than the picture needs they are made "
+           "again and again, which takes long and is said on standard error")
         ->check(MakeRange(0, 1e6))
         ->capture_default_str();
     AddViewOption(app, &arguments.view);

@@ -13,6 +13,7 @@
 #include <mutex>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 namespace OpenSubdivHex::Tools {
 
@@ -44,7 +45,7 @@ RTCRay makeRay(Vec3 origin, Vec3 direction, float distance) {
 class PatchScene::Patches {
 public:
     Patches(BfrExt::PatchStream<float> const &stream, std::vector<float> const &positions,
-            std::size_t maxMemory);
+            std::size_t maxMemory, std::function<void()> onShortage);
 
     /// Throws what went wrong in a callback, which nothing may leave.
     void Rethrow() const {
@@ -80,6 +81,7 @@ private:
     static void isOccluded(RTCOccludedFunctionNArguments const *arguments);
 
     SharedScene find(unsigned primitive);
+    SharedScene keep(unsigned primitive, SharedScene scene, std::int64_t numTriangles);
     SharedScene make(unsigned primitive, std::int64_t *numTriangles) const;
     template <typename FUNCTION>
     void guard(FUNCTION function) noexcept;
@@ -87,6 +89,8 @@ private:
     BfrExt::PatchStream<float> const &_stream;
     std::vector<float> const &_positions;
     std::ptrdiff_t const _maxMemory;
+    std::function<void()> const _onShortage;
+    std::once_flag _isShort;
     // Embree calls monitor() to its end.
     std::atomic<std::ptrdiff_t> _memory{0};
     std::atomic<std::ptrdiff_t> _peakMemory{0};
@@ -103,9 +107,10 @@ private:
 
 // One thread makes a patch: that which needs it.
 PatchScene::Patches::Patches(BfrExt::PatchStream<float> const &stream,
-                             std::vector<float> const &positions, std::size_t maxMemory)
+                             std::vector<float> const &positions, std::size_t maxMemory,
+                             std::function<void()> onShortage)
     : _stream(stream), _positions(positions), _maxMemory(std::ptrdiff_t(maxMemory)),
-      _device(rtcNewDevice("threads=1")) {
+      _onShortage(std::move(onShortage)), _device(rtcNewDevice("threads=1")) {
     if (!_device) {
         throw std::runtime_error("Embree does not start");
     }
@@ -226,7 +231,18 @@ SharedScene PatchScene::Patches::find(unsigned primitive) {
     }
     std::int64_t numTriangles = 0;
     SharedScene scene = make(primitive, &numTriangles);
-    std::vector<SharedScene> forgotten; // released without the lock
+    scene = keep(primitive, std::move(scene), numTriangles);
+    Statistics const statistics = GetStatistics();
+    if (statistics.numMade > kMaxTimesMade * statistics.numFaces) {
+        std::call_once(_isShort, _onShortage);
+    }
+    return scene;
+}
+
+// Takes a patch that was made, and forgets others where memory is short.
+SharedScene PatchScene::Patches::keep(unsigned primitive, SharedScene scene,
+                                      std::int64_t numTriangles) {
+    Entry &entry = _entries[primitive];
     std::lock_guard<std::mutex> const lock(_mutex);
     if (entry.scene) {
         return entry.scene; // another thread was faster
@@ -283,8 +299,9 @@ SharedScene PatchScene::Patches::make(unsigned primitive, std::int64_t *numTrian
 }
 
 PatchScene::PatchScene(BfrExt::PatchStream<float> const &stream,
-                       std::vector<float> const &positions, std::size_t maxMemory)
-    : _patches(std::make_unique<Patches>(stream, positions, maxMemory)) {}
+                       std::vector<float> const &positions, std::size_t maxMemory,
+                       std::function<void()> onShortage)
+    : _patches(std::make_unique<Patches>(stream, positions, maxMemory, std::move(onShortage))) {}
 
 PatchScene::~PatchScene() = default;
 

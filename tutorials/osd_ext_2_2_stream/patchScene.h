@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,14 +23,20 @@ namespace OpenSubdivHex::Tools {
 /// Rays may be traced by several threads at once.
 class PatchScene {
 public:
+    static constexpr int kMaxTimesMade = 8;
+
     /// \brief Makes the boxes.
     ///
     /// \param stream     makes the patches, of triangles; it must live as long
     /// \param positions  x y z of each vertex of the base mesh; they must live as long
-    /// \param maxMemory  bytes that Embree has for patches; the one that is needed is always there.
-    ///                   Throws std::runtime_error when Embree does not start or a face has no surface
+    /// \param maxMemory  bytes that Embree has for patches; the one that is needed is always there
+    /// \param onShortage  called once, by a thread that traces a ray, if patches are made again and again
+    ///                    since \p maxMemory is less than what rays need: when more than
+    ///                    kMaxTimesMade times as many were made as there are faces that needed one
+    ///
+    /// Throws std::runtime_error when Embree does not start or a face has no surface.
     PatchScene(BfrExt::PatchStream<float> const &stream, std::vector<float> const &positions,
-               std::size_t maxMemory);
+               std::size_t maxMemory, std::function<void()> onShortage);
     ~PatchScene();
 
     PatchScene(PatchScene const &) = delete;

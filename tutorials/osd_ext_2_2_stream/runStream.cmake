@@ -1,36 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# Draws MESH twice with PROGRAM: with all patches kept, and with hardly any.  The picture is the same.
-# Bad usage is refused, with a message that names the option.
+# Draws MESH twice with PROGRAM: with all patches kept, and with hardly any, which is told.  The picture
+# is the same.  Bad usage is refused, with a message that names the option.
 function(draw memory result)
   set(file ${FOLDER}/stream${memory}.png)
   file(REMOVE ${file})
   execute_process(COMMAND ${PROGRAM} ${MESH} --output ${file} --width 40 --height 30 --samples 1
       --facet-pixels 0.3 --memory ${memory}
-    OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE status)
-  message("${memory} megabytes: ${output}")
+    OUTPUT_VARIABLE output ERROR_VARIABLE error RESULT_VARIABLE status)
+  message("${memory} megabytes: ${output}${error}")
   if(NOT status EQUAL 0)
     message(FATAL_ERROR "exit status ${status}")
   endif()
-  string(REGEX MATCH "([0-9]+) of ([0-9]+) faces were needed, ([0-9]+) patches made, ([0-9]+) forgotten"
+  string(REGEX MATCH "([0-9]+) of ([0-9]+) faces were needed, ([0-9]+) patches made, ([0-9]+) of them again, ([0-9]+) forgotten"
     line "${output}")
   if(NOT line OR NOT CMAKE_MATCH_1 GREATER 0)
     message(FATAL_ERROR "nothing was made")
   endif()
   set(made ${CMAKE_MATCH_3} PARENT_SCOPE)
-  set(forgotten ${CMAKE_MATCH_4} PARENT_SCOPE)
+  math(EXPR made "${CMAKE_MATCH_1} + ${CMAKE_MATCH_4}")
+  if(NOT made EQUAL CMAKE_MATCH_3)
+    message(FATAL_ERROR "patches are not counted")
+  endif()
+  set(forgotten ${CMAKE_MATCH_5} PARENT_SCOPE)
+  string(REGEX MATCHALL "warning: patches are made again and again" warnings "${error}")
+  list(LENGTH warnings numWarnings)
+  set(numWarnings ${numWarnings} PARENT_SCOPE)
   file(SHA256 ${file} hash)
   set(${result} ${hash} PARENT_SCOPE)
 endfunction()
 
 draw(1000 all)
 set(madeOnce ${made})
-if(NOT forgotten EQUAL 0)
+if(NOT forgotten EQUAL 0 OR NOT numWarnings EQUAL 0)
   message(FATAL_ERROR "there was memory for all")
 endif()
-draw(12 few)
+draw(10 few)
 if(NOT forgotten GREATER 0 OR NOT made GREATER madeOnce)
   message(FATAL_ERROR "nothing was forgotten")
+endif()
+if(NOT numWarnings EQUAL 1)
+  message(FATAL_ERROR "${numWarnings} warnings that memory is short")
 endif()
 if(NOT all STREQUAL few)
   message(FATAL_ERROR "the pictures differ")
