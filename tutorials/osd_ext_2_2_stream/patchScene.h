@@ -23,7 +23,7 @@ namespace OpenSubdivHex::Tools {
 /// Rays may be traced by several threads at once.
 class PatchScene {
 public:
-    static constexpr int kMaxTimesMade = 8;
+    static constexpr int kMaxTimesMade = 2;
 
     /// \brief Makes the boxes.
     ///
