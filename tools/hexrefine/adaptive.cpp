@@ -4,12 +4,14 @@
 
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
+#include "tools/mesh/boundaryRule.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshText.h"
 #include "tools/mesh/program.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace OpenSubdivHex::Tools {
 
@@ -38,15 +40,29 @@ std::string checkResolution(std::string const &word) {
                      std::to_string(kMaxPixels);
 }
 
-/// Looks at all of the mesh from the front and above.
-void lookAtAll(std::vector<float> const &positions, BfrExt::Camera *camera) {
-    double least[3];
-    double largest[3];
-    std::copy_n(positions.data(), 3, least);
-    std::copy_n(positions.data(), 3, largest);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        least[i % 3] = std::min(least[i % 3], double(positions[i]));
-        largest[i % 3] = std::max(largest[i % 3], double(positions[i]));
+/// Looks at all that the faces of a level have, but for holes, from the front and above.
+void lookAtAll(FarExt::TopologyLevel const &level, std::vector<float> const &positions,
+               BfrExt::Camera *camera) {
+    constexpr double kFar = std::numeric_limits<double>::max();
+    double least[3] = {kFar, kFar, kFar};
+    double largest[3] = {-kFar, -kFar, -kFar};
+    bool hasFaces = false;
+    for (int face = 0; face < level.GetNumFaces(); ++face) {
+        if (level.IsFaceHole(face)) {
+            continue;
+        }
+        hasFaces = true;
+        for (int const vertex : level.GetFaceVertices(face)) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                auto const position = double(positions[3 * std::size_t(vertex) + k]);
+                least[k] = std::min(least[k], position);
+                largest[k] = std::max(largest[k], position);
+            }
+        }
+    }
+    if (!hasFaces) {
+        std::fill_n(least, 3, 0.0);
+        std::fill_n(largest, 3, 0.0);
     }
     double square = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -63,12 +79,13 @@ void lookAtAll(std::vector<float> const &positions, BfrExt::Camera *camera) {
     camera->eye[2] = camera->target[2] + distance / std::hypot(1, kElevation);
 }
 
-BfrExt::View makeView(AdaptiveArguments const &arguments, std::vector<float> const &positions) {
+BfrExt::View makeView(AdaptiveArguments const &arguments, FarExt::TopologyLevel const &level,
+                      std::vector<float> const &positions) {
     BfrExt::Camera camera;
     camera.fieldOfView = double(arguments.fieldOfView);
     parseResolution(arguments.resolution, &camera.width, &camera.height);
     if (arguments.camera.empty()) {
-        lookAtAll(positions, &camera);
+        lookAtAll(level, positions, &camera);
     } else {
         std::copy_n(arguments.camera.begin(), 3, camera.eye);
         std::copy_n(arguments.camera.begin() + 3, 3, camera.target);
@@ -77,21 +94,6 @@ BfrExt::View makeView(AdaptiveArguments const &arguments, std::vector<float> con
                                     .SetFlatness(double(arguments.pixelError))
                                     .SetMaxLevel(arguments.maxLevel)
                                     .SetCulling(arguments.isCulling));
-}
-
-/// Throws FileError if boundaries have no limit.
-void requireBoundaryRule(FarExt::TopologyRefiner const &refiner, std::string const &input) {
-    FarExt::TopologyLevel const &base = refiner.GetLevel(0);
-    for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
-        if (refiner.GetSchemeOptions().GetVtxBoundaryInterpolation() ==
-                Sdc::Options::VTX_BOUNDARY_NONE &&
-            base.IsEdgeBoundary(edge)) {
-            throw FileError(input, "--adaptive needs --boundary edge-only or edge-and-corner: the "
-                                   "mesh has boundary edges, one at vertex " +
-                                       std::to_string(base.GetEdgeVertices(edge)[0]) +
-                                       " (counted from 0)");
-        }
-    }
 }
 
 } // namespace
@@ -108,12 +110,7 @@ void AddAdaptiveOptions(CLI::App &app, AdaptiveArguments *arguments) {
         ->needs(adaptive)
         ->default_str("all of the mesh, from the front and above");
     app.add_option("--fov", arguments->fieldOfView, "Angle of the height of its picture")
-        ->check([](std::string const &word) {
-            float angle = 0;
-            return std::string(ParseFiniteFloat(word, &angle) && angle > 0 && angle < 180
-                                   ? ""
-                                   : "'" + word + "' is not an angle between 0 and 180");
-        })
+        ->check(MakeOpenRange(0, 180, "an angle between 0 and 180"))
         ->type_name("DEG")
         ->needs(adaptive)
         ->capture_default_str();
@@ -124,12 +121,7 @@ void AddAdaptiveOptions(CLI::App &app, AdaptiveArguments *arguments) {
         ->capture_default_str();
     app.add_option("--pixel-error", arguments->pixelError,
                    "How many pixels faces may be away from the limit surface in it")
-        ->check([](std::string const &word) {
-            float pixels = 0;
-            return std::string(ParseFiniteFloat(word, &pixels) && pixels > 0
-                                   ? ""
-                                   : "'" + word + "' is not a number above 0");
-        })
+        ->check(MakePositive())
         ->type_name("PIXELS")
         ->needs(adaptive)
         ->capture_default_str();
@@ -191,7 +183,7 @@ void AdaptiveRefinement::Refine(AdaptiveArguments const &arguments,
             continue;
         }
         if (!factory->InitVertexSurface(face, &surface, &status)) {
-            requireBoundaryRule(refiner, input);
+            RequireBoundaryRule(refiner, input);
             throw FileError(input, "--adaptive: " + status.GetMessage());
         }
         ++numSurfaces;
@@ -199,7 +191,7 @@ void AdaptiveRefinement::Refine(AdaptiveArguments const &arguments,
     _statistics.types = std::int64_t(cache.GetNumTypes());
     _statistics.hits = numSurfaces - _statistics.types;
 
-    BfrExt::View const view = makeView(arguments, _mesh.positions);
+    BfrExt::View const view = makeView(arguments, base, _mesh.positions);
     if (!view.IsValid()) {
         throw FileError(input,
                         "the camera of --adaptive sees nothing: eye and target are one place, "
@@ -239,6 +231,13 @@ void AdaptiveRefinement::Refine(AdaptiveArguments const &arguments,
 }
 
 void AdaptiveRefinement::take(Mesh const &piece, std::vector<int> const &faceLevels) {
+    for (std::size_t face = 0; face < piece.faceSizes.size(); ++face) {
+        int const size = piece.faceSizes[face];
+        if (size > AdaptiveStatistics::kMaxReadSize && _statistics.facesNotRead++ == 0) {
+            _statistics.firstNotRead = piece.baseFaces[face];
+            _statistics.sizeOfFirstNotRead = size;
+        }
+    }
     for (int const level : faceLevels) {
         ++_statistics.facesByLevel[std::size_t(level)];
     }

@@ -35,6 +35,8 @@ void CheckAdaptiveOptions(CLI::App const &app, AdaptiveArguments const &argument
 
 /// \brief What became of the cells of a mesh.
 struct AdaptiveStatistics {
+    static constexpr int kMaxReadSize = 65535; ///< sides of the largest face that can be refined
+
     std::vector<std::int64_t> facesByLevel;
     std::int64_t faces = 0;
     std::int64_t points = 0;
@@ -46,7 +48,10 @@ struct AdaptiveStatistics {
     std::vector<int> channelValues; ///< by channel
     int maxLevel = 0;               ///< the last level that may be made
     std::int64_t facesOfMaxLevel = 0;
-    float pixelError = 0; ///< that was asked for
+    float pixelError = 0;          ///< that was asked for
+    std::int64_t facesNotRead = 0; ///< faces with more sides than can be refined
+    int firstNotRead = 0;          ///< the base face of the first of these
+    int sizeOfFirstNotRead = 0;
 };
 
 /// A camera, as BfrExt::Camera with y up.

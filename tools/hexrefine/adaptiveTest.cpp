@@ -84,6 +84,38 @@ TEST_F(HexrefineAdaptive, MakesClosedMeshesInEachFormat) {
     EXPECT_LT(refine(cube, "--resolution 100x100", "small.obj").GetNumFaces(), int(numFaces));
 }
 
+TEST_F(HexrefineAdaptive, CameraSeesWhatFacesHave) {
+    std::string const cube = getContent(makeCubeFile());
+    Mesh const alone = refine(makeFile("alone.obj", cube), "--mask smooth", "alone-out.obj");
+    Mesh const beside =
+        refine(makeFile("beside.obj", cube + "v 1e6 0 0\n"), "--mask smooth", "beside-out.obj");
+    EXPECT_EQ(beside.positions, alone.positions);
+    EXPECT_EQ(beside.faceVertices, alone.faceVertices);
+}
+
+TEST_F(HexrefineAdaptive, WarnsOfFacesThatCannotBeReadAgain) {
+    constexpr int kNumSides = 400;
+    std::string text;
+    std::string face = "f";
+    for (int i = 0; i < kNumSides; ++i) {
+        double const angle = 2 * std::acos(-1.0) * i / kNumSides;
+        text +=
+            "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+        face += " " + std::to_string(i + 1);
+    }
+    std::string const input = makeFile("polygon.obj", text + face + "\n");
+    std::string const arguments = input + " --adaptive --boundary edge-only --mask smooth -o " +
+                                  getPath("out.ply") + " --pixel-error ";
+    Result const result = run(arguments + "1e-5");
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.error.find("1 face of the output with more than 65535 vertices, which "
+                                "hexrefine does not read again, the first in face 0 with "),
+              std::string::npos)
+        << result.error;
+    expectFailure(getPath("out.ply"), getPath("out.ply"), "more than the 65535");
+    EXPECT_EQ(run(arguments + "1").error, "");
+}
+
 // What is near is fine; what is outside of the picture can be left as it is.
 TEST_F(HexrefineAdaptive, CameraDecidesWhatIsFine) {
     std::string const cube = makeCubeFile();
@@ -235,7 +267,11 @@ TEST_F(HexrefineAdaptive, BadArgumentsAreNamed) {
     }
     expectBadUsage(cube + " --png a.png --png-colors levels", "--adaptive");
     expectFailure(cube + " --adaptive --camera 1,2,3,1,2,3", cube, "camera");
-    expectFailure(cube + " --adaptive --scheme doo-sabin", cube, "--adaptive");
+    expectBadUsage(cube + " --adaptive --scheme doo-sabin", "--scheme: doo-sabin is not for --");
+    expectBadUsage(cube + " --adaptive --fov 179.999999", "'179.999999' is 180 as a float");
+    expectBadUsage(cube + " --adaptive --fov 1e-300", "'1e-300' is 0 as a float");
+    expectBadUsage(cube + " --adaptive --pixel-error 1e300", "out of the range of floats");
+    expectBadUsage(cube + " --adaptive --pixel-error 1e-300", "'1e-300' is 0 as a float");
     std::string const strip = makeStrip();
     expectFailure(strip + " --adaptive", strip,
                   "--adaptive needs --boundary edge-only or edge-and-corner: the mesh has boundary "

@@ -227,6 +227,9 @@ void checkOptions(CLI::App const &app, Arguments const &arguments) {
                                    "is for an --output that is a .ply or .off file");
     }
     CheckAdaptiveOptions(app, arguments.adaptive);
+    if (arguments.adaptive.isAdaptive && arguments.scheme != "hex") {
+        throw CLI::ValidationError("--scheme", arguments.scheme + " is not for --adaptive");
+    }
     if (arguments.scheme == "tri-hex" && app.count("--mask") > 0) {
         throw CLI::ValidationError("--mask", "has no effect with --scheme tri-hex");
     }

@@ -393,6 +393,14 @@ void Job::refineCells() {
         _cells->Refine(_arguments.adaptive, *_refiner, _arguments.input);
         _statistics.adaptive = _cells->GetStatistics();
     });
+    AdaptiveStatistics const &cells = _cells->GetStatistics();
+    if (cells.facesNotRead > 0 && !_arguments.output.empty()) {
+        warn(std::to_string(cells.facesNotRead) + (cells.facesNotRead == 1 ? " face" : " faces") +
+             " of the output with more than " + std::to_string(AdaptiveStatistics::kMaxReadSize) +
+             " vertices, which hexrefine does not read again, the first in face " +
+             std::to_string(cells.firstNotRead) + " with " +
+             std::to_string(cells.sizeOfFirstNotRead) + " vertices");
+    }
 }
 
 void Job::drawCells() const {

@@ -14,6 +14,7 @@
 #include "cellSurface.h"
 #include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
+#include "tools/mesh/boundaryRule.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/meshText.h"
@@ -33,6 +34,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <new>
 
 namespace OpenSubdivHex::Tools {
@@ -86,7 +88,7 @@ struct Arguments {
 
 void addPanelOptions(CLI::App &app, PanelSettings *settings) {
     app.add_option("-l,--level", settings->level, "Number of refinement steps")
-        ->check(CLI::NonNegativeNumber)
+        ->check(CLI::Range(0, std::numeric_limits<int>::max()))
         ->capture_default_str();
     app.add_flag("--adaptive", settings->isAdaptive,
                  "Refine parts of the mesh as far as the camera needs them, in place of --level");
@@ -139,7 +141,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->type_name("SETTINGS")
         ->allow_extra_args(false);
     app.add_option("--columns", arguments->numColumns, "Panels in a row (default: all)")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1, std::numeric_limits<int>::max()));
     app.add_option("--size", arguments->size, "Size of the picture in pixels")
         ->check([arguments](std::string const &text) {
             std::size_t const cross = text.find('x');
@@ -256,6 +258,7 @@ public:
             try {
                 _cells = std::make_unique<CellSurface>(*_refiner);
             } catch (std::runtime_error const &error) {
+                RequireBoundaryRule(*_refiner, input);
                 throw FileError(input, error.what());
             }
             std::printf("adaptive: prepared in %.0f ms\n", getMilliseconds(start));
