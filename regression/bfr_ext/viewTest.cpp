@@ -1153,8 +1153,9 @@ TEST(View, HardlyAFacetIsTurnedOver) {
     shapes.push_back(GetShape("annulus")); // its inner border is concave
     for (Shape const &shape : shapes) {
         for (bool const isTruncated : {false, true}) {
-            SurfaceCase const &surfaceCase =
-                (isTruncated ? kTruncateCases : kPlainCases)[next++ % std::size(kPlainCases)];
+            // Counted here: with GCC's UndefinedBehaviorSanitizer the index of a conditional array counts twice.
+            std::size_t const number = next++ % std::size(kPlainCases);
+            SurfaceCase const &surfaceCase = (isTruncated ? kTruncateCases : kPlainCases)[number];
             Sdc::Options options;
             options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
             auto const refiner = CreateSurfaceRefiner(shape, surfaceCase, 0, options);
@@ -1186,9 +1187,8 @@ TEST(View, HardlyAFacetIsTurnedOver) {
         found.triangles.Report("triangles");
         EXPECT_GT(found.polygons.GetNumFacets(), 10000);
     }
-    // How many they are depends on a few cells that last bits decide about: some two in a thousand at most.
-    EXPECT_LT(facets[0].polygons.GetShare(), 0.002);
-    EXPECT_LT(facets[0].triangles.GetShare(), 0.003);
+    EXPECT_LT(facets[0].polygons.GetShare(), 0.001);
+    EXPECT_LT(facets[0].triangles.GetShare(), 0.002);
     EXPECT_LT(facets[1].polygons.GetShare(), 0.001);
     EXPECT_LT(facets[1].triangles.GetShare(), 0.02);
 }
