@@ -9,7 +9,7 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::TopologyLevel;
 
 namespace {
@@ -151,8 +151,8 @@ PatchNumbering::SectionNumbers::SectionNumbers(internal::FaceSections const &sec
 
 template <typename REAL>
 std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &stream,
-                                                       Status *status) {
-    Status const result = stream.check(0, stream.GetFactory().GetNumFaces());
+                                                       CallStatus *status) {
+    CallStatus const result = stream.check(0, stream.GetFactory().GetNumFaces());
     if (!FarExt::internal::Report(result, status)) {
         return nullptr;
     }
@@ -233,9 +233,9 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
 }
 
 template std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<float> const &,
-                                                                Status *);
+                                                                CallStatus *);
 template std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<double> const &,
-                                                                Status *);
+                                                                CallStatus *);
 
 // The first of the faces that is no hole.
 Far::Index PatchNumbering::findOwner(Far::ConstIndexArray faces) const {

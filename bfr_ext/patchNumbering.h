@@ -42,7 +42,7 @@ public:
     /// \return  null on failure: those of PatchStream::Run() for all faces, before any patch
     template <typename REAL>
     static std::unique_ptr<PatchNumbering> Create(PatchStream<REAL> const &stream,
-                                                  FarExt::Status *status = nullptr);
+                                                  FarExt::CallStatus *status = nullptr);
 
     /// Points of all patches.
     Number GetNumPoints() const { return _firstPointOfFace.back(); }

@@ -16,8 +16,8 @@
 
 namespace OpenSubdivHex::BfrExt {
 
+using FarExt::CallStatus;
 using FarExt::ComponentType;
-using FarExt::Status;
 using FarExt::StatusCode;
 
 namespace {
@@ -83,7 +83,7 @@ public:
     ///
     /// \param section  -1: of the face as a whole
     /// \return  false where the sink ended the stream, or a face has no surface, as status says
-    bool Run(Index face, int section, Status &status) {
+    bool Run(Index face, int section, CallStatus &status) {
         if (_stream._types && _numPatches++ % kFacesOfFactory == 0) {
             _surface.Clear();
             _ownFactory.reset();
@@ -157,12 +157,12 @@ private:
     }
 
     // Faces are kept: the next frame has them, too.
-    Status initSurface(Index face, FarExt::Interpolation interpolation, int channel) {
+    CallStatus initSurface(Index face, FarExt::Interpolation interpolation, int channel) {
         return _ownFactory ? _factory->init(face, interpolation, channel, _surface)
                            : _factory->initKept(face, interpolation, channel, _surface);
     }
 
-    bool evaluatePoints(Index face, Tessellation const &tessellation, Status &status) {
+    bool evaluatePoints(Index face, Tessellation const &tessellation, CallStatus &status) {
         status = initSurface(face, FarExt::Interpolation::Vertex, -1);
         if (!status.IsOk()) {
             return false;
@@ -192,7 +192,7 @@ private:
         return true;
     }
 
-    bool evaluateValues(Index face, Tessellation const &tessellation, Status &status) {
+    bool evaluateValues(Index face, Tessellation const &tessellation, CallStatus &status) {
         for (std::size_t i = 0; i < _values.size(); ++i) {
             Values const &values = _values[i];
             FarExt::Interpolation const interpolation =
@@ -435,7 +435,7 @@ Tessellation PatchStream<REAL>::MakeTessellation(Index face) const {
 
 // Of several faces that are wrong, the first is told of, whoever finds it.
 template <typename REAL>
-Status PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKept) const {
+CallStatus PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKept) const {
     FarExt::TopologyLevel const &base = _factory.GetLevel();
     if (beginFace < 0 || endFace < beginFace || endFace > base.GetNumFaces()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
@@ -467,14 +467,14 @@ Status PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKe
     };
     internal::PlanMemory memory(*_plans);
     std::atomic<Index> firstBad(endFace);
-    Status result;
+    CallStatus result;
     std::mutex mutex;
     auto const check = [&](Checker &checker, Index begin, Index end) {
         for (Index face = beginFace + begin; face < beginFace + end && face < firstBad; ++face) {
             if (base.IsFaceHole(face)) {
                 continue;
             }
-            Status status = checkFace(face, checker.levels);
+            CallStatus status = checkFace(face, checker.levels);
             if (!status.IsOk()) {
                 std::lock_guard<std::mutex> const lock(mutex);
                 if (face < firstBad) {
@@ -504,8 +504,8 @@ Status PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKe
 
 // Of a stream of levels, these are written.
 template <typename REAL>
-Status PatchStream<REAL>::checkFace(Index face, std::vector<int> &levels) const {
-    Status status = _factory.checkFace(face);
+CallStatus PatchStream<REAL>::checkFace(Index face, std::vector<int> &levels) const {
+    CallStatus status = _factory.checkFace(face);
     if (!status.IsOk()) {
         return status;
     }
@@ -517,30 +517,30 @@ Status PatchStream<REAL>::checkFace(Index face, std::vector<int> &levels) const 
 }
 
 template <typename REAL>
-Status PatchStream<REAL>::checkTree(Index face) const {
+CallStatus PatchStream<REAL>::checkTree(Index face) const {
     return _forest->IsMatched(face)
-               ? Status()
-               : Status(StatusCode::InvalidArgument, ComponentType::Face, face,
-                        "the tree of face " + std::to_string(face) +
-                            " is not that of such a face, or its edges were not matched");
+               ? CallStatus()
+               : CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
+                            "the tree of face " + std::to_string(face) +
+                                " is not that of such a face, or its edges were not matched");
 }
 
 // Whether those of a face and its edges are some that a tessellation has.
 template <typename REAL>
-Status PatchStream<REAL>::checkLevels(Index face, std::vector<int> const &levels) const {
+CallStatus PatchStream<REAL>::checkLevels(Index face, std::vector<int> const &levels) const {
     auto const isLevel = [](int level) { return 0 <= level && level <= Tessellation::kLastLevel; };
     auto const refuse = [](int level, ComponentType type, char const *name, Index index) {
-        return Status(StatusCode::InvalidArgument, type, index,
-                      std::string(name) + " " + std::to_string(index) + " has level " +
-                          std::to_string(level) + ", which is not one of 0 to " +
-                          std::to_string(Tessellation::kLastLevel));
+        return CallStatus(StatusCode::InvalidArgument, type, index,
+                          std::string(name) + " " + std::to_string(index) + " has level " +
+                              std::to_string(level) + ", which is not one of 0 to " +
+                              std::to_string(Tessellation::kLastLevel));
     };
     if (!isLevel(levels.back())) {
         return refuse(levels.back(), ComponentType::Face, "face", face);
     }
     auto const bad = std::find_if_not(levels.begin(), levels.end(), isLevel);
     if (bad == levels.end()) {
-        return Status();
+        return CallStatus();
     }
     Index const edge = _factory.GetLevel().GetFaceEdges(face)[int(bad - levels.begin())];
     return refuse(*bad, ComponentType::Edge, "edge", edge);
@@ -549,9 +549,9 @@ Status PatchStream<REAL>::checkLevels(Index face, std::vector<int> const &levels
 template <typename REAL>
 bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
                             std::vector<Values> const &values, Index beginFace, Index endFace,
-                            Sink const &sink, Status *status) const {
+                            Sink const &sink, CallStatus *status) const {
     bool arePlansKept = false;
-    Status result = check(beginFace, endFace, &arePlansKept);
+    CallStatus result = check(beginFace, endFace, &arePlansKept);
     for (Values const &further : values) {
         if (result.IsOk() && further.channel != Values::kVarying) {
             result = FarExt::internal::CheckChannel(further.channel, _factory.GetNumFVarChannels());
@@ -580,7 +580,7 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
                                                 vertexPoints.get());
             },
             [&](std::unique_ptr<Worker> &worker, Index begin, Index end) {
-                Status workerStatus;
+                CallStatus workerStatus;
                 for (Index i = begin; i < end && !isEnded; ++i) {
                     PatchOfFace const patch = getPatch(i);
                     if (base.IsFaceHole(patch.face) ||

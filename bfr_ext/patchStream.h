@@ -203,14 +203,14 @@ public:
     ///                       Unsupported for a face without a surface (SurfaceFactory) that is no hole;
     ///                       and on the way, Unsupported for a vertex without a limit stencil
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Sink const &sink,
-             FarExt::Status *status = nullptr) const {
+             FarExt::CallStatus *status = nullptr) const {
         return Run(meshPoints, meshPointDesc, 0, _factory.GetNumFaces(), sink, status);
     }
     /// \brief The same for faces \p beginFace ... \p endFace - 1, as a process takes its share.
     ///
     /// \return  false with InvalidArgument, too, for a range that is not one of faces
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Index beginFace,
-             Index endFace, Sink const &sink, FarExt::Status *status = nullptr) const {
+             Index endFace, Sink const &sink, FarExt::CallStatus *status = nullptr) const {
         return Run(meshPoints, meshPointDesc, {}, beginFace, endFace, sink, status);
     }
     /// \brief The same with further values.
@@ -219,7 +219,7 @@ public:
     /// \return        false with InvalidArgument, too, for a channel that the mesh has not
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
              std::vector<Values> const &values, Index beginFace, Index endFace, Sink const &sink,
-             FarExt::Status *status = nullptr) const;
+             FarExt::CallStatus *status = nullptr) const;
 
     /// How many patches a face has, which is in range and has valid levels or trees: 1, or its sections.
     int GetNumSections(Index face) const;
@@ -245,10 +245,10 @@ private:
 
     std::shared_ptr<internal::PatchPlans> makePlans() const;
     std::shared_ptr<internal::StreamTypes> makeTypes() const;
-    FarExt::Status check(Index beginFace, Index endFace, bool *arePlansKept = nullptr) const;
-    FarExt::Status checkFace(Index face, std::vector<int> &levels) const;
-    FarExt::Status checkLevels(Index face, std::vector<int> const &levels) const;
-    FarExt::Status checkTree(Index face) const;
+    FarExt::CallStatus check(Index beginFace, Index endFace, bool *arePlansKept = nullptr) const;
+    FarExt::CallStatus checkFace(Index face, std::vector<int> &levels) const;
+    FarExt::CallStatus checkLevels(Index face, std::vector<int> const &levels) const;
+    FarExt::CallStatus checkTree(Index face) const;
     void getLevels(Index face, std::vector<int> &levels) const;
     bool isCut(Index face, std::vector<int> const &levels) const;
     std::unique_ptr<internal::FaceSections const> makeSections(Index face) const;

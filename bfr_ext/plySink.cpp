@@ -6,7 +6,7 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 
 namespace {
@@ -41,8 +41,8 @@ PlySink<REAL>::PlySink(PatchNumbering const &numbering, Write write)
 
 template <typename REAL>
 std::unique_ptr<PlySink<REAL>> PlySink<REAL>::Create(PatchNumbering const &numbering, Write write,
-                                                     Status *status) {
-    Status result;
+                                                     CallStatus *status) {
+    CallStatus result;
     if (numbering.GetNumPoints() > std::numeric_limits<std::int32_t>::max()) {
         result = FarExt::internal::Failure(
             StatusCode::TooLarge,

@@ -33,7 +33,7 @@ public:
     /// \param write      takes what is to be written
     /// \return  null on failure: TooLarge for more points than the 31 bits of a file's indices count
     static std::unique_ptr<PlySink> Create(PatchNumbering const &numbering, Write write,
-                                           FarExt::Status *status = nullptr);
+                                           FarExt::CallStatus *status = nullptr);
 
     /// Size of the file, in bytes.
     std::uint64_t GetFileSize() const;

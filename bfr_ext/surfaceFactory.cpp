@@ -13,9 +13,9 @@
 
 namespace OpenSubdivHex::BfrExt {
 
+using FarExt::CallStatus;
 using FarExt::ComponentType;
 using FarExt::Interpolation;
-using FarExt::Status;
 using FarExt::StatusCode;
 using FarExt::internal::CellPatch;
 using FarExt::internal::FVarChannel;
@@ -87,15 +87,15 @@ void SurfaceFactory::setTypes() {
 SurfaceFactory::~SurfaceFactory() = default;
 
 std::unique_ptr<SurfaceFactory> SurfaceFactory::Create(FarExt::TopologyRefiner const &refiner,
-                                                       Options options, Status *status) {
+                                                       Options options, CallStatus *status) {
     FarExt::HexSchemeOptions const schemeOptions = refiner.GetHexSchemeOptions();
     int const level = schemeOptions.GetSurfaceLevel();
-    Status const result =
+    CallStatus const result =
         level <= refiner.GetMaxLevel()
             ? FarExt::internal::CheckLimitLevel(refiner.GetHierarchy(), schemeOptions, level)
-            : Status(StatusCode::InvalidArgument, ComponentType::Level, level,
-                     "the refiner is not refined to level " + std::to_string(level) +
-                         ", whose faces have the surfaces behind a first step");
+            : CallStatus(StatusCode::InvalidArgument, ComponentType::Level, level,
+                         "the refiner is not refined to level " + std::to_string(level) +
+                             ", whose faces have the surfaces behind a first step");
     if (!FarExt::internal::Report(result, status)) {
         return nullptr;
     }
@@ -107,7 +107,7 @@ bool SurfaceFactory::hasRefinedAgain() const {
     return _level.GetDepth() > 0 && _refiner.GetNumRefinements() != _numRefinements;
 }
 
-Status SurfaceFactory::checkIsFace(Index face) const {
+CallStatus SurfaceFactory::checkIsFace(Index face) const {
     if (hasRefinedAgain()) {
         return FarExt::internal::Failure(
             StatusCode::InvalidArgument,
@@ -115,32 +115,33 @@ Status SurfaceFactory::checkIsFace(Index face) const {
     }
     bool const isFace = 0 <= face && face < GetNumFaces();
     if (isFace && _level.GetLevel().GetHoles(face) != FarExt::internal::kHole) {
-        return Status();
+        return CallStatus();
     }
     std::string const name = "face " + std::to_string(face);
-    return Status(StatusCode::InvalidArgument, ComponentType::Face, face,
-                  isFace ? name + " is a hole, which has no surface"
-                         : name + " is not one of the " + std::to_string(GetNumFaces()) +
-                               " faces of level " + std::to_string(_level.GetDepth()));
+    return CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
+                      isFace ? name + " is a hole, which has no surface"
+                             : name + " is not one of the " + std::to_string(GetNumFaces()) +
+                                   " faces of level " + std::to_string(_level.GetDepth()));
 }
 
-Status SurfaceFactory::checkFace(Index face) const {
-    Status result = checkIsFace(face);
+CallStatus SurfaceFactory::checkFace(Index face) const {
+    CallStatus result = checkIsFace(face);
     if (!result.IsOk()) {
         return result;
     }
     for (Index const vert : _level.GetFaceVertices(face)) {
         if (_walks.front()->IsAtFeature(vert) && isAtFreeBoundary(_level.GetLevel(), vert)) {
-            return Status(StatusCode::Unsupported, ComponentType::Face, face,
-                          "face " + std::to_string(face) + " has vertex " + std::to_string(vert) +
-                              " on a boundary that VTX_BOUNDARY_NONE leaves without a limit");
+            return CallStatus(StatusCode::Unsupported, ComponentType::Face, face,
+                              "face " + std::to_string(face) + " has vertex " +
+                                  std::to_string(vert) +
+                                  " on a boundary that VTX_BOUNDARY_NONE leaves without a limit");
         }
     }
     return result;
 }
 
-bool SurfaceFactory::FaceHasLimitSurface(Index face, Status *status) const {
-    Status result = checkFace(face);
+bool SurfaceFactory::FaceHasLimitSurface(Index face, CallStatus *status) const {
+    CallStatus result = checkFace(face);
     Level const &level = _level.GetLevel();
     if (result.IsOk() && findVertexOfManyFaces(level, face) < level.GetFaceSize(face)) {
         std::vector<Index> points;
@@ -161,7 +162,7 @@ Parameterization SurfaceFactory::GetFaceParameterization(Index face) const {
 internal::CellType const *SurfaceFactory::findType(Level const &level, Index levelFace, Index face,
                                                    Interpolation interpolation,
                                                    std::vector<Index> &points,
-                                                   Status &status) const {
+                                                   CallStatus &status) const {
     status = checkFace(face);
     if (!status.IsOk()) {
         return nullptr;
@@ -176,10 +177,10 @@ internal::CellType const *SurfaceFactory::findType(Level const &level, Index lev
     int const withManyFaces = findVertexOfManyFaces(level, levelFace);
     if (withManyFaces < verts.size() && !type.HasCorners()) {
         Index const vert = _level.GetFaceVertices(face)[withManyFaces];
-        status = Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
-                        "the limit of face " + std::to_string(face) + " at vertex " +
-                            std::to_string(vert) +
-                            " cannot be computed: the steps around it do not converge");
+        status = CallStatus(StatusCode::Unsupported, ComponentType::Vertex, vert,
+                            "the limit of face " + std::to_string(face) + " at vertex " +
+                                std::to_string(vert) +
+                                " cannot be computed: the steps around it do not converge");
         return nullptr;
     }
     points.resize(numPoints + 2 * std::size_t(verts.size()));
@@ -188,9 +189,9 @@ internal::CellType const *SurfaceFactory::findType(Level const &level, Index lev
 }
 
 template <typename REAL>
-Status SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
-                            Surface<REAL> &surface) const {
-    Status result = checkIsFace(face);
+CallStatus SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
+                                Surface<REAL> &surface) const {
+    CallStatus result = checkIsFace(face);
     if (!result.IsOk()) {
         surface.Clear();
         return result;
@@ -228,12 +229,12 @@ Status SurfaceFactory::init(Index face, Interpolation interpolation, int channel
 }
 
 template <typename REAL>
-Status SurfaceFactory::initKept(Index face, Interpolation interpolation, int channel,
-                                Surface<REAL> &surface) const {
+CallStatus SurfaceFactory::initKept(Index face, Interpolation interpolation, int channel,
+                                    Surface<REAL> &surface) const {
     auto const kind = std::size_t(channel < 0 ? int(interpolation) : kNumInterpolations + channel);
     KeptFaces::Face const *kept = hasRefinedAgain() ? nullptr : _kept->Find(kind, face);
     if (!kept) {
-        Status result = init(face, interpolation, channel, surface);
+        CallStatus result = init(face, interpolation, channel, surface);
         if (!result.IsOk()) {
             return result;
         }
@@ -242,23 +243,25 @@ Status SurfaceFactory::initKept(Index face, Interpolation interpolation, int cha
     if (kept) {
         surface.set(_owner, kept->type, kept->size, kept->numPoints, kept->GetPoints());
     }
-    return Status();
+    return CallStatus();
 }
 
 template <typename REAL>
-bool SurfaceFactory::InitVertexSurface(Index face, Surface<REAL> *surface, Status *status) const {
+bool SurfaceFactory::InitVertexSurface(Index face, Surface<REAL> *surface,
+                                       CallStatus *status) const {
     return FarExt::internal::Report(initKept(face, Interpolation::Vertex, -1, *surface), status);
 }
 
 template <typename REAL>
-bool SurfaceFactory::InitVaryingSurface(Index face, Surface<REAL> *surface, Status *status) const {
+bool SurfaceFactory::InitVaryingSurface(Index face, Surface<REAL> *surface,
+                                        CallStatus *status) const {
     return FarExt::internal::Report(initKept(face, Interpolation::Varying, -1, *surface), status);
 }
 
 template <typename REAL>
 bool SurfaceFactory::InitFaceVaryingSurface(Index face, Surface<REAL> *surface, FVarID channel,
-                                            Status *status) const {
-    Status const result = FarExt::internal::CheckChannel(channel, GetNumFVarChannels());
+                                            CallStatus *status) const {
+    CallStatus const result = FarExt::internal::CheckChannel(channel, GetNumFVarChannels());
     if (!result.IsOk()) {
         surface->Clear();
         return FarExt::internal::Report(result, status);
@@ -272,14 +275,14 @@ bool SurfaceFactory::InitFaceVaryingSurface(Index face, Surface<REAL> *surface, 
 template <typename REAL>
 bool SurfaceFactory::InitSurfaces(Index face, Surface<REAL> *vertex, Surface<REAL> *channels,
                                   FVarID const ids[], int numIds, Surface<REAL> *varying,
-                                  Status *status) const {
+                                  CallStatus *status) const {
     FVarID const defaultId = _options.GetDefaultFVarID();
     if (!ids && numIds == 0) {
         ids = &defaultId;
         numIds = 1;
     }
     int const numChannels = channels ? numIds : 0;
-    Status result;
+    CallStatus result;
     auto const initNext = [&](Interpolation interpolation, int channel, Surface<REAL> *surface) {
         if (surface && result.IsOk()) {
             result = initKept(face, interpolation, channel, *surface);
@@ -306,21 +309,23 @@ bool SurfaceFactory::InitSurfaces(Index face, Surface<REAL> *vertex, Surface<REA
     return FarExt::internal::Report(result, status);
 }
 
-template Status SurfaceFactory::init(Index, Interpolation, int, Surface<float> &) const;
-template Status SurfaceFactory::init(Index, Interpolation, int, Surface<double> &) const;
-template Status SurfaceFactory::initKept(Index, Interpolation, int, Surface<float> &) const;
-template Status SurfaceFactory::initKept(Index, Interpolation, int, Surface<double> &) const;
-template bool SurfaceFactory::InitVertexSurface(Index, Surface<float> *, Status *) const;
-template bool SurfaceFactory::InitVertexSurface(Index, Surface<double> *, Status *) const;
-template bool SurfaceFactory::InitVaryingSurface(Index, Surface<float> *, Status *) const;
-template bool SurfaceFactory::InitVaryingSurface(Index, Surface<double> *, Status *) const;
+template CallStatus SurfaceFactory::init(Index, Interpolation, int, Surface<float> &) const;
+template CallStatus SurfaceFactory::init(Index, Interpolation, int, Surface<double> &) const;
+template CallStatus SurfaceFactory::initKept(Index, Interpolation, int, Surface<float> &) const;
+template CallStatus SurfaceFactory::initKept(Index, Interpolation, int, Surface<double> &) const;
+template bool SurfaceFactory::InitVertexSurface(Index, Surface<float> *, CallStatus *) const;
+template bool SurfaceFactory::InitVertexSurface(Index, Surface<double> *, CallStatus *) const;
+template bool SurfaceFactory::InitVaryingSurface(Index, Surface<float> *, CallStatus *) const;
+template bool SurfaceFactory::InitVaryingSurface(Index, Surface<double> *, CallStatus *) const;
 template bool SurfaceFactory::InitFaceVaryingSurface(Index, Surface<float> *, FVarID,
-                                                     Status *) const;
+                                                     CallStatus *) const;
 template bool SurfaceFactory::InitFaceVaryingSurface(Index, Surface<double> *, FVarID,
-                                                     Status *) const;
+                                                     CallStatus *) const;
 template bool SurfaceFactory::InitSurfaces(Index, Surface<float> *, Surface<float> *,
-                                           FVarID const[], int, Surface<float> *, Status *) const;
+                                           FVarID const[], int, Surface<float> *,
+                                           CallStatus *) const;
 template bool SurfaceFactory::InitSurfaces(Index, Surface<double> *, Surface<double> *,
-                                           FVarID const[], int, Surface<double> *, Status *) const;
+                                           FVarID const[], int, Surface<double> *,
+                                           CallStatus *) const;
 
 } // namespace OpenSubdivHex::BfrExt

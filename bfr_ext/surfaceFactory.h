@@ -97,10 +97,10 @@ public:
     ///          topology (FarExt::TopologyRefiner::UniformOptions)
     static std::unique_ptr<SurfaceFactory> Create(FarExt::TopologyRefiner const &refiner,
                                                   Options options,
-                                                  FarExt::Status *status = nullptr);
+                                                  FarExt::CallStatus *status = nullptr);
     /// The same with the default options.
     static std::unique_ptr<SurfaceFactory> Create(FarExt::TopologyRefiner const &refiner,
-                                                  FarExt::Status *status = nullptr) {
+                                                  FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
     }
     ~SurfaceFactory();
@@ -127,7 +127,7 @@ public:
     ///                Unsupported for a face at a boundary with VTX_BOUNDARY_NONE, and for one at a vertex
     ///                with so many faces and a single sharp edge that it has no limit stencil
     ///                (FarExt::LimitStencilTableFactoryReal)
-    bool FaceHasLimitSurface(Index face, FarExt::Status *status = nullptr) const;
+    bool FaceHasLimitSurface(Index face, FarExt::CallStatus *status = nullptr) const;
     /// The parameter plane of a face, which is in range.
     Parameterization GetFaceParameterization(Index face) const;
 
@@ -139,19 +139,19 @@ public:
     /// For vertex data, whose control points are vertices of GetLevel().
     template <typename REAL>
     bool InitVertexSurface(Index face, Surface<REAL> *surface,
-                           FarExt::Status *status = nullptr) const;
+                           FarExt::CallStatus *status = nullptr) const;
     /// For varying data, likewise.
     template <typename REAL>
     bool InitVaryingSurface(Index face, Surface<REAL> *surface,
-                            FarExt::Status *status = nullptr) const;
+                            FarExt::CallStatus *status = nullptr) const;
     /// For face-varying data of a channel, whose control points are values of GetLevel().
     template <typename REAL>
     bool InitFaceVaryingSurface(Index face, Surface<REAL> *surface, FVarID channel,
-                                FarExt::Status *status = nullptr) const;
+                                FarExt::CallStatus *status = nullptr) const;
     /// The same for the default channel.
     template <typename REAL>
     bool InitFaceVaryingSurface(Index face, Surface<REAL> *surface,
-                                FarExt::Status *status = nullptr) const {
+                                FarExt::CallStatus *status = nullptr) const {
         return InitFaceVaryingSurface(face, surface, _options.GetDefaultFVarID(), status);
     }
     /// \brief Some of these at once, all of which are invalid where one cannot be made.
@@ -164,7 +164,7 @@ public:
     template <typename REAL>
     bool InitSurfaces(Index face, Surface<REAL> *vertex, Surface<REAL> *channels,
                       FVarID const ids[] = nullptr, int numIds = 0,
-                      Surface<REAL> *varying = nullptr, FarExt::Status *status = nullptr) const;
+                      Surface<REAL> *varying = nullptr, FarExt::CallStatus *status = nullptr) const;
     /// @}
 
     /// @name Surfaces of one's own
@@ -174,21 +174,22 @@ public:
     /// For vertex data.
     template <typename REAL>
     std::unique_ptr<Surface<REAL>> CreateVertexSurface(Index face,
-                                                       FarExt::Status *status = nullptr) const {
+                                                       FarExt::CallStatus *status = nullptr) const {
         auto surface = std::make_unique<Surface<REAL>>();
         return InitVertexSurface(face, surface.get(), status) ? std::move(surface) : nullptr;
     }
     /// For varying data.
     template <typename REAL>
-    std::unique_ptr<Surface<REAL>> CreateVaryingSurface(Index face,
-                                                        FarExt::Status *status = nullptr) const {
+    std::unique_ptr<Surface<REAL>>
+    CreateVaryingSurface(Index face, FarExt::CallStatus *status = nullptr) const {
         auto surface = std::make_unique<Surface<REAL>>();
         return InitVaryingSurface(face, surface.get(), status) ? std::move(surface) : nullptr;
     }
     /// For face-varying data of a channel.
     template <typename REAL>
     std::unique_ptr<Surface<REAL>>
-    CreateFaceVaryingSurface(Index face, FVarID channel, FarExt::Status *status = nullptr) const {
+    CreateFaceVaryingSurface(Index face, FVarID channel,
+                             FarExt::CallStatus *status = nullptr) const {
         auto surface = std::make_unique<Surface<REAL>>();
         return InitFaceVaryingSurface(face, surface.get(), channel, status) ? std::move(surface)
                                                                             : nullptr;
@@ -196,7 +197,7 @@ public:
     /// For face-varying data of the default channel.
     template <typename REAL>
     std::unique_ptr<Surface<REAL>>
-    CreateFaceVaryingSurface(Index face, FarExt::Status *status = nullptr) const {
+    CreateFaceVaryingSurface(Index face, FarExt::CallStatus *status = nullptr) const {
         return CreateFaceVaryingSurface<REAL>(face, _options.GetDefaultFVarID(), status);
     }
     /// @}
@@ -213,20 +214,21 @@ private:
 
     void setTypes();
     bool hasRefinedAgain() const;
-    FarExt::Status checkIsFace(Index face) const;
-    FarExt::Status checkFace(Index face) const;
+    FarExt::CallStatus checkIsFace(Index face) const;
+    FarExt::CallStatus checkFace(Index face) const;
     internal::CellType const *findType(FarExt::internal::Level const &level, Index levelFace,
                                        Index face, FarExt::Interpolation interpolation,
-                                       std::vector<Index> &points, FarExt::Status &status) const;
+                                       std::vector<Index> &points,
+                                       FarExt::CallStatus &status) const;
     // With the causes of the public functions, which report them; a channel is in range, -1: none.
     // Nothing is kept.
     template <typename REAL>
-    FarExt::Status init(Index face, FarExt::Interpolation interpolation, int channel,
-                        Surface<REAL> &surface) const;
+    FarExt::CallStatus init(Index face, FarExt::Interpolation interpolation, int channel,
+                            Surface<REAL> &surface) const;
     // The same with what is kept.
     template <typename REAL>
-    FarExt::Status initKept(Index face, FarExt::Interpolation interpolation, int channel,
-                            Surface<REAL> &surface) const;
+    FarExt::CallStatus initKept(Index face, FarExt::Interpolation interpolation, int channel,
+                                Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;

@@ -125,7 +125,7 @@ public:
     int GetSection() const { return _section ? _section->number : 0; }
     /// Edges of the boundary: those of the face, or of the section.  Each edge of a section lies on an
     /// edge of the face, or is that of one other section, too, with the same places.
-    int GetNumEdges() const { return std::max(int(_firstEdgeCoords.size()) - 1, 0); }
+    int GetNumEdges() const { return (std::max)(int(_firstEdgeCoords.size()) - 1, 0); }
 
     /// @name Coordinates
     /// Those of the boundary come first, from vertex 0 on around the face, or the section: each vertex and
@@ -182,7 +182,7 @@ public:
     /// @{
 
     /// All facets.
-    int GetNumFacets() const { return std::max(int(_firstFacetIndices.size()) - 1, 0); }
+    int GetNumFacets() const { return (std::max)(int(_firstFacetIndices.size()) - 1, 0); }
     /// 3, 4, or 0 for polygons.
     int GetFacetSize() const { return _facetSize; }
     /// Indices from one facet to the next; 0 for polygons.

@@ -35,7 +35,7 @@ enum class SchemeType {
 ///   scheme takes: boundaries, creases, corners and face-varying data.  ComputeTruncateMask has
 ///   its masks, INDEXING.md its numbering.
 enum class FirstStep {
-    None,    ///< level 1 is made as those behind it
+    Same,    ///< level 1 is made as the levels behind it
     TriHex,  ///< a step of SchemeType::TriHex
     Truncate ///< for meshes of triangles
 };
@@ -53,20 +53,20 @@ enum class StepType {
 struct HexSchemeOptions {
     FaceMask faceMask = FaceMask::Average;         ///< of Hexagonal and DooSabin
     SchemeType schemeType = SchemeType::Hexagonal; ///< of all levels, but see firstStep
-    FirstStep firstStep = FirstStep::None;         ///< of level 1
+    FirstStep firstStep = FirstStep::Same;         ///< of level 1
 
     /// Whether all levels are made by hexagonal steps.
     bool IsHexagonal() const {
-        return schemeType == SchemeType::Hexagonal && firstStep == FirstStep::None;
+        return schemeType == SchemeType::Hexagonal && firstStep == FirstStep::Same;
     }
     /// \brief The *surface level*, at which hexagonal steps begin: 0, or 1 behind a first step.
     ///
     /// It is the first that has limits, and its faces are those of BfrExt::SurfaceFactory.  Of no
     /// meaning where schemeType is not Hexagonal.
-    int GetSurfaceLevel() const { return firstStep == FirstStep::None ? 0 : 1; }
+    int GetSurfaceLevel() const { return firstStep == FirstStep::Same ? 0 : 1; }
     /// The step that makes level \p level, 1 or more.
     StepType GetStepOfLevel(int level) const {
-        if (level == 1 && firstStep != FirstStep::None) {
+        if (level == 1 && firstStep != FirstStep::Same) {
             return firstStep == FirstStep::TriHex ? StepType::TriHex : StepType::Truncate;
         }
         switch (schemeType) {

@@ -122,9 +122,9 @@ private:
 struct EarlierLimits {
     EarlierLimits(internal::MeshLevels const &mesh, int level) : lattice(mesh, level) {}
 
-    Status Find(internal::MeshLevels const &mesh, HexSchemeOptions const &schemeOptions,
-                LimitRows &rows) {
-        Status result = lattice.FindMasks(schemeOptions, rows);
+    CallStatus Find(internal::MeshLevels const &mesh, HexSchemeOptions const &schemeOptions,
+                    LimitRows &rows) {
+        CallStatus result = lattice.FindMasks(schemeOptions, rows);
         if (!result.IsOk()) {
             return result;
         }
@@ -304,20 +304,20 @@ public:
     }
 
     // Makes the stencils of which those of rows are combined, when the rows are to be factorized.
-    Status FormStencils(internal::Hierarchy const &hierarchy,
-                        HexSchemeOptions const &schemeOptions) {
+    CallStatus FormStencils(internal::Hierarchy const &hierarchy,
+                            HexSchemeOptions const &schemeOptions) {
         std::vector<std::vector<Index>> wanted = findSources(hierarchy.mesh);
         while (!wanted.empty() && wanted.back().empty()) {
             wanted.pop_back();
         }
         if (wanted.size() < 2) {
-            return Status(); // the control vertices themselves
+            return CallStatus(); // the control vertices themselves
         }
         _stencils.emplace(hierarchy, schemeOptions, std::move(wanted));
         return _stencils->Form();
     }
 
-    Status Build() {
+    CallStatus Build() {
         std::vector<int> &sizes = _table->GetRowSizes();
         auto const numRows = std::size_t(_rows.GetNumRows());
         internal::ResizeLarge(sizes, numRows);
@@ -340,10 +340,10 @@ public:
         std::int64_t const numWeights =
             std::accumulate(sizes.begin(), sizes.end(), std::int64_t(0));
         if (numWeights > std::numeric_limits<Index>::max()) {
-            return Status(StatusCode::TooLarge, ComponentType::Level, _level,
-                          "the limit stencils of level " + std::to_string(_level) + " would have " +
-                              std::to_string(numWeights) +
-                              " weights, more than Far's 32-bit offsets reach");
+            return CallStatus(StatusCode::TooLarge, ComponentType::Level, _level,
+                              "the limit stencils of level " + std::to_string(_level) +
+                                  " would have " + std::to_string(numWeights) +
+                                  " weights, more than Far's 32-bit offsets reach");
         }
         _table->Resize(numRows, std::size_t(numWeights), _hasDerivatives);
         std::exclusive_scan(sizes.begin(), sizes.end(), _table->GetRowOffsets().begin(), 0);
@@ -358,7 +358,7 @@ public:
             }
             multiplier.Fill(kept[std::size_t(group / kRange)].Get(group % kRange), places);
         });
-        return Status();
+        return CallStatus();
     }
 
     std::unique_ptr<WritableLimitTable<REAL>> TakeTable() { return std::move(_table); }
@@ -518,14 +518,15 @@ private:
 };
 
 template <typename OPTIONS>
-Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
-    Status result = internal::CheckLimitLevel(refiner.GetHierarchy(), refiner.GetHexSchemeOptions(),
-                                              options.level);
+CallStatus checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
+    CallStatus result = internal::CheckLimitLevel(refiner.GetHierarchy(),
+                                                  refiner.GetHexSchemeOptions(), options.level);
     if (!result.IsOk()) {
         return result;
     }
     auto const fail = [&](std::string const &message) {
-        return Status(StatusCode::InvalidArgument, ComponentType::Level, options.level, message);
+        return CallStatus(StatusCode::InvalidArgument, ComponentType::Level, options.level,
+                          message);
     };
     std::string const level = "level " + std::to_string(options.level);
     if (!options.generateVertices && !options.generateFaceCenters) {
@@ -534,23 +535,24 @@ Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
     if (!options.generateVertices && options.generateFurtherSides) {
         return fail("further sides of vertices of " + level + " are asked for without vertices");
     }
-    return Status();
+    return CallStatus();
 }
 
-Status checkNumRows(int level, std::int64_t numRows) {
+CallStatus checkNumRows(int level, std::int64_t numRows) {
     if (numRows < std::numeric_limits<Index>::max()) {
-        return Status();
+        return CallStatus();
     }
-    return Status(StatusCode::TooLarge, ComponentType::Level, level,
-                  "the limit table of level " + std::to_string(level) + " would have " +
-                      std::to_string(numRows) + " stencils, more than 32-bit indices reach");
+    return CallStatus(StatusCode::TooLarge, ComponentType::Level, level,
+                      "the limit table of level " + std::to_string(level) + " would have " +
+                          std::to_string(numRows) + " stencils, more than 32-bit indices reach");
 }
 
 } // namespace
 
 template <typename REAL>
 auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Options options,
-                                                Status *status) -> std::unique_ptr<Table const> {
+                                                CallStatus *status)
+    -> std::unique_ptr<Table const> {
     if (!internal::Report(checkOptions(refiner, options), status)) {
         return nullptr;
     }
@@ -566,7 +568,7 @@ auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, 
         if (hasStencils) {
             earlier.emplace(mesh, options.level);
         }
-        Status const result =
+        CallStatus const result =
             earlier ? earlier->Find(mesh, schemeOptions, *vertexRows) : vertexRows->Find();
         if (!internal::Report(result, status)) {
             return nullptr;

@@ -168,7 +168,7 @@ public:
     ///          refined by hexagonal steps; or a vertex, which the status names, has tangents that
     ///          iteration does not find: where a single sharp edge ends among more than 100 faces).
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,
-                                               Status *status = nullptr);
+                                               CallStatus *status = nullptr);
 };
 
 /// In single precision, for the Osd evaluators.

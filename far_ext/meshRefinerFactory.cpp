@@ -22,7 +22,7 @@ BaseTopology::BaseTopology(internal::BaseMesh &mesh) : _mesh(mesh) {}
 
 BaseTopology::~BaseTopology() = default;
 
-void BaseTopology::refuse(Status const &status) {
+void BaseTopology::refuse(CallStatus const &status) {
     if (_status.IsOk()) {
         _status = status;
     }
@@ -68,7 +68,7 @@ void fill(internal::Buffer<Index> &array, std::size_t size, Index value) {
     std::fill_n(array.data(), size, value);
 }
 
-Status failedCount(char const *function, int count) {
+CallStatus failedCount(char const *function, int count) {
     return internal::Failure(StatusCode::InvalidArgument,
                              std::string(function) + " was given " + std::to_string(count));
 }
@@ -119,8 +119,8 @@ void MeshRefinerFactoryBase::setBaseEdgeSharpness(BaseTopology &base, Index edge
     if (!base.isIn(BaseTopology::Stage::AssignTags, "setBaseEdgeSharpness")) {
         return;
     }
-    Status status = CheckIndex(edge, getNumBaseEdges(base), ComponentType::Edge,
-                               [] { return "setBaseEdgeSharpness"; });
+    CallStatus status = CheckIndex(edge, getNumBaseEdges(base), ComponentType::Edge,
+                                   [] { return "setBaseEdgeSharpness"; });
     if (status.IsOk()) {
         status = CheckSharpness(sharpness, ComponentType::Edge, edge,
                                 [&] { return "edge " + std::to_string(edge); });
@@ -137,8 +137,8 @@ void MeshRefinerFactoryBase::setBaseVertexSharpness(BaseTopology &base, Index ve
     if (!base.isIn(BaseTopology::Stage::AssignTags, "setBaseVertexSharpness")) {
         return;
     }
-    Status status = CheckIndex(vert, getNumBaseVertices(base), ComponentType::Vertex,
-                               [] { return "setBaseVertexSharpness"; });
+    CallStatus status = CheckIndex(vert, getNumBaseVertices(base), ComponentType::Vertex,
+                                   [] { return "setBaseVertexSharpness"; });
     if (status.IsOk()) {
         status = CheckSharpness(sharpness, ComponentType::Vertex, vert,
                                 [&] { return "vertex " + std::to_string(vert); });
@@ -188,9 +188,10 @@ MeshRefinerFactoryBase::getBaseFaceFVarValues(BaseTopology &base, Index face, in
     }
     int const numChannels = int(base._channels.size());
     if (channel < 0 || channel >= numChannels) {
-        base.refuse(Status(StatusCode::InvalidTopology, ComponentType::None, channel,
-                           "getBaseFaceFVarValues refers to channel " + std::to_string(channel) +
-                               ", but there are " + std::to_string(numChannels)));
+        base.refuse(CallStatus(StatusCode::InvalidTopology, ComponentType::NoComponent, channel,
+                               "getBaseFaceFVarValues refers to channel " +
+                                   std::to_string(channel) + ", but there are " +
+                                   std::to_string(numChannels)));
         return IndexArray();
     }
     if (face < 0 || face >= base._numFaces) {
@@ -205,7 +206,7 @@ MeshRefinerFactoryBase::getBaseFaceFVarValues(BaseTopology &base, Index face, in
 
 std::unique_ptr<TopologyRefiner>
 MeshRefinerFactoryBase::create(Sdc::Options sdcOptions, TopologyRefinerFactory::Options options,
-                               Status *status, Function const &resize, Function const &assign,
+                               CallStatus *status, Function const &resize, Function const &assign,
                                Function const &assignTags, Function const &assignFaceVarying) {
     return TopologyRefinerFactory::create(
         sdcOptions, options, status, [&](internal::BaseMesh &mesh) {
@@ -221,7 +222,7 @@ MeshRefinerFactoryBase::create(Sdc::Options sdcOptions, TopologyRefinerFactory::
                 }
                 return base._status;
             };
-            Status result = call(resize, Stage::Resize);
+            CallStatus result = call(resize, Stage::Resize);
             base._faceSizes = nullptr;
             if (result.IsOk()) {
                 result = mesh.CompleteSizes();
@@ -239,7 +240,7 @@ MeshRefinerFactoryBase::create(Sdc::Options sdcOptions, TopologyRefinerFactory::
             if (result.IsOk()) {
                 result = mesh.CompleteTopology();
             }
-            Status const topology = result; // with its warnings
+            CallStatus const topology = result; // with its warnings
             if (result.IsOk()) {
                 result = call(assignTags, Stage::AssignTags);
             }

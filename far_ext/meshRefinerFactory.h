@@ -37,7 +37,7 @@ private:
     };
 
     static char const *getName(Stage stage);
-    void refuse(Status const &status);
+    void refuse(CallStatus const &status);
     /// Whether \p function, which is for \p stage, was called there; else refuses.
     bool isIn(Stage stage, char const *function);
     /// Refuses a call of \p function: for its stage, else for its index.
@@ -45,7 +45,7 @@ private:
                      ComponentType component);
 
     internal::BaseMesh &_mesh;
-    Status _status; // the first failure
+    CallStatus _status; // the first failure
     Stage _stage = Stage::Resize;
     int _numFaces = 0;
     Far::Index *_faceSizes = nullptr;         // while they are assigned
@@ -139,7 +139,7 @@ protected:
     using Function = std::function<bool(BaseTopology &)>;
     /// Makes the refiner by the four functions, in their order.
     static std::unique_ptr<TopologyRefiner>
-    create(Sdc::Options sdcOptions, TopologyRefinerFactory::Options options, Status *status,
+    create(Sdc::Options sdcOptions, TopologyRefinerFactory::Options options, CallStatus *status,
            Function const &resize, Function const &assign, Function const &assignTags,
            Function const &assignFaceVarying);
 };
@@ -186,7 +186,7 @@ public:
     /// \return  null on failure, with the causes of TopologyRefinerFactory::Create from a descriptor
     ///          or, where a function returned false, InvalidTopology
     static std::unique_ptr<TopologyRefiner> Create(MESH const &mesh, Sdc::Options sdcOptions,
-                                                   Options options, Status *status = nullptr) {
+                                                   Options options, CallStatus *status = nullptr) {
         return create(
             sdcOptions, options, status,
             [&](BaseTopology &base) { return resizeComponentTopology(base, mesh); },
@@ -195,8 +195,9 @@ public:
             [&](BaseTopology &base) { return assignFaceVaryingTopology(base, mesh); });
     }
     /// The same with the default options.
-    static std::unique_ptr<TopologyRefiner>
-    Create(MESH const &mesh, Sdc::Options sdcOptions = Sdc::Options(), Status *status = nullptr) {
+    static std::unique_ptr<TopologyRefiner> Create(MESH const &mesh,
+                                                   Sdc::Options sdcOptions = Sdc::Options(),
+                                                   CallStatus *status = nullptr) {
         return Create(mesh, sdcOptions, Options(), status);
     }
 

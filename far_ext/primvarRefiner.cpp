@@ -116,7 +116,7 @@ PrimvarLimitRows::PrimvarLimitRows(TopologyRefiner const &refiner) : _refiner(re
 
 PrimvarLimitRows::~PrimvarLimitRows() = default;
 
-bool PrimvarLimitRows::Find(Status *status) {
+bool PrimvarLimitRows::Find(CallStatus *status) {
     Hierarchy const &hierarchy = _refiner.GetHierarchy();
     int const level = _refiner.GetMaxLevel();
     if (!Report(CheckLimitLevel(hierarchy, _refiner.GetHexSchemeOptions(), level), status)) {

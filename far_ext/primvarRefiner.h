@@ -72,7 +72,7 @@ public:
     PrimvarLimitRows &operator=(PrimvarLimitRows const &) = delete;
 
     /// Finds the weights; false, with a status, where there are none.
-    bool Find(Status *status);
+    bool Find(CallStatus *status);
     Far::Index GetNumVertices() const;
     /// Valid until the next call.
     Row GetRow(Far::Index vert);
@@ -161,7 +161,7 @@ public:
     /// \return  false, with nothing written, as LimitStencilTableFactory fails: InvalidArgument where
     ///          the last level has no full topology, Unsupported where it has no limit stencils
     template <class T, class U>
-    bool Limit(T const &src, U &dstPos, Status *status = nullptr) const {
+    bool Limit(T const &src, U &dstPos, CallStatus *status = nullptr) const {
         internal::PrimvarLimitRows rows(_refiner);
         if (!rows.Find(status)) {
             return false;
@@ -176,7 +176,8 @@ public:
     /// \brief The same with first derivatives, those that LimitStencilTableFactory says, on side 0
     /// of each vertex (see LimitSides).
     template <class T, class U, class U1, class U2>
-    bool Limit(T const &src, U &dstPos, U1 &dstTan1, U2 &dstTan2, Status *status = nullptr) const {
+    bool Limit(T const &src, U &dstPos, U1 &dstTan1, U2 &dstTan2,
+               CallStatus *status = nullptr) const {
         internal::PrimvarLimitRows rows(_refiner);
         if (!rows.Find(status)) {
             return false;

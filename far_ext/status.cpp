@@ -14,12 +14,12 @@ void SetErrorCallback(Far::ErrorCallbackFunc callback) {
 
 namespace internal {
 
-bool Report(Status const &result, Status *status) {
+bool Report(CallStatus const &result, CallStatus *status) {
     if (status) {
         *status = result;
     }
     if (!result.IsOk() && callbackInstalled) {
-        Far::Error(Far::FAR_RUNTIME_ERROR, "%s", result.GetMessage().c_str());
+        Far::Error(Far::FAR_RUNTIME_ERROR, "%s", result.GetErrorMessage().c_str());
     }
     return result.IsOk();
 }

@@ -20,22 +20,22 @@ namespace Sdc = OpenSubdiv::Sdc;
 
 namespace FarExt {
 
-/// \brief What kind of failure a Status reports.
+/// \brief What kind of failure a CallStatus reports.
 enum class StatusCode {
     Ok,              ///< nothing failed
     InvalidArgument, ///< an option or argument is outside its documented range
-    InvalidTopology, ///< the mesh itself is broken; Status names the component
+    InvalidTopology, ///< the mesh itself is broken; CallStatus names the component
     Unsupported,     ///< valid for OpenSubdiv, but not handled by this scheme
     TooLarge         ///< a size would exceed the 32-bit indices of Far
 };
 
-/// \brief The kind of mesh component that a Status points at.
+/// \brief The kind of mesh component that a CallStatus points at.
 enum class ComponentType {
-    None,   ///< no single component
-    Face,   ///< a face
-    Edge,   ///< an edge
-    Vertex, ///< a vertex
-    Level   ///< a level of refinement
+    NoComponent, ///< no single component
+    Face,        ///< a face
+    Edge,        ///< an edge
+    Vertex,      ///< a vertex
+    Level        ///< a level of refinement
 };
 
 /// \brief What a Warning is about.
@@ -54,9 +54,9 @@ struct Warning {
 };
 
 /// \brief The outcome of an operation: a code, the component that caused it and one sentence; and
-/// what was noticed on the way, of which a Status that is Ok may have some, too.
+/// what was noticed on the way, of which a CallStatus that is Ok may have some, too.
 ///
-/// Every function that can fail takes an optional `Status *` and assigns it on success as well as
+/// Every function that can fail takes an optional `CallStatus *` and assigns it on success as well as
 /// on failure.  Nothing in this library prints.
 ///
 /// **What throws.** std::bad_alloc alone, where memory is short: every function that makes or fills
@@ -67,13 +67,13 @@ struct Warning {
 /// **Threads.** Functions that make something, and const ones, may be called by several threads at
 /// once, for the same arguments, too; others by one thread while no other uses the object.  See
 /// SetNumThreads() for how many threads a call uses itself.
-class Status {
+class CallStatus {
 public:
     /// Ok, no component, empty message.
-    Status() = default;
+    CallStatus() = default;
 
     /// A failure, caused by component number \p index of its kind.
-    Status(StatusCode code, ComponentType component, Far::Index index, std::string message)
+    CallStatus(StatusCode code, ComponentType component, Far::Index index, std::string message)
         : _code(code), _component(component), _index(index), _message(std::move(message)) {}
 
     /// Whether nothing failed.
@@ -82,14 +82,14 @@ public:
     /// What kind of failure it was.
     StatusCode GetCode() const { return _code; }
 
-    /// Kind of the offending component, None when no single component is to blame.
+    /// Kind of the offending component, NoComponent when no single component is to blame.
     ComponentType GetComponentType() const { return _component; }
 
     /// Index of the offending component in the input (INDEX_INVALID when there is none).
     Far::Index GetComponentIndex() const { return _index; }
 
     /// One sentence that names the component and the cause; empty when Ok.
-    std::string const &GetMessage() const { return _message; }
+    std::string const &GetErrorMessage() const { return _message; }
 
     /// What was noticed, one entry for each WarningCode at most.
     std::vector<Warning> const &GetWarnings() const { return _warnings; }
@@ -98,7 +98,7 @@ public:
 
 private:
     StatusCode _code = StatusCode::Ok;
-    ComponentType _component = ComponentType::None;
+    ComponentType _component = ComponentType::NoComponent;
     Far::Index _index = Far::INDEX_INVALID;
     std::string _message;
     std::vector<Warning> _warnings;
@@ -116,11 +116,11 @@ namespace internal {
 
 /// Assigns \p result to \p status (when given) and sends a failure to the installed callback.
 /// Returns result.IsOk().
-OPENSUBDIVHEX_API bool Report(Status const &result, Status *status);
+OPENSUBDIVHEX_API bool Report(CallStatus const &result, CallStatus *status);
 
 /// A failure that no single component is to blame for.
-inline Status Failure(StatusCode code, std::string message) {
-    return Status(code, ComponentType::None, Far::INDEX_INVALID, std::move(message));
+inline CallStatus Failure(StatusCode code, std::string message) {
+    return CallStatus(code, ComponentType::NoComponent, Far::INDEX_INVALID, std::move(message));
 }
 
 /// Whether \p value, which a cast may have made of any number, is one of an enumeration that goes

@@ -212,23 +212,23 @@ StencilPlan makePlan(TopologyRefiner const &refiner, OPTIONS const &options) {
     return plan;
 }
 
-Status checkBaseFaces(TopologyRefiner const &refiner, ConstIndexArray baseFaces) {
+CallStatus checkBaseFaces(TopologyRefiner const &refiner, ConstIndexArray baseFaces) {
     Index const numFaces = refiner.GetLevel(0).GetNumFaces();
     for (Index face : baseFaces) {
         if (face < 0 || face >= numFaces) {
-            return Status(StatusCode::InvalidArgument, ComponentType::Face, face,
-                          "there is no base face " + std::to_string(face) + "; the mesh has " +
-                              std::to_string(numFaces));
+            return CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
+                              "there is no base face " + std::to_string(face) + "; the mesh has " +
+                                  std::to_string(numFaces));
         }
     }
-    return Status();
+    return CallStatus();
 }
 
 template <typename OPTIONS>
-Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
+CallStatus checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
     if (options.maxLevel < 0) {
-        return Status(StatusCode::InvalidArgument, ComponentType::Level, options.maxLevel,
-                      "maxLevel " + std::to_string(options.maxLevel) + " is negative");
+        return CallStatus(StatusCode::InvalidArgument, ComponentType::Level, options.maxLevel,
+                          "maxLevel " + std::to_string(options.maxLevel) + " is negative");
     }
     return internal::CheckStencilMode(refiner, options.interpolationMode, options.fvarChannel);
 }
@@ -237,14 +237,14 @@ Status checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
 
 namespace internal {
 
-Status CheckStencilMode(TopologyRefiner const &refiner, StencilMode mode, int fvarChannel) {
+CallStatus CheckStencilMode(TopologyRefiner const &refiner, StencilMode mode, int fvarChannel) {
     if (!IsInEnum(mode, INTERPOLATE_FACE_VARYING)) {
         return Failure(StatusCode::InvalidArgument,
                        "there is no interpolationMode " + std::to_string(int(mode)));
     }
     return mode == INTERPOLATE_FACE_VARYING
                ? CheckChannel(fvarChannel, refiner.GetNumFVarChannels())
-               : Status();
+               : CallStatus();
 }
 
 Interpolation GetModeInterpolation(TopologyRefiner const &refiner, StencilMode mode,
@@ -259,7 +259,7 @@ Interpolation GetModeInterpolation(TopologyRefiner const &refiner, StencilMode m
 
 template <typename REAL>
 auto StencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Options options,
-                                           Status *status) -> std::unique_ptr<Table const> {
+                                           CallStatus *status) -> std::unique_ptr<Table const> {
     if (!internal::Report(checkOptions(refiner, options), status)) {
         return nullptr;
     }
@@ -274,14 +274,15 @@ auto StencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Optio
 template <typename REAL>
 auto StencilTableFactoryReal<REAL>::CreateOfFaces(TopologyRefiner const &refiner,
                                                   ConstIndexArray baseFaces, Options options,
-                                                  Status *status) -> std::unique_ptr<Table const> {
-    Status result = checkOptions(refiner, options);
+                                                  CallStatus *status)
+    -> std::unique_ptr<Table const> {
+    CallStatus result = checkOptions(refiner, options);
     if (result.IsOk()) {
         result = checkBaseFaces(refiner, baseFaces);
     }
     if (result.IsOk() && !options.factorizeIntermediateLevels) {
-        result = Status(StatusCode::Unsupported, ComponentType::None, Far::INDEX_INVALID,
-                        "stencils of some base faces must be factorized");
+        result = CallStatus(StatusCode::Unsupported, ComponentType::NoComponent, Far::INDEX_INVALID,
+                            "stencils of some base faces must be factorized");
     }
     if (!internal::Report(result, status)) {
         return nullptr;
@@ -307,15 +308,15 @@ template <typename REAL>
 std::vector<Index> StencilTableFactoryReal<REAL>::GetVerticesOfFaces(TopologyRefiner const &refiner,
                                                                      ConstIndexArray baseFaces,
                                                                      Options options, int level,
-                                                                     Status *status) {
-    Status result = checkOptions(refiner, options);
+                                                                     CallStatus *status) {
+    CallStatus result = checkOptions(refiner, options);
     if (result.IsOk()) {
         result = checkBaseFaces(refiner, baseFaces);
     }
     if (result.IsOk() && (level < 0 || level > refiner.GetMaxLevel())) {
-        result = Status(StatusCode::InvalidArgument, ComponentType::Level, level,
-                        "there is no level " + std::to_string(level) + "; the last is " +
-                            std::to_string(refiner.GetMaxLevel()));
+        result = CallStatus(StatusCode::InvalidArgument, ComponentType::Level, level,
+                            "there is no level " + std::to_string(level) + "; the last is " +
+                                std::to_string(refiner.GetMaxLevel()));
     }
     if (!internal::Report(result, status)) {
         return {};
@@ -328,8 +329,8 @@ std::vector<Index> StencilTableFactoryReal<REAL>::GetVerticesOfFaces(TopologyRef
 
 template <typename REAL>
 StencilTableSize StencilTableFactoryReal<REAL>::EstimateSize(TopologyRefiner const &refiner,
-                                                             Options options, Status *status) {
-    Status result = checkOptions(refiner, options);
+                                                             Options options, CallStatus *status) {
+    CallStatus result = checkOptions(refiner, options);
     if (!result.IsOk()) {
         internal::Report(result, status);
         return {};

@@ -65,7 +65,7 @@ public:
         /// Whether indices are control vertices; else stencils of level i index the vertices of
         /// level i - 1, from 0.
         bool factorizeIntermediateLevels = true;
-        int maxLevel = std::numeric_limits<int>::max(); ///< 0 or more; not cut to any bit width
+        int maxLevel = (std::numeric_limits<int>::max)(); ///< 0 or more; not cut to any bit width
         int fvarChannel =
             0; ///< for INTERPOLATE_FACE_VARYING, whose vertices are face-varying values
     };
@@ -85,10 +85,10 @@ public:
     ///          TooLarge (more than 2^31 - 1 stencils or weights up to the level that the status
     ///          names).
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,
-                                               Status *status = nullptr);
+                                               CallStatus *status = nullptr);
     /// The same with the default options.
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner,
-                                               Status *status = nullptr) {
+                                               CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
     }
 
@@ -105,7 +105,7 @@ public:
     ///
     /// \return  zeros on failure: InvalidArgument as Create(), TooLarge when these faces alone are.
     static StencilTableSize EstimateSize(TopologyRefiner const &refiner, Options options,
-                                         Status *status = nullptr);
+                                         CallStatus *status = nullptr);
 
     /// @name Tables of a part of the mesh
     /// @{
@@ -125,7 +125,8 @@ public:
     ///          range; Unsupported without factorizeIntermediateLevels.
     static std::unique_ptr<Table const> CreateOfFaces(TopologyRefiner const &refiner,
                                                       Far::ConstIndexArray baseFaces,
-                                                      Options options, Status *status = nullptr);
+                                                      Options options,
+                                                      CallStatus *status = nullptr);
 
     /// \brief The vertices, or values of options.fvarChannel, that CreateOfFaces() makes stencils
     /// for at \p level (0: with generateControlVerts), in the order of the stencils: ascending.
@@ -135,7 +136,7 @@ public:
     static std::vector<Far::Index> GetVerticesOfFaces(TopologyRefiner const &refiner,
                                                       Far::ConstIndexArray baseFaces,
                                                       Options options, int level,
-                                                      Status *status = nullptr);
+                                                      CallStatus *status = nullptr);
     /// @}
 };
 
@@ -148,8 +149,8 @@ extern template class StencilTableFactoryReal<double>;
 namespace internal {
 
 /// InvalidArgument for a mode that is none, and for face-varying data of a channel that the mesh has not.
-OPENSUBDIVHEX_API Status CheckStencilMode(TopologyRefiner const &refiner, StencilMode mode,
-                                          int fvarChannel);
+OPENSUBDIVHEX_API CallStatus CheckStencilMode(TopologyRefiner const &refiner, StencilMode mode,
+                                              int fvarChannel);
 /// By which masks data are interpolated, with a mode for which CheckStencilMode() is well.
 OPENSUBDIVHEX_API Interpolation GetModeInterpolation(TopologyRefiner const &refiner,
                                                      StencilMode mode, int fvarChannel);

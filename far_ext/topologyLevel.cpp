@@ -327,21 +327,21 @@ Index TopologyLevel::GetVertexChildVertex(Index v) const {
     return refinementFrom() ? refinementFrom()->GetVertexChildVertex(v) : Far::INDEX_INVALID;
 }
 
-bool TopologyLevel::Validate(Status *status) const {
+bool TopologyLevel::Validate(CallStatus *status) const {
     auto const validate = [&](internal::MeshLevels const &mesh) {
         return internal::Validate(mesh.levels[std::size_t(_depth)],
                                   _depth > 0 ? &mesh.refinements[std::size_t(_depth) - 1]
                                              : nullptr);
     };
-    Status result = validate(_hierarchy->mesh);
+    CallStatus result = validate(_hierarchy->mesh);
     for (int channel = 0; channel < GetNumFVarChannels() && result.IsOk(); ++channel) {
         // Values are the vertices of a mesh of their own; level 0 may have values without faces
         // and, in place of shared values, more vertices than values.
-        Status const cause = validate(_hierarchy->GetMesh(channel));
+        CallStatus const cause = validate(_hierarchy->GetMesh(channel));
         if (!cause.IsOk()) {
-            result = Status(cause.GetCode(), ComponentType::None, Far::INDEX_INVALID,
-                            "face-varying channel " + std::to_string(channel) + ": " +
-                                cause.GetMessage());
+            result = CallStatus(cause.GetCode(), ComponentType::NoComponent, Far::INDEX_INVALID,
+                                "face-varying channel " + std::to_string(channel) + ": " +
+                                    cause.GetErrorMessage());
         }
     }
     return internal::Report(result, status);

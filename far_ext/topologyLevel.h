@@ -316,7 +316,7 @@ public:
     /// vertices and the relation to the parent level included, also of the face-varying channels.
     ///
     /// \return  whether all hold; \p status names the first component that breaks one.
-    bool Validate(Status *status = nullptr) const;
+    bool Validate(CallStatus *status = nullptr) const;
 
     /// The arrays of the level, for the library's own use.
     internal::Level const &GetLevel() const { return *_level; }

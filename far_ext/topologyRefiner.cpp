@@ -15,18 +15,18 @@ using internal::PolygonRules;
 
 namespace {
 
-Status checkLevel(int refinementLevel) {
+CallStatus checkLevel(int refinementLevel) {
     if (refinementLevel >= 0) {
-        return Status();
+        return CallStatus();
     }
-    return Status(StatusCode::InvalidArgument, ComponentType::Level, refinementLevel,
-                  "refinement level " + std::to_string(refinementLevel) + " is negative");
+    return CallStatus(StatusCode::InvalidArgument, ComponentType::Level, refinementLevel,
+                      "refinement level " + std::to_string(refinementLevel) + " is negative");
 }
 
-Status checkLabels(Far::ConstIndexArray labels, int numFaces, HexSchemeOptions schemeOptions,
-                   int refinementLevel) {
+CallStatus checkLabels(Far::ConstIndexArray labels, int numFaces, HexSchemeOptions schemeOptions,
+                       int refinementLevel) {
     if (labels.empty()) {
-        return Status();
+        return CallStatus();
     }
     if (labels.size() == numFaces) {
         bool const areSame = std::all_of(labels.begin(), labels.end(),
@@ -35,31 +35,31 @@ Status checkLabels(Far::ConstIndexArray labels, int numFaces, HexSchemeOptions s
         for (int level = 1; level <= std::min(refinementLevel, 2) && !areSame; ++level) {
             StepType const step = schemeOptions.GetStepOfLevel(level);
             if (step == StepType::DooSabin || step == StepType::TriHex) {
-                return Status(StatusCode::Unsupported, ComponentType::Level, level,
-                              std::string("labels of base faces differ, which steps of ") +
-                                  (step == StepType::TriHex ? "tri-hex" : "Doo-Sabin") +
-                                  " do not keep apart");
+                return CallStatus(StatusCode::Unsupported, ComponentType::Level, level,
+                                  std::string("labels of base faces differ, which steps of ") +
+                                      (step == StepType::TriHex ? "tri-hex" : "Doo-Sabin") +
+                                      " do not keep apart");
             }
         }
-        return Status();
+        return CallStatus();
     }
-    return Status(StatusCode::InvalidArgument, ComponentType::None, Far::INDEX_INVALID,
-                  "there are " + std::to_string(labels.size()) + " labels of " +
-                      std::to_string(numFaces) + " base faces");
+    return CallStatus(StatusCode::InvalidArgument, ComponentType::NoComponent, Far::INDEX_INVALID,
+                      "there are " + std::to_string(labels.size()) + " labels of " +
+                          std::to_string(numFaces) + " base faces");
 }
 
 // Whether check(level), which goes through the sizes of the levels up to that one, and the number of
 // levels let a refiner refine so far.
 template <typename CHECK>
-Status checkSizes(int refinementLevel, CHECK check) {
+CallStatus checkSizes(int refinementLevel, CHECK check) {
     constexpr int kLastLevel = TopologyRefiner::kLastLevel;
-    Status status = check(std::min(refinementLevel, kLastLevel));
+    CallStatus status = check(std::min(refinementLevel, kLastLevel));
     if (!status.IsOk() || refinementLevel <= kLastLevel) {
         return status;
     }
-    return Status(StatusCode::TooLarge, ComponentType::Level, refinementLevel,
-                  "refinement level " + std::to_string(refinementLevel) + " is beyond level " +
-                      std::to_string(kLastLevel) + ", the last that is made");
+    return CallStatus(StatusCode::TooLarge, ComponentType::Level, refinementLevel,
+                      "refinement level " + std::to_string(refinementLevel) + " is beyond level " +
+                          std::to_string(kLastLevel) + ", the last that is made");
 }
 
 } // namespace
@@ -85,10 +85,10 @@ void TopologyRefiner::Unrefine() {
 
 // Calls refine(), which adds levels to the base; when it fails or throws, the base alone is left.
 template <typename REFINE>
-Status TopologyRefiner::replaceLevels(REFINE refine) {
+CallStatus TopologyRefiner::replaceLevels(REFINE refine) {
     Unrefine();
     try {
-        Status status = refine();
+        CallStatus status = refine();
         if (!status.IsOk()) {
             Unrefine();
             return status;
@@ -103,11 +103,11 @@ Status TopologyRefiner::replaceLevels(REFINE refine) {
     }
 }
 
-bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
+bool TopologyRefiner::RefineUniform(UniformOptions options, CallStatus *status) {
     int const refinementLevel = options.refinementLevel;
     LevelRefiner refiner(*_hierarchy, _sdcOptions, _schemeOptions.faceMask);
     Far::ConstIndexArray const labels(options.faceLabels.data(), int(options.faceLabels.size()));
-    Status result = checkLevel(refinementLevel);
+    CallStatus result = checkLevel(refinementLevel);
     if (result.IsOk()) {
         result = checkLabels(labels, GetLevel(0).GetNumFaces(), _schemeOptions, refinementLevel);
     }
@@ -120,7 +120,7 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
         return internal::Report(result, status);
     }
     result = replaceLevels([&] {
-        Status levelStatus;
+        CallStatus levelStatus;
         for (int level = 1; level <= refinementLevel && levelStatus.IsOk(); ++level) {
             PolygonRules rules;
             rules.step = _schemeOptions.GetStepOfLevel(level);
@@ -142,10 +142,10 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, Status *status) {
 
 template <typename REAL>
 bool TopologyRefiner::refineCoplanar(REAL const *restPositions, CoplanarOptions const &options,
-                                     Status *status) {
+                                     CallStatus *status) {
     LevelRefiner refiner(*_hierarchy, _sdcOptions, _schemeOptions.faceMask);
     internal::CoplanarEdges edges(*_hierarchy, _schemeOptions, options.angleTolerance);
-    Status result = checkLevel(options.refinementLevel);
+    CallStatus result = checkLevel(options.refinementLevel);
     if (result.IsOk()) {
         result = edges.Begin(restPositions);
     }
@@ -158,7 +158,7 @@ bool TopologyRefiner::refineCoplanar(REAL const *restPositions, CoplanarOptions 
         return internal::Report(result, status);
     }
     result = replaceLevels([&] {
-        Status levelStatus;
+        CallStatus levelStatus;
         for (int level = 1; level <= options.refinementLevel && levelStatus.IsOk(); ++level) {
             if (level > 1) {
                 edges.Refine();
@@ -178,12 +178,12 @@ bool TopologyRefiner::refineCoplanar(REAL const *restPositions, CoplanarOptions 
 }
 
 bool TopologyRefiner::RefineCoplanar(float const *restPositions, CoplanarOptions options,
-                                     Status *status) {
+                                     CallStatus *status) {
     return refineCoplanar(restPositions, options, status);
 }
 
 bool TopologyRefiner::RefineCoplanar(double const *restPositions, CoplanarOptions options,
-                                     Status *status) {
+                                     CallStatus *status) {
     return refineCoplanar(restPositions, options, status);
 }
 
@@ -217,9 +217,9 @@ int TopologyRefiner::total(int (TopologyLevel::*count)() const) const {
 
 namespace internal {
 
-Status CheckChannel(int channel, int numChannels) {
+CallStatus CheckChannel(int channel, int numChannels) {
     if (0 <= channel && channel < numChannels) {
-        return Status();
+        return CallStatus();
     }
     return Failure(StatusCode::InvalidArgument, "there is no face-varying channel " +
                                                     std::to_string(channel) + "; the mesh has " +

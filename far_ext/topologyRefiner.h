@@ -97,7 +97,7 @@ public:
     ///          a truncation that cuts polygons, and what follows are known only once it is made:
     ///          there the base alone is left.  When std::bad_alloc is thrown, it is, too, unless all
     ///          levels are as before.
-    bool RefineUniform(UniformOptions options, Status *status = nullptr);
+    bool RefineUniform(UniformOptions options, CallStatus *status = nullptr);
 
     /// The options of the last successful RefineUniform; of level 0 after RefineCoplanar and
     /// Unrefine.
@@ -134,10 +134,10 @@ public:
     ///          level before is made: false with TooLarge, and the base alone is left.  When
     ///          std::bad_alloc is thrown, it is, too, unless all levels are as before.
     bool RefineCoplanar(float const *restPositions, CoplanarOptions options,
-                        Status *status = nullptr);
-    /// \copydoc RefineCoplanar(float const *, CoplanarOptions, Status *)
+                        CallStatus *status = nullptr);
+    /// \copydoc RefineCoplanar(float const *, CoplanarOptions, CallStatus *)
     bool RefineCoplanar(double const *restPositions, CoplanarOptions options,
-                        Status *status = nullptr);
+                        CallStatus *status = nullptr);
 
     /// How often levels were made or removed.  What refers to levels, as OsdExt's
     /// RefinementEvaluator does, is out of date when this has changed.
@@ -151,9 +151,10 @@ public:
 
 private:
     template <typename REAL>
-    bool refineCoplanar(REAL const *restPositions, CoplanarOptions const &options, Status *status);
+    bool refineCoplanar(REAL const *restPositions, CoplanarOptions const &options,
+                        CallStatus *status);
     template <typename REFINE>
-    Status replaceLevels(REFINE refine);
+    CallStatus replaceLevels(REFINE refine);
     int total(int (TopologyLevel::*count)() const) const;
 
     std::unique_ptr<internal::Hierarchy> _hierarchy;
@@ -168,7 +169,7 @@ private:
 namespace internal {
 
 /// InvalidArgument where a channel is none of the \p numChannels face-varying ones of a mesh.
-OPENSUBDIVHEX_API Status CheckChannel(int channel, int numChannels);
+OPENSUBDIVHEX_API CallStatus CheckChannel(int channel, int numChannels);
 /// By which masks the values of a channel, which is in range, are interpolated.
 OPENSUBDIVHEX_API Interpolation GetChannelInterpolation(TopologyRefiner const &refiner,
                                                         int channel);

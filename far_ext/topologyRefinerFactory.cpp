@@ -8,16 +8,16 @@ namespace OpenSubdivHex::FarExt {
 
 // The refiner of a base that read(mesh) reads.
 std::unique_ptr<TopologyRefiner>
-TopologyRefinerFactory::create(Sdc::Options sdcOptions, Options options, Status *status,
-                               std::function<Status(internal::BaseMesh &)> const &read) {
-    Status result = internal::CheckOptions(options.schemeOptions, sdcOptions);
+TopologyRefinerFactory::create(Sdc::Options sdcOptions, Options options, CallStatus *status,
+                               std::function<CallStatus(internal::BaseMesh &)> const &read) {
+    CallStatus result = internal::CheckOptions(options.schemeOptions, sdcOptions);
     internal::BaseMesh mesh(sdcOptions);
     if (result.IsOk()) {
         result = read(mesh);
     }
     std::unique_ptr<internal::Hierarchy> hierarchy = mesh.Release();
     if (result.IsOk()) {
-        if (Status scheme = internal::CheckScheme(options.schemeOptions, *hierarchy);
+        if (CallStatus scheme = internal::CheckScheme(options.schemeOptions, *hierarchy);
             !scheme.IsOk()) {
             result = std::move(scheme);
         }
@@ -30,14 +30,15 @@ TopologyRefinerFactory::create(Sdc::Options sdcOptions, Options options, Status 
 }
 
 std::unique_ptr<TopologyRefiner> TopologyRefinerFactory::Create(Far::TopologyRefiner const &base,
-                                                                Options options, Status *status) {
+                                                                Options options,
+                                                                CallStatus *status) {
     return create(base.GetSchemeOptions(), options, status,
                   [&](internal::BaseMesh &mesh) { return internal::ReadRefiner(base, mesh); });
 }
 
 std::unique_ptr<TopologyRefiner>
 TopologyRefinerFactory::Create(Far::TopologyDescriptor const &descriptor, Sdc::Options sdcOptions,
-                               Options options, Status *status) {
+                               Options options, CallStatus *status) {
     return create(sdcOptions, options, status, [&](internal::BaseMesh &mesh) {
         return internal::ReadDescriptor(descriptor, mesh);
     });

@@ -56,10 +56,10 @@ public:
     ///           - Unsupported with CREASE_CHAIKIN at any non-manifold vertex: a channel without a seam
     ///             there, where semi-sharp creases meet that lie between faces which no edges join
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
-                                                   Options options, Status *status = nullptr);
+                                                   Options options, CallStatus *status = nullptr);
     /// The same with the default options.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
-                                                   Status *status = nullptr) {
+                                                   CallStatus *status = nullptr) {
         return Create(base, Options(), status);
     }
 
@@ -71,19 +71,19 @@ public:
     /// no edge; and, with InvalidArgument, a descriptor without an array that it has a count for.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyDescriptor const &descriptor,
                                                    Sdc::Options sdcOptions, Options options,
-                                                   Status *status = nullptr);
+                                                   CallStatus *status = nullptr);
     /// The same with the default scheme options.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyDescriptor const &descriptor,
                                                    Sdc::Options sdcOptions = Sdc::Options(),
-                                                   Status *status = nullptr) {
+                                                   CallStatus *status = nullptr) {
         return Create(descriptor, sdcOptions, Options(), status);
     }
 
 private:
     friend class MeshRefinerFactoryBase;
     static std::unique_ptr<TopologyRefiner>
-    create(Sdc::Options sdcOptions, Options options, Status *status,
-           std::function<Status(internal::BaseMesh &)> const &read);
+    create(Sdc::Options sdcOptions, Options options, CallStatus *status,
+           std::function<CallStatus(internal::BaseMesh &)> const &read);
 };
 
 } // namespace OpenSubdivHex::FarExt

@@ -30,21 +30,21 @@ public:
     template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
     bool Evaluate(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
                   DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc, int level,
-                  FarExt::Status *status = nullptr) {
+                  FarExt::CallStatus *status = nullptr) {
         return self().Evaluate(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, level, status);
     }
     /// EVALUATOR::EvaluateAllLevels() from and to buffers.
     template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
     bool EvaluateAllLevels(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
                            DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc,
-                           FarExt::Status *status = nullptr) {
+                           FarExt::CallStatus *status = nullptr) {
         return self().EvaluateAllLevels(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, status);
     }
     /// EVALUATOR::EvaluateLimit() from and to buffers.
     template <class SRC_BUFFER, class DST_BUFFER, class = IfBuffer<SRC_BUFFER>>
     bool EvaluateLimit(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc,
                        DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc, int level,
-                       FarExt::Status *status = nullptr) {
+                       FarExt::CallStatus *status = nullptr) {
         return self().EvaluateLimit(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc, level,
                                     status);
     }
@@ -54,7 +54,7 @@ public:
                        DST_BUFFER *dstBuffer, Osd::BufferDescriptor const &dstDesc,
                        DST_BUFFER *duBuffer, Osd::BufferDescriptor const &duDesc,
                        DST_BUFFER *dvBuffer, Osd::BufferDescriptor const &dvDesc, int level,
-                       FarExt::Status *status = nullptr) {
+                       FarExt::CallStatus *status = nullptr) {
         return self().EvaluateLimit(bind(srcBuffer), srcDesc, bind(dstBuffer), dstDesc,
                                     bind(duBuffer), duDesc, bind(dvBuffer), dvDesc, level, status);
     }

@@ -8,7 +8,7 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::internal::Report;
 using internal::CudaDevice;
 using internal::DeviceBufferName;
@@ -25,7 +25,7 @@ DeviceEvaluator::Values getValues(float const *buffer, BufferDescriptor const &d
 
 std::unique_ptr<CudaRefinementEvaluator>
 CudaRefinementEvaluator::Create(FarExt::TopologyRefiner const &refiner, Options options,
-                                Status *status) {
+                                CallStatus *status) {
     auto device = std::make_unique<CudaDevice>();
     CudaDevice &ofEvaluator = *device;
     auto evaluator = std::make_unique<DeviceEvaluator>(std::move(device), refiner);
@@ -60,21 +60,21 @@ std::int64_t CudaRefinementEvaluator::GetNumDeviceBytes() const {
 
 bool CudaRefinementEvaluator::Evaluate(float const *src, BufferDescriptor const &srcDesc,
                                        float *dst, BufferDescriptor const &dstDesc, int level,
-                                       Status *status) {
+                                       CallStatus *status) {
     return Report(_evaluator->Evaluate(getValues(src, srcDesc), getValues(dst, dstDesc), level),
                   status);
 }
 
 bool CudaRefinementEvaluator::EvaluateAllLevels(float const *src, BufferDescriptor const &srcDesc,
                                                 float *dst, BufferDescriptor const &dstDesc,
-                                                Status *status) {
+                                                CallStatus *status) {
     return Report(_evaluator->EvaluateAllLevels(getValues(src, srcDesc), getValues(dst, dstDesc)),
                   status);
 }
 
 bool CudaRefinementEvaluator::EvaluateLimit(float const *src, BufferDescriptor const &srcDesc,
                                             float *dst, BufferDescriptor const &dstDesc, int level,
-                                            Status *status) {
+                                            CallStatus *status) {
     return Report(
         _evaluator->EvaluateLimit(getValues(src, srcDesc), {getValues(dst, dstDesc)}, level),
         status);
@@ -84,7 +84,7 @@ bool CudaRefinementEvaluator::EvaluateLimit(float const *src, BufferDescriptor c
                                             float *dst, BufferDescriptor const &dstDesc, float *du,
                                             BufferDescriptor const &duDesc, float *dv,
                                             BufferDescriptor const &dvDesc, int level,
-                                            Status *status) {
+                                            CallStatus *status) {
     return Report(_evaluator->EvaluateLimit(
                       getValues(src, srcDesc),
                       {getValues(dst, dstDesc), getValues(du, duDesc), getValues(dv, dvDesc)},
@@ -97,7 +97,7 @@ std::int64_t CudaRefinementEvaluator::GetNumTriangles(int level) const {
 }
 
 bool CudaRefinementEvaluator::MakeTriangleIndices(unsigned *dst, int level, int vertexOffset,
-                                                  Status *status) {
+                                                  CallStatus *status) {
     return Report(_evaluator->MakeTriangleIndices(
                       DeviceBufferName(reinterpret_cast<std::uintptr_t>(dst)), level, vertexOffset),
                   status);

@@ -77,10 +77,10 @@ public:
     ///           - StatusCode::TooLarge if there are more than 2^32 indices
     static std::unique_ptr<CudaRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                            Options options,
-                                                           FarExt::Status *status = nullptr);
+                                                           FarExt::CallStatus *status = nullptr);
     /// The same with the default options.
     static std::unique_ptr<CudaRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
-                                                           FarExt::Status *status = nullptr) {
+                                                           FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
     }
 
@@ -116,13 +116,14 @@ public:
     ///          with StatusCode::Unsupported for an error of CUDA, which is named
     bool Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                   Osd::BufferDescriptor const &dstDesc, int level,
-                  FarExt::Status *status = nullptr);
+                  FarExt::CallStatus *status = nullptr);
 
     /// \brief Writes the values of levels 1 ... GetMaxLevel() to elements
     /// [0, GetNumElementsAllLevels()), level behind level: the order of a stencil table with
     /// intermediate levels.  Fails as Evaluate does.
     bool EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
-                           Osd::BufferDescriptor const &dstDesc, FarExt::Status *status = nullptr);
+                           Osd::BufferDescriptor const &dstDesc,
+                           FarExt::CallStatus *status = nullptr);
 
     /// @name The limit surface
     /// As GLRefinementEvaluator::EvaluateLimit.
@@ -138,18 +139,18 @@ public:
     /// The points alone.
     bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                        Osd::BufferDescriptor const &dstDesc, int level,
-                       FarExt::Status *status = nullptr);
+                       FarExt::CallStatus *status = nullptr);
     /// The points and their derivatives.
     bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                        Osd::BufferDescriptor const &dstDesc, float *du,
                        Osd::BufferDescriptor const &duDesc, float *dv,
                        Osd::BufferDescriptor const &dvDesc, int level,
-                       FarExt::Status *status = nullptr);
+                       FarExt::CallStatus *status = nullptr);
     /// @}
 
     /// @name Triangles
     /// Of a level whose faces are all drawn whole: those of CreateTriangleIndices() with cutBaseFaces
-    /// false, CreaseCuts::None and drawHoles, in its order.  They are made on the device, those of
+    /// false, CreaseCuts::NoCreases and drawHoles, in its order.  They are made on the device, those of
     /// F-faces from the numbering alone, those of other faces from their vertices, which the first call
     /// for a level loads; it refers to the refiner that was given.
     /// Triangles of cut faces are CreateTriangleIndices()'s: where faces are cut depends on tags, seams and
@@ -169,7 +170,7 @@ public:
     ///          Evaluate(), a negative offset, for INTERPOLATE_FACE_VARYING, or if the refiner refined or
     ///          unrefined in the meantime; and else as Evaluate
     bool MakeTriangleIndices(unsigned *dst, int level, int vertexOffset = 0,
-                             FarExt::Status *status = nullptr);
+                             FarExt::CallStatus *status = nullptr);
     /// @}
 
 private:

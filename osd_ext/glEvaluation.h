@@ -23,7 +23,7 @@ template <typename FUNCTION>
 bool ForEachStencilRange(int numStencils, int maxStencils, FUNCTION function) {
     bool isDone = maxStencils >= 1;
     for (int start = 0, end = 0; isDone && start < numStencils; start = end) {
-        end = start + std::min(numStencils - start, maxStencils);
+        end = start + (std::min)(numStencils - start, maxStencils);
         isDone = function(start, end);
     }
     return isDone;

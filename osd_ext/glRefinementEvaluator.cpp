@@ -8,14 +8,14 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::internal::Report;
 using internal::DeviceEvaluator;
 using Osd::BufferDescriptor;
 
 std::unique_ptr<GLRefinementEvaluator>
 GLRefinementEvaluator::Create(FarExt::TopologyRefiner const &refiner, Options options,
-                              Status *status) {
+                              CallStatus *status) {
     auto evaluator =
         std::make_unique<DeviceEvaluator>(std::make_unique<internal::GlDevice>(), refiner);
     if (!Report(evaluator->Prepare(options), status)) {
@@ -44,19 +44,20 @@ std::int64_t GLRefinementEvaluator::GetNumDeviceBytes() const {
 }
 
 bool GLRefinementEvaluator::Evaluate(unsigned src, BufferDescriptor const &srcDesc, unsigned dst,
-                                     BufferDescriptor const &dstDesc, int level, Status *status) {
+                                     BufferDescriptor const &dstDesc, int level,
+                                     CallStatus *status) {
     return Report(_evaluator->Evaluate({src, srcDesc}, {dst, dstDesc}, level), status);
 }
 
 bool GLRefinementEvaluator::EvaluateAllLevels(unsigned src, BufferDescriptor const &srcDesc,
                                               unsigned dst, BufferDescriptor const &dstDesc,
-                                              Status *status) {
+                                              CallStatus *status) {
     return Report(_evaluator->EvaluateAllLevels({src, srcDesc}, {dst, dstDesc}), status);
 }
 
 bool GLRefinementEvaluator::EvaluateLimit(unsigned src, BufferDescriptor const &srcDesc,
                                           unsigned dst, BufferDescriptor const &dstDesc, int level,
-                                          Status *status) {
+                                          CallStatus *status) {
     return Report(_evaluator->EvaluateLimit({src, srcDesc}, {{dst, dstDesc}}, level), status);
 }
 
@@ -64,7 +65,7 @@ bool GLRefinementEvaluator::EvaluateLimit(unsigned src, BufferDescriptor const &
                                           unsigned dst, BufferDescriptor const &dstDesc,
                                           unsigned du, BufferDescriptor const &duDesc, unsigned dv,
                                           BufferDescriptor const &dvDesc, int level,
-                                          Status *status) {
+                                          CallStatus *status) {
     return Report(_evaluator->EvaluateLimit({src, srcDesc},
                                             {{dst, dstDesc}, {du, duDesc}, {dv, dvDesc}}, level),
                   status);
@@ -75,7 +76,7 @@ std::int64_t GLRefinementEvaluator::GetNumTriangles(int level) const {
 }
 
 bool GLRefinementEvaluator::MakeTriangleIndices(unsigned dst, int level, int vertexOffset,
-                                                Status *status) {
+                                                CallStatus *status) {
     return Report(_evaluator->MakeTriangleIndices(dst, level, vertexOffset), status);
 }
 

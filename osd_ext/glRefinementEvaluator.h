@@ -84,10 +84,10 @@ public:
     ///             driver reaches
     static std::unique_ptr<GLRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                          Options options,
-                                                         FarExt::Status *status = nullptr);
+                                                         FarExt::CallStatus *status = nullptr);
     /// The same with the default options.
     static std::unique_ptr<GLRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
-                                                         FarExt::Status *status = nullptr) {
+                                                         FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
     }
 
@@ -124,13 +124,14 @@ public:
     ///             promises beyond (GL_MAX_SHADER_STORAGE_BLOCK_SIZE), 2^32 floats at most
     bool Evaluate(unsigned src, Osd::BufferDescriptor const &srcDesc, unsigned dst,
                   Osd::BufferDescriptor const &dstDesc, int level,
-                  FarExt::Status *status = nullptr);
+                  FarExt::CallStatus *status = nullptr);
 
     /// \brief Writes the values of levels 1 ... GetMaxLevel() to elements
     /// [0, GetNumElementsAllLevels()), level behind level: the order of a stencil table with
     /// intermediate levels.  Fails as Evaluate does.
     bool EvaluateAllLevels(unsigned src, Osd::BufferDescriptor const &srcDesc, unsigned dst,
-                           Osd::BufferDescriptor const &dstDesc, FarExt::Status *status = nullptr);
+                           Osd::BufferDescriptor const &dstDesc,
+                           FarExt::CallStatus *status = nullptr);
 
     /// @name The limit surface
     /// Of the vertices of a level, as RefinementEvaluator::EvaluateLimit: points, and first derivatives
@@ -157,18 +158,18 @@ public:
     /// The points alone.
     bool EvaluateLimit(unsigned src, Osd::BufferDescriptor const &srcDesc, unsigned dst,
                        Osd::BufferDescriptor const &dstDesc, int level,
-                       FarExt::Status *status = nullptr);
+                       FarExt::CallStatus *status = nullptr);
     /// The points and their derivatives.
     bool EvaluateLimit(unsigned src, Osd::BufferDescriptor const &srcDesc, unsigned dst,
                        Osd::BufferDescriptor const &dstDesc, unsigned du,
                        Osd::BufferDescriptor const &duDesc, unsigned dv,
                        Osd::BufferDescriptor const &dvDesc, int level,
-                       FarExt::Status *status = nullptr);
+                       FarExt::CallStatus *status = nullptr);
     /// @}
 
     /// @name Triangles
     /// Of a level whose faces are all drawn whole: those of CreateTriangleIndices() with cutBaseFaces
-    /// false, CreaseCuts::None and drawHoles, in its order.  They are made on the device, those of
+    /// false, CreaseCuts::NoCreases and drawHoles, in its order.  They are made on the device, those of
     /// F-faces from the numbering alone, those of other faces from their vertices, which the first call
     /// for a level loads; it refers to the refiner that was given.
     /// Triangles of cut faces are CreateTriangleIndices()'s: where faces are cut depends on tags, seams and
@@ -188,7 +189,7 @@ public:
     ///          Evaluate(), a negative offset, for INTERPOLATE_FACE_VARYING, or if the refiner refined or
     ///          unrefined in the meantime; and else as Evaluate
     bool MakeTriangleIndices(unsigned dst, int level, int vertexOffset = 0,
-                             FarExt::Status *status = nullptr);
+                             FarExt::CallStatus *status = nullptr);
     /// @}
 
 private:

@@ -19,7 +19,7 @@ namespace {
 using Far::ConstIndexArray;
 using Far::Index;
 using FarExt::BaseFaceMap;
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 using FarExt::TopologyLevel;
 using FarExt::internal::FVarLevel;
@@ -89,7 +89,7 @@ private:
         }
         float const sharpness = _mesh.GetDiagonalSharpness(split.face);
         if (Sdc::Crease::IsInfinite(sharpness)
-                ? _options.cutCreases != CreaseCuts::None || _options.sides
+                ? _options.cutCreases != CreaseCuts::NoCreases || _options.sides
                 : _options.cutCreases == CreaseCuts::All && Sdc::Crease::IsSharp(sharpness)) {
             return true;
         }
@@ -276,12 +276,12 @@ Index getNumVertices(TopologyLevel const &level, DrawOptions const &options) {
     return options.splitVertices ? options.sides->GetNumSides() : level.GetNumVertices();
 }
 
-Status checkOptions(TopologyLevel const &level, DrawOptions const &options) {
+CallStatus checkOptions(TopologyLevel const &level, DrawOptions const &options) {
     auto const fail = [](std::string message) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument, std::move(message));
     };
     for (int channel : options.fvarChannels) {
-        Status result = FarExt::internal::CheckChannel(channel, level.GetNumFVarChannels());
+        CallStatus result = FarExt::internal::CheckChannel(channel, level.GetNumFVarChannels());
         if (!result.IsOk()) {
             return result;
         }
@@ -323,19 +323,20 @@ Status checkOptions(TopologyLevel const &level, DrawOptions const &options) {
     }
     for (int depth = 1; depth <= level.GetDepth() && options.generateBaseCoords; ++depth) {
         if (!level.GetHierarchy().mesh.levels[std::size_t(depth)].isHexagonal) {
-            return Status(StatusCode::Unsupported, FarExt::ComponentType::Level, depth,
-                          "level " + std::to_string(depth) +
-                              " was not made by a hexagonal step: its faces have no places in base "
-                              "faces");
+            return CallStatus(
+                StatusCode::Unsupported, FarExt::ComponentType::Level, depth,
+                "level " + std::to_string(depth) +
+                    " was not made by a hexagonal step: its faces have no places in base "
+                    "faces");
         }
     }
-    return Status();
+    return CallStatus();
 }
 
 } // namespace
 
 PolygonIndices CreatePolygonIndices(TopologyLevel const &level, DrawOptions const &options,
-                                    Status *status) {
+                                    CallStatus *status) {
     if (!FarExt::internal::Report(checkOptions(level, options), status)) {
         return {};
     }

@@ -10,7 +10,7 @@ namespace OpenSubdivHex::OsdExt {
 
 /// \brief The creases along which hexagons are cut.
 enum class CreaseCuts {
-    None,            ///< none cuts
+    NoCreases,       ///< no crease cuts
     InfinitelySharp, ///< where LimitSides tells the two sides of a crease apart
     All              ///< semi-sharp ones too, at the levels where they are sharp
 };
@@ -128,7 +128,7 @@ struct PolygonIndices : DrawnFaces {
 ///          separateVertices, by which there are more corners or vertices than 32-bit indices reach)
 OPENSUBDIVHEX_API PolygonIndices CreatePolygonIndices(FarExt::TopologyLevel const &level,
                                                       DrawOptions const &options = DrawOptions(),
-                                                      FarExt::Status *status = nullptr);
+                                                      FarExt::CallStatus *status = nullptr);
 
 } // namespace OpenSubdivHex::OsdExt
 

@@ -18,7 +18,7 @@
 namespace OpenSubdivHex::OsdExt {
 
 using Far::Index;
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 using FarExt::TopologyRefiner;
 using FarExt::internal::FVarChannel;
@@ -27,7 +27,7 @@ using FarExt::internal::Refinement;
 
 namespace {
 
-Status invalidArgument(std::string const &message) {
+CallStatus invalidArgument(std::string const &message) {
     return FarExt::internal::Failure(StatusCode::InvalidArgument, message);
 }
 
@@ -102,13 +102,14 @@ public:
 
     Impl(TopologyRefiner const &refiner, Options options);
 
-    Status Check(float const *src, Osd::BufferDescriptor const &srcDesc, float const *dst,
-                 Osd::BufferDescriptor const &dstDesc, int level, std::int64_t numWritten) const;
+    CallStatus Check(float const *src, Osd::BufferDescriptor const &srcDesc, float const *dst,
+                     Osd::BufferDescriptor const &dstDesc, int level,
+                     std::int64_t numWritten) const;
     void Evaluate(Source values, Destination result, int length, int level);
     void EvaluateAllLevels(Source values, Destination result, int length);
 
     /// Finds the masks of a level, unless it has.
-    Status PrepareLimit(int level);
+    CallStatus PrepareLimit(int level);
     /// The outputs are those of PreparedLimit.
     void EvaluateLimit(Source values, std::vector<Destination> const &outputs, int length,
                        int level);
@@ -177,13 +178,13 @@ RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options 
     }
 }
 
-Status RefinementEvaluator::Impl::Check(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                        float const *dst, Osd::BufferDescriptor const &dstDesc,
-                                        int level, std::int64_t numWritten) const {
+CallStatus RefinementEvaluator::Impl::Check(float const *src, Osd::BufferDescriptor const &srcDesc,
+                                            float const *dst, Osd::BufferDescriptor const &dstDesc,
+                                            int level, std::int64_t numWritten) const {
     if (refiner.GetNumRefinements() != _numRefinements) {
         return invalidArgument("the refiner has refined again since the evaluator was made");
     }
-    if (Status status = internal::CheckLevel(level, GetMaxLevel()); !status.IsOk()) {
+    if (CallStatus status = internal::CheckLevel(level, GetMaxLevel()); !status.IsOk()) {
         return status;
     }
     if (numWritten > 0 && (!src || !dst)) {
@@ -247,17 +248,17 @@ void RefinementEvaluator::Impl::EvaluateAllLevels(Source values, Destination res
               std::accumulate(numElements.begin() + 1, numElements.end(), std::int64_t(0)));
 }
 
-Status RefinementEvaluator::Impl::PrepareLimit(int level) {
+CallStatus RefinementEvaluator::Impl::PrepareLimit(int level) {
     if (!_isOfVertices) {
         return invalidArgument("there is a limit for INTERPOLATE_VERTEX alone");
     }
     _limits.resize(numElements.size());
     std::unique_ptr<LimitOfLevel> &limit = _limits[std::size_t(level)];
     if (limit) {
-        return Status();
+        return CallStatus();
     }
     FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
-    Status result =
+    CallStatus result =
         FarExt::internal::CheckLimitLevel(hierarchy, refiner.GetHexSchemeOptions(), level);
     if (!result.IsOk()) {
         return result;
@@ -316,9 +317,9 @@ void RefinementEvaluator::Impl::EvaluateLimit(Source values,
     }
 }
 
-std::unique_ptr<RefinementEvaluator> RefinementEvaluator::Create(TopologyRefiner const &refiner,
-                                                                 Options options, Status *status) {
-    Status const result =
+std::unique_ptr<RefinementEvaluator>
+RefinementEvaluator::Create(TopologyRefiner const &refiner, Options options, CallStatus *status) {
+    CallStatus const result =
         FarExt::internal::CheckStencilMode(refiner, options.interpolationMode, options.fvarChannel);
     if (!FarExt::internal::Report(result, status)) {
         return nullptr;
@@ -346,10 +347,10 @@ std::int64_t RefinementEvaluator::GetNumElementsAllLevels() const {
 
 bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc,
                                    float *dst, Osd::BufferDescriptor const &dstDesc, int level,
-                                   Status *status) {
+                                   CallStatus *status) {
     bool const isLevel = level >= 0 && level <= GetMaxLevel();
     std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
-    Status const result = _impl->Check(src, srcDesc, dst, dstDesc, level, numWritten);
+    CallStatus const result = _impl->Check(src, srcDesc, dst, dstDesc, level, numWritten);
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
@@ -360,8 +361,8 @@ bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const
 
 bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc,
                                             float *dst, Osd::BufferDescriptor const &dstDesc,
-                                            Status *status) {
-    Status const result =
+                                            CallStatus *status) {
+    CallStatus const result =
         _impl->Check(src, srcDesc, dst, dstDesc, GetMaxLevel(), GetNumElementsAllLevels());
     if (!FarExt::internal::Report(result, status)) {
         return false;
@@ -375,7 +376,7 @@ bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescrip
 
 bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
                                         float *dst, Osd::BufferDescriptor const &dstDesc, int level,
-                                        Status *status) {
+                                        CallStatus *status) {
     return evaluateLimit(src, srcDesc, {Output(dst, dstDesc)}, level, status);
 }
 
@@ -383,7 +384,7 @@ bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor 
                                         float *dst, Osd::BufferDescriptor const &dstDesc, float *du,
                                         Osd::BufferDescriptor const &duDesc, float *dv,
                                         Osd::BufferDescriptor const &dvDesc, int level,
-                                        Status *status) {
+                                        CallStatus *status) {
     return evaluateLimit(src, srcDesc,
                          {Output(dst, dstDesc), Output(du, duDesc), Output(dv, dvDesc)}, level,
                          status);
@@ -391,10 +392,10 @@ bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor 
 
 bool RefinementEvaluator::evaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
                                         std::vector<Output> const &outputs, int level,
-                                        Status *status) {
+                                        CallStatus *status) {
     bool const isLevel = level >= 0 && level <= GetMaxLevel();
     std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
-    Status result;
+    CallStatus result;
     for (Output const &output : outputs) {
         if (result.IsOk()) {
             result = _impl->Check(src, srcDesc, output.dst, output.desc, level, numWritten);

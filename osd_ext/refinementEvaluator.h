@@ -73,10 +73,10 @@ public:
     ///          interpolationMode that is none
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                        Options options,
-                                                       FarExt::Status *status = nullptr);
+                                                       FarExt::CallStatus *status = nullptr);
     /// The same with the default options.
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
-                                                       FarExt::Status *status = nullptr) {
+                                                       FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
     }
 
@@ -109,13 +109,14 @@ public:
     ///           - \p src or \p dst is null, unless there is nothing to write.
     bool Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                   Osd::BufferDescriptor const &dstDesc, int level,
-                  FarExt::Status *status = nullptr);
+                  FarExt::CallStatus *status = nullptr);
 
     /// \brief Writes the values of levels 1 ... GetMaxLevel() to elements
     /// [0, GetNumElementsAllLevels()), level behind level: the order of a stencil table with
     /// intermediate levels.  Fails as Evaluate does.
     bool EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
-                           Osd::BufferDescriptor const &dstDesc, FarExt::Status *status = nullptr);
+                           Osd::BufferDescriptor const &dstDesc,
+                           FarExt::CallStatus *status = nullptr);
 
     /// @name The limit surface
     /// Of the vertices of a level, with full topology, whose values it makes on the way: points, and
@@ -145,13 +146,13 @@ public:
     /// The points alone.
     bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                        Osd::BufferDescriptor const &dstDesc, int level,
-                       FarExt::Status *status = nullptr);
+                       FarExt::CallStatus *status = nullptr);
     /// The points and their derivatives.
     bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                        Osd::BufferDescriptor const &dstDesc, float *du,
                        Osd::BufferDescriptor const &duDesc, float *dv,
                        Osd::BufferDescriptor const &dvDesc, int level,
-                       FarExt::Status *status = nullptr);
+                       FarExt::CallStatus *status = nullptr);
     /// @}
 
 private:
@@ -167,7 +168,7 @@ private:
         Osd::BufferDescriptor const &desc;
     };
     bool evaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
-                       std::vector<Output> const &outputs, int level, FarExt::Status *status);
+                       std::vector<Output> const &outputs, int level, FarExt::CallStatus *status);
 
     std::unique_ptr<Impl> _impl;
 };

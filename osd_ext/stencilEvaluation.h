@@ -26,7 +26,7 @@ template <class BUFFER>
 std::unique_ptr<BUFFER> CreateInPlaceBuffer(Far::StencilTable const &table, int numElements) {
     std::int64_t const numVertices =
         std::int64_t(table.GetNumControlVertices()) + table.GetNumStencils();
-    if (numElements < 1 || numVertices > std::numeric_limits<int>::max() / numElements) {
+    if (numElements < 1 || numVertices > (std::numeric_limits<int>::max)() / numElements) {
         return nullptr;
     }
     return std::unique_ptr<BUFFER>(BUFFER::Create(numElements, int(numVertices)));
@@ -41,7 +41,7 @@ std::unique_ptr<BUFFER> CreateInPlaceBuffer(Far::StencilTable const &table, int 
 template <class EVALUATOR, class BUFFER>
 bool EvalStencilsInPlace(Far::StencilTable const &table, BUFFER *buffer) {
     int const width = buffer ? buffer->GetNumElements() : 0;
-    if (width < 1 || table.GetNumControlVertices() > std::numeric_limits<int>::max() / width) {
+    if (width < 1 || table.GetNumControlVertices() > (std::numeric_limits<int>::max)() / width) {
         return false;
     }
     Osd::BufferDescriptor const src(0, width, width);

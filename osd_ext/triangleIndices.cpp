@@ -118,7 +118,7 @@ TriangleIndices CreateTriangleIndices(PolygonIndices const &polygons) {
 }
 
 TriangleIndices CreateTriangleIndices(FarExt::TopologyLevel const &level,
-                                      DrawOptions const &options, FarExt::Status *status) {
+                                      DrawOptions const &options, FarExt::CallStatus *status) {
     return CreateTriangleIndices(CreatePolygonIndices(level, options, status));
 }
 

@@ -24,7 +24,7 @@ OPENSUBDIVHEX_API TriangleIndices CreateTriangleIndices(PolygonIndices const &po
 /// Hexagons make four triangles, cut or not.
 OPENSUBDIVHEX_API TriangleIndices CreateTriangleIndices(FarExt::TopologyLevel const &level,
                                                         DrawOptions const &options = DrawOptions(),
-                                                        FarExt::Status *status = nullptr);
+                                                        FarExt::CallStatus *status = nullptr);
 
 } // namespace OpenSubdivHex::OsdExt
 

@@ -171,7 +171,7 @@ public:
         RefinementEvaluator::Options options;
         options.interpolationMode = TakeEnum<StencilMode>(interpolationMode, "interpolation_mode");
         options.fvarChannel = fvarChannel;
-        Status status;
+        CallStatus status;
         _refiner->Read([&](TopologyRefiner const &topology) {
             _evaluator = RefinementEvaluator::Create(topology, options, &status);
             _numRefinements = topology.GetNumRefinements();
@@ -198,7 +198,7 @@ public:
         auto const source = TakeSource<float>(src, "src", GetNumElements(0));
         auto const destination = TakeDestination<float>(dst, "dst", GetNumElements(level), source);
         CheckApart(source, destination, "dst", 0, destination.count);
-        Status status;
+        CallStatus status;
         read([&](RefinementEvaluator &evaluator) {
             evaluator.Evaluate(source.data, source.desc, destination.data, destination.desc, level,
                                &status);
@@ -216,7 +216,7 @@ public:
         }
         auto const destination = TakeDestination<float>(dst, "dst", int(numElements), source);
         CheckApart(source, destination, "dst", 0, destination.count);
-        Status status;
+        CallStatus status;
         read([&](RefinementEvaluator &evaluator) {
             evaluator.EvaluateAllLevels(source.data, source.desc, destination.data,
                                         destination.desc, &status);
@@ -231,7 +231,7 @@ public:
         auto const source = TakeSource<float>(src, "src", GetNumElements(0));
         auto const points = TakeDestination<float>(dst, "dst", GetNumElements(level), source);
         CheckApart(source, points, "dst", 0, points.count);
-        Status status;
+        CallStatus status;
         read([&](RefinementEvaluator &evaluator) {
             evaluator.EvaluateLimit(source.data, source.desc, points.data, points.desc, level,
                                     &status);
@@ -252,7 +252,7 @@ public:
         CheckApart(source, points, "dst", 0, count);
         CheckApart(source, duValues, "du", 0, count);
         CheckApart(source, dvValues, "dv", 0, count);
-        Status status;
+        CallStatus status;
         read([&](RefinementEvaluator &evaluator) {
             evaluator.EvaluateLimit(source.data, source.desc, points.data, points.desc,
                                     duValues.data, duValues.desc, dvValues.data, dvValues.desc,

@@ -457,7 +457,7 @@ public:
     /// Calls create(level, options, &status).
     template <typename CREATE>
     auto Create(Level const &level, CREATE const &create) const {
-        Status status;
+        CallStatus status;
         auto const call = [&](TopologyLevel const &topology) {
             return create(topology, _options, &status);
         };
@@ -531,7 +531,7 @@ py::dict describeFaces(OsdExt::DrawnFaces &&faces, py::ssize_t width, bool isSep
 py::dict createPolygonIndices(Level const &level, DrawArguments const &arguments) {
     OsdExt::PolygonIndices polygons =
         arguments.Create(level, [](TopologyLevel const &topology,
-                                   OsdExt::DrawOptions const &options, Status *status) {
+                                   OsdExt::DrawOptions const &options, CallStatus *status) {
             return OsdExt::CreatePolygonIndices(topology, options, status);
         });
     std::vector<int> sizes = std::move(polygons.sizes);
@@ -541,13 +541,13 @@ py::dict createPolygonIndices(Level const &level, DrawArguments const &arguments
 }
 
 py::dict createTriangleIndices(Level const &level, DrawArguments const &arguments) {
-    return describeFaces(arguments.Create(level,
-                                          [](TopologyLevel const &topology,
-                                             OsdExt::DrawOptions const &options, Status *status) {
-                                              return OsdExt::CreateTriangleIndices(topology,
-                                                                                   options, status);
-                                          }),
-                         3, arguments.IsSeparate());
+    return describeFaces(
+        arguments.Create(level,
+                         [](TopologyLevel const &topology, OsdExt::DrawOptions const &options,
+                            CallStatus *status) {
+                             return OsdExt::CreateTriangleIndices(topology, options, status);
+                         }),
+        3, arguments.IsSeparate());
 }
 
 /// Binds a function of a level and all DrawOptions.
@@ -639,7 +639,7 @@ void BindLevel(py::module_ &module) {
         .def(
             "validate",
             [](Level const &self) {
-                Status status;
+                CallStatus status;
                 self.Read([&](TopologyLevel const &topology) { topology.Validate(&status); });
                 RaiseUnlessOk(status);
             },

@@ -103,7 +103,7 @@ public:
 
     py::object Limit(py::object const &src, py::object const &dst) const {
         return limit(src, {&dst}, {"dst"},
-                     [](auto const &refiner, auto const &from, auto &to, Status *status) {
+                     [](auto const &refiner, auto const &from, auto &to, CallStatus *status) {
                          refiner.Limit(from, to[0], status);
                      })[0];
     }
@@ -111,7 +111,7 @@ public:
     py::tuple LimitWithDerivatives(py::object const &src, py::object const &dst,
                                    py::object const &du, py::object const &dv) const {
         return limit(src, {&dst, &du, &dv}, {"dst", "du", "dv"},
-                     [](auto const &refiner, auto const &from, auto &to, Status *status) {
+                     [](auto const &refiner, auto const &from, auto &to, CallStatus *status) {
                          refiner.Limit(from, to[0], to[1], to[2], status);
                      });
     }
@@ -137,7 +137,7 @@ private:
                 to.emplace_back(destination);
                 arrays[i] = destination.array;
             }
-            Status status;
+            CallStatus status;
             _refiner->Read([&](TopologyRefiner const &refiner) {
                 if (refiner.GetLevel(refiner.GetMaxLevel()).GetNumVertices() != numVertices) {
                     throw std::runtime_error("the refiner refined in another thread");

@@ -234,7 +234,7 @@ createRefiner(py::object const &faces, py::object const &numVertices, py::object
     takeTags(creases, corners, holes, &mesh);
     takeChannels(fvarChannels, numFVarValues, &mesh);
 
-    Status status;
+    CallStatus status;
     std::unique_ptr<TopologyRefiner> refiner;
     {
         py::gil_scoped_release const release;
@@ -263,7 +263,7 @@ void refineCoplanar(Refiner &self, py::object const &restPositions, int level,
             throw py::value_error("rest_positions: they must lie one behind the other; "
                                   "numpy.ascontiguousarray makes such an array");
         }
-        self.Change([&](TopologyRefiner &refiner, Status *status) {
+        self.Change([&](TopologyRefiner &refiner, CallStatus *status) {
             refiner.RefineCoplanar(positions.data, options, status);
         });
     };
@@ -335,7 +335,7 @@ void BindRefiner(py::module_ &module) {
                     py::array_t<int> const labels = TakeIndices(faceLabels, "face_labels");
                     options.faceLabels.assign(labels.data(), labels.data() + labels.size());
                 }
-                self.Change([&](TopologyRefiner &refiner, Status *status) {
+                self.Change([&](TopologyRefiner &refiner, CallStatus *status) {
                     refiner.RefineUniform(options, status);
                 });
             },
@@ -362,7 +362,7 @@ void BindRefiner(py::module_ &module) {
         .def(
             "unrefine",
             [](Refiner &self) {
-                self.Change([](TopologyRefiner &refiner, Status *) { refiner.Unrefine(); });
+                self.Change([](TopologyRefiner &refiner, CallStatus *) { refiner.Unrefine(); });
             },
             "unrefine()\n\nRemoves all levels but the base.")
         .def(

@@ -75,7 +75,7 @@ int countElements(TopologyLevel const &level, TableOptions const &options) {
 /// Makes a table by create(refiner, options, &status).
 template <typename REAL, typename CREATE>
 StencilTable makeTable(Refiner const &refiner, TableOptions const &options, CREATE const &create) {
-    Status status;
+    CallStatus status;
     StencilTable made;
     refiner.Read([&](TopologyRefiner const &topology) {
         std::shared_ptr<typename StencilTableFactoryReal<REAL>::Table const> table =
@@ -101,7 +101,7 @@ StencilTable createTable(Refiner const &refiner, TableOptions const &options, bo
         using REAL = decltype(real);
         return makeTable<REAL>(
             refiner, options,
-            [](TopologyRefiner const &topology, auto const &tableOptions, Status *status) {
+            [](TopologyRefiner const &topology, auto const &tableOptions, CallStatus *status) {
                 return StencilTableFactoryReal<REAL>::Create(topology, tableOptions, status);
             });
     };
@@ -116,7 +116,7 @@ StencilTable createTableOfFaces(Refiner const &refiner, py::object const &baseFa
         using REAL = decltype(real);
         return makeTable<REAL>(
             refiner, options,
-            [&](TopologyRefiner const &topology, auto const &tableOptions, Status *status) {
+            [&](TopologyRefiner const &topology, auto const &tableOptions, CallStatus *status) {
                 return StencilTableFactoryReal<REAL>::CreateOfFaces(topology, selection,
                                                                     tableOptions, status);
             });
@@ -128,7 +128,7 @@ py::array_t<int> getVerticesOfFaces(Refiner const &refiner, py::object const &ba
                                     TableOptions const &options) {
     py::array_t<int> const faces = TakeIndices(baseFaces, "base_faces");
     Far::ConstIndexArray const selection(faces.data(), int(faces.size()));
-    Status status;
+    CallStatus status;
     std::vector<int> vertices = refiner.Read([&](TopologyRefiner const &topology) {
         return StencilTableFactory::GetVerticesOfFaces(topology, selection, options.Get<float>(),
                                                        level, &status);
@@ -138,7 +138,7 @@ py::array_t<int> getVerticesOfFaces(Refiner const &refiner, py::object const &ba
 }
 
 py::dict estimateSize(Refiner const &refiner, TableOptions const &options, bool isDouble) {
-    Status status;
+    CallStatus status;
     StencilTableSize const size = refiner.Read([&](TopologyRefiner const &topology) {
         return isDouble
                    ? StencilTableFactoryReal<double>::EstimateSize(topology, options.Get<double>(),
@@ -168,7 +168,7 @@ LimitStencilTable createLimitTable(Refiner const &refiner, int level, bool gener
         options.generateFaceCenters = generateFaceCenters;
         options.generate1stDerivatives = generate1stDerivatives;
         options.factorizeIntermediateLevels = factorizeIntermediateLevels;
-        Status status;
+        CallStatus status;
         LimitStencilTable made;
         refiner.Read([&](TopologyRefiner const &topology) {
             std::shared_ptr<typename Factory::Table const> const table =

@@ -228,7 +228,7 @@ private:
 class FaceSurfaceFactory {
 public:
     explicit FaceSurfaceFactory(std::shared_ptr<Refiner> refiner) : _refiner(std::move(refiner)) {
-        FarExt::Status status;
+        FarExt::CallStatus status;
         _refiner->Read([&](FarExt::TopologyRefiner const &base) {
             _factory = BfrExt::SurfaceFactory::Create(base, &status);
         });
@@ -237,7 +237,7 @@ public:
 
     bool HasLimitSurface(int face) const {
         checkFace(face);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         bool const hasSurface = _refiner->Read([&](FarExt::TopologyRefiner const &) {
             return _factory->FaceHasLimitSurface(face, &status);
         });
@@ -247,12 +247,12 @@ public:
         return hasSurface;
     }
     FaceSurface MakeVertexSurface(int face) const {
-        return make(face, countVertices(), [&](auto *surface, FarExt::Status *status) {
+        return make(face, countVertices(), [&](auto *surface, FarExt::CallStatus *status) {
             _factory->InitVertexSurface(face, surface, status);
         });
     }
     FaceSurface MakeVaryingSurface(int face) const {
-        return make(face, countVertices(), [&](auto *surface, FarExt::Status *status) {
+        return make(face, countVertices(), [&](auto *surface, FarExt::CallStatus *status) {
             _factory->InitVaryingSurface(face, surface, status);
         });
     }
@@ -261,7 +261,7 @@ public:
         int const numValues = _refiner->Read([&](FarExt::TopologyRefiner const &) {
             return _factory->GetLevel().GetNumFVarValues(channel);
         });
-        return make(face, numValues, [&](auto *surface, FarExt::Status *status) {
+        return make(face, numValues, [&](auto *surface, FarExt::CallStatus *status) {
             _factory->InitFaceVaryingSurface(face, surface, channel, status);
         });
     }
@@ -273,7 +273,7 @@ private:
     FaceSurface make(int face, int numMeshPoints, INIT const &init) const {
         checkFace(face);
         BfrExt::Surface<double> surface;
-        FarExt::Status status;
+        FarExt::CallStatus status;
         _refiner->Read([&](FarExt::TopologyRefiner const &) { init(&surface, &status); });
         RaiseUnlessOk(status);
         return {std::move(surface), numMeshPoints};

@@ -37,7 +37,7 @@ void BindErrors(py::module_ &module) {
         .value("TOO_LARGE", FarExt::StatusCode::TooLarge, "A size would exceed 32-bit indices.");
     py::enum_<FarExt::ComponentType>(module, "ComponentType",
                                      "The kind of mesh component that an error or warning names.")
-        .value("NONE", FarExt::ComponentType::None)
+        .value("NONE", FarExt::ComponentType::NoComponent)
         .value("FACE", FarExt::ComponentType::Face)
         .value("EDGE", FarExt::ComponentType::Edge)
         .value("VERTEX", FarExt::ComponentType::Vertex)
@@ -65,8 +65,8 @@ void BindErrors(py::module_ &module) {
                              PyExc_UserWarning);
 }
 
-void Raise(FarExt::Status const &status) {
-    py::object const error = py::handle(statusError)(status.GetMessage());
+void Raise(FarExt::CallStatus const &status) {
+    py::object const error = py::handle(statusError)(status.GetErrorMessage());
     error.attr("code") = status.GetCode();
     error.attr("component") = status.GetComponentType();
     error.attr("index") = componentIndex(status.GetComponentIndex());
@@ -74,7 +74,7 @@ void Raise(FarExt::Status const &status) {
     throw py::error_already_set();
 }
 
-void Warn(FarExt::Status const &status) {
+void Warn(FarExt::CallStatus const &status) {
     for (FarExt::Warning const &warning : status.GetWarnings()) {
         py::object const notice = py::handle(statusWarning)(warning.message);
         notice.attr("code") = warning.code;

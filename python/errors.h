@@ -15,16 +15,16 @@ void BindErrors(py::module_ &module);
 
 /// Raises StatusError, with the code, component and index of \p status.  The interpreter's lock is
 /// held.
-[[noreturn]] void Raise(FarExt::Status const &status);
+[[noreturn]] void Raise(FarExt::CallStatus const &status);
 
-inline void RaiseUnlessOk(FarExt::Status const &status) {
+inline void RaiseUnlessOk(FarExt::CallStatus const &status) {
     if (!status.IsOk()) {
         Raise(status);
     }
 }
 
 /// Has Python warn of what was noticed.
-void Warn(FarExt::Status const &status);
+void Warn(FarExt::CallStatus const &status);
 
 } // namespace OpenSubdivHex::Python
 

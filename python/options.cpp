@@ -29,7 +29,7 @@ void bindEnums(py::module_ &module) {
         .value("DOO_SABIN", SchemeType::DooSabin)
         .value("TRI_HEX", SchemeType::TriHex);
     py::enum_<FirstStep>(module, "FirstStep", "A step of another kind that makes level 1.")
-        .value("NONE", FirstStep::None)
+        .value("NONE", FirstStep::Same)
         .value("TRI_HEX", FirstStep::TriHex, "A step of the tri-hex scheme.")
         .value("TRUNCATE", FirstStep::Truncate, "Corners are cut off: for meshes of triangles.");
     py::enum_<Interpolation>(module, "Interpolation", "What a mask is for.")
@@ -72,7 +72,7 @@ void bindEnums(py::module_ &module) {
     module.attr("SHARPNESS_INFINITE") = Crease::SHARPNESS_INFINITE;
 
     py::enum_<OsdExt::CreaseCuts>(module, "CreaseCuts", "The creases along which hexagons are cut.")
-        .value("NONE", OsdExt::CreaseCuts::None)
+        .value("NONE", OsdExt::CreaseCuts::NoCreases)
         .value("INFINITELY_SHARP", OsdExt::CreaseCuts::InfinitelySharp)
         .value("ALL", OsdExt::CreaseCuts::All);
     py::enum_<OsdExt::SimdLevel>(module, "SimdLevel", "The instructions that evaluators use.")

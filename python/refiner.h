@@ -50,7 +50,7 @@ public:
     /// Raises BufferError while arrays show them, StatusError when the status is not Ok.
     template <typename FUNCTION>
     void Change(FUNCTION const &function) {
-        FarExt::Status status;
+        FarExt::CallStatus status;
         {
             py::gil_scoped_release const release;
             std::unique_lock const lock(_mutex);

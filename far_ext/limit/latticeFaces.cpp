@@ -415,9 +415,9 @@ PatchWeights LatticeFaces::getRow(LatticePatch const &patch, Orbit const &orbit,
     return isAsGiven ? weights : combine(std::move(weights), orbit.derivatives);
 }
 
-Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows) {
+CallStatus LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows) {
     if (_sets.empty()) {
-        return Status();
+        return CallStatus();
     }
     std::vector<Sample> samples(_sets.size());
     std::vector<Index> verts;
@@ -445,7 +445,7 @@ Status LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
     }
     std::sort(verts.begin(), verts.end());
     verts.erase(std::unique(verts.begin(), verts.end()), verts.end());
-    Status status = rows.Find(verts);
+    CallStatus status = rows.Find(verts);
     if (!status.IsOk()) {
         return status;
     }

@@ -95,7 +95,7 @@ public:
     ///
     /// Where the weights do not have the symmetries of the face there are none.
     /// \param rows  of the level; they are found for what is needed here
-    Status FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows);
+    CallStatus FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows);
 
     std::vector<Set> const &GetSets() const { return _sets; }
     /// Vertices of level 0 whose rows follow from the lattice, ascending.

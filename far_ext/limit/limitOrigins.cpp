@@ -8,8 +8,8 @@ using Far::Index;
 LimitOrigins::LimitOrigins(MeshLevels const &mesh, LimitRows &rows)
     : _mesh(mesh), _rows(rows), _latticeFaces(mesh, rows.GetLevel().depth) {}
 
-Status LimitOrigins::Find(HexSchemeOptions const &schemeOptions) {
-    Status result = _latticeFaces.FindMasks(schemeOptions, _rows);
+CallStatus LimitOrigins::Find(HexSchemeOptions const &schemeOptions) {
+    CallStatus result = _latticeFaces.FindMasks(schemeOptions, _rows);
     if (!result.IsOk()) {
         return result;
     }

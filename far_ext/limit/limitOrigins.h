@@ -29,7 +29,7 @@ public:
     LimitOrigins(MeshLevels const &mesh, LimitRows &rows);
 
     /// \return  as LimitRows; the others may be asked only when it is well
-    Status Find(HexSchemeOptions const &schemeOptions);
+    CallStatus Find(HexSchemeOptions const &schemeOptions);
 
     LatticeFaces const &GetLatticeFaces() const { return _latticeFaces; }
     /// By level, from 0 to that of the rows.

@@ -14,15 +14,15 @@ namespace OpenSubdivHex::FarExt::internal {
 using Far::Index;
 
 HexSchemeOptions GetStepsToLimit(HexSchemeOptions schemeOptions) {
-    schemeOptions.firstStep = FirstStep::None;
+    schemeOptions.firstStep = FirstStep::Same;
     return schemeOptions;
 }
 
-Status CheckLimitLevel(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
-                       int level) {
+CallStatus CheckLimitLevel(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
+                           int level) {
     auto const fail = [level](StatusCode code, std::string const &message) {
-        return Status(code, ComponentType::Level, level,
-                      "level " + std::to_string(level) + message);
+        return CallStatus(code, ComponentType::Level, level,
+                          "level " + std::to_string(level) + message);
     };
     int const maxLevel = hierarchy.numLevels - 1;
     if (level < 0 || level > maxLevel) {
@@ -37,7 +37,7 @@ Status CheckLimitLevel(Hierarchy const &hierarchy, HexSchemeOptions const &schem
         return fail(StatusCode::InvalidArgument,
                     " has no full topology: see UniformOptions::fullTopologyInLastLevel");
     }
-    return Status();
+    return CallStatus();
 }
 
 /// What one thread finds masks with.
@@ -76,10 +76,11 @@ private:
     void add(Index vert, std::shared_ptr<LimitMask const> mask, std::vector<int> const &sides,
              Range &range) const {
         if (!mask) {
-            range.status = Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
-                                  "the limit of vertex " + std::to_string(vert) + " of level " +
-                                      std::to_string(_level.depth) +
-                                      " cannot be computed: the steps around it do not converge");
+            range.status =
+                CallStatus(StatusCode::Unsupported, ComponentType::Vertex, vert,
+                           "the limit of vertex " + std::to_string(vert) + " of level " +
+                               std::to_string(_level.depth) +
+                               " cannot be computed: the steps around it do not converge");
         }
         range.verts.push_back(vert);
         range.masks.push_back(std::move(mask));
@@ -124,13 +125,13 @@ LimitRows::LimitRows(Level const &level, Sdc::Options sdcOptions,
 
 LimitRows::~LimitRows() = default;
 
-Status LimitRows::Find() {
+CallStatus LimitRows::Find() {
     std::vector<Index> verts(std::size_t(_level.numVertices));
     std::iota(verts.begin(), verts.end(), 0);
     return Find(verts);
 }
 
-Status LimitRows::Find(std::vector<Index> const &verts) {
+CallStatus LimitRows::Find(std::vector<Index> const &verts) {
     std::vector<VertexMark> const marks = MarkFeatures(_level);
     _ranges.assign(std::size_t(GetNumParallelRanges(_level.numVertices, kRange)), Range());
     _regularMask.reset();
@@ -156,7 +157,7 @@ Status LimitRows::Find(std::vector<Index> const &verts) {
             _regularMask = Finder(*this, marks).Find(range.firstRegular);
         }
     }
-    return Status();
+    return CallStatus();
 }
 
 LimitRow LimitRows::GetRow(Index vert, int side,

@@ -18,8 +18,8 @@ OPENSUBDIVHEX_API HexSchemeOptions GetStepsToLimit(HexSchemeOptions schemeOption
 
 /// \brief Whether a level has limit points, or why not: InvalidArgument where it is none of the
 /// hierarchy or has not its full topology, Unsupported where it is not refined by hexagonal steps.
-OPENSUBDIVHEX_API Status CheckLimitLevel(Hierarchy const &hierarchy,
-                                         HexSchemeOptions const &schemeOptions, int level);
+OPENSUBDIVHEX_API CallStatus CheckLimitLevel(Hierarchy const &hierarchy,
+                                             HexSchemeOptions const &schemeOptions, int level);
 
 /// \brief A point of the limit surface and its derivatives, as sums of vertices of a level.
 struct LimitRow {
@@ -56,9 +56,9 @@ public:
     ~LimitRows();
 
     /// Finds all masks, in parallel, or says for which vertex there is none.
-    Status Find();
+    CallStatus Find();
     /// Those of \p verts alone, which ascend.
-    Status Find(std::vector<Index> const &verts);
+    CallStatus Find(std::vector<Index> const &verts);
 
     Level const &GetLevel() const { return _level; }
 
@@ -77,7 +77,7 @@ private:
         std::vector<int> firstSides; ///< in sides
         std::vector<int> sides;      ///< of the mask, by side of the vertex
         Index firstRegular = Far::INDEX_INVALID;
-        Status status;
+        CallStatus status;
     };
     class Finder;
 

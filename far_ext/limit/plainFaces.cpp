@@ -193,13 +193,13 @@ void PlainFaces::claimOutputs() {
     _others = selectUnmarked(isClaimed);
 }
 
-Status PlainFaces::FindRows(HexSchemeOptions const &schemeOptions, LimitRows &rows) {
+CallStatus PlainFaces::FindRows(HexSchemeOptions const &schemeOptions, LimitRows &rows) {
     std::vector<Index> verts = _others;
     for (std::vector<Index> const &sample : _samples) {
         verts.insert(verts.end(), sample.begin(), sample.end());
     }
     SortUnique(verts, Index(_isMade.size()));
-    Status result = rows.Find(verts);
+    CallStatus result = rows.Find(verts);
     if (!result.IsOk()) {
         return result;
     }

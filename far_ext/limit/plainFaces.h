@@ -39,7 +39,7 @@ public:
 
     /// \brief Finds the rows of all types, and in \p rows, which are of the last level, those of the other
     /// vertices.
-    Status FindRows(HexSchemeOptions const &schemeOptions, LimitRows &rows);
+    CallStatus FindRows(HexSchemeOptions const &schemeOptions, LimitRows &rows);
 
     /// That of the faces.
     int GetLevel() const { return _level; }

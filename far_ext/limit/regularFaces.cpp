@@ -362,7 +362,7 @@ void RegularFaces::listOthers() {
                              [&](Index vert) { return isMade[std::size_t(vert)] == 0; });
 }
 
-Status RegularFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows) {
+CallStatus RegularFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows) {
     std::vector<Index> verts = _others;
     for (OfLevel const &level : _levels) {
         for (Set const *set : {&level.fVertices, &level.ownVertices}) {
@@ -375,7 +375,7 @@ Status RegularFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
         }
     }
     std::sort(verts.begin(), verts.end());
-    Status status = rows.Find(verts);
+    CallStatus status = rows.Find(verts);
     if (!status.IsOk()) {
         return status;
     }
@@ -396,7 +396,7 @@ Status RegularFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitRows 
             return rows.Find(_others);
         }
     }
-    return Status();
+    return CallStatus();
 }
 
 std::optional<RegularFaceMask> RegularFaces::findMask(int level, Set const &set,

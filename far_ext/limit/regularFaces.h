@@ -114,7 +114,7 @@ public:
     ///
     /// Where a mask has not the form of a RegularFaceMask, as that of FaceMask::Cosine has not, no face
     /// is regular.
-    Status FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows);
+    CallStatus FindMasks(HexSchemeOptions const &schemeOptions, LimitRows &rows);
 
     /// By level, from 0 to the last one.
     std::vector<OfLevel> const &GetLevels() const { return _levels; }

@@ -30,8 +30,8 @@ LevelStencils::LevelStencils(Hierarchy const &hierarchy, HexSchemeOptions const 
       _selection(_plan, std::move(wanted), true), _symbolic(_plan, _selection),
       _levels(std::size_t(_plan.lastLevel)) {}
 
-Status LevelStencils::Form() {
-    Status status = _symbolic.Form();
+CallStatus LevelStencils::Form() {
+    CallStatus status = _symbolic.Form();
     if (!status.IsOk()) {
         return status;
     }
@@ -40,10 +40,10 @@ Status LevelStencils::Form() {
         _firsts.push_back(Index(numStencils));
         numStencils += _plan.GetNumVertices(level);
         if (numStencils > std::numeric_limits<Index>::max()) {
-            return Status(StatusCode::TooLarge, ComponentType::Level, level,
-                          "levels 0 to " + std::to_string(level) + " have " +
-                              std::to_string(numStencils) +
-                              " vertices, more than 32-bit indices reach");
+            return CallStatus(StatusCode::TooLarge, ComponentType::Level, level,
+                              "levels 0 to " + std::to_string(level) + " have " +
+                                  std::to_string(numStencils) +
+                                  " vertices, more than 32-bit indices reach");
         }
     }
     _stencils.Resize(std::size_t(numStencils));
@@ -59,7 +59,7 @@ Status LevelStencils::Form() {
         addLevel(level, supports, &places);
         pPlaces = places;
     }
-    return Status();
+    return CallStatus();
 }
 
 // Those of control vertices are nowhere else.

@@ -25,7 +25,7 @@ public:
                   std::vector<std::vector<Index>> wanted);
 
     /// Makes the stencils of all that is needed, or says what is too large.
-    Status Form();
+    CallStatus Form();
 
     /// The number of a level's first stencil: those of all vertices are in turn, from the control
     /// vertices on.

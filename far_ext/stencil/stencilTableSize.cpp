@@ -53,7 +53,7 @@ public:
     explicit WeightSampler(StencilPlan const &plan) : _plan(plan) {}
 
     // Forms the supports of the first levels of the sample.
-    Status Form();
+    CallStatus Form();
     RowWeights Estimate(int level) const;
 
 private:
@@ -173,13 +173,13 @@ RowWeights WeightSampler::average(int level, std::vector<Index> const &pFaces,
     return weights;
 }
 
-Status WeightSampler::Form() {
+CallStatus WeightSampler::Form() {
     StencilPlan plan = _plan;
     plan.firstStored = 1;
     plan.lastLevel = std::min(_plan.lastLevel, kMaxSampledLevel);
     plan.numControlStencils = 0;
     if (plan.lastLevel == 0) {
-        return Status();
+        return CallStatus();
     }
     std::vector<Index> const baseFaces = takeSample();
     auto const parts = FindFacesOfBaseFaces(
@@ -193,7 +193,7 @@ Status WeightSampler::Form() {
     }
     StencilSelection const selection(plan, std::move(wanted));
     SymbolicTable symbolic(plan, selection);
-    if (Status status = symbolic.Form(); !status.IsOk()) {
+    if (CallStatus status = symbolic.Form(); !status.IsOk()) {
         return status;
     }
     for (int level = 1; level <= plan.lastLevel; ++level) {
@@ -201,7 +201,7 @@ Status WeightSampler::Form() {
             GetMadeVertices(_plan.GetRefinement(level), selection.parts[level - 1]);
         _averages.push_back(average(level, faces[level - 1], made, symbolic.GetSizes(level)));
     }
-    return Status();
+    return CallStatus();
 }
 
 // V-vertices without a face, whose rows have one weight: a scheme keeps all of them, or none.
@@ -253,10 +253,11 @@ double estimateSupportBytes(StencilPlan const &plan, int level, RowWeights const
 
 } // namespace
 
-Status EstimateTableSize(StencilPlan const &plan, std::size_t weightBytes, StencilTableSize &size) {
+CallStatus EstimateTableSize(StencilPlan const &plan, std::size_t weightBytes,
+                             StencilTableSize &size) {
     WeightSampler sampler(plan);
     if (plan.factorize) {
-        if (Status status = sampler.Form(); !status.IsOk()) {
+        if (CallStatus status = sampler.Form(); !status.IsOk()) {
             return status;
         }
     }
@@ -287,7 +288,7 @@ Status EstimateTableSize(StencilPlan const &plan, std::size_t weightBytes, Stenc
                     size.numWeights * std::int64_t(sizeof(Index) + weightBytes);
     size.numPeakBytes =
         size.numBytes + std::llround(numSupportBytes + numRowBytes + numSourceBytes);
-    return Status();
+    return CallStatus();
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -13,7 +13,8 @@ struct StencilPlan;
 /// \brief Estimates the size of the table that \p plan asks for, with weights of \p weightBytes.
 ///
 /// \return  TooLarge when the faces that are looked at alone are
-Status EstimateTableSize(StencilPlan const &plan, std::size_t weightBytes, StencilTableSize &size);
+CallStatus EstimateTableSize(StencilPlan const &plan, std::size_t weightBytes,
+                             StencilTableSize &size);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

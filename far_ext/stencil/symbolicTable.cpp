@@ -9,15 +9,15 @@ using Far::Index;
 
 namespace {
 
-Status checkCount(int level, std::int64_t count, char const *name) {
+CallStatus checkCount(int level, std::int64_t count, char const *name) {
     if (count <= RowSupports::kMaxNumWeights) {
-        return Status();
+        return CallStatus();
     }
-    return Status(StatusCode::TooLarge, ComponentType::Level, level,
-                  "the stencil table would have at least " + std::to_string(count) + " " + name +
-                      " up to level " + std::to_string(level) + ", more than the " +
-                      std::to_string(RowSupports::kMaxNumWeights) +
-                      " that Far's 32-bit offsets reach");
+    return CallStatus(StatusCode::TooLarge, ComponentType::Level, level,
+                      "the stencil table would have at least " + std::to_string(count) + " " +
+                          name + " up to level " + std::to_string(level) + ", more than the " +
+                          std::to_string(RowSupports::kMaxNumWeights) +
+                          " that Far's 32-bit offsets reach");
 }
 
 } // namespace
@@ -54,11 +54,11 @@ int const *SymbolicTable::GetSizes(int level) const {
     return sizes;
 }
 
-Status SymbolicTable::Form() {
+CallStatus SymbolicTable::Form() {
     std::int64_t numStencils = _plan.numControlStencils;
     for (int level = _plan.firstStored; level <= _plan.lastLevel; ++level) {
         numStencils += GetRows(level).GetNumRows();
-        if (Status status = checkCount(level, numStencils, "stencils"); !status.IsOk()) {
+        if (CallStatus status = checkCount(level, numStencils, "stencils"); !status.IsOk()) {
             return status;
         }
     }
@@ -82,12 +82,12 @@ Status SymbolicTable::Form() {
             nextSize += GetRows(level).GetNumRows();
             _numWeights += numLevelWeights;
         }
-        Status status = checkCount(level, std::max(_numWeights, numLevelWeights), "weights");
+        CallStatus status = checkCount(level, std::max(_numWeights, numLevelWeights), "weights");
         if (!status.IsOk()) {
             return status;
         }
     }
-    return Status();
+    return CallStatus();
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

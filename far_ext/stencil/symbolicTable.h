@@ -19,7 +19,7 @@ public:
     SymbolicTable(StencilPlan const &plan, StencilSelection const &selection);
 
     /// Forms all supports, or says what is too large.
-    Status Form();
+    CallStatus Form();
 
     StencilPlan const &GetPlan() const { return _plan; }
     RefinementRows const &GetRows(int level) const { return _rows[level - _plan.firstBuilt]; }

@@ -367,8 +367,8 @@ public:
             found.first.assign(begin, end);
         }
     }
-    Status GetStatus() const {
-        Status status;
+    CallStatus GetStatus() const {
+        CallStatus status;
         if (_nonManifold.count > 0) {
             status.AddWarning({WarningCode::NonManifoldEdges, ComponentType::Edge,
                                _nonManifold.first[0].edge, _nonManifold.count,
@@ -422,8 +422,8 @@ private:
 
 // Gives each side of the edges of the base that come apart an edge of its own: the first of each has
 // that edge's index, the others follow the edges of the base in the order of their corners.  Adds the
-// tags, and gives a Status with warnings of these edges.
-Status takeApart(Index numEdges, std::vector<ApartSide> &sides, Level &level) {
+// tags, and gives a CallStatus with warnings of these edges.
+CallStatus takeApart(Index numEdges, std::vector<ApartSide> &sides, Level &level) {
     auto const isBefore = [](ApartSide const &a, ApartSide const &b) {
         return std::tie(a.edge, a.corner) < std::tie(b.edge, b.corner);
     };
@@ -458,14 +458,15 @@ Status takeApart(Index numEdges, std::vector<ApartSide> &sides, Level &level) {
 
 // Numbers the edges of a level, with all their relations.
 template <typename PLACES>
-Status numberEdges(PLACES const &places, BoundaryKind boundary,
-                   std::vector<NewSide> const &apartSides, Corners const &corners, Level &level) {
+CallStatus numberEdges(PLACES const &places, BoundaryKind boundary,
+                       std::vector<NewSide> const &apartSides, Corners const &corners,
+                       Level &level) {
     EdgeNumbering<PLACES> numbering(places, boundary, corners, level);
     std::int64_t const numBaseEdges = numbering.Count();
     std::int64_t const numOthers =
         std::count_if(apartSides.begin(), apartSides.end(),
                       [](NewSide const &side) { return side.corner != side.first; });
-    if (Status status = CheckCount(2 * (numBaseEdges + numOthers), "ends of edges");
+    if (CallStatus status = CheckCount(2 * (numBaseEdges + numOthers), "ends of edges");
         !status.IsOk()) {
         return status;
     }
@@ -477,7 +478,7 @@ Status numberEdges(PLACES const &places, BoundaryKind boundary,
         sides.push_back({level.faceEdges[side.first], side.corner});
     }
     std::vector<Index> boundaryEdges = numbering.GetBoundaryEdges();
-    Status status = takeApart(Index(numBaseEdges), sides, level);
+    CallStatus status = takeApart(Index(numBaseEdges), sides, level);
     for (ApartSide const &side : sides) {
         if (side.edge >= numBaseEdges) {
             EdgeWriter(places, level).Write(side.edge, side.corner, kSharpBoundaryA);
@@ -490,11 +491,11 @@ Status numberEdges(PLACES const &places, BoundaryKind boundary,
 
 } // namespace
 
-Status BuildLevelOfFaces(BoundaryKind boundary, std::vector<Index> const &repeatedVerts,
-                         Level &level, std::vector<Index> &fanned) {
+CallStatus BuildLevelOfFaces(BoundaryKind boundary, std::vector<Index> const &repeatedVerts,
+                             Level &level, std::vector<Index> &fanned) {
     Corners corners;
     FindCorners(level, corners, true);
-    Status status = WithPlaces(level, corners, [&](auto const &places) {
+    CallStatus status = WithPlaces(level, corners, [&](auto const &places) {
         std::vector<NewSide> const apartSides =
             MateFinder(places, level, corners).Find(repeatedVerts);
         return numberEdges(places, boundary, apartSides, corners, level);
@@ -505,13 +506,13 @@ Status BuildLevelOfFaces(BoundaryKind boundary, std::vector<Index> const &repeat
     return status;
 }
 
-Status BuildLevelOfEdges(Buffer<EdgeSides> edges, std::vector<ApartSide> sides, Level &level,
-                         std::vector<Index> &fanned) {
+CallStatus BuildLevelOfEdges(Buffer<EdgeSides> edges, std::vector<ApartSide> sides, Level &level,
+                             std::vector<Index> &fanned) {
     auto const numBaseEdges = Index(edges.size());
-    Status status = takeApart(numBaseEdges, sides, level);
+    CallStatus status = takeApart(numBaseEdges, sides, level);
     std::size_t const numEdges =
         sides.empty() ? edges.size() : std::max(edges.size(), std::size_t(sides.back().edge) + 1);
-    if (Status count = CheckCount(2 * std::int64_t(numEdges), "ends of edges"); !count.IsOk()) {
+    if (CallStatus count = CheckCount(2 * std::int64_t(numEdges), "ends of edges"); !count.IsOk()) {
         return count;
     }
     if (numEdges > edges.size()) {
@@ -527,13 +528,13 @@ Status BuildLevelOfEdges(Buffer<EdgeSides> edges, std::vector<ApartSide> sides, 
     return status;
 }
 
-Status CheckCount(std::int64_t count, std::string const &what) {
+CallStatus CheckCount(std::int64_t count, std::string const &what) {
     if (count <= std::numeric_limits<Index>::max()) {
-        return Status();
+        return CallStatus();
     }
-    return Status(StatusCode::TooLarge, ComponentType::Level, 0,
-                  "level 0 would have " + str(count) + " " + what +
-                      ", more than 32-bit indices reach");
+    return CallStatus(StatusCode::TooLarge, ComponentType::Level, 0,
+                      "level 0 would have " + str(count) + " " + what +
+                          ", more than 32-bit indices reach");
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

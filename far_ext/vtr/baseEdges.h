@@ -24,19 +24,19 @@ struct ApartSide {
 /// \param boundary       the kind of edges with one face
 /// \param repeatedVerts  those that a face has several times, ascending
 /// \param fanned         gets the vertices with several fans, ascending
-/// \return               a Status that may have warnings; TooLarge with too many edges
-Status BuildLevelOfFaces(BoundaryKind boundary, std::vector<Far::Index> const &repeatedVerts,
-                         Level &level, std::vector<Far::Index> &fanned);
+/// \return               a CallStatus that may have warnings; TooLarge with too many edges
+CallStatus BuildLevelOfFaces(BoundaryKind boundary, std::vector<Far::Index> const &repeatedVerts,
+                             Level &level, std::vector<Far::Index> &fanned);
 
 /// \brief The same where the base has edges already.
 ///
 /// \param edges  of the base; those that come apart have any sides
 /// \param sides  of all that come apart
-Status BuildLevelOfEdges(Buffer<EdgeSides> edges, std::vector<ApartSide> sides, Level &level,
-                         std::vector<Far::Index> &fanned);
+CallStatus BuildLevelOfEdges(Buffer<EdgeSides> edges, std::vector<ApartSide> sides, Level &level,
+                             std::vector<Far::Index> &fanned);
 
 /// Ok, or TooLarge, which names \p count, for more than 32-bit indices reach.
-Status CheckCount(std::int64_t count, std::string const &what);
+CallStatus CheckCount(std::int64_t count, std::string const &what);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -25,12 +25,12 @@ constexpr int kMaxVertexFaces = OpenSubdiv::Vtr::VALENCE_LIMIT;
 
 std::string str(std::int64_t number) { return std::to_string(number); }
 
-Status invalid(ComponentType component, Index index, std::string message) {
-    return Status(StatusCode::InvalidTopology, component, index, std::move(message));
+CallStatus invalid(ComponentType component, Index index, std::string message) {
+    return CallStatus(StatusCode::InvalidTopology, component, index, std::move(message));
 }
 
-Status tooLarge(ComponentType component, Index index, std::string message) {
-    return Status(StatusCode::TooLarge, component, index, std::move(message));
+CallStatus tooLarge(ComponentType component, Index index, std::string message) {
+    return CallStatus(StatusCode::TooLarge, component, index, std::move(message));
 }
 
 // Whether an array is empty or has no entry that is sharp.
@@ -127,8 +127,8 @@ void BaseMesh::SetNumFaces(Index count) {
     _level->faceFirstCorner.Resize(std::size_t(count) + 1);
 }
 
-Status BaseMesh::CompleteSizes() {
-    if (Status status = CheckCounts(_level->numVertices, _level->numFaces); !status.IsOk()) {
+CallStatus BaseMesh::CompleteSizes() {
+    if (CallStatus status = CheckCounts(_level->numVertices, _level->numFaces); !status.IsOk()) {
         return status;
     }
     Index *const sizes = _level->faceFirstCorner.data() + 1;
@@ -153,7 +153,7 @@ Status BaseMesh::CompleteSizes() {
             }
             return sum;
         });
-    if (Status status = CheckCount(firstCorners.back(), "face-vertices"); !status.IsOk()) {
+    if (CallStatus status = CheckCount(firstCorners.back(), "face-vertices"); !status.IsOk()) {
         return status;
     }
     _level->numCorners = Index(firstCorners.back());
@@ -167,10 +167,10 @@ Status BaseMesh::CompleteSizes() {
     });
     FindFaceSizes(*_level);
     _level->faceVerts.Resize(std::size_t(_level->numCorners));
-    return Status();
+    return CallStatus();
 }
 
-Status BaseMesh::CheckFaces() {
+CallStatus BaseMesh::CheckFaces() {
     Level const &level = *_level;
     // Pieces that are small, since all faces of one with something odd are looked at once more.
     constexpr Index kPiece = 64;
@@ -207,38 +207,39 @@ Status BaseMesh::CheckFaces() {
                 _repeatedVerts.push_back(sorted[i]);
             }
         }
-        return Status();
+        return CallStatus();
     };
     for (Index piece : suspects) {
         for (Index face = kPiece * piece; face < getEnd(piece); ++face) {
-            if (Status status = inspect(face); !status.IsOk()) {
+            if (CallStatus status = inspect(face); !status.IsOk()) {
                 return status;
             }
         }
     }
     SortUnique(_repeatedVerts);
-    return Status();
+    return CallStatus();
 }
 
-Status BaseMesh::CompleteTopology() {
-    Status status = BuildLevelOfFaces(getBoundary(), _repeatedVerts, *_level, _fannedVerts);
+CallStatus BaseMesh::CompleteTopology() {
+    CallStatus status = BuildLevelOfFaces(getBoundary(), _repeatedVerts, *_level, _fannedVerts);
     return checkValences(std::move(status));
 }
 
 bool BaseMesh::CopyTopology(Far::TopologyRefiner const &base) {
     // Valences are those that Far takes.
     return _repeatedVerts.empty() && CopyRelations(base, getBoundary(), *_level) &&
-           checkValences(Status()).IsOk();
+           checkValences(CallStatus()).IsOk();
 }
 
-Status BaseMesh::CompleteTopology(Buffer<EdgeSides> edges, std::vector<ApartSide> sides) {
-    Status status = BuildLevelOfEdges(std::move(edges), std::move(sides), *_level, _fannedVerts);
+CallStatus BaseMesh::CompleteTopology(Buffer<EdgeSides> edges, std::vector<ApartSide> sides) {
+    CallStatus status =
+        BuildLevelOfEdges(std::move(edges), std::move(sides), *_level, _fannedVerts);
     return checkValences(std::move(status));
 }
 
 // The numbers of the faces of vertices.  V-vertices of the next level have as many edges as their
 // parents have faces, and Far's arrays of local indices no more entries.
-Status BaseMesh::checkValences(Status status) {
+CallStatus BaseMesh::checkValences(CallStatus status) {
     Level const &level = *_level;
     if (!status.IsOk()) {
         return status;
@@ -368,8 +369,8 @@ bool BaseMesh::isPinned(Index vert) const {
 
 // What a value without seams at a non-manifold vertex needs to move as the vertex does: each fan of
 // faces has a value of its own, which sees the sharp edges of its fan alone.
-Status BaseMesh::followVertex(Index vert, int channel, Index const *faceValues,
-                              std::vector<float> &sharpness) const {
+CallStatus BaseMesh::followVertex(Index vert, int channel, Index const *faceValues,
+                                  std::vector<float> &sharpness) const {
     Level const &level = *_level;
     std::vector<Index> corners;
     for (Index k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1]; ++k) {
@@ -377,12 +378,12 @@ Status BaseMesh::followVertex(Index vert, int channel, Index const *faceValues,
     }
     auto const isSeam = [&](Index corner) { return faceValues[corner] != faceValues[corners[0]]; };
     if (std::any_of(corners.begin(), corners.end(), isSeam)) {
-        return Status();
+        return CallStatus();
     }
     auto const refuse = [&](std::string const &what) {
-        return Status(StatusCode::Unsupported, ComponentType::Vertex, vert,
-                      "face-varying channel " + str(channel) + " has no seam at vertex " +
-                          str(vert) + ", where " + what);
+        return CallStatus(StatusCode::Unsupported, ComponentType::Vertex, vert,
+                          "face-varying channel " + str(channel) + " has no seam at vertex " +
+                              str(vert) + ", where " + what);
     };
     int numCreasedFans = 0;
     ForEachFanItems(level, vert, [&](FanItems const &fan) {
@@ -402,7 +403,7 @@ Status BaseMesh::followVertex(Index vert, int channel, Index const *faceValues,
         for (Index corner : corners) {
             sharpness[corner] = Sdc::Crease::SHARPNESS_INFINITE;
         }
-        return Status();
+        return CallStatus();
     }
     bool isSeenByAll = !Sdc::Crease::IsSharp(sharpest);
     ForEachFan(level, vert, [&](VertexFan const &fan) {
@@ -414,14 +415,14 @@ Status BaseMesh::followVertex(Index vert, int channel, Index const *faceValues,
             level.GetEdgeLine(level.faceEdges[first]) != level.GetEdgeLine(level.faceEdges[last]);
     });
     if (isSeenByAll) {
-        return Status();
+        return CallStatus();
     }
     return refuse("faces do not all meet both ends of a non-manifold curve, or a semi-sharp crease "
                   "meets it");
 }
 
-Status BaseMesh::AddChannel(Index numValues, Buffer<Index> faceValues,
-                            Sdc::Options::FVarLinearInterpolation interpolation) {
+CallStatus BaseMesh::AddChannel(Index numValues, Buffer<Index> faceValues,
+                                Sdc::Options::FVarLinearInterpolation interpolation) {
     int const channel = int(_hierarchy->channels.size());
     std::vector<Index> const seams = FindSeams(*_level, faceValues.data());
     std::vector<float> sharpness =
@@ -430,7 +431,7 @@ Status BaseMesh::AddChannel(Index numValues, Buffer<Index> faceValues,
         if (interpolation == Sdc::Options::FVAR_LINEAR_ALL) {
             break;
         }
-        Status status = followVertex(vert, channel, faceValues.data(), sharpness);
+        CallStatus status = followVertex(vert, channel, faceValues.data(), sharpness);
         if (!status.IsOk()) {
             return status;
         }
@@ -439,7 +440,7 @@ Status BaseMesh::AddChannel(Index numValues, Buffer<Index> faceValues,
     options.SetFVarLinearInterpolation(interpolation);
     BuildFVarChannel(*_level, numValues, std::move(faceValues), seams, sharpness, options,
                      _hierarchy->channels.emplace_back());
-    return Status();
+    return CallStatus();
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -16,7 +16,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// \brief Level 0 in the making, whatever mesh it comes from: counts, faces, edges, tags and channels,
 /// in this order.
 ///
-/// What is wrong is found when a step is completed.  Each of the functions that return a Status gives
+/// What is wrong is found when a step is completed.  Each of the functions that return a CallStatus gives
 /// the first cause for a refusal, after which nothing else is called.
 class BaseMesh {
 public:
@@ -35,18 +35,18 @@ public:
     /// By face, to be written once the number of faces is set.
     Index *GetFaceSizes() { return _level->faceFirstCorner.data() + 1; }
     /// Makes offsets of the sizes, and room for the vertices of the faces.
-    Status CompleteSizes();
+    CallStatus CompleteSizes();
     /// Whether faces may have the vertices that are now in faceVerts.
-    Status CheckFaces();
+    CallStatus CheckFaces();
     /// @}
 
     /// @name Edges: one of these is called
     /// @{
     /// Finds the edges, as Far would.
-    Status CompleteTopology();
+    CallStatus CompleteTopology();
     /// Takes those of a base that has edges: see CopyRelations() and BuildLevelOfEdges().
     bool CopyTopology(Far::TopologyRefiner const &base);
-    Status CompleteTopology(Buffer<EdgeSides> edges, std::vector<ApartSide> sides);
+    CallStatus CompleteTopology(Buffer<EdgeSides> edges, std::vector<ApartSide> sides);
     /// @}
 
     /// @name Tags
@@ -64,8 +64,8 @@ public:
     /// \brief Adds a face-varying channel.
     ///
     /// \param faceValues  by corner, each below \p numValues
-    Status AddChannel(Index numValues, Buffer<Index> faceValues,
-                      Sdc::Options::FVarLinearInterpolation interpolation);
+    CallStatus AddChannel(Index numValues, Buffer<Index> faceValues,
+                          Sdc::Options::FVarLinearInterpolation interpolation);
 
     std::unique_ptr<Hierarchy> Release() { return std::move(_hierarchy); }
 
@@ -75,11 +75,11 @@ private:
             _sdcOptions.GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE;
         return isFree ? kFreeBoundary : kSharpBoundaryA;
     }
-    Status checkValences(Status status);
+    CallStatus checkValences(CallStatus status);
     void findNonManifoldVertices();
     bool isPinned(Index vert) const;
-    Status followVertex(Index vert, int channel, Index const *faceValues,
-                        std::vector<float> &sharpness) const;
+    CallStatus followVertex(Index vert, int channel, Index const *faceValues,
+                            std::vector<float> &sharpness) const;
 
     Sdc::Options _sdcOptions;
     std::unique_ptr<Hierarchy> _hierarchy = std::make_unique<Hierarchy>();

@@ -23,7 +23,7 @@ auto CoplanarEdges::cross(Vector const &a, Vector const &b) -> Vector {
 }
 
 template <typename REAL>
-Status CoplanarEdges::Begin(REAL const *restPositions) {
+CallStatus CoplanarEdges::Begin(REAL const *restPositions) {
     if (!_schemeOptions.IsHexagonal()) {
         return Failure(StatusCode::Unsupported,
                        "refinement by coplanar faces is for the hexagonal scheme alone");
@@ -42,16 +42,16 @@ Status CoplanarEdges::Begin(REAL const *restPositions) {
         _positions[vert] = {double(position[0]), double(position[1]), double(position[2])};
         // The normals take products of coordinates.
         if (!std::isfinite(dot(_positions[vert], _positions[vert]))) {
-            return Status(StatusCode::InvalidArgument, ComponentType::Vertex, vert,
-                          "the rest position of vertex " + std::to_string(vert) +
-                              " is not finite, or too far away");
+            return CallStatus(StatusCode::InvalidArgument, ComponentType::Vertex, vert,
+                              "the rest position of vertex " + std::to_string(vert) +
+                                  " is not finite, or too far away");
         }
     }
-    return Status();
+    return CallStatus();
 }
 
-template Status CoplanarEdges::Begin(float const *restPositions);
-template Status CoplanarEdges::Begin(double const *restPositions);
+template CallStatus CoplanarEdges::Begin(float const *restPositions);
+template CallStatus CoplanarEdges::Begin(double const *restPositions);
 
 void CoplanarEdges::Refine() {
     RefinementRows const rows(_hierarchy.mesh.refinements[_depth], _schemeOptions,

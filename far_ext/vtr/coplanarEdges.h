@@ -19,7 +19,7 @@ public:
     /// Takes x, y, z of the vertices of level 0.  Returns what is wrong with these or with the
     /// options, or Ok.
     template <typename REAL>
-    Status Begin(REAL const *restPositions);
+    CallStatus Begin(REAL const *restPositions);
     /// Goes on to the next level, which is there by now.
     void Refine();
 

@@ -22,17 +22,17 @@ public:
     RefinerReader(Far::TopologyRefiner const &base, BaseMesh &mesh)
         : _refiner(base), _base(base.GetLevel(0)), _mesh(mesh), _level(mesh.GetLevel()) {}
 
-    Status Read();
+    CallStatus Read();
 
 private:
-    Status readFaces();
-    Status readEdges();
+    CallStatus readFaces();
+    CallStatus readEdges();
     bool isSide(Index edge, Index face, int local) const;
     bool readEdge(Index edge, EdgeSides &sides) const;
-    Status readApartEdge(Index edge, std::vector<ApartSide> &sides) const;
-    Status readTags();
+    CallStatus readApartEdge(Index edge, std::vector<ApartSide> &sides) const;
+    CallStatus readTags();
     bool isHole(Index face) const;
-    Status readChannel(int channel);
+    CallStatus readChannel(int channel);
 
     bool isFree() const {
         return _mesh.GetSchemeOptions().GetVtxBoundaryInterpolation() ==
@@ -45,13 +45,13 @@ private:
     Level &_level;
 };
 
-Status RefinerReader::readFaces() {
+CallStatus RefinerReader::readFaces() {
     _mesh.SetNumVertices(_base.GetNumVertices());
     _mesh.SetNumFaces(_base.GetNumFaces());
     ParallelFor(_level.numFaces, [&](Index face) {
         _mesh.GetFaceSizes()[face] = _base.GetFaceVertices(face).size();
     });
-    Status status = _mesh.CompleteSizes();
+    CallStatus status = _mesh.CompleteSizes();
     if (!status.IsOk()) {
         return status;
     }
@@ -101,10 +101,10 @@ bool RefinerReader::readEdge(Index edge, EdgeSides &sides) const {
 }
 
 // Adds the sides of an edge that comes apart, once it is sure that the base is right there.
-Status RefinerReader::readApartEdge(Index edge, std::vector<ApartSide> &sides) const {
+CallStatus RefinerReader::readApartEdge(Index edge, std::vector<ApartSide> &sides) const {
     auto const refuse = [&](std::string const &what) {
-        return Status(StatusCode::InvalidTopology, ComponentType::Edge, edge,
-                      "edge " + str(edge) + what);
+        return CallStatus(StatusCode::InvalidTopology, ComponentType::Edge, edge,
+                          "edge " + str(edge) + what);
     };
     ConstIndexArray const verts = _base.GetEdgeVertices(edge);
     ConstIndexArray const faces = _base.GetEdgeFaces(edge);
@@ -125,12 +125,12 @@ Status RefinerReader::readApartEdge(Index edge, std::vector<ApartSide> &sides) c
     if (std::adjacent_find(corners.begin(), corners.end()) != corners.end()) {
         return refuse(" has a side of a face twice");
     }
-    return Status();
+    return CallStatus();
 }
 
-Status RefinerReader::readEdges() {
+CallStatus RefinerReader::readEdges() {
     if (_mesh.CopyTopology(_refiner)) {
-        return Status();
+        return CallStatus();
     }
     Index const numEdges = _base.GetNumEdges();
     std::vector<std::int64_t> const numSides =
@@ -153,7 +153,7 @@ Status RefinerReader::readEdges() {
         numEdges, [&](Index edge) { return !readEdge(edge, edges[std::size_t(edge)]); });
     std::vector<ApartSide> sides;
     for (Index edge : apart) {
-        if (Status status = readApartEdge(edge, sides); !status.IsOk()) {
+        if (CallStatus status = readApartEdge(edge, sides); !status.IsOk()) {
             return status;
         }
     }
@@ -169,14 +169,14 @@ bool RefinerReader::isHole(Index face) const {
                                      [&](Index vert) { return _base.IsVertexBoundary(vert); }));
 }
 
-Status RefinerReader::readTags() {
+CallStatus RefinerReader::readTags() {
     auto const isNotSmooth = [](float sharpness) { return !(sharpness == 0); };
     for (Index edge : ParallelSelect(_base.GetNumEdges(), [&](Index edge) {
              return isNotSmooth(_base.GetEdgeSharpness(edge));
          })) {
         float const sharpness = _base.GetEdgeSharpness(edge);
         ConstIndexArray const verts = _base.GetEdgeVertices(edge);
-        Status status = CheckSharpness(sharpness, ComponentType::Edge, edge, [&] {
+        CallStatus status = CheckSharpness(sharpness, ComponentType::Edge, edge, [&] {
             return "edge " + str(edge) + ", of vertices " + str(verts[0]) + " and " +
                    str(verts[1]) + ",";
         });
@@ -189,8 +189,8 @@ Status RefinerReader::readTags() {
              return isNotSmooth(_base.GetVertexSharpness(vert));
          })) {
         float const sharpness = _base.GetVertexSharpness(vert);
-        Status status = CheckSharpness(sharpness, ComponentType::Vertex, vert,
-                                       [&] { return "vertex " + str(vert); });
+        CallStatus status = CheckSharpness(sharpness, ComponentType::Vertex, vert,
+                                           [&] { return "vertex " + str(vert); });
         if (!status.IsOk()) {
             return status;
         }
@@ -201,10 +201,10 @@ Status RefinerReader::readTags() {
         _mesh.SetHole(face, true);
     }
     _mesh.CompleteTags();
-    return Status();
+    return CallStatus();
 }
 
-Status RefinerReader::readChannel(int channel) {
+CallStatus RefinerReader::readChannel(int channel) {
     Buffer<Index> values;
     values.Resize(_level.numCorners);
     ParallelForRange(_level.numFaces, [&](Index begin, Index end) {
@@ -213,18 +213,18 @@ Status RefinerReader::readChannel(int channel) {
                     _level.faceFirstCorner[end] - first, values.data() + first);
     });
     Index const numValues = _base.GetNumFVarValues(channel);
-    Status status = CheckValues(values.data(), _level.numCorners, numValues, channel);
+    CallStatus status = CheckValues(values.data(), _level.numCorners, numValues, channel);
     return status.IsOk() ? _mesh.AddChannel(numValues, std::move(values),
                                             _refiner.GetFVarLinearInterpolation(channel))
                          : status;
 }
 
-Status RefinerReader::Read() {
-    Status status = readFaces();
+CallStatus RefinerReader::Read() {
+    CallStatus status = readFaces();
     if (status.IsOk()) {
         status = readEdges();
     }
-    Status const topology = status; // with its warnings
+    CallStatus const topology = status; // with its warnings
     if (status.IsOk()) {
         status = readTags();
     }
@@ -240,13 +240,13 @@ public:
     DescriptorReader(Far::TopologyDescriptor const &descriptor, BaseMesh &mesh)
         : _descriptor(descriptor), _mesh(mesh), _level(mesh.GetLevel()) {}
 
-    Status Read();
+    CallStatus Read();
 
 private:
-    Status readFaces();
-    Status readCreases();
-    Status readTags();
-    Status readChannel(int channel);
+    CallStatus readFaces();
+    CallStatus readCreases();
+    CallStatus readTags();
+    CallStatus readChannel(int channel);
     void copyCorners(Index const *from, Buffer<Index> &to) const;
 
     Far::TopologyDescriptor const &_descriptor;
@@ -268,8 +268,8 @@ void DescriptorReader::copyCorners(Index const *from, Buffer<Index> &to) const {
     });
 }
 
-Status DescriptorReader::readFaces() {
-    Status status = CheckCounts(_descriptor.numVertices, _descriptor.numFaces);
+CallStatus DescriptorReader::readFaces() {
+    CallStatus status = CheckCounts(_descriptor.numVertices, _descriptor.numFaces);
     if (status.IsOk()) {
         status = CheckArrays(_descriptor);
     }
@@ -292,11 +292,11 @@ Status DescriptorReader::readFaces() {
 }
 
 // Far skips a crease that is no edge with a warning; here it is an error.
-Status DescriptorReader::readCreases() {
+CallStatus DescriptorReader::readCreases() {
     for (int i = 0; i < _descriptor.numCreases; ++i) {
         Index const *verts = _descriptor.creaseVertexIndexPairs + 2 * std::ptrdiff_t(i);
         float const sharpness = _descriptor.creaseWeights[i];
-        Status status = CheckSharpness(sharpness, ComponentType::Vertex, verts[0], [&] {
+        CallStatus status = CheckSharpness(sharpness, ComponentType::Vertex, verts[0], [&] {
             return "crease " + str(i) + ", of vertices " + str(verts[0]) + " and " + str(verts[1]) +
                    ",";
         });
@@ -309,17 +309,17 @@ Status DescriptorReader::readCreases() {
         }
         Index const edge = _mesh.FindEdge(verts[0], verts[1]);
         if (edge == Far::INDEX_INVALID) {
-            return Status(StatusCode::InvalidTopology, ComponentType::Vertex, verts[0],
-                          "crease " + str(i) + " joins vertices " + str(verts[0]) + " and " +
-                              str(verts[1]) + ", but no face has that edge");
+            return CallStatus(StatusCode::InvalidTopology, ComponentType::Vertex, verts[0],
+                              "crease " + str(i) + " joins vertices " + str(verts[0]) + " and " +
+                                  str(verts[1]) + ", but no face has that edge");
         }
         _mesh.SetEdgeSharpness(edge, sharpness);
     }
-    return Status();
+    return CallStatus();
 }
 
-Status DescriptorReader::readTags() {
-    Status status = readCreases();
+CallStatus DescriptorReader::readTags() {
+    CallStatus status = readCreases();
     for (int i = 0; i < _descriptor.numCorners && status.IsOk(); ++i) {
         Index const vert = _descriptor.cornerVertexIndices[i];
         float const sharpness = _descriptor.cornerWeights[i];
@@ -348,9 +348,9 @@ Status DescriptorReader::readTags() {
     return status;
 }
 
-Status DescriptorReader::readChannel(int channel) {
+CallStatus DescriptorReader::readChannel(int channel) {
     Far::TopologyDescriptor::FVarChannel const &fvar = _descriptor.fvarChannels[channel];
-    Status status = CheckValues(fvar.valueIndices, _level.numCorners, fvar.numValues, channel);
+    CallStatus status = CheckValues(fvar.valueIndices, _level.numCorners, fvar.numValues, channel);
     if (!status.IsOk()) {
         return status;
     }
@@ -360,9 +360,9 @@ Status DescriptorReader::readChannel(int channel) {
                             _mesh.GetSchemeOptions().GetFVarLinearInterpolation());
 }
 
-Status DescriptorReader::Read() {
-    Status status = readFaces();
-    Status const topology = status; // with its warnings
+CallStatus DescriptorReader::Read() {
+    CallStatus status = readFaces();
+    CallStatus const topology = status; // with its warnings
     if (status.IsOk()) {
         status = readTags();
     }
@@ -374,11 +374,11 @@ Status DescriptorReader::Read() {
 
 } // namespace
 
-Status ReadRefiner(Far::TopologyRefiner const &base, BaseMesh &mesh) {
+CallStatus ReadRefiner(Far::TopologyRefiner const &base, BaseMesh &mesh) {
     return RefinerReader(base, mesh).Read();
 }
 
-Status ReadDescriptor(Far::TopologyDescriptor const &descriptor, BaseMesh &mesh) {
+CallStatus ReadDescriptor(Far::TopologyDescriptor const &descriptor, BaseMesh &mesh) {
     return DescriptorReader(descriptor, mesh).Read();
 }
 

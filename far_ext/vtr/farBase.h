@@ -10,15 +10,15 @@
 namespace OpenSubdivHex::FarExt::internal {
 
 /// @name Base meshes as Far has them
-/// Each reads all of the base into \p mesh, whose options are those of the base.  A Status that is Ok
+/// Each reads all of the base into \p mesh, whose options are those of the base.  A CallStatus that is Ok
 /// may have warnings.
 /// @{
 
 /// The base level of a refiner, with its own numbers of edges.
-Status ReadRefiner(Far::TopologyRefiner const &base, BaseMesh &mesh);
+CallStatus ReadRefiner(Far::TopologyRefiner const &base, BaseMesh &mesh);
 
 /// A descriptor, whose edges are numbered as Far does.
-Status ReadDescriptor(Far::TopologyDescriptor const &descriptor, BaseMesh &mesh);
+CallStatus ReadDescriptor(Far::TopologyDescriptor const &descriptor, BaseMesh &mesh);
 /// @}
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -15,7 +15,7 @@ namespace {
 std::string str(std::int64_t number) { return std::to_string(number); }
 
 // An array of a descriptor that has a count.
-Status checkArray(int count, void const *array, std::string const &name) {
+CallStatus checkArray(int count, void const *array, std::string const &name) {
     if (count < 0) {
         return Failure(StatusCode::InvalidArgument,
                        "the descriptor has " + str(count) + " entries in " + name);
@@ -24,20 +24,20 @@ Status checkArray(int count, void const *array, std::string const &name) {
         return Failure(StatusCode::InvalidArgument, "the descriptor has no array " + name +
                                                         ", but " + str(count) + " entries in it");
     }
-    return Status();
+    return CallStatus();
 }
 
 template <typename ENUM>
-Status checkEnum(int value, ENUM last, std::string const &name) {
+CallStatus checkEnum(int value, ENUM last, std::string const &name) {
     return IsInEnum(value, last)
-               ? Status()
+               ? CallStatus()
                : Failure(StatusCode::InvalidArgument, "there is no " + name + " " + str(value));
 }
 
 } // namespace
 
-Status CheckOptions(HexSchemeOptions schemeOptions, Sdc::Options sdcOptions) {
-    for (Status const &status :
+CallStatus CheckOptions(HexSchemeOptions schemeOptions, Sdc::Options sdcOptions) {
+    for (CallStatus const &status :
          {checkEnum(int(schemeOptions.faceMask), FaceMask::Smooth, "faceMask"),
           checkEnum(int(schemeOptions.schemeType), SchemeType::TriHex, "schemeType"),
           checkEnum(int(schemeOptions.firstStep), FirstStep::Truncate, "firstStep"),
@@ -51,12 +51,12 @@ Status CheckOptions(HexSchemeOptions schemeOptions, Sdc::Options sdcOptions) {
             return status;
         }
     }
-    return Status();
+    return CallStatus();
 }
 
-Status CheckCounts(int numVertices, int numFaces) {
+CallStatus CheckCounts(int numVertices, int numFaces) {
     if (numVertices > 0 && numFaces > 0) {
-        return Status();
+        return CallStatus();
     }
     if (numVertices < 0 || numFaces < 0) {
         return Failure(StatusCode::InvalidTopology, "the mesh has " + str(numVertices) +
@@ -68,15 +68,15 @@ Status CheckCounts(int numVertices, int numFaces) {
 }
 
 // Not a number is less than 0, too.
-Status SharpnessFailure(float sharpness, ComponentType component, Index index,
-                        std::string const &name) {
+CallStatus SharpnessFailure(float sharpness, ComponentType component, Index index,
+                            std::string const &name) {
     char number[32];
     std::snprintf(number, sizeof number, "%g", double(sharpness));
-    return Status(StatusCode::InvalidTopology, component, index,
-                  name + " has sharpness " + number + ", but a sharpness is 0 or more");
+    return CallStatus(StatusCode::InvalidTopology, component, index,
+                      name + " has sharpness " + number + ", but a sharpness is 0 or more");
 }
 
-Status IndexFailure(Index index, int count, ComponentType component, std::string const &name) {
+CallStatus IndexFailure(Index index, int count, ComponentType component, std::string const &name) {
     std::pair<char const *, char const *> names = {"value", "values"};
     switch (component) {
     case ComponentType::Face:
@@ -88,28 +88,28 @@ Status IndexFailure(Index index, int count, ComponentType component, std::string
     case ComponentType::Vertex:
         names = {"vertex", "vertices"};
         break;
-    case ComponentType::None:
+    case ComponentType::NoComponent:
     case ComponentType::Level:
         break;
     }
     std::string const range = count > 0 ? " go from 0 to " + str(count - 1) : " are none";
-    return Status(StatusCode::InvalidTopology, component, index,
-                  name + " refers to " + names.first + " " + str(index) + ", but " + names.second +
-                      range);
+    return CallStatus(StatusCode::InvalidTopology, component, index,
+                      name + " refers to " + names.first + " " + str(index) + ", but " +
+                          names.second + range);
 }
 
-Status CheckValues(Index const *values, Index numCorners, Index numValues, int channel) {
+CallStatus CheckValues(Index const *values, Index numCorners, Index numValues, int channel) {
     std::vector<Index> const wrong = ParallelSelect(numCorners, [values, numValues](Index corner) {
         return unsigned(values[corner]) >= unsigned(numValues);
     });
-    return wrong.empty() ? Status()
-                         : IndexFailure(values[wrong[0]], numValues, ComponentType::None,
+    return wrong.empty() ? CallStatus()
+                         : IndexFailure(values[wrong[0]], numValues, ComponentType::NoComponent,
                                         "corner " + str(wrong[0]) + " of face-varying channel " +
                                             str(channel));
 }
 
-Status CheckArrays(Far::TopologyDescriptor const &descriptor) {
-    Status status;
+CallStatus CheckArrays(Far::TopologyDescriptor const &descriptor) {
+    CallStatus status;
     auto const check = [&](int count, void const *array, std::string const &name) {
         if (status.IsOk()) {
             status = checkArray(count, array, name);
@@ -136,15 +136,15 @@ Status CheckArrays(Far::TopologyDescriptor const &descriptor) {
 }
 
 // Schemes without rules for sharp features and seams take none.
-Status CheckScheme(HexSchemeOptions schemeOptions, Hierarchy const &base) {
+CallStatus CheckScheme(HexSchemeOptions schemeOptions, Hierarchy const &base) {
     Level const &level = base.mesh.levels[0];
     auto const unsupported = [](ComponentType component, Index index, std::string const &what) {
-        return Status(StatusCode::Unsupported, component, index,
-                      what + ", which only the hexagonal scheme has rules for");
+        return CallStatus(StatusCode::Unsupported, component, index,
+                          what + ", which only the hexagonal scheme has rules for");
     };
     if (schemeOptions.schemeType == SchemeType::Hexagonal &&
         schemeOptions.firstStep != FirstStep::TriHex) {
-        return Status();
+        return CallStatus();
     }
     if (!level.nonManifoldEdges.empty()) {
         Index const edge = level.nonManifoldEdges[0];
@@ -167,10 +167,10 @@ Status CheckScheme(HexSchemeOptions schemeOptions, Hierarchy const &base) {
         }
     }
     if (!base.channels.empty()) {
-        return unsupported(ComponentType::None, Far::INDEX_INVALID,
+        return unsupported(ComponentType::NoComponent, Far::INDEX_INVALID,
                            "the mesh has face-varying channels");
     }
-    return Status();
+    return CallStatus();
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

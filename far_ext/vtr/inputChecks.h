@@ -11,36 +11,37 @@
 namespace OpenSubdivHex::FarExt::internal {
 
 /// @name What the input of a refiner may be
-/// Each returns Ok, or a Status that names the component and what is wrong with it.
+/// Each returns Ok, or a CallStatus that names the component and what is wrong with it.
 /// @{
 
 /// Options that are none of their enumerations' values.
-Status CheckOptions(HexSchemeOptions schemeOptions, Sdc::Options sdcOptions);
+CallStatus CheckOptions(HexSchemeOptions schemeOptions, Sdc::Options sdcOptions);
 /// A mesh without vertices or faces.
-Status CheckCounts(int numVertices, int numFaces);
+CallStatus CheckCounts(int numVertices, int numFaces);
 /// Arrays of a descriptor that are not there.
-Status CheckArrays(Far::TopologyDescriptor const &descriptor);
+CallStatus CheckArrays(Far::TopologyDescriptor const &descriptor);
 /// Values of the corners of a face-varying channel.
-Status CheckValues(Far::Index const *values, Far::Index numCorners, Far::Index numValues,
-                   int channel);
+CallStatus CheckValues(Far::Index const *values, Far::Index numCorners, Far::Index numValues,
+                       int channel);
 /// Features that the scheme has no rules for.
-Status CheckScheme(HexSchemeOptions schemeOptions, Hierarchy const &base);
+CallStatus CheckScheme(HexSchemeOptions schemeOptions, Hierarchy const &base);
 
-Status SharpnessFailure(float sharpness, ComponentType component, Far::Index index,
-                        std::string const &name);
+CallStatus SharpnessFailure(float sharpness, ComponentType component, Far::Index index,
+                            std::string const &name);
 /// An index that is out of range: of a vertex, an edge or a face, as \p component says, else of a value.
-Status IndexFailure(Far::Index index, int count, ComponentType component, std::string const &name);
+CallStatus IndexFailure(Far::Index index, int count, ComponentType component,
+                        std::string const &name);
 
 /// A sharpness that is negative or not a number; \p getName() is called for it alone.
 template <typename GET_NAME>
-Status CheckSharpness(float sharpness, ComponentType component, Far::Index index,
-                      GET_NAME getName) {
-    return sharpness >= 0 ? Status() : SharpnessFailure(sharpness, component, index, getName());
+CallStatus CheckSharpness(float sharpness, ComponentType component, Far::Index index,
+                          GET_NAME getName) {
+    return sharpness >= 0 ? CallStatus() : SharpnessFailure(sharpness, component, index, getName());
 }
 /// An index that is not below \p count.
 template <typename GET_NAME>
-Status CheckIndex(Far::Index index, int count, ComponentType component, GET_NAME getName) {
-    return 0 <= index && index < count ? Status()
+CallStatus CheckIndex(Far::Index index, int count, ComponentType component, GET_NAME getName) {
+    return 0 <= index && index < count ? CallStatus()
                                        : IndexFailure(index, count, component, getName());
 }
 /// @}

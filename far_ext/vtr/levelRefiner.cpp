@@ -50,8 +50,8 @@ bool LevelRefiner::isSizeOpen(StepType step, bool hasLabels, ExpectedSizes const
            (step == StepType::Truncate && (isCut || !sizes.IsClosed()));
 }
 
-Status LevelRefiner::CheckSizes(HexSchemeOptions schemeOptions, Far::ConstIndexArray faceLabels,
-                                int refinementLevel) const {
+CallStatus LevelRefiner::CheckSizes(HexSchemeOptions schemeOptions, Far::ConstIndexArray faceLabels,
+                                    int refinementLevel) const {
     for (std::size_t i = 0; i < _checkers.size(); ++i) {
         SizeChecker checker = _checkers[i];
         Level const &last = _hierarchy.GetMesh(int(i) - 1).levels[std::size_t(_numLevels) - 1];
@@ -65,20 +65,20 @@ Status LevelRefiner::CheckSizes(HexSchemeOptions schemeOptions, Far::ConstIndexA
                 break;
             }
             sizes.Refine(step);
-            if (Status status = checker.Add(sizes.sizes); !status.IsOk()) {
+            if (CallStatus status = checker.Add(sizes.sizes); !status.IsOk()) {
                 return status;
             }
         }
     }
-    return Status();
+    return CallStatus();
 }
 
-Status LevelRefiner::CheckLeastSizes(bool closeGaps, int refinementLevel) const {
+CallStatus LevelRefiner::CheckLeastSizes(bool closeGaps, int refinementLevel) const {
     Level const &base = _hierarchy.mesh.levels[0];
     ExpectedSizes sizes(base);
     sizes.CountFans(base);
     SizeChecker checker(sizes.sizes, " or more");
-    Status status;
+    CallStatus status;
     for (int level = 1; level <= refinementLevel && status.IsOk(); ++level) {
         sizes.RefineToLeast(closeGaps);
         status = checker.Add(sizes.sizes);
@@ -86,12 +86,12 @@ Status LevelRefiner::CheckLeastSizes(bool closeGaps, int refinementLevel) const 
     return status;
 }
 
-Status LevelRefiner::AddLevel(PolygonRules const &rules, bool fullTopology) {
+CallStatus LevelRefiner::AddLevel(PolygonRules const &rules, bool fullTopology) {
     bool const isPlain = rules.step == StepType::Hexagonal && rules.flatEdges.empty();
-    Status status = isPlain ? addHexagonalLevel(fullTopology)
-                    : rules.step == StepType::Truncate
-                        ? addTruncation(rules.faceLabels, fullTopology)
-                        : addPolygonLevel(rules, fullTopology);
+    CallStatus status = isPlain ? addHexagonalLevel(fullTopology)
+                        : rules.step == StepType::Truncate
+                            ? addTruncation(rules.faceLabels, fullTopology)
+                            : addPolygonLevel(rules, fullTopology);
     if (status.IsOk()) {
         relateChannels();
         _hierarchy.numLevels = ++_numLevels;
@@ -99,24 +99,24 @@ Status LevelRefiner::AddLevel(PolygonRules const &rules, bool fullTopology) {
     return status;
 }
 
-Status LevelRefiner::addHexagonalLevel(bool fullTopology) {
+CallStatus LevelRefiner::addHexagonalLevel(bool fullTopology) {
     auto const refine = [&](MeshLevels &mesh, SizeChecker &checker) {
         NextLevel next(mesh, _numLevels);
-        Status status = checker.Add(GetHexagonalSizes(GetSizes(next.parent)));
+        CallStatus status = checker.Add(GetHexagonalSizes(GetSizes(next.parent)));
         if (status.IsOk()) {
             RefineHexagonally(next.parent, _sdcOptions, fullTopology, next.refinement, next.child);
             FindIrregularFeatures(_faceMask, next.refinement, next.child);
         }
         return status;
     };
-    Status status = refine(_hierarchy.mesh, _checkers[0]);
+    CallStatus status = refine(_hierarchy.mesh, _checkers[0]);
     for (std::size_t i = 0; i < _hierarchy.channels.size() && status.IsOk(); ++i) {
         status = refine(_hierarchy.channels[i].values, _checkers[i + 1]);
     }
     return status;
 }
 
-Status LevelRefiner::addPolygonLevel(PolygonRules const &rules, bool fullTopology) {
+CallStatus LevelRefiner::addPolygonLevel(PolygonRules const &rules, bool fullTopology) {
     std::size_t const last = std::size_t(_numLevels) - 1;
     Level const &mesh = _hierarchy.mesh.levels[last];
     std::deque<PolygonRefiner> refiners;
@@ -128,7 +128,7 @@ Status LevelRefiner::addPolygonLevel(PolygonRules const &rules, bool fullTopolog
     return addLevels(refiners, fullTopology);
 }
 
-Status LevelRefiner::addTruncation(Far::ConstIndexArray faceLabels, bool fullTopology) {
+CallStatus LevelRefiner::addTruncation(Far::ConstIndexArray faceLabels, bool fullTopology) {
     Level const &mesh = _hierarchy.mesh.levels[0];
     EndCuts const cuts = FindEndCuts(_hierarchy, faceLabels);
     std::deque<TruncationRefiner> refiners;
@@ -142,9 +142,9 @@ Status LevelRefiner::addTruncation(Far::ConstIndexArray faceLabels, bool fullTop
 
 // Adds the levels of the mesh and of each channel, whose refiners have counted them.
 template <class REFINER>
-Status LevelRefiner::addLevels(std::deque<REFINER> &refiners, bool fullTopology) {
+CallStatus LevelRefiner::addLevels(std::deque<REFINER> &refiners, bool fullTopology) {
     for (std::size_t i = 0; i < refiners.size(); ++i) {
-        if (Status status = _checkers[i].Add(refiners[i].GetSizes()); !status.IsOk()) {
+        if (CallStatus status = _checkers[i].Add(refiners[i].GetSizes()); !status.IsOk()) {
             return status;
         }
     }
@@ -157,7 +157,7 @@ Status LevelRefiner::addLevels(std::deque<REFINER> &refiners, bool fullTopology)
     for (std::size_t i = 0; i < _hierarchy.channels.size(); ++i) {
         refine(refiners[i + 1], _hierarchy.channels[i].values);
     }
-    return Status();
+    return CallStatus();
 }
 
 void LevelRefiner::relateChannels() {

@@ -18,24 +18,24 @@ public:
     /// \brief Checks the sizes of the levels behind the last one, up to \p refinementLevel, as far
     /// as they are known before any is made: all, but for tri-hex refinements of a mesh with
     /// borders, truncations that cut polygons, and what follows them.
-    Status CheckSizes(HexSchemeOptions schemeOptions, Far::ConstIndexArray faceLabels,
-                      int refinementLevel) const;
+    CallStatus CheckSizes(HexSchemeOptions schemeOptions, Far::ConstIndexArray faceLabels,
+                          int refinementLevel) const;
     /// The same for refinement by coplanar faces, as far as sizes are too large whichever edges are
     /// flat.
-    Status CheckLeastSizes(bool closeGaps, int refinementLevel) const;
+    CallStatus CheckLeastSizes(bool closeGaps, int refinementLevel) const;
 
     /// \brief Makes the next level, by the hexagonal refinement where \p rules ask for no other
     /// polygons.
     ///
     /// \return  TooLarge, and no level was added, as where std::bad_alloc is thrown
-    Status AddLevel(PolygonRules const &rules, bool fullTopology);
+    CallStatus AddLevel(PolygonRules const &rules, bool fullTopology);
 
 private:
-    Status addHexagonalLevel(bool fullTopology);
-    Status addPolygonLevel(PolygonRules const &rules, bool fullTopology);
-    Status addTruncation(Far::ConstIndexArray faceLabels, bool fullTopology);
+    CallStatus addHexagonalLevel(bool fullTopology);
+    CallStatus addPolygonLevel(PolygonRules const &rules, bool fullTopology);
+    CallStatus addTruncation(Far::ConstIndexArray faceLabels, bool fullTopology);
     template <class REFINER>
-    Status addLevels(std::deque<REFINER> &refiners, bool fullTopology);
+    CallStatus addLevels(std::deque<REFINER> &refiners, bool fullTopology);
     bool isSizeOpen(StepType step, bool hasLabels, ExpectedSizes const &sizes) const;
     void relateChannels();
 

@@ -16,11 +16,11 @@ struct Count {
     std::int64_t value;
 };
 
-Status tooLarge(int level, Count const &count, std::string const &where) {
-    return Status(StatusCode::TooLarge, ComponentType::Level, level,
-                  "level " + std::to_string(level) + " would have " + std::to_string(count.value) +
-                      " " + count.name + where +
-                      ", more than the 2147483647 that 32-bit indices reach");
+CallStatus tooLarge(int level, Count const &count, std::string const &where) {
+    return CallStatus(StatusCode::TooLarge, ComponentType::Level, level,
+                      "level " + std::to_string(level) + " would have " +
+                          std::to_string(count.value) + " " + count.name + where +
+                          ", more than the 2147483647 that 32-bit indices reach");
 }
 
 } // namespace
@@ -123,7 +123,7 @@ void ExpectedSizes::RefineToLeast(bool closeGaps) {
     }
 }
 
-Status SizeChecker::Add(LevelSizes const &sizes) {
+CallStatus SizeChecker::Add(LevelSizes const &sizes) {
     ++_level;
     _total.vertices += sizes.vertices;
     _total.edges += sizes.edges;
@@ -144,7 +144,7 @@ Status SizeChecker::Add(LevelSizes const &sizes) {
             return tooLarge(_level, count, _place + " together with the levels before");
         }
     }
-    return Status();
+    return CallStatus();
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -56,7 +56,7 @@ public:
         : _total(baseSizes), _place(std::move(place)) {}
 
     /// Adds the next level.  Returns TooLarge, with the level and the count, or Ok.
-    Status Add(LevelSizes const &sizes);
+    CallStatus Add(LevelSizes const &sizes);
 
 private:
     int _level = 0;

@@ -24,16 +24,16 @@ public:
                (!_refinement || (checkFFaces() && checkEFaces() && checkVFaces()));
     }
 
-    Status const &GetStatus() const { return _status; }
+    CallStatus const &GetStatus() const { return _status; }
 
 private:
     bool require(bool holds, ComponentType component, Index index, char const *cause) {
         if (!holds && _status.IsOk()) {
             static char const *const kNames[] = {"level", "face", "edge", "vertex", "level"};
             _status =
-                Status(StatusCode::InvalidTopology, component, index,
-                       "level " + std::to_string(_level.depth) + ", " + kNames[int(component)] +
-                           " " + std::to_string(index) + ": " + cause);
+                CallStatus(StatusCode::InvalidTopology, component, index,
+                           "level " + std::to_string(_level.depth) + ", " + kNames[int(component)] +
+                               " " + std::to_string(index) + ": " + cause);
         }
         return holds;
     }
@@ -71,7 +71,7 @@ private:
 
     Level const &_level;
     Refinement const *_refinement; // that made the level
-    Status _status;
+    CallStatus _status;
 };
 
 bool Validator::checkSizes() {
@@ -344,9 +344,9 @@ bool Validator::checkVFaces() {
 
 } // namespace
 
-Status Validate(Level const &level, Refinement const *refinement) {
+CallStatus Validate(Level const &level, Refinement const *refinement) {
     Validator validator(level, refinement);
-    return validator.Run() ? Status() : validator.GetStatus();
+    return validator.Run() ? CallStatus() : validator.GetStatus();
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

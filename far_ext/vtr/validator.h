@@ -10,7 +10,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// by \p refinement, null for a level 0.
 ///
 /// \return  InvalidTopology, which names the first component that breaks one, or Ok
-Status Validate(Level const &level, Refinement const *refinement);
+CallStatus Validate(Level const &level, Refinement const *refinement);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -4,7 +4,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 
 namespace {
@@ -25,7 +25,7 @@ void *getAddress(DeviceBufferName buffer) {
 
 } // namespace
 
-Status CudaDevice::CheckContext() const {
+CallStatus CudaDevice::CheckContext() const {
     int numDevices = 0;
     cudaError_t const error = cudaGetDeviceCount(&numDevices);
     if (error != cudaSuccess || numDevices == 0) {
@@ -35,7 +35,7 @@ Status CudaDevice::CheckContext() const {
             std::string("there is no device of CUDA") +
                 (error != cudaSuccess ? std::string(": ") + cudaGetErrorString(error) : ""));
     }
-    return Status();
+    return CallStatus();
 }
 
 DeviceBufferName CudaDevice::Allocate(std::int64_t numBytes) {
@@ -55,13 +55,13 @@ void CudaDevice::Write(DeviceBufferName buffer, std::int64_t firstByte, void con
     ThrowCudaError(cudaStreamSynchronize(_stream));
 }
 
-Status CudaDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t /*numFloats*/,
-                               std::string const &what) const {
+CallStatus CudaDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t /*numFloats*/,
+                                   std::string const &what) const {
     cudaPointerAttributes attributes;
     bool const isKnown =
         buffer != 0 && cudaPointerGetAttributes(&attributes, getAddress(buffer)) == cudaSuccess;
     if (isKnown && attributes.devicePointer != nullptr) {
-        return Status();
+        return CallStatus();
     }
     cudaGetLastError();
     return FarExt::internal::Failure(StatusCode::InvalidArgument,
@@ -70,8 +70,8 @@ Status CudaDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t /*numFloats
 }
 
 // All have been compiled with the library.
-Status CudaDevice::Prepare(DeviceKernel /*kernel*/, int /*length*/, int /*faceSize*/) {
-    return Status();
+CallStatus CudaDevice::Prepare(DeviceKernel /*kernel*/, int /*length*/, int /*faceSize*/) {
+    return CallStatus();
 }
 
 void CudaDevice::Run(DeviceTask const &task) {
@@ -89,6 +89,6 @@ void CudaDevice::Run(DeviceTask const &task) {
 // Kernels of a stream run one behind the other.
 void CudaDevice::Wait() {}
 
-Status CudaDevice::EndFrame() { return GetCudaStatus(cudaGetLastError()); }
+CallStatus CudaDevice::EndFrame() { return GetCudaStatus(cudaGetLastError()); }
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -15,18 +15,18 @@ public:
     /// Where all is done from now on.
     void SetStream(CudaStream stream) { _stream = stream; }
 
-    FarExt::Status CheckContext() const override;
+    FarExt::CallStatus CheckContext() const override;
     std::int64_t GetMaxBytes() const override { return std::numeric_limits<std::int64_t>::max(); }
     DeviceBufferName Allocate(std::int64_t numBytes) override;
     void Free(DeviceBufferName buffer) override;
     void Write(DeviceBufferName buffer, std::int64_t firstByte, void const *data,
                std::int64_t numBytes) override;
-    FarExt::Status CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
-                               std::string const &what) const override;
-    FarExt::Status Prepare(DeviceKernel kernel, int length, int faceSize) override;
+    FarExt::CallStatus CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
+                                   std::string const &what) const override;
+    FarExt::CallStatus Prepare(DeviceKernel kernel, int length, int faceSize) override;
     void Run(DeviceTask const &task) override;
     void Wait() override;
-    FarExt::Status EndFrame() override;
+    FarExt::CallStatus EndFrame() override;
 
 private:
     CudaStream _stream = nullptr;

@@ -13,9 +13,9 @@
 namespace OpenSubdivHex::OsdExt::internal {
 
 /// What an error of CUDA is to users.
-inline FarExt::Status GetCudaStatus(cudaError_t error) {
+inline FarExt::CallStatus GetCudaStatus(cudaError_t error) {
     if (error == cudaSuccess) {
-        return FarExt::Status();
+        return FarExt::CallStatus();
     }
     return FarExt::internal::Failure(FarExt::StatusCode::Unsupported,
                                      std::string("CUDA: ") + cudaGetErrorString(error));
@@ -31,7 +31,7 @@ inline void ThrowCudaError(cudaError_t error) {
     if (error == cudaErrorMemoryAllocation) {
         throw std::bad_alloc();
     }
-    throw std::runtime_error(GetCudaStatus(error).GetMessage());
+    throw std::runtime_error(GetCudaStatus(error).GetErrorMessage());
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -34,10 +34,10 @@ DeviceArguments DeviceTask::GetArguments() const {
 
 Device::~Device() = default;
 
-FarExt::Status Device::CheckSize(std::int64_t numBytes, std::string const &what) const {
+FarExt::CallStatus Device::CheckSize(std::int64_t numBytes, std::string const &what) const {
     std::int64_t const maxBytes = GetMaxBytes();
     return numBytes <= maxBytes
-               ? FarExt::Status()
+               ? FarExt::CallStatus()
                : FarExt::internal::Failure(FarExt::StatusCode::TooLarge,
                                            what + " would take " + std::to_string(numBytes) +
                                                " bytes, and the device reaches " +

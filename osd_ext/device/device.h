@@ -47,14 +47,14 @@ public:
     virtual ~Device();
 
     /// Whether anything can be run at all.
-    virtual FarExt::Status CheckContext() const = 0;
+    virtual FarExt::CallStatus CheckContext() const = 0;
 
     /// \brief How many bytes of a buffer kernels reach.
     virtual std::int64_t GetMaxBytes() const = 0;
     /// \brief TooLarge for a buffer of more bytes than GetMaxBytes().
     ///
     /// \param what  names it in the message
-    FarExt::Status CheckSize(std::int64_t numBytes, std::string const &what) const;
+    FarExt::CallStatus CheckSize(std::int64_t numBytes, std::string const &what) const;
 
     /// Gives a buffer of \p numBytes, 1 or more, whose content is not known.
     virtual DeviceBufferName Allocate(std::int64_t numBytes) = 0;
@@ -71,8 +71,8 @@ public:
     /// \brief Whether a user's buffer is one, and has \p numFloats or more.
     ///
     /// \param what  names it in the message
-    virtual FarExt::Status CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
-                                       std::string const &what) const = 0;
+    virtual FarExt::CallStatus CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
+                                           std::string const &what) const = 0;
 
     /// \brief Whether few invocations that do much each are best, since few run at a time.
     ///
@@ -81,13 +81,13 @@ public:
     virtual bool IsSerial() { return false; }
 
     /// Makes a kernel ready to be run.
-    virtual FarExt::Status Prepare(DeviceKernel kernel, int length, int faceSize) = 0;
+    virtual FarExt::CallStatus Prepare(DeviceKernel kernel, int length, int faceSize) = 0;
     /// Runs a kernel that is ready, behind all before it that wrote what Wait() stood behind.
     virtual void Run(DeviceTask const &task) = 0;
     /// What runs afterwards sees what was written before.
     virtual void Wait() = 0;
     /// Ends a frame: leaves the device as others expect it.
-    virtual FarExt::Status EndFrame() = 0;
+    virtual FarExt::CallStatus EndFrame() = 0;
 };
 
 /// \brief A buffer of a device, freed with this.

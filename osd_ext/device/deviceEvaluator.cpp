@@ -14,7 +14,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 using FarExt::internal::FVarChannel;
 using FarExt::internal::MeshLevels;
@@ -29,9 +29,9 @@ template <class RECORD>
 constexpr auto kWordsOf = std::int64_t(sizeof(RECORD)) / kWord;
 
 // Positions in arrays of the device are kept in 32 bits.
-Status checkPositions(std::int64_t count, std::string const &what) {
+CallStatus checkPositions(std::int64_t count, std::string const &what) {
     constexpr std::int64_t kMax = std::numeric_limits<std::uint32_t>::max();
-    return count <= kMax ? Status()
+    return count <= kMax ? CallStatus()
                          : FarExt::internal::Failure(StatusCode::TooLarge,
                                                      what + " are " + std::to_string(count) +
                                                          ", more than the " + std::to_string(kMax) +
@@ -56,9 +56,9 @@ DeviceEvaluator::DeviceEvaluator(std::unique_ptr<Device> device,
       _indices(*_device), _weights(*_device), _controlValues(*_device), _evenLevel(*_device),
       _oddLevel(*_device) {}
 
-Status DeviceEvaluator::Prepare(Options options) {
-    Status status = FarExt::internal::CheckStencilMode(_refiner, options.interpolationMode,
-                                                       options.fvarChannel);
+CallStatus DeviceEvaluator::Prepare(Options options) {
+    CallStatus status = FarExt::internal::CheckStencilMode(_refiner, options.interpolationMode,
+                                                           options.fvarChannel);
     if (status.IsOk()) {
         status = _device->CheckContext();
     }
@@ -113,9 +113,9 @@ Status DeviceEvaluator::Prepare(Options options) {
 }
 
 // The indices of the refinements, then what they list, then the values of vertices.
-Status DeviceEvaluator::loadIndices(std::size_t numIndices,
-                                    std::function<void(std::int32_t *)> const &fill,
-                                    std::vector<std::int32_t> const &values) {
+CallStatus DeviceEvaluator::loadIndices(std::size_t numIndices,
+                                        std::function<void(std::int32_t *)> const &fill,
+                                        std::vector<std::int32_t> const &values) {
     auto next = std::int64_t(numIndices);
     auto const take = [&](std::int64_t count) {
         auto const first = std::uint32_t(next);
@@ -129,7 +129,7 @@ Status DeviceEvaluator::loadIndices(std::size_t numIndices,
             {corners, take(kWordsOf<DeviceVertex> * std::int64_t(refinement.vertices.size()))});
     }
     _firstValue = take(std::int64_t(values.size()));
-    Status status = checkPositions(next, "the indices of the refinements");
+    CallStatus status = checkPositions(next, "the indices of the refinements");
     if (status.IsOk()) {
         status = _device->CheckSize(next * kWord, "the indices of the refinements");
     }
@@ -164,9 +164,9 @@ std::int64_t DeviceEvaluator::GetNumDeviceBytes() const {
     return result;
 }
 
-Status DeviceEvaluator::check(Values const &src, std::vector<Values> const &outputs, int level,
-                              std::int64_t numWritten) const {
-    Status status = CheckLevel(level, GetMaxLevel());
+CallStatus DeviceEvaluator::check(Values const &src, std::vector<Values> const &outputs, int level,
+                                  std::int64_t numWritten) const {
+    CallStatus status = CheckLevel(level, GetMaxLevel());
     auto const checkBuffer = [&](Values const &values, std::int64_t count,
                                  std::string const &what) {
         if (status.IsOk() && count > 0) {
@@ -217,9 +217,9 @@ void DeviceEvaluator::Frame::Wait() {
     }
 }
 
-Status DeviceEvaluator::Frame::Run(Device &device) const {
+CallStatus DeviceEvaluator::Frame::Run(Device &device) const {
     for (Step const &step : _steps) {
-        Status status = device.Prepare(step.task.kernel, step.task.length, step.task.faceSize);
+        CallStatus status = device.Prepare(step.task.kernel, step.task.length, step.task.faceSize);
         if (!status.IsOk()) {
             return status;
         }
@@ -307,11 +307,11 @@ void DeviceEvaluator::refine(Frame &frame, std::size_t number, Elements const &s
     frame.Wait();
 }
 
-Status DeviceEvaluator::Evaluate(Values const &src, Values const &dst, int level) {
+CallStatus DeviceEvaluator::Evaluate(Values const &src, Values const &dst, int level) {
     bool const isLevel = level >= 0 && level <= GetMaxLevel();
     std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
     int const length = src.desc.length;
-    Status status = check(src, {dst}, level, numWritten);
+    CallStatus status = check(src, {dst}, level, numWritten);
     if (!status.IsOk() || numWritten == 0) {
         return status;
     }
@@ -334,10 +334,10 @@ Status DeviceEvaluator::Evaluate(Values const &src, Values const &dst, int level
     return frame.Run(*_device);
 }
 
-Status DeviceEvaluator::EvaluateAllLevels(Values const &src, Values const &dst) {
+CallStatus DeviceEvaluator::EvaluateAllLevels(Values const &src, Values const &dst) {
     std::int64_t const numWritten = GetNumElementsAllLevels();
     int const length = src.desc.length;
-    Status status = check(src, {dst}, GetMaxLevel(), numWritten);
+    CallStatus status = check(src, {dst}, GetMaxLevel(), numWritten);
     if (!status.IsOk() || numWritten == 0) {
         return status;
     }
@@ -353,22 +353,22 @@ Status DeviceEvaluator::EvaluateAllLevels(Values const &src, Values const &dst) 
 }
 
 // What is prepared late needs the refiner as it was.
-Status DeviceEvaluator::checkRefiner() const {
+CallStatus DeviceEvaluator::checkRefiner() const {
     return _refiner.GetNumRefinements() == _numRefinements
-               ? Status()
+               ? CallStatus()
                : FarExt::internal::Failure(
                      StatusCode::InvalidArgument,
                      "the refiner has refined again since the evaluator was made");
 }
 
 // Finds the masks of a level, unless it has, and loads them.
-Status DeviceEvaluator::prepareLimit(int level) {
+CallStatus DeviceEvaluator::prepareLimit(int level) {
     _limits.resize(_numElements.size());
     std::unique_ptr<Limit> &limit = _limits[std::size_t(level)];
     if (limit) {
-        return Status();
+        return CallStatus();
     }
-    Status status = checkRefiner();
+    CallStatus status = checkRefiner();
     if (!status.IsOk()) {
         return status;
     }
@@ -422,12 +422,12 @@ Status DeviceEvaluator::prepareLimit(int level) {
     return status;
 }
 
-Status DeviceEvaluator::EvaluateLimit(Values const &src, std::vector<Values> const &outputs,
-                                      int level) {
+CallStatus DeviceEvaluator::EvaluateLimit(Values const &src, std::vector<Values> const &outputs,
+                                          int level) {
     bool const isLevel = level >= 0 && level <= GetMaxLevel();
     std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
     int const length = src.desc.length;
-    Status status = check(src, outputs, level, numWritten);
+    CallStatus status = check(src, outputs, level, numWritten);
     if (status.IsOk() && !_isOfVertices) {
         status = FarExt::internal::Failure(StatusCode::InvalidArgument,
                                            "there is a limit for INTERPOLATE_VERTEX alone");
@@ -562,12 +562,12 @@ void DeviceEvaluator::runLimit(Frame &frame, DeviceTask &task, Limit const &limi
 }
 
 // Loads the faces of a level, unless it has.
-Status DeviceEvaluator::prepareFaces(int level) {
+CallStatus DeviceEvaluator::prepareFaces(int level) {
     _faces.resize(_numElements.size());
     if (_faces[std::size_t(level)]) {
-        return Status();
+        return CallStatus();
     }
-    Status status = checkRefiner();
+    CallStatus status = checkRefiner();
     if (!status.IsOk()) {
         return status;
     }
@@ -607,8 +607,8 @@ Status DeviceEvaluator::prepareFaces(int level) {
     return status;
 }
 
-Status DeviceEvaluator::MakeTriangleIndices(DeviceBufferName dst, int level, int vertexOffset) {
-    Status status = CheckLevel(level, GetMaxLevel());
+CallStatus DeviceEvaluator::MakeTriangleIndices(DeviceBufferName dst, int level, int vertexOffset) {
+    CallStatus status = CheckLevel(level, GetMaxLevel());
     if (status.IsOk() && _isFaceVarying) {
         status = FarExt::internal::Failure(StatusCode::InvalidArgument,
                                            "there are no triangles of face-varying values");

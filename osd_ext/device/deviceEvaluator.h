@@ -33,7 +33,7 @@ public:
     DeviceEvaluator(std::unique_ptr<Device> device, FarExt::TopologyRefiner const &refiner);
 
     /// Loads what the device needs for all levels.
-    FarExt::Status Prepare(Options options);
+    FarExt::CallStatus Prepare(Options options);
 
     Device &GetDevice() const { return *_device; }
     int GetMaxLevel() const { return int(_numElements.size()) - 1; }
@@ -43,10 +43,11 @@ public:
 
     /// @name As in RefinementEvaluator
     /// @{
-    FarExt::Status Evaluate(Values const &src, Values const &dst, int level);
-    FarExt::Status EvaluateAllLevels(Values const &src, Values const &dst);
+    FarExt::CallStatus Evaluate(Values const &src, Values const &dst, int level);
+    FarExt::CallStatus EvaluateAllLevels(Values const &src, Values const &dst);
     /// \param outputs  the points, or with du and dv behind them
-    FarExt::Status EvaluateLimit(Values const &src, std::vector<Values> const &outputs, int level);
+    FarExt::CallStatus EvaluateLimit(Values const &src, std::vector<Values> const &outputs,
+                                     int level);
     /// @}
 
     /// Of a level whose faces are all drawn whole.
@@ -55,7 +56,7 @@ public:
     /// them.
     ///
     /// \param dst  a buffer of unsigned integers of 32 bits
-    FarExt::Status MakeTriangleIndices(DeviceBufferName dst, int level, int vertexOffset);
+    FarExt::CallStatus MakeTriangleIndices(DeviceBufferName dst, int level, int vertexOffset);
 
 private:
     // Where the listed corners and vertices of a refinement are among the indices.
@@ -76,7 +77,7 @@ private:
         // What is added afterwards sees what was written before.
         void Wait();
         // Runs nothing if the device does not take all kernels.
-        FarExt::Status Run(Device &device) const;
+        FarExt::CallStatus Run(Device &device) const;
 
     private:
         struct Step {
@@ -118,14 +119,14 @@ private:
         DeviceBuffer indices;
     };
 
-    FarExt::Status loadIndices(std::size_t numIndices,
-                               std::function<void(std::int32_t *)> const &fill,
-                               std::vector<std::int32_t> const &values);
-    FarExt::Status check(Values const &src, std::vector<Values> const &outputs, int level,
-                         std::int64_t numWritten) const;
-    FarExt::Status prepareLimit(int level);
-    FarExt::Status prepareFaces(int level);
-    FarExt::Status checkRefiner() const;
+    FarExt::CallStatus loadIndices(std::size_t numIndices,
+                                   std::function<void(std::int32_t *)> const &fill,
+                                   std::vector<std::int32_t> const &values);
+    FarExt::CallStatus check(Values const &src, std::vector<Values> const &outputs, int level,
+                             std::int64_t numWritten) const;
+    FarExt::CallStatus prepareLimit(int level);
+    FarExt::CallStatus prepareFaces(int level);
+    FarExt::CallStatus checkRefiner() const;
     DeviceTask makeTask(DeviceKernel kernel, int length, Elements const &src,
                         Elements const &dst) const;
     Elements toVertices(Frame &frame, Elements const &src, int length);

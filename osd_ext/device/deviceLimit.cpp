@@ -15,7 +15,7 @@
 namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 using FarExt::internal::kRegularFaceSize;
 using FarExt::internal::LatticeFaces;
@@ -183,11 +183,11 @@ void addVertices(LimitOrigins const &origins, int level, DeviceLimit &limit) {
 
 } // namespace
 
-Status MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
-                       FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows,
-                       DeviceLimit &limit) {
+CallStatus MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
+                           FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows,
+                           DeviceLimit &limit) {
     LimitOrigins origins(mesh, rows);
-    Status result = origins.Find(schemeOptions);
+    CallStatus result = origins.Find(schemeOptions);
     if (!result.IsOk()) {
         return result;
     }

@@ -90,10 +90,10 @@ struct DeviceLimit {
 /// \brief Prepares the limit at the vertices of the level of \p rows, one of \p mesh.
 ///
 /// \return  as FarExt::internal::RegularFaces::FindMasks; TooLarge where 32 bits do not reach
-OPENSUBDIVHEX_API FarExt::Status MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
-                                                 FarExt::HexSchemeOptions const &schemeOptions,
-                                                 FarExt::internal::LimitRows &rows,
-                                                 DeviceLimit &limit);
+OPENSUBDIVHEX_API FarExt::CallStatus MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
+                                                     FarExt::HexSchemeOptions const &schemeOptions,
+                                                     FarExt::internal::LimitRows &rows,
+                                                     DeviceLimit &limit);
 
 } // namespace OpenSubdivHex::OsdExt::internal
 

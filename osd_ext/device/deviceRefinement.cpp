@@ -409,11 +409,11 @@ void Maker::Fill(std::int32_t *indices) const {
 
 } // namespace
 
-FarExt::Status MakeDeviceRefinements(
+FarExt::CallStatus MakeDeviceRefinements(
     std::vector<Refinement const *> const &refinements, std::vector<RefinementMask> const &masks,
     std::vector<float> &weights, std::vector<DeviceRefinement> &result,
-    std::function<FarExt::Status(std::size_t numIndices,
-                                 std::function<void(std::int32_t *)> const &fill)> const &write) {
+    std::function<FarExt::CallStatus(
+        std::size_t numIndices, std::function<void(std::int32_t *)> const &fill)> const &write) {
     std::vector<Maker> makers;
     std::size_t numIndices = 0;
     result.resize(refinements.size());

@@ -95,12 +95,12 @@ struct DeviceRefinement {
 ///
 /// \return  that of \p write; TooLarge, and how many there are, where there are more than 2^32 indices
 ///          or weights
-OPENSUBDIVHEX_API FarExt::Status MakeDeviceRefinements(
+OPENSUBDIVHEX_API FarExt::CallStatus MakeDeviceRefinements(
     std::vector<FarExt::internal::Refinement const *> const &refinements,
     std::vector<FarExt::internal::RefinementMask> const &masks, std::vector<float> &weights,
     std::vector<DeviceRefinement> &result,
-    std::function<FarExt::Status(std::size_t numIndices,
-                                 std::function<void(std::int32_t *)> const &fill)> const &write);
+    std::function<FarExt::CallStatus(
+        std::size_t numIndices, std::function<void(std::int32_t *)> const &fill)> const &write);
 
 } // namespace OpenSubdivHex::OsdExt::internal
 

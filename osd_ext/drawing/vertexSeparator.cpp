@@ -11,7 +11,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 using FarExt::internal::ParallelFor;
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::int64_t kMaxIndex = std::numeric_limits<Far::Index>::max();
 
-Status fail(std::int64_t count, std::string const &what) {
+CallStatus fail(std::int64_t count, std::string const &what) {
     return FarExt::internal::Failure(StatusCode::TooLarge, "there would be " +
                                                                std::to_string(count) + " " + what +
                                                                ", more than 32-bit indices reach");
@@ -31,7 +31,7 @@ VertexSeparator::VertexSeparator(Index numVertices, Index vertexOffset, PolygonI
     : _numVertices(numVertices), _vertexOffset(vertexOffset), _polygons(polygons),
       _firstCorners(new std::atomic<Index>[std::size_t(numVertices)]) {}
 
-Status VertexSeparator::Run() {
+CallStatus VertexSeparator::Run() {
     auto const numCorners = std::int64_t(_polygons.vertices.size());
     if (numCorners > kMaxIndex) {
         return fail(numCorners, "corners of separate vertices");
@@ -51,7 +51,7 @@ Status VertexSeparator::Run() {
     for (std::size_t i = 0; i < corners.size(); ++i) {
         _polygons.vertices[std::size_t(corners[i])] = _vertexOffset + _numVertices + numbers[i];
     }
-    return Status();
+    return CallStatus();
 }
 
 Far::Index VertexSeparator::getVertex(Index corner) const {

@@ -23,7 +23,7 @@ public:
     VertexSeparator(Index numVertices, Index vertexOffset, PolygonIndices &polygons);
 
     /// \return  TooLarge where indices do not reach; the polygons are then as they were
-    FarExt::Status Run();
+    FarExt::CallStatus Run();
 
 private:
     // A vertex that is made, in addition to one that was there.

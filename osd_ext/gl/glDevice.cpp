@@ -9,7 +9,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 
 namespace {
@@ -84,12 +84,12 @@ void set(GLint place, std::uint64_t value) { glUniform1ui(place, GLuint(value));
 
 } // namespace
 
-Status GlDevice::CheckContext() const {
+CallStatus GlDevice::CheckContext() const {
     if (epoxy_gl_version() < kMinVersion || !epoxy_is_desktop_gl()) {
         return FarExt::internal::Failure(StatusCode::Unsupported,
                                          "there is no current context of OpenGL 4.3");
     }
-    return Status();
+    return CallStatus();
 }
 
 std::int64_t GlDevice::GetMaxBytes() const {
@@ -147,8 +147,8 @@ void GlDevice::Fill(DeviceBufferName buffer, std::int64_t numBytes,
     }
 }
 
-Status GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
-                             std::string const &what) const {
+CallStatus GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
+                                 std::string const &what) const {
     auto const fail = [](StatusCode code, std::string const &message) {
         return FarExt::internal::Failure(code, message);
     };
@@ -172,19 +172,19 @@ Status GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
                     "the last element of the " + what + " ends at byte " + str(numNeeded) +
                         ", beyond what this driver reaches: " + str(maxBytes));
     }
-    return Status();
+    return CallStatus();
 }
 
 bool GlDevice::IsSerial() { return _textures.AreFaster(); }
 
-Status GlDevice::Prepare(DeviceKernel kernel, int length, int faceSize) {
+CallStatus GlDevice::Prepare(DeviceKernel kernel, int length, int faceSize) {
     return prepare({kernel, length, faceSize, _textures.AreFaster()});
 }
 
-Status GlDevice::prepare(Key const &key) {
+CallStatus GlDevice::prepare(Key const &key) {
     Kernel &prepared = _kernels[key];
     if (prepared.program) {
-        return Status();
+        return CallStatus();
     }
     auto const [kernel, length, faceSize, readsTextures] = key;
     char const *const name = kNames[int(kernel)];
@@ -210,7 +210,7 @@ Status GlDevice::prepare(Key const &key) {
 #undef PARAMETER_ARRAY
 #undef PARAMETER
 #undef PLACE
-    return Status();
+    return CallStatus();
 }
 
 void GlDevice::Run(DeviceTask const &task) {
@@ -249,7 +249,7 @@ void GlDevice::Wait() {
 }
 
 // Binds nothing, as if nothing had been.
-Status GlDevice::EndFrame() {
+CallStatus GlDevice::EndFrame() {
     glUseProgram(0);
     constexpr GLuint kNumBindings = 8;
     for (GLuint binding = 0; binding < kNumBindings; ++binding) {
@@ -257,7 +257,7 @@ Status GlDevice::EndFrame() {
     }
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
     _textures.Unbind();
-    return std::exchange(_status, Status());
+    return std::exchange(_status, CallStatus());
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

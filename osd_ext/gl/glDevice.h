@@ -18,7 +18,7 @@ namespace OpenSubdivHex::OsdExt::internal {
 /// \brief The current context of OpenGL 4.3 or later.
 class GlDevice : public Device {
 public:
-    FarExt::Status CheckContext() const override;
+    FarExt::CallStatus CheckContext() const override;
     std::int64_t GetMaxBytes() const override;
     DeviceBufferName Allocate(std::int64_t numBytes) override;
     void Free(DeviceBufferName buffer) override;
@@ -26,13 +26,13 @@ public:
                std::int64_t numBytes) override;
     void Fill(DeviceBufferName buffer, std::int64_t numBytes,
               std::function<void(void *)> const &write) override;
-    FarExt::Status CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
-                               std::string const &what) const override;
+    FarExt::CallStatus CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
+                                   std::string const &what) const override;
     bool IsSerial() override;
-    FarExt::Status Prepare(DeviceKernel kernel, int length, int faceSize) override;
+    FarExt::CallStatus Prepare(DeviceKernel kernel, int length, int faceSize) override;
     void Run(DeviceTask const &task) override;
     void Wait() override;
-    FarExt::Status EndFrame() override;
+    FarExt::CallStatus EndFrame() override;
 
 private:
     // With length and face size, and whether arrays are read as textures.
@@ -41,11 +41,11 @@ private:
         std::unique_ptr<GlProgram> program;
         std::vector<GLint> uniforms; // in the order of kernelParameters.inl
     };
-    FarExt::Status prepare(Key const &key);
+    FarExt::CallStatus prepare(Key const &key);
 
     std::map<Key, Kernel> _kernels;
     GlTextures _textures;
-    FarExt::Status _status; // of what was run since the last frame
+    FarExt::CallStatus _status; // of what was run since the last frame
 };
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -7,28 +7,28 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 
 namespace {
 
-Status invalidArgument(std::string const &message) {
+CallStatus invalidArgument(std::string const &message) {
     return FarExt::internal::Failure(StatusCode::InvalidArgument, message);
 }
 
 } // namespace
 
-Status CheckLevel(int level, int maxLevel) {
+CallStatus CheckLevel(int level, int maxLevel) {
     if (0 <= level && level <= maxLevel) {
-        return Status();
+        return CallStatus();
     }
-    return Status(StatusCode::InvalidArgument, FarExt::ComponentType::Level, level,
-                  "level " + std::to_string(level) + " is not between 0 and " +
-                      std::to_string(maxLevel));
+    return CallStatus(StatusCode::InvalidArgument, FarExt::ComponentType::Level, level,
+                      "level " + std::to_string(level) + " is not between 0 and " +
+                          std::to_string(maxLevel));
 }
 
-Status CheckDescriptors(Osd::BufferDescriptor const &srcDesc,
-                        Osd::BufferDescriptor const &dstDesc) {
+CallStatus CheckDescriptors(Osd::BufferDescriptor const &srcDesc,
+                            Osd::BufferDescriptor const &dstDesc) {
     if (srcDesc.length < 1 || srcDesc.length != dstDesc.length) {
         return invalidArgument("the lengths of source and destination are " +
                                std::to_string(srcDesc.length) + " and " +
@@ -41,7 +41,7 @@ Status CheckDescriptors(Osd::BufferDescriptor const &srcDesc,
                                    std::to_string(desc->offset));
         }
     }
-    return Status();
+    return CallStatus();
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -7,11 +7,11 @@
 namespace OpenSubdivHex::OsdExt::internal {
 
 /// Whether \p level is one of 0 ... \p maxLevel.
-OPENSUBDIVHEX_API FarExt::Status CheckLevel(int level, int maxLevel);
+OPENSUBDIVHEX_API FarExt::CallStatus CheckLevel(int level, int maxLevel);
 
 /// Whether the descriptors of a source and a destination fit one another.
-OPENSUBDIVHEX_API FarExt::Status CheckDescriptors(Osd::BufferDescriptor const &srcDesc,
-                                                  Osd::BufferDescriptor const &dstDesc);
+OPENSUBDIVHEX_API FarExt::CallStatus CheckDescriptors(Osd::BufferDescriptor const &srcDesc,
+                                                      Osd::BufferDescriptor const &dstDesc);
 
 } // namespace OpenSubdivHex::OsdExt::internal
 

@@ -9,7 +9,7 @@
 namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::internal::LimitOrigins;
 using FarExt::internal::LimitRow;
 using FarExt::internal::LimitRows;
@@ -36,10 +36,10 @@ void setPlaces(VertexGroup const &group, int member, LimitRow const &row, std::u
 
 } // namespace
 
-Status PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
-                              FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows) {
+CallStatus PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
+                                  FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows) {
     LimitOrigins origins(mesh, rows);
-    Status result = origins.Find(schemeOptions);
+    CallStatus result = origins.Find(schemeOptions);
     if (!result.IsOk()) {
         return result;
     }

@@ -27,9 +27,9 @@ public:
 
     /// Of side 0 of each vertex of the level of \p rows, one of a refiner's \p mesh.
     /// \return  as LimitRows
-    FarExt::Status Prepare(FarExt::internal::MeshLevels const &mesh,
-                           FarExt::HexSchemeOptions const &schemeOptions,
-                           FarExt::internal::LimitRows &rows);
+    FarExt::CallStatus Prepare(FarExt::internal::MeshLevels const &mesh,
+                               FarExt::HexSchemeOptions const &schemeOptions,
+                               FarExt::internal::LimitRows &rows);
 
     /// \brief Writes the outputs of those vertices whose limit follows from \p level, and of others that
     /// are in faces of the level: later levels must come behind.

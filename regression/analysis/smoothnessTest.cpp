@@ -137,7 +137,7 @@ TEST(Smoothness, CurvatureGrowsAsForetold) {
         double const loop = computeLoopEigenvalue(n, 2) / std::pow(computeLoopEigenvalue(n, 1), 2);
         EXPECT_NEAR(findLastGrowth(measureTip(n, Sdc::SCHEME_LOOP, kLevel)), loop, 0.06);
         for (FaceMask mask : {FaceMask::Average, FaceMask::Cosine, FaceMask::Smooth}) {
-            HexSchemeOptions const scheme{mask, SchemeType::Hexagonal, FirstStep::None};
+            HexSchemeOptions const scheme{mask, SchemeType::Hexagonal, FirstStep::Same};
             Spectrum const spectrum =
                 ComputeSpectrum(MakeLocalSubdivision(scheme, CenterKind::Vertex, n));
             // With Smooth it grows so slowly that what is bounded is still half of it.
@@ -243,7 +243,7 @@ TEST(Smoothness, TracedCurvature) {
             // ... and without, it grows at vertices with more than three faces, with Smooth with more
             // than seven, slowly.
             LocalSubdivision const vertex = MakeLocalSubdivision(
-                {mask, SchemeType::Hexagonal, FirstStep::None}, CenterKind::Vertex, order);
+                {mask, SchemeType::Hexagonal, FirstStep::Same}, CenterKind::Vertex, order);
             std::vector<double> const growing = TraceCurvature(vertex, order < 8 ? 14 : 40);
             EXPECT_NEAR(findLastGrowth(growing), ComputeSpectrum(vertex).GetCurvatureGrowth(),
                         0.01);
@@ -256,7 +256,7 @@ TEST(Smoothness, TracedCurvature) {
 TEST(Smoothness, DooSabinAddsCurvature) {
     for (int order : {5, 6, 8, 12}) {
         LocalSubdivision const face = MakeLocalSubdivision(
-            {FaceMask::Cosine, SchemeType::DooSabin, FirstStep::None}, CenterKind::Vertex, order);
+            {FaceMask::Cosine, SchemeType::DooSabin, FirstStep::Same}, CenterKind::Vertex, order);
         EXPECT_NEAR(ComputeSpectrum(face).GetCurvatureGrowth(), 1, 1e-6);
         std::vector<double> const curvatures = TraceCurvature(face, 16);
         double const growth = curvatures[16] - curvatures[15];

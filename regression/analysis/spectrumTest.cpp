@@ -24,12 +24,12 @@ constexpr int kMinOrder = 3;
 constexpr int kMaxOrder = 12;
 double const kPi = std::acos(-1.0);
 
-HexSchemeOptions hexagonal(FaceMask mask) { return {mask, SchemeType::Hexagonal, FirstStep::None}; }
+HexSchemeOptions hexagonal(FaceMask mask) { return {mask, SchemeType::Hexagonal, FirstStep::Same}; }
 HexSchemeOptions triHexFirst(FaceMask mask) {
     return {mask, SchemeType::Hexagonal, FirstStep::TriHex};
 }
-HexSchemeOptions dooSabin(FaceMask mask) { return {mask, SchemeType::DooSabin, FirstStep::None}; }
-HexSchemeOptions triHex() { return {FaceMask::Average, SchemeType::TriHex, FirstStep::None}; }
+HexSchemeOptions dooSabin(FaceMask mask) { return {mask, SchemeType::DooSabin, FirstStep::Same}; }
+HexSchemeOptions triHex() { return {FaceMask::Average, SchemeType::TriHex, FirstStep::Same}; }
 
 std::vector<HexSchemeOptions> allSchemes() {
     std::vector<HexSchemeOptions> schemes{triHex()};

@@ -79,13 +79,13 @@ std::vector<SurfaceLevel> makeLevels(REFINER const &refiner, Shape const &shape,
 std::unique_ptr<FarExt::TopologyRefiner> createRefined(Shape const &shape,
                                                        FarExt::HexSchemeOptions const &options,
                                                        int maxLevel, Sdc::Options sdcOptions) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(), sdcOptions,
                                                           {options}, &status);
     FarExt::TopologyRefiner::UniformOptions uniformOptions(maxLevel);
     uniformOptions.fullTopologyInLastLevel = true;
     if (!refiner || !refiner->RefineUniform(uniformOptions, &status)) {
-        throw std::runtime_error(shape.name + ": " + status.GetMessage());
+        throw std::runtime_error(shape.name + ": " + status.GetErrorMessage());
     }
     return refiner;
 }

@@ -337,7 +337,7 @@ TEST(PlySinkTest, EndsTheStreamWhenWritingFails) {
     EXPECT_FALSE(stream.Run(shape.positions.data(), 3, *sink));
     EXPECT_EQ(numWrites, 3);
     PatchStream<double> const wrong(*factory, PatchLevels(-1));
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(PatchNumbering::Create(wrong, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
 }
@@ -356,7 +356,7 @@ TEST(PlySinkTest, TakesPointsOfThreeNumbersAlone) {
         });
     std::vector<double> const points(4 * std::size_t(shape.GetNumVertices()));
     for (int const size : {2, 4}) {
-        FarExt::Status status;
+        FarExt::CallStatus status;
         EXPECT_FALSE(stream.Run(points.data(), size, *sink, &status));
         EXPECT_TRUE(status.IsOk());
         EXPECT_EQ(numWrites, 0);

@@ -202,7 +202,7 @@ TEST(PatchStreamTest, HandsOutCellsOfTreesAndFurtherValues) {
                         << "kind " << i;
                 }
             };
-            FarExt::Status status;
+            FarExt::CallStatus status;
             bool const isDone = stream.Run(
                 shape.positions.data(), 3, values, 0, base.GetNumFaces(),
                 [&](Stream::Patch const &patch) {
@@ -228,7 +228,7 @@ TEST(PatchStreamTest, HandsOutCellsOfTreesAndFurtherValues) {
                     return true;
                 },
                 &status);
-            ASSERT_TRUE(isDone) << status.GetMessage();
+            ASSERT_TRUE(isDone) << status.GetErrorMessage();
             EXPECT_EQ(numPatches, base.GetNumFaces());
         }
     }
@@ -318,7 +318,7 @@ TEST(PatchStreamTest, RefusesBeforeAnythingIsHandedOut) {
         ++numPatches;
         return true;
     };
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const run = [&](PatchLevels const &levels, int begin, int end, int facetSize) {
         PatchStream<double>::Options options;
         options.SetTessellationOptions(Tessellation::Options().SetFacetSize(facetSize));
@@ -327,13 +327,13 @@ TEST(PatchStreamTest, RefusesBeforeAnythingIsHandedOut) {
     };
     EXPECT_FALSE(run(PatchLevels(13), 0, 1, 3));
     EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
-    EXPECT_EQ(status.GetMessage(), "face 0 has level 13, which is not one of 0 to 12");
+    EXPECT_EQ(status.GetErrorMessage(), "face 0 has level 13, which is not one of 0 to 12");
     EXPECT_FALSE(run(
         PatchLevels([](int) { return 1; }, [](int edge) { return edge == 2 ? -1 : 0; }), 0, 1, 3));
     EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Edge);
     EXPECT_EQ(status.GetComponentIndex(), 2);
     EXPECT_FALSE(run(PatchLevels(1), 0, 2, 3));
-    EXPECT_EQ(status.GetMessage(), "faces 0 to 2 are no range of the 1 of the mesh");
+    EXPECT_EQ(status.GetErrorMessage(), "faces 0 to 2 are no range of the 1 of the mesh");
     EXPECT_FALSE(run(PatchLevels(1), 0, 1, 5));
     EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
     EXPECT_TRUE(run(PatchLevels(1), 0, 0, 3));
@@ -359,7 +359,7 @@ TEST(PatchStreamTest, TellsOfTheFirstFaceThatIsWrong) {
                              [](int) { return 0; });
     for (int const numThreads : {1, 2, 3}) {
         ThreadsScope const threads(numThreads);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         EXPECT_FALSE(PatchStream<double>(*factory, levels)
                          .Run(
                              shape.positions.data(), 3,
@@ -368,7 +368,7 @@ TEST(PatchStreamTest, TellsOfTheFirstFaceThatIsWrong) {
                                  return true;
                              },
                              &status));
-        EXPECT_EQ(status.GetComponentIndex(), kFirst) << status.GetMessage();
+        EXPECT_EQ(status.GetComponentIndex(), kFirst) << status.GetErrorMessage();
     }
 }
 
@@ -416,7 +416,7 @@ TEST(PatchStreamTest, ReportsEachFailureOnce) {
     auto const refiner = CreateRefiner(withHoles, ReferenceMask::Smooth, 0, getEdgeOnly());
     auto const factory = SurfaceFactory::Create(*refiner);
     ErrorCounter const counter;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(factory->FaceHasLimitSurface(2, &status));
     EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
     BfrExt::View(BfrExt::Camera()).MakeForest<double>(*factory, withHoles.positions.data(), 3);
@@ -434,7 +434,7 @@ TEST(PatchStreamTest, RefusesForestsThatDoNotFit) {
     auto const expectRefused = [&](BfrExt::CellForest const &forest,
                                    std::vector<Stream::Values> const &values,
                                    std::string const &cause) {
-        FarExt::Status status;
+        FarExt::CallStatus status;
         Stream const stream(*factory, forest);
         EXPECT_FALSE(stream.Run(
             shape.positions.data(), 3, values, 0, 6,
@@ -444,7 +444,8 @@ TEST(PatchStreamTest, RefusesForestsThatDoNotFit) {
             },
             &status));
         EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
-        EXPECT_NE(status.GetMessage().find(cause), std::string::npos) << status.GetMessage();
+        EXPECT_NE(status.GetErrorMessage().find(cause), std::string::npos)
+            << status.GetErrorMessage();
     };
     BfrExt::CellForest forest(*refiner);
     EXPECT_TRUE(forest.IsMatched(3));
@@ -477,7 +478,7 @@ TEST(PatchStreamTest, EndsWhenTheSinkSaysSo) {
     PatchStream<double> const stream(*factory, PatchLevels(1));
     ThreadsScope const threads(1);
     int numPatches = 0;
-    FarExt::Status status(StatusCode::TooLarge, FarExt::ComponentType::None, 0, "");
+    FarExt::CallStatus status(StatusCode::TooLarge, FarExt::ComponentType::NoComponent, 0, "");
     EXPECT_FALSE(stream.Run(
         shape.positions.data(), 3,
         [&](PatchStream<double>::Patch const &) { return ++numPatches < 3; }, &status));

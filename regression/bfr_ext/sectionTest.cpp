@@ -135,7 +135,7 @@ void expectSections(Shape const &shape, SurfaceFactory const &factory, int facet
         results[i].resize(std::size_t(factory.GetNumFaces()));
         std::mutex mutex;
         Stream const stream = makeStream(options);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         // The first numbers of positions are varying data, too.
         ASSERT_TRUE(stream.Run(
             positions.data(), 3, {{positions.data(), {2, 3}, Stream::Values::kVarying}}, 0,
@@ -146,7 +146,7 @@ void expectSections(Shape const &shape, SurfaceFactory const &factory, int facet
                 return !testing::Test::HasFatalFailure();
             },
             &status))
-            << status.GetMessage();
+            << status.GetErrorMessage();
     }
     int numCut = 0;
     for (std::size_t face = 0; face < results[0].size(); ++face) {

@@ -13,7 +13,7 @@ namespace OpenSubdivHex::Regression {
 
 /// The masks, each without a first step and behind one.
 struct SurfaceCase {
-    bool HasFirstStep() const { return firstStep != FarExt::FirstStep::None; }
+    bool HasFirstStep() const { return firstStep != FarExt::FirstStep::Same; }
     FarExt::HexSchemeOptions GetOptions() const {
         FarExt::HexSchemeOptions options;
         options.firstStep = firstStep;
@@ -35,9 +35,9 @@ inline void PrintTo(SurfaceCase const &surfaceCase, std::ostream *stream) {
     *stream << surfaceCase.GetName();
 }
 
-inline constexpr SurfaceCase kPlainCases[] = {{ReferenceMask::Average, FarExt::FirstStep::None},
-                                              {ReferenceMask::Cosine, FarExt::FirstStep::None},
-                                              {ReferenceMask::Smooth, FarExt::FirstStep::None}};
+inline constexpr SurfaceCase kPlainCases[] = {{ReferenceMask::Average, FarExt::FirstStep::Same},
+                                              {ReferenceMask::Cosine, FarExt::FirstStep::Same},
+                                              {ReferenceMask::Smooth, FarExt::FirstStep::Same}};
 inline constexpr SurfaceCase kTruncateCases[] = {
     {ReferenceMask::Average, FarExt::FirstStep::Truncate},
     {ReferenceMask::Cosine, FarExt::FirstStep::Truncate},

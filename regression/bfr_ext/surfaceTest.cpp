@@ -99,8 +99,8 @@ std::vector<Point> findLimits(TopologyRefiner const &refiner,
         points = std::move(next);
     }
     std::vector<Point> limits(points.size());
-    FarExt::Status status;
-    EXPECT_TRUE(primvarRefiner.Limit(points, limits, &status)) << status.GetMessage();
+    FarExt::CallStatus status;
+    EXPECT_TRUE(primvarRefiner.Limit(points, limits, &status)) << status.GetErrorMessage();
     return limits;
 }
 
@@ -532,13 +532,13 @@ TEST(SurfaceFactoryTest, RefusesFacesWithoutASurface) {
         CreateRefiner(shape, ReferenceMask::Smooth, 0, getOptions(Sdc::Options::VTX_BOUNDARY_NONE));
     auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
     BfrExt::Surface<float> surface;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(factory->InitVertexSurface(0, &surface, &status));
     EXPECT_FALSE(surface.IsValid());
     EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
     EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Face);
     EXPECT_EQ(status.GetComponentIndex(), 0);
-    EXPECT_NE(status.GetMessage().find("VTX_BOUNDARY_NONE"), std::string::npos);
+    EXPECT_NE(status.GetErrorMessage().find("VTX_BOUNDARY_NONE"), std::string::npos);
 
     for (int const face : {-1, shape.GetNumFaces()}) {
         EXPECT_FALSE(factory->FaceHasLimitSurface(face, &status));
@@ -572,15 +572,15 @@ TEST(SurfaceFactoryTest, RefusesFacesAtVerticesWithoutALimit) {
         auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
         BfrExt::Surface<float> surface;
         for (int const face : {0, 2 * (kNumSides / 2)}) { // of the north
-            FarExt::Status hasNone;
+            FarExt::CallStatus hasNone;
             EXPECT_FALSE(factory->FaceHasLimitSurface(face, &hasNone));
-            FarExt::Status notMade;
+            FarExt::CallStatus notMade;
             EXPECT_FALSE(factory->InitVertexSurface(face, &surface, &notMade));
-            for (FarExt::Status const &status : {hasNone, notMade}) {
+            for (FarExt::CallStatus const &status : {hasNone, notMade}) {
                 EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
                 EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Vertex);
                 EXPECT_EQ(status.GetComponentIndex(), north);
-                EXPECT_NE(status.GetMessage().find("face " + std::to_string(face)),
+                EXPECT_NE(status.GetErrorMessage().find("face " + std::to_string(face)),
                           std::string::npos);
             }
             EXPECT_TRUE(factory->FaceHasLimitSurface(face + 1));
@@ -635,7 +635,7 @@ TEST(SurfaceFactoryTest, MakesSurfacesAsBfrDoes) {
         ASSERT_TRUE(factory->InitSurfaces<float>(face, nullptr, ofChannels.data()));
         EXPECT_EQ(getPoints(ofChannels[0]), expected[3]);
 
-        FarExt::Status status;
+        FarExt::CallStatus status;
         int const badIds[] = {0, numChannels};
         EXPECT_FALSE(
             factory->InitSurfaces(face, &vertex, ofChannels.data(), badIds, 2, &varying, &status));
@@ -644,7 +644,7 @@ TEST(SurfaceFactoryTest, MakesSurfacesAsBfrDoes) {
             EXPECT_FALSE(surface->IsValid());
         }
     }
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(factory->CreateVertexSurface<float>(-1, &status));
     EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
     EXPECT_FALSE(factory->CreateFaceVaryingSurface<float>(0, numChannels, &status));
@@ -696,7 +696,7 @@ TEST(SurfaceFactoryTest, RefusesOtherSchemes) {
     options.schemeType = FarExt::SchemeType::DooSabin;
     auto const refiner =
         CreateRefiner(GetShape("cube"), ReferenceMask::Cosine, 0, Sdc::Options(), options);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(BfrExt::SurfaceFactory::Create(*refiner, &status));
     EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
 }
@@ -709,7 +709,7 @@ TEST(SurfaceFactoryTest, NeedsTheSurfaceLevelAsItWas) {
         EXPECT_EQ(options.GetSurfaceLevel(), 1);
         auto const refiner =
             CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 0, Sdc::Options(), options);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         EXPECT_FALSE(BfrExt::SurfaceFactory::Create(*refiner, &status));
         EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
         EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Level);
@@ -718,12 +718,12 @@ TEST(SurfaceFactoryTest, NeedsTheSurfaceLevelAsItWas) {
         ASSERT_TRUE(refiner->RefineUniform(uniformOptions));
         if (!refiner->GetLevel(1).HasFullTopology()) {
             EXPECT_FALSE(BfrExt::SurfaceFactory::Create(*refiner, &status));
-            EXPECT_NE(status.GetMessage().find("fullTopologyInLastLevel"), std::string::npos);
+            EXPECT_NE(status.GetErrorMessage().find("fullTopologyInLastLevel"), std::string::npos);
         }
         uniformOptions.fullTopologyInLastLevel = true;
         ASSERT_TRUE(refiner->RefineUniform(uniformOptions));
         auto const factory = BfrExt::SurfaceFactory::Create(*refiner, &status);
-        ASSERT_TRUE(factory) << status.GetMessage();
+        ASSERT_TRUE(factory) << status.GetErrorMessage();
         EXPECT_EQ(factory->GetLevel().GetDepth(), 1);
         EXPECT_EQ(factory->GetNumFaces(), 14);
         EXPECT_EQ(factory->GetFaceParameterization(0).GetFaceSize(),
@@ -733,7 +733,7 @@ TEST(SurfaceFactoryTest, NeedsTheSurfaceLevelAsItWas) {
             EXPECT_TRUE(factory->InitVertexSurface(13, &surface, &status));
         }
         EXPECT_FALSE(factory->InitVertexSurface(14, &surface, &status));
-        EXPECT_EQ(status.GetMessage(), "face 14 is not one of the 14 faces of level 1");
+        EXPECT_EQ(status.GetErrorMessage(), "face 14 is not one of the 14 faces of level 1");
 
         ASSERT_TRUE(refiner->RefineUniform(3));
         EXPECT_FALSE(factory->FaceHasLimitSurface(0, &status));
@@ -741,7 +741,7 @@ TEST(SurfaceFactoryTest, NeedsTheSurfaceLevelAsItWas) {
         EXPECT_FALSE(factory->InitVaryingSurface(0, &surface, &status));
         EXPECT_FALSE(surface.IsValid());
         EXPECT_FALSE(factory->InitVertexSurface(13, &surface, &status));
-        EXPECT_NE(status.GetMessage().find("refined again"), std::string::npos);
+        EXPECT_NE(status.GetErrorMessage().find("refined again"), std::string::npos);
     }
 }
 

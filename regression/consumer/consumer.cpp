@@ -107,11 +107,11 @@ std::vector<Point> interpolate(FarExt::TopologyRefiner const &refiner) {
 }
 
 void checkHex(Far::TopologyRefiner const &base) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     std::unique_ptr<FarExt::TopologyRefiner> const refiner =
         FarExt::TopologyRefinerFactory::Create(base, &status);
     if (!refiner || !refiner->RefineUniform({kLevel}, &status)) {
-        expect(false, status.GetMessage().c_str());
+        expect(false, status.GetErrorMessage().c_str());
         return;
     }
     FarExt::TopologyLevel const &level = refiner->GetLevel(kLevel);

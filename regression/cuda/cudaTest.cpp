@@ -29,9 +29,9 @@ struct Cuda {
     /// Why nothing can be evaluated.
     static std::string GetMissing() {
         auto const refiner = MakeRefiner(GetShape("cube"), 0, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         Evaluator::Create(*refiner, &status);
-        return status.GetMessage();
+        return status.GetErrorMessage();
     }
     // ./dev test cuda sets this where it finds a device.
     static bool IsNeeded() { return std::getenv("OPENSUBDIVHEX_NEEDS_CUDA") != nullptr; }
@@ -67,7 +67,7 @@ TEST(CudaWithoutDevice, IsUnsupported) {
     }
     EXPECT_EQ(missing.rfind("there is no device of CUDA", 0), 0u) << missing;
     auto const refiner = MakeRefiner(GetShape("cube"), 1, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(CudaRefinementEvaluator::Create(*refiner, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
     Osd::BufferDescriptor const desc(0, 3, 3);
@@ -137,12 +137,12 @@ TEST_F(CudaTable, RefusesWhatItCannotEvaluate) {
     Descriptor const desc(0, 3, 3);
     std::vector<float> onProcessor(3000);
     Buffer const buffer = makeBlank(3000, 3);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(
         evaluator->Evaluate(onProcessor.data(), desc, buffer->BindCudaBuffer(), desc, 1, &status));
-    EXPECT_EQ(status.GetMessage(), "the source is not on the device");
+    EXPECT_EQ(status.GetErrorMessage(), "the source is not on the device");
     EXPECT_FALSE(evaluator->Evaluate(buffer->BindCudaBuffer(), desc, nullptr, desc, 1, &status));
-    EXPECT_EQ(status.GetMessage(), "the destination is null");
+    EXPECT_EQ(status.GetErrorMessage(), "the destination is null");
     EXPECT_EQ(kind.Read(*buffer, 3000), std::vector<float>(3000, kBlank));
 }
 

@@ -51,13 +51,13 @@ MakeRefiner(Shape const &shape, int level, Sdc::Options::VtxBoundaryInterpolatio
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions = schemeOptions;
     ShapeDescriptor const descriptor(shape);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto refiner =
         FarExt::TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status);
     FarExt::TopologyRefiner::UniformOptions uniform(level);
     uniform.fullTopologyInLastLevel = fullTopologyInLastLevel;
     if (!refiner || !refiner->RefineUniform(uniform, &status)) {
-        throw std::runtime_error(shape.name + ": " + status.GetMessage());
+        throw std::runtime_error(shape.name + ": " + status.GetErrorMessage());
     }
     return refiner;
 }
@@ -139,10 +139,10 @@ protected:
     void expectEqual(FarExt::TopologyRefiner const &refiner, Options options, int length) {
         SCOPED_TRACE(testing::Message() << "mode " << options.interpolationMode << ", channel "
                                         << options.fvarChannel << ", length " << length);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         auto const expected = OsdExt::RefinementEvaluator::Create(refiner, options);
         auto const evaluator = Evaluator::Create(refiner, options, &status);
-        ASSERT_TRUE(evaluator) << status.GetMessage();
+        ASSERT_TRUE(evaluator) << status.GetErrorMessage();
         ASSERT_EQ(evaluator->GetMaxLevel(), expected->GetMaxLevel());
         ASSERT_EQ(evaluator->GetNumElementsAllLevels(), expected->GetNumElementsAllLevels());
         Descriptor const desc(0, length, length);
@@ -153,7 +153,7 @@ protected:
         Buffer dstBuffer = makeBlank(dst.size(), length);
         ASSERT_TRUE(
             evaluator->EvaluateAllLevels(srcBuffer.get(), desc, dstBuffer.get(), desc, &status))
-            << status.GetMessage();
+            << status.GetErrorMessage();
         ASSERT_NO_FATAL_FAILURE(expectFloats(dstBuffer, dst, kNumUnits));
         for (int level = 0; level <= expected->GetMaxLevel(); ++level) {
             SCOPED_TRACE(testing::Message() << "level " << level);
@@ -169,10 +169,10 @@ protected:
     /// The limit of a level: points alone, and with derivatives.
     void expectEqualLimit(FarExt::TopologyRefiner const &refiner, int level, int length) {
         SCOPED_TRACE(testing::Message() << "level " << level << ", length " << length);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         auto const expected = OsdExt::RefinementEvaluator::Create(refiner);
         auto const evaluator = Evaluator::Create(refiner, {}, &status);
-        ASSERT_TRUE(evaluator) << status.GetMessage();
+        ASSERT_TRUE(evaluator) << status.GetErrorMessage();
         std::vector<float> const src = MakeValues(expected->GetNumElements(0), length);
         Buffer const srcBuffer = kind.MakeBuffer(src, length);
         Descriptor const desc(0, length, length);
@@ -186,14 +186,14 @@ protected:
         Buffer pointBuffer = makeBlank(size, length);
         Buffer duBuffer = makeBlank(size, length);
         Buffer dvBuffer = makeBlank(size, length);
-        FarExt::Status deviceStatus;
+        FarExt::CallStatus deviceStatus;
         ASSERT_EQ(evaluator->EvaluateLimit(srcBuffer.get(), desc, pointBuffer.get(), desc,
                                            duBuffer.get(), desc, dvBuffer.get(), desc, level,
                                            &deviceStatus),
                   isThere)
-            << deviceStatus.GetMessage();
+            << deviceStatus.GetErrorMessage();
         if (!isThere) {
-            EXPECT_EQ(deviceStatus.GetMessage(), status.GetMessage());
+            EXPECT_EQ(deviceStatus.GetErrorMessage(), status.GetErrorMessage());
             return;
         }
         // Derivatives are differences of near values, scaled up at each level.
@@ -296,11 +296,11 @@ TYPED_TEST_P(DeviceEvaluator, RefusesLimitsAsTheCpu) {
                                    OsdExt::RefinementEvaluator::Options options, int level,
                                    std::string const &message) {
         auto const evaluator = TypeParam::Evaluator::Create(refiner, options);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         EXPECT_FALSE(
             evaluator->EvaluateLimit(buffer.get(), desc, buffer.get(), desc, level, &status));
         EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
-        EXPECT_EQ(status.GetMessage(), message);
+        EXPECT_EQ(status.GetErrorMessage(), message);
     };
     auto const refiner = MakeRefiner(GetShape("cube"), 2, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     expectRefused(*refiner, {}, 3, "level 3 is not between 0 and 2");
@@ -516,7 +516,7 @@ TYPED_TEST_P(DeviceEvaluator, GivesTheBitsOfTheKernelsOnTheProcessor) {
 TYPED_TEST_P(DeviceEvaluator, MakesTheTrianglesOfTheCpu) {
     OsdExt::DrawOptions options;
     options.cutBaseFaces = false;
-    options.cutCreases = OsdExt::CreaseCuts::None;
+    options.cutCreases = OsdExt::CreaseCuts::NoCreases;
     options.drawHoles = true;
     options.vertexOffset = 5;
     for (Shape const &shape : GetAllShapes()) {
@@ -533,10 +533,10 @@ TYPED_TEST_P(DeviceEvaluator, MakesTheTrianglesOfTheCpu) {
                     OsdExt::CreateTriangleIndices(refiner->GetLevel(level), options);
                 ASSERT_EQ(evaluator->GetNumTriangles(level), expected.GetNumTriangles());
                 auto const buffer = this->makeBlank(expected.vertices.size(), 1);
-                FarExt::Status status;
+                FarExt::CallStatus status;
                 ASSERT_TRUE(evaluator->MakeTriangleIndices(this->kind.GetIntegers(*buffer), level,
                                                            options.vertexOffset, &status))
-                    << status.GetMessage();
+                    << status.GetErrorMessage();
                 std::vector<float> const bits = this->kind.Read(*buffer, expected.vertices.size());
                 std::vector<int> triangles(bits.size());
                 std::memcpy(triangles.data(), bits.data(), bits.size() * sizeof(int));

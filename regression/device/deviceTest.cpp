@@ -85,20 +85,21 @@ TEST(SmallBuffers, AreRefusedByTheirSize) {
     auto const refiner =
         MakeRefiner(GetShape("cube"), 3, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, {}, true);
     std::int64_t const numBytes = HostEvaluator::Create(*refiner)->GetNumDeviceBytes();
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(HostEvaluator::CreateWithin(1000, *refiner, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::TooLarge);
-    EXPECT_EQ(status.GetMessage().rfind("the indices of the refinements would take ", 0), 0u);
-    EXPECT_NE(status.GetMessage().find(" bytes, and the device reaches 1000"), std::string::npos);
+    EXPECT_EQ(status.GetErrorMessage().rfind("the indices of the refinements would take ", 0), 0u);
+    EXPECT_NE(status.GetErrorMessage().find(" bytes, and the device reaches 1000"),
+              std::string::npos);
     auto const evaluator = HostEvaluator::CreateWithin(numBytes, *refiner, &status);
-    ASSERT_TRUE(evaluator) << status.GetMessage();
+    ASSERT_TRUE(evaluator) << status.GetErrorMessage();
     std::vector<float> const src = MakeValues(evaluator->GetNumElements(0), 3);
     std::vector<float> dst(std::size_t(evaluator->GetNumElements(3)) * 3, kBlank);
     Osd::BufferDescriptor const desc(0, 3, 3);
     EXPECT_FALSE(evaluator->EvaluateLimit(src.data(), desc, dst.data(), desc, 3, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::TooLarge);
-    EXPECT_EQ(status.GetMessage().rfind("the indices of the limit would take ", 0), 0u)
-        << status.GetMessage();
+    EXPECT_EQ(status.GetErrorMessage().rfind("the indices of the limit would take ", 0), 0u)
+        << status.GetErrorMessage();
     EXPECT_EQ(dst, std::vector<float>(dst.size(), kBlank));
 }
 

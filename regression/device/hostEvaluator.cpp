@@ -9,7 +9,7 @@
 namespace OpenSubdivHex::Regression {
 
 using namespace OsdExt::internal;
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::internal::Report;
 using Osd::BufferDescriptor;
 
@@ -26,7 +26,7 @@ class HostDevice : public Device {
 public:
     explicit HostDevice(std::int64_t maxBytes) : _maxBytes(maxBytes) {}
 
-    Status CheckContext() const override { return Status(); }
+    CallStatus CheckContext() const override { return CallStatus(); }
     std::int64_t GetMaxBytes() const override { return _maxBytes; }
     DeviceBufferName Allocate(std::int64_t numBytes) override {
         return getName(new char[std::size_t(numBytes)]);
@@ -36,22 +36,22 @@ public:
                std::int64_t numBytes) override {
         std::memcpy(getBytes(buffer) + firstByte, data, std::size_t(numBytes));
     }
-    Status CheckBuffer(DeviceBufferName buffer, std::int64_t /*numFloats*/,
-                       std::string const &what) const override {
-        return buffer != 0 ? Status()
+    CallStatus CheckBuffer(DeviceBufferName buffer, std::int64_t /*numFloats*/,
+                           std::string const &what) const override {
+        return buffer != 0 ? CallStatus()
                            : FarExt::internal::Failure(FarExt::StatusCode::InvalidArgument,
                                                        "the " + what + " is null");
     }
-    Status Prepare(DeviceKernel, int, int) override { return Status(); }
+    CallStatus Prepare(DeviceKernel, int, int) override { return CallStatus(); }
     void Run(DeviceTask const &task) override { _tasks.push_back(task); }
     void Wait() override {
         for (; !_tasks.empty(); _tasks.pop_back()) {
             runBackwards(_tasks.back());
         }
     }
-    Status EndFrame() override {
+    CallStatus EndFrame() override {
         Wait();
-        return Status();
+        return CallStatus();
     }
 
 private:
@@ -78,32 +78,32 @@ HostEvaluator::HostEvaluator(std::int64_t maxBytes, FarExt::TopologyRefiner cons
     : _evaluator(std::make_unique<HostDevice>(maxBytes), refiner) {}
 
 std::unique_ptr<HostEvaluator> HostEvaluator::Create(FarExt::TopologyRefiner const &refiner,
-                                                     Options options, Status *status) {
+                                                     Options options, CallStatus *status) {
     std::unique_ptr<HostEvaluator> result(new HostEvaluator(kAnyBytes, refiner));
     return Report(result->_evaluator.Prepare(options), status) ? std::move(result) : nullptr;
 }
 
 std::unique_ptr<HostEvaluator> HostEvaluator::CreateWithin(std::int64_t maxBytes,
                                                            FarExt::TopologyRefiner const &refiner,
-                                                           Status *status) {
+                                                           CallStatus *status) {
     std::unique_ptr<HostEvaluator> result(new HostEvaluator(maxBytes, refiner));
     return Report(result->_evaluator.Prepare({}), status) ? std::move(result) : nullptr;
 }
 
 bool HostEvaluator::Evaluate(float const *src, BufferDescriptor const &srcDesc, float *dst,
-                             BufferDescriptor const &dstDesc, int level, Status *status) {
+                             BufferDescriptor const &dstDesc, int level, CallStatus *status) {
     return Report(_evaluator.Evaluate({getName(src), srcDesc}, {getName(dst), dstDesc}, level),
                   status);
 }
 
 bool HostEvaluator::EvaluateAllLevels(float const *src, BufferDescriptor const &srcDesc, float *dst,
-                                      BufferDescriptor const &dstDesc, Status *status) {
+                                      BufferDescriptor const &dstDesc, CallStatus *status) {
     return Report(_evaluator.EvaluateAllLevels({getName(src), srcDesc}, {getName(dst), dstDesc}),
                   status);
 }
 
 bool HostEvaluator::EvaluateLimit(float const *src, BufferDescriptor const &srcDesc, float *dst,
-                                  BufferDescriptor const &dstDesc, int level, Status *status) {
+                                  BufferDescriptor const &dstDesc, int level, CallStatus *status) {
     return Report(
         _evaluator.EvaluateLimit({getName(src), srcDesc}, {{getName(dst), dstDesc}}, level),
         status);
@@ -112,7 +112,7 @@ bool HostEvaluator::EvaluateLimit(float const *src, BufferDescriptor const &srcD
 bool HostEvaluator::EvaluateLimit(float const *src, BufferDescriptor const &srcDesc, float *dst,
                                   BufferDescriptor const &dstDesc, float *du,
                                   BufferDescriptor const &duDesc, float *dv,
-                                  BufferDescriptor const &dvDesc, int level, Status *status) {
+                                  BufferDescriptor const &dvDesc, int level, CallStatus *status) {
     return Report(_evaluator.EvaluateLimit(
                       {getName(src), srcDesc},
                       {{getName(dst), dstDesc}, {getName(du), duDesc}, {getName(dv), dvDesc}},
@@ -121,7 +121,7 @@ bool HostEvaluator::EvaluateLimit(float const *src, BufferDescriptor const &srcD
 }
 
 bool HostEvaluator::MakeTriangleIndices(unsigned *dst, int level, int vertexOffset,
-                                        Status *status) {
+                                        CallStatus *status) {
     return Report(_evaluator.MakeTriangleIndices(getName(dst), level, vertexOffset), status);
 }
 

@@ -19,11 +19,11 @@ public:
 
     static std::unique_ptr<HostEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                  Options options = Options(),
-                                                 FarExt::Status *status = nullptr);
+                                                 FarExt::CallStatus *status = nullptr);
     /// On a device whose buffers have so many bytes at most.
     static std::unique_ptr<HostEvaluator> CreateWithin(std::int64_t maxBytes,
                                                        FarExt::TopologyRefiner const &refiner,
-                                                       FarExt::Status *status);
+                                                       FarExt::CallStatus *status);
 
     int GetMaxLevel() const { return _evaluator.GetMaxLevel(); }
     int GetNumElements(int level) const { return _evaluator.GetNumElements(level); }
@@ -36,21 +36,22 @@ public:
 
     bool Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                   Osd::BufferDescriptor const &dstDesc, int level,
-                  FarExt::Status *status = nullptr);
+                  FarExt::CallStatus *status = nullptr);
     bool EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
-                           Osd::BufferDescriptor const &dstDesc, FarExt::Status *status = nullptr);
+                           Osd::BufferDescriptor const &dstDesc,
+                           FarExt::CallStatus *status = nullptr);
     bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                        Osd::BufferDescriptor const &dstDesc, int level,
-                       FarExt::Status *status = nullptr);
+                       FarExt::CallStatus *status = nullptr);
     bool EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                        Osd::BufferDescriptor const &dstDesc, float *du,
                        Osd::BufferDescriptor const &duDesc, float *dv,
                        Osd::BufferDescriptor const &dvDesc, int level,
-                       FarExt::Status *status = nullptr);
+                       FarExt::CallStatus *status = nullptr);
 
     std::int64_t GetNumTriangles(int level) const { return _evaluator.GetNumTriangles(level); }
     bool MakeTriangleIndices(unsigned *dst, int level, int vertexOffset = 0,
-                             FarExt::Status *status = nullptr);
+                             FarExt::CallStatus *status = nullptr);
 
 private:
     HostEvaluator(std::int64_t maxBytes, FarExt::TopologyRefiner const &refiner);

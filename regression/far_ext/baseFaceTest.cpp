@@ -392,7 +392,7 @@ TEST(BaseFace, OtherStepsCountToTheFirst) {
                                              : FarExt::SchemeType::Hexagonal;
             options.firstStep = kind == 2   ? FarExt::FirstStep::TriHex
                                 : kind == 4 ? FarExt::FirstStep::Truncate
-                                            : FarExt::FirstStep::None;
+                                            : FarExt::FirstStep::Same;
             auto const refiner =
                 FarExt::TopologyRefinerFactory::Create(*CreateFarRefiner(shape), {options});
             if (!refiner) {

@@ -200,10 +200,10 @@ TEST(Property, StencilsAreNonNegativeAndSumToOne) {
                                                  : mode == 1 ? FarExt::INTERPOLATE_VARYING
                                                              : FarExt::INTERPOLATE_FACE_VARYING;
                 tableOptions.fvarChannel = std::max(0, mode - 2);
-                FarExt::Status status;
+                FarExt::CallStatus status;
                 auto const table = FarExt::StencilTableFactoryReal<double>::Create(
                     *refiner, tableOptions, &status);
-                ASSERT_TRUE(table) << status.GetMessage();
+                ASSERT_TRUE(table) << status.GetErrorMessage();
                 for (int i = 0; i < table->GetNumStencils(); ++i) {
                     auto const stencil = table->GetStencil(i);
                     double sum = 0;
@@ -225,10 +225,10 @@ TEST(Property, StencilTablesRefuseAChannelOutOfRange) {
         FarExt::StencilTableFactory::Options options;
         options.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
         options.fvarChannel = channel;
-        FarExt::Status status;
+        FarExt::CallStatus status;
         EXPECT_FALSE(FarExt::StencilTableFactory::Create(*refiner, options, &status));
         EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
-        EXPECT_NE(status.GetMessage().find(std::to_string(channel)), std::string::npos);
+        EXPECT_NE(status.GetErrorMessage().find(std::to_string(channel)), std::string::npos);
         // It does not matter to other modes.
         options.interpolationMode = FarExt::INTERPOLATE_VERTEX;
         EXPECT_TRUE(FarExt::StencilTableFactory::Create(*refiner, options, &status));

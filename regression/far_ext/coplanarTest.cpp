@@ -38,9 +38,9 @@ std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, ReferenceMask
                                                CoplanarOptions const &options,
                                                Sdc::Options sdcOptions = Sdc::Options()) {
     auto refiner = CreateRefiner(shape, mask, 0, sdcOptions);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     if (!refiner->RefineCoplanar(shape.positions.data(), options, &status)) {
-        throw std::runtime_error(shape.name + ": " + status.GetMessage());
+        throw std::runtime_error(shape.name + ": " + status.GetErrorMessage());
     }
     return refiner;
 }

@@ -180,9 +180,9 @@ void ExpectNumbering(TopologyRefiner const &refiner) {
 
 void ExpectValid(TopologyRefiner const &refiner) {
     for (int level = 0; level <= refiner.GetMaxLevel(); ++level) {
-        FarExt::Status status;
+        FarExt::CallStatus status;
         ASSERT_TRUE(refiner.GetLevel(level).Validate(&status))
-            << "level " << level << ": " << status.GetMessage();
+            << "level " << level << ": " << status.GetErrorMessage();
     }
 }
 
@@ -213,9 +213,9 @@ void ExpectTable(TopologyRefiner const &refiner, std::vector<ReferenceValues> co
     options.generateIntermediateLevels = (flags & 2) != 0;
     options.factorizeIntermediateLevels = (flags & 4) != 0;
     SCOPED_TRACE(testing::Message() << "mode " << mode << ", flags " << flags);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const table = Factory::Create(refiner, options, &status);
-    ASSERT_TRUE(table) << status.GetMessage();
+    ASSERT_TRUE(table) << status.GetErrorMessage();
     double const allowed = kRowTolerance<REAL> * std::max(1.0, GetSize(levels[0]));
     int stencil = 0;
     int const last = int(levels.size()) - 1;

@@ -48,9 +48,9 @@ std::unique_ptr<Factory::Table const> createTable(TopologyRefiner const &refiner
     options.generateFurtherSides = true;
     options.generateFaceCenters = hasFaceCenters;
     options.factorizeIntermediateLevels = isFactorized;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto table = Factory::Create(refiner, options, &status);
-    EXPECT_TRUE(table) << status.GetMessage();
+    EXPECT_TRUE(table) << status.GetErrorMessage();
     return table;
 }
 
@@ -256,10 +256,11 @@ TEST(LimitTable, PrimvarRefinerRefusesWhatHasNoLimit) {
     Elements const values(std::size_t(refiner->GetLevel(1).GetNumVertices()));
     Elements points(values.size());
     points[0].values[0] = 7;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(primvarRefiner.Limit(values, points, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
-    EXPECT_NE(status.GetMessage().find("full topology"), std::string::npos) << status.GetMessage();
+    EXPECT_NE(status.GetErrorMessage().find("full topology"), std::string::npos)
+        << status.GetErrorMessage();
     EXPECT_EQ(points[0].values[0], 7);
 }
 

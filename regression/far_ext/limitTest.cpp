@@ -33,9 +33,9 @@ template <typename REAL>
 LimitValues evaluate(TopologyRefiner const &refiner,
                      typename LimitStencilTableFactoryReal<REAL>::Options options,
                      ReferenceValues const &base) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const table = LimitStencilTableFactoryReal<REAL>::Create(refiner, options, &status);
-    EXPECT_TRUE(table) << status.GetMessage();
+    EXPECT_TRUE(table) << status.GetErrorMessage();
     LimitValues result;
     auto const sum = [&](std::vector<REAL> const &weights) {
         ReferenceValues values = ReferenceValues::Zero(table->GetNumStencils(), base.cols());
@@ -535,11 +535,12 @@ TEST(Limit, RefusesBadOptions) {
     ASSERT_TRUE(refiner->RefineUniform(2));
     auto const expectRefused = [&](FarExt::LimitStencilTableFactory::Options const &options,
                                    std::string const &cause) {
-        FarExt::Status status;
+        FarExt::CallStatus status;
         EXPECT_FALSE(FarExt::LimitStencilTableFactory::Create(*refiner, options, &status));
         EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
         EXPECT_EQ(status.GetComponentIndex(), options.level);
-        EXPECT_NE(status.GetMessage().find(cause), std::string::npos) << status.GetMessage();
+        EXPECT_NE(status.GetErrorMessage().find(cause), std::string::npos)
+            << status.GetErrorMessage();
     };
     FarExt::LimitStencilTableFactory::Options options;
     options.level = -1;
@@ -571,7 +572,7 @@ TEST(Limit, IsOfHexagonalStepsAlone) {
     };
     using Factory = FarExt::LimitStencilTableFactoryReal<double>;
     Factory::Options options;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     for (FarExt::SchemeType type : {FarExt::SchemeType::DooSabin, FarExt::SchemeType::TriHex}) {
         scheme.schemeType = type;
         EXPECT_FALSE(Factory::Create(*createRefiner(), options, &status));

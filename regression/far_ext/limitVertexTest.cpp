@@ -49,7 +49,7 @@ Sdc::Options makeOptions(Boundary boundary) {
 }
 
 std::unique_ptr<Factory::Table const> makeTable(TopologyRefiner const &refiner, int level,
-                                                FarExt::Status *status = nullptr) {
+                                                FarExt::CallStatus *status = nullptr) {
     Factory::Options options;
     options.level = level;
     options.generateFurtherSides = true;
@@ -255,9 +255,9 @@ TEST(LimitVertex, ClosedFansOfSeveralSizes) {
             CreateRefiner(shape, mask, 2, makeOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
         for (int i = 0; i <= 2; ++i) {
             SCOPED_TRACE(testing::Message() << ToString(mask) << ", level " << i);
-            FarExt::Status status;
+            FarExt::CallStatus status;
             auto const table = makeTable(*refiner, i, &status);
-            ASSERT_TRUE(table) << status.GetMessage();
+            ASSERT_TRUE(table) << status.GetErrorMessage();
             ASSERT_NO_FATAL_FAILURE(expectSound(*table));
             TopologyLevel const &level = refiner->GetLevel(i);
             LimitSides const sides(level);
@@ -301,9 +301,9 @@ TEST(LimitVertex, PoleFullOfCreases) {
         }
         auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0,
                                            makeOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
-        FarExt::Status status;
+        FarExt::CallStatus status;
         auto const table = makeTable(*refiner, 0, &status);
-        ASSERT_TRUE(table) << status.GetMessage();
+        ASSERT_TRUE(table) << status.GetErrorMessage();
         ASSERT_NO_FATAL_FAILURE(expectSound(*table));
         TopologyLevel const &level = refiner->GetLevel(0);
         LimitSides const sides(level);
@@ -326,13 +326,13 @@ TEST(LimitVertex, RefusesWhatDoesNotConverge) {
     shape.creaseSharpness = {kInfinite};
     auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0,
                                        makeOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(makeTable(*refiner, 0, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
     EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Vertex);
     EXPECT_EQ(status.GetComponentIndex(), 0);
-    EXPECT_NE(status.GetMessage().find("vertex 0 of level 0"), std::string::npos)
-        << status.GetMessage();
+    EXPECT_NE(status.GetErrorMessage().find("vertex 0 of level 0"), std::string::npos)
+        << status.GetErrorMessage();
 }
 
 // Faces of any vertices, so that most vertices and edges are not manifold.
@@ -374,9 +374,9 @@ TEST(LimitVertex, RandomFacesHaveSoundTables) {
         uniformOptions.fullTopologyInLastLevel = true;
         ASSERT_TRUE(refiner->RefineUniform(uniformOptions));
         SCOPED_TRACE(testing::Message() << "seed " << seed << ", level " << level);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         auto const table = makeTable(*refiner, level, &status);
-        ASSERT_TRUE(table) << status.GetMessage();
+        ASSERT_TRUE(table) << status.GetErrorMessage();
         ASSERT_NO_FATAL_FAILURE(expectSound(*table));
         ++numTables;
     }

@@ -15,9 +15,9 @@
 
 namespace OpenSubdivHex::Regression {
 
+using FarExt::CallStatus;
 using FarExt::ComponentType;
 using FarExt::MeshRefinerFactory;
-using FarExt::Status;
 using FarExt::StatusCode;
 
 namespace {
@@ -96,12 +96,12 @@ namespace {
 
 void expectRefused(Mesh const &mesh, StatusCode code, ComponentType component, int index,
                    std::string const &word) {
-    Status status;
+    CallStatus status;
     EXPECT_FALSE(MeshRefinerFactory<Mesh>::Create(mesh, Sdc::Options(), &status)) << word;
-    EXPECT_EQ(status.GetCode(), code) << status.GetMessage();
-    EXPECT_EQ(status.GetComponentType(), component) << status.GetMessage();
-    EXPECT_EQ(status.GetComponentIndex(), index) << status.GetMessage();
-    EXPECT_NE(status.GetMessage().find(word), std::string::npos) << status.GetMessage();
+    EXPECT_EQ(status.GetCode(), code) << status.GetErrorMessage();
+    EXPECT_EQ(status.GetComponentType(), component) << status.GetErrorMessage();
+    EXPECT_EQ(status.GetComponentIndex(), index) << status.GetErrorMessage();
+    EXPECT_NE(status.GetErrorMessage().find(word), std::string::npos) << status.GetErrorMessage();
 }
 
 /// A step that makes a call and succeeds.
@@ -124,9 +124,9 @@ TEST(MeshFactory, EqualsTheDescriptorOfAllShapes) {
             SCOPED_TRACE(shape.name + ", boundary " + std::to_string(boundary));
             Sdc::Options options;
             options.SetVtxBoundaryInterpolation(boundary);
-            Status status;
+            CallStatus status;
             auto const refiner = MeshRefinerFactory<Shape>::Create(shape, options, &status);
-            ASSERT_TRUE(refiner) << status.GetMessage();
+            ASSERT_TRUE(refiner) << status.GetErrorMessage();
             ShapeDescriptor const descriptor(shape);
             auto const expected = FarExt::TopologyRefinerFactory::Create(descriptor.Get(), options);
             EXPECT_EQ(FindBaseDifference(*refiner, *expected), "");
@@ -186,11 +186,11 @@ TEST(MeshFactory, CountsAndFacesAreChecked) {
         expectRefused(broken, code, component, index, word);
     };
     expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseVertices(base, -2); },
-                        StatusCode::InvalidArgument, ComponentType::None, -1, "-2");
+                        StatusCode::InvalidArgument, ComponentType::NoComponent, -1, "-2");
     expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseFaces(base, -3); },
-                        StatusCode::InvalidArgument, ComponentType::None, -1, "-3");
+                        StatusCode::InvalidArgument, ComponentType::NoComponent, -1, "-3");
     expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseFaces(base, 0); },
-                        StatusCode::InvalidTopology, ComponentType::None, -1, "empty");
+                        StatusCode::InvalidTopology, ComponentType::NoComponent, -1, "empty");
     expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseFaces(base, 3); },
                         StatusCode::InvalidTopology, ComponentType::Face, 0, "0 vertices");
     expectResizeRefused([](BaseTopology &base) { Calls::setNumBaseFaceVertices(base, 1, 2); },
@@ -238,13 +238,13 @@ TEST(MeshFactory, TagsAreChecked) {
 TEST(MeshFactory, ValuesAreChecked) {
     Mesh mesh;
     mesh.assignValues = make([](BaseTopology &base) { Calls::createBaseFVarChannel(base, 4); });
-    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::None, -1,
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::NoComponent, -1,
                   "corner 0 of face-varying channel 0 refers to value -1");
     mesh.assignValues = make([](BaseTopology &base) { Calls::createBaseFVarChannel(base, -4); });
-    expectRefused(mesh, StatusCode::InvalidArgument, ComponentType::None, -1, "-4");
+    expectRefused(mesh, StatusCode::InvalidArgument, ComponentType::NoComponent, -1, "-4");
     mesh.assignValues = make(
         [](BaseTopology &base) { EXPECT_EQ(Calls::getBaseFaceFVarValues(base, 0).size(), 0); });
-    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::None, 0, "channel");
+    expectRefused(mesh, StatusCode::InvalidTopology, ComponentType::NoComponent, 0, "channel");
     mesh.assignValues = make([](BaseTopology &base) {
         Calls::createBaseFVarChannel(base, 4);
         EXPECT_EQ(Calls::getBaseFaceFVarValues(base, 2).size(), 0);
@@ -292,7 +292,7 @@ TEST(MeshFactory, CallsAreForTheirFunctions) {
             if (stage != call.stage) {
                 Mesh mesh;
                 mesh.*kSteps[stage].step = make(call.call);
-                expectRefused(mesh, StatusCode::InvalidArgument, ComponentType::None, -1,
+                expectRefused(mesh, StatusCode::InvalidArgument, ComponentType::NoComponent, -1,
                               std::string(call.name) + " is for " + kSteps[call.stage].name +
                                   ", not for " + kSteps[stage].name);
             }
@@ -302,14 +302,14 @@ TEST(MeshFactory, CallsAreForTheirFunctions) {
 
 TEST(MeshFactory, AFunctionMayRefuse) {
     auto const no = [](BaseTopology &) { return false; };
-    expectRefused({no}, StatusCode::InvalidTopology, ComponentType::None, -1,
+    expectRefused({no}, StatusCode::InvalidTopology, ComponentType::NoComponent, -1,
                   "resizeComponentTopology returned false");
-    expectRefused({nullptr, no}, StatusCode::InvalidTopology, ComponentType::None, -1,
+    expectRefused({nullptr, no}, StatusCode::InvalidTopology, ComponentType::NoComponent, -1,
                   "assignComponentTopology returned false");
-    expectRefused({nullptr, nullptr, no}, StatusCode::InvalidTopology, ComponentType::None, -1,
-                  "assignComponentTags returned false");
-    expectRefused({nullptr, nullptr, nullptr, no}, StatusCode::InvalidTopology, ComponentType::None,
-                  -1, "assignFaceVaryingTopology returned false");
+    expectRefused({nullptr, nullptr, no}, StatusCode::InvalidTopology, ComponentType::NoComponent,
+                  -1, "assignComponentTags returned false");
+    expectRefused({nullptr, nullptr, nullptr, no}, StatusCode::InvalidTopology,
+                  ComponentType::NoComponent, -1, "assignFaceVaryingTopology returned false");
 }
 
 namespace {
@@ -329,11 +329,11 @@ TEST(HandMadeRefiner, EdgesMayRunTheOtherWay) {
             auto verts = getLevel(*base).getEdgeVertices(edge);
             std::swap(verts[0], verts[1]);
         }
-        Status status;
+        CallStatus status;
         auto const refiner = FarExt::TopologyRefinerFactory::Create(*base, &status);
-        ASSERT_TRUE(refiner) << status.GetMessage();
+        ASSERT_TRUE(refiner) << status.GetErrorMessage();
         FarExt::TopologyLevel const &level = refiner->GetLevel(0);
-        EXPECT_TRUE(level.Validate(&status)) << status.GetMessage();
+        EXPECT_TRUE(level.Validate(&status)) << status.GetErrorMessage();
         EXPECT_EQ(FindFarDifference(*refiner, base->GetLevel(0)), "");
         for (int edge = 0; edge < level.GetNumEdges(); ++edge) {
             if (!level.IsEdgeBoundary(edge)) {
@@ -405,12 +405,12 @@ TEST(HandMadeRefiner, EdgesThatAreNoneOfTheirFacesAreNamed) {
     auto const expectNamed = [](auto damage, int edge) {
         auto const base = CreateFarRefiner(GetShape("cube"));
         damage(getLevel(*base));
-        Status status;
+        CallStatus status;
         EXPECT_FALSE(FarExt::TopologyRefinerFactory::Create(*base, &status));
         EXPECT_EQ(status.GetCode(), StatusCode::InvalidTopology);
-        EXPECT_EQ(status.GetComponentType(), ComponentType::Edge) << status.GetMessage();
-        EXPECT_EQ(status.GetComponentIndex(), edge) << status.GetMessage();
-        EXPECT_NE(status.GetMessage().find("edge " + std::to_string(edge)), std::string::npos);
+        EXPECT_EQ(status.GetComponentType(), ComponentType::Edge) << status.GetErrorMessage();
+        EXPECT_EQ(status.GetComponentIndex(), edge) << status.GetErrorMessage();
+        EXPECT_NE(status.GetErrorMessage().find("edge " + std::to_string(edge)), std::string::npos);
     };
     expectNamed([](auto &level) { level.getEdgeVertices(5)[0] = 7 - level.getEdgeVertices(5)[0]; },
                 5);

@@ -18,7 +18,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::TopologyRefinerFactory;
 
 namespace {
@@ -308,11 +308,11 @@ std::set<std::pair<int, int>> findInconsistentEdges(Shape const &shape) {
 void expectRefinedWithWarning(Shape const &shape, Sdc::Options options) {
     ASSERT_NO_FATAL_FAILURE(expectEqualToReference(shape, options, 3));
     ShapeDescriptor const descriptor(shape);
-    Status status;
+    CallStatus status;
     auto const refiner = TopologyRefinerFactory::Create(descriptor.Get(), options, &status);
     ASSERT_TRUE(refiner);
     EXPECT_TRUE(status.IsOk());
-    EXPECT_EQ(status.GetMessage(), "");
+    EXPECT_EQ(status.GetErrorMessage(), "");
     std::set<std::pair<int, int>> const edges = findInconsistentEdges(shape);
     ASSERT_EQ(status.GetWarnings().size(), edges.empty() ? 0 : 1);
     refiner->RefineUniform(1);
@@ -404,12 +404,13 @@ TEST(NonManifold, ChannelWithoutSeamsMovesAsVerticesDoOrIsRefused) {
         options.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_NONE);
         soup.fvarChannels.push_back({3, soup.positions, soup.faceVertices});
         ShapeDescriptor const descriptor(soup);
-        Status status;
+        CallStatus status;
         if (!TopologyRefinerFactory::Create(descriptor.Get(), options, &status)) {
             ++numRefused;
-            EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported) << status.GetMessage();
+            EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported)
+                << status.GetErrorMessage();
             EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Vertex);
-            EXPECT_NE(status.GetMessage().find("channel 0"), std::string::npos);
+            EXPECT_NE(status.GetErrorMessage().find("channel 0"), std::string::npos);
             continue;
         }
         ++numTaken;
@@ -452,13 +453,14 @@ TEST(NonManifold, ChannelWithoutSeamsIsRefusedWhereChaikinsRuleJoinsFans) {
     shape.creaseVertexPairs = {0, 2, 5, 0};
     shape.creaseSharpness = {2.5f, 1.25f};
     ShapeDescriptor const descriptor(shape);
-    Status status;
+    CallStatus status;
     EXPECT_FALSE(TopologyRefinerFactory::Create(descriptor.Get(), options, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
     EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Vertex);
     EXPECT_EQ(status.GetComponentIndex(), 0);
     for (char const *word : {"channel 0", "vertex 0", "CREASE_CHAIKIN"}) {
-        EXPECT_NE(status.GetMessage().find(word), std::string::npos) << status.GetMessage();
+        EXPECT_NE(status.GetErrorMessage().find(word), std::string::npos)
+            << status.GetErrorMessage();
     }
     // Creases in one fan alone, one of them infinitely sharp in the other, and the other method.
     shape.creaseSharpness = {2.5f, 10};

@@ -45,7 +45,7 @@ void forEachRefiner(int maxLevel, double maxCorners, CHECK const &check) {
                                                 : FarExt::SchemeType::Hexagonal;
                 scheme.firstStep = kind == 3   ? FarExt::FirstStep::TriHex
                                    : kind == 6 ? FarExt::FirstStep::Truncate
-                                               : FarExt::FirstStep::None;
+                                               : FarExt::FirstStep::Same;
                 auto const refiner = FarExt::TopologyRefinerFactory::Create(
                     *CreateFarRefiner(shape, sdcOptions), {scheme});
                 if (!refiner) {
@@ -222,7 +222,7 @@ TEST(PartialTable, RefusesWhatItCannotMake) {
         FarExt::TopologyRefinerFactory::Create(*CreateFarRefiner(GetShape("cube")));
     ASSERT_TRUE(refiner->RefineUniform(1));
     using Options = FarExt::StencilTableFactory::Options;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     for (int face : {-1, 6}) {
         std::vector<int> const faces = {0, face};
         EXPECT_FALSE(FarExt::StencilTableFactory::CreateOfFaces(*refiner, toArray(faces), Options(),
@@ -263,9 +263,9 @@ namespace {
 template <typename REAL>
 void expectEstimate(TopologyRefiner const &refiner, double tolerance,
                     typename Factory<REAL>::Options const &options) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const size = Factory<REAL>::EstimateSize(refiner, options, &status);
-    ASSERT_TRUE(status.IsOk()) << status.GetMessage();
+    ASSERT_TRUE(status.IsOk()) << status.GetErrorMessage();
     auto const table = Factory<REAL>::Create(refiner, options);
     ASSERT_TRUE(table);
     auto const numWeights = std::int64_t(table->GetWeights().size());
@@ -335,7 +335,7 @@ TEST(TableSize, TellsWhatIsTooLarge) {
     auto const size = FarExt::StencilTableFactory::EstimateSize(*refiner, options);
     EXPECT_EQ(size.numStencils, 8 * n);
     EXPECT_GT(size.numWeights, std::int64_t(2) * n * n);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(FarExt::StencilTableFactory::Create(*refiner, options, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::TooLarge);
     options.factorizeIntermediateLevels = true;

@@ -449,8 +449,8 @@ TEST(Property, EveryLevelIsValid) {
         auto const refiner =
             CreateRefiner(shape, ReferenceMask::Average, GetTestLevel(shape, 4, 40000), options);
         for (int depth = 0; depth <= refiner->GetMaxLevel(); ++depth) {
-            FarExt::Status status;
-            ASSERT_TRUE(refiner->GetLevel(depth).Validate(&status)) << status.GetMessage();
+            FarExt::CallStatus status;
+            ASSERT_TRUE(refiner->GetLevel(depth).Validate(&status)) << status.GetErrorMessage();
         }
     });
 }

@@ -39,17 +39,17 @@ std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(Shape const &shape, Refer
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions = schemeOptions;
     options.schemeOptions.faceMask = ToFaceMask(mask);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     ShapeDescriptor const descriptor(shape);
     auto refiner =
         FarExt::TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status);
     if (!refiner) {
-        throw std::runtime_error(shape.name + ": " + status.GetMessage());
+        throw std::runtime_error(shape.name + ": " + status.GetErrorMessage());
     }
     FarExt::TopologyRefiner::UniformOptions uniformOptions(level);
     uniformOptions.fullTopologyInLastLevel = true;
     if (!refiner->RefineUniform(uniformOptions, &status)) {
-        throw std::runtime_error(shape.name + ": " + status.GetMessage());
+        throw std::runtime_error(shape.name + ": " + status.GetErrorMessage());
     }
     return refiner;
 }

@@ -9,9 +9,9 @@
 
 namespace OpenSubdivHex::Regression {
 
+using FarExt::CallStatus;
 using FarExt::ComponentType;
 using FarExt::HexSchemeOptions;
-using FarExt::Status;
 using FarExt::StatusCode;
 using FarExt::TopologyRefiner;
 using FarExt::TopologyRefinerFactory;
@@ -20,7 +20,7 @@ TEST_F(StatusTest, NegativeRefinementLevel) {
     ShapeDescriptor const descriptor(GetShape("cube"));
     auto const refiner = TopologyRefinerFactory::Create(descriptor.Get());
     ASSERT_TRUE(refiner->RefineUniform(2));
-    Status status;
+    CallStatus status;
     EXPECT_FALSE(refiner->RefineUniform(-1, &status));
     expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::Level, -1, {"-1"}});
     EXPECT_EQ(refiner->GetMaxLevel(), 2);
@@ -32,7 +32,7 @@ TEST_F(StatusTest, TooManyLevels) {
     auto const refiner = TopologyRefinerFactory::Create(descriptor.Get());
     ASSERT_TRUE(refiner->RefineUniform(2));
     for (int level : {14, 15, 40, 1000000}) {
-        Status status;
+        CallStatus status;
         EXPECT_FALSE(refiner->RefineUniform(level, &status));
         expectRefusal(status, {StatusCode::TooLarge,
                                ComponentType::Level,
@@ -69,7 +69,7 @@ TEST_F(StatusTest, OtherSchemesRefuseFeatures) {
     textured.fvarChannels[0].values.resize(2 * 12);
     textured.fvarChannels[0].valueIndices.resize(12);
     expectRefusedByOtherSchemes(
-        textured, {StatusCode::Unsupported, ComponentType::None, -1, {"face-varying"}});
+        textured, {StatusCode::Unsupported, ComponentType::NoComponent, -1, {"face-varying"}});
     Shape const fin = MakeShape(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
     int const edge = findEdge(fin, 0, 1);
     expectRefusedByOtherSchemes(fin, {StatusCode::Unsupported,
@@ -89,10 +89,10 @@ TEST_F(StatusTest, OtherSchemesTakeSharpBorders) {
     for (HexSchemeOptions const &scheme : kOtherSchemes) {
         TopologyRefinerFactory::Options options;
         options.schemeOptions = scheme;
-        Status status;
+        CallStatus status;
         auto const refiner =
             TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status);
-        ASSERT_TRUE(refiner) << status.GetMessage();
+        ASSERT_TRUE(refiner) << status.GetErrorMessage();
         EXPECT_EQ(refiner->GetHexSchemeOptions().schemeType, scheme.schemeType);
         EXPECT_EQ(refiner->GetHexSchemeOptions().firstStep, scheme.firstStep);
         EXPECT_TRUE(refiner->RefineUniform(2));
@@ -107,7 +107,7 @@ TEST_F(StatusTest, CoplanarArguments) {
     auto const expectCoplanarRefused = [&](double const *positions,
                                            TopologyRefiner::CoplanarOptions options,
                                            Refusal const &expected) {
-        Status status;
+        CallStatus status;
         EXPECT_FALSE(refiner->RefineCoplanar(positions, options, &status));
         expectRefusal(status, expected);
         // The levels are as before.
@@ -120,13 +120,13 @@ TEST_F(StatusTest, CoplanarArguments) {
     expectCoplanarRefused(cube.positions.data(), TopologyRefiner::CoplanarOptions(-2),
                           {StatusCode::InvalidArgument, ComponentType::Level, -2, {"-2"}});
     expectCoplanarRefused(nullptr, good,
-                          {StatusCode::InvalidArgument, ComponentType::None, -1, {"null"}});
+                          {StatusCode::InvalidArgument, ComponentType::NoComponent, -1, {"null"}});
     for (double tolerance : {-0.5, 180.5, std::nan(""), double(INFINITY)}) {
         TopologyRefiner::CoplanarOptions options(1);
         options.angleTolerance = tolerance;
         expectCoplanarRefused(
             cube.positions.data(), options,
-            {StatusCode::InvalidArgument, ComponentType::None, -1, {"angle", "180"}});
+            {StatusCode::InvalidArgument, ComponentType::NoComponent, -1, {"angle", "180"}});
     }
     for (double coordinate : {std::nan(""), double(INFINITY), -double(INFINITY), 1e300}) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -139,7 +139,7 @@ TEST_F(StatusTest, CoplanarArguments) {
     }
     std::vector<float> positions(cube.positions.begin(), cube.positions.end());
     positions[23] = NAN;
-    Status status;
+    CallStatus status;
     EXPECT_FALSE(refiner->RefineCoplanar(positions.data(), good, &status));
     expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::Vertex, 7, {"vertex 7"}});
     EXPECT_TRUE(refiner->RefineCoplanar(cube.positions.data(), good, &status));
@@ -158,10 +158,11 @@ TEST_F(StatusTest, OtherSchemesRefuseCoplanarRefinement) {
         auto const refiner =
             TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
         ASSERT_TRUE(refiner && refiner->RefineUniform(1));
-        Status status;
+        CallStatus status;
         EXPECT_FALSE(refiner->RefineCoplanar(cube.positions.data(), 1, &status));
         expectRefusal(
-            status, {StatusCode::Unsupported, ComponentType::None, -1, {"coplanar", "hexagonal"}});
+            status,
+            {StatusCode::Unsupported, ComponentType::NoComponent, -1, {"coplanar", "hexagonal"}});
         EXPECT_EQ(refiner->GetMaxLevel(), 1);
         EXPECT_FALSE(refiner->RefineUniform(-1, &status));
         expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::Level, -1, {"-1"}});
@@ -190,7 +191,7 @@ TEST_F(StatusTest, TooManyLevelsOfOtherSchemes) {
         ASSERT_TRUE(refiner->RefineUniform(2));
         int const numVertices = refiner->GetLevel(2).GetNumVertices();
         for (int level : {expected.level, 1000000}) {
-            Status status;
+            CallStatus status;
             EXPECT_FALSE(refiner->RefineUniform(level, &status));
             expectRefusal(status, {StatusCode::TooLarge,
                                    ComponentType::Level,
@@ -211,7 +212,7 @@ TEST_F(StatusTest, LevelsThatDoNotGrowHaveALast) {
         auto const refiner =
             TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
         for (int level : {TopologyRefiner::kLastLevel + 1, std::numeric_limits<int>::max()}) {
-            Status status;
+            CallStatus status;
             EXPECT_FALSE(refiner->RefineUniform(level, &status));
             expectRefusal(status, {StatusCode::TooLarge,
                                    ComponentType::Level,
@@ -235,7 +236,7 @@ TEST_F(StatusTest, TooManyCoplanarLevels) {
         EXPECT_TRUE(refiner->RefineUniform(1));
         TopologyRefiner::CoplanarOptions options(1000000);
         options.closeGaps = closeGaps;
-        Status status;
+        CallStatus status;
         EXPECT_FALSE(refiner->RefineCoplanar(shape.positions.data(), options, &status));
         int const level = status.GetComponentIndex();
         expectRefusal(status, {StatusCode::TooLarge, ComponentType::Level, level, {"or more"}});
@@ -268,7 +269,7 @@ TEST_F(StatusTest, TooManyCoplanarLevels) {
              {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}) {
             Sdc::Options sdcOptions;
             sdcOptions.SetVtxBoundaryInterpolation(boundary);
-            Status status;
+            CallStatus status;
             EXPECT_FALSE(create(shape, sdcOptions)->RefineUniform(1000000, &status));
             bool const hasDigons = std::string(name) == "dihedron5";
             EXPECT_TRUE(hasDigons ||
@@ -287,17 +288,17 @@ TEST_F(StatusTest, TooManyLevelsSeenFromAnyLevel) {
         return TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
     };
     auto const refuse = [](TopologyRefiner &refiner) {
-        Status status;
+        CallStatus status;
         EXPECT_FALSE(refiner.RefineUniform(100, &status));
         EXPECT_EQ(status.GetCode(), StatusCode::TooLarge);
         return status;
     };
     // All that are chosen have too many face-vertices, those of the levels before included.
     std::string const kCount = "face-vertices together with the levels before";
-    auto const readCount = [](Status const &status) {
+    auto const readCount = [](CallStatus const &status) {
         std::string const before = "would have ";
-        std::size_t const place = status.GetMessage().find(before) + before.size();
-        return std::stoll(status.GetMessage().substr(place));
+        std::size_t const place = status.GetErrorMessage().find(before) + before.size();
+        return std::stoll(status.GetErrorMessage().substr(place));
     };
     HexSchemeOptions const dooSabin = kOtherSchemes[0];
     HexSchemeOptions const triHex = kOtherSchemes[1];
@@ -310,22 +311,23 @@ TEST_F(StatusTest, TooManyLevelsSeenFromAnyLevel) {
           Case{"dihedron5", dooSabin}, Case{"prism5", dooSabin}, Case{"tetrahedron", triHex}}) {
         SCOPED_TRACE(test.name);
         auto const refiner = create(GetShape(test.name), test.scheme);
-        Status const expected = refuse(*refiner);
+        CallStatus const expected = refuse(*refiner);
         int const lastLevel = expected.GetComponentIndex();
-        ASSERT_NE(expected.GetMessage().find(kCount), std::string::npos) << expected.GetMessage();
+        ASSERT_NE(expected.GetErrorMessage().find(kCount), std::string::npos)
+            << expected.GetErrorMessage();
         std::int64_t count = readCount(expected);
         for (int level : {1, 2, 3}) {
             ASSERT_TRUE(refiner->RefineUniform(level));
             auto const other = create(MakeShape(refiner->GetLevel(level)), test.scheme);
             ASSERT_TRUE(other);
-            Status const actual = refuse(*other);
+            CallStatus const actual = refuse(*other);
             EXPECT_EQ(actual.GetComponentIndex(), lastLevel - level);
             count -= refiner->GetLevel(level - 1).GetNumFaceVertices();
             EXPECT_EQ(readCount(actual), count);
         }
     }
     // With borders the sizes are known after the tri-hex step.
-    EXPECT_NE(refuse(*create(GetShape("mixedPatch"), kOtherSchemes[2])).GetMessage(), "");
+    EXPECT_NE(refuse(*create(GetShape("mixedPatch"), kOtherSchemes[2])).GetErrorMessage(), "");
 }
 
 } // namespace OpenSubdivHex::Regression

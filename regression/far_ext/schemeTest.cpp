@@ -28,8 +28,8 @@ struct NamedScheme {
 };
 
 constexpr NamedScheme kSchemes[] = {
-    {"Doo-Sabin", SchemeType::DooSabin, FirstStep::None},
-    {"tri-hex", SchemeType::TriHex, FirstStep::None},
+    {"Doo-Sabin", SchemeType::DooSabin, FirstStep::Same},
+    {"tri-hex", SchemeType::TriHex, FirstStep::Same},
     {"tri-hex, then hexagonal", SchemeType::Hexagonal, FirstStep::TriHex},
     {"tri-hex, then Doo-Sabin", SchemeType::DooSabin, FirstStep::TriHex}};
 

@@ -13,8 +13,8 @@
 namespace OpenSubdivHex::Regression {
 
 inline FarExt::HexSchemeOptions const kOtherSchemes[] = {
-    {FarExt::FaceMask::Average, FarExt::SchemeType::DooSabin, FarExt::FirstStep::None},
-    {FarExt::FaceMask::Average, FarExt::SchemeType::TriHex, FarExt::FirstStep::None},
+    {FarExt::FaceMask::Average, FarExt::SchemeType::DooSabin, FarExt::FirstStep::Same},
+    {FarExt::FaceMask::Average, FarExt::SchemeType::TriHex, FarExt::FirstStep::Same},
     {FarExt::FaceMask::Average, FarExt::SchemeType::Hexagonal, FarExt::FirstStep::TriHex}};
 
 inline std::string lastError;
@@ -72,29 +72,29 @@ protected:
         std::vector<std::string> words; ///< that the message must hold
     };
 
-    void expectRefusal(FarExt::Status const &status, Refusal const &expected) {
+    void expectRefusal(FarExt::CallStatus const &status, Refusal const &expected) {
         EXPECT_FALSE(status.IsOk());
-        EXPECT_EQ(status.GetCode(), expected.code) << status.GetMessage();
-        EXPECT_EQ(status.GetComponentType(), expected.component) << status.GetMessage();
-        EXPECT_EQ(status.GetComponentIndex(), expected.index) << status.GetMessage();
+        EXPECT_EQ(status.GetCode(), expected.code) << status.GetErrorMessage();
+        EXPECT_EQ(status.GetComponentType(), expected.component) << status.GetErrorMessage();
+        EXPECT_EQ(status.GetComponentIndex(), expected.index) << status.GetErrorMessage();
         for (std::string const &word : expected.words) {
-            EXPECT_NE(status.GetMessage().find(word), std::string::npos)
-                << '"' << status.GetMessage() << "\" does not tell \"" << word << '"';
+            EXPECT_NE(status.GetErrorMessage().find(word), std::string::npos)
+                << '"' << status.GetErrorMessage() << "\" does not tell \"" << word << '"';
         }
     }
 
     void expectDescriptorRefused(Shape const &shape, Refusal const &expected,
                                  Sdc::Options options = Sdc::Options()) {
         ShapeDescriptor const descriptor(shape);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         EXPECT_FALSE(FarExt::TopologyRefinerFactory::Create(descriptor.Get(), options, &status));
         expectRefusal(status, expected);
-        // Without a Status, and through the callback.
+        // Without a CallStatus, and through the callback.
         FarExt::SetErrorCallback(RecordError);
         numErrors = 0;
         EXPECT_FALSE(FarExt::TopologyRefinerFactory::Create(descriptor.Get(), options));
         EXPECT_EQ(numErrors, 1);
-        EXPECT_EQ(lastError, status.GetMessage());
+        EXPECT_EQ(lastError, status.GetErrorMessage());
         FarExt::SetErrorCallback(nullptr);
     }
 
@@ -106,11 +106,11 @@ protected:
         for (FarExt::HexSchemeOptions const &scheme : kOtherSchemes) {
             FarExt::TopologyRefinerFactory::Options options;
             options.schemeOptions = scheme;
-            FarExt::Status status;
+            FarExt::CallStatus status;
             EXPECT_FALSE(FarExt::TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(),
                                                                 options, &status));
             expectRefusal(status, expected);
-            status = FarExt::Status();
+            status = FarExt::CallStatus();
             EXPECT_FALSE(FarExt::TopologyRefinerFactory::Create(*base, options, &status));
             expectRefusal(status, expected);
         }
@@ -122,7 +122,7 @@ protected:
         expectDescriptorRefused(shape, expected, options);
         auto const base = CreateFarRefiner(shape, options);
         ASSERT_TRUE(base);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         EXPECT_FALSE(FarExt::TopologyRefinerFactory::Create(*base, &status));
         expectRefusal(status, expected);
     }

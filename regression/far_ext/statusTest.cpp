@@ -10,49 +10,50 @@
 
 namespace OpenSubdivHex::Regression {
 
+using FarExt::CallStatus;
 using FarExt::ComponentType;
 using FarExt::HexSchemeOptions;
-using FarExt::Status;
 using FarExt::StatusCode;
 using FarExt::TopologyRefinerFactory;
 
 TEST_F(StatusTest, DefaultIsOk) {
-    Status const status;
+    CallStatus const status;
     EXPECT_TRUE(status.IsOk());
     EXPECT_EQ(status.GetCode(), StatusCode::Ok);
-    EXPECT_EQ(status.GetComponentType(), ComponentType::None);
+    EXPECT_EQ(status.GetComponentType(), ComponentType::NoComponent);
     EXPECT_EQ(status.GetComponentIndex(), Far::INDEX_INVALID);
-    EXPECT_EQ(status.GetMessage(), "");
+    EXPECT_EQ(status.GetErrorMessage(), "");
 }
 
 TEST_F(StatusTest, SuccessOverwritesAFailure) {
-    Status status(StatusCode::Unsupported, ComponentType::Face, 3, "old");
+    CallStatus status(StatusCode::Unsupported, ComponentType::Face, 3, "old");
     ShapeDescriptor const descriptor(GetShape("cube"));
     auto const refiner = TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), &status);
     ASSERT_TRUE(refiner);
     EXPECT_TRUE(status.IsOk());
-    EXPECT_EQ(status.GetMessage(), "");
-    status = Status(StatusCode::Unsupported, ComponentType::Face, 3, "old");
+    EXPECT_EQ(status.GetErrorMessage(), "");
+    status = CallStatus(StatusCode::Unsupported, ComponentType::Face, 3, "old");
     EXPECT_TRUE(refiner->RefineUniform(1, &status));
     EXPECT_TRUE(status.IsOk());
 }
 
 TEST_F(StatusTest, EmptyMesh) {
     expectDescriptorRefused(
-        Shape(), {StatusCode::InvalidTopology, ComponentType::None, -1, {"empty", "0 faces"}});
+        Shape(),
+        {StatusCode::InvalidTopology, ComponentType::NoComponent, -1, {"empty", "0 faces"}});
     expectDescriptorRefused(
         MakeShape(3, {}),
-        {StatusCode::InvalidTopology, ComponentType::None, -1, {"empty", "0 faces"}});
+        {StatusCode::InvalidTopology, ComponentType::NoComponent, -1, {"empty", "0 faces"}});
 }
 
 TEST_F(StatusTest, NoArrays) {
-    Status status;
+    CallStatus status;
     Far::TopologyDescriptor descriptor;
     descriptor.numVertices = 3;
     descriptor.numFaces = 1;
     EXPECT_FALSE(TopologyRefinerFactory::Create(descriptor, Sdc::Options(), &status));
-    expectRefusal(status,
-                  {StatusCode::InvalidArgument, ComponentType::None, -1, {"numVertsPerFace"}});
+    expectRefusal(
+        status, {StatusCode::InvalidArgument, ComponentType::NoComponent, -1, {"numVertsPerFace"}});
 }
 
 TEST_F(StatusTest, FaceTooSmall) {
@@ -102,12 +103,12 @@ TEST_F(StatusTest, VertexOfManyEdges) {
     }
     shape.positions.resize(3 * (2 * std::size_t(numTriangles) + 1));
     ShapeDescriptor const descriptor(shape);
-    Status status;
+    CallStatus status;
     auto const refiner = TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), &status);
-    ASSERT_TRUE(refiner) << status.GetMessage();
+    ASSERT_TRUE(refiner) << status.GetErrorMessage();
     EXPECT_EQ(refiner->GetLevel(0).GetVertexEdges(0).size(), 2 * numTriangles);
     ASSERT_TRUE(refiner->RefineUniform(1));
-    EXPECT_TRUE(refiner->GetLevel(1).Validate(&status)) << status.GetMessage();
+    EXPECT_TRUE(refiner->GetLevel(1).Validate(&status)) << status.GetErrorMessage();
 }
 
 TEST_F(StatusTest, VertexOutOfRange) {
@@ -126,7 +127,7 @@ TEST_F(StatusTest, InconsistentOrientationIsAWarning) {
     ShapeDescriptor const descriptor(shape);
     FarExt::SetErrorCallback(RecordError);
     for (bool const isFromBase : {false, true}) {
-        Status status;
+        CallStatus status;
         EXPECT_TRUE(
             isFromBase ? TopologyRefinerFactory::Create(*base, &status)
                        : TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), &status));
@@ -150,7 +151,7 @@ TEST_F(StatusTest, InconsistentOrientationIsAWarning) {
                                         ComponentType::Edge,
                                         edge,
                                         {"edge " + std::to_string(edge), "non-manifold"}});
-    Status status;
+    CallStatus status;
     status.AddWarning(
         {FarExt::WarningCode::InconsistentOrientation, ComponentType::Edge, 1, 1, ""});
     EXPECT_TRUE(TopologyRefinerFactory::Create(*CreateFarRefiner(GetShape("cube")), &status));
@@ -173,7 +174,7 @@ TEST_F(StatusTest, NonManifoldEdgesAreAWarning) {
     int const edge = std::min(base->GetLevel(0).FindEdge(1, 2), base->GetLevel(0).FindEdge(5, 6));
     ShapeDescriptor const descriptor(shape);
     for (bool const isFromBase : {false, true}) {
-        Status status;
+        CallStatus status;
         EXPECT_TRUE(
             isFromBase ? TopologyRefinerFactory::Create(*base, &status)
                        : TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), &status));
@@ -203,9 +204,10 @@ TEST_F(StatusTest, NullArraysAreNamed) {
     ShapeDescriptor const descriptor(shape);
     using Descriptor = Far::TopologyDescriptor;
     auto const expectNamed = [&](Descriptor const &broken, std::string const &name) {
-        Status status;
+        CallStatus status;
         EXPECT_FALSE(TopologyRefinerFactory::Create(broken, Sdc::Options(), &status)) << name;
-        expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::None, -1, {name}});
+        expectRefusal(status,
+                      {StatusCode::InvalidArgument, ComponentType::NoComponent, -1, {name}});
     };
     auto const expectNeeded = [&](auto Descriptor::*array, std::string const &name) {
         Descriptor broken = descriptor.Get();
@@ -267,7 +269,7 @@ TEST_F(StatusTest, SharpnessMustBeANumber) {
         auto const base = CreateFarRefiner(shape);
         auto &level = const_cast<OpenSubdiv::Vtr::internal::Level &>(base->getLevel(0));
         level.getVertexSharpness(3) = sharpness;
-        Status status;
+        CallStatus status;
         EXPECT_FALSE(TopologyRefinerFactory::Create(*base, &status));
         expectRefusal(status,
                       {StatusCode::InvalidTopology, ComponentType::Vertex, 3, {"vertex 3"}});
@@ -285,17 +287,19 @@ TEST_F(StatusTest, OptionsOutsideOfTheirEnumerationsAreNamed) {
                                  std::string const &name) {
         TopologyRefinerFactory::Options options;
         options.schemeOptions = scheme;
-        Status status;
+        CallStatus status;
         EXPECT_FALSE(
             TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status));
-        expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::None, -1, {name, "9"}});
+        expectRefusal(status,
+                      {StatusCode::InvalidArgument, ComponentType::NoComponent, -1, {name, "9"}});
     };
     HexSchemeOptions scheme;
     scheme.schemeType = FarExt::SchemeType(9);
     expectNamed(scheme, Sdc::Options(), "schemeType");
-    Status status;
+    CallStatus status;
     EXPECT_FALSE(TopologyRefinerFactory::Create(*CreateFarRefiner(shape), {scheme}, &status));
-    expectRefusal(status, {StatusCode::InvalidArgument, ComponentType::None, -1, {"schemeType"}});
+    expectRefusal(status,
+                  {StatusCode::InvalidArgument, ComponentType::NoComponent, -1, {"schemeType"}});
     scheme = HexSchemeOptions();
     scheme.faceMask = FarExt::FaceMask(9);
     expectNamed(scheme, Sdc::Options(), "faceMask");
@@ -312,7 +316,7 @@ TEST_F(StatusTest, OptionsOutsideOfTheirEnumerationsAreNamed) {
     FarExt::StencilTableFactory::Options options;
     for (int mode : {77, 3, -1}) {
         StatusTest::Refusal const refusal = {StatusCode::InvalidArgument,
-                                             ComponentType::None,
+                                             ComponentType::NoComponent,
                                              -1,
                                              {"interpolationMode " + std::to_string(mode)}};
         options.interpolationMode = FarExt::StencilMode(mode);
@@ -335,9 +339,9 @@ TEST_F(StatusTest, EveryShapeAndBoundaryRuleIsTaken) {
             Sdc::Options options;
             options.SetVtxBoundaryInterpolation(rule);
             ShapeDescriptor const descriptor(shape);
-            Status status;
+            CallStatus status;
             auto const refiner = TopologyRefinerFactory::Create(descriptor.Get(), options, &status);
-            ASSERT_TRUE(refiner) << shape.name << ": " << status.GetMessage();
+            ASSERT_TRUE(refiner) << shape.name << ": " << status.GetErrorMessage();
             EXPECT_TRUE(status.IsOk());
             EXPECT_EQ(refiner->GetSchemeOptions().GetVtxBoundaryInterpolation(), rule);
         }
@@ -407,7 +411,7 @@ TEST_F(StatusTest, FaceVaryingValueOutOfRange) {
     for (int value : {-1, 7}) {
         shape.fvarChannels[1].valueIndices[4] = value;
         expectDescriptorRefused(shape, {StatusCode::InvalidTopology,
-                                        ComponentType::None,
+                                        ComponentType::NoComponent,
                                         value,
                                         {"corner 4", "channel 1",
                                          "refers to value " + std::to_string(value), "0 to 6"}});

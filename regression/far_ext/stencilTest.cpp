@@ -124,9 +124,9 @@ void expectValues(TABLE const &table, ExpectedRows const &expected, double toler
 template <typename REAL>
 void expectTable(TopologyRefiner const &refiner, std::vector<ReferenceValues> const &levels,
                  Options<REAL> const &options) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const table = Factory<REAL>::Create(refiner, options, &status);
-    ASSERT_TRUE(table) << status.GetMessage();
+    ASSERT_TRUE(table) << status.GetErrorMessage();
     EXPECT_TRUE(status.IsOk());
     EXPECT_EQ(table->GetNumControlVertices(), refiner.GetLevel(0).GetNumVertices());
     ExpectedRows const expected = makeExpectedRows(levels, options);
@@ -386,10 +386,10 @@ TEST(Stencil, RefusesNegativeMaxLevel) {
     auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Average, 1);
     Options<float> options;
     options.maxLevel = -1;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(Factory<float>::Create(*refiner, options, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
-    EXPECT_NE(status.GetMessage().find("-1"), std::string::npos) << status.GetMessage();
+    EXPECT_NE(status.GetErrorMessage().find("-1"), std::string::npos) << status.GetErrorMessage();
     EXPECT_FALSE(Factory<float>::Create(*refiner, options));
 }
 

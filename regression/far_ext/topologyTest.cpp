@@ -15,8 +15,8 @@
 namespace OpenSubdivHex::Regression {
 
 using Far::INDEX_INVALID;
+using FarExt::CallStatus;
 using FarExt::FaceKind;
-using FarExt::Status;
 using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
 
@@ -434,8 +434,8 @@ TEST_F(Topology, ValidatesAtEveryLevel) {
             options.fullTopologyInLastLevel = fullTopologyInLastLevel;
             ASSERT_TRUE(refiner->RefineUniform(options));
             for (int level = 0; level <= numLevels; ++level) {
-                Status status;
-                EXPECT_TRUE(refiner->GetLevel(level).Validate(&status)) << status.GetMessage();
+                CallStatus status;
+                EXPECT_TRUE(refiner->GetLevel(level).Validate(&status)) << status.GetErrorMessage();
                 EXPECT_TRUE(status.IsOk());
             }
         }
@@ -554,8 +554,8 @@ TEST_F(Topology, LeftHandedFacesAreTurnedAsFarDoes) {
     shape.leftHanded = true;
     auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 2);
     for (int level = 0; level <= 2; ++level) {
-        Status status;
-        EXPECT_TRUE(refiner->GetLevel(level).Validate(&status)) << status.GetMessage();
+        CallStatus status;
+        EXPECT_TRUE(refiner->GetLevel(level).Validate(&status)) << status.GetErrorMessage();
     }
     int corner = 0;
     for (int f = 0; f < shape.GetNumFaces(); ++f) {

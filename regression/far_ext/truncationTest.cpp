@@ -287,7 +287,7 @@ TEST(Truncation, OtherStepsRefuseLabelsThatDiffer) {
     for (SchemeType const type :
          {SchemeType::Hexagonal, SchemeType::DooSabin, SchemeType::TriHex}) {
         for (FarExt::FirstStep const firstStep :
-             {FarExt::FirstStep::None, FarExt::FirstStep::TriHex, FarExt::FirstStep::Truncate}) {
+             {FarExt::FirstStep::Same, FarExt::FirstStep::TriHex, FarExt::FirstStep::Truncate}) {
             FarExt::TopologyRefinerFactory::Options factoryOptions;
             factoryOptions.schemeOptions.schemeType = type;
             factoryOptions.schemeOptions.firstStep = firstStep;
@@ -301,15 +301,15 @@ TEST(Truncation, OtherStepsRefuseLabelsThatDiffer) {
                 options.faceLabels[5] = 4;
                 int const firstOther = firstStep == FarExt::FirstStep::TriHex ? 1
                                        : type == SchemeType::Hexagonal        ? 100
-                                       : firstStep == FarExt::FirstStep::None ? 1
+                                       : firstStep == FarExt::FirstStep::Same ? 1
                                                                               : 2;
-                FarExt::Status status;
+                FarExt::CallStatus status;
                 EXPECT_EQ(refiner->RefineUniform(options, &status), level < firstOther);
                 EXPECT_EQ(refiner->GetMaxLevel(), level);
                 if (level >= firstOther) {
                     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
                     EXPECT_EQ(status.GetComponentIndex(), firstOther);
-                    EXPECT_EQ(status.GetMessage(),
+                    EXPECT_EQ(status.GetErrorMessage(),
                               std::string("labels of base faces differ, which steps of ") +
                                   (refiner->GetHexSchemeOptions().GetStepOfLevel(firstOther) ==
                                            FarExt::StepType::TriHex
@@ -326,10 +326,11 @@ TEST(Truncation, ChecksTheNumberOfLabels) {
     auto const refiner = createRefiner(GetShape("cube"), ReferenceMask::Smooth, 2);
     TopologyRefiner::UniformOptions options(1);
     options.faceLabels = {1, 2, 3};
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(refiner->RefineUniform(options, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
-    EXPECT_NE(status.GetMessage().find("3 labels of 6"), std::string::npos) << status.GetMessage();
+    EXPECT_NE(status.GetErrorMessage().find("3 labels of 6"), std::string::npos)
+        << status.GetErrorMessage();
     EXPECT_EQ(refiner->GetMaxLevel(), 2);
 }
 
@@ -342,7 +343,7 @@ TEST(Truncation, RefinesAgainAfterOtherSteps) {
     EXPECT_FALSE(refiner->GetLevel(1).HasFullTopology());
     ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
     EXPECT_EQ(InterpolateLevels(*refiner, positions)[1], first[1]);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(refiner->RefineUniform(40, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::TooLarge);
     EXPECT_EQ(refiner->GetMaxLevel(), 1);

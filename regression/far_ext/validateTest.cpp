@@ -11,7 +11,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 using FarExt::TopologyLevel;
 using FarExt::internal::Buffer;
@@ -111,14 +111,14 @@ void clearRelations(Level &level) {
     level.vertFirstEdge.Resize(0);
 }
 
-bool isValid(Level const &level, Refinement const *refinement, Status *status = nullptr) {
-    Status const result = FarExt::internal::Validate(level, refinement);
+bool isValid(Level const &level, Refinement const *refinement, CallStatus *status = nullptr) {
+    CallStatus const result = FarExt::internal::Validate(level, refinement);
     if (status) {
         *status = result;
     }
     return result.IsOk();
 }
-bool isValid(Level const &level, Status *status = nullptr) {
+bool isValid(Level const &level, CallStatus *status = nullptr) {
     return isValid(level, nullptr, status);
 }
 
@@ -156,11 +156,11 @@ void expectEveryChangeIsFound(Level const &topology, Buffer<T> &buffer, char con
                 continue;
             }
             entry = static_cast<std::decay_t<decltype(entry)>>(wrong);
-            Status status;
+            CallStatus status;
             EXPECT_FALSE(isValid(topology, &status))
                 << name << "[" << i << "] = " << wrong << " instead of " << original;
             EXPECT_EQ(status.GetCode(), StatusCode::InvalidTopology);
-            EXPECT_FALSE(status.GetMessage().empty());
+            EXPECT_FALSE(status.GetErrorMessage().empty());
         }
         entry = original;
     }
@@ -221,7 +221,7 @@ TEST(Validate, FindsWrongFaceVerticesWithoutOtherRelations) {
         Far::Index const inSameFace = topology->faceVerts[corner ^ 2];
         for (Far::Index wrong : {-1, topology->numVertices, inSameFace}) {
             topology->faceVerts[corner] = wrong;
-            Status status;
+            CallStatus status;
             EXPECT_FALSE(isValid(*topology, &status)) << corner << " " << wrong;
             EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Face);
             EXPECT_EQ(status.GetComponentIndex(), corner / 4);
@@ -246,7 +246,7 @@ TEST(Validate, FindsFacesThatAreNotTheParents) {
         auto *const first = child->faceVerts.data() + child->faceFirstCorner[f];
         auto *const last = child->faceVerts.data() + child->faceFirstCorner[f + 1];
         std::rotate(first, first + 1, last);
-        Status status;
+        CallStatus status;
         EXPECT_FALSE(isValid(*child, &refinement, &status)) << f;
         EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Face);
         EXPECT_EQ(status.GetComponentIndex(), f);
@@ -259,11 +259,12 @@ TEST(Validate, NamesTheComponent) {
     auto const refiner = CreateRefiner(GetShape("quadGrid"), ReferenceMask::Average, 0);
     auto const topology = copyLevel(refiner->GetLevel(0));
     topology->faceVerts[4 * 7 + 2] = topology->faceVerts[4 * 7];
-    Status status;
+    CallStatus status;
     EXPECT_FALSE(isValid(*topology, &status));
     EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Face);
     EXPECT_EQ(status.GetComponentIndex(), 7);
-    EXPECT_NE(status.GetMessage().find("face 7"), std::string::npos) << status.GetMessage();
+    EXPECT_NE(status.GetErrorMessage().find("face 7"), std::string::npos)
+        << status.GetErrorMessage();
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -36,16 +36,16 @@ void CheckBases(OracleCase const &oracleCase) {
     Shape const shape = withoutLosses(oracleCase);
     auto const base = CreateFarRefiner(shape, oracleCase.sdcOptions);
     ShapeDescriptor const descriptor(shape);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const ofDescriptor =
         FarExt::TopologyRefinerFactory::Create(descriptor.Get(), oracleCase.sdcOptions, &status);
-    FarExt::Status statusOfBase;
+    FarExt::CallStatus statusOfBase;
     auto const ofBase = FarExt::TopologyRefinerFactory::Create(*base, &statusOfBase);
-    if (status.GetMessage() != statusOfBase.GetMessage() ||
+    if (status.GetErrorMessage() != statusOfBase.GetErrorMessage() ||
         status.GetComponentIndex() != statusOfBase.GetComponentIndex() ||
         status.GetWarnings().size() != statusOfBase.GetWarnings().size()) {
-        Fail("from a descriptor \"", status.GetMessage(), "\", from a refiner \"",
-             statusOfBase.GetMessage(), "\"");
+        Fail("from a descriptor \"", status.GetErrorMessage(), "\", from a refiner \"",
+             statusOfBase.GetErrorMessage(), "\"");
     }
     for (std::size_t i = 0; i < status.GetWarnings().size(); ++i) {
         if (status.GetWarnings()[i].message != statusOfBase.GetWarnings()[i].message) {
@@ -63,7 +63,7 @@ void CheckBases(OracleCase const &oracleCase) {
         auto const ofMesh =
             FarExt::MeshRefinerFactory<Shape>::Create(shape, oracleCase.sdcOptions, &status);
         std::string const what =
-            ofMesh ? FindBaseDifference(*ofDescriptor, *ofMesh) : status.GetMessage();
+            ofMesh ? FindBaseDifference(*ofDescriptor, *ofMesh) : status.GetErrorMessage();
         if (!what.empty()) {
             Fail("level 0 from a descriptor and from a mesh class: ", what);
         }

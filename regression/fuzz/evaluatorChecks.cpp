@@ -130,10 +130,10 @@ void checkRefinementEvaluator(OracleLevels const &levels, OracleLevels::Values c
     RefinementEvaluator::Options options;
     options.interpolationMode = values.mode;
     options.fvarChannel = values.channel;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const evaluator = RefinementEvaluator::Create(levels.refiner, options, &status);
     if (!evaluator) {
-        Fail("no RefinementEvaluator: ", status.GetMessage());
+        Fail("no RefinementEvaluator: ", status.GetErrorMessage());
     }
     std::string const name = "RefinementEvaluator of mode " + std::to_string(values.mode);
     int const length = 1 + dice.Roll(9);
@@ -142,7 +142,7 @@ void checkRefinementEvaluator(OracleLevels const &levels, OracleLevels::Values c
     ElementBuffer all(int(evaluator->GetNumElementsAllLevels()), length, dice);
     if (!evaluator->EvaluateAllLevels(source.floats.data(), source.desc, all.floats.data(),
                                       all.desc, &status)) {
-        Fail(name, " refuses all levels: ", status.GetMessage());
+        Fail(name, " refuses all levels: ", status.GetErrorMessage());
     }
     int first = 0;
     for (int level = 0; level <= evaluator->GetMaxLevel(); ++level) {
@@ -154,7 +154,7 @@ void checkRefinementEvaluator(OracleLevels const &levels, OracleLevels::Values c
         ElementBuffer one(numElements, length, dice);
         if (!evaluator->Evaluate(source.floats.data(), source.desc, one.floats.data(), one.desc,
                                  level, &status)) {
-            Fail(name, " refuses level ", level, ": ", status.GetMessage());
+            Fail(name, " refuses level ", level, ": ", status.GetErrorMessage());
         }
         CheckElements(one, 0, numElements, expected, 0, allowed,
                       name + ", level " + std::to_string(level));

@@ -63,10 +63,10 @@ LimitLevel makeLimit(TopologyRefiner const &refiner, int level, ReferenceValues 
     options.level = level;
     options.generateFurtherSides = true;
     options.generateFaceCenters = true;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const table = Factory::Create(refiner, options, &status);
     if (!table) {
-        Fail("no limit table of level ", level, ": ", status.GetMessage());
+        Fail("no limit table of level ", level, ": ", status.GetErrorMessage());
     }
     LimitLevel limit{{}, {}, {}, LimitSides(refiner.GetLevel(level))};
     int const numRows = limit.sides.GetNumSides() + refiner.GetLevel(level).GetNumFaces();
@@ -133,13 +133,13 @@ public:
         ElementBuffer du = makeBuffer(count);
         ElementBuffer dv = makeBuffer(count);
         ElementBuffer alone = makeBuffer(count);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         if (!_evaluator->EvaluateLimit(_source.floats.data(), _source.desc, points.floats.data(),
                                        points.desc, du.floats.data(), du.desc, dv.floats.data(),
                                        dv.desc, level, &status) ||
             !_evaluator->EvaluateLimit(_source.floats.data(), _source.desc, alone.floats.data(),
                                        alone.desc, level, &status)) {
-            Fail(name, " refuses: ", status.GetMessage());
+            Fail(name, " refuses: ", status.GetErrorMessage());
         }
         double const allowed = 2e-6 * std::max(1.0, GetSize(_base));
         // Sums of weights of derivatives are 16 at most.

@@ -14,7 +14,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::StatusCode;
 using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
@@ -35,8 +35,8 @@ void silenceFar() {
 }
 
 /// A refusal says what it is about, and is one of those that are documented.
-void checkRefusal(OracleCase const &oracleCase, Status const &status) {
-    if (status.IsOk() || status.GetMessage().empty()) {
+void checkRefusal(OracleCase const &oracleCase, CallStatus const &status) {
+    if (status.IsOk() || status.GetErrorMessage().empty()) {
         Fail("no refiner, and no cause");
     }
     bool const takesTags = oracleCase.schemeType == FarExt::SchemeType::Hexagonal &&
@@ -52,14 +52,14 @@ void checkRefusal(OracleCase const &oracleCase, Status const &status) {
             .IsVertexNonManifold(status.GetComponentIndex())) {
         return;
     }
-    Fail("refused: ", status.GetMessage());
+    Fail("refused: ", status.GetErrorMessage());
 }
 
 void checkLevels(TopologyRefiner const &refiner) {
     for (int level = 0; level <= refiner.GetMaxLevel(); ++level) {
-        Status status;
+        CallStatus status;
         if (!refiner.GetLevel(level).Validate(&status)) {
-            Fail("level ", level, " is not valid: ", status.GetMessage());
+            Fail("level ", level, " is not valid: ", status.GetErrorMessage());
         }
     }
 }
@@ -163,7 +163,7 @@ double GetDifference(Eigen::RowVectorXd const &a, Eigen::RowVectorXd const &b) {
 void CheckOracleCase(OracleCase const &oracleCase) {
     silenceFar();
     CheckBases(oracleCase);
-    Status status;
+    CallStatus status;
     auto const refiner = CreateRefiner(oracleCase, &status);
     if (!refiner) {
         checkRefusal(oracleCase, status);

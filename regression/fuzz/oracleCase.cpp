@@ -363,7 +363,7 @@ OracleCase MakeOracleCase(std::uint8_t const *data, std::size_t size) {
                                        : SchemeType::Hexagonal;
     result.firstStep = scheme == 13                  ? FirstStep::TriHex
                        : scheme == 9 || scheme == 10 ? FirstStep::Truncate
-                                                     : FirstStep::None;
+                                                     : FirstStep::Same;
     result.isCoplanar = scheme == 11 || scheme == 12;
     result.angleTolerance = scheme == 11 ? 0.1 : 50; // of no two coarse faces
     result.closeGaps = scheme == 11 || bytes.Choose(2) == 0;
@@ -420,7 +420,7 @@ std::string Print(OracleCase const &oracleCase) {
     static char const *const kLinearNames[] = {"NONE",          "CORNERS_ONLY", "CORNERS_PLUS1",
                                                "CORNERS_PLUS2", "BOUNDARIES",   "ALL"};
     static char const *const kMaskNames[] = {"Average", "Cosine", "Smooth"};
-    static char const *const kFirstStepNames[] = {"None", "TriHex", "Truncate"};
+    static char const *const kFirstStepNames[] = {"Same", "TriHex", "Truncate"};
     static char const *const kSchemeNames[] = {"Hexagonal", "DooSabin", "TriHex"};
     Shape const &shape = oracleCase.shape;
     Sdc::Options const &options = oracleCase.sdcOptions;
@@ -635,7 +635,7 @@ OracleCase Shrink(OracleCase oracleCase, std::function<bool(OracleCase const &)>
 }
 
 std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(OracleCase const &oracleCase,
-                                                       FarExt::Status *status) {
+                                                       FarExt::CallStatus *status) {
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions.faceMask = ToFaceMask(oracleCase.mask);
     options.schemeOptions.schemeType = oracleCase.schemeType;

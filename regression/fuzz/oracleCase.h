@@ -20,7 +20,7 @@ struct OracleCase {
     Sdc::Options sdcOptions;
     ReferenceMask mask = ReferenceMask::Average;
     FarExt::SchemeType schemeType = FarExt::SchemeType::Hexagonal;
-    FarExt::FirstStep firstStep = FarExt::FirstStep::None;
+    FarExt::FirstStep firstStep = FarExt::FirstStep::Same;
     int level = 1;
     bool isCoplanar = false;
     double angleTolerance = 0.1; ///< of a coplanar refinement
@@ -48,7 +48,7 @@ OracleCase Shrink(OracleCase oracleCase, std::function<bool(OracleCase const &)>
 /// The refiner of a case, refined, all relations in its last level too; null with a status if it is
 /// refused.
 std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(OracleCase const &oracleCase,
-                                                       FarExt::Status *status);
+                                                       FarExt::CallStatus *status);
 
 } // namespace OpenSubdivHex::Regression
 

@@ -46,7 +46,7 @@ TEST(Oracle, BytesMakeCasesOfAllKinds) {
                        36 * int(oracleCase.mask));
         numWithAllTags += !shape.creaseSharpness.empty() && !shape.cornerSharpness.empty() &&
                           !shape.holeFaces.empty() && !shape.fvarChannels.empty();
-        FarExt::Status status;
+        FarExt::CallStatus status;
         auto const refiner = CreateRefiner(oracleCase, &status);
         numRefined += refiner != nullptr;
         for (int v = 0; refiner && v < shape.GetNumVertices(); ++v) {
@@ -119,7 +119,7 @@ TEST(Oracle, HexagonsBesideQuadsAndIrregularVertices) {
     oracleCase.sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
     oracleCase.mask = ReferenceMask::Smooth;
     oracleCase.schemeType = FarExt::SchemeType::Hexagonal;
-    oracleCase.firstStep = FarExt::FirstStep::None;
+    oracleCase.firstStep = FarExt::FirstStep::Same;
     oracleCase.level = 3;
     oracleCase.isCoplanar = true;
     oracleCase.angleTolerance = 0.1;

@@ -106,10 +106,10 @@ bool comesBack(TopologyLevel const &base, int vert, int channel) {
 }
 
 void checkOrder(OracleLevels const &levels, Reordered const &other, ReferenceValues const *limits) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const refiner = CreateRefiner(other.oracleCase, &status);
     if (!refiner) {
-        Fail("refused in another order: ", status.GetMessage());
+        Fail("refused in another order: ", status.GetErrorMessage());
     }
     ReferenceValues const base = GetPositions(other.oracleCase.shape);
     double const allowed = other.oracleCase.GetTolerance(1e-12) * std::max(1.0, GetSize(base));

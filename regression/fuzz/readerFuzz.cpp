@@ -228,10 +228,10 @@ bool refine(Mesh *mesh) {
     options.SetFVarLinearInterpolation(
         mesh->tags.fvarInterpolation.value_or(Sdc::Options::FVAR_LINEAR_ALL));
     options.SetCreasingMethod(mesh->tags.creasingMethod.value_or(Sdc::Options::CREASE_UNIFORM));
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(descriptor, options, &status);
     if (!refiner) {
-        require(!status.GetMessage().empty(), "a mesh is refused without a cause");
+        require(!status.GetErrorMessage().empty(), "a mesh is refused without a cause");
         return false;
     }
     require(refiner->RefineUniform(1, &status), "a small mesh is not refined");

@@ -32,7 +32,7 @@ public:
 
     StreamedPlaces<REAL> Run(std::vector<typename PatchStream<REAL>::Values> const &values) {
         bool const isToRun = hasAllSurfaces();
-        FarExt::Status status;
+        FarExt::CallStatus status;
         bool const isRun = _stream.Run(
             _mesh.points.data(), _mesh.pointSize, values, 0, _mesh.factory->GetNumFaces(),
             [&](typename PatchStream<REAL>::Patch const &patch) {
@@ -42,7 +42,7 @@ public:
             },
             &status);
         if (isRun != isToRun || bool(_numbering) != isToRun) {
-            Fail("a stream ", isRun ? "runs" : "does not run: ", status.GetMessage());
+            Fail("a stream ", isRun ? "runs" : "does not run: ", status.GetErrorMessage());
         }
         if (!isRun && !_places.empty()) {
             Fail("a stream that is refused makes patches");

@@ -19,7 +19,7 @@ using BfrExt::PatchLevels;
 using BfrExt::Polyline;
 using BfrExt::Surface;
 using BfrExt::Tessellation;
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::TopologyLevel;
 
 namespace {
@@ -29,7 +29,7 @@ constexpr int kMaxPointSize = 3;
 
 template <typename REAL>
 bool initSurface(BfrExt::SurfaceFactory const &factory, int face,
-                 OracleLevels::Values const &values, Surface<REAL> *surface, Status *status) {
+                 OracleLevels::Values const &values, Surface<REAL> *surface, CallStatus *status) {
     switch (values.mode) {
     case FarExt::INTERPOLATE_VERTEX:
         return factory.InitVertexSurface(face, surface, status);
@@ -57,9 +57,9 @@ ReferenceValues findLimits(OracleLevels const &levels) {
         src[std::size_t(i)].value = last.row(i).array();
     }
     std::vector<Row> dst = src;
-    Status status;
+    CallStatus status;
     if (!FarExt::PrimvarRefinerReal<double>(levels.refiner).Limit(src, dst, &status)) {
-        Fail("no limits: ", status.GetMessage());
+        Fail("no limits: ", status.GetErrorMessage());
     }
     ReferenceValues limits = last;
     for (Eigen::Index i = 0; i < last.rows(); ++i) {
@@ -324,10 +324,10 @@ template <typename REAL>
 MeshSurfaces<REAL>::MeshSurfaces(OracleLevels const &levels,
                                  OracleLevels::Values const &valuesOfCase)
     : oracleCase(levels.oracleCase), values(valuesOfCase), pointSize(int(values.levels[0].cols())) {
-    Status status;
+    CallStatus status;
     factory = BfrExt::SurfaceFactory::Create(levels.refiner, &status);
     if (!factory) {
-        Fail("no SurfaceFactory: ", status.GetMessage());
+        Fail("no SurfaceFactory: ", status.GetErrorMessage());
     }
     TopologyLevel const &base = factory->GetLevel();
     ReferenceValues const &control = values.levels[std::size_t(base.GetDepth())];
@@ -341,7 +341,7 @@ MeshSurfaces<REAL>::MeshSurfaces(OracleLevels const &levels,
         bool const isMade = initSurface(*factory, face, values, &surface, &status);
         if (isMade != surface.IsValid() || isMade != isToHaveSurface(levels, base, face) ||
             isMade != factory->FaceHasLimitSurface(face)) {
-            Fail("the surface of face ", face, " is ", isMade ? "made" : status.GetMessage());
+            Fail("the surface of face ", face, " is ", isMade ? "made" : status.GetErrorMessage());
         }
         std::vector<REAL> &ofFace = controlPoints[std::size_t(face)];
         ofFace.resize(std::size_t(surface.GetNumControlPoints()) * std::size_t(pointSize));

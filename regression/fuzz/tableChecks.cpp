@@ -6,7 +6,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-using FarExt::Status;
+using FarExt::CallStatus;
 using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
 
@@ -103,10 +103,10 @@ void checkSelection(OracleLevels const &levels, OracleLevels::Values const &valu
         faces.push_back(dice.Roll(numFaces));
     }
     Far::ConstIndexArray const selected(faces.data(), int(faces.size()));
-    Status status;
+    CallStatus status;
     auto const part = Factory<REAL>::CreateOfFaces(refiner, selected, options, &status);
     if (!part) {
-        Fail("no table of ", faces.size(), " faces: ", status.GetMessage());
+        Fail("no table of ", faces.size(), " faces: ", status.GetErrorMessage());
     }
     std::string const name = "the table of " + std::to_string(faces.size()) + " faces, mode " +
                              std::to_string(values.mode);
@@ -179,10 +179,10 @@ void checkTable(OracleLevels const &levels, OracleLevels::Values const &values, 
     auto const options = makeOptions<REAL>(values, flags);
     std::string const name = "the table of mode " + std::to_string(values.mode) + ", flags " +
                              std::to_string(flags) + (sizeof(REAL) == 8 ? ", double" : ", float");
-    Status status;
+    CallStatus status;
     auto const table = Factory<REAL>::Create(refiner, options, &status);
     if (!table) {
-        Fail("no ", name, ": ", status.GetMessage());
+        Fail("no ", name, ": ", status.GetErrorMessage());
     }
     checkForm<REAL>(*table, name);
     double const allowed =

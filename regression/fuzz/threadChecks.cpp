@@ -48,15 +48,15 @@ std::vector<int> listTopology(TopologyRefiner const &refiner) {
 
 Made make(OracleCase const &oracleCase, int numThreads) {
     EvaluatorScope const scope(OsdExt::GetSimdLevel(), numThreads);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const refiner = CreateRefiner(oracleCase, &status);
     if (!refiner) {
-        Fail("refused at level ", oracleCase.level, ": ", status.GetMessage());
+        Fail("refused at level ", oracleCase.level, ": ", status.GetErrorMessage());
     }
     Made made{listTopology(*refiner), {}, {}};
     auto const addTable = [&](auto const &table) {
         if (!table) {
-            Fail("no table at level ", oracleCase.level, ": ", status.GetMessage());
+            Fail("no table at level ", oracleCase.level, ": ", status.GetErrorMessage());
         }
         append(made.topology, table->GetSizes());
         append(made.topology, table->GetControlIndices());

@@ -156,7 +156,7 @@ TEST_F(GlRefinement, WritesBeyondTwoGigabytesOrRefuses) {
     std::vector<float> values(std::size_t(numElements) * kLength);
     ASSERT_TRUE(expected->Evaluate(src.data(), desc, values.data(), desc, 2));
     Buffer const srcBuffer = kind.MakeBuffer(src, kLength);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     if (evaluator->Evaluate(srcBuffer->BindVBO(), desc, dst, Descriptor(0, kLength, kStride), 2,
                             &status)) {
         for (int i = 0; i < numElements; ++i) {
@@ -170,25 +170,26 @@ TEST_F(GlRefinement, WritesBeyondTwoGigabytesOrRefuses) {
         }
     } else {
         EXPECT_EQ(status.GetCode(), FarExt::StatusCode::TooLarge);
-        EXPECT_NE(status.GetMessage().find("beyond what this driver reaches"), std::string::npos);
+        EXPECT_NE(status.GetErrorMessage().find("beyond what this driver reaches"),
+                  std::string::npos);
     }
     kind.context.DeleteBuffer(dst);
 }
 
 TEST(GlRefinementWithoutContext, IsUnsupported) {
     auto const refiner = MakeRefiner(GetShape("cube"), 1, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(GLRefinementEvaluator::Create(*refiner, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
-    EXPECT_EQ(status.GetMessage(), "there is no current context of OpenGL 4.3");
+    EXPECT_EQ(status.GetErrorMessage(), "there is no current context of OpenGL 4.3");
 }
 
 TEST_F(GlRefinement, RefusesWhatItCannotEvaluate) {
     auto const refiner = MakeRefiner(GetShape("cube"), 2, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     EXPECT_FALSE(
         GLRefinementEvaluator::Create(*refiner, {FarExt::INTERPOLATE_FACE_VARYING, 0}, &status));
-    EXPECT_EQ(status.GetMessage(), "there is no face-varying channel 0; the mesh has 0");
+    EXPECT_EQ(status.GetErrorMessage(), "there is no face-varying channel 0; the mesh has 0");
     auto const evaluator = GLRefinementEvaluator::Create(*refiner);
     Descriptor const desc(0, 3, 3);
     Buffer const src = kind.MakeBuffer(MakeValues(evaluator->GetNumElements(0), 3), 3);
@@ -198,7 +199,7 @@ TEST_F(GlRefinement, RefusesWhatItCannotEvaluate) {
                                    Descriptor const &dstDesc, int level, char const *message) {
         EXPECT_FALSE(evaluator->Evaluate(srcName, srcDesc, dstName, dstDesc, level, &status));
         EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
-        EXPECT_EQ(status.GetMessage(), message);
+        EXPECT_EQ(status.GetErrorMessage(), message);
     };
     unsigned const srcName = src->BindVBO();
     unsigned const dstName = dst->BindVBO();

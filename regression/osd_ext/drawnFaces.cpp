@@ -260,10 +260,10 @@ bool hasRepeatedVertex(PolygonIndices const &polygons) {
 } // namespace
 
 std::string FindDrawingError(TopologyLevel const &level, DrawOptions const &options) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     PolygonIndices const polygons = OsdExt::CreatePolygonIndices(level, options, &status);
     if (!status.IsOk()) {
-        return status.GetMessage();
+        return status.GetErrorMessage();
     }
     PolygonIndices const expected = findPolygons(level, options);
     if (polygons.sizes != expected.sizes) {

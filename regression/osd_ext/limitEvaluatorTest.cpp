@@ -114,11 +114,11 @@ void expectLimits(TopologyRefiner const &refiner, int length, int gap = 2) {
         Output points(count, length, length + gap, 1);
         Output du(count, length, length, 3);
         Output dv(count, length, length + gap / 2 * length, 0);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         ASSERT_TRUE(evaluator->EvaluateLimit(base.data(), srcDesc, points.floats.data(),
                                              points.desc, du.floats.data(), du.desc,
                                              dv.floats.data(), dv.desc, level, &status))
-            << status.GetMessage();
+            << status.GetErrorMessage();
         ASSERT_NO_FATAL_FAILURE(
             expectOutput(points, *table, table->GetWeights(), base, 2e-6, "point"));
         // Sums of weights of derivatives are 16 at most.
@@ -298,11 +298,12 @@ TEST(LimitEvaluator, RefusesBadArgumentsAndWritesNothing) {
     std::vector<float> const base = makeValues(3 * 8);
     std::vector<float> result(std::size_t(3 * evaluator->GetNumElements(2)), kUntouched);
     std::vector<float> const untouched = result;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const expectRefused = [&](bool isEvaluated, std::string const &cause) {
         EXPECT_FALSE(isEvaluated);
         EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
-        EXPECT_NE(status.GetMessage().find(cause), std::string::npos) << status.GetMessage();
+        EXPECT_NE(status.GetErrorMessage().find(cause), std::string::npos)
+            << status.GetErrorMessage();
         EXPECT_EQ(result, untouched);
     };
     float *const dst = result.data();

@@ -81,7 +81,7 @@ TEST(PolygonIndices, OtherSteps) {
             FarExt::TopologyRefinerFactory::Options factoryOptions;
             factoryOptions.schemeOptions.firstStep = kind == 1   ? FarExt::FirstStep::TriHex
                                                      : kind == 4 ? FarExt::FirstStep::Truncate
-                                                                 : FarExt::FirstStep::None;
+                                                                 : FarExt::FirstStep::Same;
             factoryOptions.schemeOptions.schemeType = kind == 2   ? FarExt::SchemeType::DooSabin
                                                       : kind == 3 ? FarExt::SchemeType::TriHex
                                                                   : FarExt::SchemeType::Hexagonal;
@@ -98,7 +98,7 @@ TEST(PolygonIndices, OtherSteps) {
             DrawOptions options;
             ASSERT_EQ(FindDrawingError(refiner->GetLevel(maxLevel), options), "") << shape.name;
             options.generateBaseCoords = true;
-            FarExt::Status status;
+            FarExt::CallStatus status;
             if (kind > 0 && maxLevel > 0) {
                 EXPECT_EQ(
                     OsdExt::CreatePolygonIndices(refiner->GetLevel(maxLevel), options, &status)
@@ -253,13 +253,13 @@ TEST(PolygonIndices, RefusesWhatDoesNotFit) {
     auto const refiner = refine(shape, 1);
     TopologyLevel const &level = refiner->GetLevel(1);
     auto const expectRefused = [&](DrawOptions const &options, std::string const &cause) {
-        FarExt::Status status;
+        FarExt::CallStatus status;
         PolygonIndices const polygons = OsdExt::CreatePolygonIndices(level, options, &status);
         EXPECT_EQ(polygons.GetNumPolygons(), 0);
         EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
-        EXPECT_EQ(status.GetMessage(), cause);
+        EXPECT_EQ(status.GetErrorMessage(), cause);
         EXPECT_EQ(OsdExt::CreateTriangleIndices(level, options, &status).GetNumTriangles(), 0);
-        EXPECT_EQ(status.GetMessage(), cause);
+        EXPECT_EQ(status.GetErrorMessage(), cause);
     };
     DrawOptions options;
     options.fvarChannels = {0};
@@ -289,7 +289,7 @@ TEST(PolygonIndices, RefusesWhatDoesNotFit) {
     options.sides = &creasedSides;
     expectRefused(options, "the sides are those of another level than level 1, whose creases split "
                            "vertices elsewhere");
-    FarExt::Status status;
+    FarExt::CallStatus status;
     options.sides = &smoothSides;
     EXPECT_EQ(CreatePolygonIndices(creasedRefiner->GetLevel(1), options, &status).GetNumPolygons(),
               0);
@@ -312,7 +312,8 @@ TEST(PolygonIndices, RefusesWhatDoesNotFit) {
     ++options.vertexOffset;
     EXPECT_EQ(CreatePolygonIndices(level, options, &status).GetNumPolygons(), 0);
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::TooLarge);
-    EXPECT_NE(status.GetMessage().find("2147483648"), std::string::npos) << status.GetMessage();
+    EXPECT_NE(status.GetErrorMessage().find("2147483648"), std::string::npos)
+        << status.GetErrorMessage();
     // Such a level knows of no edges, and so of no sides.
     ASSERT_TRUE(refiner->RefineUniform(1));
     FarExt::LimitSides const noSides(refiner->GetLevel(1));

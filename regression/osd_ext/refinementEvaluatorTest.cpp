@@ -46,12 +46,12 @@ std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape,
                                                Sdc::Options sdcOptions = Sdc::Options()) {
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions = schemeOptions;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     ShapeDescriptor const descriptor(shape);
     auto refiner =
         FarExt::TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status);
     if (!refiner || !refiner->RefineUniform(level, &status)) {
-        throw std::runtime_error(shape.name + ": " + status.GetMessage());
+        throw std::runtime_error(shape.name + ": " + status.GetErrorMessage());
     }
     return refiner;
 }
@@ -650,13 +650,13 @@ TEST(RefinementEvaluator, RefusesWhatItCannotEvaluate) {
     std::vector<float> const src = makeControlValues(8, 3);
     std::vector<float> const before(1000, kGuard);
     std::vector<float> dst = before;
-    auto const expectRefused = [&](bool isDone, FarExt::Status const &status) {
+    auto const expectRefused = [&](bool isDone, FarExt::CallStatus const &status) {
         EXPECT_FALSE(isDone);
         EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
-        EXPECT_FALSE(status.GetMessage().empty());
+        EXPECT_FALSE(status.GetErrorMessage().empty());
         EXPECT_TRUE(haveSameBits(dst.data(), before.data(), before.size()));
     };
-    FarExt::Status status;
+    FarExt::CallStatus status;
     for (int const level : {-1, 3, 1000}) {
         bool const isDone =
             evaluator->Evaluate(src.data(), packed(3), dst.data(), packed(3), level, &status);
@@ -682,9 +682,9 @@ TEST(RefinementEvaluator, RefusesWhatItCannotEvaluate) {
         {src.data(), packed(3), dst.data(), {-1, 3, 3}},
     };
     for (Case const &c : cases) {
-        status = FarExt::Status();
+        status = FarExt::CallStatus();
         expectRefused(evaluator->Evaluate(c.src, c.srcDesc, c.dst, c.dstDesc, 1, &status), status);
-        status = FarExt::Status();
+        status = FarExt::CallStatus();
         expectRefused(evaluator->EvaluateAllLevels(c.src, c.srcDesc, c.dst, c.dstDesc, &status),
                       status);
     }
@@ -695,7 +695,7 @@ TEST(RefinementEvaluator, RefusesWhatItCannotEvaluate) {
     // Also with as many levels as before.
     for (int const level : {1, 2}) {
         ASSERT_TRUE(refiner->RefineUniform(level));
-        status = FarExt::Status();
+        status = FarExt::CallStatus();
         expectRefused(evaluator->Evaluate(src.data(), packed(3), dst.data(), packed(3), 1, &status),
                       status);
     }
@@ -708,7 +708,7 @@ TEST(RefinementEvaluator, RefusesChannelsThatAreNotThere) {
     options.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
     for (int const channel : {-1, 0, 1, 2}) {
         options.fvarChannel = channel;
-        FarExt::Status status;
+        FarExt::CallStatus status;
         auto const evaluator = RefinementEvaluator::Create(*refiner, options, &status);
         bool const isThere = channel == 0 || channel == 1;
         EXPECT_EQ(evaluator != nullptr, isThere);

@@ -33,10 +33,10 @@ std::unique_ptr<FarExt::TopologyRefiner> createTopology(PolygonMesh const &mesh)
     descriptor.numFaces = mesh.GetNumFaces();
     descriptor.numVertsPerFace = sizes.data();
     descriptor.vertIndicesPerFace = mesh.faceVertices.data();
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, Sdc::Options(), &status);
     if (!refiner) {
-        throw std::runtime_error(status.GetMessage());
+        throw std::runtime_error(status.GetErrorMessage());
     }
     return refiner;
 }

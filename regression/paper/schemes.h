@@ -12,7 +12,7 @@ using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
 
 constexpr HexSchemeOptions MakeHexagonal(FaceMask mask) {
-    return {mask, SchemeType::Hexagonal, FirstStep::None};
+    return {mask, SchemeType::Hexagonal, FirstStep::Same};
 }
 constexpr HexSchemeOptions MakeTriHexFirst(FaceMask mask) {
     return {mask, SchemeType::Hexagonal, FirstStep::TriHex};
@@ -21,10 +21,10 @@ constexpr HexSchemeOptions MakeTruncateFirst(FaceMask mask) {
     return {mask, SchemeType::Hexagonal, FirstStep::Truncate};
 }
 constexpr HexSchemeOptions MakeDooSabin(FaceMask mask) {
-    return {mask, SchemeType::DooSabin, FirstStep::None};
+    return {mask, SchemeType::DooSabin, FirstStep::Same};
 }
 constexpr HexSchemeOptions MakeTriHex() {
-    return {FaceMask::Average, SchemeType::TriHex, FirstStep::None};
+    return {FaceMask::Average, SchemeType::TriHex, FirstStep::Same};
 }
 
 } // namespace OpenSubdivHex::Regression

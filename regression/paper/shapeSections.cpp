@@ -65,14 +65,14 @@ Shape makeShape(std::string name, PolygonMesh const &mesh) {
 }
 
 std::vector<SurfaceLevel> refineCoplanar(Shape const &shape, int level, bool closeGaps) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(
         ShapeDescriptor(shape).Get(), Sdc::Options(), {MakeHexagonal(FaceMask::Average)}, &status);
     FarExt::TopologyRefiner::CoplanarOptions options(level);
     options.closeGaps = closeGaps;
     options.fullTopologyInLastLevel = true;
     if (!refiner || !refiner->RefineCoplanar(shape.positions.data(), options, &status)) {
-        throw std::runtime_error(shape.name + ": " + status.GetMessage());
+        throw std::runtime_error(shape.name + ": " + status.GetErrorMessage());
     }
     return MakeSurfaceLevels(*refiner, shape);
 }

@@ -39,10 +39,10 @@ BufferPointer makeBuffer(int numVertices) {
 }
 
 std::shared_ptr<CudaRefinementEvaluator> makeEvaluator(FarExt::TopologyRefiner const &refiner) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     std::shared_ptr<CudaRefinementEvaluator> result =
         CudaRefinementEvaluator::Create(refiner, &status);
-    Require(result != nullptr, status.GetMessage());
+    Require(result != nullptr, status.GetErrorMessage());
     return result;
 }
 
@@ -203,10 +203,10 @@ std::function<void()> makeFrameOf(BenchMesh const &mesh) {
     int const numControl = refiner->GetLevel(0).GetNumVertices();
     BufferPointer const dst = makeBuffer(own->GetNumElements(level));
     return [=] {
-        FarExt::Status status;
+        FarExt::CallStatus status;
         control->buffer->UpdateData(control->values.data(), 0, numControl);
         Require(own->Evaluate(control->buffer.get(), kPacked, dst.get(), kPacked, level, &status),
-                status.GetMessage());
+                status.GetErrorMessage());
         finish();
     };
 }

@@ -124,13 +124,13 @@ Contest makeLimits(BenchMesh const &mesh) {
     std::shared_ptr<Osd::GLVertexBuffer> const dv(
         Osd::GLVertexBuffer::Create(kLength, numVertices));
     auto const add = [&](std::string const &name,
-                         std::function<bool(FarExt::Status *)> const &evaluate) {
+                         std::function<bool(FarExt::CallStatus *)> const &evaluate) {
         Contestant contestant;
         contestant.name = name;
         contestant.work = [=] {
-            FarExt::Status status;
+            FarExt::CallStatus status;
             bool const isDone = evaluate(&status);
-            Require(isDone, name + ": " + status.GetMessage());
+            Require(isDone, name + ": " + status.GetErrorMessage());
             finish();
         };
         contestant.validate = [=] { return double(numVertices); };
@@ -138,13 +138,13 @@ Contest makeLimits(BenchMesh const &mesh) {
     };
     Contest contest;
     contest.contestants = {add("EvaluateLimit",
-                               [=](FarExt::Status *status) {
+                               [=](FarExt::CallStatus *status) {
                                    return own->EvaluateLimit(values->src.get(), kPacked,
                                                              values->dst.get(), kPacked, du.get(),
                                                              kPacked, dv.get(), kPacked,
                                                              refiner->GetMaxLevel(), status);
                                }),
-                           add("Evaluate", [=](FarExt::Status *status) {
+                           add("Evaluate", [=](FarExt::CallStatus *status) {
                                return own->Evaluate(values->src.get(), kPacked, values->dst.get(),
                                                     kPacked, refiner->GetMaxLevel(), status);
                            })};
@@ -184,10 +184,10 @@ Contest makePreparations(BenchMesh const &mesh) {
 // New control values, and the last level of them.
 std::function<void()> makeFrame(BenchMesh const &mesh) {
     RefinerPointer const refiner = MakeRefined(mesh);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     std::shared_ptr<OsdExt::GLRefinementEvaluator> const own =
         OsdExt::GLRefinementEvaluator::Create(*refiner, &status);
-    Require(own != nullptr, status.GetMessage());
+    Require(own != nullptr, status.GetErrorMessage());
     int const level = refiner->GetMaxLevel();
     int const numControl = refiner->GetLevel(0).GetNumVertices();
     std::vector<float> const control(std::size_t(numControl) * kLength, 0.5f);
@@ -196,10 +196,10 @@ std::function<void()> makeFrame(BenchMesh const &mesh) {
     std::shared_ptr<Osd::GLVertexBuffer> const dst(
         Osd::GLVertexBuffer::Create(kLength, own->GetNumElements(level)));
     return [=] {
-        FarExt::Status frameStatus;
+        FarExt::CallStatus frameStatus;
         src->UpdateData(control.data(), 0, numControl);
         Require(own->Evaluate(src.get(), kPacked, dst.get(), kPacked, level, &frameStatus),
-                frameStatus.GetMessage());
+                frameStatus.GetErrorMessage());
         finish();
     };
 }

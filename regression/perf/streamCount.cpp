@@ -65,7 +65,7 @@ Count countStream(BfrExt::PatchStream<float> const &stream, std::vector<float> c
     std::atomic<std::uint64_t> points(0);
     std::atomic<std::uint64_t> facets(0);
     std::atomic<std::uint64_t> hash(0);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     bool const isDone = stream.Run(
         positions.data(), 3, beginFace, endFace,
         [&](BfrExt::PatchStream<float>::Patch const &patch) {
@@ -76,7 +76,7 @@ Count countStream(BfrExt::PatchStream<float> const &stream, std::vector<float> c
         },
         &status);
     if (!isDone) {
-        throw std::runtime_error(status.GetMessage());
+        throw std::runtime_error(status.GetErrorMessage());
     }
     return {points, facets, hash};
 }
@@ -144,17 +144,17 @@ void run(Arguments const &arguments, std::string const &program) {
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions.faceMask = arguments.mask;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(mesh),
                                                                 sdcOptions, options, &status);
     if (!refiner) {
-        throw Tools::FileError(arguments.input, status.GetMessage());
+        throw Tools::FileError(arguments.input, status.GetErrorMessage());
     }
     // Each count begins with an empty cache.
     auto const count = [&](int beginFace, int endFace) {
         auto const factory = BfrExt::SurfaceFactory::Create(*refiner, {}, &status);
         if (!factory) {
-            throw Tools::FileError(arguments.input, status.GetMessage());
+            throw Tools::FileError(arguments.input, status.GetErrorMessage());
         }
         BfrExt::PatchStream<float> const stream(
             *factory, BfrExt::PatchLevels(arguments.level),

@@ -216,7 +216,7 @@ TEST(Shared, ErrorsAreReportedFromAllThreads) {
         for (int i = 0; i < kNumRounds; ++i) {
             StencilTableFactory::Options options;
             options.maxLevel = -1;
-            FarExt::Status status;
+            FarExt::CallStatus status;
             EXPECT_FALSE(StencilTableFactory::Create(*refiner, options, &status));
             EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
         }

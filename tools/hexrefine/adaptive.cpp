@@ -167,12 +167,12 @@ AdaptiveRefinement::AdaptiveRefinement(Mesh const &mesh, std::string const &outp
 
 void AdaptiveRefinement::Refine(AdaptiveArguments const &arguments,
                                 FarExt::TopologyRefiner const &refiner, std::string const &input) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     BfrExt::SurfaceFactoryCache cache;
     auto const factory = SurfaceFactory::Create(
         refiner, SurfaceFactory::Options().SetExternalCache(&cache), &status);
     if (!factory) {
-        throw FileError(input, "--adaptive: " + status.GetMessage());
+        throw FileError(input, "--adaptive: " + status.GetErrorMessage());
     }
     FarExt::TopologyLevel const base = factory->GetLevel();
     int const numFaces = base.GetNumFaces();
@@ -184,7 +184,7 @@ void AdaptiveRefinement::Refine(AdaptiveArguments const &arguments,
         }
         if (!factory->InitVertexSurface(face, &surface, &status)) {
             RequireBoundaryRule(refiner, input);
-            throw FileError(input, "--adaptive: " + status.GetMessage());
+            throw FileError(input, "--adaptive: " + status.GetErrorMessage());
         }
         ++numSurfaces;
     }

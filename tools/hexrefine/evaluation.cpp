@@ -61,7 +61,7 @@ void evaluateLevels(FarExt::TopologyRefiner const &refiner, Primvar const &primv
 }
 
 bool evaluateRefinement(FarExt::TopologyRefiner const &refiner, Primvar const &primvar,
-                        FarExt::Status *status) {
+                        FarExt::CallStatus *status) {
     OsdExt::RefinementEvaluator::Options options;
     options.interpolationMode = primvar.mode;
     options.fvarChannel = primvar.fvarChannel;
@@ -122,7 +122,7 @@ bool NeedsStencils(std::string const &evaluator) {
 }
 
 bool EvaluateLevels(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
-                    Primvar const &primvar, FarExt::Status *status) {
+                    Primvar const &primvar, FarExt::CallStatus *status) {
     if (evaluator == kRefinement) {
         return evaluateRefinement(refiner, primvar, status);
     }
@@ -140,7 +140,7 @@ bool EvaluateLevels(FarExt::TopologyRefiner const &refiner, std::string const &e
 
 std::unique_ptr<Far::StencilTable const> CreateStencils(FarExt::TopologyRefiner const &refiner,
                                                         Primvar const &primvar,
-                                                        FarExt::Status *status) {
+                                                        FarExt::CallStatus *status) {
     FarExt::StencilTableFactory::Options options;
     options.generateIntermediateLevels = false;
     options.interpolationMode = primvar.mode;
@@ -176,7 +176,7 @@ bool EvaluateStencils(Far::StencilTable const &table, std::string const &evaluat
 }
 
 std::unique_ptr<Far::LimitStencilTable const>
-CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::Status *status) {
+CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::CallStatus *status) {
     FarExt::LimitStencilTableFactory::Options options;
     options.level = refiner.GetMaxLevel();
     options.generateFurtherSides = true;
@@ -217,7 +217,7 @@ bool EvaluateLimit(Far::LimitStencilTable const &table, FarExt::LimitSides const
 
 bool EvaluateLimit(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
                    std::vector<float> *positions, std::vector<float> *normals,
-                   FarExt::Status *status) {
+                   FarExt::CallStatus *status) {
     int const level = refiner.GetMaxLevel();
     LimitArrays limit(refiner.GetLevel(level).GetNumVertices());
     if (evaluator == kRefinement) {

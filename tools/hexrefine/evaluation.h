@@ -37,13 +37,13 @@ bool NeedsStencils(std::string const &evaluator);
 /// \param evaluator  refinement, or primvar for a width of 1 to 3
 /// \return           false with a status, as from RefinementEvaluator
 bool EvaluateLevels(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
-                    Primvar const &primvar, FarExt::Status *status);
+                    Primvar const &primvar, FarExt::CallStatus *status);
 
 /// The table that holds the last level of \p primvar alone; null with a status, as from
 /// StencilTableFactory.
 std::unique_ptr<OpenSubdiv::Far::StencilTable const>
 CreateStencils(FarExt::TopologyRefiner const &refiner, Primvar const &primvar,
-               FarExt::Status *status);
+               FarExt::CallStatus *status);
 
 /// \brief Replaces \p primvar's values by those that \p table, from CreateStencils, makes of them.
 /// \param evaluator  one that takes a table
@@ -54,7 +54,7 @@ bool EvaluateStencils(OpenSubdiv::Far::StencilTable const &table, std::string co
 /// The limit points of the refiner's last level, which has full topology, and the derivatives on
 /// each of its LimitSides; null with a status, as from LimitStencilTableFactory.
 std::unique_ptr<OpenSubdiv::Far::LimitStencilTable const>
-CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::Status *status);
+CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::CallStatus *status);
 
 /// \brief Replaces \p positions, of level 0, by the limit points of \p table, from
 /// CreateLimitStencils, and \p normals by a normal for each side, 1 long; 0 where there is no
@@ -70,7 +70,7 @@ bool EvaluateLimit(OpenSubdiv::Far::LimitStencilTable const &table, FarExt::Limi
 /// \return           false with a status, as from RefinementEvaluator or PrimvarRefiner
 bool EvaluateLimit(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,
                    std::vector<float> *positions, std::vector<float> *normals,
-                   FarExt::Status *status);
+                   FarExt::CallStatus *status);
 
 /// Makes vectors of three floats 1 long; those without a direction stay 0.
 void Normalize(std::vector<float> *vectors);

@@ -209,11 +209,11 @@ int Job::getLastLevel() const {
 }
 
 // Evaluators of tables give no status.
-void Job::requireDone(bool isDone, FarExt::Status const &status) const {
+void Job::requireDone(bool isDone, FarExt::CallStatus const &status) const {
     if (!isDone) {
         throw FileError(_arguments.input,
                         status.IsOk() ? "--evaluator " + _arguments.evaluator + " gives no values"
-                                      : status.GetMessage());
+                                      : status.GetErrorMessage());
     }
 }
 
@@ -293,10 +293,10 @@ void Job::createRefiner(Sdc::Options sdcOptions) {
     descriptor.fvarChannels = channels.data();
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions = findSchemeOptions(_arguments);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     _refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options, &status);
     if (!_refiner) {
-        throw FileError(_arguments.input, status.GetMessage());
+        throw FileError(_arguments.input, status.GetErrorMessage());
     }
     for (FarExt::Warning const &warning : status.GetWarnings()) {
         warn(warning.message);
@@ -309,7 +309,7 @@ void Job::createRefiner(Sdc::Options sdcOptions) {
 
 // The positions of the mesh are the rest pose.
 void Job::refineTopology() {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     bool const needsFullTopology = _arguments.isLimit || isAdaptive() || !_arguments.png.empty();
     FarExt::TopologyRefiner::UniformOptions uniformOptions(getLastLevel());
     uniformOptions.fullTopologyInLastLevel = needsFullTopology;
@@ -324,7 +324,7 @@ void Job::refineTopology() {
                             ? _refiner->RefineCoplanar(_mesh.positions.data(), options, &status)
                             : _refiner->RefineUniform(uniformOptions, &status);
     if (!isDone) {
-        throw FileError(_arguments.input, status.GetMessage());
+        throw FileError(_arguments.input, status.GetErrorMessage());
     }
 }
 
@@ -339,7 +339,7 @@ void Job::evaluateLevel() {
 
 void Job::evaluatePrimvar(Primvar const &primvar) {
     auto &milliseconds = _statistics.milliseconds;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     if (!NeedsStencils(_arguments.evaluator)) {
         measure("evaluating", &milliseconds.evaluate, [&] {
             requireDone(EvaluateLevels(*_refiner, _arguments.evaluator, primvar, &status), status);
@@ -363,7 +363,7 @@ void Job::evaluatePrimvar(Primvar const &primvar) {
 void Job::evaluateLimit() {
     auto &milliseconds = _statistics.milliseconds;
     _sides.emplace(_refiner->GetLevel(getLastLevel()));
-    FarExt::Status status;
+    FarExt::CallStatus status;
     // Tables alone have further sides.
     if (!NeedsStencils(_arguments.evaluator) && _sides->GetNumSides() == _sides->GetNumVertices()) {
         measure("evaluating", &milliseconds.evaluate, [&] {

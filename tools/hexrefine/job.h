@@ -51,7 +51,7 @@ private:
     void measure(char const *phase, double *milliseconds, WORK &&work);
     bool isAdaptive() const;
     int getLastLevel() const;
-    void requireDone(bool isDone, FarExt::Status const &status) const;
+    void requireDone(bool isDone, FarExt::CallStatus const &status) const;
     void warn(std::string const &message) const;
 
     OpenSubdiv::Sdc::Options chooseOptions() const;

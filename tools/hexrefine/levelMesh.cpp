@@ -123,7 +123,7 @@ void copyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const *sid
     OsdExt::DrawOptions options;
     options.cutBaseFaces = false;
     options.labels = OpenSubdiv::Far::ConstIndexArray(classes.data(), int(classes.size()));
-    options.cutCreases = OsdExt::CreaseCuts::None;
+    options.cutCreases = OsdExt::CreaseCuts::NoCreases;
     options.sides = sides;
     options.separateVertices = isSeparate;
     options.fvarChannels.resize(mesh->channels.size() - (sides ? 1 : 0));

@@ -52,11 +52,11 @@ void WriteCellPicture(Mesh const &mesh, AdaptiveCamera const &camera,
     Vec3 const target = GetVec3(faces.positions.data(), mesh.GetNumVertices() + 1);
     faces.positions.resize(mesh.positions.size());
 
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const refiner =
         FarExt::TopologyRefinerFactory::Create(DescribeTopology(faces), {}, {}, &status);
     if (!refiner) {
-        throw FileError(path, "cannot be made: " + status.GetMessage());
+        throw FileError(path, "cannot be made: " + status.GetErrorMessage());
     }
     Surface surface(refiner->GetLevel(0), !regions.empty());
     surface.SetPositions(faces.positions.data());

@@ -61,12 +61,12 @@ protected:
 
 /// Whether the faces make a closed, manifold, consistently oriented surface.
 inline void expectClosed(Mesh const &mesh) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const refiner =
         FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), Sdc::Options(), &status);
-    ASSERT_TRUE(refiner) << status.GetMessage();
+    ASSERT_TRUE(refiner) << status.GetErrorMessage();
     EXPECT_EQ(refiner->GetLevel(0).GetNumBoundaryEdges(), 0);
-    EXPECT_TRUE(refiner->GetLevel(0).Validate(&status)) << status.GetMessage();
+    EXPECT_TRUE(refiner->GetLevel(0).Validate(&status)) << status.GetErrorMessage();
 }
 
 } // namespace OpenSubdivHex::Tools

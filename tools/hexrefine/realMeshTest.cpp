@@ -38,11 +38,11 @@ protected:
         EXPECT_EQ(mesh.GetNumFaces(), last["faces"]);
         Sdc::Options options;
         options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-        FarExt::Status status;
+        FarExt::CallStatus status;
         auto const refiner =
             FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), options, &status);
-        ASSERT_TRUE(refiner) << status.GetMessage();
-        EXPECT_TRUE(refiner->GetLevel(0).Validate(&status)) << status.GetMessage();
+        ASSERT_TRUE(refiner) << status.GetErrorMessage();
+        EXPECT_TRUE(refiner->GetLevel(0).Validate(&status)) << status.GetErrorMessage();
         EXPECT_EQ(refiner->GetLevel(0).GetNumBoundaryEdges(), last["boundaryEdges"]);
     }
 };

@@ -16,9 +16,9 @@ namespace {
 
 constexpr int kLength = 3;
 
-void requireOk(bool isOk, FarExt::Status const &status) {
+void requireOk(bool isOk, FarExt::CallStatus const &status) {
     if (!isOk) {
-        throw std::runtime_error(status.GetMessage());
+        throw std::runtime_error(status.GetErrorMessage());
     }
 }
 
@@ -39,7 +39,7 @@ std::unique_ptr<OsdExt::RefinementEvaluator> makeEvaluator(FarExt::TopologyRefin
     OsdExt::RefinementEvaluator::Options options;
     options.interpolationMode = mode;
     options.fvarChannel = channel;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto evaluator = OsdExt::RefinementEvaluator::Create(refiner, options, &status);
     requireOk(evaluator != nullptr, status);
     return evaluator;
@@ -53,7 +53,7 @@ std::vector<float> evaluate(std::vector<float> const &values, int width,
     }
     OpenSubdiv::Osd::BufferDescriptor const desc(0, width, width);
     std::vector<float> result(std::size_t(evaluator->GetNumElements(level)) * std::size_t(width));
-    FarExt::Status status;
+    FarExt::CallStatus status;
     requireOk(evaluator->Evaluate(values.data(), desc, result.data(), desc, level, &status),
               status);
     return result;
@@ -64,7 +64,7 @@ std::vector<float> evaluate(std::vector<float> const &values, int width,
 CellView::CellView(Mesh const &mesh, std::unique_ptr<FarExt::TopologyRefiner> refiner,
                    int uvChannel)
     : _refiner(std::move(refiner)), _baseSides(getBase()) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     _factory = SurfaceFactory::Create(*_refiner,
                                       SurfaceFactory::Options().SetExternalCache(&_cache), &status);
     requireOk(_factory != nullptr, status);

@@ -25,8 +25,8 @@ using OsdExt::PolygonIndices;
 constexpr int kLength = 3;
 Osd::BufferDescriptor const kPacked(0, kLength, kLength);
 
-[[noreturn]] void fail(FarExt::Status const &status) {
-    throw std::runtime_error(status.GetMessage());
+[[noreturn]] void fail(FarExt::CallStatus const &status) {
+    throw std::runtime_error(status.GetErrorMessage());
 }
 
 std::unique_ptr<FarExt::TopologyRefiner> makeRefiner(Mesh const &mesh,
@@ -46,7 +46,7 @@ std::unique_ptr<FarExt::TopologyRefiner> makeRefiner(Mesh const &mesh,
     sdcOptions.SetCreasingMethod(mesh.tags.creasingMethod.value_or(sdcOptions.GetCreasingMethod()));
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions = settings.scheme;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options, &status);
     // Cells begin with the faces of the surface level.
     FarExt::TopologyRefiner::UniformOptions uniform(
@@ -72,7 +72,7 @@ std::vector<float> evaluateCoords(FarExt::TopologyRefiner const &refiner, Mesh c
     OsdExt::RefinementEvaluator::Options options;
     options.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
     options.fvarChannel = channel;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const evaluator = OsdExt::RefinementEvaluator::Create(refiner, options, &status);
     FVarChannel const &values = mesh.channels[std::size_t(channel)];
     Osd::BufferDescriptor const desc(0, values.width, values.width);
@@ -102,7 +102,7 @@ DrawnTopology makeTopology(FarExt::TopologyRefiner const &refiner, Mesh const &m
     } else {
         drawOptions.generateBaseCoords = settings.scheme.IsHexagonal();
     }
-    FarExt::Status status;
+    FarExt::CallStatus status;
     PolygonIndices polygons = OsdExt::CreatePolygonIndices(level, drawOptions, &status);
     if (!status.IsOk()) {
         fail(status);
@@ -171,7 +171,7 @@ void ViewedSurface::Refine(SurfaceSettings const &settings) {
         return;
     }
     FarExt::TopologyLevel const &level = refiner->GetLevel(settings.level);
-    FarExt::Status status;
+    FarExt::CallStatus status;
 
     // The evaluator, and with it all that may be refused.
     std::unique_ptr<OsdExt::RefinementEvaluator> cpuEvaluator;

@@ -48,10 +48,10 @@ bool run(char const *path, int level, int rank, int numRanks) {
     };
     BfrExt::PatchStream<float> const stream(*factory,
                                             BfrExt::PatchLevels(getFaceLevel, getEdgeLevel));
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const numbering = BfrExt::PatchNumbering::Create(stream, &status);
     if (!numbering) {
-        std::fprintf(stderr, "%s\n", status.GetMessage().c_str());
+        std::fprintf(stderr, "%s\n", status.GetErrorMessage().c_str());
         return false;
     }
 
@@ -81,7 +81,7 @@ bool run(char const *path, int level, int rank, int numRanks) {
     }
     isWritten = MPI_File_close(&file) == MPI_SUCCESS && isWritten;
     if (!isWritten) {
-        std::fprintf(stderr, "%s: %s\n", path, status.GetMessage().c_str());
+        std::fprintf(stderr, "%s: %s\n", path, status.GetErrorMessage().c_str());
     } else if (rank == 0) {
         std::printf("%lld points, %lld triangles\n",
                     static_cast<long long>(numbering->GetNumPoints()),

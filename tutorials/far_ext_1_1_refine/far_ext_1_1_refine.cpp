@@ -26,10 +26,10 @@ std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Tools::Mesh const &mesh) 
     descriptor.numVertsPerFace = mesh.faceSizes.data();
     descriptor.vertIndicesPerFace = mesh.faceVertices.data();
 
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, Sdc::Options(), &status);
     if (!refiner) {
-        std::fprintf(stderr, "%s\n", status.GetMessage().c_str());
+        std::fprintf(stderr, "%s\n", status.GetErrorMessage().c_str());
     }
     return refiner;
 }
@@ -65,9 +65,9 @@ int main() {
     // else: all that drawing takes.
     FarExt::TopologyRefiner::UniformOptions options(3);
     options.fullTopologyInLastLevel = true;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     if (!refiner->RefineUniform(options, &status)) {
-        std::fprintf(stderr, "%s\n", status.GetMessage().c_str());
+        std::fprintf(stderr, "%s\n", status.GetErrorMessage().c_str());
         return 1;
     }
 

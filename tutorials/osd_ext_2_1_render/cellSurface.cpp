@@ -95,7 +95,7 @@ void addCreases(FarExt::TopologyLevel const &base, int face, Patch const &patch,
 } // namespace
 
 CellSurface::CellSurface(FarExt::TopologyRefiner const &refiner) {
-    FarExt::Status status;
+    FarExt::CallStatus status;
     _factory = BfrExt::SurfaceFactory::Create(
         refiner, BfrExt::SurfaceFactory::Options().SetExternalCache(&_cache), &status);
     for (int face = 0; _factory && status.IsOk() && face < _factory->GetNumFaces(); ++face) {
@@ -108,7 +108,7 @@ CellSurface::CellSurface(FarExt::TopologyRefiner const &refiner) {
         _evaluator = OsdExt::RefinementEvaluator::Create(refiner, &status);
     }
     if (!status.IsOk()) {
-        throw std::runtime_error(status.GetMessage());
+        throw std::runtime_error(status.GetErrorMessage());
     }
     _bounds.emplace(*_factory);
 }
@@ -171,10 +171,10 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
     _baseFaces.resize(faces.size());
     std::transform(faces.begin(), faces.end(), _baseFaces.begin(),
                    [&](int face) { return base.GetFaceBaseFace(face); });
-    FarExt::Status status;
+    FarExt::CallStatus status;
     _polygons = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), {}, {}, &status);
     if (!_polygons) {
-        throw std::runtime_error(status.GetMessage());
+        throw std::runtime_error(status.GetErrorMessage());
     }
     FarExt::TopologyLevel const &level = _polygons->GetLevel(0);
     _surface = std::make_unique<Surface>(level);

@@ -51,7 +51,7 @@ struct PanelSettings {
     bool isAdaptive = false;
     double pixelError = 0.5;
     FarExt::FaceMask mask = FarExt::FaceMask::Smooth;
-    FarExt::FirstStep firstStep = FarExt::FirstStep::None;
+    FarExt::FirstStep firstStep = FarExt::FirstStep::Same;
     Sdc::Options::VtxBoundaryInterpolation boundary = Sdc::Options::VTX_BOUNDARY_NONE;
     bool hasWireframe = false;
     bool isTinted = false;
@@ -239,11 +239,11 @@ public:
         FarExt::TopologyRefinerFactory::Options refinerOptions;
         refinerOptions.schemeOptions.faceMask = settings.mask;
         refinerOptions.schemeOptions.firstStep = settings.firstStep;
-        FarExt::Status status;
+        FarExt::CallStatus status;
         _refiner = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), sdcOptions,
                                                           refinerOptions, &status);
         if (!_refiner) {
-            throw FileError(input, status.GetMessage());
+            throw FileError(input, status.GetErrorMessage());
         }
         auto const [low, high] = findBounds(mesh.positions);
         _rodRadius = 0.005f * Length(high - low);
@@ -253,7 +253,7 @@ public:
                 refinerOptions.schemeOptions.GetSurfaceLevel());
             refineOptions.fullTopologyInLastLevel = true;
             if (!_refiner->RefineUniform(refineOptions, &status)) {
-                throw FileError(input, status.GetMessage());
+                throw FileError(input, status.GetErrorMessage());
             }
             try {
                 _cells = std::make_unique<CellSurface>(*_refiner);
@@ -310,11 +310,11 @@ public:
 private:
     // Refines to the level of the settings, with a table of its limit points.
     void refine(Mesh const &mesh, std::string const &input) {
-        FarExt::Status status;
+        FarExt::CallStatus status;
         FarExt::TopologyRefiner::UniformOptions refineOptions(_settings.level);
         refineOptions.fullTopologyInLastLevel = true;
         if (!_refiner->RefineUniform(refineOptions, &status)) {
-            throw FileError(input, status.GetMessage());
+            throw FileError(input, status.GetErrorMessage());
         }
         _surface =
             std::make_unique<Surface>(_refiner->GetLevel(_settings.level), _settings.hasRegions);
@@ -327,7 +327,7 @@ private:
         tableOptions.generateFurtherSides = true;
         _table = FarExt::LimitStencilTableFactory::Create(*_refiner, tableOptions, &status);
         if (!_table) {
-            throw FileError(input, status.GetMessage());
+            throw FileError(input, status.GetErrorMessage());
         }
         _controlBuffer.reset(Osd::CpuVertexBuffer::Create(3, mesh.GetNumVertices()));
         for (auto *buffer : {&_pointBuffer, &_duBuffer, &_dvBuffer}) {

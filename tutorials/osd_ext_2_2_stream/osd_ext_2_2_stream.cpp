@@ -161,12 +161,12 @@ void run(Arguments const &arguments) {
     ScaleToUnitSize(&mesh.positions);
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const refiner =
         FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), options, &status);
     auto const factory = refiner ? BfrExt::SurfaceFactory::Create(*refiner, &status) : nullptr;
     if (!factory) {
-        throw FileError(arguments.input, status.GetMessage());
+        throw FileError(arguments.input, status.GetErrorMessage());
     }
     FarExt::TopologyLevel const &base = refiner->GetLevel(0);
     Camera const camera(arguments.view, mesh.positions,

@@ -121,9 +121,9 @@ PatchScene::Patches::Patches(BfrExt::PatchStream<float> const &stream,
         if (factory.GetLevel().IsFaceHole(face)) {
             continue;
         }
-        FarExt::Status status;
+        FarExt::CallStatus status;
         if (!factory.InitVertexSurface(face, &surface, &status)) {
-            throw std::runtime_error(status.GetMessage());
+            throw std::runtime_error(status.GetErrorMessage());
         }
         Box box;
         surface.BoundControlPointsFromMesh(positions.data(), 3, box.low, box.high);
@@ -287,12 +287,12 @@ SharedScene PatchScene::Patches::make(unsigned primitive, std::int64_t *numTrian
         return points && triangles;
     };
     int const face = _faces[primitive];
-    FarExt::Status status;
+    FarExt::CallStatus status;
     if (!_stream.Run(_positions.data(), 3, face, face + 1, sink, &status)) {
         if (status.IsOk()) {
             throw std::bad_alloc();
         }
-        throw std::runtime_error(status.GetMessage());
+        throw std::runtime_error(status.GetErrorMessage());
     }
     rtcCommitScene(scene.get());
     return scene;

@@ -19,17 +19,18 @@ int main() {
     descriptor.numFaces = 4;
     descriptor.numVertsPerFace = kVertsPerFace;
     descriptor.vertIndicesPerFace = kFaceVerts;
-    FarExt::Status status;
+    FarExt::CallStatus status;
     auto const refiner =
         FarExt::TopologyRefinerFactory::Create(descriptor, OpenSubdiv::Sdc::Options(), &status);
     if (!refiner || !refiner->RefineUniform({3}, &status)) {
-        std::printf("%s\n", status.GetMessage().c_str());
+        std::printf("%s\n", status.GetErrorMessage().c_str());
         return 1;
     }
     auto const evaluator = OsdExt::EVALUATOR::Create(*refiner, &status);
     if (!evaluator) {
-        std::printf("%s\n", status.GetMessage().c_str());
-        return status.GetCode() == FarExt::StatusCode::Unsupported && !status.GetMessage().empty()
+        std::printf("%s\n", status.GetErrorMessage().c_str());
+        return status.GetCode() == FarExt::StatusCode::Unsupported &&
+                       !status.GetErrorMessage().empty()
                    ? 0
                    : 1;
     }
