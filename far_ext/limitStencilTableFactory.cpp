@@ -518,7 +518,7 @@ private:
 };
 
 template <typename OPTIONS>
-CallStatus checkOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
+CallStatus checkLimitOptions(TopologyRefiner const &refiner, OPTIONS const &options) {
     CallStatus result = internal::CheckLimitLevel(refiner.GetHierarchy(),
                                                   refiner.GetHexSchemeOptions(), options.level);
     if (!result.IsOk()) {
@@ -553,7 +553,7 @@ template <typename REAL>
 auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Options options,
                                                 CallStatus *status)
     -> std::unique_ptr<Table const> {
-    if (!internal::Report(checkOptions(refiner, options), status)) {
+    if (!internal::Report(checkLimitOptions(refiner, options), status)) {
         return nullptr;
     }
     TopologyLevel const &topologyLevel = refiner.GetLevel(options.level);

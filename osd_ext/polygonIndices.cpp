@@ -32,8 +32,8 @@ constexpr int kNumHalfCorners = FarExt::HexIndexing::kNumBoundaryEFaceCorners;
 enum Parts : unsigned char { kBothHalves = 3, kWhole = 4 };
 
 // A polygon, its first corner.
-struct Place {
-    Place &operator+=(Place const &other) {
+struct PolygonPlace {
+    PolygonPlace &operator+=(PolygonPlace const &other) {
         polygon += other.polygon;
         corner += other.corner;
         return *this;
@@ -50,14 +50,15 @@ public:
 
     PolygonIndices Run() {
         decideCuts();
-        auto const places = ParallelSums<Place>(_level.GetNumFaces(), [&](Index begin, Index end) {
-            Place sum;
-            forEachRun(begin, end, [&](FaceRun const &run) { sum += getSize(run); });
-            return sum;
-        });
+        auto const places =
+            ParallelSums<PolygonPlace>(_level.GetNumFaces(), [&](Index begin, Index end) {
+                PolygonPlace sum;
+                forEachRun(begin, end, [&](FaceRun const &run) { sum += getSize(run); });
+                return sum;
+            });
         resize(places.back());
         ParallelForRange(_level.GetNumFaces(), [&](Index begin, Index end) {
-            Place place = places[std::size_t(begin / FarExt::internal::kParallelRange)];
+            PolygonPlace place = places[std::size_t(begin / FarExt::internal::kParallelRange)];
             forEachRun(begin, end, [&](FaceRun const &run) {
                 writePolygons(run, place);
                 writeCorners(run, place);
@@ -112,7 +113,7 @@ private:
         int half;
     };
 
-    Place getSize(FaceRun const &run) const {
+    PolygonPlace getSize(FaceRun const &run) const {
         if (run.half >= 0) {
             return {1, kNumHalfCorners};
         }
@@ -161,7 +162,7 @@ private:
         }
     }
 
-    void resize(Place const &size) {
+    void resize(PolygonPlace const &size) {
         auto const resizeIf = [](bool isWanted, auto &array, std::size_t count) {
             if (isWanted && count > 0) {
                 FarExt::internal::ResizeLarge(array, count);
@@ -180,7 +181,7 @@ private:
         resizeIf(!_options.labels.empty(), _result.labels, size.polygon);
     }
 
-    void writePolygons(FaceRun const &run, Place const &place) {
+    void writePolygons(FaceRun const &run, PolygonPlace const &place) {
         int const half = std::max(run.half, 0);
         std::size_t polygon = place.polygon;
         for (Index face = run.begin; face < run.end; ++face, ++polygon) {
@@ -194,7 +195,7 @@ private:
         }
     }
 
-    void writeCorners(FaceRun const &run, Place const &place) {
+    void writeCorners(FaceRun const &run, PolygonPlace const &place) {
         int *const vertices = _result.vertices.data() + place.corner;
         if (!_options.splitVertices) {
             Index const first = _mesh.faceFirstCorner[run.begin];

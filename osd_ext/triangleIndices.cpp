@@ -12,8 +12,8 @@ namespace {
 using Far::Index;
 
 // Where a polygon has its corners, and its triangles.
-struct Place {
-    Place &operator+=(Place const &other) {
+struct TrianglePlace {
+    TrianglePlace &operator+=(TrianglePlace const &other) {
         corner += other.corner;
         triangle += other.triangle;
         return *this;
@@ -45,8 +45,8 @@ public:
     TriangleIndices Run() {
         Index const numPolygons = _polygons.GetNumPolygons();
         auto const places =
-            FarExt::internal::ParallelSums<Place>(numPolygons, [&](Index begin, Index end) {
-                Place sum;
+            FarExt::internal::ParallelSums<TrianglePlace>(numPolygons, [&](Index begin, Index end) {
+                TrianglePlace sum;
                 for (Index i = begin; i < end; ++i) {
                     std::size_t const size = std::size_t(_polygons.sizes[std::size_t(i)]);
                     sum += {size, std::max(size, std::size_t(2)) - 2};
@@ -57,7 +57,8 @@ public:
             triangles.resize(polygons.empty() ? 0 : std::size_t(width) * places.back().triangle);
         });
         FarExt::internal::ParallelForRange(numPolygons, [&](Index begin, Index end) {
-            Place const place = places[std::size_t(begin / FarExt::internal::kParallelRange)];
+            TrianglePlace const place =
+                places[std::size_t(begin / FarExt::internal::kParallelRange)];
             forEachArray([&](auto const &polygons, auto &triangles, int width) {
                 if (!polygons.empty()) {
                     write(polygons, triangles, width, begin, end, place);
@@ -88,7 +89,7 @@ private:
     // Of polygons [begin, end), which begin at place.
     template <typename T>
     void write(std::vector<T> const &polygons, std::vector<T> &triangles, int width, Index begin,
-               Index end, Place const &place) const {
+               Index end, TrianglePlace const &place) const {
         T const *from = polygons.data() + std::size_t(width / 3) * place.corner;
         T *to = triangles.data() + std::size_t(width) * place.triangle;
         for (Index i = begin; i < end; ++i) {

@@ -13,7 +13,7 @@ namespace {
 using Images = Symmetries::Images;
 
 // By how much weights of stencils that are images of each other differ at most, which is rounding.
-constexpr double kTolerance = 1e-12;
+constexpr double kImageTolerance = 1e-12;
 
 // 1, or -1 where what has a parity turns its sign in an image.
 double getSign(std::size_t parity, std::size_t image) {
@@ -25,7 +25,7 @@ bool areImages(std::vector<double> const &stencil, std::vector<double> const &ot
                std::vector<Images> const &pointImages, std::size_t image, double sign) {
     for (std::size_t point = 0; point < stencil.size(); ++point) {
         auto const ofOther = std::size_t(pointImages[point][image]);
-        if (!(std::abs(sign * stencil[point] - other[ofOther]) <= kTolerance)) {
+        if (!(std::abs(sign * stencil[point] - other[ofOther]) <= kImageTolerance)) {
             return false;
         }
     }

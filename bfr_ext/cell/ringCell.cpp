@@ -20,7 +20,7 @@ namespace {
 using Cell = std::pair<CellPatch, std::vector<RingLayout>>;
 
 // The place of the vertex of a ring; others are behind the begin of the block of face 0.
-constexpr int kCenter = -1;
+constexpr int kRingCenter = -1;
 
 // Those of the face that a patch is made for come first.
 std::vector<int> getCorners(int numCorners) {
@@ -68,7 +68,7 @@ RingPlaces::RingPlaces(std::vector<Far::Index> const &verts, std::vector<RingLay
         int const vert = verts[point];
         Column column = {-1, 0, int(point)};
         if (vert == rings[0].center) {
-            column = {0, kCenter, int(point)};
+            column = {0, kRingCenter, int(point)};
         }
         for (int ring = 0; ring < int(rings.size()); ++ring) {
             std::vector<int> const &ofRing = rings[std::size_t(ring)].verts;
@@ -84,11 +84,11 @@ RingPlaces::RingPlaces(std::vector<Far::Index> const &verts, std::vector<RingLay
     std::sort(columns.begin(), columns.end(), [](Column const &a, Column const &b) {
         return std::make_pair(a.ring, a.place) < std::make_pair(b.ring, b.place);
     });
-    assert(columns[0].place == kCenter);
+    assert(columns[0].place == kRingCenter);
     for (Column const &column : columns) {
         _columns.push_back(column.point);
         _ends.resize(std::size_t(column.ring) + 1, _places.size());
-        if (column.place != kCenter) {
+        if (column.place != kRingCenter) {
             _places.push_back(column.place);
             ++_ends.back();
         }

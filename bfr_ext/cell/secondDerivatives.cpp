@@ -19,9 +19,9 @@ constexpr std::size_t kNumCorners = std::size(HalfCell::kCorners);
 // Each makes what is left half as large.
 constexpr int kNumRounds = 60;
 // Of weights, which are at most some hundred; more is left where the rows do not converge.
-constexpr double kTolerance = 1e-9;
+constexpr double kRowTolerance = 1e-9;
 
-double dot(Row const &a, Row const &b) {
+double dotRows(Row const &a, Row const &b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
@@ -63,9 +63,9 @@ std::vector<Quadratic> findQuadratics(std::vector<Pair> const &latticePlaces) {
     for (std::size_t i = 0; i < quadratics.size(); ++i) {
         Quadratic &quadratic = quadratics[i];
         for (std::size_t k = 0; k < i; ++k) {
-            quadratic.Add(-dot(quadratic.atPoints, quadratics[k].atPoints), quadratics[k]);
+            quadratic.Add(-dotRows(quadratic.atPoints, quadratics[k].atPoints), quadratics[k]);
         }
-        quadratic.Scale(1 / std::sqrt(dot(quadratic.atPoints, quadratic.atPoints)));
+        quadratic.Scale(1 / std::sqrt(dotRows(quadratic.atPoints, quadratic.atPoints)));
     }
     return quadratics;
 }
@@ -74,7 +74,8 @@ std::vector<Quadratic> findQuadratics(std::vector<Pair> const &latticePlaces) {
 void fitToQuadratics(std::vector<Quadratic> const &quadratics, Rows &rows) {
     for (std::size_t k = 0; k < rows.size(); ++k) {
         for (Quadratic const &quadratic : quadratics) {
-            double const factor = quadratic.secondDerivatives[k] - dot(rows[k], quadratic.atPoints);
+            double const factor =
+                quadratic.secondDerivatives[k] - dotRows(rows[k], quadratic.atPoints);
             for (std::size_t i = 0; i < rows[k].size(); ++i) {
                 rows[k][i] += factor * quadratic.atPoints[i];
             }
@@ -146,7 +147,7 @@ SecondDerivatives::SecondDerivatives(CellType const &type) {
                 std::max(largestChange, findLargestChange(before[corner], _rows[corner]));
         }
     }
-    if (!(largestChange < kTolerance)) {
+    if (!(largestChange < kRowTolerance)) {
         _rows.clear();
     }
 }

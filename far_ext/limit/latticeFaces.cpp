@@ -20,14 +20,13 @@ namespace {
 
 using Point = LatticePatch::Point;
 
-constexpr double kTolerance = 1e-9; ///< of weights, as RegularFaces has it
 constexpr Index kRange = 64;        ///< of faces, which take some microseconds each
 constexpr double kSamePoint = 1e-6; ///< in a plane where edges of level 0 are 1 long
 
 bool areEqual(PatchWeights const &a, PatchWeights const &b) {
     for (std::size_t i = 0; i < a.size(); ++i) {
         for (std::size_t k = 0; k < a[i].size(); ++k) {
-            if (!(std::abs(a[i][k] - b[i][k]) < kTolerance)) {
+            if (!(std::abs(a[i][k] - b[i][k]) < kWeightTolerance)) {
                 return false;
             }
         }
@@ -270,7 +269,7 @@ public:
     bool AreFulfilled(std::array<double, 2> const &weights) const {
         return std::all_of(_equations.begin(), _equations.end(), [&](Equation const &equation) {
             double const expected = weights[0] * equation.first + weights[1] * equation.second;
-            return std::abs(expected - equation.outer) < kTolerance;
+            return std::abs(expected - equation.outer) < kWeightTolerance;
         });
     }
     /// By least squares.

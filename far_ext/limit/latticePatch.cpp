@@ -11,11 +11,11 @@ using Far::Index;
 
 namespace {
 
-constexpr double kTolerance = 1e-6; ///< of places, which are 1 apart
+constexpr double kPlaceTolerance = 1e-6; ///< of places, which are 1 apart
 
 using Point = LatticePatch::Point;
 
-bool isAt(Point a, Point b) { return std::abs(a - b) < kTolerance; }
+bool isAt(Point a, Point b) { return std::abs(a - b) < kPlaceTolerance; }
 
 } // namespace
 
@@ -43,7 +43,7 @@ LatticePatch::LatticePatch(int faceSize) : _faceSize(faceSize) {
     auto const isNear = [&](Directed corner) {
         for (int i = 0; i < faceSize; ++i, corner = corner.Next(faceSize)) {
             for (Directed const &ofBase : base) {
-                if (std::abs(corner.point - ofBase.point) < 1 + kTolerance) {
+                if (std::abs(corner.point - ofBase.point) < 1 + kPlaceTolerance) {
                     return true;
                 }
             }
@@ -98,7 +98,7 @@ void LatticePatch::setPlaces() {
         Point const *onAxis = nullptr;
         for (Point const &other : _points) {
             bool const isOfOrbit = isAt(std::pow(other, _faceSize), std::pow(point, _faceSize)) &&
-                                   std::abs(other.imag()) < kTolerance;
+                                   std::abs(other.imag()) < kPlaceTolerance;
             // An even number of turns has one at either end of the axis.
             onAxis = isOfOrbit && (!onAxis || other.real() > 0) ? &other : onAxis;
         }

@@ -157,10 +157,6 @@ bool hasDifferentSources(Level const &level, RegularFace const &face, int corner
     return std::adjacent_find(sources.begin(), sources.end()) == sources.end();
 }
 
-// Of the largest weights, which are about 1: those of the masks of limits are less exact than sums of
-// them.
-constexpr double kTolerance = 1e-9;
-
 // The mask that makes the row of a corner.
 RegularFaceMask makeMask(Level const &level, RegularFace const &face, int corner,
                          SteppedRow const &row) {
@@ -211,7 +207,7 @@ bool isRow(Level const &level, RegularFace const &face, RegularFaceMask const &m
     }
     return std::all_of(row.begin(), row.end(), [](SteppedRow::value_type const &left) {
         return std::all_of(left.second.begin(), left.second.end(),
-                           [](double weight) { return std::abs(weight) < kTolerance; });
+                           [](double weight) { return std::abs(weight) < kWeightTolerance; });
     });
 }
 
@@ -226,8 +222,8 @@ constexpr int kNumOthersBeyond = kSize / 2; // of each face
 
 bool RegularFaceMask::HasOneTip() const {
     return std::all_of(sums, sums + kNumSums, [this](Sum const &sum) {
-        return std::abs(sum.next - sum.previous) < kTolerance &&
-               std::abs(sum.beyond * sums[0].next - sums[0].beyond * sum.next) < kTolerance;
+        return std::abs(sum.next - sum.previous) < kWeightTolerance &&
+               std::abs(sum.beyond * sums[0].next - sums[0].beyond * sum.next) < kWeightTolerance;
     });
 }
 

@@ -35,11 +35,10 @@ std::optional<LimitMask> findMask(MeshLevels const &mesh, HexSchemeOptions const
         row.erase(source);
     }
     // Others may be left over from rounding.
-    constexpr double kTolerance = 1e-9;
     bool const isNothingLeft =
         std::all_of(row.begin(), row.end(), [](SteppedRow::value_type const &left) {
             return std::all_of(left.second.begin(), left.second.end(),
-                               [](double weight) { return std::abs(weight) < kTolerance; });
+                               [](double weight) { return std::abs(weight) < kWeightTolerance; });
         });
     return isNothingLeft ? std::optional(mask) : std::nullopt;
 }

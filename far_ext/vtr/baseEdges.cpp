@@ -20,8 +20,6 @@ namespace {
 using Far::Index;
 using Far::LocalIndex;
 
-std::string str(std::int64_t number) { return std::to_string(number); }
-
 // Half of an edge: from the corner of a face to the next one.
 struct HalfEdge {
     Index neighbor; // of the vertex that is looked at
@@ -399,20 +397,21 @@ private:
     }
     std::string describeFirst(Found const &found) const {
         ApartSide const &side = found.first[0];
-        return "first edge " + str(side.edge) + " between vertices " + str(getStart(side)) +
-               " and " + str(getEnd(side));
+        return "first edge " + std::to_string(side.edge) + " between vertices " +
+               std::to_string(getStart(side)) + " and " + std::to_string(getEnd(side));
     }
     std::string describeNonManifold() const {
-        return str(_nonManifold.count) +
+        return std::to_string(_nonManifold.count) +
                (_nonManifold.count == 1 ? " non-manifold edge comes" : " non-manifold edges come") +
                " apart, " + describeFirst(_nonManifold);
     }
     std::string describeInconsistent() const {
         return "inconsistent orientation, taken as non-manifold: faces run " +
-               str(_inconsistent.count) + (_inconsistent.count == 1 ? " edge" : " edges") +
-               " in the same direction, " + describeFirst(_inconsistent) + ", of faces " +
-               str(getFace(_inconsistent.first[0])) + " and " +
-               str(getFace(_inconsistent.first[1]));
+               std::to_string(_inconsistent.count) +
+               (_inconsistent.count == 1 ? " edge" : " edges") + " in the same direction, " +
+               describeFirst(_inconsistent) + ", of faces " +
+               std::to_string(getFace(_inconsistent.first[0])) + " and " +
+               std::to_string(getFace(_inconsistent.first[1]));
     }
 
     Level const &_level;
@@ -533,7 +532,7 @@ CallStatus CheckCount(std::int64_t count, std::string const &what) {
         return CallStatus();
     }
     return CallStatus(StatusCode::TooLarge, ComponentType::Level, 0,
-                      "level 0 would have " + str(count) + " " + what +
+                      "level 0 would have " + std::to_string(count) + " " + what +
                           ", more than 32-bit indices reach");
 }
 

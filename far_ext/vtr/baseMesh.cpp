@@ -23,8 +23,6 @@ using Sdc::Crease;
 constexpr int kMaxFaceSize = OpenSubdiv::Vtr::VALENCE_LIMIT;
 constexpr int kMaxVertexFaces = OpenSubdiv::Vtr::VALENCE_LIMIT;
 
-std::string str(std::int64_t number) { return std::to_string(number); }
-
 CallStatus invalid(ComponentType component, Index index, std::string message) {
     return CallStatus(StatusCode::InvalidTopology, component, index, std::move(message));
 }
@@ -137,12 +135,13 @@ CallStatus BaseMesh::CompleteSizes() {
     });
     if (!wrong.empty()) {
         Index const face = wrong[0];
-        std::string const has = "face " + str(face) + " has " + str(sizes[face]) + " vertices, ";
+        std::string const has =
+            "face " + std::to_string(face) + " has " + std::to_string(sizes[face]) + " vertices, ";
         if (sizes[face] < 3) {
             return invalid(ComponentType::Face, face, has + "but a face needs at least 3");
         }
         return tooLarge(ComponentType::Face, face,
-                        has + "more than the " + str(kMaxFaceSize) +
+                        has + "more than the " + std::to_string(kMaxFaceSize) +
                             " that OpenSubdiv's local indices reach");
     }
     std::vector<std::int64_t> const firstCorners =
@@ -196,8 +195,9 @@ CallStatus BaseMesh::CheckFaces() {
         for (Index vert : verts) {
             if (vert < 0 || vert >= level.numVertices) {
                 return invalid(ComponentType::Face, face,
-                               "face " + str(face) + " refers to vertex " + str(vert) +
-                                   ", but vertices go from 0 to " + str(level.numVertices - 1));
+                               "face " + std::to_string(face) + " refers to vertex " +
+                                   std::to_string(vert) + ", but vertices go from 0 to " +
+                                   std::to_string(level.numVertices - 1));
             }
         }
         sorted.assign(verts.begin(), verts.end());
@@ -254,8 +254,8 @@ CallStatus BaseMesh::checkValences(CallStatus status) {
     for (Index vert : odd) {
         if (int const count = level.GetNumVertexFaces(vert); count > 0) {
             return tooLarge(ComponentType::Vertex, vert,
-                            "vertex " + str(vert) + " has " + str(count) +
-                                " faces, more than the " + str(kMaxVertexFaces) +
+                            "vertex " + std::to_string(vert) + " has " + std::to_string(count) +
+                                " faces, more than the " + std::to_string(kMaxVertexFaces) +
                                 " that OpenSubdiv's valences reach");
         }
         _isolatedVerts.push_back(vert);
@@ -382,8 +382,8 @@ CallStatus BaseMesh::followVertex(Index vert, int channel, Index const *faceValu
     }
     auto const refuse = [&](std::string const &what) {
         return CallStatus(StatusCode::Unsupported, ComponentType::Vertex, vert,
-                          "face-varying channel " + str(channel) + " has no seam at vertex " +
-                              str(vert) + ", where " + what);
+                          "face-varying channel " + std::to_string(channel) +
+                              " has no seam at vertex " + std::to_string(vert) + ", where " + what);
     };
     int numCreasedFans = 0;
     ForEachFanItems(level, vert, [&](FanItems const &fan) {

@@ -14,8 +14,6 @@ using Far::ConstIndexArray;
 using Far::ConstLocalIndexArray;
 using Far::Index;
 
-std::string str(std::int64_t number) { return std::to_string(number); }
-
 // Reads a refiner step by step.
 class RefinerReader {
 public:
@@ -104,7 +102,7 @@ bool RefinerReader::readEdge(Index edge, EdgeSides &sides) const {
 CallStatus RefinerReader::readApartEdge(Index edge, std::vector<ApartSide> &sides) const {
     auto const refuse = [&](std::string const &what) {
         return CallStatus(StatusCode::InvalidTopology, ComponentType::Edge, edge,
-                          "edge " + str(edge) + what);
+                          "edge " + std::to_string(edge) + what);
     };
     ConstIndexArray const verts = _base.GetEdgeVertices(edge);
     ConstIndexArray const faces = _base.GetEdgeFaces(edge);
@@ -115,8 +113,9 @@ CallStatus RefinerReader::readApartEdge(Index edge, std::vector<ApartSide> &side
     std::vector<Index> corners;
     for (int i = 0; i < faces.size(); ++i) {
         if (!isSide(edge, faces[i], locals[i])) {
-            return refuse(", of vertices " + str(verts[0]) + " and " + str(verts[1]) +
-                          ", is not edge " + str(locals[i]) + " of face " + str(faces[i]));
+            return refuse(", of vertices " + std::to_string(verts[0]) + " and " +
+                          std::to_string(verts[1]) + ", is not edge " + std::to_string(locals[i]) +
+                          " of face " + std::to_string(faces[i]));
         }
         corners.push_back(_level.faceFirstCorner[faces[i]] + locals[i]);
         sides.push_back({edge, corners.back()});
@@ -142,10 +141,10 @@ CallStatus RefinerReader::readEdges() {
             return sum;
         });
     if (numSides.back() != _level.numCorners) {
-        return Failure(StatusCode::InvalidTopology, "the edges of the base have " +
-                                                        str(numSides.back()) +
-                                                        " faces together, but its faces have " +
-                                                        str(_level.numCorners) + " edges");
+        return Failure(StatusCode::InvalidTopology,
+                       "the edges of the base have " + std::to_string(numSides.back()) +
+                           " faces together, but its faces have " +
+                           std::to_string(_level.numCorners) + " edges");
     }
     Buffer<EdgeSides> edges;
     edges.Resize(std::size_t(numEdges));
@@ -177,8 +176,8 @@ CallStatus RefinerReader::readTags() {
         float const sharpness = _base.GetEdgeSharpness(edge);
         ConstIndexArray const verts = _base.GetEdgeVertices(edge);
         CallStatus status = CheckSharpness(sharpness, ComponentType::Edge, edge, [&] {
-            return "edge " + str(edge) + ", of vertices " + str(verts[0]) + " and " +
-                   str(verts[1]) + ",";
+            return "edge " + std::to_string(edge) + ", of vertices " + std::to_string(verts[0]) +
+                   " and " + std::to_string(verts[1]) + ",";
         });
         if (!status.IsOk()) {
             return status;
@@ -190,7 +189,7 @@ CallStatus RefinerReader::readTags() {
          })) {
         float const sharpness = _base.GetVertexSharpness(vert);
         CallStatus status = CheckSharpness(sharpness, ComponentType::Vertex, vert,
-                                           [&] { return "vertex " + str(vert); });
+                                           [&] { return "vertex " + std::to_string(vert); });
         if (!status.IsOk()) {
             return status;
         }
@@ -297,12 +296,12 @@ CallStatus DescriptorReader::readCreases() {
         Index const *verts = _descriptor.creaseVertexIndexPairs + 2 * std::ptrdiff_t(i);
         float const sharpness = _descriptor.creaseWeights[i];
         CallStatus status = CheckSharpness(sharpness, ComponentType::Vertex, verts[0], [&] {
-            return "crease " + str(i) + ", of vertices " + str(verts[0]) + " and " + str(verts[1]) +
-                   ",";
+            return "crease " + std::to_string(i) + ", of vertices " + std::to_string(verts[0]) +
+                   " and " + std::to_string(verts[1]) + ",";
         });
         for (int end = 0; end < 2 && status.IsOk(); ++end) {
             status = CheckIndex(verts[end], _level.numVertices, ComponentType::Vertex,
-                                [&] { return "crease " + str(i); });
+                                [&] { return "crease " + std::to_string(i); });
         }
         if (!status.IsOk()) {
             return status;
@@ -310,8 +309,9 @@ CallStatus DescriptorReader::readCreases() {
         Index const edge = _mesh.FindEdge(verts[0], verts[1]);
         if (edge == Far::INDEX_INVALID) {
             return CallStatus(StatusCode::InvalidTopology, ComponentType::Vertex, verts[0],
-                              "crease " + str(i) + " joins vertices " + str(verts[0]) + " and " +
-                                  str(verts[1]) + ", but no face has that edge");
+                              "crease " + std::to_string(i) + " joins vertices " +
+                                  std::to_string(verts[0]) + " and " + std::to_string(verts[1]) +
+                                  ", but no face has that edge");
         }
         _mesh.SetEdgeSharpness(edge, sharpness);
     }
@@ -324,10 +324,10 @@ CallStatus DescriptorReader::readTags() {
         Index const vert = _descriptor.cornerVertexIndices[i];
         float const sharpness = _descriptor.cornerWeights[i];
         status = CheckIndex(vert, _level.numVertices, ComponentType::Vertex,
-                            [&] { return "corner " + str(i); });
+                            [&] { return "corner " + std::to_string(i); });
         if (status.IsOk()) {
             status = CheckSharpness(sharpness, ComponentType::Vertex, vert, [&] {
-                return "corner " + str(i) + ", vertex " + str(vert) + ",";
+                return "corner " + std::to_string(i) + ", vertex " + std::to_string(vert) + ",";
             });
         }
         if (status.IsOk()) {
@@ -337,7 +337,7 @@ CallStatus DescriptorReader::readTags() {
     for (int i = 0; i < _descriptor.numHoles && status.IsOk(); ++i) {
         Index const face = _descriptor.holeIndices[i];
         status = CheckIndex(face, _level.numFaces, ComponentType::Face,
-                            [&] { return "hole " + str(i); });
+                            [&] { return "hole " + std::to_string(i); });
         if (status.IsOk()) {
             _mesh.SetHole(face, true);
         }

@@ -12,26 +12,25 @@ using Far::Index;
 
 namespace {
 
-std::string str(std::int64_t number) { return std::to_string(number); }
-
 // An array of a descriptor that has a count.
 CallStatus checkArray(int count, void const *array, std::string const &name) {
     if (count < 0) {
         return Failure(StatusCode::InvalidArgument,
-                       "the descriptor has " + str(count) + " entries in " + name);
+                       "the descriptor has " + std::to_string(count) + " entries in " + name);
     }
     if (count > 0 && !array) {
         return Failure(StatusCode::InvalidArgument, "the descriptor has no array " + name +
-                                                        ", but " + str(count) + " entries in it");
+                                                        ", but " + std::to_string(count) +
+                                                        " entries in it");
     }
     return CallStatus();
 }
 
 template <typename ENUM>
 CallStatus checkEnum(int value, ENUM last, std::string const &name) {
-    return IsInEnum(value, last)
-               ? CallStatus()
-               : Failure(StatusCode::InvalidArgument, "there is no " + name + " " + str(value));
+    return IsInEnum(value, last) ? CallStatus()
+                                 : Failure(StatusCode::InvalidArgument,
+                                           "there is no " + name + " " + std::to_string(value));
 }
 
 } // namespace
@@ -59,12 +58,13 @@ CallStatus CheckCounts(int numVertices, int numFaces) {
         return CallStatus();
     }
     if (numVertices < 0 || numFaces < 0) {
-        return Failure(StatusCode::InvalidTopology, "the mesh has " + str(numVertices) +
-                                                        " vertices and " + str(numFaces) +
-                                                        " faces, but counts are 0 or more");
+        return Failure(StatusCode::InvalidTopology,
+                       "the mesh has " + std::to_string(numVertices) + " vertices and " +
+                           std::to_string(numFaces) + " faces, but counts are 0 or more");
     }
-    return Failure(StatusCode::InvalidTopology, "the mesh is empty: it has " + str(numVertices) +
-                                                    " vertices and " + str(numFaces) + " faces");
+    return Failure(StatusCode::InvalidTopology, "the mesh is empty: it has " +
+                                                    std::to_string(numVertices) + " vertices and " +
+                                                    std::to_string(numFaces) + " faces");
 }
 
 // Not a number is less than 0, too.
@@ -92,9 +92,10 @@ CallStatus IndexFailure(Index index, int count, ComponentType component, std::st
     case ComponentType::Level:
         break;
     }
-    std::string const range = count > 0 ? " go from 0 to " + str(count - 1) : " are none";
+    std::string const range =
+        count > 0 ? " go from 0 to " + std::to_string(count - 1) : " are none";
     return CallStatus(StatusCode::InvalidTopology, component, index,
-                      name + " refers to " + names.first + " " + str(index) + ", but " +
+                      name + " refers to " + names.first + " " + std::to_string(index) + ", but " +
                           names.second + range);
 }
 
@@ -104,8 +105,8 @@ CallStatus CheckValues(Index const *values, Index numCorners, Index numValues, i
     });
     return wrong.empty() ? CallStatus()
                          : IndexFailure(values[wrong[0]], numValues, ComponentType::NoComponent,
-                                        "corner " + str(wrong[0]) + " of face-varying channel " +
-                                            str(channel));
+                                        "corner " + std::to_string(wrong[0]) +
+                                            " of face-varying channel " + std::to_string(channel));
 }
 
 CallStatus CheckArrays(Far::TopologyDescriptor const &descriptor) {
@@ -127,9 +128,10 @@ CallStatus CheckArrays(Far::TopologyDescriptor const &descriptor) {
         Far::TopologyDescriptor::FVarChannel const &fvar = descriptor.fvarChannels[channel];
         if (fvar.numValues < 0 || !fvar.valueIndices) {
             status = Failure(StatusCode::InvalidArgument,
-                             "face-varying channel " + str(channel) +
-                                 (fvar.valueIndices ? " has " + str(fvar.numValues) + " values"
-                                                    : " has no array valueIndices"));
+                             "face-varying channel " + std::to_string(channel) +
+                                 (fvar.valueIndices
+                                      ? " has " + std::to_string(fvar.numValues) + " values"
+                                      : " has no array valueIndices"));
         }
     }
     return status;

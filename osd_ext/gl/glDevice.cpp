@@ -74,8 +74,6 @@ void main() {
 }
 )";
 
-std::string str(std::int64_t number) { return std::to_string(number); }
-
 void set(GLint place, float value) { glUniform1f(place, value); }
 void set(GLint place, float const *values, GLsizei count) { glUniform1fv(place, count, values); }
 void set(GLint place, std::uint32_t value) { glUniform1ui(place, value); }
@@ -154,7 +152,7 @@ CallStatus GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats
     };
     if (!glIsBuffer(GLuint(buffer))) {
         return fail(StatusCode::InvalidArgument,
-                    "the " + what + " " + str(std::int64_t(buffer)) + " is no buffer");
+                    "the " + what + " " + std::to_string(std::int64_t(buffer)) + " is no buffer");
     }
     GLint64 numBytes = 0;
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(buffer));
@@ -162,15 +160,16 @@ CallStatus GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
     std::int64_t const numNeeded = numFloats * std::int64_t(sizeof(float));
     if (numBytes < numNeeded) {
-        return fail(StatusCode::InvalidArgument, "the " + what + " has " + str(numBytes) +
-                                                     " bytes, but its last element ends at byte " +
-                                                     str(numNeeded));
+        return fail(StatusCode::InvalidArgument,
+                    "the " + what + " has " + std::to_string(numBytes) +
+                        " bytes, but its last element ends at byte " + std::to_string(numNeeded));
     }
     std::int64_t const maxBytes = GetMaxBytes();
     if (numNeeded > maxBytes) {
         return fail(StatusCode::TooLarge,
-                    "the last element of the " + what + " ends at byte " + str(numNeeded) +
-                        ", beyond what this driver reaches: " + str(maxBytes));
+                    "the last element of the " + what + " ends at byte " +
+                        std::to_string(numNeeded) +
+                        ", beyond what this driver reaches: " + std::to_string(maxBytes));
     }
     return CallStatus();
 }
@@ -189,18 +188,18 @@ CallStatus GlDevice::prepare(Key const &key) {
     auto const [kernel, length, faceSize, readsTextures] = key;
     char const *const name = kNames[int(kernel)];
     std::string const definitions =
-        "#version 430\n#define LENGTH " + str(length) + "\n#define SIZE " +
-        str(faceSize == 0 ? kMinUnrolledFace : faceSize) + "\n#define KERNEL " + name + "\n" +
-        (readsTextures ? "#define TEXTURES\n" : "") + (IsSerial() ? "#define SERIAL\n" : "");
+        "#version 430\n#define LENGTH " + std::to_string(length) + "\n#define SIZE " +
+        std::to_string(faceSize == 0 ? kMinUnrolledFace : faceSize) + "\n#define KERNEL " + name +
+        "\n" + (readsTextures ? "#define TEXTURES\n" : "") + (IsSerial() ? "#define SERIAL\n" : "");
     std::vector<char const *> texts = {definitions.c_str(), kHead};
     texts.insert(texts.end(), std::begin(kKernelTexts), std::end(kKernelTexts));
     texts.push_back(kMain);
     auto program =
         std::make_unique<GlProgram>(std::vector<GlProgram::Shader>{{GL_COMPUTE_SHADER, texts}});
     if (!program->GetError().empty()) {
-        return FarExt::internal::Failure(StatusCode::Unsupported, "kernel " + std::string(name) +
-                                                                      " of length " + str(length) +
-                                                                      ": " + program->GetError());
+        return FarExt::internal::Failure(StatusCode::Unsupported,
+                                         "kernel " + std::string(name) + " of length " +
+                                             std::to_string(length) + ": " + program->GetError());
     }
     prepared.program = std::move(program);
 #define PLACE Place
