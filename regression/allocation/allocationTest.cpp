@@ -25,7 +25,7 @@
 #include <exception>
 #include <functional>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::allocationTest {
 
 using FarExt::StencilTableFactory;
 using FarExt::StencilTableFactoryReal;
@@ -319,4 +319,4 @@ TEST(Allocation, FailsOnceOnThreads) {
     runSteps(subject, 4);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::allocationTest

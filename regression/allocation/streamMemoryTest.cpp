@@ -12,7 +12,7 @@
 
 #include <atomic>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::streamMemoryTest {
 
 using BfrExt::PatchLevels;
 using BfrExt::PatchStream;
@@ -143,4 +143,4 @@ TEST(StreamMemoryTest, DoesNotDependOnTheSizeOfFaces) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::streamMemoryTest

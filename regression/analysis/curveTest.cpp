@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::curveTest {
 
 namespace {
 
@@ -145,4 +145,4 @@ TEST(Curve, CurvatureGrowsAtVerticesOfTheBaseWithOneFace) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::curveTest

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::evennessTest {
 
 namespace {
 
@@ -307,4 +307,4 @@ TEST(Evenness, TruncatedTrianglesBesideLines) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::evennessTest

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::maskSearchTest {
 
 namespace {
 
@@ -59,4 +59,4 @@ TEST(MaskSearch, Vertices) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::maskSearchTest

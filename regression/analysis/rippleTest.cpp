@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::rippleTest {
 
 namespace {
 
@@ -151,4 +151,4 @@ TEST(Ripple, ByValence) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::rippleTest

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::smoothnessTest {
 
 namespace {
 
@@ -288,4 +288,4 @@ TEST(Smoothness, MasksOnTheRegularHoneycomb) {
     EXPECT_GT(growth.maxCurvature, 1.2);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::smoothnessTest

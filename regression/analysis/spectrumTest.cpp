@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::spectrumTest {
 
 namespace {
 
@@ -433,4 +433,4 @@ TEST(Spectrum, CurvatureGrowsAtVertices) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::spectrumTest

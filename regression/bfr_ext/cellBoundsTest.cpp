@@ -14,7 +14,7 @@
 #include <random>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::cellBoundsTest {
 
 using BfrExt::Surface;
 using BfrExt::internal::CellBounds;
@@ -66,4 +66,4 @@ TEST(CellBounds, WeightsAreWithinTheirBoundsBesideLargeFaces) {
     EXPECT_EQ(sizes, (std::set<int>{4, kNumSides}));
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::cellBoundsTest

@@ -23,7 +23,7 @@
 #include <random>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::cellTreeTest {
 
 using BfrExt::CellForest;
 using BfrExt::CellTree;
@@ -615,4 +615,4 @@ TEST(CellForest, BehindAFirstStepStaysClosed) {
     counts.Bound(0.005, 0.012);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::cellTreeTest

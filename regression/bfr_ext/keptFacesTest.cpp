@@ -15,7 +15,7 @@
 #include <numeric>
 #include <thread>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::keptFacesTest {
 namespace {
 
 using Kept = BfrExt::internal::KeptFaces<int>;
@@ -228,4 +228,4 @@ TEST(KeptFacesTest, MakeTheSameSurfaces) {
     EXPECT_GT(numChannels, 0);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::keptFacesTest

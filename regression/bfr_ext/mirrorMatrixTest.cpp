@@ -14,7 +14,7 @@
 #include <random>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::mirrorMatrixTest {
 
 using BfrExt::internal::BasePoint;
 using BfrExt::internal::CellType;
@@ -179,4 +179,4 @@ TEST(MirrorMatrixTest, GivesTheSumsOfTheStencils) {
     expectSymmetry(MakeDual("hexagons", triangles), 4);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::mirrorMatrixTest

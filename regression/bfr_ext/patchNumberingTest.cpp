@@ -23,7 +23,7 @@
 #include <sstream>
 #include <string>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::patchNumberingTest {
 
 using BfrExt::PatchLevels;
 using BfrExt::PatchNumbering;
@@ -365,4 +365,4 @@ TEST(PlySinkTest, TakesPointsOfThreeNumbersAlone) {
     EXPECT_GT(numWrites, 0);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::patchNumberingTest

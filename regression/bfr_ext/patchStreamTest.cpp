@@ -21,7 +21,7 @@
 #include <mutex>
 #include <stdexcept>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::patchStreamTest {
 
 using BfrExt::PatchLevels;
 using BfrExt::PatchStream;
@@ -491,4 +491,4 @@ TEST(PatchStreamTest, EndsWhenTheSinkSaysSo) {
                  std::runtime_error);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::patchStreamTest

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::placeKernelTest {
 
 using BfrExt::internal::PlaceMatrix;
 using BfrExt::internal::PlaceRun;
@@ -297,4 +297,4 @@ TEST(PlaceKernelTest, ItemsAreTheSameTogether) {
     expectSameBitsOfItems<double>();
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::placeKernelTest

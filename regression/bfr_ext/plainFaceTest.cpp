@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <random>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::plainFaceTest {
 
 using BfrExt::internal::CellType;
 using BfrExt::internal::CellTypes;
@@ -260,4 +260,4 @@ TEST(PlainFaceTest, TypesAreMadeWhenTheyAreAskedFor) {
     EXPECT_EQ(cache.GetNumTypes(), numTypes);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::plainFaceTest

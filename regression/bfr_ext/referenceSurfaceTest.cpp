@@ -22,7 +22,7 @@
 #include <set>
 #include <utility>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::referenceSurfaceTest {
 
 namespace {
 
@@ -340,4 +340,4 @@ INSTANTIATE_TEST_SUITE_P(Masks, ReferenceDerivativeTest,
                          testing::Values(ReferenceMask::Cosine, ReferenceMask::Smooth),
                          [](auto const &mask) { return std::string(ToString(mask.param)); });
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::referenceSurfaceTest

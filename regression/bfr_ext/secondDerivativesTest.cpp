@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::secondDerivativesTest {
 
 namespace {
 
@@ -309,4 +309,4 @@ TEST(SecondDerivatives, OfInvalidSurfacesAreNotWritten) {
     EXPECT_EQ(std::count(results, results + 6, 7.0), 6);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::secondDerivativesTest

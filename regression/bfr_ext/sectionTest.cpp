@@ -17,7 +17,7 @@
 #include <mutex>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::sectionTest {
 
 using BfrExt::CellForest;
 using BfrExt::PatchStream;
@@ -222,4 +222,4 @@ TEST(SectionTest, HaveThePointsAndFacetsOfTheWhole) {
     expectShape<float>(GetShape("polygon9"), ReferenceMask::Smooth, 6, 0, false);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::sectionTest

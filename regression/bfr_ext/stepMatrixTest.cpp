@@ -10,7 +10,7 @@
 #include <numeric>
 #include <random>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::stepMatrixTest {
 
 using BfrExt::internal::ChildStep;
 using BfrExt::internal::StepMatrix;
@@ -150,4 +150,4 @@ TEST(StepMatrixTest, MayBeEmpty) {
     EXPECT_EQ(*std::max_element(std::begin(result), std::end(result)), 0);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::stepMatrixTest

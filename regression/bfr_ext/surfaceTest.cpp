@@ -22,7 +22,7 @@
 #include <random>
 #include <thread>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::surfaceTest {
 
 using FarExt::StatusCode;
 using FarExt::TopologyLevel;
@@ -906,4 +906,4 @@ TEST(SurfaceTest, ControlPointsBoundTheSurface) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::surfaceTest

@@ -19,7 +19,7 @@
 #include <set>
 #include <utility>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::tessellationTest {
 
 using BfrExt::Parameterization;
 using BfrExt::Surface;
@@ -516,4 +516,4 @@ TEST(TessellationSurface, BordersInCutLatticesAreThoseOfSinglePlaces) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::tessellationTest

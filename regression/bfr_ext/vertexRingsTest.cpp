@@ -16,7 +16,7 @@
 #include <random>
 #include <string>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::vertexRingsTest {
 
 using BfrExt::internal::CellRules;
 using BfrExt::internal::CellType;
@@ -338,4 +338,4 @@ TEST_P(VertexRingsTest, HaveThePointsOfTheirSteps) {
 INSTANTIATE_TEST_SUITE_P(Masks, VertexRingsTest,
                          testing::Values(FarExt::FaceMask::Average, FarExt::FaceMask::Smooth));
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::vertexRingsTest

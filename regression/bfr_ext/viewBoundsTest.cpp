@@ -17,7 +17,7 @@
 #include <map>
 #include <random>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::viewBoundsTest {
 
 using BfrExt::Camera;
 using BfrExt::CellForest;
@@ -208,4 +208,4 @@ TEST(ViewBounds, WhatDidNotMoveIsKept) {
     EXPECT_LT(bounds.GetMemory(), kept);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::viewBoundsTest

@@ -31,7 +31,7 @@
 #include <numeric>
 #include <random>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::viewTest {
 
 using BfrExt::Camera;
 using BfrExt::CellForest;
@@ -1193,4 +1193,4 @@ TEST(View, HardlyAFacetIsTurnedOver) {
     EXPECT_LT(facets[1].triangles.GetShare(), 0.02);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::viewTest

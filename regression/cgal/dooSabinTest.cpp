@@ -18,7 +18,7 @@
 #include <numeric>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::dooSabinTest {
 
 namespace {
 
@@ -166,4 +166,4 @@ TEST(Cgal, DooSabinWithCosineMaskIsTheSame) {
     EXPECT_GE(numShapes, 20);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::dooSabinTest

@@ -97,7 +97,7 @@ if(OPENSUBDIVHEX_TOOLS)
   set_tests_properties(consumer.hexrefine PROPERTIES FIXTURES_REQUIRED installed)
 endif()
 
-# Programs that use the libraries of devices; ./dev test gl and ./dev test cuda build these.
+# Programs that use the libraries of devices.
 set(libraries far_ext osd_ext bfr_ext)
 set(programs "")
 foreach(device IN ITEMS gl cuda)

@@ -12,7 +12,7 @@
 
 #include <cstdlib>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::cudaTest {
 
 using OsdExt::CudaEvaluator;
 using OsdExt::CudaRefinementEvaluator;
@@ -146,4 +146,4 @@ TEST_F(CudaTable, RefusesWhatItCannotEvaluate) {
     EXPECT_EQ(kind.Read(*buffer, 3000), std::vector<float>(3000, kBlank));
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::cudaTest

@@ -10,7 +10,7 @@
 
 #include <new>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::deviceTest {
 
 namespace {
 
@@ -146,4 +146,4 @@ TEST(StencilLanes, SumUpStencils) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::deviceTest

@@ -45,7 +45,7 @@ void operator delete[](void *memory) noexcept { std::free(memory); }
 void operator delete(void *memory, std::size_t) noexcept { std::free(memory); }
 void operator delete[](void *memory, std::size_t) noexcept { std::free(memory); }
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::allocationTest {
 
 namespace {
 
@@ -92,4 +92,4 @@ TEST(Allocation, OfLimitStencilTablesMayFail) {
     expectBadAllocs([&] { FarExt::LimitStencilTableFactory::Create(*refiner, options); });
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::allocationTest

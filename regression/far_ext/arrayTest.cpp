@@ -17,7 +17,7 @@
 #include <malloc.h>
 #endif
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::arrayTest {
 
 using FarExt::internal::Buffer;
 using FarExt::internal::IsResident;
@@ -225,4 +225,4 @@ TEST(IndexSet, SortsAndNumbersIndicesOfAnyDensity) {
     EXPECT_TRUE(none.empty());
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::arrayTest

@@ -19,7 +19,7 @@
 #include <map>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::baseFaceTest {
 
 namespace {
 
@@ -459,4 +459,4 @@ TEST(BaseFace, MapsOfLevelsAgree) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::baseFaceTest

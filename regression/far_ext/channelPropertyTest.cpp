@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::channelPropertyTest {
 
 using FarExt::TopologyLevel;
 using IndexArray = Far::ConstIndexArray;
@@ -235,4 +235,4 @@ TEST(Property, StencilTablesRefuseAChannelOutOfRange) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::channelPropertyTest

@@ -14,7 +14,7 @@
 #include <array>
 #include <cmath>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::coplanarTest {
 
 using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
@@ -445,4 +445,4 @@ TEST(Coplanar, EveryFaceHasItsValues) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::coplanarTest

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::determinismTest {
 
 namespace {
 
@@ -318,4 +318,4 @@ TEST(Determinism, SameStencilsForAnyNumberOfThreads) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::determinismTest

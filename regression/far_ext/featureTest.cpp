@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::featureTest {
 
 namespace {
 
@@ -84,4 +84,4 @@ TEST_F(Feature, FaceVaryingEqualsReference) {
     });
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::featureTest

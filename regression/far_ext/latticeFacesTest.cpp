@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::latticeFacesTest {
 
 using FarExt::TopologyRefiner;
 using FarExt::internal::LatticeFaces;
@@ -263,4 +263,4 @@ TEST(LatticeFaces, AreThereForNoOtherMesh) {
     EXPECT_EQ(countFaces(findFaces(*CreateRefiner(torus, mask, 2, {}, options))), 0u);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::latticeFacesTest

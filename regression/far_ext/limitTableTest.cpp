@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::limitTableTest {
 
 using FarExt::TopologyRefiner;
 using Factory = FarExt::LimitStencilTableFactoryReal<double>;
@@ -264,4 +264,4 @@ TEST(LimitTable, PrimvarRefinerRefusesWhatHasNoLimit) {
     EXPECT_EQ(points[0].values[0], 7);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::limitTableTest

@@ -16,7 +16,7 @@
 
 #include <Eigen/Geometry>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::limitTest {
 
 using FarExt::LimitSides;
 using FarExt::LimitStencilTableFactoryReal;
@@ -600,4 +600,4 @@ TEST(Limit, IsOfHexagonalStepsAlone) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::limitTest

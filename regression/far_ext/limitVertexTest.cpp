@@ -13,7 +13,7 @@
 
 #include <random>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::limitVertexTest {
 
 using FarExt::LimitSides;
 using FarExt::TopologyLevel;
@@ -383,4 +383,4 @@ TEST(LimitVertex, RandomFacesHaveSoundTables) {
     EXPECT_GT(numTables, 50);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::limitVertexTest

@@ -10,7 +10,7 @@
 #include <functional>
 #include <numeric>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::maskTest {
 
 using FarExt::FaceMask;
 using FarExt::Interpolation;
@@ -400,4 +400,4 @@ TEST(Mask, TruncatedTrianglesKeepQuadratics) {
     EXPECT_NEAR(square[2], 2 / 9.0, 1e-15);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::maskTest

@@ -15,7 +15,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::memoryTest {
 
 using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
@@ -93,6 +93,6 @@ TEST(Memory, BaseIsLeftWhenItDoesNotSuffice) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::memoryTest
 
 #endif

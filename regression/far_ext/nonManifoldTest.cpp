@@ -16,7 +16,7 @@
 #include <random>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::nonManifoldTest {
 
 using FarExt::CallStatus;
 using FarExt::TopologyRefinerFactory;
@@ -599,4 +599,4 @@ TEST(NonManifold, VertexThatAFaceRepeatsIsTagged) {
               GetPositions(shape).row(4));
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::nonManifoldTest

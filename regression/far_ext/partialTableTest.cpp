@@ -13,7 +13,7 @@
 #include <numeric>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::partialTableTest {
 
 namespace {
 
@@ -346,4 +346,4 @@ TEST(TableSize, TellsWhatIsTooLarge) {
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::partialTableTest

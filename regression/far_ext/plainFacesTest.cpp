@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::plainFacesTest {
 
 using FarExt::TopologyRefiner;
 using FarExt::internal::LimitRows;
@@ -131,4 +131,4 @@ TEST(PlainFaces, AreBehindAFirstStep) {
     expectRows(*refiner, faces);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::plainFacesTest

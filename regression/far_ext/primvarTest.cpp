@@ -7,7 +7,7 @@
 
 #include <numeric>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::primvarTest {
 
 using FarExt::PrimvarRefinerReal;
 
@@ -164,4 +164,4 @@ TEST(Primvar, FaceUniform) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::primvarTest

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::propertyTest {
 
 using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
@@ -455,4 +455,4 @@ TEST(Property, EveryLevelIsValid) {
     });
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::propertyTest

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::refinementStatusTest {
 
 using FarExt::CallStatus;
 using FarExt::ComponentType;
@@ -330,4 +330,4 @@ TEST_F(StatusTest, TooManyLevelsSeenFromAnyLevel) {
     EXPECT_NE(refuse(*create(GetShape("mixedPatch"), kOtherSchemes[2])).GetErrorMessage(), "");
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::refinementStatusTest

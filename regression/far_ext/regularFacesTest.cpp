@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::regularFacesTest {
 
 using FarExt::TopologyRefiner;
 using FarExt::internal::LimitRows;
@@ -192,4 +192,4 @@ TEST(RegularFaces, AreNoneForTheCosineMask) {
     EXPECT_EQ(faces.GetOthers().size(), std::size_t(refiner->GetLevel(2).GetNumVertices()));
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::regularFacesTest

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::renumberTest {
 
 using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
@@ -159,4 +159,4 @@ TEST(Renumber, PermutesTheOutputAndNothingElse) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::renumberTest

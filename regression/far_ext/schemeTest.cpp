@@ -11,7 +11,7 @@
 
 #include <array>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::schemeTest {
 
 using FarExt::FirstStep;
 using FarExt::HexSchemeOptions;
@@ -163,4 +163,4 @@ TEST(Scheme, LastLevelNeedsFaceVerticesOnly) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::schemeTest

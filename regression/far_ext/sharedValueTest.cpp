@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::sharedValueTest {
 
 namespace {
 
@@ -78,4 +78,4 @@ TEST(SharedValue, InnerVertexIsNotPinnedByTheBorder) {
     EXPECT_FLOAT_EQ(refineInnerValue(inner, inner), expected);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::sharedValueTest

@@ -11,7 +11,7 @@
 #include <map>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::sharpnessPropertyTest {
 
 using FarExt::TopologyLevel;
 using IndexArray = Far::ConstIndexArray;
@@ -247,4 +247,4 @@ TEST(Property, FadingCreasesDoNotPop) {
     });
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::sharpnessPropertyTest

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::statusTest {
 
 using FarExt::CallStatus;
 using FarExt::ComponentType;
@@ -429,4 +429,4 @@ TEST_F(StatusTest, CallbackCanBeTakenBack) {
     EXPECT_EQ(numErrors, 1);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::statusTest

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <limits>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::stencilTest {
 
 using FarExt::StencilTableFactory;
 using FarExt::StencilTableFactoryReal;
@@ -393,4 +393,4 @@ TEST(Stencil, RefusesNegativeMaxLevel) {
     EXPECT_FALSE(Factory<float>::Create(*refiner, options));
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::stencilTest

@@ -12,7 +12,7 @@
 #include <numeric>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::topologyTest {
 
 using Far::INDEX_INVALID;
 using FarExt::CallStatus;
@@ -579,4 +579,4 @@ TEST_F(Topology, RefinerOutlivesItsInput) {
     EXPECT_TRUE(refiner->GetLevel(1).Validate());
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::topologyTest

@@ -14,7 +14,7 @@
 #include <map>
 #include <string>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::truncationTest {
 
 using FarExt::FirstStep;
 using FarExt::HexSchemeOptions;
@@ -351,4 +351,4 @@ TEST(Truncation, RefinesAgainAfterOtherSteps) {
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::truncationTest

@@ -9,7 +9,7 @@
 #include <functional>
 #include <memory>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::validateTest {
 
 using FarExt::CallStatus;
 using FarExt::StatusCode;
@@ -267,4 +267,4 @@ TEST(Validate, NamesTheComponent) {
         << status.GetErrorMessage();
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::validateTest

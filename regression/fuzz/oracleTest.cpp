@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::oracleTest {
 
 namespace {
 
@@ -143,4 +143,4 @@ TEST(Oracle, TruncatedVertexWithABoundaryEdgeToItself) {
     EXPECT_NO_THROW(CheckOracleCase(oracleCase));
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::oracleTest

@@ -14,7 +14,7 @@
 // Through which epoxy's glGetString goes; its header cannot be there beside those of OpenGL.
 extern "C" GLubyte const *(*epoxy_glGetString)(GLenum name);
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::glRefinementTest {
 
 using OsdExt::GLRefinementEvaluator;
 using OsdExt::RefinementEvaluator;
@@ -33,7 +33,7 @@ struct OpenGl {
         }
     }
     std::string GetMissing() const { return context.GetError(); }
-    // ./dev test gl installs a driver, and sets this.
+    // CI has a driver, and sets this.
     static bool IsNeeded() { return std::getenv("OPENSUBDIVHEX_NEEDS_GL") != nullptr; }
     static std::unique_ptr<Buffer> MakeBuffer(std::vector<float> const &values, int stride) {
         int const numVertices = int(values.size()) / stride;
@@ -222,4 +222,4 @@ TEST_F(GlRefinement, RefusesWhatItCannotEvaluate) {
     EXPECT_EQ(kind.context.Read(dstName, 3), before);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::glRefinementTest

@@ -22,7 +22,7 @@
 #include <cstdlib>
 #include <memory>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::glTest {
 
 namespace {
 
@@ -52,7 +52,7 @@ class Gl : public testing::Test {
 protected:
     void SetUp() override {
         if (!context.GetError().empty()) {
-            // ./dev test gl installs a driver, and sets this.
+            // CI has a driver, and sets this.
             ASSERT_FALSE(std::getenv("OPENSUBDIVHEX_NEEDS_GL")) << context.GetError();
             GTEST_SKIP() << context.GetError();
         }
@@ -309,4 +309,4 @@ TEST_F(GlLarge, RangesEvaluateMoreStencilsThanADispatchHas) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::glTest

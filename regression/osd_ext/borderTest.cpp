@@ -18,7 +18,7 @@
 #include <numeric>
 #include <random>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::borderTest {
 
 using FarExt::TopologyLevel;
 using FarExt::TopologyRefiner;
@@ -229,4 +229,4 @@ TEST(Border, PatchesHaveTheSameBitsOnTheLineTheyShare) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::borderTest

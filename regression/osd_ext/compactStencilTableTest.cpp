@@ -17,7 +17,7 @@
 #include <memory>
 #include <random>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::compactStencilTableTest {
 
 using OsdExt::CompactStencilTable;
 
@@ -162,4 +162,4 @@ TEST(CompactStencilTable, RefusesWhatCannotBeEvaluated) {
     EXPECT_EQ(dst.values, std::vector<float>(96, 0.0f));
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::compactStencilTableTest

@@ -8,7 +8,7 @@
 
 #include <limits>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::evaluatorTest {
 
 using OsdExt::SimdLevel;
 
@@ -357,4 +357,4 @@ TEST(SimdLevel, CanBeForced) {
 }
 
 } // namespace
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::evaluatorTest

@@ -18,7 +18,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::groupSelectionTest {
 
 using FarExt::TopologyRefiner;
 using FarExt::internal::MeshLevels;
@@ -148,4 +148,4 @@ TEST(GroupSelection, MakesTheSameBits) {
     EXPECT_GT(numParts, numLevels / 2);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::groupSelectionTest

@@ -28,7 +28,7 @@
 #include <unistd.h>
 #endif
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::hostTest {
 
 namespace {
 
@@ -276,4 +276,4 @@ TEST(HostDeathTest, EnvironmentChoosesSimdLevel) {
 }
 #endif
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::hostTest

@@ -12,7 +12,7 @@
 
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::irregularKernelTest {
 
 using OsdExt::internal::IrregularFaceMask;
 
@@ -66,4 +66,4 @@ TEST(IrregularKernel, KnowsQuadsAndTriangles) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::irregularKernelTest

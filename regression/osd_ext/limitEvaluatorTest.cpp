@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::limitEvaluatorTest {
 
 using FarExt::TopologyRefiner;
 using OsdExt::RefinementEvaluator;
@@ -344,4 +344,4 @@ TEST(LimitEvaluator, TakesBuffers) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::limitEvaluatorTest

@@ -8,7 +8,7 @@
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::osdEvaluatorTest {
 namespace {
 
 bool isOsdCpuFastPath(Evaluator const &evaluator, Layout const &layout) {
@@ -70,4 +70,4 @@ TEST(OsdEvaluator, WritesDerivatives) {
 }
 
 } // namespace
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::osdEvaluatorTest

@@ -14,7 +14,7 @@
 #include <numeric>
 #include <set>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::polygonIndicesTest {
 
 namespace {
 
@@ -338,4 +338,4 @@ TEST(TriangleIndices, PolygonsOfLessThanThreeMakeNone) {
     EXPECT_EQ(triangles.vertices, (std::vector<int>{1, 2, 3, 4, 5, 0, 5, 6, 0}));
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::polygonIndicesTest

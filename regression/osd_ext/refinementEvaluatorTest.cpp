@@ -22,7 +22,7 @@
 #include <cstring>
 #include <memory>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::refinementEvaluatorTest {
 
 using FarExt::FaceMask;
 using FarExt::TopologyRefiner;
@@ -717,4 +717,4 @@ TEST(RefinementEvaluator, RefusesChannelsThatAreNotThere) {
 }
 
 } // namespace
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::refinementEvaluatorTest

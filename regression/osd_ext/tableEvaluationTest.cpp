@@ -16,7 +16,7 @@
 #include <limits>
 #include <memory>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::tableEvaluationTest {
 namespace {
 
 using Buffer = std::unique_ptr<Osd::CpuVertexBuffer>;
@@ -302,4 +302,4 @@ TYPED_TEST(EvaluatorOfTables, ServesOsdMesh) {
 }
 
 } // namespace
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::tableEvaluationTest

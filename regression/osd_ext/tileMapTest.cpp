@@ -11,7 +11,7 @@
 
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::tileMapTest {
 
 using Far::Index;
 using FarExt::TopologyLevel;
@@ -134,4 +134,4 @@ TEST(TileMap, KnowsItInLevelsOfOtherSchemes) {
 }
 
 } // namespace
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::tileMapTest

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::paperTest {
 
 namespace {
 
@@ -140,4 +140,4 @@ TEST_F(Paper, RefusesBadUsage) {
     EXPECT_EQ(run("-o a.html --rounds x"), 2);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::paperTest

@@ -14,7 +14,7 @@
 #include <sstream>
 #include <string>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::perfTest {
 namespace {
 
 using Json = nlohmann::json;
@@ -214,4 +214,4 @@ TEST(Perf, RefusesBadUsage) {
 }
 
 } // namespace
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::perfTest

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::referenceTest {
 
 namespace {
 
@@ -284,4 +284,4 @@ TEST(Reference, RefusesNonManifoldMeshes) {
     EXPECT_THROW(MakeReferenceMesh(positions, {3, 3}, {0, 1, 2, 2, 3, 4}), std::runtime_error);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::referenceTest

@@ -12,7 +12,7 @@
 #include <map>
 #include <utility>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::schemeReferenceTest {
 
 namespace {
 
@@ -283,4 +283,4 @@ TEST(SchemeReference, NoFlatEdgeIsHexagonal) {
     });
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::schemeReferenceTest

@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::shapesTest {
 
 namespace {
 
@@ -301,4 +301,4 @@ TEST(ShapeDescriptor, PassesTags) {
     EXPECT_EQ(leftHanded->GetLevel(0).GetFaceVertices(0)[1], shape.faceVertices[3]);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::shapesTest

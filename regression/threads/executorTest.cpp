@@ -37,7 +37,7 @@
 #include <thread>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::executorTest {
 
 using FarExt::Executor;
 using FarExt::ExecutorScope;
@@ -482,4 +482,4 @@ TEST(ExecutorDeathTest, ServesCallsWhileTheProgramExits) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::executorTest

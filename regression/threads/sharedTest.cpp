@@ -20,7 +20,7 @@
 #include <functional>
 #include <thread>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::sharedTest {
 
 using FarExt::StencilTableFactory;
 using FarExt::TopologyRefiner;
@@ -225,4 +225,4 @@ TEST(Shared, ErrorsAreReportedFromAllThreads) {
     EXPECT_EQ(numErrors, kNumThreads * kNumRounds);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::sharedTest

@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::adaptiveTest {
 
 namespace {
 
@@ -429,4 +429,4 @@ TEST_F(HexrefineAdaptive, LeavesHolesOut) {
     EXPECT_GT(mesh.GetNumFaces(), 1);
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::adaptiveTest

@@ -6,7 +6,7 @@
 #include "programFixture.h"
 #include "tools/mesh/fileError.h"
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::attributeTest {
 
 namespace {
 
@@ -514,4 +514,4 @@ TEST(PictureColors, AreThoseOfLabels) {
     EXPECT_THROW(FindRegions("groups", mesh, "file"), FileError);
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::attributeTest

@@ -8,7 +8,7 @@
 #include <array>
 #include <set>
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::channelTest {
 
 namespace {
 
@@ -301,4 +301,4 @@ TEST_F(HexrefineChannel, SeparateVerticesHaveThirdTextureCoordinates) {
         << result.out;
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::channelTest

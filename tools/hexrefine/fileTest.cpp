@@ -3,7 +3,7 @@
 // The files of hexrefine: which it takes, and what it writes to them.
 #include "programFixture.h"
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::fileTest {
 
 namespace {
 
@@ -163,4 +163,4 @@ TEST_F(Hexrefine, RefusesLevelsWithoutEndAtOnce) {
     EXPECT_EQ(run(path + " -l 100 --scheme doo-sabin").status, 0);
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::fileTest

@@ -12,7 +12,7 @@
 #endif
 #endif
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::hexrefineTest {
 
 TEST_F(Hexrefine, PrintsHelpAndVersion) {
     Result const help = run("--help");
@@ -478,4 +478,4 @@ TEST_F(Hexrefine, NamesLackOfMemoryForFilesWithoutEnd) {
 }
 #endif
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::hexrefineTest

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <sstream>
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::limitTest {
 
 namespace {
 
@@ -170,4 +170,4 @@ TEST_F(HexrefineLimit, IsTheSameByAllEvaluators) {
     }
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::limitTest

@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::realMeshTest {
 
 namespace {
 
@@ -188,4 +188,4 @@ TEST_F(HexrefineRealMesh, Teapot) {
     expectValid(json);
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::realMeshTest

@@ -5,7 +5,7 @@
 #include "programFixture.h"
 #include "tools/mesh/point.h"
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::tagTest {
 
 namespace {
 
@@ -273,4 +273,4 @@ TEST_F(HexrefineTag, PrintsTagsThatSayTheSame) {
     }
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::tagTest

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::attributeTest {
 
 namespace {
 
@@ -374,4 +374,4 @@ TEST_F(Attributes, FormatsTakeColorsFromEachOther) {
     EXPECT_TRUE(RemoveWhatIsNotHeld("a.stl", &mesh).empty());
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::attributeTest

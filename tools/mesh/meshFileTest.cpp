@@ -11,7 +11,7 @@
 #include <numeric>
 #include <random>
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::meshFileTest {
 
 namespace {
 
@@ -435,4 +435,4 @@ TEST_F(MeshFile, RefusesEveryDamagedFile) {
     }
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::meshFileTest

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::objChannelTest {
 
 namespace {
 
@@ -144,4 +144,4 @@ TEST_F(ObjChannel, RefusesBadValues) {
     }
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::objChannelTest

@@ -3,7 +3,7 @@
 // The tag lines of OpenSubdiv's shape files, in OBJ files.
 #include "meshFileFixture.h"
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::objTagTest {
 
 namespace {
 
@@ -159,4 +159,4 @@ TEST_F(ObjTag, RefusesWhatIsNotInTheMesh) {
     expectRefused("hole 1/0/0 -1", "face -1 is out of range");
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::objTagTest

@@ -44,7 +44,7 @@ extern "C" int rename(char const *from, char const *to) noexcept {
 }
 #endif
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::outputFileTest {
 
 namespace {
 
@@ -286,4 +286,4 @@ TEST(FileErrorText, IsOneLine) {
     EXPECT_STREQ(FileError("\u00e9\\n", "\u20ac").what(), "\u00e9\\n: \u20ac");
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::outputFileTest

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <random>
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::pieceWriterTest {
 
 namespace {
 
@@ -154,4 +154,4 @@ TEST_F(MeshFile, PiecesThatAreNotAllLeaveTheFile) {
     EXPECT_EQ(numFiles, 1u);
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::pieceWriterTest

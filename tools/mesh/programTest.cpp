@@ -7,7 +7,7 @@
 
 #include <system_error>
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::programTest {
 
 namespace {
 
@@ -132,4 +132,4 @@ TEST(Program, NumbersAreOneArgument) {
     EXPECT_EQ(run({"a", "--numbers", "1,"}), "2program: --numbers: '' is not a finite number");
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::programTest

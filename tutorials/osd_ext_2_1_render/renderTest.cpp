@@ -13,7 +13,7 @@
 #include <set>
 #include <sstream>
 
-namespace OpenSubdivHex::Tools {
+namespace OpenSubdivHex::Tools::renderTest {
 
 namespace {
 
@@ -324,4 +324,4 @@ TEST_F(Render, RefusesBadUsage) {
     expectBadUsage("a.obj -o a.png --size 2x2 --panel cage --panel flat --panel tint", "2x2");
 }
 
-} // namespace OpenSubdivHex::Tools
+} // namespace OpenSubdivHex::Tools::renderTest
