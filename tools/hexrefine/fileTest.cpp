@@ -148,7 +148,14 @@ TEST_F(Hexrefine, LimitNormalsHaveAnySize) {
 TEST_F(Hexrefine, RefusesToWriteNothing) {
     std::string const path =
         makeFile("holes.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt hole 1/0/0 0\n");
-    expectFailure(path + " -o " + getPath("out.obj"), path, "all faces are holes");
+    for (char const *const more : {"", " --adaptive --boundary edge-only"}) {
+        expectFailure(path + " -o " + getPath("out.obj") + more, path,
+                      "all faces are holes, none is left to write");
+#ifdef HEXREFINE_HAS_RENDERER
+        expectFailure(path + " --png " + getPath("out.png") + more, path,
+                      "all faces are holes, none is left to draw");
+#endif
+    }
     EXPECT_EQ(run(path).status, 0);
     EXPECT_EQ(listFiles(), std::vector<std::string>{"holes.obj"});
 }

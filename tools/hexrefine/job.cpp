@@ -123,6 +123,7 @@ void Job::Validate() {
         removeWhatIsNotWritten();
         _statistics.attributes = CountAttributes(_mesh);
         createRefiner(sdcOptions);
+        requireFaces();
         _statistics.boundary = kBoundaryNames[sdcOptions.GetVtxBoundaryInterpolation()];
         _statistics.creasingMethod = kCreasingMethodNames[sdcOptions.GetCreasingMethod()];
         _statistics.fvarInterpolation =
@@ -180,9 +181,6 @@ void Job::Write() {
     measure("writing", &_statistics.milliseconds.write, [&] {
         if (!isAdaptive()) {
             copyFaces();
-        }
-        if (isAdaptive() ? _cells->GetStatistics().faces == 0 : _mesh.faceSizes.empty()) {
-            throw FileError(_arguments.input, "all faces are holes, none is left to write");
         }
         if (isAdaptive()) {
             _cells->Write();
@@ -304,6 +302,16 @@ void Job::createRefiner(Sdc::Options sdcOptions) {
     std::string const degenerateFaces = DescribeDegenerateFaces(_mesh);
     if (!degenerateFaces.empty()) {
         warn(degenerateFaces);
+    }
+}
+
+void Job::requireFaces() const {
+    char const *const task = !_arguments.output.empty() ? "write"
+                             : !_arguments.png.empty()  ? "draw"
+                                                        : nullptr;
+    if (task && _mesh.tags.GetNumHoles() == _mesh.GetNumFaces()) {
+        throw FileError(_arguments.input,
+                        std::string("all faces are holes, none is left to ") + task);
     }
 }
 

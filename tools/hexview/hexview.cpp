@@ -192,13 +192,14 @@ std::vector<float> findTwists(int numFrames) {
 
 void run(Arguments const &arguments) {
     Mesh mesh = ReadMesh(arguments.input);
-    ScaleToUnitSize(&mesh.positions);
+    std::vector<int> const shown = FindShownVertices(mesh);
+    ScaleToUnitSize(shown, &mesh.positions);
     SurfaceSettings const settings = findSettings(arguments, mesh.tags);
     DrawSettings drawSettings;
     drawSettings.shading = FindRule<Shading>(kShadingNames, arguments.shading);
     drawSettings.hasEdges = !arguments.hasNoEdges;
     drawSettings.hasControlMesh = arguments.hasControlMesh;
-    OrbitCamera camera = OrbitCamera::Around(mesh.positions);
+    OrbitCamera camera = OrbitCamera::Around(GatherPositions(shown, mesh.positions));
     camera.azimuth = arguments.azimuth;
     camera.elevation = arguments.elevation;
     camera.distance = arguments.distance;
