@@ -139,7 +139,7 @@ std::string quote(std::string const &word) {
 }
 
 void run(Arguments const &arguments, std::string const &program) {
-    Tools::Mesh const mesh = Tools::ReadMesh(arguments.input);
+    Tools::Mesh const mesh = Tools::ReadInput("streamCount", arguments.input);
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     FarExt::TopologyRefinerFactory::Options options;

@@ -14,22 +14,23 @@
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshCheck.h"
 #include "tools/mesh/meshContent.h"
-#include "tools/mesh/meshReader.h"
 #include "tools/mesh/meshText.h"
 #include "tools/mesh/meshWriter.h"
+#include "tools/mesh/program.h"
 #include "tools/mesh/ruleNames.h"
 #include "tools/mesh/topologyDescriptor.h"
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <iostream>
 #include <new>
 #include <utility>
 
 namespace OpenSubdivHex::Tools {
 
 namespace {
+
+constexpr char kName[] = "hexrefine";
 
 FarExt::HexSchemeOptions findSchemeOptions(Arguments const &arguments) {
     FarExt::HexSchemeOptions options;
@@ -105,7 +106,8 @@ Job::Job(Arguments const &arguments, Progress &progress)
 }
 
 void Job::Read() {
-    measure("reading", &_statistics.milliseconds.read, [&] { _mesh = ReadMesh(_arguments.input); });
+    measure("reading", &_statistics.milliseconds.read,
+            [&] { _mesh = ReadInput(kName, _arguments.input); });
     _regions = FindRegions(_arguments.pngColors, _mesh, _arguments.input);
 }
 
@@ -215,10 +217,7 @@ void Job::requireDone(bool isDone, FarExt::CallStatus const &status) const {
     }
 }
 
-void Job::warn(std::string const &message) const {
-    std::cerr << "hexrefine: " << EscapeControls(_arguments.input + ": warning: " + message)
-              << "\n";
-}
+void Job::warn(std::string const &message) const { PrintWarning(kName, _arguments.input, message); }
 
 // The rules: those of the command line, else those of the file, else the paper's boundary and what
 // Sdc::Options has.

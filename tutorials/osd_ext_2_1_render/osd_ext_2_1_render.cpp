@@ -378,7 +378,7 @@ std::string findFramePath(Arguments const &arguments, int frame) {
 }
 
 void run(Arguments const &arguments) {
-    Mesh mesh = ReadMesh(arguments.input);
+    Mesh mesh = ReadInput(kName, arguments.input);
     std::vector<int> const shown = FindShownVertices(mesh);
     ScaleToUnitSize(shown, &mesh.positions);
     Bounds const bounds = findBounds(GatherPositions(shown, mesh.positions));

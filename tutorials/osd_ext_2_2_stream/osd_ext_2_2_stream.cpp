@@ -157,7 +157,7 @@ std::uint8_t toByte(float light) {
 }
 
 void run(Arguments const &arguments) {
-    Mesh mesh = ReadMesh(arguments.input);
+    Mesh mesh = ReadInput(kName, arguments.input);
     std::vector<int> const shown = FindShownVertices(mesh);
     ScaleToUnitSize(shown, &mesh.positions);
     std::vector<float> const points = GatherPositions(shown, mesh.positions);
