@@ -106,7 +106,9 @@ Count countByProcesses(std::string const &command, int numProcesses) {
     for (std::FILE *const pipe : pipes) {
         char line[256] = "";
         static_cast<void>(std::fgets(line, sizeof line, pipe));
-        pclose(pipe);
+        if (pclose(pipe) != 0) {
+            throw std::runtime_error("a process with a share of the faces failed");
+        }
         Count const count = parseCount(line);
         sum = {sum.points + count.points, sum.facets + count.facets, sum.hash + count.hash};
     }
