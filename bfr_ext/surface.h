@@ -177,8 +177,8 @@ public:
     /// @}
 
     /// @name Evaluation
-    /// Of a place outside of the face, however far, that is taken where the line from the centre to it leaves
-    /// the face.  Where u or v is not a number, points and derivatives are none, and some weights.
+    /// (u, v) outside the face, however far, is moved to its boundary, towards the centre.  Where u or v
+    /// is not a number, points and derivatives are none, and some weights.
     /// @{
 
     /// Writes the point at \p uv: pointDesc.size numbers.  At the places of vertices that levels up to

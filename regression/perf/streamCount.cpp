@@ -106,7 +106,9 @@ Count countByProcesses(std::string const &command, int numProcesses) {
     for (std::FILE *const pipe : pipes) {
         char line[256] = "";
         static_cast<void>(std::fgets(line, sizeof line, pipe));
-        pclose(pipe);
+        if (pclose(pipe) != 0) {
+            throw std::runtime_error("a process with a share of the faces failed");
+        }
         Count const count = parseCount(line);
         sum = {sum.points + count.points, sum.facets + count.facets, sum.hash + count.hash};
     }
@@ -139,7 +141,7 @@ std::string quote(std::string const &word) {
 }
 
 void run(Arguments const &arguments, std::string const &program) {
-    Tools::Mesh const mesh = Tools::ReadMesh(arguments.input);
+    Tools::Mesh const mesh = Tools::ReadInput("streamCount", arguments.input);
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     FarExt::TopologyRefinerFactory::Options options;

@@ -8,10 +8,10 @@
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshText.h"
 #include "tools/mesh/program.h"
+#include "tools/mesh/shownVertices.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace OpenSubdivHex::Tools {
 
@@ -40,29 +40,15 @@ std::string checkResolution(std::string const &word) {
                      std::to_string(kMaxPixels);
 }
 
-/// Looks at all that the faces of a level have, but for holes, from the front and above.
-void lookAtAll(FarExt::TopologyLevel const &level, std::vector<float> const &positions,
-               BfrExt::Camera *camera) {
-    constexpr double kFar = std::numeric_limits<double>::max();
-    double least[3] = {kFar, kFar, kFar};
-    double largest[3] = {-kFar, -kFar, -kFar};
-    bool hasFaces = false;
-    for (int face = 0; face < level.GetNumFaces(); ++face) {
-        if (level.IsFaceHole(face)) {
-            continue;
-        }
-        hasFaces = true;
-        for (int const vertex : level.GetFaceVertices(face)) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                auto const position = double(positions[3 * std::size_t(vertex) + k]);
-                least[k] = std::min(least[k], position);
-                largest[k] = std::max(largest[k], position);
-            }
-        }
-    }
-    if (!hasFaces) {
-        std::fill_n(least, 3, 0.0);
-        std::fill_n(largest, 3, 0.0);
+/// Looks at all points, of which there is one at least, from the front and above.
+void lookAtAll(std::vector<float> const &points, BfrExt::Camera *camera) {
+    double least[3];
+    double largest[3];
+    std::copy_n(points.data(), 3, least);
+    std::copy_n(points.data(), 3, largest);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        least[i % 3] = std::min(least[i % 3], double(points[i]));
+        largest[i % 3] = std::max(largest[i % 3], double(points[i]));
     }
     double square = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -85,7 +71,7 @@ BfrExt::View makeView(AdaptiveArguments const &arguments, FarExt::TopologyLevel 
     camera.fieldOfView = double(arguments.fieldOfView);
     parseResolution(arguments.resolution, &camera.width, &camera.height);
     if (arguments.camera.empty()) {
-        lookAtAll(level, positions, &camera);
+        lookAtAll(GatherPositions(FindShownVertices(level), positions), &camera);
     } else {
         std::copy_n(arguments.camera.begin(), 3, camera.eye);
         std::copy_n(arguments.camera.begin() + 3, 3, camera.target);

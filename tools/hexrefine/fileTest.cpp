@@ -145,10 +145,29 @@ TEST_F(Hexrefine, LimitNormalsHaveAnySize) {
     }
 }
 
+TEST_F(Hexrefine, WarnsOfLinesThatAreNotJoined) {
+    std::string const path =
+        makeFile("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl wood\\\nf 1 2 3\nf 1 3 4\n");
+    Result const result = run(path + " -l 0 -o " + getPath("out.obj"));
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.error, "hexrefine: " + path +
+                                ": warning: the backslash at the end of line 5 does not join it "
+                                "with the next, which begins with a statement, 'f'\n");
+    EXPECT_EQ(ReadMesh(getPath("out.obj")).GetNumFaces(), 2);
+    EXPECT_EQ(run(getPath("out.obj")).error, ""); // which has a blank behind the name
+}
+
 TEST_F(Hexrefine, RefusesToWriteNothing) {
     std::string const path =
         makeFile("holes.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt hole 1/0/0 0\n");
-    expectFailure(path + " -o " + getPath("out.obj"), path, "all faces are holes");
+    for (char const *const more : {"", " --adaptive --boundary edge-only"}) {
+        expectFailure(path + " -o " + getPath("out.obj") + more, path,
+                      "all faces are holes, none is left to write");
+#ifdef HEXREFINE_HAS_RENDERER
+        expectFailure(path + " --png " + getPath("out.png") + more, path,
+                      "all faces are holes, none is left to draw");
+#endif
+    }
     EXPECT_EQ(run(path).status, 0);
     EXPECT_EQ(listFiles(), std::vector<std::string>{"holes.obj"});
 }

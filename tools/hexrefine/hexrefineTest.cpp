@@ -456,6 +456,22 @@ TEST_F(Hexrefine, MakesAPicture) {
     expectBadUsage(cube + " --png-colors base-faces", "--png");
     expectBadUsage(cube + " --png " + path + " --png-colors red", "red");
 }
+
+// Vertices that no face has, and those of holes alone, have no place in a picture, however far they are.
+TEST_F(Hexrefine, PicturesShowWhatFacesHave) {
+    std::string const cube = getContent(makeCubeFile());
+    std::string const path = getPath("out.png");
+    for (std::string const options :
+         {" -l 1", " --adaptive --resolution 80x60 --pixel-error 4 --camera 3,4,5,0,0,0"}) {
+        std::vector<std::string> contents;
+        for (char const *const more :
+             {"", "v 200 0 0\nv 1e30 0 0\nv 0 1e30 0\nv 1e30 2 9\nf 10 11 12\nt hole 1/0/0 6\n"}) {
+            EXPECT_EQ(run(makeFile("a.obj", cube + more) + options + " --png " + path).status, 0);
+            contents.push_back(getContent(path));
+        }
+        EXPECT_TRUE(contents[0] == contents[1]) << options;
+    }
+}
 #else
 TEST_F(Hexrefine, RefusesPicturesWithoutTheRenderer) {
     expectBadUsage(makeCubeFile() + " --png " + getPath("cube.png"), "without Embree");

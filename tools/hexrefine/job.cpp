@@ -14,22 +14,23 @@
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshCheck.h"
 #include "tools/mesh/meshContent.h"
-#include "tools/mesh/meshReader.h"
 #include "tools/mesh/meshText.h"
 #include "tools/mesh/meshWriter.h"
+#include "tools/mesh/program.h"
 #include "tools/mesh/ruleNames.h"
 #include "tools/mesh/topologyDescriptor.h"
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <iostream>
 #include <new>
 #include <utility>
 
 namespace OpenSubdivHex::Tools {
 
 namespace {
+
+constexpr char kName[] = "hexrefine";
 
 FarExt::HexSchemeOptions findSchemeOptions(Arguments const &arguments) {
     FarExt::HexSchemeOptions options;
@@ -105,7 +106,8 @@ Job::Job(Arguments const &arguments, Progress &progress)
 }
 
 void Job::Read() {
-    measure("reading", &_statistics.milliseconds.read, [&] { _mesh = ReadMesh(_arguments.input); });
+    measure("reading", &_statistics.milliseconds.read,
+            [&] { _mesh = ReadInput(kName, _arguments.input); });
     _regions = FindRegions(_arguments.pngColors, _mesh, _arguments.input);
 }
 
@@ -123,6 +125,7 @@ void Job::Validate() {
         removeWhatIsNotWritten();
         _statistics.attributes = CountAttributes(_mesh);
         createRefiner(sdcOptions);
+        requireFaces();
         _statistics.boundary = kBoundaryNames[sdcOptions.GetVtxBoundaryInterpolation()];
         _statistics.creasingMethod = kCreasingMethodNames[sdcOptions.GetCreasingMethod()];
         _statistics.fvarInterpolation =
@@ -181,9 +184,6 @@ void Job::Write() {
         if (!isAdaptive()) {
             copyFaces();
         }
-        if (isAdaptive() ? _cells->GetStatistics().faces == 0 : _mesh.faceSizes.empty()) {
-            throw FileError(_arguments.input, "all faces are holes, none is left to write");
-        }
         if (isAdaptive()) {
             _cells->Write();
         } else {
@@ -217,10 +217,7 @@ void Job::requireDone(bool isDone, FarExt::CallStatus const &status) const {
     }
 }
 
-void Job::warn(std::string const &message) const {
-    std::cerr << "hexrefine: " << EscapeControls(_arguments.input + ": warning: " + message)
-              << "\n";
-}
+void Job::warn(std::string const &message) const { PrintWarning(kName, _arguments.input, message); }
 
 // The rules: those of the command line, else those of the file, else the paper's boundary and what
 // Sdc::Options has.
@@ -304,6 +301,16 @@ void Job::createRefiner(Sdc::Options sdcOptions) {
     std::string const degenerateFaces = DescribeDegenerateFaces(_mesh);
     if (!degenerateFaces.empty()) {
         warn(degenerateFaces);
+    }
+}
+
+void Job::requireFaces() const {
+    char const *const task = !_arguments.output.empty() ? "write"
+                             : !_arguments.png.empty()  ? "draw"
+                                                        : nullptr;
+    if (task && _mesh.tags.GetNumHoles() == _mesh.GetNumFaces()) {
+        throw FileError(_arguments.input,
+                        std::string("all faces are holes, none is left to ") + task);
     }
 }
 

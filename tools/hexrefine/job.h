@@ -58,6 +58,7 @@ private:
     void removeWhatIsNotWritten();
     void removeNormals();
     void createRefiner(OpenSubdiv::Sdc::Options sdcOptions);
+    void requireFaces() const;
     void refineTopology();
     void evaluateLevel();
     void evaluatePrimvar(Primvar const &primvar);

@@ -22,14 +22,15 @@ bool HasRenderer() { return true; }
 
 void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> positions,
                   std::vector<int> const &regions, std::string const &path) {
-    ScaleToUnitSize(&positions);
+    std::vector<int> const shown = FindShownVertices(level);
+    ScaleToUnitSize(shown, &positions);
     constexpr int kWidth = 800;
     constexpr int kHeight = 600;
     Surface surface(level, !regions.empty());
     surface.SetPositions(positions.data());
     Scene scene;
     scene.Build(&surface, {}, 0);
-    Camera const camera(View(), positions, float(kWidth) / kHeight);
+    Camera const camera(View(), GatherPositions(shown, positions), float(kWidth) / kHeight);
     RenderOptions options;
     options.hasRegions = !regions.empty();
     options.regions = regions;
@@ -38,28 +39,27 @@ void WritePicture(FarExt::TopologyLevel const &level, std::vector<float> positio
 
 void WriteCellPicture(Mesh const &mesh, AdaptiveCamera const &camera,
                       std::vector<int> const &regions, std::string const &path) {
+    FarExt::CallStatus status;
+    auto const refiner =
+        FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), {}, {}, &status);
+    if (!refiner) {
+        throw FileError(path, "cannot be made: " + status.GetErrorMessage());
+    }
     // Eye and target are scaled with the mesh; they may be farther away than floats can say.
     std::vector<double> places(mesh.positions.begin(), mesh.positions.end());
     places.insert(places.end(), camera.eye, camera.eye + 3);
     places.insert(places.end(), camera.target, camera.target + 3);
-    ScaleToUnitSize(&places);
-    Mesh faces;
-    faces.faceSizes = mesh.faceSizes;
-    faces.faceVertices = mesh.faceVertices;
-    std::transform(places.begin(), places.end(), std::back_inserter(faces.positions),
+    std::vector<int> scaled = FindShownVertices(mesh);
+    scaled.insert(scaled.end(), {mesh.GetNumVertices(), mesh.GetNumVertices() + 1});
+    ScaleToUnitSize(scaled, &places);
+    std::vector<float> positions;
+    std::transform(places.begin(), places.end(), std::back_inserter(positions),
                    [](double place) { return float(place); });
-    Vec3 const eye = GetVec3(faces.positions.data(), mesh.GetNumVertices());
-    Vec3 const target = GetVec3(faces.positions.data(), mesh.GetNumVertices() + 1);
-    faces.positions.resize(mesh.positions.size());
+    Vec3 const eye = GetVec3(positions.data(), mesh.GetNumVertices());
+    Vec3 const target = GetVec3(positions.data(), mesh.GetNumVertices() + 1);
 
-    FarExt::CallStatus status;
-    auto const refiner =
-        FarExt::TopologyRefinerFactory::Create(DescribeTopology(faces), {}, {}, &status);
-    if (!refiner) {
-        throw FileError(path, "cannot be made: " + status.GetErrorMessage());
-    }
     Surface surface(refiner->GetLevel(0), !regions.empty());
-    surface.SetPositions(faces.positions.data());
+    surface.SetPositions(positions.data());
     Scene scene;
     scene.Build(&surface, {}, 0);
     RenderOptions options;

@@ -2,8 +2,12 @@
 //
 // Boundaries, creases, corners and holes: hexrefine gives what the library gives.
 #include "far_ext/primvarRefiner.h"
+#include "osd_ext/polygonIndices.h"
 #include "programFixture.h"
+#include "tools/mesh/shownVertices.h"
+
 #include "tools/mesh/point.h"
+#include <set>
 
 namespace OpenSubdivHex::Tools::tagTest {
 
@@ -101,6 +105,28 @@ Options makeOptions(Options::VtxBoundaryInterpolation boundary,
 }
 
 } // namespace
+
+// The vertices that pictures show are those of the polygons that are drawn, halves of hexagons among them.
+TEST(ShownVertices, AreThoseOfDrawnPolygons) {
+    Mesh mesh = MakeCube();
+    mesh.positions.insert(mesh.positions.end(), 3, 0); // a vertex without faces
+    mesh.tags.holes = {1, 4};
+    auto const refiner = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh));
+    FarExt::TopologyRefiner::UniformOptions options(3);
+    options.fullTopologyInLastLevel = true;
+    ASSERT_TRUE(refiner->RefineUniform(options));
+    for (int depth = 0; depth <= 3; ++depth) {
+        FarExt::TopologyLevel const &level = refiner->GetLevel(depth);
+        std::vector<int> const drawn = OsdExt::CreatePolygonIndices(level).vertices;
+        std::set<int> const expected(drawn.begin(), drawn.end());
+        EXPECT_LT(int(expected.size()), level.GetNumVertices()) << depth;
+        EXPECT_EQ(FindShownVertices(level), std::vector<int>(expected.begin(), expected.end()))
+            << depth;
+    }
+    EXPECT_EQ(FindShownVertices(mesh), FindShownVertices(refiner->GetLevel(0)));
+    mesh.tags.holes = {0, 1, 2, 3, 4, 5};
+    EXPECT_EQ(FindShownVertices(mesh), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+}
 
 TEST_F(HexrefineTag, BoundaryRules) {
     struct {

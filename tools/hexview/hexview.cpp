@@ -19,6 +19,8 @@ namespace OpenSubdivHex::Tools {
 
 namespace {
 
+constexpr char kName[] = "hexview";
+
 std::vector<std::string> const kEvaluatorNames = {"cpu", "opengl", "tables"};
 std::vector<std::string> const kShadingNames = {"smooth",     "facets",  "reflection", "curvature",
                                                 "base-faces", "checker", "levels"};
@@ -191,14 +193,15 @@ std::vector<float> findTwists(int numFrames) {
 }
 
 void run(Arguments const &arguments) {
-    Mesh mesh = ReadMesh(arguments.input);
-    ScaleToUnitSize(&mesh.positions);
+    Mesh mesh = ReadInput(kName, arguments.input);
+    std::vector<int> const shown = FindShownVertices(mesh);
+    ScaleToUnitSize(shown, &mesh.positions);
     SurfaceSettings const settings = findSettings(arguments, mesh.tags);
     DrawSettings drawSettings;
     drawSettings.shading = FindRule<Shading>(kShadingNames, arguments.shading);
     drawSettings.hasEdges = !arguments.hasNoEdges;
     drawSettings.hasControlMesh = arguments.hasControlMesh;
-    OrbitCamera camera = OrbitCamera::Around(mesh.positions);
+    OrbitCamera camera = OrbitCamera::Around(GatherPositions(shown, mesh.positions));
     camera.azimuth = arguments.azimuth;
     camera.elevation = arguments.elevation;
     camera.distance = arguments.distance;
@@ -235,7 +238,7 @@ void run(Arguments const &arguments) {
 
 int main(int argc, char const *const *argv) {
     using namespace OpenSubdivHex::Tools;
-    CLI::App app("Shows a mesh refined with the hexagonal scheme", "hexview");
+    CLI::App app("Shows a mesh refined with the hexagonal scheme", kName);
     Arguments arguments;
     addOptions(app, &arguments);
     return RunProgram(app, argc, argv, [&] { run(arguments); });

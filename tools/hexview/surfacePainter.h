@@ -25,7 +25,7 @@ struct DrawSettings {
 
 /// \brief A perspective camera that goes around a point, with y up.
 struct OrbitCamera {
-    /// Sees all of a mesh.
+    /// Sees all \p points, of which there is one at least.
     static OrbitCamera Around(std::vector<float> const &points);
 
     glm::vec3 GetEye() const;

@@ -96,7 +96,8 @@ struct Mesh {
     std::vector<int> faceLabels{};   ///< label of each base face; empty: there are none
     std::vector<int> baseFaces{};    ///< of each face; empty: the face itself
     std::vector<std::string> materialLibraries{}; ///< what OBJ's statements mtllib say
-    std::vector<std::string> notRead{}; ///< names of what else the file has and this does not
+    std::vector<std::string> notRead{};  ///< names of what else the file has and this does not
+    std::vector<std::string> warnings{}; ///< of what the file may have been meant to say
     MeshTags tags{};
 
     int GetNumVertices() const { return int(positions.size() / 3); }

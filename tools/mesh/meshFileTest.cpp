@@ -153,6 +153,114 @@ TEST_F(MeshFile, FormFeedsAreSpaces) {
                 {0, 1, 2, 3});
 }
 
+// Every end of lines, a byte order mark or none, in each format.
+TEST_F(MeshFile, ReadsAllEndsOfLines) {
+    Mesh const mesh = makeSoup(7);
+    auto const replaceAll = [](std::string text, std::string const &from, std::string const &to) {
+        for (std::size_t i = text.find(from); i != std::string::npos;
+             i = text.find(from, i + to.size())) {
+            text.replace(i, from.size(), to);
+        }
+        return text;
+    };
+    WriteMesh(mesh, getPath("a.obj"));
+    WriteMesh(mesh, getPath("a.off"));
+    std::string ply =
+        "ply\nformat ascii 1.0\ncomment end_header\nelement vertex 4\nproperty float x\n"
+        "property float y\nproperty float z\nelement face 1\n"
+        "property list uchar int vertex_indices\nend_header\n";
+    std::vector<float> const positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    for (std::string const mark : {"", "\xEF\xBB\xBF"}) {
+        for (char const *const end : {"\n", "\r", "\r\n"}) {
+            SCOPED_TRACE(::testing::PrintToString(mark + end));
+            for (char const *const name : {"a.obj", "a.off"}) {
+                std::string const content = getContent(getPath(name));
+                expectEqual(ReadMesh(makeFile(std::string("b.") + (name + 2),
+                                              mark + replaceAll(content, "\n", end))),
+                            mesh);
+            }
+            std::string const text = ply + kFourVertices + "4 0 1 2 3\n";
+            expectFaces("b.ply", mark + replaceAll(text, "\n", end), 4, {4}, {0, 1, 2, 3});
+            // The first number of the body begins with the byte of a line feed, or of a carriage return.
+            for (bool const isBig : {false, true}) {
+                for (std::uint32_t const byte : {0x0a, 0x0d}) {
+                    std::uint32_t const bits = isBig ? byte << 24 : byte;
+                    std::vector<float> numbers = positions;
+                    std::memcpy(&numbers[0], &bits, sizeof bits);
+                    std::string const header = replaceAll(
+                        ply, "ascii", isBig ? "binary_big_endian" : "binary_little_endian");
+                    std::string const body = bytes(numbers, isBig) + bytes<unsigned char>({4}) +
+                                             bytes<int>({0, 1, 2, 3}, isBig);
+                    expectFaces("b.ply", mark + replaceAll(header, "\n", end) + body, 4, {4},
+                                {0, 1, 2, 3});
+                    EXPECT_EQ(ReadMesh(getPath("b.ply")).positions, numbers);
+                }
+            }
+        }
+    }
+    expectFaces("a.ply", "ply \t\n" + ply.substr(4) + kFourVertices + "3 0 1 2", 4, {3}, {0, 1, 2});
+    expectRefused("a.ply", "ply 1\n" + ply.substr(4) + kFourVertices + "3 0 1 2",
+                  "does not begin with 'ply'");
+    expectRefused("a.ply", "ply\rformat ascii 2.0\r", "line 2: format 'ascii 2.0'");
+}
+
+/// Reads a file of the four corners of a square, in lines 1 to 4, and \p rest; gives its warnings.
+class ObjBackslash : public MeshFile {
+protected:
+    std::vector<std::string> read(std::string const &rest, std::vector<int> const &faceSizes,
+                                  std::string const &material = "") const {
+        SCOPED_TRACE(rest);
+        Mesh const mesh =
+            ReadMesh(makeFile("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + rest));
+        EXPECT_EQ(mesh.faceSizes, faceSizes);
+        EXPECT_EQ(mesh.labels.empty() ? "" : mesh.labels.back().material, material);
+        WriteMesh(mesh, getPath("b.obj"));
+        expectEqual(ReadMesh(getPath("b.obj")), mesh);
+        EXPECT_TRUE(ReadMesh(getPath("b.obj")).warnings.empty());
+        return mesh.warnings;
+    }
+};
+
+TEST_F(ObjBackslash, JoinsLines) {
+    EXPECT_TRUE(
+        read("f 1 2 \\\n 3 4\nusemtl wood \\\noak\\\n\nf 1 2 3\n", {4, 3}, "wood  oak").empty());
+    // What looks like a keyword, but not like a statement.
+    EXPECT_TRUE(read("usemtl wood\\\nf\nf 1 2 3\n", {3}, "wood f").empty());
+    EXPECT_TRUE(read("usemtl wood\\\nl x 1\nf 1 2 3\n", {3}, "wood l x 1").empty());
+    EXPECT_TRUE(read("\\\nf 1 2 3\n \\\n\\\nf 1 2 3\\", {3, 3}).empty());
+}
+
+TEST_F(ObjBackslash, LosesNoStatement) {
+    std::string const cause = " does not join it with the next, which begins with a statement, '";
+    using Warnings = std::vector<std::string>;
+    EXPECT_EQ(read("usemtl wood\\\nf 1 3 4 2\nf 1 2 3\n", {4, 3}, "wood\\"),
+              Warnings{"the backslash at the end of line 5" + cause + "f'"});
+    for (char const *const statement :
+         {"o", "g", "s", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj"}) {
+        EXPECT_EQ(read(statement + std::string(" C:\\models\\\nf 1 3 4 2\nf 1 2 3\n"), {4, 3}),
+                  Warnings{"the backslash at the end of line 5" + cause + "f'"});
+    }
+    EXPECT_EQ(read("l 1 2 \\\nf -1 -2 -3\n", {3}),
+              Warnings{"the backslash at the end of line 5" + cause + "f'"});
+    for (char const *const next : {"v -1 0 0",     "vt .5 0",     "vn 0 0 1",
+                                   "vp 0 1",       "l 1 2",       "p 1",
+                                   "s 1",          "s off",       "mg 1 2",
+                                   "lod 3",        "bevel on",    "c_interp off",
+                                   "d_interp off", "o a",         "g a",
+                                   "mtllib a",     "usemap a",    "maplib a",
+                                   "shadow_obj a", "trace_obj a", "t crease 2/1/0 0 1 2"}) {
+        std::string const keyword = std::string(next).substr(0, std::string(next).find(' '));
+        EXPECT_EQ(read(std::string("usemtl wood\\\n") + next + "\nf 1 2 3\n", {3}, "wood\\"),
+                  Warnings{"the backslash at the end of line 5" + cause + keyword + "'"});
+    }
+    EXPECT_EQ(
+        read("f 1 2 3\ng a \\\nb\\\nf 1 2 3\nusemtl wood\\\ng c\\\nf 1 2 3\n", {3, 3, 3}, "wood\\"),
+        Warnings{"the backslash at the end of line 7" + cause + "f', the first of 3 such lines"});
+    expectRefused("a.obj", "v 0 0 0\\\nv 1 0 0\n", "line 1: '0\\' is not a finite number");
+    // Of a comment it is a part.
+    EXPECT_TRUE(read("# C:\\models\\\nf 1 2 3\n", {3}).empty());
+}
+
 TEST_F(MeshFile, RefusesBadObj) {
     std::string const vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
     expectRefused("a.obj", vertices + "f 1 2 4\n",
@@ -195,6 +303,14 @@ TEST_F(MeshFile, ReadsOff) {
     expectFaces("a.off",
                 "# made by hand\nOFF 4 1 # counts\n\n" + kFourVertices + "\n# face\n3 0 1 2", 4,
                 {3}, {0, 1, 2});
+    // The number of vertices right behind the word.
+    expectFaces("a.off", "OFF4 1 0\n" + kFourVertices + "3 0 1 2\n", 4, {3}, {0, 1, 2});
+    expectFaces("a.off", "COFF4\n1 0\n" + kFourVertices + "3 0 1 2\n", 4, {3}, {0, 1, 2});
+    // Comments say nothing.
+    expectFaces("a.off", "OFF # no BINARY\r4 1\r" + kFourVertices + "3 0 1 2 # BINARY", 4, {3},
+                {0, 1, 2});
+    expectFaces("a.off", "# BINARY or not\nOFF\n4 1\n" + kFourVertices + "3 0 1 2", 4, {3},
+                {0, 1, 2});
     // Colours are allowed in any OFF file.
     expectFaces("a.off", "OFF\r\n4 2 0\r\n" + kFourVertices + "3 0 1 2 255 0 0\r\n3 0 2 3 1\r\n", 4,
                 {3, 3}, {0, 1, 2, 0, 2, 3});
@@ -232,6 +348,9 @@ TEST_F(MeshFile, RefusesBadOff) {
     expectRefused("a.off", "OFF\n4 0 0\n" + kFourVertices, "has no faces");
     expectRefused("a.off", "4OFF\n1 0 0\n0 0 0 1\n", "does not begin with OFF");
     expectRefused("a.off", kFourVertices, "does not begin with OFF");
+    expectRefused("a.off", "OFFx 4 1 0\n" + kFourVertices, "does not begin with OFF");
+    expectRefused("a.off", "OFF4x 1 0\n" + kFourVertices, "line 1: the numbers of vertices");
+    expectRefused("a.off", "OFF4 1 0 0 0\n" + kFourVertices, "line 1: the numbers of vertices");
     expectRefused("a.off", std::string("OFF BINARY\n\0\0\0\1", 15), "binary OFF");
     expectRefused("a.off", std::string("\x89\0\x01garbage", 10), "is not text");
 }

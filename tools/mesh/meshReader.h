@@ -17,6 +17,8 @@ namespace OpenSubdivHex::Tools {
 /// and faces are those of the file, in its order, or the file is refused.  Texture coordinates
 /// become a channel when faces name them, and so do normals; either all corners of all faces have
 /// one or none, else the file is refused.  What else the file has is named in Mesh::notRead.
+/// Of OBJ, a backslash joins a line with the next, unless that begins with a statement: it is part of the
+/// line then, with one of Mesh::warnings.
 /// Whether the faces make a surface is not looked at; that is TopologyRefinerFactory's task.
 ///
 /// Throws FileError, which names line, vertex or face, for anything it cannot read as it stands:

@@ -43,9 +43,7 @@ void NormalizeText(std::string const &path, std::string *text) {
     if (text->find('\0') != std::string::npos) {
         throw FileError(path, "is not text: it holds a zero byte");
     }
-    if (text->compare(0, 3, "\xEF\xBB\xBF") == 0) {
-        text->erase(0, 3);
-    }
+    text->erase(0, text->size() - SkipByteOrderMark(*text).size());
     std::size_t out = 0;
     for (std::size_t in = 0; in < text->size(); ++in) {
         char c = (*text)[in];
@@ -73,10 +71,15 @@ void BlankComments(std::string *text) {
     }
 }
 
-std::string_view TakeLine(std::string_view *text) {
-    std::size_t const end = text->find('\n');
-    std::string_view const line = text->substr(0, end);
-    text->remove_prefix(end == std::string_view::npos ? text->size() : end + 1);
+std::string_view SkipByteOrderMark(std::string_view text) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    return text.substr(text.substr(0, kMark.size()) == kMark ? kMark.size() : 0);
+}
+
+std::string_view TakeLine(std::string_view *text, char end) {
+    std::size_t const size = text->find(end);
+    std::string_view const line = text->substr(0, size);
+    text->remove_prefix(size == std::string_view::npos ? text->size() : size + 1);
     return line;
 }
 

@@ -19,8 +19,11 @@ void NormalizeText(std::string const &path, std::string *text);
 /// Overwrites comments, from # to the end of the line, with spaces.
 void BlankComments(std::string *text);
 
-/// Takes the first line off \p text (without its '\n').
-std::string_view TakeLine(std::string_view *text);
+/// \p text without the byte order mark of UTF-8 that it may begin with.
+std::string_view SkipByteOrderMark(std::string_view text);
+
+/// Takes the first line off \p text, without its \p end.
+std::string_view TakeLine(std::string_view *text, char end = '\n');
 
 /// Takes the first word off \p text; empty when only spaces, tabs and line ends are left.
 std::string_view TakeWord(std::string_view *text);

@@ -37,25 +37,64 @@ void blankObjComments(std::string *text) {
     }
 }
 
-/// Joins lines that end in a backslash with the next, keeping the number of lines.
-void joinContinuedLines(std::string *text) {
+/// \brief Whether the first line of \p text is a statement rather than the rest of a name: a keyword, and
+/// behind it what such a statement begins with.
+bool beginsWithStatement(std::string_view text) {
+    constexpr std::array<std::string_view, 9> kOfWords = {
+        "o", "g", "usemtl", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj", "t"};
+    constexpr std::array<std::string_view, 13> kOfNumbers = {
+        "v", "vt", "vn", "vp", "f", "l", "p", "s", "mg", "lod", "bevel", "c_interp", "d_interp"};
+    auto const has = [](auto const &keywords, std::string_view word) {
+        return std::find(keywords.begin(), keywords.end(), word) != keywords.end();
+    };
+    std::string_view line = TakeLine(&text);
+    std::string_view const keyword = TakeWord(&line);
+    std::string_view const next = TakeWord(&line);
+    bool const isNumber = next.find_first_of("+-.0123456789") == 0 || next == "on" || next == "off";
+    return (has(kOfWords, keyword) && !next.empty()) || (has(kOfNumbers, keyword) && isNumber);
+}
+
+/// \brief Joins lines that end in a backslash with the next, keeping the number of lines.
+///
+/// Names may end in one, as those of folders do: a line that begins with a statement stays, with a
+/// warning to \p mesh, since what it says would be lost in the name.
+void joinContinuedLines(std::string *text, Mesh *mesh) {
     if (text->find("\\\n") == std::string::npos) {
         return;
     }
     std::string joined;
     joined.reserve(text->size());
+    std::size_t begin = 0; // of the line, in what is joined
     std::size_t numJoined = 0;
-    for (std::size_t i = 0; i < text->size(); ++i) {
-        if (text->compare(i, 2, "\\\n") == 0) {
-            joined.push_back(' ');
+    int numKept = 0;
+    std::string firstKept;
+    std::string_view rest = *text;
+    for (int number = 1; !rest.empty(); ++number) {
+        std::string_view const line = TakeLine(&rest);
+        bool const hasBackslash = !line.empty() && line.back() == '\\';
+        joined += line.substr(0, line.size() - (hasBackslash ? 1 : 0));
+        bool const isEmpty = joined.find_first_not_of(" \t", begin) == std::string::npos;
+        if (hasBackslash && (isEmpty || !beginsWithStatement(rest))) {
+            joined += ' ';
             ++numJoined;
-            ++i;
-        } else if ((*text)[i] == '\n') {
-            joined.append(numJoined + 1, '\n');
-            numJoined = 0;
-        } else {
-            joined.push_back((*text)[i]);
+            continue;
         }
+        if (hasBackslash && ++numKept == 1) {
+            std::string_view next = rest;
+            firstKept = "the backslash at the end of line " + std::to_string(number) +
+                        " does not join it with the next, which begins with a statement, '" +
+                        std::string(TakeWord(&next)) + "'";
+        }
+        // A blank, since other readers may join lines, too.
+        joined += hasBackslash ? "\\ " : "";
+        joined.append(numJoined + 1, '\n');
+        numJoined = 0;
+        begin = joined.size();
+    }
+    if (numKept > 0) {
+        mesh->warnings.push_back(
+            firstKept +
+            (numKept == 1 ? "" : ", the first of " + std::to_string(numKept) + " such lines"));
     }
     *text = std::move(joined);
 }
@@ -328,8 +367,8 @@ void addVertexProperties(ObjContent *content) {
 Mesh ReadObj(std::string const &path, std::string *content) {
     NormalizeText(path, content);
     blankObjComments(content);
-    joinContinuedLines(content);
     ObjContent obj{path};
+    joinContinuedLines(content, &obj.mesh);
     readStatements(*content, &obj);
 
     // The callbacks give the corners of a face as they stand.  LoadObj does not: it keeps the

@@ -7,6 +7,7 @@
 #include <OpenMesh/Core/IO/reader/OFFReader.hh>
 
 #include <array>
+#include <optional>
 #include <utility>
 
 namespace OpenSubdivHex::Tools::internal {
@@ -20,18 +21,18 @@ struct OffHeader {
     bool hasNormals;
 };
 
-/// Parses [ST][C][N]OFF.
-OffHeader parseHeaderWord(std::string_view word) {
-    auto take = [&word](std::string_view prefix) {
-        bool const found = word.substr(0, prefix.size()) == prefix;
-        word.remove_prefix(found ? prefix.size() : 0);
+/// Takes [ST][C][N]OFF off \p word.  In some files the number of vertices comes behind it without a blank.
+OffHeader takeHeader(std::string_view *word) {
+    auto take = [word](std::string_view prefix) {
+        bool const found = word->substr(0, prefix.size()) == prefix;
+        word->remove_prefix(found ? prefix.size() : 0);
         return found;
     };
     OffHeader header{};
     header.hasTexcoords = take("ST");
     take("C"); // colours are known by their numbers: they may stand in any file
     header.hasNormals = take("N");
-    header.isKnown = word == "OFF";
+    header.isKnown = take("OFF") && (word->empty() || word->find_first_of("0123456789") == 0);
     return header;
 }
 
@@ -155,8 +156,10 @@ private:
 
 Mesh ReadOff(std::string const &path, std::string *content) {
     // Before NormalizeText, which refuses binary files with another reason.
-    if (std::string_view(*content).substr(0, content->find('\n')).find("BINARY") !=
-        std::string_view::npos) {
+    std::string_view firstLine = SkipByteOrderMark(*content);
+    firstLine = firstLine.substr(0, firstLine.find_first_of("\r\n"));
+    std::string_view firstWord = TakeWord(&firstLine);
+    if (takeHeader(&firstWord).isKnown && TakeWord(&firstLine) == "BINARY") {
         throw FileError(path, "is a binary OFF file, only text is supported");
     }
     NormalizeText(path, content);
@@ -164,16 +167,19 @@ Mesh ReadOff(std::string const &path, std::string *content) {
 
     // The header word and the counts, which may share a line; the number of edges may be missing.
     std::string_view body = *content;
-    std::vector<std::string_view> words;
+    std::optional<OffHeader> header;
+    std::vector<std::string_view> counts;
     int numLines = 0;
-    while (words.size() < 3 && !body.empty()) {
+    while (counts.size() < 2 && !body.empty()) {
         ++numLines;
         for (std::string_view word : SplitWords(TakeLine(&body))) {
-            words.push_back(word);
+            header = header ? header : takeHeader(&word);
+            if (!word.empty()) {
+                counts.push_back(word);
+            }
         }
     }
-    OffHeader const header = parseHeaderWord(words.empty() ? std::string_view() : words[0]);
-    if (!header.isKnown) {
+    if (!header || !header->isKnown) {
         throw FileError(path,
                         "does not begin with OFF, COFF, NOFF, STOFF or a combination of them");
     }
@@ -181,8 +187,9 @@ Mesh ReadOff(std::string const &path, std::string *content) {
     int numFaces = 0;
     int numEdges = 0;
     std::string const place = "line " + std::to_string(numLines) + ": ";
-    if (words.size() < 3 || words.size() > 4 || !ParseInt(words[1], &numVertices) ||
-        !ParseInt(words[2], &numFaces) || (words.size() == 4 && !ParseInt(words[3], &numEdges))) {
+    if (counts.size() < 2 || counts.size() > 3 || !ParseInt(counts[0], &numVertices) ||
+        !ParseInt(counts[1], &numFaces) ||
+        (counts.size() == 3 && !ParseInt(counts[2], &numEdges))) {
         throw FileError(path, place + "the numbers of vertices, faces and edges are expected");
     }
     for (auto const &[count, name] : {std::pair(numVertices, "vertices"), {numFaces, "faces"}}) {
@@ -197,7 +204,7 @@ Mesh ReadOff(std::string const &path, std::string *content) {
     input.numHeaderLines = numLines;
     input.numVertices = numVertices;
     input.numFaces = numFaces;
-    OffExtras extras(header);
+    OffExtras extras(*header);
     Mesh mesh = ReadThroughOpenMesh(OpenMesh::IO::OFFReader(), input, extras);
     extras.AddTo(&mesh);
     return mesh;

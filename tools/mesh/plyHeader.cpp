@@ -20,12 +20,17 @@ bool hasName(std::vector<NAMED> const &all, std::string_view name) {
 class Parser {
 public:
     Parser(std::string const &path, std::string_view content) : _path(path) {
-        _header.body = content;
+        _header.body = SkipByteOrderMark(content);
+        // All lines end as the first one does.  In binary files '\n' behind '\r' may be a number's.
+        std::size_t const end = _header.body.find_first_of("\r\n");
+        std::string_view const lineEnd =
+            end == std::string_view::npos ? "\n" : _header.body.substr(end, 2);
+        _lineEnd = lineEnd[0] == '\r' && lineEnd != "\r\n" ? '\r' : '\n';
     }
 
     PlyHeader Run() {
-        std::string_view const magic = nextLine();
-        if (magic != "ply" && magic != "PLY") {
+        std::vector<std::string_view> const magic = SplitWords(nextLine());
+        if (magic.size() != 1 || (magic[0] != "ply" && magic[0] != "PLY")) {
             throw FileError(_path, "does not begin with 'ply'");
         }
         bool hasEnd = false;
@@ -48,7 +53,7 @@ public:
 
 private:
     std::string_view nextLine() {
-        std::string_view line = TakeLine(&_header.body);
+        std::string_view line = TakeLine(&_header.body, _lineEnd);
         if (!line.empty() && line.back() == '\r') {
             line.remove_suffix(1);
         }
@@ -127,6 +132,7 @@ private:
 
     std::string const &_path;
     PlyHeader _header;
+    char _lineEnd = '\n'; ///< the last character of lines
     bool _hasFormat = false;
 };
 

@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_TOOLS_PROGRAM_H
 
 #include "fileError.h"
+#include "meshReader.h"
 #include "meshText.h"
 
 #include <CLI/CLI.hpp>
@@ -25,6 +26,21 @@ inline void FlushOutput() {
     if (!std::cout.flush()) {
         throw FileError("standard output", "cannot be written");
     }
+}
+
+/// Prints "PROGRAM: FILE: warning: TEXT", one line, to standard error.
+inline void PrintWarning(std::string const &program, std::string const &path,
+                         std::string const &text) {
+    std::cerr << program << ": " << EscapeControls(path + ": warning: " + text) << "\n";
+}
+
+/// The mesh that a program reads, as by ReadMesh(); prints the warnings.
+inline Mesh ReadInput(std::string const &program, std::string const &path) {
+    Mesh mesh = ReadMesh(path);
+    for (std::string const &warning : mesh.warnings) {
+        PrintWarning(program, path, warning);
+    }
+    return mesh;
 }
 
 /// \brief What main does: reads the command line into \p app, calls work() and gives the exit code.

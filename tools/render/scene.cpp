@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene.h"
 
-#include <embree3/rtcore.h>
+#include "embreeError.h"
 
 #include <algorithm>
 #include <limits>
-#include <new>
 #include <stdexcept>
 
 namespace OpenSubdivHex::Tools {
@@ -14,15 +13,13 @@ namespace {
 
 enum GeometryId : unsigned { kSurfaceId = 0, kRodsId = 1 };
 
-/// A buffer of \p geometry, of Embree's own; throws std::bad_alloc.
+/// A buffer of \p geometry, of Embree's own, of one element at least; throws as ThrowEmbreeError().
 template <typename T>
-T *createBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t elementSize,
-                std::size_t numElements) {
+T *createBuffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTCFormat format,
+                std::size_t elementSize, std::size_t numElements) {
     void *const buffer =
         rtcSetNewGeometryBuffer(geometry, type, 0, format, elementSize, numElements);
-    if (!buffer) {
-        throw std::bad_alloc();
-    }
+    ThrowEmbreeError(device);
     return static_cast<T *>(buffer);
 }
 
@@ -50,18 +47,19 @@ void Scene::Build(Surface const *surface, std::vector<float> const &rodEnds, flo
     _surface = surface;
     _scene.reset(rtcNewScene(_device.get()));
     rtcSetSceneFlags(_scene.get(), RTC_SCENE_FLAG_ROBUST);
-    if (surface) {
+    bool const hasTriangles = surface && surface->GetTriangles().GetNumTriangles() > 0;
+    if (hasTriangles) {
         addSurface();
     }
     if (!rodEnds.empty()) {
         addRods(rodEnds, rodRadius);
     }
     rtcCommitScene(_scene.get());
-    if (rtcGetDeviceError(_device.get()) != RTC_ERROR_NONE) {
-        throw std::bad_alloc();
+    ThrowEmbreeError(_device.get());
+    RTCBounds bounds = {};
+    if (hasTriangles || !rodEnds.empty()) {
+        rtcGetSceneBounds(_scene.get(), &bounds);
     }
-    RTCBounds bounds;
-    rtcGetSceneBounds(_scene.get(), &bounds);
     _low = {bounds.lower_x, bounds.lower_y, bounds.lower_z};
     _high = {bounds.upper_x, bounds.upper_y, bounds.upper_z};
 }
@@ -69,12 +67,14 @@ void Scene::Build(Surface const *surface, std::vector<float> const &rodEnds, flo
 void Scene::addSurface() {
     RTCGeometry const geometry = rtcNewGeometry(_device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     std::vector<float> const &positions = _surface->GetPositions();
-    auto *const points = createBuffer<float>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
-                                             3 * sizeof(float), positions.size() / 3);
+    auto *const points =
+        createBuffer<float>(_device.get(), geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+                            3 * sizeof(float), positions.size() / 3);
     std::copy(positions.begin(), positions.end(), points);
     std::vector<int> const &vertices = _surface->GetTriangles().vertices;
-    auto *const indices = createBuffer<unsigned>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
-                                                 3 * sizeof(unsigned), vertices.size() / 3);
+    auto *const indices =
+        createBuffer<unsigned>(_device.get(), geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
+                               3 * sizeof(unsigned), vertices.size() / 3);
     std::copy(vertices.begin(), vertices.end(), indices);
     attach(_scene.get(), geometry, kSurfaceId);
 }
@@ -83,14 +83,14 @@ void Scene::addRods(std::vector<float> const &rodEnds, float rodRadius) {
     RTCGeometry const geometry =
         rtcNewGeometry(_device.get(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
     std::size_t const numRods = rodEnds.size() / 6;
-    auto *const points = createBuffer<float>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
-                                             4 * sizeof(float), 2 * numRods);
+    auto *const points = createBuffer<float>(_device.get(), geometry, RTC_BUFFER_TYPE_VERTEX,
+                                             RTC_FORMAT_FLOAT4, 4 * sizeof(float), 2 * numRods);
     for (std::size_t i = 0; i < 2 * numRods; ++i) {
         std::copy_n(rodEnds.begin() + 3 * std::ptrdiff_t(i), 3, points + 4 * i);
         points[4 * i + 3] = rodRadius;
     }
-    auto *const indices = createBuffer<unsigned>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT,
-                                                 sizeof(unsigned), numRods);
+    auto *const indices = createBuffer<unsigned>(_device.get(), geometry, RTC_BUFFER_TYPE_INDEX,
+                                                 RTC_FORMAT_UINT, sizeof(unsigned), numRods);
     for (std::size_t i = 0; i < numRods; ++i) {
         indices[i] = unsigned(2 * i);
     }

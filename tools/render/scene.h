@@ -20,7 +20,7 @@ public:
     Scene();
     ~Scene();
 
-    /// \brief Replaces everything.
+    /// \brief Replaces everything.  Throws std::bad_alloc, or std::runtime_error with an error of Embree.
     ///
     /// \param surface    null for none; must live unchanged as long as rays are traced
     /// \param rodEnds    x y z of two points for each rod
@@ -44,7 +44,7 @@ public:
     void FindOccluded(Vec3 origin, Vec3 const (&directions)[kNumRays],
                       bool const (&isWanted)[kNumRays], bool (&isOccluded)[kNumRays]) const;
 
-    /// Least and largest coordinates.
+    /// Least and largest coordinates; 0 where there is nothing.
     Vec3 GetLow() const { return _low; }
     Vec3 GetHigh() const { return _high; }
     Surface const *GetSurface() const { return _surface; }

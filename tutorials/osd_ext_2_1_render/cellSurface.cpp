@@ -171,6 +171,9 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
     _baseFaces.resize(faces.size());
     std::transform(faces.begin(), faces.end(), _baseFaces.begin(),
                    [&](int face) { return base.GetFaceBaseFace(face); });
+    if (faces.empty()) {
+        return;
+    }
     FarExt::CallStatus status;
     _polygons = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), {}, {}, &status);
     if (!_polygons) {

@@ -35,8 +35,8 @@ public:
     void Update(std::vector<float> const &positions, Camera const &camera, int height,
                 double pixelError);
 
-    /// The polygons, and the normals of the surface at their vertices.
-    Surface const &GetSurface() const { return *_surface; }
+    /// The polygons, and the normals of the surface at their vertices.  Null if all faces are holes.
+    Surface const *GetSurface() const { return _surface.get(); }
     /// The face of the control mesh that each polygon lies in.
     std::vector<int> const &GetBaseFaces() const { return _baseFaces; }
 

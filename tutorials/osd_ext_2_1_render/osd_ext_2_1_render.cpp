@@ -193,12 +193,17 @@ PanelSettings parsePanel(std::string const &text, PanelSettings settings) {
     return settings;
 }
 
+struct Bounds {
+    Vec3 low;
+    Vec3 high;
+};
+
 // Least and largest coordinates.
-std::pair<Vec3, Vec3> findBounds(std::vector<float> const &positions) {
-    Vec3 low = GetVec3(positions.data(), 0);
+Bounds findBounds(std::vector<float> const &points) {
+    Vec3 low = GetVec3(points.data(), 0);
     Vec3 high = low;
-    for (int i = 1; i < int(positions.size() / 3); ++i) {
-        Vec3 const point = GetVec3(positions.data(), i);
+    for (int i = 1; i < int(points.size() / 3); ++i) {
+        Vec3 const point = GetVec3(points.data(), i);
         low = {std::min(low.x, point.x), std::min(low.y, point.y), std::min(low.z, point.z)};
         high = {std::max(high.x, point.x), std::max(high.y, point.y), std::max(high.z, point.z)};
     }
@@ -206,9 +211,9 @@ std::pair<Vec3, Vec3> findBounds(std::vector<float> const &positions) {
 }
 
 // The control positions at a time between 0 and 1, when they are as at 0 again: twisted and bent,
-// the more so the higher a vertex lies.
-std::vector<float> twist(std::vector<float> const &positions, float time) {
-    auto const [low, high] = findBounds(positions);
+// the more so the higher a vertex lies in the bounds of what is shown.
+std::vector<float> twist(std::vector<float> const &positions, Bounds const &bounds, float time) {
+    auto const &[low, high] = bounds;
     float const height = std::max(high.y - low.y, 1e-20f);
     float const wave = std::sin(6.2831853f * time);
     std::vector<float> twisted;
@@ -231,8 +236,9 @@ double getMilliseconds(std::chrono::steady_clock::time_point start) {
 class Panel {
 public:
     // Throws FileError.
-    Panel(Mesh const &mesh, PanelSettings const &settings, std::string const &input)
-        : _settings(settings) {
+    Panel(Mesh const &mesh, Bounds const &bounds, PanelSettings const &settings,
+          std::string const &input)
+        : _settings(settings), _rodRadius(0.005f * Length(bounds.high - bounds.low)) {
         auto const start = std::chrono::steady_clock::now();
         Sdc::Options sdcOptions;
         sdcOptions.SetVtxBoundaryInterpolation(settings.boundary);
@@ -245,8 +251,6 @@ public:
         if (!_refiner) {
             throw FileError(input, status.GetErrorMessage());
         }
-        auto const [low, high] = findBounds(mesh.positions);
-        _rodRadius = 0.005f * Length(high - low);
         if (settings.isAdaptive) {
             // Surfaces begin with the faces of level 0 or, behind a first step, of level 1.
             FarExt::TopologyRefiner::UniformOptions refineOptions(
@@ -289,7 +293,7 @@ public:
         } else {
             _surface->SetPositions(positions.data());
         }
-        Surface const *const surface = _cells ? &_cells->GetSurface() : _surface.get();
+        Surface const *const surface = _cells ? _cells->GetSurface() : _surface.get();
         _scene.Build(_settings.hidesSurface ? nullptr : surface,
                      _settings.hasCage ? findRods(positions) : std::vector<float>(), _rodRadius);
     }
@@ -349,6 +353,7 @@ private:
     }
 
     PanelSettings const _settings;
+    float const _rodRadius;
     std::unique_ptr<FarExt::TopologyRefiner> _refiner;
     std::unique_ptr<Far::LimitStencilTable const> _table; // null for level 0
     std::unique_ptr<Osd::CpuVertexBuffer> _controlBuffer;
@@ -357,7 +362,6 @@ private:
     std::unique_ptr<Osd::CpuVertexBuffer> _dvBuffer;
     std::unique_ptr<Surface> _surface;
     std::unique_ptr<CellSurface> _cells; // in place of the surface, with --adaptive
-    float _rodRadius = 0;
     Scene _scene;
 };
 
@@ -374,28 +378,30 @@ std::string findFramePath(Arguments const &arguments, int frame) {
 }
 
 void run(Arguments const &arguments) {
-    Mesh mesh = ReadMesh(arguments.input);
-    ScaleToUnitSize(&mesh.positions);
+    Mesh mesh = ReadInput(kName, arguments.input);
+    std::vector<int> const shown = FindShownVertices(mesh);
+    ScaleToUnitSize(shown, &mesh.positions);
+    Bounds const bounds = findBounds(GatherPositions(shown, mesh.positions));
     std::vector<std::unique_ptr<Panel>> panels;
     for (PanelSettings const &settings : arguments.panels) {
-        panels.push_back(std::make_unique<Panel>(mesh, settings, arguments.input));
+        panels.push_back(std::make_unique<Panel>(mesh, bounds, settings, arguments.input));
     }
 
     int const numFrames = std::max(arguments.numFrames, 1);
     bool const isTurntable = arguments.animation == "turntable";
     auto const getTime = [&](int frame) { return float(frame) / float(numFrames); };
     auto const getPositions = [&](int frame) {
-        return isTurntable || frame == 0 ? mesh.positions : twist(mesh.positions, getTime(frame));
+        return isTurntable || frame == 0 ? mesh.positions
+                                         : twist(mesh.positions, bounds, getTime(frame));
     };
-    auto const [low, high] = findBounds(mesh.positions);
-    Vec3 const center = 0.5f * (low + high);
+    Vec3 const center = 0.5f * (bounds.low + bounds.high);
 
-    // One camera that sees the control mesh whole in every frame.
+    // One camera that sees what is shown of the control mesh whole in every frame.
     std::vector<float> points;
     for (int frame = 0; frame < numFrames; ++frame) {
         std::vector<float> const positions = getPositions(frame);
         float const degrees = isTurntable ? -360 * getTime(frame) : 0;
-        for (int i = 0; i < mesh.GetNumVertices(); ++i) {
+        for (int const i : shown) {
             Vec3 const point = RotateAroundVertical(GetVec3(positions.data(), i), degrees, center);
             points.insert(points.end(), {point.x, point.y, point.z});
         }

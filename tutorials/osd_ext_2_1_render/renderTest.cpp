@@ -273,6 +273,52 @@ TEST_F(Render, TheSizeOfTheMeshDoesNotMatter) {
     }
 }
 
+TEST_F(Render, ShowsWhatFacesHave) {
+    std::string const ring = getContent(MESHES_DIR "/ring.obj");
+    int const numVertices = ReadMesh(MESHES_DIR "/ring.obj").GetNumVertices();
+    int const numFaces = ReadMesh(MESHES_DIR "/ring.obj").GetNumFaces();
+    std::string const far = "\nv 200 -9 0\nv 1e30 0 0\nv 0 1e30 -1e30\n";
+    std::string hole = far + "f";
+    for (int i = 1; i <= 3; ++i) {
+        hole += " " + std::to_string(numVertices + i);
+    }
+    hole += "\nt hole 1/0/0 " + std::to_string(numFaces) + "\n";
+    std::string const output = getPath("out.png");
+    std::string const last = getPath("out_0003.png");
+    for (std::string const &options :
+         {"-l 2 --size 60x45 --samples 4 --wireframe --frames 3 --animate twist -o \"" + output,
+          "--adaptive --boundary edge-only --size 60x45 --samples 4 --frames 3 -o \"" + output}) {
+        std::vector<std::vector<std::uint8_t>> pictures;
+        for (std::string const &more : {std::string(), far, hole}) {
+            ASSERT_EQ(run("\"" + makeFile("more.obj", ring + more) + "\" " + options + "\""), 0)
+                << getContent(getPath("stderr"));
+            pictures.push_back(readPng(last).pixels);
+        }
+        EXPECT_GT(std::set<std::uint8_t>(pictures[0].begin(), pictures[0].end()).size(), 9u);
+        EXPECT_EQ(pictures[1], pictures[0]) << options;
+        EXPECT_EQ(pictures[2], pictures[0]) << options;
+    }
+}
+
+TEST_F(Render, DrawsNothingOfHoles) {
+    std::string const mesh =
+        makeFile("holes.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt hole 1/0/0 0\n");
+    std::string const output = getPath("out.png");
+    for (char const *const settings :
+         {"level=0", "level=2,zebra", "adaptive,boundary=edge-only", "hide-surface"}) {
+        ASSERT_EQ(
+            run("\"" + mesh + "\" --size 20x15 --panel " + settings + " -o \"" + output + "\""), 0)
+            << getContent(getPath("stderr"));
+        Image const image = readPng(output);
+        std::set<std::uint8_t> const colors(image.pixels.begin(), image.pixels.end());
+        EXPECT_EQ(colors.size(), 1u) << settings;
+        EXPECT_GT(*colors.begin(), 200) << settings;
+    }
+    ASSERT_EQ(run("\"" + mesh + "\" --size 20x15 --cage -o \"" + output + "\""), 0);
+    Image const cage = readPng(output);
+    EXPECT_GT(std::set<std::uint8_t>(cage.pixels.begin(), cage.pixels.end()).size(), 9u);
+}
+
 TEST_F(Render, RefusesBadInput) {
     std::string const output = getPath("out.png");
     EXPECT_EQ(run("no.obj -o \"" + output + "\""), 1);

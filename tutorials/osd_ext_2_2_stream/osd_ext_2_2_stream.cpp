@@ -157,8 +157,10 @@ std::uint8_t toByte(float light) {
 }
 
 void run(Arguments const &arguments) {
-    Mesh mesh = ReadMesh(arguments.input);
-    ScaleToUnitSize(&mesh.positions);
+    Mesh mesh = ReadInput(kName, arguments.input);
+    std::vector<int> const shown = FindShownVertices(mesh);
+    ScaleToUnitSize(shown, &mesh.positions);
+    std::vector<float> const points = GatherPositions(shown, mesh.positions);
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     FarExt::CallStatus status;
@@ -169,8 +171,7 @@ void run(Arguments const &arguments) {
         throw FileError(arguments.input, status.GetErrorMessage());
     }
     FarExt::TopologyLevel const &base = refiner->GetLevel(0);
-    Camera const camera(arguments.view, mesh.positions,
-                        float(arguments.width) / float(arguments.height));
+    Camera const camera(arguments.view, points, float(arguments.width) / float(arguments.height));
 
     // An edge becomes about two to the power of its level segments; a face is as fine as its edges.
     auto const getEdgeLevel = [&](int edge) {
@@ -199,9 +200,9 @@ void run(Arguments const &arguments) {
                      kName, arguments.megabytes);
     });
 
-    float ground = mesh.positions[1];
-    for (std::size_t i = 1; i < mesh.positions.size(); i += 3) {
-        ground = std::min(ground, mesh.positions[i]);
+    float ground = points[1];
+    for (std::size_t i = 1; i < points.size(); i += 3) {
+        ground = std::min(ground, points[i]);
     }
     PathTracer const tracer(scene, ground);
     Image image(arguments.width, arguments.height);

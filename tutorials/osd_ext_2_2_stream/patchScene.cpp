@@ -2,8 +2,7 @@
 #include "patchScene.h"
 
 #include "far_ext/executor.h"
-
-#include <embree3/rtcore.h>
+#include "tools/render/embreeError.h"
 
 #include <algorithm>
 #include <atomic>
@@ -11,7 +10,6 @@
 #include <limits>
 #include <list>
 #include <mutex>
-#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -149,9 +147,7 @@ PatchScene::Patches::Patches(BfrExt::PatchStream<float> const &stream,
     rtcAttachGeometry(_scene.get(), geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(_scene.get());
-    if (rtcGetDeviceError(_device.get()) != RTC_ERROR_NONE) {
-        throw std::bad_alloc();
-    }
+    ThrowEmbreeError(_device.get());
 }
 
 bool PatchScene::Patches::monitor(void *patches, ssize_t bytes, bool /*post*/) {
@@ -289,9 +285,7 @@ SharedScene PatchScene::Patches::make(unsigned primitive, std::int64_t *numTrian
     int const face = _faces[primitive];
     FarExt::CallStatus status;
     if (!_stream.Run(_positions.data(), 3, face, face + 1, sink, &status)) {
-        if (status.IsOk()) {
-            throw std::bad_alloc();
-        }
+        ThrowEmbreeError(_device.get());
         throw std::runtime_error(status.GetErrorMessage());
     }
     rtcCommitScene(scene.get());

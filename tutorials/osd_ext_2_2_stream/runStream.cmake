@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Draws MESH twice with PROGRAM: with all patches kept, and with hardly any, which is told.  The picture
-# is the same.  Bad usage is refused, with a message that names the option.
+# is the same.  Vertices that no face shows leave it as it is.  Bad usage is refused, with a message that
+# names the option.
 function(draw memory result)
   set(file ${FOLDER}/stream${memory}.png)
   file(REMOVE ${file})
@@ -44,6 +45,27 @@ if(NOT numWarnings EQUAL 1)
 endif()
 if(NOT all STREQUAL few)
   message(FATAL_ERROR "the pictures differ")
+endif()
+
+# The picture of MESH with TEXT behind it.
+function(drawWith text result)
+  set(file ${FOLDER}/streamShown)
+  file(READ ${MESH} content)
+  file(WRITE ${file}.obj "${content}${text}")
+  file(REMOVE ${file}.png)
+  execute_process(COMMAND ${PROGRAM} ${file}.obj --output ${file}.png --width 40 --height 30 --samples 1
+    OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  file(SHA256 ${file}.png hash)
+  set(${result} ${hash} PARENT_SCOPE)
+endfunction()
+
+drawWith("" alone)
+drawWith("v 200 -9 0\nv 1e30 0 0\nv 0 1e30 0\nv 0 2 0\n" vertices)
+file(STRINGS ${MESH} faces REGEX "^f ")
+list(LENGTH faces numFaces)
+drawWith("v 200 -9 0\nv 1e30 0 0\nv 0 1e30 0\nf -1 -2 -3\nt hole 1/0/0 ${numFaces}\n" hole)
+if(NOT vertices STREQUAL alone OR NOT hole STREQUAL alone)
+  message(FATAL_ERROR "vertices that no face shows change the picture")
 endif()
 
 function(refuse cause file)

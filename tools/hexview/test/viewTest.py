@@ -87,6 +87,7 @@ def test_pictures(program, meshes):
                 "base-faces")
     expect(len(hues_of(cube, 500)) >= 3, "three sides of a cube have three colours")
     test_cells(program, meshes)
+    test_what_is_shown(program, os.path.join(meshes, "cube.obj"))
     test_frames(program, os.path.join(meshes, "cube.obj"))
     test_sizes(program, os.path.join(meshes, "cube.obj"))
     for options, cause in ((["--level", "99"], "99"), (["--mask", "none"], "none"),
@@ -139,6 +140,28 @@ def test_cells(program, meshes):
         run = subprocess.run([program, torus, *options], capture_output=True, text=True)
         expect(run.returncode == code and cause in run.stderr and not os.path.exists("no.png"),
                f"{options} is refused")
+
+
+def test_what_is_shown(program, cube):
+    """Vertices without faces and those of holes alone have no place in the picture."""
+    far = "v 200 0 0\nv 1e30 0 0\nv 0 1e30 0\nv 1e30 2 9\n"
+    hole = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt hole 1/0/0 0\n"
+    with tempfile.TemporaryDirectory() as folder:
+        mesh = os.path.join(folder, "mesh.obj")
+
+        def draw_text(text, *options):
+            with open(mesh, "w") as file:
+                file.write(text)
+            return draw(program, mesh, *options)
+
+        with open(cube) as file:
+            text = file.read()
+        for options in (["-l", "3"], ["--adaptive", "--frames", "2"]):
+            alone, beside = (draw_text(text + more, *options)
+                             for more in ("", far + "f 10 11 12\nt hole 1/0/0 6\n"))
+            expect(share_of_white(alone) < 0.9 and share_of_different(alone, beside, 1) == 0,
+                   "vertices that no face shows leave the picture as it is")
+            expect(share_of_white(draw_text(hole, *options)) == 1, "holes alone show nothing")
 
 
 def test_frames(program, cube):

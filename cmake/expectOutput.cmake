@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# Runs PROGRAM, which must succeed and print EXPECTED.  (CTest's PASS_REGULAR_EXPRESSION would leave
-# the exit status out.)
+# Runs PROGRAM, a list with its arguments, which must succeed and print EXPECTED.  (CTest's
+# PASS_REGULAR_EXPRESSION would leave the exit status out.)
 execute_process(COMMAND ${PROGRAM} OUTPUT_VARIABLE output ERROR_VARIABLE output
   RESULT_VARIABLE status)
 message("${output}")
