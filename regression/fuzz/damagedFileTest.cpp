@@ -38,17 +38,22 @@ TEST(DamagedFile, BytesMakeFilesOfAllKinds) {
             ++count.numRead;
             count.numWithTags += !mesh.tags.creaseVertices.empty();
             count.numWithChannels += !mesh.channels.empty();
-            count.numWithProperties +=
+            bool const hasProperties =
                 !mesh.vertexProperties.empty() || !mesh.faceProperties.empty();
+            count.numWithProperties += hasProperties;
         } catch (Tools::FileError const &error) {
             count.refusals.insert(error.what());
         }
     }
+    ASSERT_EQ(counts.size(), 3u);
     for (auto const &[name, count] : counts) {
-        std::cout << name << ": " << count.numRead << " read, " << count.numWithTags << " tags, "
-                  << count.numWithChannels << " channels, " << count.numWithProperties
-                  << " properties, " << count.refusals.size() << " refusals\n";
+        SCOPED_TRACE(name);
+        EXPECT_GT(count.numRead, 100);
+        EXPECT_GT(count.numWithProperties, 50);
+        EXPECT_GT(count.refusals.size(), 80u);
     }
+    EXPECT_GT(counts["a.obj"].numWithTags, 30);
+    EXPECT_GT(counts["a.obj"].numWithChannels, 50);
 }
 
 } // namespace OpenSubdivHex::Regression
