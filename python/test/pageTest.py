@@ -4,13 +4,10 @@
 import pathlib
 import re
 
-import pytest
-
 PAGE = pathlib.Path(__file__).parents[2] / "docs" / "PYTHON.md"
 
 
 def test_examples(tmp_path, monkeypatch):
-    pytest.importorskip("scipy")
     monkeypatch.chdir(tmp_path)
     text = PAGE.read_text()
     examples = list(re.finditer(r"^```python\n(.*?)^```$", text, re.S | re.M))

@@ -7,8 +7,7 @@ import numpy as np
 import opensubdivhex as osh
 import pytest
 from meshes import CUBE_FACES, CUBE_POSITIONS, make_grid, make_torus
-
-sparse = pytest.importorskip("scipy.sparse")
+from scipy import sparse
 
 GRID_POSITIONS, GRID_FACES = make_grid(4, 3)
 

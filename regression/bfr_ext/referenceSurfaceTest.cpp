@@ -7,6 +7,7 @@
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/far_ext/taggedMatch.h"
 #include "regression/reference/baseRegions.h"
+#include "regression/reference/largestValue.h"
 #include "regression/reference/limitReference.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -216,7 +217,7 @@ double getDistanceOfSecond(std::array<Vector3, 3> const &found,
     double distance = 0;
     double length = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
-        distance = std::max(distance, GetDistance(found[i], expected[2 + i]));
+        distance = GetLarger(distance, GetDistance(found[i], expected[2 + i]));
         length = std::max(length, GetLength(expected[2 + i]));
     }
     return distance / length;
@@ -297,13 +298,13 @@ TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
             if (GetParam() == ReferenceMask::Smooth) {
                 double const distance = getDistanceOfSecond(
                     surfaces.EvaluateSecond(place.baseFace, place.uv.data()), expected);
-                largestOfSecond = std::max(largestOfSecond, distance);
+                largestOfSecond = GetLarger(largestOfSecond, distance);
                 sumOfSecond += distance;
             }
             for (auto const &[found, wanted] :
                  {std::pair(point.du, expected[0]), std::pair(point.dv, expected[1])}) {
                 double const distance = GetDistance(found, wanted) / GetLength(wanted);
-                largest = std::max(largest, distance);
+                largest = GetLarger(largest, distance);
                 sum += distance / 2;
                 ASSERT_LE(distance, 0.02)
                     << "face " << place.baseFace << " at " << place.uv[0] << ", " << place.uv[1];

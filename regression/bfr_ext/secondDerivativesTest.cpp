@@ -5,6 +5,7 @@
 
 #include "bfr_ext/surfaceFactory.h"
 #include "regression/far_ext/referenceMatch.h"
+#include "regression/reference/largestValue.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapes.h"
 
@@ -188,7 +189,7 @@ TEST(SecondDerivatives, AreTheDifferencesOfFirstOnes) {
                     for (std::size_t i = 0; i < 2; ++i) {
                         Vector3 const difference =
                             Scale(Subtract(ends[1][1 + i], ends[0][1 + i]), 0.5 / kStep);
-                        distance = std::max(distance, GetDistance(all[3 + i + k], difference));
+                        distance = GetLarger(distance, GetDistance(all[3 + i + k], difference));
                         size = std::max(size, GetLength(difference));
                     }
                 }

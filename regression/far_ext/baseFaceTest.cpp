@@ -383,7 +383,8 @@ TEST(BaseFace, CoordsOfAVertexAreTheSameBits) {
 }
 
 TEST(BaseFace, OtherStepsCountToTheFirst) {
-    for (Shape const &shape : GetShapes()) {
+    for (Shape shape : GetShapes()) {
+        shape.fvarChannels.clear(); // not all steps take them
         for (int kind = 0; kind < 5; ++kind) {
             SCOPED_TRACE(testing::Message() << shape.name << ", kind " << kind);
             FarExt::HexSchemeOptions options;
@@ -395,9 +396,7 @@ TEST(BaseFace, OtherStepsCountToTheFirst) {
                                             : FarExt::FirstStep::Same;
             auto const refiner =
                 FarExt::TopologyRefinerFactory::Create(*CreateFarRefiner(shape), {options});
-            if (!refiner) {
-                continue;
-            }
+            ASSERT_TRUE(refiner);
             int const maxLevel = GetTestLevel(shape, 3, 4000);
             if (kind == 3) {
                 TopologyRefiner::CoplanarOptions coplanar(maxLevel);

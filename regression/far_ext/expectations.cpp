@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "expectations.h"
 
+#include "regression/reference/largestValue.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -194,8 +196,7 @@ void ExpectLevelsEqual(std::vector<ReferenceValues> const &actual,
         ASSERT_EQ(actual[level].rows(), expected[level].rows());
         for (Eigen::Index i = 0; i < expected[level].rows(); ++i) {
             if (!std::isnan(expected[level](i, 0))) {
-                ASSERT_LE((actual[level].row(i) - expected[level].row(i)).cwiseAbs().maxCoeff(),
-                          allowed)
+                ASSERT_LE(GetLargestValue(actual[level].row(i) - expected[level].row(i)), allowed)
                     << "level " << level << ", row " << i;
             }
         }
@@ -235,7 +236,7 @@ void ExpectTable(TopologyRefiner const &refiner, std::vector<ReferenceValues> co
                 sum += double(table->GetWeights()[offset + k]) * sources.row(index);
             }
             if (!std::isnan(levels[level](row, 0))) {
-                ASSERT_LE((sum - levels[level].row(row)).cwiseAbs().maxCoeff(), allowed)
+                ASSERT_LE(GetLargestValue(sum - levels[level].row(row)), allowed)
                     << "level " << level << ", row " << row;
             }
         }

@@ -6,6 +6,7 @@
 
 #include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/threads.h"
+#include "regression/reference/largestValue.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 
@@ -181,9 +182,9 @@ TEST(Limit, WeightsOfPointsSumToOneAndOfDerivativesToZero) {
         for (int level : {0, 1}) {
             LimitValues const values =
                 evaluateAll(*refiner, level, ReferenceValues::Ones(shape.GetNumVertices(), 1));
-            ASSERT_LT((values.points.array() - 1).abs().maxCoeff(), 1e-12);
-            ASSERT_LT(values.du.cwiseAbs().maxCoeff(), 1e-10);
-            ASSERT_LT(values.dv.cwiseAbs().maxCoeff(), 1e-10);
+            ASSERT_LT(GetLargestValue(values.points.array() - 1), 1e-12);
+            ASSERT_LT(GetLargestValue(values.du), 1e-10);
+            ASSERT_LT(GetLargestValue(values.dv), 1e-10);
         }
     });
 }
@@ -470,7 +471,7 @@ TEST(Limit, OsdEvaluatesPointsAndDerivatives) {
                 Eigen::Map<Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(
                     buffers[k]->BindCpuBuffer(), numStencils, 3)
                     .cast<double>();
-            EXPECT_LT((actual - *values[k]).cwiseAbs().maxCoeff(), 1e-5 * GetSize(positions));
+            EXPECT_LT(GetLargestValue(actual - *values[k]), 1e-5 * GetSize(positions));
         }
     }
 }
@@ -593,9 +594,8 @@ TEST(Limit, IsOfHexagonalStepsAlone) {
         options.level = 2;
         LimitValues const fromSecond = evaluate<double>(*refiner, options, positions);
         int const numVertices = refiner->GetLevel(1).GetNumVertices();
-        EXPECT_LT((fromFirst.points.topRows(numVertices) - fromSecond.points.topRows(numVertices))
-                      .cwiseAbs()
-                      .maxCoeff(),
+        EXPECT_LT(GetLargestValue(fromFirst.points.topRows(numVertices) -
+                                  fromSecond.points.topRows(numVertices)),
                   1e-12);
     }
 }

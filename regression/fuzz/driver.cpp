@@ -5,6 +5,7 @@
 #include "apart.h"
 
 #include <atomic>
+#include <charconv>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -49,11 +50,14 @@ Bytes makeBytes(std::uint64_t seed) {
 
 void run(Bytes const &bytes) { LLVMFuzzerTestOneInput(bytes.data(), bytes.size()); }
 
-/// Ends the process that runs the cases.
+double getSecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Runs \p numCases cases, or for \p numSeconds where that is 0, and ends the process.
 [[noreturn]] void runCases(Progress &progress, std::uint64_t numCases, double numSeconds) {
     auto const start = Clock::now();
-    while (progress.numCases < numCases &&
-           std::chrono::duration<double>(Clock::now() - start).count() < numSeconds) {
+    while (numCases > 0 ? progress.numCases < numCases : getSecondsSince(start) < numSeconds) {
         run(makeBytes(progress.seed));
         ++progress.numCases;
         ++progress.seed;
@@ -72,7 +76,7 @@ bool waitFor(pid_t child, Progress const &progress) {
         if (progress.numCases != numCases || progress.isDone) {
             numCases = progress.numCases;
             since = Clock::now();
-        } else if (std::chrono::duration<double>(Clock::now() - since).count() > kLongestCase) {
+        } else if (getSecondsSince(since) > kLongestCase) {
             std::cerr << "fuzz: a case takes longer than " << kLongestCase << " seconds\n";
             kill(child, SIGKILL);
             waitpid(child, &status, 0);
@@ -88,6 +92,7 @@ void report(Bytes const &bytes) {
     }
 }
 
+/// As runCases() in a process of its own.
 int fuzz(std::uint64_t firstSeed, std::uint64_t numCases, double numSeconds) {
     void *const shared =
         mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -102,9 +107,10 @@ int fuzz(std::uint64_t firstSeed, std::uint64_t numCases, double numSeconds) {
     if (child == 0) {
         runCases(progress, numCases, numSeconds);
     }
-    bool const isGood = child > 0 && waitFor(child, progress);
-    std::cout << "fuzz: seeds from " << firstSeed << " on, " << progress.numCases << " cases, "
-              << std::chrono::duration<double>(Clock::now() - start).count() << " seconds\n";
+    // Done, too: a case may end the process as if all were well.
+    bool const isGood = child > 0 && waitFor(child, progress) && progress.isDone;
+    std::cout << "fuzz: " << progress.numCases << " cases, seeds from " << firstSeed << " on, "
+              << getSecondsSince(start) << " seconds" << std::endl;
     if (isGood) {
         return 0;
     }
@@ -116,6 +122,12 @@ int fuzz(std::uint64_t firstSeed, std::uint64_t numCases, double numSeconds) {
               << " --cases 1\n";
     report(makeBytes(progress.seed));
     return 1;
+}
+
+/// \return  whether \p text is a number above 0
+bool parse(std::string const &text, std::uint64_t *number) {
+    auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), *number);
+    return error == std::errc() && end == text.data() + text.size() && *number > 0;
 }
 
 int runFile(std::string const &name) {
@@ -138,28 +150,27 @@ int runFile(std::string const &name) {
 
 int main(int numArguments, char **arguments) {
     std::uint64_t seed = 1;
-    std::uint64_t numCases = UINT64_MAX;
-    double numSeconds = 0;
-    bool isLimited = false;
-    for (int i = 1; i < numArguments; ++i) {
+    std::uint64_t numCases = 0;
+    std::uint64_t numSeconds = 0;
+    bool isValid = numArguments > 1;
+    for (int i = 1; isValid && i < numArguments; ++i) {
         std::string const option = arguments[i];
-        bool const hasValue = i + 1 < numArguments;
-        if (option == "--seed" && hasValue) {
-            seed = std::strtoull(arguments[++i], nullptr, 10);
-        } else if (option == "--cases" && hasValue) {
-            numCases = std::strtoull(arguments[++i], nullptr, 10);
-        } else if (option == "--seconds" && hasValue) {
-            numSeconds = std::strtod(arguments[++i], nullptr);
-            isLimited = true;
-        } else if (option[0] != '-') {
+        std::uint64_t *const number = option == "--seed"      ? &seed
+                                      : option == "--cases"   ? &numCases
+                                      : option == "--seconds" ? &numSeconds
+                                                              : nullptr;
+        if (number) {
+            isValid = ++i < numArguments && parse(arguments[i], number);
+        } else if (numArguments == 2 && option[0] != '-') {
             return runFile(option);
         } else {
-            std::cerr << "usage: " << arguments[0]
-                      << " [--seed FIRST] [--cases NUMBER] [--seconds NUMBER] | FILE\n";
-            return 2;
+            isValid = false;
         }
     }
-    constexpr double kEndless = 1e9;
-    bool const isEndless = !isLimited && numCases != UINT64_MAX;
-    return fuzz(seed, numCases, isEndless ? kEndless : isLimited ? numSeconds : 20);
+    if (!isValid || (numCases == 0) == (numSeconds == 0)) {
+        std::cerr << "usage: " << arguments[0]
+                  << " [--seed FIRST] --cases NUMBER | [--seed FIRST] --seconds NUMBER | FILE\n";
+        return 2;
+    }
+    return fuzz(seed, numCases, numSeconds);
 }

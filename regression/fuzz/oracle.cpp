@@ -4,13 +4,13 @@
 #include "regression/far_ext/regionMatch.h"
 #include "regression/far_ext/taggedMatch.h"
 #include "regression/osd_ext/drawnFaces.h"
+#include "regression/reference/largestValue.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/far/error.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace OpenSubdivHex::Regression {
 
@@ -156,8 +156,7 @@ std::vector<OracleLevels::Values> interpolate(OracleCase const &oracleCase,
 } // namespace
 
 double GetDifference(Eigen::RowVectorXd const &a, Eigen::RowVectorXd const &b) {
-    double const difference = (a - b).cwiseAbs().maxCoeff();
-    return std::isfinite(difference) ? difference : std::numeric_limits<double>::infinity();
+    return GetLargestValue(a - b);
 }
 
 void CheckOracleCase(OracleCase const &oracleCase) {

@@ -87,11 +87,10 @@ TEST(PolygonIndices, OtherSteps) {
                                                                   : FarExt::SchemeType::Hexagonal;
             Shape holed = shape;
             holed.holeFaces = {0, shape.GetNumFaces() / 2};
+            holed.fvarChannels.clear(); // not all steps take them
             auto const refiner =
                 FarExt::TopologyRefinerFactory::Create(*CreateFarRefiner(holed), factoryOptions);
-            if (!refiner) {
-                continue;
-            }
+            ASSERT_TRUE(refiner) << shape.name << ", kind " << kind;
             int const maxLevel = GetTestLevel(shape, 2, 4000);
             ASSERT_TRUE(kind == 0 ? refiner->RefineCoplanar(shape.positions.data(), maxLevel)
                                   : refiner->RefineUniform(maxLevel));

@@ -2,13 +2,17 @@
 #include "shapes.h"
 #include "flatShapes.h"
 #include "meshOperations.h"
+#include "objShape.h"
 #include "shapeDescriptor.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
+#include <random>
 #include <set>
 #include <utility>
 
@@ -214,36 +218,62 @@ TEST(Shapes, TestLevelKeepsToItsLimit) {
     EXPECT_EQ(GetTestLevel(GetShape("polygon3"), 3, 62 * divisor), 1);
 }
 
-TEST(Shapes, RealMeshes) {
-    bool found = false;
+TEST(ObjShape, HasTheFacesOfAllObjectsAndTheirTexture) {
+    std::string const path = testing::TempDir() + "OpenSubdivHex.objShape." +
+                             std::to_string(std::random_device()()) + ".obj";
+    std::ofstream(path) << "o quad\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 .5\n"
+                           "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 .25\nf 1/1 2/2 3/3 4/4\n"
+                           "o others\nv 2 0 0\nv 3 .5 0\nv 2 1 0\n"
+                           "f 3/1 2/4 5/2\nf 5/1 6/2 7/3 3/4 2/2\n";
+    Shape const shape = LoadObjShape("of a file", path);
+    std::filesystem::remove(path);
+    EXPECT_EQ(shape.name, "of a file");
+    EXPECT_EQ(shape.positions, (std::vector<double>{0,  0, 0, 1, 0, 0,  1, 1, 0, 0, 1,
+                                                    .5, 2, 0, 0, 3, .5, 0, 2, 1, 0}));
+    EXPECT_EQ(shape.faceSizes, (std::vector<int>{4, 3, 5}));
+    EXPECT_EQ(shape.faceVertices, (std::vector<int>{0, 1, 2, 3, 2, 1, 4, 4, 5, 6, 2, 1}));
+    ASSERT_EQ(shape.fvarChannels.size(), 1u);
+    EXPECT_EQ(shape.fvarChannels[0].values, (std::vector<double>{0, 0, 1, 0, 1, 1, 0, .25}));
+    EXPECT_EQ(shape.fvarChannels[0].valueIndices,
+              (std::vector<int>{0, 1, 2, 3, 0, 3, 1, 0, 1, 2, 3, 1}));
+    EXPECT_THROW(LoadObjShape("of no file", path), std::runtime_error);
+}
+
+// A mesh of the tutorials, and the real ones where their folder is there.
+TEST(ObjShape, FilesHaveTheirCounts) {
+    struct Expected {
+        int numVertices;
+        int numFaces;
+        int numBoundaryEdges;
+        std::size_t numUvs;
+        bool isManifold;
+    };
+    // 38 vertices of the teapot have two fans or more, 47 fans more than one each.
+    std::map<std::string, Expected> const expected = {
+        {"lantern", {346, 354, 0, 0, true}},
+        {"spot", {2930, 5856, 0, 3225, true}},
+        {"suzanne", {507, 500, 42, 0, true}},
+        {"teapot", {3644, 6320, 1036, 0, false}},
+        {"teapotSplit", {3644 + 47, 6320, 1036, 0, true}}};
+    std::vector<Shape> shapes = {LoadObjShape("lantern", LANTERN_FILE)};
     for (Shape const &shape : GetShapes()) {
-        found = found || shape.name == "spot";
+        if (expected.count(shape.name) > 0) {
+            EXPECT_EQ(shape.closed, expected.at(shape.name).numBoundaryEdges == 0) << shape.name;
+            shapes.push_back(shape);
+        }
     }
-    if (!found) {
-        GTEST_SKIP() << "the folder of real meshes is not there";
+    for (Shape const &shape : shapes) {
+        SCOPED_TRACE(shape.name);
+        Expected const &counts = expected.at(shape.name);
+        EXPECT_EQ(shape.GetNumVertices(), counts.numVertices);
+        EXPECT_EQ(shape.GetNumFaces(), counts.numFaces);
+        EXPECT_EQ(CountBoundaryEdges(shape), counts.numBoundaryEdges);
+        EXPECT_EQ(IsManifold(shape), counts.isManifold);
+        ASSERT_EQ(shape.fvarChannels.size(), counts.numUvs > 0 ? 1u : 0u);
+        if (counts.numUvs > 0) {
+            EXPECT_EQ(shape.fvarChannels[0].values.size(), 2 * counts.numUvs);
+        }
     }
-    Shape const &spot = GetShape("spot");
-    EXPECT_EQ(spot.GetNumVertices(), 2930);
-    EXPECT_EQ(spot.GetNumFaces(), 5856);
-    EXPECT_TRUE(spot.closed);
-    ASSERT_EQ(spot.fvarChannels.size(), 1u);
-    EXPECT_EQ(spot.fvarChannels[0].values.size(), 2u * 3225);
-
-    Shape const &suzanne = GetShape("suzanne");
-    EXPECT_EQ(suzanne.GetNumVertices(), 507);
-    EXPECT_EQ(suzanne.GetNumFaces(), 500);
-    EXPECT_FALSE(suzanne.closed);
-    EXPECT_EQ(*std::max_element(suzanne.faceSizes.begin(), suzanne.faceSizes.end()), 4);
-
-    Shape const &teapot = GetShape("teapot");
-    EXPECT_EQ(teapot.GetNumVertices(), 3644);
-    EXPECT_EQ(CountBoundaryEdges(teapot), 1036);
-    EXPECT_FALSE(teapot.manifold);
-    // 38 of its vertices have two fans or more, 47 fans more than one each.
-    Shape const &split = GetShape("teapotSplit");
-    EXPECT_EQ(split.GetNumVertices(), 3644 + 47);
-    EXPECT_EQ(CountBoundaryEdges(split), 1036);
-    EXPECT_TRUE(split.manifold);
 }
 
 TEST(ShapeDescriptor, FarTakesEveryShape) {
