@@ -19,9 +19,9 @@ void beginRound(std::vector<ENTRY> &entries, unsigned &round) {
 }
 
 // As many sums as are formed at once, in registers.
-constexpr int kVector = 8;
+constexpr int kSumWidth = 8;
 
-int getStride(int numColumns) { return std::max(numColumns, kVector); }
+int getStride(int numColumns) { return std::max(numColumns, kSumWidth); }
 
 } // namespace
 
@@ -234,22 +234,22 @@ template <int NUM_SUMS>
 void LimitMultiplier<REAL>::sumTerms(Term const *begin, Term const *end, int numColumns,
                                      REAL *const *sums) const {
     std::ptrdiff_t const stride = getStride(numColumns);
-    std::ptrdiff_t const last = stride - kVector;
-    for (std::ptrdiff_t column = 0;; column = std::min(column + kVector, last)) {
-        REAL results[NUM_SUMS][kVector] = {};
-        for (int k = 0; k < kVector; ++k) {
+    std::ptrdiff_t const last = stride - kSumWidth;
+    for (std::ptrdiff_t column = 0;; column = std::min(column + kSumWidth, last)) {
+        REAL results[NUM_SUMS][kSumWidth] = {};
+        for (int k = 0; k < kSumWidth; ++k) {
             results[0][k] = REAL(_reference[std::size_t(column + k)]);
         }
         for (Term const *term = begin; term != end; ++term) {
             REAL const *const differences = _differences.data() + term->source * stride + column;
             for (int sum = 0; sum < NUM_SUMS; ++sum) {
-                for (int k = 0; k < kVector; ++k) {
+                for (int k = 0; k < kSumWidth; ++k) {
                     results[sum][k] += term->factors[sum] * differences[k];
                 }
             }
         }
         for (int sum = 0; sum < NUM_SUMS; ++sum) {
-            std::copy_n(results[sum], kVector, sums[sum] + column);
+            std::copy_n(results[sum], kSumWidth, sums[sum] + column);
         }
         if (column == last) {
             return;
@@ -287,7 +287,7 @@ void LimitMultiplier<REAL>::Fill(Columns const &columns, Place const *places) {
         findDifferences(columns);
     }
     RowBits ofAll =
-        columns.size >= kVector ? ~RowBits(0) : RowBits(0); // rows that are summed up in place
+        columns.size >= kSumWidth ? ~RowBits(0) : RowBits(0); // rows that are summed up in place
     for (int i = 0; i < columns.size; ++i) {
         ofAll &= columns.rows[i];
     }
