@@ -105,7 +105,9 @@ py::array_t<TO> convert(py::array const &array, char const *name) {
             return convertFrom<TO, TO>(array, name);
         }
         if (kind == 'f') {
-            return convertFrom<TO, double>(array, name);
+            return array.itemsize() > py::ssize_t(sizeof(double))
+                       ? convertFrom<TO, long double>(array, name)
+                       : convertFrom<TO, double>(array, name);
         }
     }
     throw py::type_error(std::string(name) + (std::is_integral_v<TO> ? ": integers" : ": numbers") +

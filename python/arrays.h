@@ -21,10 +21,10 @@ namespace Far = OpenSubdiv::Far;
 namespace Osd = OpenSubdiv::Osd;
 
 /// @name Numbers that are read
-/// Arrays may have any type of number, byte order and layout, and sequences are arrays, too: what the library cannot read
-/// where it is is copied.  Floating-point numbers are rounded to the type that is needed.  Raises TypeError for None and
-/// for what are no numbers, or no integers where these are needed; ValueError for masked numbers and for a number that
-/// the type does not hold, an integer that it would round among them, whose place is named.
+/// An array may have any type of number, byte order and layout; a sequence becomes an array.  Numbers that the library
+/// cannot read in place are copied, floating-point ones rounded to the type that is needed.  Raises TypeError for None,
+/// for anything but numbers, and for anything but integers where these are needed.  Raises ValueError for masked numbers,
+/// and for a number that the type does not hold, beyond its range or an integer that it would round; names its place.
 /// @{
 
 /// Takes integers, as 32-bit ones.  Raises ValueError for another number of dimensions.

@@ -138,6 +138,7 @@ def test_sources(refiner, which):
         (np.full((8, 3), 2**64 - 1, np.uint64), ValueError, "which float32 does not hold"),
         (np.full((8, 3), 2**63 - 1), ValueError, "which float32 does not hold"),
         (np.full((8, 3), 1e39), ValueError, r"src: number 0 is 1e\+39, which float32 does not hold"),
+        (np.full((8, 3), np.longdouble("1e39")), ValueError, "src: number 0 is"),
         ([[0, 0, 0]] * 7 + [[0, -1e300, 0]], ValueError, r"src: number 22 is -1e\+300"),
         (np.ma.masked_less(np.zeros((8, 3), np.float32), 1), ValueError, "src: .* masked"),
         (None, TypeError, "src: an array is needed, not None"),

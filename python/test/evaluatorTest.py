@@ -301,3 +301,6 @@ def test_primvars_of_any_type(refiner):
         found = primvars.interpolate(1, src)
         assert found.dtype == np.float64
         np.testing.assert_array_equal(found, exact)
+    if np.finfo(np.longdouble).max > np.finfo(np.float64).max:
+        with pytest.raises(ValueError, match="src: number 0 is inf, which float64 does not hold"):
+            primvars.interpolate(1, np.full((len(POSITIONS), 3), np.longdouble("1e400")))
