@@ -44,25 +44,70 @@ std::vector<int> findEdgeLevels(std::vector<Polyline> const &edges) {
     return levels;
 }
 
-// Cuts convex polygons, with vertices in straight lines, into triangles that all have an area.
+// Cuts convex polygons, with vertices in straight lines, into triangles that all have an area: n corners take
+// O(n log n) steps.
 class Triangulator {
 public:
     explicit Triangulator(std::vector<double> const &coords) : _coords(coords) {}
 
     // Appends the triangles of a polygon, corner by corner.
-    void Add(std::vector<int> polygon, std::vector<std::array<int, 3>> &triangles) const {
-        while (polygon.size() > 3) {
-            std::size_t const ear = findEar(polygon);
-            triangles.push_back(getCorner(polygon, ear));
-            polygon.erase(polygon.begin() + std::ptrdiff_t(ear));
+    void Add(std::vector<int> const &polygon, std::vector<std::array<int, 3>> &triangles) {
+        setPolygon(polygon);
+        for (std::size_t numLeft = polygon.size(); numLeft > 3; --numLeft) {
+            std::size_t const ear = findEar();
+            triangles.push_back(getCorner(ear));
+            cut(ear);
         }
-        triangles.push_back({polygon[0], polygon[1], polygon[2]});
+        triangles.push_back({polygon[_first], polygon[_next[_first]], polygon[_prev[_first]]});
     }
 
 private:
-    static std::array<int, 3> getCorner(std::vector<int> const &polygon, std::size_t i) {
+    void setPolygon(std::vector<int> const &polygon) {
         std::size_t const size = polygon.size();
-        return {polygon[(i + size - 1) % size], polygon[i], polygon[(i + 1) % size]};
+        _polygon = &polygon;
+        _first = 0;
+        _prev.resize(size);
+        _next.resize(size);
+        _isKept.assign(size, false);
+        for (std::size_t i = 0; i < size; ++i) {
+            _prev[i] = i == 0 ? size - 1 : i - 1;
+            _next[i] = i + 1 == size ? 0 : i + 1;
+        }
+        _numLeaves = 1;
+        while (_numLeaves < size) {
+            _numLeaves *= 2;
+        }
+        _best.assign(2 * _numLeaves, 0.0);
+        for (std::size_t i = 0; i < size; ++i) {
+            _best[_numLeaves + i] = getQuality(getCorner(i));
+        }
+        for (std::size_t node = _numLeaves - 1; node > 0; --node) {
+            _best[node] = std::max(_best[2 * node], _best[2 * node + 1]);
+        }
+    }
+
+    void setQuality(std::size_t i, double quality) {
+        std::size_t node = _numLeaves + i;
+        _best[node] = quality;
+        while ((node /= 2) > 0) {
+            _best[node] = std::max(_best[2 * node], _best[2 * node + 1]);
+        }
+    }
+
+    void cut(std::size_t ear) {
+        std::size_t const prev = _prev[ear];
+        std::size_t const next = _next[ear];
+        _next[prev] = next;
+        _prev[next] = prev;
+        _first = ear == _first ? next : _first;
+        setQuality(ear, 0);
+        for (std::size_t const i : {prev, next}) {
+            setQuality(i, _isKept[i] ? 0 : getQuality(getCorner(i)));
+        }
+    }
+
+    std::array<int, 3> getCorner(std::size_t i) const {
+        return {(*_polygon)[_prev[i]], (*_polygon)[i], (*_polygon)[_next[i]]};
     }
 
     double getX(int vert) const { return _coords[2 * std::size_t(vert)]; }
@@ -80,13 +125,13 @@ private:
                std::max({getSquare(t[0], t[1]), getSquare(t[1], t[2]), getSquare(t[2], t[0])});
     }
 
-    // Whether all that would be left were a straight line, which the ends of the cut lie on.
-    bool isRestFlat(std::vector<int> const &polygon, std::size_t ear) const {
-        std::size_t const size = polygon.size();
-        int const start = polygon[(ear + 1) % size];
-        int const end = polygon[(ear + size - 1) % size];
-        for (std::size_t i = 2; i + 1 < size; ++i) {
-            if (getQuality({start, polygon[(ear + i) % size], end}) > kLeastQuality) {
+    // Whether all that would be left were a straight line, which the ends of the cut lie on.  Where it is not, the
+    // first corners tell, since the polygon is convex.
+    bool isRestFlat(std::size_t ear) const {
+        int const start = (*_polygon)[_next[ear]];
+        int const end = (*_polygon)[_prev[ear]];
+        for (std::size_t i = _next[_next[ear]]; i != _prev[ear]; i = _next[i]) {
+            if (getQuality({start, (*_polygon)[i], end}) > kLeastQuality) {
                 return false;
             }
         }
@@ -94,23 +139,37 @@ private:
     }
 
     // The best triangle that does not leave a line behind; the first of those that are as good.
-    std::size_t findEar(std::vector<int> const &polygon) const {
-        std::size_t best = 0;
-        double bestQuality = 0;
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            double const quality = getQuality(getCorner(polygon, i));
-            if (quality > bestQuality * (1 + kLeastQuality) && quality > kLeastQuality &&
-                !isRestFlat(polygon, i)) {
-                best = i;
-                bestQuality = quality;
+    std::size_t findEar() {
+        while (_best[1] > kLeastQuality) {
+            double const least = std::max(_best[1] / (1 + kLeastQuality), kLeastQuality);
+            std::size_t node = 1;
+            while (node < _numLeaves) {
+                node *= 2;
+                node += _best[node] < least ? 1 : 0;
             }
+            std::size_t const ear = node - _numLeaves;
+            if (!isRestFlat(ear)) {
+                return ear;
+            }
+            // What is cut later shortens the line, and leaves a line.
+            _isKept[ear] = true;
+            setQuality(ear, 0);
         }
-        return best;
+        return _first;
     }
 
     static constexpr double kLeastQuality = 1e-9;
 
     std::vector<double> const &_coords;
+    // Of the polygon that is cut, by its corners as they were given.
+    std::vector<int> const *_polygon = nullptr;
+    std::size_t _first = 0; // of those that are left
+    std::vector<std::size_t> _prev;
+    std::vector<std::size_t> _next;
+    std::vector<bool> _isKept; // to the end, since a line would be left
+    // A tree of the best qualities, the root at 1 and the corners from _numLeaves on.
+    std::vector<double> _best;
+    std::size_t _numLeaves = 0;
 };
 
 // Whether triangles have more indices than an int counts.
@@ -452,7 +511,7 @@ void Tessellation::setFacets(CellMesh const &mesh, std::vector<int> const &place
         _facetIndices.reserve(std::size_t(_facetSize) * numFacets);
         _firstFacetIndices.reserve(numFacets + 1);
         _facetLevels.reserve(numFacets);
-        Triangulator const triangulator(_coords);
+        Triangulator triangulator(_coords);
         std::vector<std::array<int, 3>> triangles;
         mesh.ForEachCell([&](CellMesh::Polygon &polygon) {
             std::vector<int> &facet = polygon.verts;

@@ -35,6 +35,15 @@ public:
     /// wait for any other then.  \p function throws nothing.  Several threads may call this at once,
     /// and \p function may.
     ///
+    /// While it waits, the calling thread may do other work of the host, which may call this library.  Such a call may
+    /// read whatever the waiting call reads: the same refiner, table, surface or stream.  As from any other thread, it
+    /// must not use a RefinementEvaluator that evaluates, nor a refiner that is being refined.  It is inside the
+    /// ExecutorScope of the waiting call; scopes that it begins it must end, and SetNumThreads() it must leave alone.
+    ///
+    /// The library calls this while it holds no lock and while it uses nothing that it keeps for the thread.  Surfaces
+    /// are made and evaluated by the calling thread alone, without an executor.  ParallelFor() returns on the thread that
+    /// called it.
+    ///
     /// May throw std::bad_alloc, once no call of \p function is running any more.
     virtual void ParallelFor(int count, std::function<void(int)> const &function) = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arrays.h"
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -20,8 +21,12 @@ py::array toArray(py::handle object, char const *name) {
     if (object.is_none()) {
         throw py::type_error(std::string(name) + ": an array is needed, not None");
     }
-    py::array array = py::module_::import("numpy").attr("asarray")(object);
-    return array;
+    py::module_ const numpy = py::module_::import("numpy");
+    if (py::isinstance<py::array>(object) &&
+        numpy.attr("ma").attr("is_masked")(object).cast<bool>()) {
+        throw py::value_error(std::string(name) + ": it has numbers that are masked");
+    }
+    return numpy.attr("asarray")(object);
 }
 
 void checkDimensions(py::array const &array, char const *name, int numDimensions) {
@@ -32,69 +37,129 @@ void checkDimensions(py::array const &array, char const *name, int numDimensions
     }
 }
 
+/// The numbers as a T each, by numpy's rules, one behind the other; copied where they are not.
 template <typename T>
-py::array_t<int> narrow(py::array const &array, char const *name) {
-    py::array_t<T, py::array::c_style | py::array::forcecast> const wide(array);
-    py::array_t<int> narrowed(
-        std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
-    T const *const source = wide.data();
-    int *const destination = narrowed.mutable_data();
-    constexpr int kLeast = std::numeric_limits<int>::min(), kMost = std::numeric_limits<int>::max();
-    for (py::ssize_t i = 0; i < wide.size(); ++i) {
-        destination[i] = int(source[i]);
-        bool const isTooSmall = std::is_signed_v<T> && source[i] < T(kLeast);
-        if (isTooSmall || source[i] > T(kMost)) {
-            throw py::value_error(std::string(name) + ": number " + std::to_string(i) + " is " +
-                                  std::to_string(source[i]) + ", which 32 bits do not hold");
+py::array_t<T> gather(py::array const &array) {
+    constexpr int kFlags =
+        py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+    return py::array_t<T, kFlags>(array);
+}
+
+template <typename T>
+constexpr char const *typeName() {
+    return std::is_integral_v<T> ? "int32" : sizeof(T) == sizeof(float) ? "float32" : "float64";
+}
+
+/// Whether a number is one of another type: an integer the same, others but for rounding.
+template <typename TO, typename FROM>
+bool isHeld(FROM number) {
+    using Limits = std::numeric_limits<TO>;
+    if constexpr (std::is_floating_point_v<FROM>) {
+        return !std::isfinite(number) || std::abs(number) <= FROM(Limits::max());
+    } else if constexpr (std::is_floating_point_v<TO>) {
+        TO const converted = TO(number);
+        return converted < std::ldexp(TO(1), std::numeric_limits<FROM>::digits) &&
+               FROM(converted) == number;
+    } else {
+        return !(std::is_signed_v<FROM> && number < FROM(Limits::min())) &&
+               number <= FROM(Limits::max());
+    }
+}
+
+template <typename TO, typename FROM>
+py::array_t<TO> convertFrom(py::array const &array, char const *name) {
+    py::array_t<FROM> const wide = gather<FROM>(array);
+    if constexpr (std::is_same_v<TO, FROM>) {
+        return wide;
+    } else {
+        py::array_t<TO> converted(
+            std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
+        FROM const *const source = wide.data();
+        TO *const destination = converted.mutable_data();
+        for (py::ssize_t i = 0; i < wide.size(); ++i) {
+            if (!isHeld<TO>(source[i])) {
+                throw py::value_error(std::string(name) + ": number " + std::to_string(i) + " is " +
+                                      std::string(py::str(py::cast(source[i]))) + ", which " +
+                                      typeName<TO>() + " does not hold");
+            }
+            destination[i] = TO(source[i]);
+        }
+        return converted;
+    }
+}
+
+/// \brief Converts numbers to a type, where they are others or lie elsewhere than one behind the other.
+///
+/// Floating-point numbers are rounded.  What would be another number is refused.
+template <typename TO>
+py::array_t<TO> convert(py::array const &array, char const *name) {
+    char const kind = array.dtype().kind();
+    if (kind == 'i') {
+        return convertFrom<TO, std::int64_t>(array, name);
+    }
+    if (kind == 'u') {
+        return convertFrom<TO, std::uint64_t>(array, name);
+    }
+    if constexpr (std::is_floating_point_v<TO>) {
+        if (py::isinstance<py::array_t<TO>>(array)) {
+            return convertFrom<TO, TO>(array, name);
+        }
+        if (kind == 'f') {
+            return array.itemsize() > py::ssize_t(sizeof(double))
+                       ? convertFrom<TO, long double>(array, name)
+                       : convertFrom<TO, double>(array, name);
         }
     }
-    return narrowed;
+    throw py::type_error(std::string(name) + (std::is_integral_v<TO> ? ": integers" : ": numbers") +
+                         " are needed, not " + nameType(array));
 }
 
-/// Whether numpy can read the numbers where they are: in the machine's byte order, aligned.
-bool isAligned(py::array const &array) {
-    return (array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_) != 0;
-}
-
-template <typename REAL>
-constexpr char const *typeName() {
-    return sizeof(REAL) == sizeof(float) ? "float32" : "float64";
-}
-
-/// The place of the elements in an array of the right type.
-template <typename REAL>
-Elements<REAL> describe(py::array const &array, char const *name, void const *data) {
+/// The shape of elements.
+void checkShape(py::array const &array, char const *name) {
     if (array.ndim() != 1 && array.ndim() != 2) {
         throw py::value_error(std::string(name) +
                               ": one or two dimensions are needed, the shape is " +
                               DescribeShape(array));
     }
     constexpr py::ssize_t kMost = std::numeric_limits<int>::max();
-    py::ssize_t const size = sizeof(REAL);
     py::ssize_t const length = array.ndim() == 2 ? array.shape(1) : 1;
     if (length < 1 || length > kMost || array.shape(0) > kMost) {
         throw py::value_error(std::string(name) + ": elements of the shape " +
                               DescribeShape(array) + " cannot be evaluated");
     }
-    // Of a single element there is no next, and of single numbers none beside.
-    py::ssize_t const stride = array.shape(0) > 1 ? array.strides(0) : length * size;
-    if ((length > 1 && array.strides(1) != size) || stride % size != 0 || stride < length * size ||
-        stride / size > kMost || !isAligned(array)) {
-        throw py::value_error(std::string(name) +
-                              ": the numbers of an element must lie side by side, and elements one "
-                              "behind the other; numpy.ascontiguousarray makes such an array");
-    }
-    return {array, static_cast<REAL *>(const_cast<void *>(data)), int(array.shape(0)),
-            Osd::BufferDescriptor(0, int(length), int(stride / size))};
 }
 
-template <typename REAL>
-void checkType(py::array const &array, char const *name) {
-    if (!py::isinstance<py::array_t<REAL>>(array)) {
-        throw py::type_error(std::string(name) + ": " + typeName<REAL>() + " is needed, not " +
-                             nameType(array) + "; .astype(numpy." + typeName<REAL>() +
-                             ") makes it");
+/// How far elements are apart, in bytes.
+py::ssize_t getStride(py::array const &array) {
+    // Of a single element there is no next.
+    return array.shape(0) > 1 ? array.strides(0)
+                              : (array.ndim() == 2 ? array.shape(1) : 1) * array.itemsize();
+}
+
+/// Why elements cannot be read or written where they lie; null where they can.
+char const *findObstacle(py::array const &array) {
+    py::ssize_t const size = array.itemsize();
+    py::ssize_t const length = array.ndim() == 2 ? array.shape(1) : 1;
+    py::ssize_t const stride = getStride(array);
+    if ((array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_) == 0) {
+        return "the array is not aligned";
     }
+    if (length > 1 && array.strides(1) != size) {
+        return "the numbers of an element must lie side by side";
+    }
+    if (stride % size != 0 || stride < length * size ||
+        stride / size > std::numeric_limits<int>::max()) {
+        return "elements must lie one behind the other, the first one first";
+    }
+    return nullptr;
+}
+
+/// The elements of an array that has no obstacle.
+template <typename REAL>
+Elements<REAL> describe(py::array const &array, void const *data) {
+    return {array, static_cast<REAL *>(const_cast<void *>(data)), int(array.shape(0)),
+            Osd::BufferDescriptor(0, array.ndim() == 2 ? int(array.shape(1)) : 1,
+                                  int(getStride(array) / py::ssize_t(sizeof(REAL))))};
 }
 
 void checkCount(py::array const &array, char const *name, int count) {
@@ -124,27 +189,15 @@ py::array_t<int> TakeIndices(py::handle object, char const *name, int numDimensi
         return py::array_t<int>(std::vector<py::ssize_t>(std::size_t(numDimensions), 0));
     }
     checkDimensions(array, name, numDimensions);
-    char const kind = array.dtype().kind();
-    if (kind == 'i') {
-        return narrow<std::int64_t>(array, name);
-    }
-    if (kind == 'u') {
-        return narrow<std::uint64_t>(array, name);
-    }
-    throw py::type_error(std::string(name) + ": integers are needed, not " + nameType(array));
+    return convert<int>(array, name);
 }
 
 std::vector<float> TakeFloats(py::handle object, char const *name, std::size_t count) {
-    py::array const array = toArray(object, name);
-    char const kind = array.dtype().kind();
-    if (kind != 'f' && kind != 'i' && kind != 'u') {
-        throw py::type_error(std::string(name) + ": numbers are needed, not " + nameType(array));
-    }
-    py::array_t<float, py::array::c_style | py::array::forcecast> const floats(array);
-    if (array.ndim() == 0) {
+    py::array_t<float> const floats = convert<float>(toArray(object, name), name);
+    if (floats.ndim() == 0) {
         return std::vector<float>(count, *floats.data());
     }
-    checkDimensions(array, name, 1);
+    checkDimensions(floats, name, 1);
     if (std::size_t(floats.size()) != count) {
         throw py::value_error(std::string(name) + ": one number is needed, or " +
                               std::to_string(count) + " of them, not " +
@@ -153,21 +206,27 @@ std::vector<float> TakeFloats(py::handle object, char const *name, std::size_t c
     return std::vector<float>(floats.data(), floats.data() + floats.size());
 }
 
-bool IsDouble(py::handle object) { return py::isinstance<py::array_t<double>>(object); }
+bool IsDouble(py::handle object) {
+    if (!py::isinstance<py::array>(object)) {
+        return false;
+    }
+    py::dtype const type = py::reinterpret_borrow<py::array>(object).dtype();
+    return type.kind() == 'f' && type.itemsize() >= py::ssize_t(sizeof(double));
+}
 
 template <typename REAL>
-Elements<REAL const> TakeSource(py::handle object, char const *name, int count) {
-    py::array array;
-    if (py::isinstance<py::array>(object)) {
-        array = py::reinterpret_borrow<py::array>(object);
-    } else {
-        array = py::module_::import("numpy").attr("asarray")(object, py::dtype::of<REAL>());
-    }
-    checkType<REAL>(array, name);
+Elements<REAL const> TakeSource(py::handle object, char const *name, int count, bool isDense) {
+    py::array array = toArray(object, name);
     if (count >= 0) {
         checkCount(array, name, count);
     }
-    return describe<REAL const>(array, name, array.data());
+    checkShape(array, name);
+    bool const isInPlace = py::isinstance<py::array_t<REAL>>(array) && !findObstacle(array) &&
+                           (!isDense || (array.flags() & py::array::c_style) != 0);
+    if (!isInPlace) {
+        array = convert<REAL>(array, name);
+    }
+    return describe<REAL const>(array, array.data());
 }
 
 template <typename REAL>
@@ -187,12 +246,19 @@ Elements<REAL> TakeDestination(py::handle object, char const *name, int count,
         throw py::type_error(std::string(name) + ": an array to write to is needed, not " +
                              nameType(object));
     }
-    checkType<REAL>(array, name);
+    if (!py::isinstance<py::array_t<REAL>>(array)) {
+        throw py::type_error(std::string(name) + ": " + typeName<REAL>() + " is needed, not " +
+                             nameType(array));
+    }
     checkCount(array, name, count);
+    checkShape(array, name);
     if (!array.writeable()) {
         throw py::value_error(std::string(name) + ": the array is read-only");
     }
-    Elements<REAL> const destination = describe<REAL>(array, name, array.mutable_data());
+    if (char const *const obstacle = findObstacle(array)) {
+        throw py::value_error(std::string(name) + ": " + obstacle);
+    }
+    Elements<REAL> const destination = describe<REAL>(array, array.mutable_data());
     if (destination.desc.length != length) {
         throw py::value_error(std::string(name) + ": elements of " + std::to_string(length) +
                               " numbers are needed, as the source has, the shape is " +
@@ -221,8 +287,8 @@ py::array View(T const *data, std::vector<py::ssize_t> shape, py::object const &
     return array;
 }
 
-template Elements<float const> TakeSource<float>(py::handle, char const *, int);
-template Elements<double const> TakeSource<double>(py::handle, char const *, int);
+template Elements<float const> TakeSource<float>(py::handle, char const *, int, bool);
+template Elements<double const> TakeSource<double>(py::handle, char const *, int, bool);
 template Elements<float> TakeDestination<float>(py::handle, char const *, int,
                                                 Elements<float const> const &);
 template Elements<double> TakeDestination<double>(py::handle, char const *, int,

@@ -20,16 +20,20 @@ namespace py = pybind11;
 namespace Far = OpenSubdiv::Far;
 namespace Osd = OpenSubdiv::Osd;
 
-/// \brief Takes integers of any type and in any array or sequence, as 32-bit ones.
-///
-/// Raises TypeError for what are no integers and ValueError for a number of dimensions other than
-/// \p numDimensions or an integer beyond 32 bits, whose place is named.
+/// @name Numbers that are read
+/// An array may have any type of number, byte order and layout; a sequence becomes an array.  Numbers that the library
+/// cannot read in place are copied, floating-point ones rounded to the type that is needed.  Raises TypeError for None,
+/// for anything but numbers, and for anything but integers where these are needed.  Raises ValueError for masked numbers,
+/// and for a number that the type does not hold, beyond its range or an integer that it would round; names its place.
+/// @{
+
+/// Takes integers, as 32-bit ones.  Raises ValueError for another number of dimensions.
 py::array_t<int> TakeIndices(py::handle object, char const *name, int numDimensions = 1);
 
 /// Takes numbers as floats, of one dimension, or one number for all \p count.
 std::vector<float> TakeFloats(py::handle object, char const *name, std::size_t count);
 
-/// The type of the numbers in an array of elements, float64 or, for all else, float32.
+/// The type for the numbers of elements: float64 for an array of that or longer ones; for all else, float32.
 bool IsDouble(py::handle object);
 
 /// \brief The elements that an evaluator reads or writes: rows of an array.
@@ -44,15 +48,20 @@ struct Elements {
     Osd::BufferDescriptor desc; ///< offset 0
 };
 
-/// \brief Takes elements to read.  Lists become arrays, but an array of another type is refused, not
-/// copied.
+/// \brief Takes elements.
 ///
-/// \param count  how many there must be; -1 for any number
+/// \param count    how many there must be; -1 for any number
+/// \param isDense  whether they must lie without gaps
 template <typename REAL>
-Elements<REAL const> TakeSource(py::handle object, char const *name, int count);
+Elements<REAL const> TakeSource(py::handle object, char const *name, int count,
+                                bool isDense = false);
+/// @}
 
 /// \brief Takes an array of \p count elements to write, as long as those of \p source; makes one
 /// for None.
+///
+/// It is written where it lies.  Raises TypeError where it is no array or has another type or byte order, and ValueError
+/// where it is read-only or not aligned, or its elements lie otherwise than Elements says.
 template <typename REAL>
 Elements<REAL> TakeDestination(py::handle object, char const *name, int count,
                                Elements<REAL const> const &source);

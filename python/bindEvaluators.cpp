@@ -269,31 +269,37 @@ private:
     mutable std::mutex _mutex;
 };
 
-py::array computeNormals(py::object const &du, py::object const &dv, py::object const &normals) {
-    auto const us = TakeSource<float>(du, "du", -1);
-    auto const vs = TakeSource<float>(dv, "dv", us.count);
+template <typename REAL>
+py::array computeNormalsOf(py::object const &du, py::object const &dv, py::object const &normals) {
+    auto const us = TakeSource<REAL>(du, "du", -1);
+    auto const vs = TakeSource<REAL>(dv, "dv", us.count);
     if (us.desc.length != 3 || vs.desc.length != 3) {
         throw py::value_error("du, dv: vectors of the shape (n, 3) are needed, the shapes are " +
                               DescribeShape(us.array) + " and " + DescribeShape(vs.array));
     }
-    auto const result = TakeDestination<float>(normals, "normals", us.count, us);
+    auto const result = TakeDestination<REAL>(normals, "normals", us.count, us);
     {
         py::gil_scoped_release const release;
         for (int i = 0; i < us.count; ++i) {
-            float const *const u = us.data + std::size_t(i) * us.desc.stride;
-            float const *const v = vs.data + std::size_t(i) * vs.desc.stride;
-            float *const normal = result.data + std::size_t(i) * result.desc.stride;
+            REAL const *const u = us.data + std::size_t(i) * us.desc.stride;
+            REAL const *const v = vs.data + std::size_t(i) * vs.desc.stride;
+            REAL *const normal = result.data + std::size_t(i) * result.desc.stride;
             double const cross[3] = {double(u[1]) * v[2] - double(u[2]) * v[1],
                                      double(u[2]) * v[0] - double(u[0]) * v[2],
                                      double(u[0]) * v[1] - double(u[1]) * v[0]};
             double const length =
                 std::sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
             for (int axis = 0; axis < 3; ++axis) {
-                normal[axis] = length > 0 ? float(cross[axis] / length) : 0;
+                normal[axis] = length > 0 ? REAL(cross[axis] / length) : 0;
             }
         }
     }
     return result.array;
+}
+
+py::array computeNormals(py::object const &du, py::object const &dv, py::object const &normals) {
+    return IsDouble(du) || IsDouble(dv) ? computeNormalsOf<double>(du, dv, normals)
+                                        : computeNormalsOf<float>(du, dv, normals);
 }
 
 /// What stands for a class of static functions.
@@ -309,7 +315,7 @@ void bindStencilEvaluator(py::module_ &module, char const *name, char const *doc
             "Evaluates stencils start ... end - 1 of a StencilTable, or all of a\n"
             "CompactStencilTable.\n\n"
             "Args:\n"
-            "    src: control values, float32, shape (control vertices,) or\n"
+            "    src: control values, taken as float32, shape (control vertices,) or\n"
             "        (control vertices, length)\n"
             "    dst: float32, shape (stencils,) or (stencils, length); stencil i is element\n"
             "        i; None: it is made.  It may show the memory of src, but for elements\n"
@@ -360,7 +366,7 @@ void BindEvaluators(py::module_ &module) {
             "evaluate(src, level=None, dst=None)\n\n"
             "The values of one level, of the last for None.\n\n"
             "Args:\n"
-            "    src: control values, float32, shape (elements of level 0,) or\n"
+            "    src: control values, taken as float32, shape (elements of level 0,) or\n"
             "        (elements of level 0, length)\n"
             "    dst: float32, shape (elements of the level,) or (elements of the level, length);\n"
             "        None: it is made.  No number that is read may be written.\n\n"
@@ -385,11 +391,13 @@ void BindEvaluators(py::module_ &module) {
             py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none(),
             py::arg("du") = py::none(), py::arg("dv") = py::none());
 
-    module.def("compute_normals", &computeNormals,
-               "compute_normals(du, dv, normals=None)\n\n"
-               "Unit vectors across du and dv, float32 of the shape (n, 3); zeros where these are\n"
-               "parallel.  Returns normals, which is made for None.",
-               py::arg("du"), py::arg("dv"), py::arg("normals") = py::none());
+    module.def(
+        "compute_normals", &computeNormals,
+        "compute_normals(du, dv, normals=None)\n\n"
+        "Unit vectors across du and dv, of the shape (n, 3); zeros where these are parallel.\n"
+        "They are float64 where du or dv is, else float32.  Returns normals, which is made\n"
+        "for None.",
+        py::arg("du"), py::arg("dv"), py::arg("normals") = py::none());
 }
 
 } // namespace OpenSubdivHex::Python

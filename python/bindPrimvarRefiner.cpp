@@ -204,8 +204,9 @@ void BindPrimvarRefiner(py::module_ &module) {
         module, "PrimvarRefiner",
         "PrimvarRefiner(refiner)\n\n"
         "Computes data of one level from those of the level before, without a table.\n\n"
-        "Sources are float32 or float64 of the shape (elements,) or (elements, length); the\n"
-        "destination has the same type and length, and is made for None.  It is returned.\n"
+        "Sources are float64, or numbers taken as float32, of the shape (elements,) or\n"
+        "(elements, length); the destination has the same type and length, and is made for None.  "
+        "It is returned.\n"
         "RefinementEvaluator does the same in parallel, for float32.")
         .def(py::init<std::shared_ptr<Refiner>>(), py::arg("refiner").none(false))
         .def("interpolate", &PrimvarRefinement::Interpolate,

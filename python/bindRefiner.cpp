@@ -8,6 +8,8 @@
 #include "far_ext/topologyRefinerFactory.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <type_traits>
 
@@ -31,7 +33,12 @@ struct BaseMesh {
     Far::TopologyDescriptor descriptor;
 };
 
+/// \brief How many vertices or values there are: as many as were given, else as many as indices refer to.
+///
+/// These take memory, however few corners have them: far more than there are corners are not taken to be meant.
 int findCount(py::array_t<int> const &indices, std::optional<int> const &given, char const *name) {
+    constexpr std::int64_t kMostInAnyMesh = 65536;
+    constexpr std::int64_t kMostPerCorner = 16;
     if (given) {
         if (*given < 0) {
             throw py::value_error(std::string(name) + ": " + std::to_string(*given) +
@@ -43,11 +50,15 @@ int findCount(py::array_t<int> const &indices, std::optional<int> const &given, 
     if (indices.size() == 0 || *most < 0) {
         return 0;
     }
-    if (*most == std::numeric_limits<int>::max()) {
-        throw py::value_error(std::string(name) + ": an index is " + std::to_string(*most) +
-                              ", and there cannot be more");
+    std::int64_t const count = std::int64_t(*most) + 1;
+    if (count > std::max(kMostInAnyMesh, kMostPerCorner * std::int64_t(indices.size())) ||
+        count > std::numeric_limits<int>::max()) {
+        throw py::value_error(
+            std::string(name) + ": corner " + std::to_string(most - indices.data()) +
+            " refers to number " + std::to_string(*most) + ", but there are " +
+            std::to_string(indices.size()) + " corners; pass " + name + " where so many are meant");
     }
-    return *most + 1;
+    return int(count);
 }
 
 void takeFlatFaces(py::object const &faces, py::object const &offsets, BaseMesh *mesh) {
@@ -259,18 +270,14 @@ void refineCoplanar(Refiner &self, py::object const &restPositions, int level,
                                   "is " +
                                   DescribeShape(positions.array));
         }
-        if (positions.desc.stride != 3) {
-            throw py::value_error("rest_positions: they must lie one behind the other; "
-                                  "numpy.ascontiguousarray makes such an array");
-        }
         self.Change([&](TopologyRefiner &refiner, CallStatus *status) {
             refiner.RefineCoplanar(positions.data, options, status);
         });
     };
     if (IsDouble(restPositions)) {
-        refine(TakeSource<double>(restPositions, "rest_positions", numVertices));
+        refine(TakeSource<double>(restPositions, "rest_positions", numVertices, true));
     } else {
-        refine(TakeSource<float>(restPositions, "rest_positions", numVertices));
+        refine(TakeSource<float>(restPositions, "rest_positions", numVertices, true));
     }
 }
 
@@ -300,7 +307,9 @@ void BindRefiner(py::module_ &module) {
         "Args:\n"
         "    faces: the vertices of each face: a sequence of sequences, an integer array of the\n"
         "        shape (faces, sides) or, with face_offsets, one of all faces, shape (corners,)\n"
-        "    num_vertices: of the mesh; None: as many as the faces need\n"
+        "    num_vertices: of the mesh; None: as many as the faces need.  That raises ValueError\n"
+        "        for more than 65536 and more than 16 for each corner, which take much memory\n"
+        "        and mostly come of a wrong index\n"
         "    face_offsets: integers, shape (faces + 1,): face f has the corners from\n"
         "        face_offsets[f] to face_offsets[f + 1]\n"
         "    creases: a pair (edges, sharpness) of integers, shape (creases, 2), and numbers, "
@@ -310,7 +319,7 @@ void BindRefiner(py::module_ &module) {
         "    holes: faces that are not drawn\n"
         "    fvar_channels: for each face-varying channel the values at the corners: integers,\n"
         "        shape (corners,)\n"
-        "    num_fvar_values: of each channel; None: as many as it needs\n"
+        "    num_fvar_values: of each channel; None: as many as it needs, within the same bounds\n"
         "    is_left_handed: whether the faces run clockwise\n"
         "    vtx_boundary_interpolation: a VtxBoundaryInterpolation, or its name; so the others\n\n"
         "Integers may have any type and are copied.  Raises StatusError for a mesh that cannot be\n"
@@ -354,7 +363,7 @@ void BindRefiner(py::module_ &module) {
              "Refines as the paper's stage 3 says: edges between faces of the same normal make "
              "quads.\n\n"
              "Args:\n"
-             "    rest_positions: float32 or float64, shape (vertices, 3), contiguous\n"
+             "    rest_positions: float64, or numbers taken as float32, shape (vertices, 3)\n"
              "    angle_tolerance: largest angle in degrees between normals taken as equal\n"
              "    close_gaps: False leaves the gaps open, as printed in the paper",
              py::arg("rest_positions"), py::arg("level"), py::arg("angle_tolerance") = 0.1,

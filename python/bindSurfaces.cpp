@@ -143,23 +143,23 @@ private:
             _surface.GatherControlPoints(source.data, PointDescriptor(*length, source.desc.stride),
                                          result.data(), PointDescriptor(*length));
         };
-        if (IsDouble(points)) {
-            take(double());
-        } else {
+        // Numbers of float32 are read where they are: few of them are control points.
+        if (py::isinstance<py::array_t<float>>(points)) {
             take(float());
+        } else {
+            take(double());
         }
         return result;
     }
 
     /// Pairs of u and v.
     static std::vector<double> takePlaces(py::object const &uv) {
-        auto const array =
-            py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(uv);
-        if (!array || array.ndim() != 2 || array.shape(1) != 2) {
-            PyErr_Clear();
-            throw py::value_error("uv: not an array of the shape (places, 2)");
+        Elements<double const> const source = TakeSource<double>(uv, "uv", -1, true);
+        if (source.desc.length != 2) {
+            throw py::value_error("uv: u and v of each place are needed, the shape is " +
+                                  DescribeShape(source.array));
         }
-        std::vector<double> places(array.data(), array.data() + array.size());
+        std::vector<double> places(source.data, source.data + 2 * std::size_t(source.count));
         for (std::size_t i = 0; i < places.size(); ++i) {
             if (!std::isfinite(places[i])) {
                 throw py::value_error("uv: row " + std::to_string(i / 2) + " is not finite");
@@ -316,9 +316,10 @@ void BindSurfaces(py::module_ &module) {
 
     py::class_<FaceSurface>(module, "Surface",
                             "The limit surface of a base face, made by a SurfaceFactory: a "
-                            "function of u and v.\n\nPoints are those of the mesh, float32 or "
-                            "float64 of the shape (points,) or (points, length);\nresults are "
-                            "float64.  uv is of the shape (places, 2), or a Tessellation.")
+                            "function of u and v.\n\nPoints are those of the mesh, numbers of "
+                            "the shape (points,) or (points, length): float32\nand float64 are "
+                            "read in place.  Results are float64.  uv is of the shape (places, "
+                            "2), or a\nTessellation.")
         .def_property_readonly("face_size", &FaceSurface::GetFaceSize, "Vertices of the face.")
         .def_property_readonly("control_points", &FaceSurface::GetControlPoints,
                                "int32: the points of the mesh that it depends on, those of the "

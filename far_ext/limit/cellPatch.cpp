@@ -138,6 +138,7 @@ void FindBaseCellTurns(Level const &level, Index face, int *turns) {
 }
 
 std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns) {
+    ExecutorScope const alone(nullptr, 1);
     Level level;
     BuildPatchLevel(baseCell.patch, level);
     LimitPatchGatherer gatherer(level, kMaskOfBase);
@@ -289,7 +290,7 @@ private:
 
 CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
                           HexSchemeOptions const &schemeOptions, Interpolation interpolation) {
-    ExecutorScope const alone(nullptr, 1); // patches are small
+    ExecutorScope const alone(nullptr, 1);
     RefinedPatch const refined(cell.patch, sdcOptions, schemeOptions.faceMask);
     Refinement const &refinement = refined.refinement;
     CellRefinement result;

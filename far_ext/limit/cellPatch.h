@@ -10,6 +10,9 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
+// All functions here work on the calling thread alone, however large a patch is: callers hold locks, and memory that they
+// keep for the thread, while an executor may have it do other work of the same kind.
+
 /// Corners of a cell that is no whole face: the ends of the edge that made it and, beside the second
 /// and the first of these, those of the edge across from it.
 inline constexpr int kNumHalfCellCorners = HexIndexing::kNumBoundaryEFaceCorners;

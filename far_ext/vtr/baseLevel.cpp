@@ -239,15 +239,15 @@ void findFirstEdges(Level &level) {
     std::sort(starts.begin(), starts.end());
     ParallelForRange(level.numVertices, [&](Index begin, Index end) {
         auto start = std::lower_bound(starts.begin(), starts.end(), begin);
-        // The last range has the entry behind the last vertex, too.
-        Index const last = end + (end == level.numVertices ? 1 : 0);
-        for (Index vert = begin; vert < last; ++vert) {
+        for (Index vert = begin; vert < end; ++vert) {
             while (start != starts.end() && *start < vert) {
                 ++start;
             }
             level.vertFirstEdge[vert] = level.vertFirstFace[vert] + Index(start - starts.begin());
         }
     });
+    level.vertFirstEdge[level.numVertices] =
+        level.vertFirstFace[level.numVertices] + Index(starts.size());
 }
 
 void countBoundaries(Level &level) {

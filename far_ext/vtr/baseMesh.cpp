@@ -424,6 +424,13 @@ CallStatus BaseMesh::followVertex(Index vert, int channel, Index const *faceValu
 CallStatus BaseMesh::AddChannel(Index numValues, Buffer<Index> faceValues,
                                 Sdc::Options::FVarLinearInterpolation interpolation) {
     int const channel = int(_hierarchy->channels.size());
+    // Fans of faces around a value get values of their own, at most one for each corner.
+    if (CallStatus status =
+            CheckCount(std::int64_t(numValues) + _level->numCorners,
+                       "values and face-vertices in face-varying channel " + str(channel));
+        !status.IsOk()) {
+        return status;
+    }
     std::vector<Index> const seams = FindSeams(*_level, faceValues.data());
     std::vector<float> sharpness =
         FindValueSharpness(*_level, faceValues.data(), seams, interpolation);

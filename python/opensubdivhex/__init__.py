@@ -6,9 +6,15 @@ as positions, are refined with a RefinementEvaluator, with a StencilTable and on
 CpuEvaluator and OmpEvaluator, or level by level with a PrimvarRefiner.  A LimitStencilTable has
 points and tangents of the limit surface, and a SurfaceFactory the surfaces of the base faces.
 
-Names are those of the C++ API, in Python's spelling.  Values are float32 arrays; wrong types,
-shapes and lengths raise TypeError, ValueError or IndexError, which name the argument.  What the
-library refuses raises StatusError.  The interpreter's lock is released while the library works.
+Names are those of the C++ API, in Python's spelling.  Values are float32 arrays.  What a
+function reads may have any type of number and any layout, and may be a list: float32 (or float64,
+where a function takes that) with the numbers of an element side by side is read in place, all else
+is converted in a copy.  float64 is rounded to float32; an integer that float32 does not hold, or a
+number beyond its range, raises ValueError.  An array to write to must have exactly the type, be
+writable and aligned, and have the numbers of an element side by side.
+
+Wrong types, shapes and lengths raise TypeError, ValueError or IndexError, which name the argument.
+What the library refuses raises StatusError.  The interpreter's lock is released while the library works.
 """
 
 try:

@@ -23,10 +23,21 @@ def refiner():
     ({"faces": np.zeros((2, 3))}, TypeError, "faces: integers are needed, not float64"),
     ({"faces": np.zeros((2, 3), bool)}, TypeError, "faces: integers"),
     ({"faces": np.zeros(6, int)}, ValueError, "faces: 2 dimensions are needed"),
-    ({"faces": [[0, 1, 2**31]]}, ValueError, r"number 2 is 2147483648, which 32 bits"),
-    ({"faces": np.array([[0, 1, 2**32 + 2]], np.uint64)}, ValueError, "32 bits"),
-    ({"faces": [[0, 1, -2**40]]}, ValueError, "32 bits"),
-    ({"faces": [[0, 1, 2**31 - 1]]}, ValueError, "2147483647"),
+    ({"faces": [[0, 1, 2**31]]}, ValueError, r"number 2 is 2147483648, which int32 does"),
+    ({"faces": np.array([[0, 1, 2**32 + 2]], np.uint64)}, ValueError, "int32 does not hold"),
+    ({"faces": [[0, 1, -2**40]]}, ValueError, "int32 does not hold"),
+    ({"faces": [[0, 1, 2**31 - 1]]}, ValueError,
+     "^num_vertices: corner 2 refers to number 2147483647, but there are 3 corners; pass"),
+    ({"faces": [[0, 1, 2**31 - 2]]}, ValueError, "num_vertices: corner 2 refers to number 2147483646"),
+    ({"faces": [[0, 10**8, 2]]}, ValueError, "num_vertices: corner 1 refers to number 100000000"),
+    ({"faces": [[0, 65536, 2]]}, ValueError, "num_vertices: corner 1 refers to number 65536"),
+    ({"faces": [[0, 1, 2]], "fvar_channels": [[0, 1, 65536]]}, ValueError,
+     "num_fvar_values: corner 2 refers to number 65536"),
+    ({"faces": [[0, 1, 2]], "fvar_channels": [[0, 1, 2]], "num_fvar_values": [2**31 - 1]},
+     osh.StatusError, "2147483650 values and face-vertices in face-varying channel 0"),
+    ({"faces": np.ma.masked_less(np.zeros((2, 3), int), 1)}, ValueError, "faces: .* masked"),
+    ({"faces": CUBE_FACES, "creases": ([[0, 1]], 1e300)}, ValueError,
+     r"creases: number 0 is 1e\+300, which float32 does not hold"),
     ({"faces": CUBE_FACES, "num_vertices": -1}, ValueError, "num_vertices: -1"),
     ({"faces": CUBE_FACES, "num_vertices": 8.0}, TypeError,
      "^num_vertices: an integer is needed, not float$"),
@@ -72,6 +83,33 @@ def test_base_meshes(arguments, error, message):
         osh.TopologyRefiner(**arguments)
 
 
+def test_numbers_of_vertices():
+    assert osh.TopologyRefiner([[0, 1, 65535]]).get_level(0).num_vertices == 65536
+    given = osh.TopologyRefiner([[0, 1, 2]], 300000, fvar_channels=[[0, 1, 2]],
+                                num_fvar_values=[200000])
+    assert given.get_level(0).num_vertices == 300000
+    assert given.get_level(0).get_num_fvar_values(0) == 200000
+    # 16 for each corner.
+    faces = 16 * np.arange(15000).reshape(-1, 3) + 15
+    assert osh.TopologyRefiner(faces).get_level(0).num_vertices == 16 * 15000
+    faces[-1, 1] = 16 * 15000
+    with pytest.raises(ValueError, match="num_vertices: corner 14998 refers to number 240000"):
+        osh.TopologyRefiner(faces)
+
+
+def test_indices_and_sharpness_of_any_type_and_layout():
+    expected = osh.TopologyRefiner(CUBE_FACES, creases=([[0, 1]], 2.5)).get_level(0)
+    faces = np.array(CUBE_FACES)
+    for taken in (faces, faces.astype(">i2"), np.asfortranarray(faces), unaligned(faces),
+                  unaligned(faces.astype(np.uint64)), faces[::-1].copy()[::-1]):
+        for sharpness in (2.5, [2.5], np.float16([2.5]), unaligned(np.float32([2.5])),
+                          unaligned(np.float64([2.5])), np.array(2.5, ">f8")):
+            level = osh.TopologyRefiner(taken, creases=([[0, 1]], sharpness)).get_level(0)
+            np.testing.assert_array_equal(level.face_vertices, expected.face_vertices)
+            np.testing.assert_array_equal(level.get_edge_sharpness(),
+                                          expected.get_edge_sharpness())
+
+
 def evaluators(refiner):
     table = osh.StencilTable(refiner, generate_intermediate_levels=False)
     evaluator = osh.RefinementEvaluator(refiner)
@@ -93,24 +131,68 @@ def test_sources(refiner, which):
         (np.zeros((8, 0), np.float32), ValueError, "src: elements of the shape"),
         (np.zeros((8, 3, 1), np.float32), ValueError, "src: one or two dimensions"),
         (np.float32(3), (TypeError, ValueError), "src"),
-        (np.zeros((8, 3)), TypeError, r"src: float32 is needed, not float64; .astype"),
-        (np.zeros((8, 3), np.float16), TypeError, "src: float32 is needed, not float16"),
-        (np.zeros((8, 3), np.int32), TypeError, "src: float32 is needed, not int32"),
-        (np.zeros((8, 3), ">f4"), TypeError, "src: float32 is needed"),
-        (np.zeros((3, 8), np.float32).T, ValueError, "src: the numbers of an element"),
-        (np.zeros((8, 6), np.float32)[:, ::2], ValueError, "src: the numbers of an element"),
-        (np.zeros((8, 3), np.float32)[::-1], ValueError, "src: the numbers of an element"),
-        (np.zeros((8, 3), np.float32)[:, ::-1], ValueError, "src: the numbers of an element"),
-        (np.broadcast_to(np.float32([1, 2, 3]), (8, 3)), ValueError, "src: the numbers"),
-        (np.frombuffer(bytes(97), np.uint8)[1:].view(np.float32).reshape(8, 3), ValueError,
-         "src: the numbers"),
-        (np.zeros(8, [("x", "f4"), ("y", "u1")])["x"], ValueError, "src: the numbers"),
-        (None, (TypeError, ValueError), "src|float"),
-        ("abc", (TypeError, ValueError), "float"),
+        (np.zeros((8, 3), complex), TypeError, "src: numbers are needed, not complex128"),
+        (np.zeros((8, 3), bool), TypeError, "src: numbers are needed, not bool"),
+        (np.full((8, 3), 2**24 + 1), ValueError,
+         "src: number 0 is 16777217, which float32 does not hold"),
+        (np.full((8, 3), 2**64 - 1, np.uint64), ValueError, "which float32 does not hold"),
+        (np.full((8, 3), 2**63 - 1), ValueError, "which float32 does not hold"),
+        (np.full((8, 3), 1e39), ValueError, r"src: number 0 is 1e\+39, which float32 does not hold"),
+        (np.full((8, 3), np.longdouble("1e39")), ValueError, "src: number 0 is"),
+        ([[0, 0, 0]] * 7 + [[0, -1e300, 0]], ValueError, r"src: number 22 is -1e\+300"),
+        (np.ma.masked_less(np.zeros((8, 3), np.float32), 1), ValueError, "src: .* masked"),
+        (None, TypeError, "src: an array is needed, not None"),
+        ("abc", (TypeError, ValueError), "src"),
     ]
     for src, error, message in bad:
         with pytest.raises(error, match=message):
             run(src)
+
+
+def unaligned(array):
+    """The same numbers, one byte behind where the machine has them."""
+    data = np.frombuffer(b"p" + array.tobytes(), np.uint8)[1:]
+    result = data.view(array.dtype).reshape(array.shape)
+    assert not result.flags.aligned
+    return result
+
+
+@pytest.mark.parametrize("which", range(4))
+def test_sources_of_any_type_and_layout(refiner, which):
+    run = evaluators(refiner)[which]
+    expected = run(CUBE_POSITIONS)
+    wide = np.zeros((8, 6), np.float32)
+    wide[:, ::2] = CUBE_POSITIONS
+    records = np.zeros(8, [("p", "f4", 3), ("tag", "u1")])
+    records["p"] = CUBE_POSITIONS
+    for src in (CUBE_POSITIONS.tolist(), CUBE_POSITIONS.astype(int).tolist(),
+                CUBE_POSITIONS.astype(np.float64), CUBE_POSITIONS.astype(np.float16),
+                CUBE_POSITIONS.astype(np.longdouble), CUBE_POSITIONS.astype(np.int8),
+                CUBE_POSITIONS.astype(">f4"), CUBE_POSITIONS.astype(">i2"),
+                np.asfortranarray(CUBE_POSITIONS), CUBE_POSITIONS[::-1].copy()[::-1],
+                CUBE_POSITIONS[:, ::-1].copy()[:, ::-1], wide[:, ::2], records["p"],
+                unaligned(CUBE_POSITIONS), unaligned(CUBE_POSITIONS.astype(np.float64)),
+                unaligned(CUBE_POSITIONS.astype(np.int64)),
+                np.frombuffer(b"ply" + CUBE_POSITIONS.tobytes(), "<f4", 24, 3).reshape(8, 3),
+                np.ma.masked_greater(CUBE_POSITIONS, 7)):
+        found = run(src)
+        assert found.dtype == np.float32
+        np.testing.assert_array_equal(found, expected)
+    np.testing.assert_array_equal(run(CUBE_POSITIONS[::-1]), run(CUBE_POSITIONS[::-1].copy()))
+    np.testing.assert_array_equal(run(np.broadcast_to([1, 2, 3], (8, 3))),
+                                  run(np.tile([1, 2, 3], (8, 1))))
+    # float64 is rounded; infinities, and integers that are some, stay what they are.
+    tenths = np.full((8, 3), 0.1)
+    np.testing.assert_array_equal(run(tenths), run(tenths.astype(np.float32)))
+    large = np.full((8, 3), 2**62)
+    np.testing.assert_array_equal(run(large), run(np.full((8, 3), 2.0**62, np.float32)))
+    with np.errstate(all="ignore"):
+        assert np.isnan(run(np.full((8, 3), np.nan))).all()
+        assert np.isinf(run(np.full(8, -np.inf))).all()
+    # What is read is a copy.
+    buffer = np.zeros((refiner.get_level(2).num_vertices + 8, 3), np.float32)
+    buffer[:8] = CUBE_POSITIONS[::-1]
+    np.testing.assert_array_equal(run(buffer[7::-1], buffer[:-8]), expected)
 
 
 @pytest.mark.parametrize("which", range(4))
@@ -125,9 +207,12 @@ def test_destinations(refiner, which):
         (np.zeros((n, 2), np.float32), ValueError, "dst: elements of 3 numbers are needed"),
         (np.zeros((n, 4), np.float32), ValueError, "dst: elements of 3 numbers are needed"),
         (np.zeros(n, np.float32), ValueError, "dst: elements of 3 numbers"),
-        (np.zeros((n, 3)), TypeError, "dst: float32 is needed, not float64"),
+        (np.zeros((n, 3)), TypeError, "^dst: float32 is needed, not float64$"),
+        (np.zeros((n, 3), ">f4"), TypeError, "^dst: float32 is needed, not >f4$"),
         (np.zeros((3, n), np.float32).T, ValueError, "dst: the numbers of an element"),
-        (np.zeros((n, 3), np.float32)[::-1], ValueError, "dst: the numbers of an element"),
+        (np.zeros((n, 3), np.float32)[::-1], ValueError, "dst: elements must lie one behind"),
+        (np.frombuffer(bytearray(12 * n + 1), np.uint8)[1:].view(np.float32).reshape(n, 3),
+         ValueError, "^dst: the array is not aligned$"),
         (np.broadcast_to(np.zeros((1, 3), np.float32), (n, 3)), ValueError, "dst"),
         (read_only, ValueError, "dst: the array is read-only"),
         ([[0.0] * 3] * n, TypeError, "dst: an array to write to is needed, not list"),
@@ -198,7 +283,7 @@ def test_further_arguments(refiner):
         (lambda: osh.CpuEvaluator.eval_stencils(None, CUBE_POSITIONS), TypeError, ""),
         (lambda: osh.RefinementEvaluator(refiner, interpolation_mode="face_varying",
                                          fvar_channel=1), osh.StatusError, ""),
-        (lambda: primvars.interpolate(1, CUBE_POSITIONS.astype(np.float16)), TypeError, "float32"),
+        (lambda: primvars.interpolate(1, CUBE_POSITIONS.astype(complex)), TypeError, "numbers"),
         (lambda: primvars.interpolate(1, CUBE_POSITIONS, np.zeros((32, 3))), TypeError,
          "dst: float32"),
         (lambda: primvars.interpolate_face_uniform(1, np.zeros(5)), ValueError, "src: 6 elements"),
@@ -223,11 +308,25 @@ def test_further_arguments(refiner):
     (np.zeros((7, 3), np.float32), ValueError, "rest_positions: 8 elements"),
     (np.zeros((8, 2), np.float32), ValueError, "rest_positions: x, y and z"),
     (np.zeros(8, np.float32), ValueError, "rest_positions: x, y and z"),
-    (np.zeros((8, 4), np.float32)[:, :3], ValueError, "rest_positions: they must lie"),
-    (np.zeros((8, 3), int), TypeError, "rest_positions: float32"),
+    (np.zeros((8, 3), bool), TypeError, "rest_positions: numbers"),
     (np.full((8, 3), np.nan), osh.StatusError, ""),
 ])
 def test_rest_positions(rest, error, message):
     refiner = osh.TopologyRefiner(CUBE_FACES)
     with pytest.raises(error, match=message):
         refiner.refine_coplanar(rest, 1)
+
+
+def test_rest_positions_of_any_type_and_layout():
+    def refine(rest):
+        refiner = osh.TopologyRefiner(CUBE_FACES)
+        refiner.refine_coplanar(rest, 2)
+        return refiner.get_level(2).face_vertices.copy()
+
+    expected = refine(CUBE_POSITIONS)
+    wide = np.zeros((8, 4), np.float32)
+    wide[:, :3] = CUBE_POSITIONS
+    for rest in (CUBE_POSITIONS.tolist(), CUBE_POSITIONS.astype(int), wide[:, :3],
+                 wide.astype(np.float64)[:, :3], np.asfortranarray(CUBE_POSITIONS),
+                 unaligned(CUBE_POSITIONS.astype(np.float64)), CUBE_POSITIONS.astype(">f8")):
+        np.testing.assert_array_equal(refine(rest), expected)

@@ -259,3 +259,48 @@ def test_limits_that_are_not_there(refiner):
         varying.evaluate_limit(POSITIONS, 1)
     with pytest.raises(IndexError, match="level"):
         varying.evaluate_limit(POSITIONS, 4)
+
+
+def test_normals_of_either_precision():
+    random = np.random.default_rng(4)
+    du, dv = random.random((2, 50, 3))
+    expected = np.cross(du, dv)
+    expected /= np.linalg.norm(expected, axis=1)[:, None]
+    exact = osh.compute_normals(du, dv)
+    assert exact.dtype == np.float64
+    np.testing.assert_allclose(exact, expected, rtol=0, atol=1e-14)
+    single = osh.compute_normals(du.astype(np.float32), dv.astype(np.float32))
+    assert single.dtype == np.float32
+    np.testing.assert_allclose(single, expected, rtol=0, atol=1e-5)
+    mixed = np.empty((50, 3))
+    assert osh.compute_normals(du.astype(np.float32), dv, mixed) is mixed
+    np.testing.assert_allclose(mixed, expected, rtol=0, atol=1e-5)
+    with pytest.raises(TypeError, match="^normals: float64 is needed, not float32$"):
+        osh.compute_normals(du, dv, np.empty((50, 3), np.float32))
+    # Derivatives as the module makes them.
+    factory = osh.SurfaceFactory(osh.TopologyRefiner(CUBE_FACES, face_mask="smooth"))
+    points, du, dv = factory.vertex_surface(0).evaluate_with_derivatives([[0.5, 0.5]],
+                                                                         CUBE_POSITIONS)
+    normals = osh.compute_normals(du, dv)
+    assert normals.dtype == np.float64 and abs(np.linalg.norm(normals) - 1) < 1e-15
+    assert points[0] @ normals[0] > 0
+
+
+def test_primvars_of_any_type(refiner):
+    primvars = osh.PrimvarRefiner(refiner)
+    expected = primvars.interpolate(1, POSITIONS)
+    for src in (POSITIONS.tolist(), POSITIONS.astype(np.float16).astype(">f2"), POSITIONS[::-1]):
+        wanted = primvars.interpolate(1, np.array(src, np.float32))
+        found = primvars.interpolate(1, src)
+        assert found.dtype == np.float32
+        np.testing.assert_array_equal(found, wanted)
+    exact = primvars.interpolate(1, POSITIONS.astype(np.float64))
+    np.testing.assert_allclose(exact, expected, atol=1e-6)
+    for src in (POSITIONS.astype(">f8"), np.asfortranarray(POSITIONS.astype(np.float64)),
+                POSITIONS.astype(np.longdouble)):
+        found = primvars.interpolate(1, src)
+        assert found.dtype == np.float64
+        np.testing.assert_array_equal(found, exact)
+    if np.finfo(np.longdouble).max > np.finfo(np.float64).max:
+        with pytest.raises(ValueError, match="src: number 0 is inf, which float64 does not hold"):
+            primvars.interpolate(1, np.full((len(POSITIONS), 3), np.longdouble("1e400")))

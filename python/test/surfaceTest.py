@@ -209,13 +209,31 @@ def test_values_of_channels():
         factory.face_varying_surface(0, 1)
 
 
+def test_places_and_points_of_any_type_and_layout(factory):
+    surface = factory.vertex_surface(3)
+    places = np.array([[0, 0], [1, 0.5], [0.25, 0.75]])
+    expected = surface.evaluate(places, POSITIONS.astype(np.float64))
+    for uv in (places.tolist(), places.astype(np.float16), np.asfortranarray(places),
+               places[::-1].copy()[::-1], places.astype(">f8")):
+        for points in (POSITIONS, POSITIONS.astype(np.float64).tolist(), POSITIONS.astype(">f8"),
+                       np.asfortranarray(POSITIONS)):
+            np.testing.assert_array_equal(surface.evaluate(uv, points), expected)
+    # Nothing is rounded to float32.
+    thirds = np.full(len(POSITIONS), 1 / 3).tolist()
+    np.testing.assert_allclose(surface.evaluate(places, thirds), 1 / 3, rtol=0, atol=1e-15)
+    with pytest.raises(TypeError, match="uv: numbers are needed, not"):
+        surface.evaluate([["a", "b"]], POSITIONS)
+    with pytest.raises(ValueError, match="points: .* masked"):
+        surface.evaluate(places, np.ma.masked_less(POSITIONS, 1))
+
+
 def test_errors_name_the_argument(factory):
     with pytest.raises(IndexError, match="face"):
         factory.vertex_surface(len(FACES))
     surface = factory.vertex_surface(0)
     with pytest.raises(ValueError, match="points"):
         surface.evaluate(UV, POSITIONS[1:])
-    with pytest.raises(ValueError, match="uv: not an array"):
+    with pytest.raises(ValueError, match="uv: u and v of each place are needed"):
         surface.evaluate([0.5, 0.5], POSITIONS)
     with pytest.raises(ValueError, match="uv: row 1"):
         surface.evaluate([[0, 0], [np.nan, 0]], POSITIONS)

@@ -51,14 +51,14 @@ double getArea(std::vector<int> const &polygon, std::vector<double> const &coord
 }
 
 /// The facets tile the face: all are counter-clockwise, meet edge to edge, and leave nothing.
-void expectTiling(Tessellation const &tessellation) {
+void expectTiling(Tessellation const &tessellation, double leastArea = 1e-9) {
     std::vector<double> const coords = getCoords(tessellation);
     std::map<std::pair<int, int>, int> sides;
     std::set<int> used;
     double area = 0;
     for (std::vector<int> const &facet : GetFacets(tessellation)) {
         double const facetArea = getArea(facet, coords);
-        ASSERT_GT(facetArea, 1e-9);
+        ASSERT_GT(facetArea, leastArea);
         area += facetArea;
         for (std::size_t i = 0; i < facet.size(); ++i) {
             ++sides[{facet[i], facet[(i + 1) % facet.size()]}];
@@ -110,6 +110,26 @@ TEST(Tessellation, FacetsTileTheFaceForAnyLevels) {
             std::vector<int> given(levels.size());
             ASSERT_EQ(tessellation.GetLevels(given.data()), size + 1);
             ASSERT_EQ(given, levels);
+        }
+    }
+}
+
+// The polygon of the face has 174,784 corners: cutting them off one by one, each found among all that are left, would
+// take minutes.
+TEST(Tessellation, FineEdgesOfACoarsePolygonAreCutInNearlyLinearTime) {
+    constexpr int kSize = 64;
+    constexpr int kNumSegmentsOfLastLevel = 2731;
+    for (int const numFineEdges : {1, kSize}) {
+        std::vector<int> levels(kSize + 1, 0);
+        std::fill_n(levels.begin(), numFineEdges, int(Tessellation::kLastLevel));
+        for (int const facetSize : {3, 4}) {
+            SCOPED_TRACE(testing::Message() << numFineEdges << ", facets " << facetSize);
+            Tessellation const tessellation(Parameterization(kSize), kSize + 1, levels.data(),
+                                            getOptions(facetSize));
+            ASSERT_TRUE(tessellation.IsValid());
+            EXPECT_EQ(tessellation.GetNumFacets(),
+                      numFineEdges * kNumSegmentsOfLastLevel + kSize - numFineEdges - 2);
+            ASSERT_NO_FATAL_FAILURE(expectTiling(tessellation, 0));
         }
     }
 }

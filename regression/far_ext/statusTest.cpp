@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace OpenSubdivHex::Regression::statusTest {
 
@@ -190,6 +191,24 @@ TEST_F(StatusTest, NonManifoldEdgesAreAWarning) {
         EXPECT_EQ(status.GetWarnings()[1].code, FarExt::WarningCode::InconsistentOrientation);
         EXPECT_EQ(status.GetWarnings()[1].count, 1);
     }
+}
+
+// Fans of faces around a value get values of their own, of which there may be as many as corners.
+TEST_F(StatusTest, ChannelTooLarge) {
+    Shape const &shape = GetShape("cube");
+    ShapeDescriptor const descriptor(shape);
+    Far::TopologyDescriptor::FVarChannel channel;
+    channel.numValues = std::numeric_limits<int>::max();
+    channel.valueIndices = shape.faceVertices.data();
+    Far::TopologyDescriptor large = descriptor.Get();
+    large.numFVarChannels = 1;
+    large.fvarChannels = &channel;
+    CallStatus status;
+    EXPECT_FALSE(TopologyRefinerFactory::Create(large, Sdc::Options(), &status));
+    expectRefusal(status, {StatusCode::TooLarge,
+                           ComponentType::Level,
+                           0,
+                           {"2147483671 values and face-vertices in face-varying channel 0"}});
 }
 
 TEST_F(StatusTest, NullArraysAreNamed) {
