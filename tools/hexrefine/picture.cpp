@@ -46,6 +46,7 @@ void WriteCellPicture(Mesh const &mesh, AdaptiveCamera const &camera,
     Mesh faces;
     faces.faceSizes = mesh.faceSizes;
     faces.faceVertices = mesh.faceVertices;
+    faces.tags = mesh.tags;
     std::transform(places.begin(), places.end(), std::back_inserter(faces.positions),
                    [](double place) { return float(place); });
     Vec3 const eye = GetVec3(faces.positions.data(), mesh.GetNumVertices());
