@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Curvature of the curves that sharp borders become, which depend on their vertices alone.
+// The curves that sharp borders become, which depend on their vertices alone: their curvature, and how
+// close to them the surface bends less.
 #include "surfaceLevels.h"
 
 #include <gtest/gtest.h>
@@ -42,16 +43,17 @@ Shape makePolygon() {
     return shape;
 }
 
-/// A ring of quads, with two at each vertex of its borders.
-Shape makeRing() {
+/// A ring of quads around a hole of that radius, with two at each vertex of its borders.
+Shape makeRing(double innerRadius) {
     Shape shape;
     shape.name = "ring";
     shape.closed = false;
     shape.positions = makePolygon().positions;
     for (int i = 0; i < kNumSides; ++i) {
         std::size_t const outer = 3 * std::size_t(i);
-        shape.positions.insert(shape.positions.end(),
-                               {shape.positions[outer] / 2, shape.positions[outer + 1] / 2, 0});
+        shape.positions.insert(
+            shape.positions.end(),
+            {shape.positions[outer] * innerRadius, shape.positions[outer + 1] * innerRadius, 0});
         int const next = (i + 1) % kNumSides;
         shape.faceSizes.push_back(4);
         shape.faceVertices.insert(shape.faceVertices.end(),
@@ -109,13 +111,30 @@ std::vector<std::vector<double>> measureBorder(Shape const &shape, HexSchemeOpti
     return result;
 }
 
+/// How many faces of a mesh in the plane z = 0 are turned over.
+int countFolded(PolygonMesh const &mesh) {
+    int result = 0;
+    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+        int const size = mesh.GetFaceSize(face);
+        double area = 0;
+        for (int i = 0; i < size; ++i) {
+            Vector3d const &a = mesh.positions[std::size_t(mesh.GetFaceVertex(face, i))];
+            Vector3d const &b =
+                mesh.positions[std::size_t(mesh.GetFaceVertex(face, (i + 1) % size))];
+            area += a.cross(b).z();
+        }
+        result += area < 0 ? 1 : 0;
+    }
+    return result;
+}
+
 } // namespace
 
 TEST(Curve, CurvatureHasALimit) {
     constexpr int kMaxLevel = 7;
     for (FaceMask const mask : {FaceMask::Average, FaceMask::Cosine, FaceMask::Smooth}) {
         SCOPED_TRACE(int(mask));
-        auto const levels = measureBorder(makeRing(), HexSchemeOptions{mask}, kMaxLevel);
+        auto const levels = measureBorder(makeRing(0.5), HexSchemeOptions{mask}, kMaxLevel);
         std::vector<double> const &last = levels[kMaxLevel];
         std::vector<double> const &before = levels[kMaxLevel - 2];
         EXPECT_NEAR(last[0], before[0], 0.002 * last[0]);
@@ -143,6 +162,34 @@ TEST(Curve, CurvatureGrowsAtVerticesOfTheBaseWithOneFace) {
         };
         EXPECT_NEAR(getAmongEdge(last), getAmongEdge(before), 0.02 * getAmongEdge(last));
     }
+}
+
+// The line moves towards its hollow side by more than what is beside it there, so that a narrow row of
+// faces folds over the line.  Widths are parts of the height of the line's vertices above the chord of
+// their neighbours.
+TEST(Curve, NarrowRowsOnItsHollowSideFold) {
+    constexpr int kMaxLevel = 6;
+    double const height = 1 - std::cos(2 * std::acos(-1.0) / kNumSides);
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    auto const count = [&](AnyScheme const &scheme, double width) {
+        Shape const ring = makeRing(1 - width * height);
+        return countFolded(
+            RefineSurface(ring, scheme, kMaxLevel, MeshCenter(), options).back().mesh);
+    };
+    struct Row {
+        FaceMask mask;
+        double width; // from which on nothing folds
+    };
+    for (Row const &row :
+         {Row{FaceMask::Average, 1.4}, Row{FaceMask::Cosine, 1.1}, Row{FaceMask::Smooth, 1.1}}) {
+        SCOPED_TRACE(int(row.mask));
+        HexSchemeOptions const scheme{row.mask};
+        EXPECT_EQ(count(scheme, row.width + 0.05), 0);
+        EXPECT_GT(count(scheme, row.width - 0.15), 0);
+        EXPECT_GT(count(scheme, 0.1), count(scheme, row.width - 0.15));
+    }
+    EXPECT_EQ(count(Sdc::SCHEME_CATMARK, 0.1), 0);
 }
 
 } // namespace OpenSubdivHex::Regression::curveTest

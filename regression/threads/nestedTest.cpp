@@ -25,7 +25,7 @@
 #include <utility>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::nestedTest {
 
 using BfrExt::Parameterization;
 using BfrExt::Surface;
@@ -267,4 +267,4 @@ TEST(Nested, CallsAreMadeInsideOfCalls) {
     EXPECT_GT(numCalls, 10);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::nestedTest

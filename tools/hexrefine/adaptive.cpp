@@ -246,6 +246,8 @@ void AdaptiveRefinement::take(Mesh const &piece, std::vector<int> const &faceLev
         append(_kept.faceSizes, piece.faceSizes);
         append(_kept.faceVertices, piece.faceVertices);
         append(_kept.baseFaces, piece.baseFaces);
+        append(_kept.tags.creaseVertices, piece.tags.creaseVertices);
+        append(_kept.tags.creaseSharpness, piece.tags.creaseSharpness);
         append(_faceLevels, faceLevels);
     }
 }

@@ -87,7 +87,7 @@ public:
     /// @name Cells that are kept
     /// @{
 
-    /// Positions, and faces with their base faces.
+    /// Positions, faces with their base faces, and infinitely sharp creases.
     Mesh const &GetMesh() const { return _kept; }
     /// By face.
     std::vector<int> const &GetFaceLevels() const { return _faceLevels; }

@@ -4,6 +4,7 @@
 #include "programFixture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -294,6 +295,53 @@ TEST_F(HexrefineAdaptive, MakesPicturesOfWhatItsCameraSees) {
         EXPECT_EQ(contents.back().substr(16, 8), std::string("\0\0\0\x78\0\0\0\x5a", 8));
         EXPECT_EQ(std::count(contents.begin(), contents.end(), contents.back()), 1);
     }
+}
+
+// A cube with infinitely sharp edges looks as six faces that share no vertices.
+TEST_F(HexrefineAdaptive, MakesPicturesWithSharpCreases) {
+    std::vector<std::array<int, 3>> const corners = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1},
+                                                     {1, 1, -1},   {-1, -1, 1}, {1, -1, 1},
+                                                     {-1, 1, 1},   {1, 1, 1}};
+    std::vector<std::array<int, 4>> const faces = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                                   {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}};
+    auto const addVertex = [&](int corner, std::string &text) {
+        text += "v";
+        for (int const number : corners[std::size_t(corner)]) {
+            text += " " + std::to_string(number);
+        }
+        text += "\n";
+    };
+    std::string shared;
+    std::string separate;
+    for (int corner = 0; corner < 8; ++corner) {
+        addVertex(corner, shared);
+    }
+    int numSeparate = 0;
+    for (std::array<int, 4> const &face : faces) {
+        std::string line = "f";
+        std::string separateLine = "f";
+        for (int const corner : face) {
+            addVertex(corner, separate);
+            line += " " + std::to_string(corner + 1);
+            separateLine += " " + std::to_string(++numSeparate);
+        }
+        shared += line + "\n";
+        separate += separateLine + "\n";
+    }
+    std::string const path = getPath("cube.png");
+    std::vector<std::string> contents;
+    for (std::string const &arguments :
+         {makeFile("shared.obj", shared) + " --crease-angle 30",
+          makeFile("separate.obj", separate) + " --boundary edge-and-corner"}) {
+        EXPECT_EQ(run(arguments +
+                      " --adaptive --max-level 0 --camera 3,3,5,0,0,0"
+                      " --resolution 120x90 --png " +
+                      path)
+                      .status,
+                  0);
+        contents.push_back(getContent(path));
+    }
+    EXPECT_TRUE(contents[0] == contents[1]);
 }
 
 // The camera is farther away than a float can say.

@@ -4,6 +4,7 @@
 #include "faceLoop.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshCheck.h"
+#include "tools/mesh/patchCreases.h"
 
 #include <algorithm>
 #include <limits>
@@ -89,6 +90,7 @@ void CellPieces::clearPiece() {
     _piece.faceSizes.clear();
     _piece.faceVertices.clear();
     _piece.baseFaces.clear();
+    _piece.tags = MeshTags();
     for (VertexProperty &property : _piece.vertexProperties) {
         property.values.clear();
     }
@@ -207,6 +209,7 @@ void CellPieces::add(Patch const &patch) {
     for (int const place : patch.facets) {
         _piece.faceVertices.push_back(verts[std::size_t(place)]);
     }
+    AddPatchCreases(_level, patch.face, patch.tessellation, verts, &_piece.tags);
     for (std::size_t channel = 0; channel < _mesh.channels.size(); ++channel) {
         addValues(patch, verts, channel);
     }

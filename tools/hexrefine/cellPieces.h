@@ -18,7 +18,8 @@ namespace OpenSubdivHex::Tools {
 /// Vertices of the whole mesh are the *front* first: those on the boundaries of base faces, in the order
 /// of the forest, which are known when all pieces are; then those inside of base faces, which pieces have.
 /// Faces count the vertices of the whole mesh.  Of values, too, each piece has those that none before had:
-/// places of one vertex with the same value share it.
+/// places of one vertex with the same value share it.  Infinitely sharp edges are creases of the piece that
+/// has the first of their faces.
 class CellPieces {
 public:
     /// \param factory  of the refiner

@@ -24,7 +24,7 @@ public:
 
     /// \param positions  x y z of each vertex of the level; copied
     /// \param du, dv     x y z of the derivatives on each of GetSides(): the normals are theirs.
-    ///                   Null for those of the polygons: the mean around each vertex
+    ///                   Null for those of the polygons: the mean on each side of a vertex
     void SetPositions(float const *positions, float const *du = nullptr, float const *dv = nullptr);
 
     OsdExt::TriangleIndices const &GetTriangles() const { return _triangles; }
@@ -33,7 +33,8 @@ public:
     /// The normals at the corners, interpolated at the barycentric coordinates \p u and \p v of a
     /// triangle.
     Vec3 GetSmoothNormal(int triangle, float u, float v) const;
-    /// The normal of the polygon that the triangle is a part of, by Newell's formula.
+    /// The normal of the polygon that the triangle is a part of, by Newell's formula: of the half, where
+    /// an infinitely sharp crease crosses a hexagon.
     Vec3 GetFlatNormal(int triangle) const;
     /// The face of the control mesh that the triangle lies in.
     int GetBaseFace(int triangle) const { return _triangles.baseFaces[triangle]; }
@@ -44,13 +45,17 @@ public:
     float GetEdgeDistance(int triangle, Vec3 point) const;
 
 private:
+    void findTrianglePolygons();
     void findPolygonNormals();
 
     FarExt::TopologyLevel const &_level;
     FarExt::LimitSides const _sides;
     OsdExt::TriangleIndices const _triangles;
+    OsdExt::PolygonIndices const
+        _polygons; ///< what has one normal: holes, too, cut along creases alone
+    std::vector<int> _trianglePolygons; ///< by triangle
     std::vector<float> _positions;
-    std::vector<Vec3> _faceNormals;
+    std::vector<Vec3> _polygonNormals;
     std::vector<Vec3> _normals; ///< by side
 };
 

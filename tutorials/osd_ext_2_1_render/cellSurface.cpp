@@ -3,6 +3,7 @@
 
 #include "far_ext/topologyRefinerFactory.h"
 #include "tools/mesh/mesh.h"
+#include "tools/mesh/patchCreases.h"
 #include "tools/mesh/topologyDescriptor.h"
 
 #include <algorithm>
@@ -69,27 +70,6 @@ void evaluate(BfrExt::SurfaceFactory const &factory, int face, std::vector<float
     }
     surface.Evaluate(patch->tessellation, control.data(), 3, patch->p.data(), patch->du.data(),
                      patch->dv.data(), 3);
-}
-
-// Sharp edges of the control mesh stay creases: normals have a side each there.
-void addCreases(FarExt::TopologyLevel const &base, int face, Patch const &patch, MeshTags *tags) {
-    int const numBoundary = patch.tessellation.GetNumBoundaryCoords();
-    Far::ConstIndexArray const edges = base.GetFaceEdges(face);
-    int place = 0;
-    for (int local = 0; local < edges.size(); ++local) {
-        int const end = place + patch.tessellation.GetNumEdgeCoords(local) + 1;
-        bool const isFirst = base.GetEdgeFaces(edges[local])[0] == face;
-        bool const isCrease =
-            base.IsEdgeInfSharp(edges[local]) && !base.IsEdgeBoundary(edges[local]);
-        for (; place < end; ++place) {
-            if (isCrease && isFirst) {
-                for (int const point : {place, (place + 1) % numBoundary}) {
-                    tags->creaseVertices.push_back(patch.points[std::size_t(point)]);
-                }
-                tags->creaseSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
-            }
-        }
-    }
 }
 
 } // namespace
@@ -166,7 +146,7 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
             corners.push_back(place);
             mesh.faceVertices.push_back(patch.points[std::size_t(place)]);
         }
-        addCreases(base, face, patch, &mesh.tags);
+        AddPatchCreases(base, face, tessellation, patch.points, &mesh.tags);
     }
     _baseFaces.resize(faces.size());
     std::transform(faces.begin(), faces.end(), _baseFaces.begin(),
