@@ -58,33 +58,42 @@ bool hasSharpLines(LimitPatch const &patch) {
 
 } // namespace
 
-// Whether a vertex is a corner for ever, and several fans have it.  Semi-sharp edges fade by what others there
-// are around the vertex, and at free boundaries all faces tell its tangents.
+// It has several fans and is a corner for ever.  Semi-sharp edges fade by what others there are around a vertex,
+// and at free boundaries all faces tell the tangents.
+bool ComesApart(Level const &level, Index vert) {
+    SharpVertex const *const sharp =
+        level.IsNonManifold(vert) ? level.FindSharpVertex(vert) : nullptr;
+    if (!sharp || sharp->rule != Crease::RULE_CORNER) {
+        return false;
+    }
+    auto const isForEver = [](float sharpness) {
+        return !Crease::IsSharp(sharpness) || Crease::IsInfinite(sharpness);
+    };
+    Far::ConstIndexArray const edges = level.GetVertexEdges(vert);
+    bool isCorner = isForEver(level.GetVertexSharpness(vert)) &&
+                    std::none_of(edges.begin(), edges.end(), [&](Index edge) {
+                        return level.edgeFaces[edge][1] == kFreeBoundary;
+                    });
+    int numFans = 0;
+    ForEachFanItems(level, vert, [&](FanItems const &fan) {
+        ++numFans;
+        isCorner =
+            isCorner && std::all_of(fan.items.begin(), fan.items.end(), [&](FanItem const &item) {
+                return item.isFace || isForEver(item.sharpness);
+            });
+    });
+    return isCorner && numFans > 1;
+}
+
+// Whether a vertex does, which is looked at once.
 bool LimitPatchGatherer::comesApart(Index vert) {
-    if (vert == _whole || _level.nonManifoldVerts.empty() || !_level.IsNonManifold(vert)) {
+    if (vert == _whole || !_level.IsNonManifold(vert)) {
         return false;
     }
     if (Index const known = _apart.Find(vert); known != Far::INDEX_INVALID) {
         return known != 0;
     }
-    auto const isForEver = [](float sharpness) {
-        return !Crease::IsSharp(sharpness) || Crease::IsInfinite(sharpness);
-    };
-    SharpVertex const *const sharp = _level.FindSharpVertex(vert);
-    bool isApart =
-        sharp && sharp->rule == Crease::RULE_CORNER && isForEver(_level.GetVertexSharpness(vert));
-    int numFans = 0;
-    ForEachFanItems(_level, vert, _fan, [&](FanItems const &fan) {
-        ++numFans;
-        isApart =
-            isApart && std::all_of(fan.items.begin(), fan.items.end(), [&](FanItem const &item) {
-                return item.isFace || isForEver(item.sharpness);
-            });
-    });
-    Far::ConstIndexArray const edges = _level.GetVertexEdges(vert);
-    isApart = isApart && numFans > 1 && std::none_of(edges.begin(), edges.end(), [&](Index edge) {
-                  return _level.edgeFaces[edge][1] == kFreeBoundary;
-              });
+    bool const isApart = ComesApart(_level, vert);
     _apart.FindOrSet(vert, isApart ? 1 : 0);
     if (isApart) {
         ForEachFan(_level, vert, [&](VertexFan const &fan) {
@@ -645,9 +654,7 @@ PatchRefinement MakePatchStep(Refinement const &refinement, HexSchemeOptions con
     SortUnique(wanted);
     RefinementRows::Part const part = FindPart(refinement, schemeOptions, interpolation, wanted);
     RefinementRows const rows(refinement, schemeOptions, interpolation, part);
-    // What they have taken of memory is kept for the next step.
-    static thread_local std::vector<SparseRow> sparseRows;
-    sparseRows.resize(std::max(sparseRows.size(), std::size_t(rows.GetNumRows())));
+    std::vector<SparseRow> sparseRows(std::size_t(rows.GetNumRows()));
     Interpolate<double>(rows, Columns{part.verts}, sparseRows);
 
     PatchRefinement step;

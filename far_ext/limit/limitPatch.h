@@ -53,6 +53,9 @@ struct LimitPatch {
     std::vector<int> signature;
 };
 
+/// Whether a vertex of a level with full topology comes apart in patches.
+OPENSUBDIVHEX_API bool ComesApart(Level const &level, Far::Index vert);
+
 /// \brief Cuts patches out of a level, which has full topology.
 class LimitPatchGatherer {
 public:
