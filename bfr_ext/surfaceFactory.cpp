@@ -137,7 +137,33 @@ CallStatus SurfaceFactory::checkFace(Index face) const {
                                   " on a boundary that VTX_BOUNDARY_NONE leaves without a limit");
         }
     }
-    return result;
+    return checkCrowd(face, -1, face);
+}
+
+// Whether the patch of a face, of the mesh (channel -1) or of a channel, is not too large.
+CallStatus SurfaceFactory::checkCrowd(Index face, int channel, Index levelFace) const {
+    internal::FaceWalk::Crowd const *const crowd =
+        _walks[std::size_t(channel + 1)]->FindCrowd(levelFace);
+    if (!crowd) {
+        return CallStatus();
+    }
+    auto const str = [](int number) { return std::to_string(number); };
+    bool const isFace = crowd->face != Far::INDEX_INVALID;
+    std::string const prefix = "face " + str(face) + " has no limit surface";
+    std::string const suffix =
+        ", more than the " + str(crowd->maxSize) + " up to which surfaces are made";
+    if (channel >= 0) {
+        return CallStatus(StatusCode::Unsupported, ComponentType::Face, face,
+                          prefix + " of channel " + str(channel) + ": " + str(crowd->size) +
+                              (isFace ? " values are around one face" : " faces share one value") +
+                              suffix);
+    }
+    return isFace ? CallStatus(StatusCode::Unsupported, ComponentType::Face, crowd->face,
+                               prefix + ": face " + str(crowd->face) + " has " + str(crowd->size) +
+                                   " vertices" + suffix)
+                  : CallStatus(StatusCode::Unsupported, ComponentType::Vertex, crowd->vert,
+                               prefix + ": vertex " + str(crowd->vert) + " has " +
+                                   str(crowd->size) + " faces" + suffix);
 }
 
 bool SurfaceFactory::FaceHasLimitSurface(Index face, CallStatus *status) const {
@@ -145,7 +171,7 @@ bool SurfaceFactory::FaceHasLimitSurface(Index face, CallStatus *status) const {
     Level const &level = _level.GetLevel();
     if (result.IsOk() && findVertexOfManyFaces(level, face) < level.GetFaceSize(face)) {
         std::vector<Index> points;
-        findType(level, face, face, Interpolation::Vertex, points, result);
+        findType(-1, face, face, Interpolation::Vertex, points, result);
     }
     bool const hasSurface = result.IsOk();
     if (status) {
@@ -159,14 +185,18 @@ Parameterization SurfaceFactory::GetFaceParameterization(Index face) const {
 }
 
 // The type of a face that is not plain, from all of its patch; null, and a status, where it has no limit.
-internal::CellType const *SurfaceFactory::findType(Level const &level, Index levelFace, Index face,
+internal::CellType const *SurfaceFactory::findType(int channel, Index levelFace, Index face,
                                                    Interpolation interpolation,
                                                    std::vector<Index> &points,
                                                    CallStatus &status) const {
     status = checkFace(face);
+    if (status.IsOk() && channel >= 0) {
+        status = checkCrowd(face, channel, levelFace);
+    }
     if (!status.IsOk()) {
         return nullptr;
     }
+    Level const &level = _walks[std::size_t(channel + 1)]->GetLevel();
     CellPatch cell;
     GatherBaseCell(level, levelFace, cell);
     std::size_t const numPoints = cell.patch.sources.size();
@@ -211,7 +241,7 @@ CallStatus SurfaceFactory::init(Index face, Interpolation interpolation, int cha
                           levelFace, points)) {
         type = internal::BaseType(*plain);
     } else if (internal::CellType const *const cellType =
-                   findType(level, levelFace, face, interpolation, points, result)) {
+                   findType(channel, levelFace, face, interpolation, points, result)) {
         type = internal::BaseType(*cellType);
     } else {
         surface.Clear();

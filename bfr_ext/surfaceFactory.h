@@ -124,9 +124,12 @@ public:
     ///
     /// \param status  says why not: InvalidArgument for a face out of range and for a hole, and behind
     ///                a first step for a refiner that has refined again since the factory was made;
-    ///                Unsupported for a face at a boundary with VTX_BOUNDARY_NONE, and for one at a vertex
-    ///                with so many faces and a single sharp edge that it has no limit stencil
-    ///                (FarExt::LimitStencilTableFactoryReal)
+    ///                Unsupported for a face at a boundary with VTX_BOUNDARY_NONE, and for one whose surface
+    ///                depends on too many faces, the status naming the vertex or the face: where a vertex
+    ///                of the face, or one joined to it by an edge, has more than 512 faces, 128 unless all
+    ///                of its edges are alike, 64 if some of them are semi-sharp then; or is in
+    ///                a face with more than 512 vertices.  At a non-manifold vertex that is a corner for
+    ///                ever, as a pole that faces name twice, the faces of each fan count by themselves
     bool FaceHasLimitSurface(Index face, FarExt::CallStatus *status = nullptr) const;
     /// The parameter plane of a face, which is in range.
     Parameterization GetFaceParameterization(Index face) const;
@@ -216,8 +219,9 @@ private:
     bool hasRefinedAgain() const;
     FarExt::CallStatus checkIsFace(Index face) const;
     FarExt::CallStatus checkFace(Index face) const;
-    internal::CellType const *findType(FarExt::internal::Level const &level, Index levelFace,
-                                       Index face, FarExt::Interpolation interpolation,
+    FarExt::CallStatus checkCrowd(Index face, int channel, Index levelFace) const;
+    internal::CellType const *findType(int channel, Index levelFace, Index face,
+                                       FarExt::Interpolation interpolation,
                                        std::vector<Index> &points,
                                        FarExt::CallStatus &status) const;
     // With the causes of the public functions, which report them; a channel is in range, -1: none.

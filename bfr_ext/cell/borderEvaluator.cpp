@@ -7,6 +7,31 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
+// Finds what the sources of an edge weigh at its places.
+class WeightFinder {
+public:
+    WeightFinder(CellType const &type, RingCell const *cell)
+        : _type(type), _cell(cell),
+          _of(cell && cell->IsInner() ? StencilOf::Step : StencilOf::Points) {}
+
+    // Valid until the next call.
+    std::vector<double> const &Find(double point) {
+        _stencil.Find(_type, point, _of);
+        if (!_cell) {
+            return _stencil.GetWeights();
+        }
+        _cell->GetPlaces().Order(_stencil.GetWeights(), _ordered);
+        return _ordered;
+    }
+
+private:
+    CellType const &_type;
+    RingCell const *const _cell;
+    StencilOf const _of;
+    BorderStencil _stencil;
+    std::vector<double> _ordered;
+};
+
 // The places inside of an edge of a level, from its start on; they are the same from its end.
 std::vector<double> makeEdgePoints(int level) {
     Polyline const polyline(level);
@@ -137,14 +162,31 @@ void BorderEvaluator<REAL>::EvaluatePoint(std::size_t edge, Pair const &place, R
     sumUp(makeMatrix(*_edge.type, _edge.cell, {place[_isReversed ? 0 : 1]}), result, 0);
 }
 
-// They are kept one by one, since polylines have few in common.
+// They are kept one by one, since polylines have few in common, and without what a matrix of one place is
+// filled up with, which is most of it.
 template <typename REAL>
 void BorderEvaluator<REAL>::EvaluateKeptPoint(std::size_t edge, Pair const &place, REAL *result) {
-    setEdge(edge);
+    constexpr int kStep = Polyline::kLength >> kLastKeptLevel;
     double const point = place[_isReversed ? 0 : 1];
-    sumUp(getMatrix(*_edge.type, _edge.cell, PatternOf::BorderPlace, int(point * Polyline::kLength),
-                    [&] { return std::vector<double>(1, point); }),
-          result, 0);
+    int const key = int(point * Polyline::kLength);
+    if (key % kStep != 0) {
+        EvaluatePoint(edge, place, result);
+        return;
+    }
+    setEdge(edge);
+    std::vector<REAL> const &weights =
+        getPatterns(*_edge.type, _edge.cell)
+            .template Get<std::vector<REAL>>(
+                PatternTable::GetKind<REAL>(PatternOf::BorderPlace), &key, &key + 1, [&] {
+                    std::vector<double> const stencil =
+                        WeightFinder(*_edge.type, _edge.cell).Find(point);
+                    return std::vector<REAL>(stencil.begin(), stencil.end());
+                });
+    if (_placeMatrix.GetNumPoints() != weights.size()) {
+        _placeMatrix = PlaceMatrix<REAL>(1, weights.size());
+    }
+    _placeMatrix.Set(0, weights);
+    sumUp(_placeMatrix, result, 0);
 }
 
 template <typename REAL>
@@ -158,15 +200,9 @@ PlaceMatrix<REAL> BorderEvaluator<REAL>::makeMatrix(CellType const &type, RingCe
                                                     std::vector<double> const &points) {
     PlaceMatrix<REAL> matrix(points.size(),
                              cell ? cell->GetColumns().size() : std::size_t(type.GetNumPoints()));
-    StencilOf const of = cell && cell->IsInner() ? StencilOf::Step : StencilOf::Points;
-    BorderStencil stencil;
-    std::vector<double> ordered;
+    WeightFinder finder(type, cell);
     for (std::size_t place = 0; place < points.size(); ++place) {
-        stencil.Find(type, points[place], of);
-        if (cell) {
-            cell->GetPlaces().Order(stencil.GetWeights(), ordered);
-        }
-        matrix.Set(place, cell ? ordered : stencil.GetWeights());
+        matrix.Set(place, finder.Find(points[place]));
     }
     return matrix;
 }

@@ -38,8 +38,11 @@ public:
     ///
     /// \param place  what the start and the end of the edge weigh
     void EvaluatePoint(std::size_t edge, Pair const &place, REAL *result);
-    /// The same, to the bit, of a place of a polyline, the stencil of which is kept.
+    /// \brief The same, to the bit, of a place of a polyline, the stencil of which is kept as long as the type if
+    /// the place is one of level kLastKeptLevel: deeper ones are many, and seldom come twice.
     void EvaluateKeptPoint(std::size_t edge, Pair const &place, REAL *result);
+
+    static constexpr int kLastKeptLevel = 8;
 
     /// Numbers of a point.
     std::size_t GetSize() const { return _size; }
@@ -62,14 +65,16 @@ private:
 
     static PlaceMatrix<REAL> makeMatrix(CellType const &type, RingCell const *cell,
                                         std::vector<double> const &points);
+    static PatternTable &getPatterns(CellType const &type, RingCell const *cell) {
+        return cell ? cell->GetPatterns() : type.GetPatterns();
+    }
     // Those that makePoints() gives, when they are first asked for with a key.
     template <typename MAKE>
     static PlaceMatrix<REAL> const &getMatrix(CellType const &type, RingCell const *cell,
                                               PatternOf of, int key, MAKE const &makePoints) {
-        PatternTable &patterns = cell ? cell->GetPatterns() : type.GetPatterns();
-        return patterns.template Get<PlaceMatrix<REAL>>(
-            PatternTable::GetKind<REAL>(of), &key, &key + 1,
-            [&] { return makeMatrix(type, cell, makePoints()); });
+        return getPatterns(type, cell)
+            .template Get<PlaceMatrix<REAL>>(PatternTable::GetKind<REAL>(of), &key, &key + 1,
+                                             [&] { return makeMatrix(type, cell, makePoints()); });
     }
     // What a plain face has no rings for.
     CellType::BorderItem const &getItem(std::size_t item) const {
@@ -93,6 +98,7 @@ private:
     std::size_t _edgeNumber = 0;
     Sources _edge = {};
     bool _isReversed = false;
+    PlaceMatrix<REAL> _placeMatrix; // of a place that is kept
     std::vector<int> _indices;
     std::vector<REAL> _paddedPoints;
     std::vector<REAL> _stepPoints;

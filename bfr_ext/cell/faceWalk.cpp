@@ -1,9 +1,128 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "faceWalk.h"
 
+#include "far_ext/limit/limitPatch.h"
+
+#include <algorithm>
 #include <utility>
 
 namespace OpenSubdivHex::BfrExt::internal {
+
+using namespace FarExt::internal;
+using Sdc::Crease;
+
+namespace {
+
+// Faces at a vertex, and vertices of a face, up to which surfaces are made where all faces are of one type: some
+// seconds and 100 megabytes for all of them.
+constexpr int kMaxFaces = 512;
+// Where each face is of a type of its own.  At a single sharp edge steps do not converge with some more.
+constexpr int kMaxDifferentFaces = 128;
+// Where semi-sharp edges make types of each level besides.
+constexpr int kMaxSemiSharpFaces = 64;
+
+// Adds fans that a patch has together.
+class FanCounter {
+public:
+    void Add(FanItems const &fan) {
+        for (FanItem const &item : fan.items) {
+            if (item.isFace) {
+                _numFaces += item.half <= 0 ? 1 : 0;
+                continue;
+            }
+            _isUniform = _isUniform && (_numEdges == 0 || item.sharpness == _sharpness);
+            _hasSemiSharp = _hasSemiSharp || (Crease::IsSharp(item.sharpness) &&
+                                              !Crease::IsInfinite(item.sharpness));
+            _sharpness = item.sharpness;
+            ++_numEdges;
+            _numSharp += Crease::IsSharp(item.sharpness) ? 1 : 0;
+        }
+        _isUniform = _isUniform && (fan.isClosed || _numSharp == _numEdges);
+    }
+
+    int GetNumFaces() const { return _numFaces; }
+    int GetMaxFaces() const {
+        return _isUniform ? kMaxFaces : _hasSemiSharp ? kMaxSemiSharpFaces : kMaxDifferentFaces;
+    }
+
+private:
+    int _numFaces = 0;
+    int _numEdges = 0;
+    int _numSharp = 0;
+    float _sharpness = 0;
+    bool _isUniform = true;
+    bool _hasSemiSharp = false;
+};
+
+} // namespace
+
+void FaceWalk::findCrowds() {
+    for (Index vert = 0; vert < _level.numVertices; ++vert) {
+        if (_level.GetNumVertexFaces(vert) <= kMaxSemiSharpFaces) {
+            continue;
+        }
+        Crowd crowd = {vert, Far::INDEX_INVALID, 0, 0};
+        auto const add = [&](FanCounter const &counter) {
+            if (crowd.size == 0 && counter.GetNumFaces() > counter.GetMaxFaces()) {
+                crowd.size = counter.GetNumFaces();
+                crowd.maxSize = counter.GetMaxFaces();
+            }
+        };
+        bool const isApart = ComesApart(_level, vert);
+        FanCounter all;
+        ForEachFanItems(_level, vert, [&](FanItems const &fan) {
+            FanCounter one;
+            one.Add(fan);
+            all.Add(fan);
+            add(isApart ? one : FanCounter());
+        });
+        add(isApart ? FanCounter() : all);
+        if (crowd.size > 0) {
+            _crowds.push_back(crowd);
+        }
+    }
+    if (!_level.faceSizes.empty() && _level.faceSizes.back() <= kMaxFaces) {
+        return;
+    }
+    for (Index face = 0; face < _level.numFaces; ++face) {
+        if (_level.GetFaceSize(face) > kMaxFaces) {
+            for (Index const vert : _level.GetFaceVertices(face)) {
+                _crowds.push_back({vert, face, _level.GetFaceSize(face), kMaxFaces});
+            }
+        }
+    }
+    std::stable_sort(_crowds.begin(), _crowds.end(),
+                     [](Crowd const &a, Crowd const &b) { return a.vert < b.vert; });
+}
+
+FaceWalk::Crowd const *FaceWalk::findCrowdAt(Index vert) const {
+    auto const found =
+        std::lower_bound(_crowds.begin(), _crowds.end(), vert,
+                         [](Crowd const &crowd, Index index) { return crowd.vert < index; });
+    return found != _crowds.end() && found->vert == vert ? &*found : nullptr;
+}
+
+FaceWalk::Crowd const *FaceWalk::FindCrowd(Index face) const {
+    if (_crowds.empty()) {
+        return nullptr;
+    }
+    Far::ConstIndexArray const verts = _level.GetFaceVertices(face);
+    for (Index const vert : verts) {
+        if (Crowd const *const crowd = findCrowdAt(vert)) {
+            return crowd;
+        }
+    }
+    for (Index const vert : verts) {
+        for (Index const edge : _level.GetVertexEdges(vert)) {
+            for (Index const end : _level.edgeVerts[edge]) {
+                if (Crowd const *const crowd = findCrowdAt(end)) {
+                    return crowd;
+                }
+            }
+        }
+    }
+    return nullptr;
+}
 
 // A loop of several threads might take up work of its callers, which wait for this.
 void FaceWalk::findNexts() const {

@@ -25,7 +25,9 @@ public:
 
     /// \param level  it has full topology, and must live as long
     explicit FaceWalk(FarExt::internal::Level const &level)
-        : _level(level), _marks(FarExt::internal::MarkFeatures(level)) {}
+        : _level(level), _marks(FarExt::internal::MarkFeatures(level)) {
+        findCrowds();
+    }
     FaceWalk(FaceWalk const &) = delete;
     FaceWalk &operator=(FaceWalk const &) = delete;
 
@@ -35,6 +37,18 @@ public:
         return !_marks.empty() &&
                _marks[std::size_t(vert)] == FarExt::internal::VertexMark::Feature;
     }
+    /// \brief A vertex with so many faces, or in so large a face, that surfaces around cost too much: the
+    /// patch of each has all of them.
+    struct Crowd {
+        Index vert;
+        Index
+            face; ///< that which is too large; INDEX_INVALID where the faces of the vertex are too many
+        int size;    ///< how many they are, or vertices of the face
+        int maxSize; ///< up to which surfaces are made
+    };
+    /// The first one among the vertices of a face and their neighbours; null where there is none.
+    Crowd const *FindCrowd(Index face) const;
+
     /// By place; made when it is first asked for, by whichever thread does so.
     Next const *GetNexts() const {
         std::call_once(_once, [this] { findNexts(); });
@@ -42,10 +56,13 @@ public:
     }
 
 private:
+    void findCrowds();
+    Crowd const *findCrowdAt(Index vert) const;
     void findNexts() const;
 
     FarExt::internal::Level const &_level;
     std::vector<FarExt::internal::VertexMark> const _marks; // empty where all vertices are plain
+    std::vector<Crowd> _crowds;                             // ascending
     mutable std::once_flag _once;
     mutable std::vector<Next> _nexts;
 };

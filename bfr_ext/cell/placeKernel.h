@@ -62,11 +62,12 @@ public:
     std::size_t GetNumPlaces() const { return _numPlaces; }
     std::size_t GetNumPoints() const { return _numPoints; }
 
-    void Set(std::size_t place, std::vector<double> const &stencil) {
+    template <typename WEIGHT>
+    void Set(std::size_t place, std::vector<WEIGHT> const &stencil) {
         std::size_t const begin = place / kMaxWidth * kMaxWidth;
         std::size_t const width = GetWidth(begin);
         REAL *weight = _weights.data() + begin * _numPoints + (place - begin);
-        for (double const value : stencil) {
+        for (WEIGHT const value : stencil) {
             *weight = REAL(value);
             weight += width;
         }

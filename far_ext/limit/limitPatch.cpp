@@ -58,6 +58,95 @@ bool hasSharpLines(LimitPatch const &patch) {
 
 } // namespace
 
+// It has several fans and is a corner for ever.  Semi-sharp edges fade by what others there are around a vertex,
+// and at free boundaries all faces tell the tangents.
+bool ComesApart(Level const &level, Index vert) {
+    SharpVertex const *const sharp =
+        level.IsNonManifold(vert) ? level.FindSharpVertex(vert) : nullptr;
+    if (!sharp || sharp->rule != Crease::RULE_CORNER) {
+        return false;
+    }
+    auto const isForEver = [](float sharpness) {
+        return !Crease::IsSharp(sharpness) || Crease::IsInfinite(sharpness);
+    };
+    Far::ConstIndexArray const edges = level.GetVertexEdges(vert);
+    bool isCorner = isForEver(level.GetVertexSharpness(vert)) &&
+                    std::none_of(edges.begin(), edges.end(), [&](Index edge) {
+                        return level.edgeFaces[edge][1] == kFreeBoundary;
+                    });
+    int numFans = 0;
+    ForEachFanItems(level, vert, [&](FanItems const &fan) {
+        ++numFans;
+        isCorner =
+            isCorner && std::all_of(fan.items.begin(), fan.items.end(), [&](FanItem const &item) {
+                return item.isFace || isForEver(item.sharpness);
+            });
+    });
+    return isCorner && numFans > 1;
+}
+
+// Whether a vertex does, which is looked at once.
+bool LimitPatchGatherer::comesApart(Index vert) {
+    if (vert == _whole || !_level.IsNonManifold(vert)) {
+        return false;
+    }
+    if (Index const known = _apart.Find(vert); known != Far::INDEX_INVALID) {
+        return known != 0;
+    }
+    bool const isApart = ComesApart(_level, vert);
+    _apart.FindOrSet(vert, isApart ? 1 : 0);
+    if (isApart) {
+        ForEachFan(_level, vert, [&](VertexFan const &fan) {
+            for (Index k = fan.begin; k < fan.end; ++k) {
+                // No index of a vertex, nor INDEX_INVALID.
+                _fanKeys.FindOrSet(_level.GetVertexCorner(k), -2 - fan.begin);
+            }
+        });
+    }
+    return isApart;
+}
+
+// What tells the vertex of the patch that a corner has: that of the level or, where it comes apart, the fan.
+Index LimitPatchGatherer::findKey(Index corner) {
+    Index const vert = _level.faceVerts[corner];
+    return comesApart(vert) ? _fanKeys.Find(corner) : vert;
+}
+
+// The same of an end of an edge.
+Index LimitPatchGatherer::findEndKey(Index edge, int end) {
+    Index const corner = _level.GetSideCorner(edge, 0);
+    return findKey(end == 0 ? corner : _level.GetNextCorner(_level.edgeFaces[edge][0], corner));
+}
+
+// The same of the first corner that a vertex has in the faces around another one, which does not come apart.
+Index LimitPatchGatherer::findKeyBeside(Index vert, Index neighbor) {
+    if (comesApart(neighbor)) {
+        for (Index const face : _level.GetVertexFaces(vert)) {
+            for (Index corner = _level.faceFirstCorner[face];
+                 corner < _level.faceFirstCorner[face + 1]; ++corner) {
+                if (_level.faceVerts[corner] == neighbor) {
+                    return findKey(corner);
+                }
+            }
+        }
+    }
+    return neighbor;
+}
+
+// Calls function(fan, first of its edges, their number) for the fans of a vertex of the patch.
+template <typename FUNCTION>
+void LimitPatchGatherer::forEachFanOf(int vert, LimitPatch const &patch, FUNCTION const &function) {
+    Index const source = patch.sources[std::size_t(vert)];
+    Index firstEdge = _level.vertFirstEdge[source];
+    ForEachFan(_level, source, [&](VertexFan const &fan) {
+        int const numEdges = fan.end - fan.begin + !fan.isClosed;
+        if (findKey(_level.GetVertexCorner(fan.begin)) == _keys[std::size_t(vert)]) {
+            function(fan, firstEdge, numEdges);
+        }
+        firstEdge += numEdges;
+    });
+}
+
 // The fans one after the other, as the level has them, but closed ones from their first face on.
 void LimitPatchGatherer::orderFans(Index vert, LimitPatch &patch) {
     Index firstEdge = _level.vertFirstEdge[vert];
@@ -131,10 +220,11 @@ int LimitPatchGatherer::findFirstFace(VertexFan const &fan, int &firstSide) {
     return best;
 }
 
-Index LimitPatchGatherer::addVertex(Index vert, LimitPatch &patch) {
+Index LimitPatchGatherer::addVertex(Index key, Index vert, LimitPatch &patch) {
     Index const next = Index(patch.sources.size());
-    Index const found = _verts.FindOrSet(vert, next);
+    Index const found = _verts.FindOrSet(key, next);
     if (found == next) {
+        _keys.push_back(key);
         patch.sources.push_back(vert);
     }
     return found;
@@ -156,7 +246,7 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
     for (int i = 0; i < size; ++i) {
         Index const corner = first + (local + i) % size;
         _corners.push_back(corner);
-        Index const vert = addVertex(_level.faceVerts[corner], patch);
+        Index const vert = addVertex(findKey(corner), _level.faceVerts[corner], patch);
         patch.faceVerts.push_back(vert);
         // Of the faces further out, only the corners at the neighbours of vertex 0 matter.
         if (isRing || vert < _numComplete) {
@@ -176,8 +266,8 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
 void LimitPatchGatherer::addEdge(Index corner, Index edge, LimitPatch &patch) {
     Index const size = Index(patch.otherCorners.size());
     Index const other = _edges.FindOrSet(edge, size);
-    bool const isComplete = _verts.Find(_level.edgeVerts[edge][0]) < _numComplete ||
-                            _verts.Find(_level.edgeVerts[edge][1]) < _numComplete;
+    bool const isComplete = _verts.Find(findEndKey(edge, 0)) < _numComplete ||
+                            _verts.Find(findEndKey(edge, 1)) < _numComplete;
     patch.edgeSharpness.push_back(isComplete ? _level.GetEdgeSharpness(edge) : 0);
     if (other != size) {
         // Further out it does not matter which faces are joined: patches that differ in nothing else
@@ -205,6 +295,10 @@ void LimitPatchGatherer::addTags(LimitPatch &patch) {
     for (Index vert = 0; vert < Index(patch.sources.size()); ++vert) {
         Index const source = patch.sources[vert];
         bool const isComplete = vert < _numComplete;
+        if (isComplete && comesApart(source)) {
+            patch.vertSharpness.push_back(Crease::SHARPNESS_INFINITE);
+            continue;
+        }
         patch.vertSharpness.push_back(isComplete ? _level.GetVertexSharpness(source) : 0);
         if (isComplete && std::binary_search(_level.nonManifoldVerts.begin(),
                                              _level.nonManifoldVerts.end(), source)) {
@@ -223,7 +317,9 @@ void LimitPatchGatherer::addSharpVertices(LimitPatch &patch) {
         mask.vert = vert;
         for (int i = 0; i < 2; ++i) {
             mask.neighbors[i] =
-                mask.neighborWeights[i] > 0 ? _verts.Find(sharp->neighbors[i]) : vert;
+                mask.neighborWeights[i] > 0
+                    ? _verts.Find(findKeyBeside(patch.sources[vert], sharp->neighbors[i]))
+                    : vert;
         }
         patch.sharpVerts.push_back(mask);
     }
@@ -311,6 +407,7 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
 }
 
 void LimitPatchGatherer::clear(LimitPatch &patch) {
+    _keys.clear();
     _verts.Clear();
     _faces.Clear();
     _edges.Clear();
@@ -325,8 +422,8 @@ void LimitPatchGatherer::clear(LimitPatch &patch) {
 // which it has already, and their neighbours.
 void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
     for (Index ringEdge : _ringEdges) {
-        for (Index end : _level.edgeVerts[ringEdge]) {
-            addVertex(end, patch);
+        for (int end = 0; end < 2; ++end) {
+            addVertex(findEndKey(ringEdge, end), _level.edgeVerts[ringEdge][end], patch);
         }
     }
     _numComplete = int(patch.sources.size());
@@ -338,18 +435,15 @@ void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
         addFaceAt(k, true);
     }
     for (int i = numCenters; i < _numComplete; ++i) {
-        Index const neighbor = patch.sources[i];
         // Each fan from its edge to the first centre on, where the fan has one: so neighbours of a
         // pole of several fans look alike.
-        Index firstEdge = _level.vertFirstEdge[neighbor];
-        ForEachFan(_level, neighbor, [&](VertexFan const &fan) {
+        forEachFanOf(i, patch, [&](VertexFan const &fan, Index firstEdge, int numEdges) {
             int const numFaces = fan.end - fan.begin;
-            int const numEdges = numFaces + !fan.isClosed;
-            int const first = findCenterEdge(neighbor, firstEdge, numEdges, numCenters) % numEdges;
+            int const first =
+                findCenterEdge(_keys[std::size_t(i)], firstEdge, numEdges, numCenters) % numEdges;
             for (int k = 0; k < numFaces; ++k) {
                 addFaceAt(fan.begin + (first + k) % numFaces, false);
             }
-            firstEdge += numEdges;
         });
     }
     for (Index corner = 0; corner < Index(_corners.size()); ++corner) {
@@ -365,13 +459,14 @@ void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
 }
 
 // Which of the edges of a fan leads to the first centre; numEdges where none does.
-int LimitPatchGatherer::findCenterEdge(Index neighbor, Index firstEdge, int numEdges,
-                                       int numCenters) const {
+int LimitPatchGatherer::findCenterEdge(Index neighborKey, Index firstEdge, int numEdges,
+                                       int numCenters) {
     int best = numEdges;
     Index bestCenter = numCenters;
     for (int i = 0; i < numEdges; ++i) {
-        IndexPair const &ends = _level.edgeVerts[_level.vertEdges[firstEdge + i]];
-        Index const center = _verts.Find(ends[0] == neighbor ? ends[1] : ends[0]);
+        Index const edge = _level.vertEdges[firstEdge + i];
+        Index const start = findEndKey(edge, 0);
+        Index const center = _verts.Find(start == neighborKey ? findEndKey(edge, 1) : start);
         if (center != Far::INDEX_INVALID && center < bestCenter) {
             best = i;
             bestCenter = center;
@@ -382,7 +477,8 @@ int LimitPatchGatherer::findCenterEdge(Index neighbor, Index firstEdge, int numE
 
 void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
     clear(patch);
-    addVertex(vert, patch);
+    _whole = vert;
+    addVertex(vert, vert, patch);
     orderFans(vert, patch);
     addNeighborhood(1, patch);
 }
@@ -390,9 +486,11 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
 int LimitPatchGatherer::GatherCell(Index face, int const *locals, int numCorners,
                                    LimitPatch &patch) {
     clear(patch);
+    _whole = Far::INDEX_INVALID;
     Index const first = _level.faceFirstCorner[face];
     for (int i = 0; i < numCorners; ++i) {
-        addVertex(_level.faceVerts[first + locals[i]], patch);
+        Index const corner = first + locals[i];
+        addVertex(findKey(corner), _level.faceVerts[corner], patch);
     }
     int const numCenters = int(patch.sources.size());
     Index const firstVert = patch.sources[0];
@@ -402,12 +500,9 @@ int LimitPatchGatherer::GatherCell(Index face, int const *locals, int numCorners
         }
     }
     for (int center = 0; center < numCenters; ++center) {
-        Index const vert = patch.sources[std::size_t(center)];
         // A fan that has the face begins with it.
-        Index firstEdge = _level.vertFirstEdge[vert];
-        ForEachFan(_level, vert, [&](VertexFan const &fan) {
+        forEachFanOf(center, patch, [&](VertexFan const &fan, Index firstEdge, int numEdges) {
             int const numFaces = fan.end - fan.begin;
-            int const numEdges = numFaces + !fan.isClosed;
             Index const *const faces = _level.vertFaces.data() + fan.begin;
             int const firstFace = int(std::find(faces, faces + numFaces, face) - faces) % numFaces;
             for (int i = 0; i < numFaces; ++i) {
@@ -416,7 +511,6 @@ int LimitPatchGatherer::GatherCell(Index face, int const *locals, int numCorners
             for (int i = 0; i < numEdges; ++i) {
                 _ringEdges.push_back(_level.vertEdges[firstEdge + (firstFace + i) % numEdges]);
             }
-            firstEdge += numEdges;
         });
     }
     addNeighborhood(numCenters, patch);
@@ -560,9 +654,7 @@ PatchRefinement MakePatchStep(Refinement const &refinement, HexSchemeOptions con
     SortUnique(wanted);
     RefinementRows::Part const part = FindPart(refinement, schemeOptions, interpolation, wanted);
     RefinementRows const rows(refinement, schemeOptions, interpolation, part);
-    // What they have taken of memory is kept for the next step.
-    static thread_local std::vector<SparseRow> sparseRows;
-    sparseRows.resize(std::max(sparseRows.size(), std::size_t(rows.GetNumRows())));
+    std::vector<SparseRow> sparseRows(std::size_t(rows.GetNumRows()));
     Interpolate<double>(rows, Columns{part.verts}, sparseRows);
 
     PatchRefinement step;

@@ -20,10 +20,15 @@ namespace OpenSubdivHex::FarExt::internal {
 /// The patch is a mesh of its own: vertex 0 is the one that it is made for, and it is cut off along
 /// free boundaries.  Its numbering and content do not depend on those of the level, as far as that
 /// is cheap to achieve: patches that look alike have the same signature.
+///
+/// A non-manifold vertex that stays a corner in all levels *comes apart* into a vertex for each of its
+/// fans, unless it is vertex 0 of a patch of its own: what lies in one fan does not depend on the others,
+/// of which a pole may have thousands.
 struct LimitPatch {
     using Index = Far::Index;
 
-    std::vector<Index> sources; ///< the level's vertex of each vertex of the patch
+    std::vector<Index>
+        sources; ///< the level's vertex of each vertex of the patch; some may come twice
     /// By side of the level's vertex, the side of vertex 0: in closed fans they begin elsewhere.
     std::vector<int> sides;
 
@@ -48,6 +53,9 @@ struct LimitPatch {
     std::vector<int> signature;
 };
 
+/// Whether a vertex of a level with full topology comes apart in patches.
+OPENSUBDIVHEX_API bool ComesApart(Level const &level, Far::Index vert);
+
 /// \brief Cuts patches out of a level, which has full topology.
 class LimitPatchGatherer {
 public:
@@ -71,11 +79,17 @@ public:
 
 private:
     void clear(LimitPatch &patch);
+    bool comesApart(Index vert);
+    Index findKey(Index corner);
+    Index findEndKey(Index edge, int end);
+    Index findKeyBeside(Index vert, Index neighbor);
+    template <typename FUNCTION>
+    void forEachFanOf(int vert, LimitPatch const &patch, FUNCTION const &function);
     void addNeighborhood(int numCenters, LimitPatch &patch);
-    int findCenterEdge(Index neighbor, Index firstEdge, int numEdges, int numCenters) const;
+    int findCenterEdge(Index neighborKey, Index firstEdge, int numEdges, int numCenters);
     void orderFans(Index vert, LimitPatch &patch);
     int findFirstFace(VertexFan const &fan, int &firstSide);
-    Index addVertex(Index vert, LimitPatch &patch);
+    Index addVertex(Index key, Index vert, LimitPatch &patch);
     void addFace(Index face, int local, bool isRing, LimitPatch &patch);
     void addEdge(Index corner, Index edge, LimitPatch &patch);
     void addTags(LimitPatch &patch);
@@ -86,8 +100,12 @@ private:
 
     Level const &_level;
     FaceMask const _faceMask;
+    Index _whole = Far::INDEX_INVALID; // the vertex that does not come apart
+    IndexMap _apart;                   // whether a non-manifold vertex does
+    IndexMap _fanKeys;                 // of vertices that do: the key of each of their corners
+    std::vector<Index> _keys;          // by vertex of the patch
     // Numbers in the patch.
-    IndexMap _verts;
+    IndexMap _verts; // by key
     IndexMap _faces;
     IndexMap _edges;             // the first corner of each
     int _numComplete = 0;        // vertices, the first ones, all of whose faces are in the patch

@@ -131,7 +131,36 @@ CallStatus LimitRows::Find() {
     return Find(verts);
 }
 
+namespace {
+
+CallStatus checkSizes(Level const &level) {
+    auto const fail = [&](ComponentType type, Index index, std::string const &name, int size,
+                          std::string const &parts) {
+        return CallStatus(StatusCode::Unsupported, type, index,
+                          "there are no limits at " + name + " " + std::to_string(index) +
+                              " of level " + std::to_string(level.depth) + ", which has " +
+                              std::to_string(size) + " " + parts + ", more than " +
+                              std::to_string(kMaxFacesAtLimit));
+    };
+    for (Index vert = 0; vert < level.numVertices; ++vert) {
+        if (int const size = level.GetNumVertexFaces(vert); size > kMaxFacesAtLimit) {
+            return fail(ComponentType::Vertex, vert, "vertex", size, "faces");
+        }
+    }
+    for (Index face = 0; face < level.numFaces; ++face) {
+        if (int const size = level.GetFaceSize(face); size > kMaxFacesAtLimit) {
+            return fail(ComponentType::Face, face, "face", size, "vertices");
+        }
+    }
+    return CallStatus();
+}
+
+} // namespace
+
 CallStatus LimitRows::Find(std::vector<Index> const &verts) {
+    if (CallStatus result = checkSizes(_level); !result.IsOk()) {
+        return result;
+    }
     std::vector<VertexMark> const marks = MarkFeatures(_level);
     _ranges.assign(std::size_t(GetNumParallelRanges(_level.numVertices, kRange)), Range());
     _regularMask.reset();

@@ -21,6 +21,10 @@ OPENSUBDIVHEX_API HexSchemeOptions GetStepsToLimit(HexSchemeOptions schemeOption
 OPENSUBDIVHEX_API CallStatus CheckLimitLevel(Hierarchy const &hierarchy,
                                              HexSchemeOptions const &schemeOptions, int level);
 
+/// Faces of a vertex, and vertices of a face, up to which there are limits: of what lies around, each
+/// depends on all of them.
+inline constexpr int kMaxFacesAtLimit = 1024;
+
 /// \brief A point of the limit surface and its derivatives, as sums of vertices of a level.
 struct LimitRow {
     /// Whether source \p i has no part in any of the sums.
@@ -55,7 +59,8 @@ public:
     LimitRows(Level const &level, Sdc::Options sdcOptions, HexSchemeOptions const &schemeOptions);
     ~LimitRows();
 
-    /// Finds all masks, in parallel, or says for which vertex there is none.
+    /// Finds all masks, in parallel, or says for which vertex there is none: of those where
+    /// kMaxFacesAtLimit is exceeded before anything else is done.
     CallStatus Find();
     /// Those of \p verts alone, which ascend.
     CallStatus Find(std::vector<Index> const &verts);

@@ -406,7 +406,7 @@ TEST(PatchStreamTest, ReportsEachFailureOnce) {
     EXPECT_EQ(countErrors(withHoles, getEdgeOnly(), true), 0);
     // Before the first patch, at many faces.
     EXPECT_EQ(countErrors(GetShape("quadGrid"), Sdc::Options(), false), 1);
-    // On the way: a single sharp edge ends among many faces, and no face at its end has a limit.
+    // A single sharp edge ends among many faces, and no face at its end has a limit.
     constexpr int kNumSides = 140;
     Shape withoutLimit = MakeBipyramid(kNumSides);
     withoutLimit.creaseVertexPairs = {0, kNumSides};

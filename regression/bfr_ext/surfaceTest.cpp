@@ -191,6 +191,23 @@ TEST_P(SurfaceLimitTest, IsThatOfVerticesOfColumns) {
     }
 }
 
+// Such a pole is a corner with a fan for each edge, or, with a semi-sharp edge, in the end one.
+TEST_P(SurfaceLimitTest, IsThatOfVerticesAtPolesThatFacesNameTwice) {
+    BfrExt::SurfaceFactoryCache cache;
+    Sdc::Options options = getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    for (auto const creasing : {Sdc::Options::CREASE_UNIFORM, Sdc::Options::CREASE_CHAIKIN}) {
+        options.SetCreasingMethod(creasing);
+        for (float const sharpness : {0.0F, 1.5F, Sdc::Crease::SHARPNESS_INFINITE}) {
+            SCOPED_TRACE(sharpness);
+            Shape shape = MakePole(7, 2);
+            Deform(shape);
+            shape.creaseVertexPairs = {0, 3, 3, 10, 0, 4, 4, 5};
+            shape.creaseSharpness.assign(4, sharpness);
+            ASSERT_NO_FATAL_FAILURE(expectLimits(shape, GetParam(), options, cache));
+        }
+    }
+}
+
 TEST_P(FeatureLimitTest, IsThatOfVerticesOfAllLevels) {
     BfrExt::SurfaceFactoryCache cache;
     for (Shape const &shape : GetFeatureShapes()) {
@@ -561,35 +578,98 @@ TEST(SurfaceFactoryTest, RefusesFacesWithoutASurface) {
     EXPECT_TRUE(status.IsOk());
 }
 
-TEST(SurfaceFactoryTest, RefusesFacesAtVerticesWithoutALimit) {
-    constexpr int kNumSides = 300;
-    Shape shape = MakeBipyramid(kNumSides);
-    int const north = shape.GetNumVertices() - 1;
-    shape.creaseVertexPairs = {0, north};
-    shape.creaseSharpness = {Sdc::Crease::SHARPNESS_INFINITE};
-    for (ReferenceMask const mask : {ReferenceMask::Average, ReferenceMask::Smooth}) {
-        auto const refiner = CreateRefiner(shape, mask, 0);
-        auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
-        BfrExt::Surface<float> surface;
-        for (int const face : {0, 2 * (kNumSides / 2)}) { // of the north
-            FarExt::CallStatus hasNone;
-            EXPECT_FALSE(factory->FaceHasLimitSurface(face, &hasNone));
-            FarExt::CallStatus notMade;
-            EXPECT_FALSE(factory->InitVertexSurface(face, &surface, &notMade));
-            for (FarExt::CallStatus const &status : {hasNone, notMade}) {
-                EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
-                EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Vertex);
-                EXPECT_EQ(status.GetComponentIndex(), north);
-                EXPECT_NE(status.GetErrorMessage().find("face " + std::to_string(face)),
-                          std::string::npos);
+namespace {
+
+/// What lies around the pole of a shape has no surface, which names \p index, but what lies farther out; or all has.
+void expectCrowd(Shape const &shape, FarExt::ComponentType type, int index, bool isRefused) {
+    SCOPED_TRACE(shape.GetNumFaces());
+    int const n = shape.GetNumFaces() / 3;
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0,
+                                       getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    BfrExt::Surface<float> surface;
+    for (int const face : {0, n / 2, n + 1, 2 * n + 2}) {
+        SCOPED_TRACE(face);
+        bool const hasNone = isRefused && face < 2 * n;
+        FarExt::CallStatus status;
+        EXPECT_EQ(factory->InitVertexSurface(face, &surface, &status), !hasNone)
+            << status.GetErrorMessage();
+        EXPECT_EQ(surface.IsValid(), !hasNone);
+        for (bool const isInit : {true, false}) {
+            if (!isInit) {
+                EXPECT_EQ(factory->FaceHasLimitSurface(face, &status), !hasNone);
             }
-            EXPECT_TRUE(factory->FaceHasLimitSurface(face + 1));
-            EXPECT_TRUE(factory->InitVertexSurface(face + 1, &surface));
+            if (hasNone) {
+                EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
+                EXPECT_EQ(status.GetComponentType(), type);
+                EXPECT_EQ(status.GetComponentIndex(), index);
+                EXPECT_EQ(status.GetErrorMessage().find("face " + std::to_string(face) +
+                                                        " has no limit surface: "),
+                          0);
+            }
         }
     }
 }
 
-// Surfaces of their own, and several at once, are those of the other functions.
+/// A pole with creases from it to some of the vertices around.
+Shape makeCreasedPole(int n, std::vector<int> const &verts, std::vector<float> const &sharpness) {
+    Shape shape = MakePole(n, 1);
+    for (std::size_t i = 0; i < verts.size(); ++i) {
+        shape.creaseVertexPairs.insert(shape.creaseVertexPairs.end(), {0, 1 + verts[i]});
+        shape.creaseSharpness.push_back(sharpness[i]);
+    }
+    return shape;
+}
+
+} // namespace
+
+TEST(SurfaceFactoryTest, RefusesFacesWhereTooManyMeet) {
+    auto const expectMost = [](int most, auto const &makeShape) {
+        expectCrowd(makeShape(most), FarExt::ComponentType::Vertex, 0, false);
+        expectCrowd(makeShape(most + 1), FarExt::ComponentType::Vertex, 0, true);
+    };
+    constexpr float kInfinite = Sdc::Crease::SHARPNESS_INFINITE;
+    expectMost(512, [](int n) { return MakePole(n, 1); });
+    expectMost(128, [&](int n) { return makeCreasedPole(n, {0, n / 3}, {kInfinite, kInfinite}); });
+    expectMost(128, [&](int n) { return makeCreasedPole(n, {1}, {kInfinite}); });
+    expectMost(64, [&](int n) { return makeCreasedPole(n, {1, 5}, {2, 1.5F}); });
+    // Alike all around, and of fans that count by themselves.
+    Shape pole = MakePole(300, 1);
+    for (int i = 0; i < 300; ++i) {
+        pole.creaseVertexPairs.insert(pole.creaseVertexPairs.end(), {0, 1 + i});
+        pole.creaseSharpness.push_back(2.5F);
+    }
+    expectCrowd(pole, FarExt::ComponentType::Vertex, 0, false);
+    expectCrowd(MakePole(2000, 2), FarExt::ComponentType::Vertex, 0, false);
+}
+
+TEST(SurfaceFactoryTest, RefusesWhatIsAroundLargeFaces) {
+    constexpr int kMost = 512;
+    for (int const n : {kMost, kMost + 1}) {
+        // One face in the place of those at the pole.
+        Shape shape = MakePole(n, 1);
+        shape.faceSizes.erase(shape.faceSizes.begin(), shape.faceSizes.begin() + n - 1);
+        shape.faceSizes[0] = n;
+        shape.faceVertices.erase(shape.faceVertices.begin(), shape.faceVertices.begin() + 2 * n);
+        std::iota(shape.faceVertices.begin(), shape.faceVertices.begin() + n, 1);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0,
+                                           getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
+        auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+        for (int const face : {0, 1, n, n + 1, 2 * n}) { // of the second ring from n + 1 on
+            SCOPED_TRACE(face);
+            FarExt::CallStatus status;
+            EXPECT_EQ(factory->FaceHasLimitSurface(face, &status), n == kMost);
+            if (n > kMost) {
+                EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
+                EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Face);
+                EXPECT_EQ(status.GetComponentIndex(), 0);
+                EXPECT_NE(status.GetErrorMessage().find(": face 0 has 513 vertices, "),
+                          std::string::npos);
+            }
+        }
+    }
+}
+
 TEST(SurfaceFactoryTest, MakesSurfacesAsBfrDoes) {
     Shape const &shape = GetFeatureShape("seamsCross");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0,

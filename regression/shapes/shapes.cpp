@@ -424,6 +424,29 @@ Shape MakeBipyramid(int n) {
     return builder.Take();
 }
 
+Shape MakePole(int n, int numTimes) {
+    ShapeBuilder builder(numbered("pole", n));
+    builder.AddVertex(0, 0, 1);
+    constexpr int kNumRings = 3;
+    for (int ring = 0; ring < kNumRings; ++ring) {
+        addRing(builder, n, ring + 1, -ring);
+    }
+    for (int i = 0; i < n; ++i) {
+        std::vector<int> face(std::size_t(numTimes), 0);
+        face.insert(face.end(), {1 + i, 1 + (i + 1) % n});
+        builder.AddFace(face);
+    }
+    for (int ring = 1; ring < kNumRings; ++ring) {
+        int const inner = 1 + (ring - 1) * n;
+        int const outer = inner + n;
+        for (int i = 0; i < n; ++i) {
+            int const next = (i + 1) % n;
+            builder.AddFace({inner + i, outer + i, outer + next, inner + next});
+        }
+    }
+    return builder.Take();
+}
+
 std::vector<Shape> const &GetShapes() {
     static std::vector<Shape> const shapes = makeShapes();
     return shapes;

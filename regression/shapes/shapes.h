@@ -45,6 +45,10 @@ Shape MakeIcosahedron();
 /// A prism over a regular polygon with \p n sides, which is its first face and its last.
 Shape MakePrism(int n);
 
+/// \brief A disc: \p n faces around vertex 0, its pole, which each has \p numTimes times, and two rings of as
+/// many quads around these.  Faces 0 to \p n - 1 are those at the pole; vertex 1 + i is where two of them meet.
+Shape MakePole(int n, int numTimes);
+
 /// Two pyramids with \p n sides, base to base; the tips are the last two vertices.
 Shape MakeBipyramid(int n);
 

@@ -176,10 +176,12 @@ bool EvaluateStencils(Far::StencilTable const &table, std::string const &evaluat
 }
 
 std::unique_ptr<Far::LimitStencilTable const>
-CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::CallStatus *status) {
+CreateLimitStencils(FarExt::TopologyRefiner const &refiner, bool fromLevel0,
+                    FarExt::CallStatus *status) {
     FarExt::LimitStencilTableFactory::Options options;
     options.level = refiner.GetMaxLevel();
     options.generateFurtherSides = true;
+    options.factorizeIntermediateLevels = fromLevel0;
     return FarExt::LimitStencilTableFactory::Create(refiner, options, status);
 }
 

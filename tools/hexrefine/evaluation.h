@@ -53,11 +53,13 @@ bool EvaluateStencils(OpenSubdiv::Far::StencilTable const &table, std::string co
 
 /// The limit points of the refiner's last level, which has full topology, and the derivatives on
 /// each of its LimitSides; null with a status, as from LimitStencilTableFactory.
+/// \param fromLevel0  whether in terms of the vertices of level 0, or of those of the last level
 std::unique_ptr<OpenSubdiv::Far::LimitStencilTable const>
-CreateLimitStencils(FarExt::TopologyRefiner const &refiner, FarExt::CallStatus *status);
+CreateLimitStencils(FarExt::TopologyRefiner const &refiner, bool fromLevel0,
+                    FarExt::CallStatus *status);
 
-/// \brief Replaces \p positions, of level 0, by the limit points of \p table, from
-/// CreateLimitStencils, and \p normals by a normal for each side, 1 long; 0 where there is no
+/// \brief Replaces \p positions by the limit points of \p table, from CreateLimitStencils, in terms
+/// of whose vertices they are, and \p normals by a normal for each side, 1 long; 0 where there is no
 /// tangent plane.
 /// \param evaluator  stencil-cpu, stencil-omp or, for all others, OsdExt::OmpEvaluator
 /// \return           false if it refuses

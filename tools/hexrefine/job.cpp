@@ -372,7 +372,8 @@ void Job::evaluateLimit() {
     _sides.emplace(_refiner->GetLevel(getLastLevel()));
     FarExt::CallStatus status;
     // Tables alone have further sides.
-    if (!NeedsStencils(_arguments.evaluator) && _sides->GetNumSides() == _sides->GetNumVertices()) {
+    bool const fromLevel0 = NeedsStencils(_arguments.evaluator);
+    if (!fromLevel0 && _sides->GetNumSides() == _sides->GetNumVertices()) {
         measure("evaluating", &milliseconds.evaluate, [&] {
             requireDone(EvaluateLimit(*_refiner, _arguments.evaluator, &_mesh.positions, &_normals,
                                       &status),
@@ -380,9 +381,13 @@ void Job::evaluateLimit() {
         });
         return;
     }
+    // Where vertices of large faces depend on all of level 0, a table of these is too large to make for one use.
+    if (!fromLevel0 && getLastLevel() > 0) {
+        evaluatePrimvar(findPrimvars(&_mesh).front());
+    }
     std::unique_ptr<Far::LimitStencilTable const> table;
     measure("building limit stencils", &milliseconds.stencils, [&] {
-        table = CreateLimitStencils(*_refiner, &status);
+        table = CreateLimitStencils(*_refiner, fromLevel0, &status);
         requireDone(table != nullptr, status);
     });
     _statistics.stencils = table->GetNumStencils();
