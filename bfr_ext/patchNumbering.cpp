@@ -152,7 +152,7 @@ PatchNumbering::SectionNumbers::SectionNumbers(internal::FaceSections const &sec
 template <typename REAL>
 std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &stream,
                                                        CallStatus *status) {
-    CallStatus const result = stream.check(0, stream.GetFactory().GetNumFaces());
+    CallStatus const result = stream.checkRange(0, stream.GetFactory().GetNumFaces());
     if (!FarExt::internal::Report(result, status)) {
         return nullptr;
     }

@@ -435,7 +435,7 @@ Tessellation PatchStream<REAL>::MakeTessellation(Index face) const {
 
 // Of several faces that are wrong, the first is told of, whoever finds it.
 template <typename REAL>
-CallStatus PatchStream<REAL>::check(Index beginFace, Index endFace, bool *arePlansKept) const {
+CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *arePlansKept) const {
     FarExt::TopologyLevel const &base = _factory.GetLevel();
     if (beginFace < 0 || endFace < beginFace || endFace > base.GetNumFaces()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
@@ -551,7 +551,7 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
                             std::vector<Values> const &values, Index beginFace, Index endFace,
                             Sink const &sink, CallStatus *status) const {
     bool arePlansKept = false;
-    CallStatus result = check(beginFace, endFace, &arePlansKept);
+    CallStatus result = checkRange(beginFace, endFace, &arePlansKept);
     for (Values const &further : values) {
         if (result.IsOk() && further.channel != Values::kVarying) {
             result = FarExt::internal::CheckChannel(further.channel, _factory.GetNumFVarChannels());

@@ -245,7 +245,8 @@ private:
 
     std::shared_ptr<internal::PatchPlans> makePlans() const;
     std::shared_ptr<internal::StreamTypes> makeTypes() const;
-    FarExt::CallStatus check(Index beginFace, Index endFace, bool *arePlansKept = nullptr) const;
+    FarExt::CallStatus checkRange(Index beginFace, Index endFace,
+                                  bool *arePlansKept = nullptr) const;
     FarExt::CallStatus checkFace(Index face, std::vector<int> &levels) const;
     FarExt::CallStatus checkLevels(Index face, std::vector<int> const &levels) const;
     FarExt::CallStatus checkTree(Index face) const;

@@ -4,6 +4,7 @@
 
 #include "topologyRefiner.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt {
@@ -41,11 +42,11 @@ public:
     int GetNumFaces() const { return int(_baseFaces.size()); }
 
     /// As TopologyLevel::IsFaceBaseSplit.
-    bool IsSplit(Index f) const { return _baseFaces[f] < 0; }
+    bool IsSplit(Index f) const { return _baseFaces[std::size_t(f)] < 0; }
     /// As TopologyLevel::GetFaceBaseFace.
     Index GetBaseFace(Index f, int half = 0) const {
-        Index const entry = _baseFaces[f];
-        return entry >= 0 ? entry : _splitFaces[~entry].baseFaces[half];
+        Index const entry = _baseFaces[std::size_t(f)];
+        return entry >= 0 ? entry : _splitFaces[std::size_t(~entry)].baseFaces[half];
     }
 
     /// All split faces, ascending; those of coarser levels come first.

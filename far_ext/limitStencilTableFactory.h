@@ -6,6 +6,10 @@
 
 #include <opensubdiv/far/stencilTable.h>
 
+#include <cstddef>
+#include <memory>
+#include <vector>
+
 namespace OpenSubdivHex::FarExt {
 
 /// \brief The types of limit stencil table by the precision of the weights.
@@ -45,11 +49,11 @@ public:
 
     /// The vertex of a side.
     Index GetVertex(Index side) const {
-        return side < _numVertices ? side : _furtherSides[side - _numVertices].vert;
+        return side < _numVertices ? side : getFurtherSide(side).vert;
     }
     /// Which of the sides of its vertex a side is, from 0.
     int GetLocalSide(Index side) const {
-        return side < _numVertices ? 0 : _furtherSides[side - _numVertices].side;
+        return side < _numVertices ? 0 : getFurtherSide(side).side;
     }
 
     /// \brief Whether these are valid and the sides of \p level, or of one that has the same.
@@ -84,6 +88,9 @@ private:
         Index sides[2];
     };
 
+    FurtherSide const &getFurtherSide(Index side) const {
+        return _furtherSides[std::size_t(side - _numVertices)];
+    }
     void addCorner(std::size_t begin, Index corner, int half, Index side);
 
     bool _isValid;

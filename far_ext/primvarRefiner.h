@@ -5,6 +5,7 @@
 #include "topologyRefiner.h"
 
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt {
@@ -83,6 +84,20 @@ private:
     std::vector<Far::Index> _sources;
 };
 
+/// What the elements of a user's array are counted in: its \c size_type, as of std::vector, else Index.
+template <class ARRAY, class = void>
+struct ElementIndex {
+    using Type = Far::Index;
+};
+template <class ARRAY>
+struct ElementIndex<ARRAY, std::void_t<typename ARRAY::size_type>> {
+    using Type = typename ARRAY::size_type;
+};
+template <class ARRAY>
+decltype(auto) ElementOf(ARRAY &array, Far::Index i) {
+    return array[typename ElementIndex<ARRAY>::Type(i)];
+}
+
 } // namespace internal
 
 /// \brief Computes primvar data of one level from that of the level before, without tables.
@@ -144,7 +159,7 @@ public:
     void InterpolateFaceUniform(int level, T const &src, U &dst) const {
         std::vector<Far::Index> const sources = internal::FindUniformSources(_refiner, level);
         for (std::size_t cFace = 0; cFace < sources.size(); ++cFace) {
-            dst[Far::Index(cFace)] = src[sources[cFace]];
+            internal::ElementOf(dst, Far::Index(cFace)) = internal::ElementOf(src, sources[cFace]);
         }
     }
 
@@ -168,7 +183,7 @@ public:
         }
         for (Far::Index vert = 0; vert < rows.GetNumVertices(); ++vert) {
             internal::PrimvarLimitRows::Row const row = rows.GetRow(vert);
-            sum(src, row, row.weights, dstPos[vert]);
+            sum(src, row, row.weights, internal::ElementOf(dstPos, vert));
         }
         return true;
     }
@@ -184,9 +199,9 @@ public:
         }
         for (Far::Index vert = 0; vert < rows.GetNumVertices(); ++vert) {
             internal::PrimvarLimitRows::Row const row = rows.GetRow(vert);
-            sum(src, row, row.weights, dstPos[vert]);
-            sum(src, row, row.duWeights, dstTan1[vert]);
-            sum(src, row, row.dvWeights, dstTan2[vert]);
+            sum(src, row, row.weights, internal::ElementOf(dstPos, vert));
+            sum(src, row, row.duWeights, internal::ElementOf(dstTan1, vert));
+            sum(src, row, row.dvWeights, internal::ElementOf(dstTan2, vert));
         }
         return true;
     }
@@ -198,7 +213,7 @@ private:
         element.Clear();
         for (int i = 0; i < row.size; ++i) {
             if (weights[i] != 0) {
-                element.AddWithWeight(src[row.sources[i]], REAL(weights[i]));
+                element.AddWithWeight(internal::ElementOf(src, row.sources[i]), REAL(weights[i]));
             }
         }
     }
@@ -211,13 +226,13 @@ private:
             Far::Index const *source = rows.GetSources();
             double const *weight = rows.GetWeights();
             for (internal::PrimvarRows::Row const &row : rows.GetRows()) {
-                auto &&point = dst[row.point];
+                auto &&point = internal::ElementOf(dst, row.point);
                 point.Clear();
                 for (int i = 0; i < row.numSources; ++i) {
-                    point.AddWithWeight(src[*source++], REAL(*weight++));
+                    point.AddWithWeight(internal::ElementOf(src, *source++), REAL(*weight++));
                 }
                 for (int i = 0; i < row.numPoints; ++i) {
-                    point.AddWithWeight(dst[*source++], REAL(*weight++));
+                    point.AddWithWeight(internal::ElementOf(dst, *source++), REAL(*weight++));
                 }
             }
         }

@@ -8,6 +8,7 @@
 #include <opensubdiv/sdc/options.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -67,7 +68,7 @@ public:
     int GetNumFaceVerticesTotal() const;
 
     /// \p level is 0 ... GetMaxLevel().
-    TopologyLevel const &GetLevel(int level) const { return _levels[level]; }
+    TopologyLevel const &GetLevel(int level) const { return _levels[std::size_t(level)]; }
 
     /// The last level that any refinement makes.  Levels that grow are too large long before it.
     static constexpr int kLastLevel = 100;

@@ -42,27 +42,13 @@ inline void storeExactly(float *dst, QuadPair const &pair) {
     StoreFloats<WIDTH - kQuad>(dst + kQuad, pair.second);
 }
 
-// Whether one float more may be read than is used, while another thread may be writing it.  It is what
-// ThreadSanitizer looks for.
-#if defined(__SANITIZE_THREAD__)
-constexpr bool kReadsMore = false;
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-constexpr bool kReadsMore = false;
-#else
-constexpr bool kReadsMore = true;
-#endif
-#else
-constexpr bool kReadsMore = true;
-#endif
-
-// How elements of WIDTH floats are read and written.  A quad of three packed floats takes in the
-// first of the next element.
+// How elements of WIDTH floats are read and written.  What is not exact takes in a float of the element that
+// follows, or comes before, where three are packed: one that no other thread may be writing meanwhile.
 template <int WIDTH, bool IS_PACKED>
 struct Access {
     static constexpr int kWidth = WIDTH;
     static constexpr bool kIsPacked = IS_PACKED;
-    static constexpr int kReach = kReadsMore && IS_PACKED && WIDTH == 3 ? kQuad : WIDTH;
+    static constexpr int kReach = IS_PACKED && WIDTH == 3 ? kQuad : WIDTH;
 
     template <class FLOAT>
     static FLOAT *At(Elements<FLOAT> const &elements, std::ptrdiff_t i) {
@@ -71,14 +57,24 @@ struct Access {
     static auto LoadExactly(Elements<float const> const &src, std::ptrdiff_t i) {
         return loadExactly<WIDTH>(At(src, i));
     }
+    // With the first float of the next element.
     static auto Load(Elements<float const> const &src, std::ptrdiff_t i) {
         return loadExactly<kReach>(At(src, i));
+    }
+    // With the last float of the element before.
+    static auto LoadWithBefore(Elements<float const> const &src, std::ptrdiff_t i) {
+        if constexpr (kReach == WIDTH) {
+            return LoadExactly(src, i);
+        } else {
+            Quad const quad = LoadFloats<kQuad>(At(src, i) - 1);
+            return Quad{quad[1], quad[2], quad[3], quad[0]};
+        }
     }
     template <class QUADS>
     static void StoreExactly(Elements<float> const &dst, std::ptrdiff_t i, QUADS const &quads) {
         storeExactly<WIDTH>(At(dst, i), quads);
     }
-    // The next element must be stored afterwards.
+    // The same thread stores the next element afterwards.
     template <class QUADS>
     static void Store(Elements<float> const &dst, std::ptrdiff_t i, QUADS const &quads) {
         storeExactly<kReach>(At(dst, i), quads);

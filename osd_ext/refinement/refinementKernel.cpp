@@ -150,8 +150,8 @@ void refinePlainFaces(RefinementTask const &task, FaceRun const &run) {
 }
 
 // V-vertices with three faces, the F-vertices that the faces of a run of \p level made.  SIZE is
-// that of the faces, 0 for any.  sumPoints(first, prev, i) sums the F-vertices around the vertex of
-// corner first + i, before which the face has corner first + prev.
+// that of the faces, 0 for any.  sumPoints(first, size, prev, i) sums the F-vertices around the vertex of
+// corner first + i of a face of so many, before which it has corner first + prev.
 template <class ACCESS, int SIZE, class SUM_POINTS>
 inline void refineFVerticesOf(RefinementTask const &task, Level const &level, IndexRun run,
                               SUM_POINTS sumPoints) {
@@ -167,7 +167,8 @@ inline void refineFVerticesOf(RefinementTask const &task, Level const &level, In
         prefetchAhead(ACCESS::At(dst, vert));
         for (int i = 0; i < size; ++i) {
             int const prev = (i == 0 ? size : i) - 1;
-            auto const point = inverse * (ACCESS::Load(src, vert + i) + sumPoints(first, prev, i));
+            auto const point =
+                inverse * (ACCESS::Load(src, vert + i) + sumPoints(first, size, prev, i));
             if (i + 1 < size) {
                 ACCESS::Store(dst, vert + i, point);
             } else {
@@ -177,7 +178,16 @@ inline void refineFVerticesOf(RefinementTask const &task, Level const &level, In
     }
 }
 
-// The F-vertices of the parent that E-faces have, all of which are hexagons but the last ones.
+// F-vertices of the parent that the vertices of a tile average.  The faces that have them are in the tile, and one
+// thread makes all of a face: so what is read besides is of the same face.
+template <class ACCESS>
+auto loadCorner(Elements<float const> const &fVertices, Index firstCorner, int local,
+                int faceSize) {
+    return local + 1 < faceSize ? ACCESS::Load(fVertices, firstCorner + local)
+                                : ACCESS::LoadWithBefore(fVertices, firstCorner + local);
+}
+
+// Those that E-faces have, all of which are hexagons but the last ones.
 template <class ACCESS>
 class EFacePoints {
 public:
@@ -186,7 +196,8 @@ public:
 
     // That of corner \p local of the E-face of \p edge.
     auto Load(Index edge, int local) const {
-        return ACCESS::Load(_points, _indexing.GetEdgeChildFirstCorner(edge, 0, 0) + local);
+        return loadCorner<ACCESS>(_points, _indexing.GetEdgeChildFirstCorner(edge, 0, 0), local,
+                                  HexIndexing::kNumEFaceCorners);
     }
 
 private:
@@ -216,9 +227,9 @@ void refineNewVertices(RefinementTask const &task, IndexRun run) {
     Elements<float const> const fVertices = asConst(task.FVertices());
     EFacePoints<ACCESS> const ePoints(task, before);
     Index const *const faceEdges = before.faceEdges.data();
-    refineFVerticesOf<ACCESS, SIZE>(task, before, run, [=](Index first, int prev, int i) {
+    refineFVerticesOf<ACCESS, SIZE>(task, before, run, [=](Index first, int size, int prev, int i) {
         Index const *const edges = faceEdges + first;
-        return ACCESS::Load(fVertices, first + i) +
+        return loadCorner<ACCESS>(fVertices, first, i, size) +
                (ePoints.Load(edges[prev], SIDES::Of(prev).endFVertex) +
                 ePoints.Load(edges[i], SIDES::Of(i).startFVertex));
     });
@@ -230,11 +241,11 @@ void refineListedVertices(RefinementTask const &task, IndexRun run) {
     Elements<float const> const fVertices = asConst(task.FVertices());
     Index const *const startCorners = task.refinement->startCorners.data();
     refineFVerticesOf<ACCESS, SIZE>(
-        task, *task.refinement->before, run, [=](Index first, int prev, int i) {
+        task, *task.refinement->before, run, [=](Index first, int size, int prev, int i) {
             Index const *const starts = startCorners + first;
-            return ACCESS::Load(fVertices, first + i) +
+            return loadCorner<ACCESS>(fVertices, first, i, size) +
                    (ACCESS::Load(fVertices, starts[prev] + kFromStartToEnd) +
-                    ACCESS::Load(fVertices, starts[i]));
+                    ACCESS::LoadWithBefore(fVertices, starts[i]));
         });
 }
 
@@ -246,7 +257,7 @@ void refineOlderVertices(RefinementTask const &task, IndexRun run) {
     HexIndexing const indexing = task.refinement->beforeThat->ChildIndexing();
     EFacePoints<ACCESS> const ePoints(task, before);
     refineFVerticesOf<ACCESS, SIZE>(
-        task, *task.refinement->beforeThat, run, [=](Index first, int prev, int i) {
+        task, *task.refinement->beforeThat, run, [=](Index first, int /*size*/, int prev, int i) {
             // Each edge runs as the F-face does, from the F-vertex of its corner, and a spoke to that.
             return ePoints.Load(indexing.GetCornerChildEdge(first + i), kEFaceSideA.startVertex) +
                    (ePoints.Load(indexing.GetCornerChildEdge(first + prev), kEFaceSideA.endVertex) +
@@ -272,9 +283,9 @@ void refineVertexRun(RefinementTask const &task, VertexRun const &run) {
         int const numFaces = firstFaces[vert + 1] - firstFaces[vert];
         if (run.areIrregular) {
             IrregularVertexWeights const weights = irregulars[numFaces];
-            auto sum = ACCESS::Load(fVertices, corners[0]);
+            auto sum = ACCESS::LoadExactly(fVertices, corners[0]);
             for (int i = 1; i < numFaces; ++i) {
-                sum = sum + ACCESS::Load(fVertices, corners[i]);
+                sum = sum + ACCESS::LoadExactly(fVertices, corners[i]);
             }
             ACCESS::StoreExactly(task.dst, vert,
                                  Spread(weights.vertex) * ACCESS::Load(task.src, vert) +
@@ -284,12 +295,12 @@ void refineVertexRun(RefinementTask const &task, VertexRun const &run) {
         }
         auto sum = ACCESS::Load(task.src, vert);
         if (numFaces == kFVertexFaces) {
-            sum = sum + ACCESS::Load(fVertices, corners[0]);
-            sum = sum + ACCESS::Load(fVertices, corners[1]);
-            sum = sum + ACCESS::Load(fVertices, corners[2]);
+            sum = sum + ACCESS::LoadExactly(fVertices, corners[0]);
+            sum = sum + ACCESS::LoadExactly(fVertices, corners[1]);
+            sum = sum + ACCESS::LoadExactly(fVertices, corners[2]);
         } else {
             for (int i = 0; i < numFaces; ++i) {
-                sum = sum + ACCESS::Load(fVertices, corners[i]);
+                sum = sum + ACCESS::LoadExactly(fVertices, corners[i]);
             }
         }
         corners += numFaces;

@@ -68,8 +68,10 @@ if(OPENSUBDIVHEX_PKG_CONFIG AND UNIX)
 endif()
 set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed)
 set_tests_properties(consumer.build PROPERTIES FIXTURES_REQUIRED installed)
+# What compiles the headers: those of OpenSubdiv are the system's, ours are not.
 get_target_property(opensubdivDirs OpenSubdiv::osdCPU INTERFACE_INCLUDE_DIRECTORIES)
-list(TRANSFORM opensubdivDirs PREPEND -I)
+list(REMOVE_ITEM opensubdivDirs ${CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES})
+list(TRANSFORM opensubdivDirs PREPEND -isystem)
 find_package(TBB CONFIG QUIET)
 find_path(OPENSUBDIVHEX_GL_INCLUDE_DIR GL/gl.h)
 mark_as_advanced(OPENSUBDIVHEX_GL_INCLUDE_DIR)
@@ -81,16 +83,23 @@ endif()
 if(NOT TARGET osd_ext_cuda)
   list(APPEND notBuilt osd_ext/cuda)
 endif()
+set(headersCommand ${CMAKE_COMMAND}
+  -D sourceDir=${PROJECT_SOURCE_DIR}
+  -D includeDir=${consumerDir}/prefix/${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex
+  -D compiler=${CMAKE_CXX_COMPILER}
+  -D "flags=${opensubdivDirs};${OpenMP_CXX_FLAGS}"
+  -D "missing=${missing}")
 add_test(NAME consumer.headers
-  COMMAND ${CMAKE_COMMAND}
-    -D sourceDir=${PROJECT_SOURCE_DIR}
-    -D includeDir=${consumerDir}/prefix/${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex
-    -D compiler=${CMAKE_CXX_COMPILER}
-    -D "flags=${opensubdivDirs}"
-    -D "missing=${missing}"
-    -D "notBuilt=${notBuilt}"
+  COMMAND ${headersCommand} -D "notBuilt=${notBuilt}"
     -P ${PROJECT_SOURCE_DIR}/regression/consumer/headers.cmake)
 set_tests_properties(consumer.headers PROPERTIES FIXTURES_REQUIRED installed)
+foreach(before IN ITEMS hostile xlib)
+  add_test(NAME consumer.macros.${before}
+    COMMAND ${headersCommand} -D workDir=${consumerDir} -D before=${before}
+      -P ${PROJECT_SOURCE_DIR}/regression/consumer/macros.cmake)
+  set_tests_properties(consumer.macros.${before} PROPERTIES FIXTURES_REQUIRED installed
+    SKIP_REGULAR_EXPRESSION "skipped: ")
+endforeach()
 if(OPENSUBDIVHEX_TOOLS)
   add_test(NAME consumer.hexrefine
     COMMAND ${consumerDir}/prefix/${CMAKE_INSTALL_BINDIR}/hexrefine --help)
