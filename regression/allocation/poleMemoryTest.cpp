@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-namespace OpenSubdivHex::Regression {
+namespace OpenSubdivHex::Regression::poleMemoryTest {
 
 using BfrExt::Polyline;
 using BfrExt::SurfaceFactory;
@@ -129,4 +129,4 @@ TEST(PoleMemoryTest, OfPolylinesIsThatOfTheirFirstLevels) {
     EXPECT_LE(ofLast, ofLevel8);
 }
 
-} // namespace OpenSubdivHex::Regression
+} // namespace OpenSubdivHex::Regression::poleMemoryTest
