@@ -66,14 +66,16 @@ constexpr bool HasHalves(int numCorners) { return numCorners == 6; }
 /// \brief The closed-form numbering of a child level in terms of its parent: see INDEXING.md.
 ///
 /// A *corner* is a position in the parent's face-vertex array.  Nothing is stored but the parent's
-/// counts; every function is arithmetic on them.  This numbering is public and stable.
+/// counts; every function is arithmetic on them, in which nothing is larger than the result.  Results are
+/// those of a child whose counts fit into Index, as all have that RefineUniform makes.  This numbering is
+/// public and stable.
 class HexIndexing {
 public:
     /// A vertex, an edge, a face or a corner.
     using Index = Far::Index;
 
     /// From the counts of the parent.
-    HexIndexing(Index numVertices, Index numFaces, Index numCorners)
+    constexpr HexIndexing(Index numVertices, Index numFaces, Index numCorners)
         : _numVertices(numVertices), _numFaces(numFaces), _numCorners(numCorners) {}
 
     /// Corners of the E-face of an interior edge.
@@ -82,39 +84,42 @@ public:
     static constexpr int kNumBoundaryEFaceCorners = 4;
 
     /// V-vertex: the child of parent vertex \p v.
-    Index GetVertexChildVertex(Index v) const { return v; }
+    constexpr Index GetVertexChildVertex(Index v) const { return v; }
     /// F-vertex: the child of parent corner \p c.
-    Index GetCornerChildVertex(Index c) const { return _numVertices + c; }
+    constexpr Index GetCornerChildVertex(Index c) const { return _numVertices + c; }
 
     /// F-face: the child of parent face \p f.
-    Index GetFaceChildFace(Index f) const { return f; }
+    constexpr Index GetFaceChildFace(Index f) const { return f; }
     /// E-face: the child of parent edge \p e.  \p numBBefore of the edges before it are B edges,
     /// which make none.
-    Index GetEdgeChildFace(Index e, Index numBBefore) const { return _numFaces + e - numBBefore; }
+    constexpr Index GetEdgeChildFace(Index e, Index numBBefore) const {
+        return _numFaces + (e - numBBefore);
+    }
 
     /// First corner of the F-face of parent face \p f, whose first corner is \p pFirstCorner.
-    Index GetFaceChildFirstCorner(Index pFirstCorner) const { return pFirstCorner; }
+    constexpr Index GetFaceChildFirstCorner(Index pFirstCorner) const { return pFirstCorner; }
     /// First corner of the E-face of parent edge \p e, when \p numBBefore of the edges before are
     /// B edges, and \p numBoundaryBefore are boundaries that make an E-face.
-    Index GetEdgeChildFirstCorner(Index e, Index numBBefore, Index numBoundaryBefore) const {
-        return _numCorners + kNumEFaceCorners * (e - numBBefore) -
-               (kNumEFaceCorners - kNumBoundaryEFaceCorners) * numBoundaryBefore;
+    constexpr Index GetEdgeChildFirstCorner(Index e, Index numBBefore,
+                                            Index numBoundaryBefore) const {
+        return _numCorners + kNumEFaceCorners * (e - numBBefore - numBoundaryBefore) +
+               kNumBoundaryEFaceCorners * numBoundaryBefore;
     }
 
     /// Edge of the F-face from the F-vertex of parent corner \p c to that of the next corner.
-    Index GetCornerChildEdge(Index c) const { return c; }
+    constexpr Index GetCornerChildEdge(Index c) const { return c; }
     /// Spoke: the edge from the V-vertex to the F-vertex of parent corner \p c.
-    Index GetCornerChildSpoke(Index c) const { return _numCorners + c; }
+    constexpr Index GetCornerChildSpoke(Index c) const { return _numCorners + c; }
     /// Edge between the V-vertices of the \p rank'th of the parent's boundary edges that make an
     /// E-face.
-    Index GetBoundaryChildEdge(Index rank) const { return 2 * _numCorners + rank; }
+    constexpr Index GetBoundaryChildEdge(Index rank) const { return 2 * _numCorners + rank; }
 
     /// Whether a child vertex is an F-vertex.
-    bool IsVertexFromCorner(Index cVert) const { return cVert >= _numVertices; }
+    constexpr bool IsVertexFromCorner(Index cVert) const { return cVert >= _numVertices; }
     /// The parent corner of an F-vertex.
-    Index GetChildVertexCorner(Index cVert) const { return cVert - _numVertices; }
+    constexpr Index GetChildVertexCorner(Index cVert) const { return cVert - _numVertices; }
     /// Whether a child face is an E-face.
-    bool IsFaceFromEdge(Index cFace) const { return cFace >= _numFaces; }
+    constexpr bool IsFaceFromEdge(Index cFace) const { return cFace >= _numFaces; }
 
 private:
     Index _numVertices;

@@ -113,7 +113,7 @@ public:
     }
 
 private:
-    // What the accessors refer to is constant by its type alone, the table being none.
+    // Far's accessors give members of this object as const.  It is not const itself: so they may be written.
     std::vector<REAL> &duWeights() { return const_cast<std::vector<REAL> &>(this->GetDuWeights()); }
     std::vector<REAL> &dvWeights() { return const_cast<std::vector<REAL> &>(this->GetDvWeights()); }
 };

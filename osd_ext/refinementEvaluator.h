@@ -140,7 +140,8 @@ public:
     /// \param dst,du,dv  elements [0, GetNumElements(level)) each
     ///
     /// \return  false, with nothing written, as Evaluate; besides with InvalidArgument for other
-    ///          modes than INTERPOLATE_VERTEX, and as FarExt::LimitStencilTableFactory fails
+    ///          modes than INTERPOLATE_VERTEX, as FarExt::LimitStencilTableFactory fails, and with
+    ///          TooLarge where a level up to this one has more than 1,431,655,765 vertices
     /// @{
 
     /// The points alone.

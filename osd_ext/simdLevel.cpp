@@ -3,13 +3,14 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
 
 namespace OpenSubdivHex::OsdExt {
 namespace {
 
 constexpr SimdLevel kSimdLevels[] = {SimdLevel::Portable, SimdLevel::Avx2, SimdLevel::Avx512};
 
-SimdLevel detectMaxSimdLevel() {
+SimdLevel detectMaxSimdLevel() noexcept {
 #ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
     // These ask the operating system, too, whether it saves the registers.
     __builtin_cpu_init();
@@ -22,28 +23,39 @@ SimdLevel detectMaxSimdLevel() {
     return SimdLevel::Portable;
 }
 
-SimdLevel readInitialSimdLevel() {
+bool findLevel(char const *name, SimdLevel *level) noexcept {
+    for (SimdLevel const known : kSimdLevels) {
+        if (std::strcmp(name, GetSimdLevelName(known)) == 0) {
+            *level = known;
+            return true;
+        }
+    }
+    return false;
+}
+
+// Without memory, since the first who asks may be a thread in a loop that throws nothing.
+SimdLevel readInitialSimdLevel() noexcept {
     SimdLevel level = GetMaxSimdLevel();
     char const *const name = std::getenv("OPENSUBDIVHEX_SIMD");
-    bool const isUsable = name && FindSimdLevel(name, &level) && level <= GetMaxSimdLevel();
+    bool const isUsable = name && findLevel(name, &level) && level <= GetMaxSimdLevel();
     return isUsable ? level : GetMaxSimdLevel();
 }
 
-std::atomic<SimdLevel> &currentSimdLevel() {
+std::atomic<SimdLevel> &currentSimdLevel() noexcept {
     static std::atomic<SimdLevel> level(readInitialSimdLevel());
     return level;
 }
 
 } // namespace
 
-SimdLevel GetMaxSimdLevel() {
+SimdLevel GetMaxSimdLevel() noexcept {
     static SimdLevel const kLevel = detectMaxSimdLevel();
     return kLevel;
 }
 
-SimdLevel GetSimdLevel() { return currentSimdLevel(); }
+SimdLevel GetSimdLevel() noexcept { return currentSimdLevel(); }
 
-bool SetSimdLevel(SimdLevel level) {
+bool SetSimdLevel(SimdLevel level) noexcept {
     if (level < SimdLevel::Portable || level > GetMaxSimdLevel()) {
         return false;
     }
@@ -64,13 +76,7 @@ char const *GetSimdLevelName(SimdLevel level) {
 }
 
 bool FindSimdLevel(std::string const &name, SimdLevel *level) {
-    for (SimdLevel const known : kSimdLevels) {
-        if (name == GetSimdLevelName(known)) {
-            *level = known;
-            return true;
-        }
-    }
-    return false;
+    return name.find('\0') == std::string::npos && findLevel(name.c_str(), level);
 }
 
 } // namespace OpenSubdivHex::OsdExt

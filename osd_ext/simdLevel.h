@@ -27,7 +27,7 @@ enum class SimdLevel {
 };
 
 /// The highest level that both this build and this machine have.
-OPENSUBDIVHEX_API SimdLevel GetMaxSimdLevel();
+OPENSUBDIVHEX_API SimdLevel GetMaxSimdLevel() noexcept;
 
 /// \brief The level in use.
 ///
@@ -35,14 +35,14 @@ OPENSUBDIVHEX_API SimdLevel GetMaxSimdLevel();
 /// names when the level is first needed, else GetMaxSimdLevel().  A name that FindSimdLevel() does
 /// not know, or that of a level above GetMaxSimdLevel(), counts as none: a program that wants to
 /// tell its user of it compares the name of this level with the variable.
-OPENSUBDIVHEX_API SimdLevel GetSimdLevel();
+OPENSUBDIVHEX_API SimdLevel GetSimdLevel() noexcept;
 
 /// \brief Sets the level for all evaluations of the process that start from now on.  Meant for
 /// tests and comparisons.  Safe to call from any thread.
 ///
 /// \return  false if \p level is above GetMaxSimdLevel() or no level at all; the level in use then
 ///          stays
-OPENSUBDIVHEX_API bool SetSimdLevel(SimdLevel level);
+OPENSUBDIVHEX_API bool SetSimdLevel(SimdLevel level) noexcept;
 
 /// @name Names of levels
 /// "portable", "avx2" and "avx512": spelled so in OPENSUBDIVHEX_SIMD, and by hexrefine.

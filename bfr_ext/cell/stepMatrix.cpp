@@ -58,13 +58,13 @@ void StepMatrix::fill(FarExt::internal::PatchRefinement const &step,
         entries.push_back({NUMBER(step.verts[i]), NUMBER(weight - weights.begin())});
     }
     auto const getSize = [](auto const &array) { return array.size() * sizeof(array[0]); };
-    std::size_t const size =
-        getSize(weights) + getSize(floatWeights) + getSize(ends) + getSize(entries);
-    _block.resize((size + sizeof(_block[0]) - 1) / sizeof(_block[0]));
-    char *to = reinterpret_cast<char *>(_block.data());
+    _block.resize(getSize(weights) + getSize(floatWeights) + getSize(ends) + getSize(entries));
+    std::byte *to = _block.data();
     auto const append = [&](auto const &array) {
-        auto const *const begin = reinterpret_cast<char const *>(array.data());
-        to = std::copy(begin, begin + getSize(array), to);
+        if (!array.empty()) {
+            std::memcpy(to, array.data(), getSize(array));
+        }
+        to += getSize(array);
     };
     append(weights);
     append(floatWeights);

@@ -5,6 +5,7 @@
 #include "far_ext/limit/limitPatch.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -121,7 +122,7 @@ private:
     // What a block has, one behind the other; END: a number of entries.
     template <typename NUMBER, typename END>
     struct Arrays {
-        Arrays(std::uint64_t const *block, std::size_t numWeights, std::size_t numRows)
+        Arrays(std::byte const *block, std::size_t numWeights, std::size_t numRows)
             : weights(reinterpret_cast<double const *>(block)),
               floatWeights(reinterpret_cast<float const *>(weights + numWeights)),
               ends(reinterpret_cast<END const *>(floatWeights + numWeights)),
@@ -158,7 +159,7 @@ private:
     std::uint32_t _numRows = 0;
     std::uint32_t _numWeights = 0;
     Width _width = Width::Bytes;
-    std::vector<std::uint64_t> _block;
+    std::vector<std::byte> _block; // bytes alone may become objects of other types
 };
 
 /// \brief The points of one of the cells that a step makes, in terms of the parent's: the children of a

@@ -109,13 +109,14 @@ public:
     void Finish() {
         std::vector<double> const &weights = _scratch.weights;
         std::vector<float> const floats(weights.begin(), weights.end());
-        std::vector<std::uint64_t> &block = _rings._block;
-        auto const getNumWords = [](auto const &array) {
-            return (array.size() * sizeof(array[0]) + sizeof(block[0]) - 1) / sizeof(block[0]);
+        std::vector<std::byte> &block = _rings._block;
+        auto const getNumBytes = [](auto const &array) {
+            constexpr std::size_t kUnit = sizeof(double);
+            return (array.size() * sizeof(array[0]) + kUnit - 1) / kUnit * kUnit;
         };
-        _rings._firstOfProgram = std::uint32_t(getNumWords(floats));
-        _rings._firstDouble = _rings._firstOfProgram + std::uint32_t(getNumWords(_scratch.program));
-        block.resize(_rings._firstDouble + getNumWords(weights));
+        _rings._firstOfProgram = std::uint32_t(getNumBytes(floats));
+        _rings._firstDouble = _rings._firstOfProgram + std::uint32_t(getNumBytes(_scratch.program));
+        block.resize(_rings._firstDouble + getNumBytes(weights));
         auto const copy = [&](auto const &array, std::size_t first) {
             std::memcpy(&block[first], array.data(), array.size() * sizeof(array[0]));
         };

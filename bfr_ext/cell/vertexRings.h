@@ -113,7 +113,7 @@ private:
     std::vector<std::uint32_t> _firsts; // by ring, in the program
     // The weights that differ in single precision, the program, and the weights in double precision: all that a
     // face needs is read from end to end, and mostly not in the cache.
-    std::vector<std::uint64_t> _block;
+    std::vector<std::byte> _block; // in which arrays may begin at multiples of 8
     std::uint32_t _firstOfProgram = 0;
     std::uint32_t _firstDouble = 0;
     InnerRings _inner;

@@ -11,9 +11,10 @@ namespace {
 
 // Begins a round in which no entry has a value.
 template <typename ENTRY>
-void beginRound(std::vector<ENTRY> &entries, unsigned &round) {
+void beginRound(PagedArray<ENTRY> &entries, unsigned &round) {
+    entries.Begin();
     if (++round == 0) {
-        entries.assign(entries.size(), ENTRY());
+        entries.Clear();
         ++round;
     }
 }
@@ -101,15 +102,16 @@ void LimitMultiplier<REAL>::findSourceColumns() {
     numberColumns(_columns.data(), int(_columns.size()));
     _rowsOfColumns.resize(_columns.size());
     for (Source const &source : _sources) {
-        int const column = _columnOfIndex[std::size_t(source.index)].column;
+        int const column = _columnOfIndex.Get(source.index).column;
         _rowsOfColumns[std::size_t(column)] = source.rows;
     }
 }
 
 template <typename REAL>
 void LimitMultiplier<REAL>::numberColumns(Index const *columns, int numColumns) {
+    _columnOfIndex.Begin();
     for (int i = 0; i < numColumns; ++i) {
-        _columnOfIndex[std::size_t(columns[i])].column = i;
+        _columnOfIndex[columns[i]].column = i;
     }
 }
 
@@ -144,13 +146,13 @@ void LimitMultiplier<REAL>::makeUnion() {
     beginRound(_columnOfIndex, _columnRound);
     _added.clear();
     for (Index const index : largest) {
-        Entry &entry = _columnOfIndex[std::size_t(index)];
+        Entry &entry = _columnOfIndex[index];
         entry.round = _columnRound;
         entry.rows = 0;
     }
     for (List const &list : _lists) {
         for (Index const index : list.support) {
-            Entry &entry = _columnOfIndex[std::size_t(index)];
+            Entry &entry = _columnOfIndex[index];
             if (entry.round != _columnRound) {
                 entry.round = _columnRound;
                 entry.rows = 0;
@@ -164,7 +166,7 @@ void LimitMultiplier<REAL>::makeUnion() {
     std::merge(largest.begin(), largest.end(), _added.begin(), _added.end(), _columns.begin());
     _rowsOfColumns.resize(_columns.size());
     std::transform(_columns.begin(), _columns.end(), _rowsOfColumns.begin(),
-                   [this](Index index) { return _columnOfIndex[std::size_t(index)].rows; });
+                   [this](Index index) { return _columnOfIndex.Get(index).rows; });
 }
 
 // The difference of each source to the first one, by column.
@@ -179,7 +181,7 @@ void LimitMultiplier<REAL>::findDifferences(Columns const &columns) {
     for (List &list : _lists) {
         list.firstPosition = int(_positions.size());
         for (Index const index : list.support) {
-            _positions.push_back(_columnOfIndex[std::size_t(index)].column);
+            _positions.push_back(_columnOfIndex.Get(index).column);
         }
     }
     auto const getPositions = [this](int source) {
@@ -221,7 +223,7 @@ void LimitMultiplier<REAL>::scatterTerms(Term const *begin, Term const *end, int
     std::fill(_sums.begin(), _sums.end(), REAL(0));
     for (Term const *term = begin; term != end; ++term) {
         Index const index = _sources[std::size_t(term->source)].index;
-        REAL *const sums = _sums.data() + _columnOfIndex[std::size_t(index)].column;
+        REAL *const sums = _sums.data() + _columnOfIndex.Get(index).column;
         for (int sum = 0; sum < kNumSums; ++sum) {
             sums[sum * std::ptrdiff_t(getStride(numColumns))] += term->factors[sum];
         }

@@ -7,6 +7,7 @@
 
 #include "far_ext/stencil/levelStencils.h"
 #include "far_ext/vtr/indexSet.h"
+#include "far_ext/vtr/pagedArray.h"
 
 #include <cstdint>
 #include <vector>
@@ -41,8 +42,7 @@ public:
     /// \param numIndices      more than any index
     /// \param hasDerivatives  whether those are wanted
     LimitMultiplier(LevelStencils const *stencils, Index numIndices, bool hasDerivatives)
-        : _stencils(stencils), _hasDerivatives(hasDerivatives),
-          _columnOfIndex(std::size_t(numIndices)) {}
+        : _stencils(stencils), _hasDerivatives(hasDerivatives), _columnOfIndex(numIndices) {}
 
     /// \brief Rows that are added again and again, each time with other sources.
     class SharedRows;
@@ -126,7 +126,7 @@ private:
     std::vector<Index> _columns;
     std::vector<Index> _added; // to the largest list
     std::vector<RowBits> _rowsOfColumns;
-    std::vector<Entry> _columnOfIndex;
+    PagedArray<Entry> _columnOfIndex;
     unsigned _columnRound = 0;
 
     std::vector<int> _positions;    // of the indices of lists among the columns, list by list

@@ -154,7 +154,7 @@ void StencilMultiplier<REAL>::fillSourceFace(Index face, Scratch &scratch) const
         double const *mask = _rows.GetFaceVertexWeights(face, i, scratch.mask);
         scratch.sums.assign(width, 0.0);
         for (int j = 0; j < size; ++j) {
-            scratch.sums[scratch.position[_pSupports.OfVertices()[verts[j]][0]]] += mask[j];
+            scratch.sums[scratch.position.Get(_pSupports.OfVertices()[verts[j]][0])] += mask[j];
         }
         std::transform(scratch.sums.begin(), scratch.sums.end(), scratch.rows[i],
                        [](double weight) { return REAL(weight); });
@@ -170,7 +170,7 @@ void StencilMultiplier<REAL>::loadParents(Index face, Scratch &scratch) const {
     int const width = support.size();
     scratch.parents.resize(size);
     scratch.block.Resize(std::size_t(size) * width);
-    int const *const position = scratch.position.data();
+    PagedArray<int> const &position = scratch.position;
     REAL *dense = scratch.block.data();
     for (int j = 0; j < size; ++j, dense += width) {
         Support const pSupport = _pSupports.OfVertices()[verts[j]];
@@ -181,7 +181,7 @@ void StencilMultiplier<REAL>::loadParents(Index face, Scratch &scratch) const {
         }
         std::fill_n(dense, width, REAL(0));
         for (int k = 0; k < pSupport.size(); ++k) {
-            dense[position[pSupport[k]]] = weights[k];
+            dense[position.Get(pSupport[k])] = weights[k];
         }
         scratch.parents[j] = dense;
     }
@@ -247,6 +247,7 @@ void StencilMultiplier<REAL>::fillFace(Index face, Scratch &scratch) const {
         scratch.rows[i] = _stencils.GetWeights(firstRow + i);
         storeIndices(firstRow + i, support);
     }
+    scratch.position.Begin();
     for (int k = 0; k < support.size(); ++k) {
         scratch.position[support[k]] = k;
     }
@@ -261,10 +262,11 @@ void StencilMultiplier<REAL>::fillFace(Index face, Scratch &scratch) const {
 // The stencil of a V-vertex is a sum of those of the parent's vertices and of F-vertices.
 template <typename REAL>
 void StencilMultiplier<REAL>::fillVVertex(Index vVertex, Scratch &scratch) const {
-    double *const sumOfSource = scratch.sumOfSource.data();
+    PagedArray<double> &sumOfSource = scratch.sumOfSource;
+    sumOfSource.Begin();
     Index const pVert = _rows.GetVVertexParent(vVertex);
     RefinementMask::VertexMask const mask = _rows.GetVertexMask(pVert);
-    auto const add = [=](double weight, REAL const *weights, Support sources) {
+    auto const add = [&](double weight, REAL const *weights, Support sources) {
         for (int k = 0; k < sources.size(); ++k) {
             sumOfSource[sources[k]] += weight * double(weights[k]);
         }

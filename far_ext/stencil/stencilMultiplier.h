@@ -63,8 +63,8 @@ private:
     struct Scratch {
         explicit Scratch(Index numSources) : position(numSources), sumOfSource(numSources) {}
 
-        std::vector<int> position;         // of each source in the support of the face
-        std::vector<double> sumOfSource;   // all 0 between two V-vertices
+        PagedArray<int> position;          // of each source in the support of the face
+        PagedArray<double> sumOfSource;    // all 0 between two V-vertices
         Buffer<Index> sources;             // of a V-vertex, see RowSupports
         std::vector<double> mask;          // of a corner, see RefinementMask
         std::vector<double> sums;          // one dense stencil

@@ -47,8 +47,9 @@ void SupportUnion::Form(Support const *supports, int numSupports) {
         numSources += supports[i].size();
         largest = supports[i].size() > supports[largest].size() ? i : largest;
     }
+    _stamp.Begin();
     if (++_lastStamp == 0) {
-        std::fill(_stamp.begin(), _stamp.end(), 0);
+        _stamp.Clear();
         ++_lastStamp;
     }
     _base = supports[largest];
@@ -57,7 +58,6 @@ void SupportUnion::Form(Support const *supports, int numSupports) {
     }
     _added.Resize(numSources);
     Index *const added = _added.data();
-    unsigned *const stamp = _stamp.data();
     int numAdded = 0;
     bool isSorted = true;
     for (int i = 0; i < numSupports; ++i) {
@@ -66,9 +66,10 @@ void SupportUnion::Form(Support const *supports, int numSupports) {
         }
         int const numBefore = numAdded;
         for (Index source : supports[i]) {
+            unsigned &stamp = _stamp[source];
             added[numAdded] = source;
-            numAdded += stamp[source] != _lastStamp;
-            stamp[source] = _lastStamp;
+            numAdded += stamp != _lastStamp;
+            stamp = _lastStamp;
         }
         isSorted = isSorted && (numBefore == 0 || numBefore == numAdded);
     }

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_STENCIL_STENCIL_SUPPORTS_H
 #define OPENSUBDIVHEX_FAR_EXT_STENCIL_STENCIL_SUPPORTS_H
 
+#include "far_ext/vtr/pagedArray.h"
 #include "far_ext/vtr/refinementRows.h"
 
 #include <algorithm>
@@ -78,8 +79,8 @@ public:
 private:
     Support _base;
     int _numAdded = 0;
-    Buffer<Index> _added;         ///< shares no cache line with that of another thread
-    std::vector<unsigned> _stamp; ///< by source: _lastStamp for those in the union
+    Buffer<Index> _added;        ///< shares no cache line with that of another thread
+    PagedArray<unsigned> _stamp; ///< by source: _lastStamp for those in the union
     unsigned _lastStamp = 0;
     SupportArena::Writer _writer;
 };

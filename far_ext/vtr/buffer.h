@@ -41,7 +41,8 @@ void ResizeLarge(std::vector<T> &array, std::size_t size) {
 #if defined(__GLIBCXX__) && !defined(_GLIBCXX_DEBUG) && !defined(_GLIBCXX_SANITIZE_VECTOR)
     // resize() would write all elements once more: benchmark table/quad/large/warm with 2 threads
     // is 1.25 times as fast without.  Folly's resizeWithoutInitialization() relies on the same two
-    // members.  A C cast may go to a base class that is not accessible.
+    // members of the vector's base class, to which a C cast goes though it is not accessible.  Elements of
+    // such types begin to live when their memory is allocated.
     auto &memory = (std::_Vector_base<T, std::allocator<T>> &)array;
     memory._M_impl._M_finish = memory._M_impl._M_start + size;
 #else

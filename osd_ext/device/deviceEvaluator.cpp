@@ -532,6 +532,7 @@ void DeviceEvaluator::evaluateLattices(Frame &frame, Elements src, std::vector<E
                     std::copy_n(lattice.weights.begin() + std::ptrdiff_t(first * numWeights),
                                 parameters.numOrbits * numWeights, parameters.latticeWeights);
                 }
+                // Fits: a face has more indices than parts, and 32 bits reach them (MakeDeviceLimit).
                 runLimit(frame, task, limit, outputs, lattice.numFaces * numParts);
                 parameters.firstOutput +=
                     std::uint64_t(parameters.numOrbits + parameters.numPairs) *

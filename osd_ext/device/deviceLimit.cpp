@@ -5,12 +5,12 @@
 #include "far_ext/vtr/parallel.h"
 #include "osd_ext/refinement/latticeWeights.h"
 #include "osd_ext/refinement/limitKernel.h"
+#include "osd_ext/refinement/limitRowWeights.h"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
 #include <string>
-#include <unordered_map>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
@@ -158,26 +158,17 @@ void addLattices(LatticeFaces const &faces, DeviceLimit &limit) {
     }
 }
 
-// Adds the vertices whose limit is a sum of vertices of a level.
-void addVertices(LimitOrigins const &origins, int level, DeviceLimit &limit) {
-    std::unordered_map<double const *, std::uint32_t>
-        firstWeights; // of the types, by their weights
+// Adds the vertices whose limit is a sum of vertices of a level.  Their weights will be behind those that there are.
+void addVertices(LimitOrigins const &origins, int level, LimitRowWeights &weights,
+                 DeviceLimit &limit) {
     Index sources[LimitOrigins::kMaxSources];
     for (Index const vert : origins.GetVertices(level)) {
         LimitRow const row = origins.GetRow(level, vert, sources);
-        auto const firstWeight =
-            firstWeights.try_emplace(row.du, std::uint32_t(limit.weights.size()));
         std::size_t const firstSource = limit.sources.size();
-        row.ForEachPart([&](int i) {
-            limit.sources.push_back(std::uint32_t(row.sources[i]));
-            if (firstWeight.second) {
-                limit.weights.insert(limit.weights.end(),
-                                     {float(row.weights[i]), float(row.du[i]), float(row.dv[i])});
-            }
-        });
-        limit.vertices.push_back({std::uint32_t(vert),
-                                  std::uint32_t(limit.sources.size() - firstSource),
-                                  std::uint32_t(firstSource), firstWeight.first->second});
+        row.ForEachPart([&](int i) { limit.sources.push_back(std::uint32_t(row.sources[i])); });
+        limit.vertices.push_back(
+            {std::uint32_t(vert), std::uint32_t(limit.sources.size() - firstSource),
+             std::uint32_t(firstSource), std::uint32_t(limit.weights.size() + weights.Add(row))});
     }
 }
 
@@ -192,6 +183,7 @@ CallStatus MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
         return result;
     }
     addLattices(origins.GetLatticeFaces(), limit);
+    LimitRowWeights weights;
     for (int i = 0; i <= rows.GetLevel().depth; ++i) {
         Level const &level = mesh.levels[std::size_t(i)];
         RegularFaces::OfLevel const &faces = origins.GetFaces()[std::size_t(i)];
@@ -199,9 +191,10 @@ CallStatus MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
         ofLevel.fVertices = addFaces(level, faces.fVertices, makeRegularFace, limit.regularFaces);
         ofLevel.ownVertices = addFaces(level, faces.ownVertices, makeOwnFace, limit.ownFaces);
         ofLevel.firstVertex = std::uint32_t(limit.vertices.size());
-        addVertices(origins, i, limit);
+        addVertices(origins, i, weights, limit);
         ofLevel.numVertices = std::uint32_t(limit.vertices.size()) - ofLevel.firstVertex;
     }
+    limit.weights.insert(limit.weights.end(), weights.Get().begin(), weights.Get().end());
     constexpr auto kWordsOf = [](auto const &array) {
         return array.size() * sizeof(array[0]) / sizeof(std::uint32_t);
     };

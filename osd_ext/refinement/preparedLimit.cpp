@@ -4,7 +4,9 @@
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
-#include <unordered_map>
+#include <cstdint>
+#include <limits>
+#include <string>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
@@ -36,8 +38,26 @@ void setPlaces(VertexGroup const &group, int member, LimitRow const &row, std::u
 
 } // namespace
 
+CallStatus CheckLimitPlaces(int level, std::int64_t numVertices) {
+    constexpr std::int64_t kMaxVertices =
+        std::numeric_limits<std::uint32_t>::max() / RegularFaceGroup::kPointStride;
+    if (numVertices <= kMaxVertices) {
+        return CallStatus();
+    }
+    return CallStatus(FarExt::StatusCode::TooLarge, FarExt::ComponentType::Level, level,
+                      "level " + std::to_string(level) + " has " + std::to_string(numVertices) +
+                          " vertices, more than the " + std::to_string(kMaxVertices) +
+                          " of a level from which limits can be evaluated");
+}
+
 CallStatus PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
                                   FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows) {
+    for (int i = 0; i <= rows.GetLevel().depth; ++i) {
+        CallStatus const status = CheckLimitPlaces(i, mesh.levels[std::size_t(i)].numVertices);
+        if (!status.IsOk()) {
+            return status;
+        }
+    }
     LimitOrigins origins(mesh, rows);
     CallStatus result = origins.Find(schemeOptions);
     if (!result.IsOk()) {
@@ -98,21 +118,12 @@ void PreparedLimit::prepareVertices(LimitOrigins const &origins, LevelLimit &res
     };
     std::vector<Other> others;
     others.reserve(verts.size());
-    std::unordered_map<double const *, std::size_t> firstWeights; // of the types, by their weights
     Index sources[LimitOrigins::kMaxSources];
     for (Index const vert : verts) {
         LimitRow const row = origins.GetRow(level, vert, sources);
-        // The sides of a vertex share the weights of its point.
-        auto const firstWeight = firstWeights.try_emplace(row.du, _weights.size());
         int numSources = 0;
-        row.ForEachPart([&](int i) {
-            ++numSources;
-            if (firstWeight.second) {
-                _weights.insert(_weights.end(),
-                                {float(row.weights[i]), float(row.du[i]), float(row.dv[i])});
-            }
-        });
-        others.push_back({vert, numSources, firstWeight.first->second});
+        row.ForEachPart([&](int) { ++numSources; });
+        others.push_back({vert, numSources, _weights.Add(row)});
     }
     std::size_t numPlaces = 0;
     for (std::size_t begin = 0; begin < others.size(); begin += kWindow) {
@@ -216,7 +227,7 @@ void PreparedLimit::Evaluate(int level, Elements<float const> values, bool isRea
     static_cast<LimitTask &>(task) = common;
     task.groups = ofLevel.vertexGroups.data();
     task.places = ofLevel.places.data();
-    task.weights = _weights.data();
+    task.weights = _weights.Get().data();
     EvaluateLimit(task, Index(ofLevel.vertexGroups.size()));
 }
 

@@ -4,6 +4,7 @@
 
 #include "latticeLimit.h"
 #include "limitKernel.h"
+#include "limitRowWeights.h"
 
 #include "far_ext/limit/limitOrigins.h"
 
@@ -11,6 +12,9 @@
 #include <vector>
 
 namespace OpenSubdivHex::OsdExt::internal {
+
+/// TooLarge where the places of vertices, as in RegularFaceGroup, do not fit into 32 bits in a level.
+FarExt::CallStatus CheckLimitPlaces(int level, std::int64_t numVertices);
 
 /// \brief The limit of a level prepared for evaluation.
 ///
@@ -26,7 +30,7 @@ public:
     using Outputs = std::vector<Elements<float>>;
 
     /// Of side 0 of each vertex of the level of \p rows, one of a refiner's \p mesh.
-    /// \return  as LimitRows
+    /// \return  as LimitRows, or CheckLimitPlaces() of a level
     FarExt::CallStatus Prepare(FarExt::internal::MeshLevels const &mesh,
                                FarExt::HexSchemeOptions const &schemeOptions,
                                FarExt::internal::LimitRows &rows);
@@ -86,7 +90,7 @@ private:
     std::vector<LevelLimit> _levels;
     FarExt::internal::Buffer<float> _sums; // of faces of a level
 
-    std::vector<float> _weights; // of all types of vertices in turn
+    LimitRowWeights _weights; // of vertices
 };
 
 } // namespace OpenSubdivHex::OsdExt::internal

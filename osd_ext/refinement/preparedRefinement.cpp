@@ -204,8 +204,14 @@ private:
 };
 
 // The faces that need weights of their own, or exact access (see PreparedRefinement).
-std::vector<Index> findWeightedFaces(RefinementMask const &mask, Level const &parent) {
+std::vector<Index> findWeightedFaces(RefinementMask const &mask, Level const &parent,
+                                     PlainMasks const &plainMasks) {
     std::vector<Index> faces = mask.FindSharpFaces();
+    if (!plainMasks.HasIrregularKernels()) {
+        for (RefinementMask::IrregularFace const &irregular : mask.GetIrregularFaces()) {
+            faces.push_back(irregular.face);
+        }
+    }
     if (parent.numVertices > 0) {
         for (Index const face : parent.GetVertexFaces(parent.numVertices - 1)) {
             if (parent.GetFaceSize(face) <= kMaxUnrolledSize) {
@@ -241,7 +247,7 @@ std::vector<Index> findWeightedVertices(RefinementMask const &mask, Refinement c
 void makeFaces(RefinementMask const &mask, Level const &parent,
                std::vector<Group> const &groupOfTile, TileMap const &tileMap,
                PreparedRefinement &prepared) {
-    std::vector<Index> const indices = findWeightedFaces(mask, parent);
+    std::vector<Index> const indices = findWeightedFaces(mask, parent, prepared.masks);
     std::vector<WeightedFace> weighted;
     std::vector<Group> groupOfWeighted;
     std::vector<double> scratch;

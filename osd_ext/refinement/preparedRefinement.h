@@ -33,7 +33,7 @@ struct PlainFaceMask {
 PlainFaceMask MakePlainFaceMask(double const *weights, int size);
 
 /// \brief The weights of an irregular face, a hexagon: a row for each corner.  Only Smooth has such
-/// faces, whose plain hexagons have no opposite weight.
+/// faces.
 struct IrregularFaceMask {
     static constexpr int kSize = 6;
     static constexpr int kRowStride = 8; ///< quads, so that vectors of them are aligned
@@ -129,6 +129,14 @@ struct PlainMasks {
     std::vector<PlainFaceMask> faces;   ///< by size; sizes that do not occur are not filled
     std::vector<float> verticesInverse; ///< by number of faces: V' = inverse (V + sum of P)
     bool averagesFaces = true;          ///< else V' = V
+
+    /// Whether the kernels of irregular faces fit the plain hexagons beside them: those without an opposite
+    /// weight.  Else irregular faces are WeightedFaces.
+    bool HasIrregularKernels() const {
+        constexpr std::size_t kSize = IrregularFaceMask::kSize;
+        return faces.size() <= kSize ||
+               (faces[kSize].weights.empty() && faces[kSize].opposite == 0);
+    }
 
     std::vector<IrregularFaceMask> irregularFaces;         ///< by type
     std::vector<IrregularVertexWeights> irregularVertices; ///< by number of faces

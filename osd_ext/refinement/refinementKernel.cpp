@@ -109,6 +109,7 @@ void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMa
         }
         return;
     }
+    // Else there are none: see PlainMasks::HasIrregularKernels().
     if constexpr (SIZE == IrregularFaceMask::kSize && !HAS_OPPOSITE) {
         if (refinement.irregularFaces[std::size_t(run.firstIrregular)].begin < end) {
             return refineIrregularFaces<ACCESS>(task, faceMask, run, begin, end);

@@ -7,15 +7,18 @@
 #include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/stencilTableFactory.h"
+#include "far_ext/threads.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/compactStencilTable.h"
 #include "osd_ext/cpuEvaluator.h"
 #include "osd_ext/ompEvaluator.h"
 #include "osd_ext/refinementEvaluator.h"
+#include "osd_ext/simdLevel.h"
 #include "osd_ext/triangleIndices.h"
 #include "regression/osd_ext/evaluators.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
 
 #include <gtest/gtest.h>
 
@@ -317,6 +320,54 @@ TEST(Allocation, FailsOnceOnOneThread) {
 TEST(Allocation, FailsOnceOnThreads) {
     Subject const subject(GetFeatureShape("cubeOfCharts"), 6, 3);
     runSteps(subject, 4);
+}
+
+// Kernels ask for it in loops that throw nothing.  The name is too long for a string without memory.
+TEST(Allocation, TheSimdLevelIsFoundWithoutMemory) {
+    ASSERT_EQ(setenv("OPENSUBDIVHEX_SIMD", "a level that no machine and no library has", 1), 0);
+    FailingAllocations const failures(Failing::AllSince, 1);
+    EXPECT_EQ(OsdExt::GetSimdLevel(), OsdExt::GetMaxSimdLevel());
+    EXPECT_EQ(failures.GetCount(), 0);
+}
+
+namespace {
+
+/// Bytes that are needed at once to make the tables of a level beyond those of the tables.
+long findScratchBytes(TopologyRefiner const &refiner, int numThreads) {
+    FarExt::SetNumThreads(numThreads);
+    auto const measure = [](auto const &make) {
+        long const live = CountLiveBytes();
+        ResetPeakBytes();
+        auto const table = make();
+        EXPECT_TRUE(table);
+        return GetPeakBytes() - live;
+    };
+    StencilTableFactory::Options options;
+    options.generateIntermediateLevels = false;
+    FarExt::LimitStencilTableFactory::Options limitOptions;
+    limitOptions.level = 1;
+    limitOptions.generateVertices = false;
+    limitOptions.generateFaceCenters = true;
+    long const result = std::max(
+        measure([&] { return StencilTableFactory::Create(refiner, options); }),
+        measure([&] { return FarExt::LimitStencilTableFactory::Create(refiner, limitOptions); }));
+    FarExt::SetNumThreads(0);
+    return result;
+}
+
+} // namespace
+
+// Vertices that no face has make the level large and its tables quick to make.
+TEST(Allocation, ThreadsNeedLittleBesideALevel) {
+    constexpr int kNumVertices = 1 << 21;
+    Shape shape = MakeTorus(40, 40, TorusFaces::Quads);
+    shape.positions.resize(3 * std::size_t(kNumVertices));
+    Subject const subject(shape, 1, 1);
+    auto const refiner = subject.CreateUnrefined();
+    subject.Refine(*refiner);
+    long const ofOne = findScratchBytes(*refiner, 1);
+    long const ofMany = findScratchBytes(*refiner, 8);
+    EXPECT_LT(ofMany - ofOne, 8 * kNumVertices) << "bytes, of which a thread had one a vertex";
 }
 
 } // namespace OpenSubdivHex::Regression::allocationTest

@@ -319,6 +319,13 @@ void expectSameFaces(TopologyLevel const &level, ReferenceMatch const &match, in
     }
 }
 
+// What fits is counted without larger sums: in constants, which such sums are refused in.  All edges are boundaries,
+// or nearly all B edges.
+static_assert(FarExt::HexIndexing(0, 0, 1600000000)
+                  .GetEdgeChildFirstCorner(130000000, 0, 130000000) == 2120000000);
+static_assert(FarExt::HexIndexing(0, 2000000000, 0).GetEdgeChildFace(1000000000, 900000000) ==
+              2100000000);
+
 } // namespace
 
 class Topology : public testing::Test {

@@ -16,7 +16,6 @@
 namespace OpenSubdivHex::Tools {
 
 using BfrExt::CellForest;
-using BfrExt::Surface;
 using BfrExt::SurfaceFactory;
 
 namespace {
@@ -162,7 +161,7 @@ void AdaptiveRefinement::Refine(AdaptiveArguments const &arguments,
     }
     FarExt::TopologyLevel const base = factory->GetLevel();
     int const numFaces = base.GetNumFaces();
-    Surface<float> surface;
+    BfrExt::Surface<float> surface;
     std::int64_t numSurfaces = 0;
     for (int face = 0; face < numFaces; ++face) {
         if (base.IsFaceHole(face)) {

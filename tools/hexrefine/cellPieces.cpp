@@ -11,7 +11,6 @@
 
 namespace OpenSubdivHex::Tools {
 
-using BfrExt::Surface;
 using BfrExt::Tessellation;
 
 namespace {
@@ -148,7 +147,7 @@ bool CellPieces::MakeNext() {
     return !_piece.faceSizes.empty();
 }
 
-void CellPieces::evaluate(Surface<float> const &surface, Patch const &patch,
+void CellPieces::evaluate(BfrExt::Surface<float> const &surface, Patch const &patch,
                           std::vector<float> const &values, int width,
                           std::vector<float> &result) const {
     std::vector<float> control(std::size_t(surface.GetNumControlPoints()) * std::size_t(width));
@@ -161,7 +160,7 @@ void CellPieces::evaluate(int face, Patch &patch) const {
     patch.face = face;
     patch.boundary.resize(std::size_t(patch.tessellation.GetNumBoundaryCoords()));
     _forest.GetBoundaryPoints(face, patch.boundary.data());
-    Surface<float> surface;
+    BfrExt::Surface<float> surface;
     _factory.InitVertexSurface(face, &surface);
     evaluate(surface, patch, _mesh.positions, 3, patch.positions);
     if (!_properties.empty()) {
