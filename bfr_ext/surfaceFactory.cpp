@@ -168,11 +168,11 @@ internal::CellType const *SurfaceFactory::findType(Level const &level, Index lev
         return nullptr;
     }
     CellPatch cell;
-    GatherBaseCell(level, levelFace, cell);
+    internal::CellRules const rules = getRules(_refiner, interpolation);
+    GatherBaseCell(level, levelFace, rules.sdcOptions, cell);
     std::size_t const numPoints = cell.patch.sources.size();
     points.assign(cell.patch.sources.begin(), cell.patch.sources.end());
-    internal::CellType const &type =
-        _types->Find(std::move(cell), getRules(_refiner, interpolation));
+    internal::CellType const &type = _types->Find(std::move(cell), rules);
     Far::ConstIndexArray const verts = level.GetFaceVertices(levelFace);
     int const withManyFaces = findVertexOfManyFaces(level, levelFace);
     if (withManyFaces < verts.size() && !type.HasCorners()) {

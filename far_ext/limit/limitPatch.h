@@ -38,6 +38,8 @@ struct LimitPatch {
     std::vector<Index> lines;                ///< of these, in the order of their first corners
     std::vector<SectorCorner> sectorCorners; ///< ascending
     std::vector<SharpVertex> sharpVerts;     ///< ascending; of vertex 0 and its neighbours
+    /// With Chaikin's rule, of the vertices further out where semi-sharp edges of these end.
+    std::vector<SharpEnd> sharpEnds;
     std::vector<IrregularCorner> irregularCorners; ///< ascending; as far as sectorCorners
     std::vector<IrregularVertex> irregularVerts;   ///< ascending; of vertex 0 and its neighbours
     /// As of the level, as long as it matters for the masks of this patch or of those that it makes.
@@ -54,8 +56,8 @@ public:
     using Index = Far::Index;
 
     /// Of a level that is refined with \p faceMask.
-    LimitPatchGatherer(Level const &level, FaceMask faceMask)
-        : _level(level), _faceMask(faceMask) {}
+    LimitPatchGatherer(Level const &level, Sdc::Options sdcOptions, FaceMask faceMask)
+        : _level(level), _creasing(sdcOptions), _faceMask(faceMask) {}
 
     void Gather(Index vert, LimitPatch &patch);
 
@@ -80,11 +82,13 @@ private:
     void addEdge(Index corner, Index edge, LimitPatch &patch);
     void addTags(LimitPatch &patch);
     void addSharpVertices(LimitPatch &patch);
+    void addSharpEnds(LimitPatch &patch);
     void addIrregularVertices(LimitPatch &patch);
     int countSteps(LimitPatch const &patch) const;
     bool hasIrregularities(LimitPatch const &patch) const;
 
     Level const &_level;
+    Sdc::Crease const _creasing;
     FaceMask const _faceMask;
     // Numbers in the patch.
     IndexMap _verts;
