@@ -14,8 +14,8 @@ namespace OpenSubdivHex::FarExt::internal {
 ///
 /// The patch of a vertex makes the patch of its V-vertex: the faces there are the E-faces of its
 /// edges, and the neighbours are its F-vertices, with the F-faces of its faces besides.  Their
-/// vertices depend on faces of the parent patch alone, and so do their tags.  Hence the steps from
-/// patch to patch give the limit.
+/// vertices depend on faces of the parent patch alone, and so do their tags, but for Chaikin's rule,
+/// for which it has sharpEnds.  Hence the steps from patch to patch give the limit.
 ///
 /// The patch is a mesh of its own: vertex 0 is the one that it is made for, and it is cut off along
 /// free boundaries.  Its numbering and content do not depend on those of the level, as far as that
