@@ -198,11 +198,11 @@ internal::CellType const *SurfaceFactory::findType(int channel, Index levelFace,
     }
     Level const &level = _walks[std::size_t(channel + 1)]->GetLevel();
     CellPatch cell;
-    GatherBaseCell(level, levelFace, cell);
+    internal::CellRules const rules = getRules(_refiner, interpolation);
+    GatherBaseCell(level, levelFace, rules.sdcOptions, cell);
     std::size_t const numPoints = cell.patch.sources.size();
     points.assign(cell.patch.sources.begin(), cell.patch.sources.end());
-    internal::CellType const &type =
-        _types->Find(std::move(cell), getRules(_refiner, interpolation));
+    internal::CellType const &type = _types->Find(std::move(cell), rules);
     Far::ConstIndexArray const verts = level.GetFaceVertices(levelFace);
     int const withManyFaces = findVertexOfManyFaces(level, levelFace);
     if (withManyFaces < verts.size() && !type.HasCorners()) {

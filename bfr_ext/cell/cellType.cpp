@@ -309,7 +309,7 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
     };
     return get(item, [&] {
         // The others are asked for, too.
-        std::vector<CellPatch> patches = GatherBorder(_cell, turns);
+        std::vector<CellPatch> patches = GatherBorder(_cell, turns, _rules.sdcOptions);
         std::size_t const numEdges = patches.size() / 2;
         std::vector<BorderItem> items;
         for (std::size_t i = 0; i < patches.size(); ++i) {

@@ -175,7 +175,8 @@ CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell, int c
     LatticeItem const &lattice =
         _types._types.GetRingCells(_types._rules)
             .FindLatticeItem(isEdge ? CellKind::Edge : CellKind::Vertex, cell.GetNumCorners(), [&] {
-                CellPatch patch = std::move(GatherBorder(cell, turns)[item]);
+                CellPatch patch =
+                    std::move(GatherBorder(cell, turns, _types._rules.sdcOptions)[item]);
                 CellType const &type = _types._types.Find(CellPatch(patch), _types._rules);
                 return LatticeItem{std::move(patch), &type};
             });

@@ -369,8 +369,9 @@ private:
         return _cells.Find(kind, key, [&] {
             std::vector<int> turns(2 * std::size_t(_numEdges));
             turns[std::size_t(item)] = turn;
-            return makeItemCell(GatherBorder(_cell, turns.data())[std::size_t(item)],
-                                _cells.GetRules());
+            return makeItemCell(
+                GatherBorder(_cell, turns.data(), _cells.GetRules().sdcOptions)[std::size_t(item)],
+                _cells.GetRules());
         });
     }
 

@@ -72,11 +72,11 @@ int findSide(Level const &level, Index vert, Index face, int half) {
 
 } // namespace
 
-void GatherBaseCell(Level const &level, Index face, CellPatch &cell) {
+void GatherBaseCell(Level const &level, Index face, Sdc::Options sdcOptions, CellPatch &cell) {
     cell.kind = CellKind::Whole;
     cell.locals.resize(std::size_t(level.GetFaceSize(face)));
     std::iota(cell.locals.begin(), cell.locals.end(), 0);
-    LimitPatchGatherer gatherer(level, kMaskOfBase);
+    LimitPatchGatherer gatherer(level, sdcOptions, kMaskOfBase);
     gather(gatherer, level, face, cell);
 }
 
@@ -137,11 +137,12 @@ void FindBaseCellTurns(Level const &level, Index face, int *turns) {
     }
 }
 
-std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns) {
+std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns,
+                                    Sdc::Options sdcOptions) {
     ExecutorScope const alone(nullptr, 1);
     Level level;
     BuildPatchLevel(baseCell.patch, level);
-    LimitPatchGatherer gatherer(level, kMaskOfBase);
+    LimitPatchGatherer gatherer(level, sdcOptions, kMaskOfBase);
     int const size = baseCell.GetNumCorners();
     std::vector<CellPatch> border;
     for (int i = 0; i < size; ++i) {
@@ -185,9 +186,10 @@ struct RefinedPatch {
 // What a step makes of a parent's cell, without the step.
 class CellRefiner {
 public:
-    CellRefiner(Refinement const &refinement, FaceMask faceMask, CellPatch const &cell)
+    CellRefiner(Refinement const &refinement, Sdc::Options sdcOptions, FaceMask faceMask,
+                CellPatch const &cell)
         : _refinement(refinement), _parent(*refinement.parent), _child(*refinement.child),
-          _cell(cell), _gatherer(_child, faceMask) {}
+          _cell(cell), _gatherer(_child, sdcOptions, faceMask) {}
 
     std::vector<CellPatch> Refine() {
         switch (_cell.kind) {
@@ -294,7 +296,7 @@ CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
     RefinedPatch const refined(cell.patch, sdcOptions, schemeOptions.faceMask);
     Refinement const &refinement = refined.refinement;
     CellRefinement result;
-    result.children = CellRefiner(refinement, schemeOptions.faceMask, cell).Refine();
+    result.children = CellRefiner(refinement, sdcOptions, schemeOptions.faceMask, cell).Refine();
     std::vector<Index> verts;
     for (CellPatch const &child : result.children) {
         verts.insert(verts.end(), child.patch.sources.begin(), child.patch.sources.end());
@@ -323,7 +325,7 @@ std::vector<CornerLimit> FindCornerLimits(CellPatch const &cell, LimitMaskFinder
     ExecutorScope const alone(nullptr, 1);
     Level level;
     BuildPatchLevel(cell.patch, level);
-    LimitPatchGatherer gatherer(level, finder.GetFaceMask());
+    LimitPatchGatherer gatherer(level, finder.GetSdcOptions(), finder.GetFaceMask());
     LimitPatch patch;
     std::vector<CornerLimit> limits;
     for (Index const vert : cell.corners) {

@@ -44,7 +44,8 @@ struct CellPatch {
 };
 
 /// Gathers the cell of a base face, \p level being level 0.
-OPENSUBDIVHEX_API void GatherBaseCell(Level const &level, Far::Index face, CellPatch &cell);
+OPENSUBDIVHEX_API void GatherBaseCell(Level const &level, Far::Index face, Sdc::Options sdcOptions,
+                                      CellPatch &cell);
 
 /// \brief Makes the cell of a base face that GatherBaseCell() gathers where no feature is near, but for the
 /// sources, which are the numbers of the points themselves.
@@ -64,7 +65,8 @@ OPENSUBDIVHEX_API CellPatch MakePlainBaseCell(std::vector<int> faceSizes,
 OPENSUBDIVHEX_API void FindBaseCellTurns(Level const &level, Far::Index face, int *turns);
 
 /// The edges and then the vertices of a base cell, whose patch's vertices are their sources.
-OPENSUBDIVHEX_API std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns);
+OPENSUBDIVHEX_API std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns,
+                                                      Sdc::Options sdcOptions);
 
 /// \brief What one step makes of a cell: the cells that it becomes, and the vertices that their patches
 /// have, each once, in terms of those of the cell's patch.

@@ -47,6 +47,7 @@ public:
     /// repeats itself has no eigenvectors that iteration finds.
     MaskPointer Find(LimitPatch const &patch);
 
+    Sdc::Options GetSdcOptions() const { return _sdcOptions; }
     FaceMask GetFaceMask() const { return _schemeOptions.faceMask; }
 
     /// A patch, and the step that leads to the next.

@@ -6,6 +6,7 @@
 #include "far_ext/vtr/indexSet.h"
 #include "far_ext/vtr/irregularFeatures.h"
 #include "far_ext/vtr/refinementRows.h"
+#include "far_ext/vtr/sharpFeatures.h"
 
 #include <cstring>
 
@@ -325,6 +326,39 @@ void LimitPatchGatherer::addSharpVertices(LimitPatch &patch) {
     }
 }
 
+void LimitPatchGatherer::addSharpEnds(LimitPatch &patch) {
+    if (_creasing.IsUniform()) {
+        return;
+    }
+    std::vector<Index> verts;
+    auto const addEnds = [&](Index end, Index otherEnd, float sharpness) {
+        Index const outer = std::max(end, otherEnd);
+        if (Crease::IsSemiSharp(sharpness) && std::min(end, otherEnd) < _numComplete &&
+            outer >= _numComplete) {
+            verts.push_back(outer);
+        }
+    };
+    Index first = 0;
+    for (std::size_t face = 0; face < patch.faceSizes.size(); ++face) {
+        int const size = patch.faceSizes[face];
+        for (int i = 0; i < size; ++i) {
+            addEnds(patch.faceVerts[first + i], patch.faceVerts[first + (i + 1) % size],
+                    patch.edgeSharpness[first + i]);
+        }
+        if (float const sharpness = patch.diagonalSharpness[face]; Crease::IsSharp(sharpness)) {
+            addEnds(patch.faceVerts[first + kDiagonalStart], patch.faceVerts[first + kDiagonalEnd],
+                    sharpness);
+        }
+        first += size;
+    }
+    SortUnique(verts);
+    for (Index const vert : verts) {
+        for (float const sharpness : GatherSharpness(_level, patch.sources[vert])) {
+            patch.sharpEnds.push_back({vert, sharpness});
+        }
+    }
+}
+
 // Whether the steps to come make irregular vertices or corners, at most.
 bool LimitPatchGatherer::hasIrregularities(LimitPatch const &patch) const {
     constexpr int kQuad = 4;
@@ -398,6 +432,10 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
         signature.insert(signature.end(),
                          {sector.corner, getBits(sector.sectorSize), getBits(sector.weight)});
     }
+    signature.push_back(int(patch.sharpEnds.size()));
+    for (SharpEnd const &end : patch.sharpEnds) {
+        signature.insert(signature.end(), {end.vert, getBits(end.sharpness)});
+    }
     signature.push_back(patch.numHexagonalSteps);
     for (IrregularCorner const &irregular : patch.irregularCorners) {
         signature.insert(signature.end(),
@@ -454,6 +492,7 @@ void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
         [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
     addTags(patch);
     addSharpVertices(patch);
+    addSharpEnds(patch);
     addIrregularVertices(patch);
     AddSignature(patch);
 }
@@ -550,6 +589,7 @@ void BuildPatchLevel(LimitPatch const &patch, Level &level) {
     }
     level.sharpVerts = patch.sharpVerts;
     level.sectorCorners = patch.sectorCorners;
+    level.sharpEnds = patch.sharpEnds;
     level.irregularVerts = patch.irregularVerts;
     level.irregularCorners = patch.irregularCorners;
     level.numHexagonalSteps = patch.numHexagonalSteps;
@@ -677,7 +717,7 @@ PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
     BuildPatchLevel(pPatch, parent);
     RefineHexagonally(parent, sdcOptions, true, refinement, child);
     FindIrregularFeatures(schemeOptions.faceMask, refinement, child);
-    LimitPatchGatherer(child, schemeOptions.faceMask)
+    LimitPatchGatherer(child, sdcOptions, schemeOptions.faceMask)
         .Gather(refinement.GetVertexChildVertex(0), cPatch);
 
     PatchRefinement step =

@@ -14,8 +14,8 @@ namespace OpenSubdivHex::FarExt::internal {
 ///
 /// The patch of a vertex makes the patch of its V-vertex: the faces there are the E-faces of its
 /// edges, and the neighbours are its F-vertices, with the F-faces of its faces besides.  Their
-/// vertices depend on faces of the parent patch alone, and so do their tags.  Hence the steps from
-/// patch to patch give the limit.
+/// vertices depend on faces of the parent patch alone, and so do their tags, but for Chaikin's rule,
+/// for which it has sharpEnds.  Hence the steps from patch to patch give the limit.
 ///
 /// The patch is a mesh of its own: vertex 0 is the one that it is made for, and it is cut off along
 /// free boundaries.  Its numbering and content do not depend on those of the level, as far as that
@@ -43,6 +43,8 @@ struct LimitPatch {
     std::vector<Index> lines;                ///< of these, in the order of their first corners
     std::vector<SectorCorner> sectorCorners; ///< ascending
     std::vector<SharpVertex> sharpVerts;     ///< ascending; of vertex 0 and its neighbours
+    /// With Chaikin's rule, of the vertices further out where semi-sharp edges of these end.
+    std::vector<SharpEnd> sharpEnds;
     std::vector<IrregularCorner> irregularCorners; ///< ascending; as far as sectorCorners
     std::vector<IrregularVertex> irregularVerts;   ///< ascending; of vertex 0 and its neighbours
     /// As of the level, as long as it matters for the masks of this patch or of those that it makes.
@@ -62,8 +64,8 @@ public:
     using Index = Far::Index;
 
     /// Of a level that is refined with \p faceMask.
-    LimitPatchGatherer(Level const &level, FaceMask faceMask)
-        : _level(level), _faceMask(faceMask) {}
+    LimitPatchGatherer(Level const &level, Sdc::Options sdcOptions, FaceMask faceMask)
+        : _level(level), _creasing(sdcOptions), _faceMask(faceMask) {}
 
     void Gather(Index vert, LimitPatch &patch);
 
@@ -94,11 +96,13 @@ private:
     void addEdge(Index corner, Index edge, LimitPatch &patch);
     void addTags(LimitPatch &patch);
     void addSharpVertices(LimitPatch &patch);
+    void addSharpEnds(LimitPatch &patch);
     void addIrregularVertices(LimitPatch &patch);
     int countSteps(LimitPatch const &patch) const;
     bool hasIrregularities(LimitPatch const &patch) const;
 
     Level const &_level;
+    Sdc::Crease const _creasing;
     FaceMask const _faceMask;
     Index _whole = Far::INDEX_INVALID; // the vertex that does not come apart
     IndexMap _apart;                   // whether a non-manifold vertex does

@@ -45,7 +45,7 @@ class LimitRows::Finder {
 public:
     Finder(LimitRows const &rows, std::vector<VertexMark> const &marks)
         : _level(rows._level), _marks(marks), _plainGatherer(rows._level),
-          _gatherer(rows._level, rows._schemeOptions.faceMask),
+          _gatherer(rows._level, rows._sdcOptions, rows._schemeOptions.faceMask),
           _finder(rows._sdcOptions, rows._schemeOptions) {}
 
     /// Adds what a vertex has to a range.

@@ -47,6 +47,14 @@ struct SectorCorner {
     float weight;     ///< share of the thresholds; the entries of a corner sum to 1 at most
 };
 
+/// \brief One of the sharp edges that meet in a vertex of a patch where some of them may be missing.
+///
+/// By Chaikin's rule the sharpness of an edge depends on that of all edges at its ends.
+struct SharpEnd {
+    Far::Index vert;
+    float sharpness;
+};
+
 /// \brief A vertex inside the mesh where four hexagons or more meet: see ComputeIrregularVertexMask
 /// in mask.h.
 struct IrregularVertex {
@@ -356,6 +364,8 @@ struct Level {
 
     std::vector<SharpVertex> sharpVerts;     ///< ascending; all with a rule but RULE_SMOOTH
     std::vector<SectorCorner> sectorCorners; ///< ascending
+    /// Of patches alone; vertices ascend, and edges are in the order around them.
+    std::vector<SharpEnd> sharpEnds;
 
     // What has masks of its own with FaceMask::Smooth; empty with others.
     std::vector<IrregularVertex> irregularVerts;   ///< ascending

@@ -332,6 +332,21 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, Level &level) {
         [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
 }
 
+std::vector<float> GatherSharpness(Level const &level, Index vert) {
+    auto const isBefore = [](SharpEnd const &end, Index v) { return end.vert < v; };
+    auto const first =
+        std::lower_bound(level.sharpEnds.begin(), level.sharpEnds.end(), vert, isBefore);
+    auto const last = std::lower_bound(first, level.sharpEnds.end(), vert + 1, isBefore);
+    FanItems fan;
+    SharpEdges edges;
+    if (first == last) {
+        gatherSharpEdges(level, vert, fan, edges);
+    }
+    std::for_each(first, last,
+                  [&](SharpEnd const &end) { edges.sharpness.push_back(end.sharpness); });
+    return edges.sharpness;
+}
+
 namespace {
 
 // Sharpness after one step, as seen at the ends of a sharp edge.
@@ -345,11 +360,9 @@ public:
         if (_creasing.IsUniform()) {
             return Along(sharpness);
         }
-        FanItems fan;
-        SharpEdges edges;
-        gatherSharpEdges(_level, vert, fan, edges);
-        return _creasing.SubdivideEdgeSharpnessAtVertex(sharpness, edges.GetSize(),
-                                                        edges.sharpness.data());
+        std::vector<float> const ofEdges = GatherSharpness(_level, vert);
+        return _creasing.SubdivideEdgeSharpnessAtVertex(sharpness, int(ofEdges.size()),
+                                                        ofEdges.data());
     }
     // Of a part of the edge that ends in neither vertex.
     float Along(float sharpness) const { return _creasing.SubdivideUniformSharpness(sharpness); }

@@ -16,6 +16,10 @@ namespace OpenSubdivHex::FarExt::internal {
 /// \p child has its relations; without full topology only the tags of faces are made.
 void RefineTags(Refinement const &refinement, Sdc::Options sdcOptions, Level &child);
 
+/// \brief The sharpness of all sharp edges that meet in a vertex: boundaries, crease edges and crease diagonals.
+/// Those that several fans have on one line count once.
+std::vector<float> GatherSharpness(Level const &level, Far::Index vert);
+
 /// \brief Fills level.sharpVerts and level.sectorCorners from the level's boundaries and tags, with
 /// Sdc::Crease's rules.
 ///

@@ -37,7 +37,8 @@ TEST(CellBounds, WeightsAreWithinTheirBoundsBesideLargeFaces) {
         }
         ASSERT_EQ(surface.GetNumControlPoints(), 2 * kNumSides);
         FarExt::internal::CellPatch cell;
-        GatherBaseCell(refiner->GetHierarchy().mesh.levels[0], face, cell);
+        GatherBaseCell(refiner->GetHierarchy().mesh.levels[0], face, refiner->GetSchemeOptions(),
+                       cell);
         CellBounds const bounds(types.Find(std::move(cell), {refiner->GetSchemeOptions(),
                                                              refiner->GetHexSchemeOptions(),
                                                              FarExt::Interpolation::Vertex}));

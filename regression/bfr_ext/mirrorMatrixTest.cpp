@@ -39,7 +39,7 @@ public:
     explicit Face(Shape const &shape) {
         auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, {});
         FarExt::internal::CellPatch cell;
-        GatherBaseCell(refiner->GetHierarchy().mesh.levels[0], 0, cell);
+        GatherBaseCell(refiner->GetHierarchy().mesh.levels[0], 0, {}, cell);
         _type = &_types.Find(std::move(cell), {});
         int const size = _type->GetNumCorners();
         BfrExt::internal::LeafPlaces const places(size, 3);

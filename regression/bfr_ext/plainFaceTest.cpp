@@ -168,7 +168,7 @@ struct Faces {
             }
             ++numPlain;
             FarExt::internal::CellPatch cell;
-            FarExt::internal::GatherBaseCell(level, face, cell);
+            FarExt::internal::GatherBaseCell(level, face, {}, cell);
             std::vector<Far::Index> expected = cell.patch.sources;
             EXPECT_EQ(plain->GetNumPoints(), int(expected.size())) << "face " << face;
             expected.resize(expected.size() + 2 * std::size_t(level.GetFaceSize(face)));

@@ -63,7 +63,8 @@ private:
     void set(int face, CELLS &cells) {
         FarExt::internal::CellPatch cell;
         int const level = _refiner.GetHexSchemeOptions().GetSurfaceLevel();
-        GatherBaseCell(_refiner.GetHierarchy().mesh.levels[std::size_t(level)], face, cell);
+        GatherBaseCell(_refiner.GetHierarchy().mesh.levels[std::size_t(level)], face,
+                       _refiner.GetSchemeOptions(), cell);
         std::vector<double> points;
         for (Far::Index const vert : cell.patch.sources) {
             double const *const p = &_meshPoints[3 * std::size_t(vert)];

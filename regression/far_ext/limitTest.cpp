@@ -208,7 +208,7 @@ TEST(Limit, IsTheSameFromEveryLevel) {
                 // Chaikin's sharpness is a float that depends, in its last bit, on the edge that a
                 // sum begins with.
                 bool const isChaikin = options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
-                double const allowed = (isChaikin ? 1e-5 : 1e-12) * GetSize(positions);
+                double const allowed = (isChaikin ? 1e-6 : 1e-12) * GetSize(positions);
                 // The planes of a side: some side of the V-vertex has the same.
                 auto const expectPlane = [&](int i, int cBegin, int cEnd, double tolerance) {
                     Eigen::Vector3d const normal = normalOf(values, i);

@@ -412,7 +412,7 @@ char const *toString(bool value) { return value ? "true" : "false"; }
 
 double OracleCase::GetTolerance(double rounding) const {
     bool const isChaikin = sdcOptions.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN;
-    return isChaikin ? std::max(1e-5, rounding) : rounding;
+    return isChaikin ? std::max(1e-6, rounding) : rounding;
 }
 
 std::string Print(OracleCase const &oracleCase) {

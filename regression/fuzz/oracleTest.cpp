@@ -143,4 +143,25 @@ TEST(Oracle, TruncatedVertexWithABoundaryEdgeToItself) {
     EXPECT_NO_THROW(CheckOracleCase(oracleCase));
 }
 
+// By Chaikin's rule the crease from vertex 7 to 3 is less sharp for the other one at 3, which is no neighbour
+// of vertex 0.
+TEST(Oracle, LimitBesideTheFarEndOfACreaseByChaikin) {
+    OracleCase oracleCase;
+    oracleCase.shape.positions = {-1.6875,  1.4375,   -1.0625,   1.03125,   -0.078125, -1.015625,
+                                  1.78125,  -0.125,   -1.203125, -1.578125, -1.71875,  1.109375,
+                                  0.1875,   1.375,    -0.265625, -0.953125, 1.421875,  0.90625,
+                                  -0.78125, 0.546875, -0.4375,   1.703125,  -1.875,    1.359375};
+    oracleCase.shape.faceSizes = {3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3};
+    oracleCase.shape.faceVertices = {0, 1, 6, 1, 0, 7, 1, 2, 6, 2, 1, 7, 2, 3, 6, 3, 2, 7,
+                                     3, 4, 6, 4, 3, 7, 4, 5, 6, 5, 4, 7, 5, 0, 6, 0, 5, 7};
+    oracleCase.shape.creaseVertexPairs = {3, 7, 2, 3, 0, 1};
+    oracleCase.shape.creaseSharpness = {2, 0.25, 10};
+    oracleCase.sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    oracleCase.sdcOptions.SetCreasingMethod(Sdc::Options::CREASE_CHAIKIN);
+    oracleCase.mask = ReferenceMask::Smooth;
+    oracleCase.level = 1;
+    oracleCase.checks = 3969;
+    EXPECT_NO_THROW(CheckOracleCase(oracleCase));
+}
+
 } // namespace OpenSubdivHex::Regression::oracleTest
