@@ -14,8 +14,6 @@ using BfrExt::Tessellation;
 
 namespace {
 
-constexpr int kLength = 3;
-
 void requireOk(bool isOk, FarExt::CallStatus const &status) {
     if (!isOk) {
         throw std::runtime_error(status.GetErrorMessage());

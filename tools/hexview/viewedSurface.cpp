@@ -22,7 +22,6 @@ namespace {
 using OsdExt::DrawnFaces;
 using OsdExt::PolygonIndices;
 
-constexpr int kLength = 3;
 Osd::BufferDescriptor const kPacked(0, kLength, kLength);
 
 [[noreturn]] void fail(FarExt::CallStatus const &status) {
