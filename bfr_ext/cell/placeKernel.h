@@ -62,7 +62,7 @@ public:
     std::size_t GetNumPlaces() const { return _numPlaces; }
     std::size_t GetNumPoints() const { return _numPoints; }
 
-    template <typename WEIGHT>
+    template <typename WEIGHT = double>
     void Set(std::size_t place, std::vector<WEIGHT> const &stencil) {
         std::size_t const begin = place / kMaxWidth * kMaxWidth;
         std::size_t const width = GetWidth(begin);
