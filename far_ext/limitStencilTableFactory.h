@@ -172,10 +172,10 @@ public:
     /// \return  null on failure: InvalidArgument (level out of range or without full topology, no
     ///          points asked for, further sides without vertices), TooLarge (more than 2^31 - 1
     ///          weights, here or in the stencils of the level) or Unsupported (the level is not
-    ///          refined by hexagonal steps; a vertex, which the status names, has tangents that
-    ///          iteration does not find: where a single sharp edge ends among more than 100 faces; or,
-    ///          for points at vertices, a vertex has more than 1,024 faces or a face as many vertices, which the
-    ///          status names: the stencils of all vertices around would depend on all of them).
+    ///          refined by hexagonal steps; or, for points at vertices, a vertex or a face, which the
+    ///          status names: a vertex whose tangents iteration does not find, where a single sharp
+    ///          edge ends among more than 100 faces; one with more than 1,024 faces, or at a non-manifold
+    ///          corner as many in one fan; or a face with more than 1,024 vertices).
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,
                                                CallStatus *status = nullptr);
 };

@@ -61,6 +61,11 @@ void FaceWalk::findCrowds() {
         if (_level.GetNumVertexFaces(vert) <= kMaxSemiSharpFaces) {
             continue;
         }
+        int const size = _level.GetNumVertexFaces(vert);
+        if (size > kMaxFacesApart) {
+            _crowds.push_back({vert, Far::INDEX_INVALID, size, kMaxFaces});
+            continue;
+        }
         Crowd crowd = {vert, Far::INDEX_INVALID, 0, 0};
         auto const add = [&](FanCounter const &counter) {
             if (crowd.size == 0 && counter.GetNumFaces() > counter.GetMaxFaces()) {

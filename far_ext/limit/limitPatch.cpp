@@ -86,6 +86,16 @@ bool ComesApart(Level const &level, Index vert) {
     return isCorner && numFans > 1;
 }
 
+int CountFacesTogether(Level const &level, Index vert) {
+    if (level.GetNumVertexFaces(vert) > kMaxFacesApart || !ComesApart(level, vert)) {
+        return level.GetNumVertexFaces(vert);
+    }
+    int result = 0;
+    ForEachFan(level, vert,
+               [&](VertexFan const &fan) { result = std::max(result, fan.GetSize()); });
+    return result;
+}
+
 // Whether a vertex does, which is looked at once.
 bool LimitPatchGatherer::comesApart(Index vert) {
     if (vert == _whole || !_level.IsNonManifold(vert)) {
@@ -149,12 +159,10 @@ void LimitPatchGatherer::forEachFanOf(int vert, LimitPatch const &patch, FUNCTIO
 }
 
 // The fans one after the other, as the level has them, but closed ones from their first face on.
-void LimitPatchGatherer::orderFans(Index vert, LimitPatch &patch) {
-    Index firstEdge = _level.vertFirstEdge[vert];
-    ForEachFan(_level, vert, [&](VertexFan const &fan) {
+void LimitPatchGatherer::orderFans(LimitPatch &patch) {
+    forEachFanOf(0, patch, [&](VertexFan const &fan, Index firstEdge, int numEdges) {
         GatherFanItems(_level, fan, _fan);
         int const numFaces = fan.end - fan.begin;
-        int const numEdges = numFaces + !fan.isClosed;
         int firstSide = 0;
         int const first = fan.isClosed ? findFirstFace(fan, firstSide) : 0;
         for (int i = 0; i < numFaces; ++i) {
@@ -163,7 +171,6 @@ void LimitPatchGatherer::orderFans(Index vert, LimitPatch &patch) {
         for (int i = 0; i < numEdges; ++i) {
             _ringEdges.push_back(_level.vertEdges[firstEdge + (first + i) % numEdges]);
         }
-        firstEdge += numEdges;
         int const begin = int(patch.sides.size());
         int const numSides = countSides(_fan);
         for (int side = 0; side < numSides; ++side) {
@@ -518,7 +525,15 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
     clear(patch);
     _whole = vert;
     addVertex(vert, vert, patch);
-    orderFans(vert, patch);
+    orderFans(patch);
+    addNeighborhood(1, patch);
+}
+
+void LimitPatchGatherer::GatherFan(Index corner, LimitPatch &patch) {
+    clear(patch);
+    _whole = Far::INDEX_INVALID;
+    addVertex(findKey(corner), _level.faceVerts[corner], patch);
+    orderFans(patch);
     addNeighborhood(1, patch);
 }
 

@@ -22,8 +22,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// is cheap to achieve: patches that look alike have the same signature.
 ///
 /// A non-manifold vertex that stays a corner in all levels *comes apart* into a vertex for each of its
-/// fans, unless it is vertex 0 of a patch of its own: what lies in one fan does not depend on the others,
-/// of which a pole may have thousands.
+/// fans: what lies in one of them does not depend on the others, of which a pole may have thousands.
 struct LimitPatch {
     using Index = Far::Index;
 
@@ -57,6 +56,10 @@ struct LimitPatch {
 
 /// Whether a vertex of a level with full topology comes apart in patches.
 OPENSUBDIVHEX_API bool ComesApart(Level const &level, Far::Index vert);
+/// The faces that the patches around a vertex have together, of one of its fans where it comes apart.
+OPENSUBDIVHEX_API int CountFacesTogether(Level const &level, Far::Index vert);
+/// Faces that a vertex may have which comes apart: its fans are looked for among all of them.
+inline constexpr int kMaxFacesApart = 4096;
 
 /// \brief Cuts patches out of a level, which has full topology.
 class LimitPatchGatherer {
@@ -67,7 +70,10 @@ public:
     LimitPatchGatherer(Level const &level, Sdc::Options sdcOptions, FaceMask faceMask)
         : _level(level), _creasing(sdcOptions), _faceMask(faceMask) {}
 
+    /// That of a vertex, with all of its fans.
     void Gather(Index vert, LimitPatch &patch);
+    /// That of a vertex which comes apart, with the fan of one of its corners.
+    void GatherFan(Index corner, LimitPatch &patch);
 
     /// \brief Gathers what the surface of a cell depends on: the faces around its corners and around
     /// their neighbours, in one patch.  Its first vertices are those at the corners, in their order.
@@ -89,7 +95,7 @@ private:
     void forEachFanOf(int vert, LimitPatch const &patch, FUNCTION const &function);
     void addNeighborhood(int numCenters, LimitPatch &patch);
     int findCenterEdge(Index neighborKey, Index firstEdge, int numEdges, int numCenters);
-    void orderFans(Index vert, LimitPatch &patch);
+    void orderFans(LimitPatch &patch);
     int findFirstFace(VertexFan const &fan, int &firstSide);
     Index addVertex(Index key, Index vert, LimitPatch &patch);
     void addFace(Index face, int local, bool isRing, LimitPatch &patch);

@@ -55,10 +55,14 @@ public:
             add(vert, findIsolated(), {0}, range);
         } else if (_plainGatherer.IsRegular(vert, _marks)) {
             range.firstRegular = vert;
+        } else if (ComesApart(_level, vert)) {
+            ForEachFan(_level, vert, [&](VertexFan const &fan) {
+                _gatherer.GatherFan(_level.GetVertexCorner(fan.begin), _patch);
+                addPatch(vert, range);
+            });
         } else if (!_plainGatherer.Gather(vert, _marks, _neighborhood)) {
             _gatherer.Gather(vert, _patch);
-            range.sources.insert(range.sources.end(), _patch.sources.begin(), _patch.sources.end());
-            add(vert, _finder.Find(_patch), _patch.sides, range);
+            addPatch(vert, range);
         } else {
             range.sources.insert(range.sources.end(), _neighborhood.sources.begin(),
                                  _neighborhood.sources.end());
@@ -73,6 +77,11 @@ public:
     }
 
 private:
+    void addPatch(Index vert, Range &range) {
+        range.sources.insert(range.sources.end(), _patch.sources.begin(), _patch.sources.end());
+        add(vert, _finder.Find(_patch), _patch.sides, range);
+    }
+
     void add(Index vert, std::shared_ptr<LimitMask const> mask, std::vector<int> const &sides,
              Range &range) const {
         if (!mask) {
@@ -143,7 +152,10 @@ CallStatus checkSizes(Level const &level) {
                               std::to_string(kMaxFacesAtLimit));
     };
     for (Index vert = 0; vert < level.numVertices; ++vert) {
-        if (int const size = level.GetNumVertexFaces(vert); size > kMaxFacesAtLimit) {
+        if (level.GetNumVertexFaces(vert) <= kMaxFacesAtLimit) {
+            continue;
+        }
+        if (int const size = CountFacesTogether(level, vert); size > kMaxFacesAtLimit) {
             return fail(ComponentType::Vertex, vert, "vertex", size, "faces");
         }
     }
@@ -199,7 +211,10 @@ LimitRow LimitRows::GetRow(Index vert, int side,
         return {PlainNeighborhoodGatherer::kNumRegular, regularSources,
                 _regularMask->weights.data(), tangents.du.data(), tangents.dv.data()};
     }
-    auto const i = std::size_t(found - range.verts.begin());
+    auto i = std::size_t(found - range.verts.begin());
+    for (; side >= range.firstSides[i + 1] - range.firstSides[i]; ++i) {
+        side -= range.firstSides[i + 1] - range.firstSides[i];
+    }
     LimitMask const &mask = *range.masks[i];
     int const *const sides = range.sides.data() + range.firstSides[i];
     LimitMask::Tangents const &tangents = mask.sides[std::size_t(sides[side])];

@@ -75,7 +75,7 @@ public:
 private:
     /// The vertices of a range of the level that are not regular, and what they have.
     struct Range {
-        std::vector<Index> verts; ///< ascending
+        std::vector<Index> verts; ///< ascending; once for each fan of those that come apart
         std::vector<std::shared_ptr<LimitMask const>> masks;
         std::vector<int> firstSources; ///< in sources; one more than vertices
         std::vector<Index> sources;

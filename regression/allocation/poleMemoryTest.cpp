@@ -106,7 +106,8 @@ TEST(PoleMemoryTest, OfPolylinesIsThatOfTheirFirstLevels) {
     auto const keep = [&](int level) {
         // Deep at the start alone: what has a level is kept as a whole.
         std::vector<Polyline::Place> places;
-        for (Polyline::Place const place : Polyline(level).GetPlaces()) {
+        Polyline const whole(level);
+        for (Polyline::Place const place : whole.GetPlaces()) {
             if (place <= Polyline::kLength / 4 || place == 3 * Polyline::kLength / 4) {
                 places.push_back(place);
             }

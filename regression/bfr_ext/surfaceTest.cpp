@@ -9,6 +9,7 @@
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
+#include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
 #include "regression/shapes/torus.h"
 
@@ -192,7 +193,7 @@ TEST_P(SurfaceLimitTest, IsThatOfVerticesOfColumns) {
 }
 
 // Such a pole is a corner with a fan for each edge, or, with a semi-sharp edge, in the end one.
-TEST_P(SurfaceLimitTest, IsThatOfVerticesAtPolesThatFacesNameTwice) {
+TEST_P(FeatureLimitTest, IsThatOfVerticesAtPolesThatFacesNameTwice) {
     BfrExt::SurfaceFactoryCache cache;
     Sdc::Options options = getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     for (auto const creasing : {Sdc::Options::CREASE_UNIFORM, Sdc::Options::CREASE_CHAIKIN}) {
@@ -628,10 +629,10 @@ TEST(SurfaceFactoryTest, RefusesFacesWhereTooManyMeet) {
         expectCrowd(makeShape(most), FarExt::ComponentType::Vertex, 0, false);
         expectCrowd(makeShape(most + 1), FarExt::ComponentType::Vertex, 0, true);
     };
-    constexpr float kInfinite = Sdc::Crease::SHARPNESS_INFINITE;
+    float const infinite = Sdc::Crease::SHARPNESS_INFINITE;
     expectMost(512, [](int n) { return MakePole(n, 1); });
-    expectMost(128, [&](int n) { return makeCreasedPole(n, {0, n / 3}, {kInfinite, kInfinite}); });
-    expectMost(128, [&](int n) { return makeCreasedPole(n, {1}, {kInfinite}); });
+    expectMost(128, [&](int n) { return makeCreasedPole(n, {0, n / 3}, {infinite, infinite}); });
+    expectMost(128, [&](int n) { return makeCreasedPole(n, {1}, {infinite}); });
     expectMost(64, [&](int n) { return makeCreasedPole(n, {1, 5}, {2, 1.5F}); });
     // Alike all around, and of fans that count by themselves.
     Shape pole = MakePole(300, 1);

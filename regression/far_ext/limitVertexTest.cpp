@@ -320,6 +320,29 @@ TEST(LimitVertex, PoleFullOfCreases) {
     }
 }
 
+// Stencils of all that is around would have all faces of a vertex, or all vertices of a face.
+TEST(LimitVertex, RefusesWhereTooManyMeet) {
+    constexpr int kMost = 1024;
+    auto const check = [](Shape const &shape, bool isRefused, FarExt::ComponentType type,
+                          int index) {
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0,
+                                           makeOptions(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY));
+        FarExt::CallStatus status;
+        EXPECT_EQ(!makeTable(*refiner, 0, &status), isRefused) << status.GetErrorMessage();
+        if (isRefused) {
+            EXPECT_EQ(status.GetCode(), FarExt::StatusCode::Unsupported);
+            EXPECT_EQ(status.GetComponentType(), type);
+            EXPECT_EQ(status.GetComponentIndex(), index);
+        }
+    };
+    check(MakePole(kMost, 1), false, FarExt::ComponentType::NoComponent, 0);
+    check(MakePole(kMost + 1, 1), true, FarExt::ComponentType::Vertex, 0);
+    check(MakePrism(kMost), false, FarExt::ComponentType::NoComponent, 0);
+    check(MakePrism(kMost + 1), true, FarExt::ComponentType::Face, 0);
+    // Fans of two faces each.
+    check(MakePole(kMost, 2), false, FarExt::ComponentType::NoComponent, 0);
+}
+
 TEST(LimitVertex, RefusesWhatDoesNotConverge) {
     Shape shape = makeFans({140});
     shape.creaseVertexPairs = {0, 1};
