@@ -102,7 +102,7 @@ void LimitMultiplier<REAL>::findSourceColumns() {
     numberColumns(_columns.data(), int(_columns.size()));
     _rowsOfColumns.resize(_columns.size());
     for (Source const &source : _sources) {
-        int const column = _columnOfIndex.Get(source.index).column;
+        int const column = _columnOfIndex[source.index].column;
         _rowsOfColumns[std::size_t(column)] = source.rows;
     }
 }
@@ -110,9 +110,7 @@ void LimitMultiplier<REAL>::findSourceColumns() {
 template <typename REAL>
 void LimitMultiplier<REAL>::numberColumns(Index const *columns, int numColumns) {
     _columnOfIndex.Begin();
-    for (int i = 0; i < numColumns; ++i) {
-        _columnOfIndex[columns[i]].column = i;
-    }
+    _columnOfIndex.ForEach(columns, numColumns, [](Entry &entry, int i) { entry.column = i; });
 }
 
 // Those of all sources; one that is among the last ones is not added again.
@@ -166,7 +164,7 @@ void LimitMultiplier<REAL>::makeUnion() {
     std::merge(largest.begin(), largest.end(), _added.begin(), _added.end(), _columns.begin());
     _rowsOfColumns.resize(_columns.size());
     std::transform(_columns.begin(), _columns.end(), _rowsOfColumns.begin(),
-                   [this](Index index) { return _columnOfIndex.Get(index).rows; });
+                   [this](Index index) { return _columnOfIndex[index].rows; });
 }
 
 // The difference of each source to the first one, by column.
@@ -180,9 +178,9 @@ void LimitMultiplier<REAL>::findDifferences(Columns const &columns) {
     _positions.clear();
     for (List &list : _lists) {
         list.firstPosition = int(_positions.size());
-        for (Index const index : list.support) {
-            _positions.push_back(_columnOfIndex.Get(index).column);
-        }
+        _columnOfIndex.ForEach(
+            list.support.begin(), list.support.size(),
+            [this](Entry const &entry, int) { _positions.push_back(entry.column); });
     }
     auto const getPositions = [this](int source) {
         List const &list = _lists[std::size_t(_listOfSource[std::size_t(source)])];
@@ -223,7 +221,7 @@ void LimitMultiplier<REAL>::scatterTerms(Term const *begin, Term const *end, int
     std::fill(_sums.begin(), _sums.end(), REAL(0));
     for (Term const *term = begin; term != end; ++term) {
         Index const index = _sources[std::size_t(term->source)].index;
-        REAL *const sums = _sums.data() + _columnOfIndex.Get(index).column;
+        REAL *const sums = _sums.data() + _columnOfIndex[index].column;
         for (int sum = 0; sum < kNumSums; ++sum) {
             sums[sum * std::ptrdiff_t(getStride(numColumns))] += term->factors[sum];
         }

@@ -154,7 +154,7 @@ void StencilMultiplier<REAL>::fillSourceFace(Index face, Scratch &scratch) const
         double const *mask = _rows.GetFaceVertexWeights(face, i, scratch.mask);
         scratch.sums.assign(width, 0.0);
         for (int j = 0; j < size; ++j) {
-            scratch.sums[scratch.position.Get(_pSupports.OfVertices()[verts[j]][0])] += mask[j];
+            scratch.sums[scratch.position[_pSupports.OfVertices()[verts[j]][0]]] += mask[j];
         }
         std::transform(scratch.sums.begin(), scratch.sums.end(), scratch.rows[i],
                        [](double weight) { return REAL(weight); });
@@ -170,7 +170,6 @@ void StencilMultiplier<REAL>::loadParents(Index face, Scratch &scratch) const {
     int const width = support.size();
     scratch.parents.resize(size);
     scratch.block.Resize(std::size_t(size) * width);
-    PagedArray<int> const &position = scratch.position;
     REAL *dense = scratch.block.data();
     for (int j = 0; j < size; ++j, dense += width) {
         Support const pSupport = _pSupports.OfVertices()[verts[j]];
@@ -180,9 +179,9 @@ void StencilMultiplier<REAL>::loadParents(Index face, Scratch &scratch) const {
             continue;
         }
         std::fill_n(dense, width, REAL(0));
-        for (int k = 0; k < pSupport.size(); ++k) {
-            dense[position.Get(pSupport[k])] = weights[k];
-        }
+        scratch.position.ForEach(
+            pSupport.begin(), pSupport.size(),
+            [dense, weights](int position, int k) { dense[position] = weights[k]; });
         scratch.parents[j] = dense;
     }
 }
@@ -248,9 +247,8 @@ void StencilMultiplier<REAL>::fillFace(Index face, Scratch &scratch) const {
         storeIndices(firstRow + i, support);
     }
     scratch.position.Begin();
-    for (int k = 0; k < support.size(); ++k) {
-        scratch.position[support[k]] = k;
-    }
+    scratch.position.ForEach(support.begin(), support.size(),
+                             [](int &position, int k) { position = k; });
     if (_pStencils) {
         loadParents(face, scratch);
         multiply(face, scratch);
@@ -267,9 +265,8 @@ void StencilMultiplier<REAL>::fillVVertex(Index vVertex, Scratch &scratch) const
     Index const pVert = _rows.GetVVertexParent(vVertex);
     RefinementMask::VertexMask const mask = _rows.GetVertexMask(pVert);
     auto const add = [&](double weight, REAL const *weights, Support sources) {
-        for (int k = 0; k < sources.size(); ++k) {
-            sumOfSource[sources[k]] += weight * double(weights[k]);
-        }
+        sumOfSource.ForEach(sources.begin(), sources.size(),
+                            [=](double &sum, int k) { sum += weight * double(weights[k]); });
     };
     _rows.ForEachSource(vVertex, mask, [&](Index source, double weight) {
         add(weight, parentWeights(source), _pSupports.OfVertices()[source]);
@@ -281,11 +278,10 @@ void StencilMultiplier<REAL>::fillVVertex(Index vVertex, Scratch &scratch) const
     }
     Support const support = _supports.OfVVertex(vVertex, scratch.sources);
     REAL *const weights = _stencils.GetWeights(vVertex);
-    for (int k = 0; k < support.size(); ++k) {
-        double &sum = sumOfSource[support[k]];
+    sumOfSource.ForEach(support.begin(), support.size(), [weights](double &sum, int k) {
         weights[k] = REAL(sum);
         sum = 0;
-    }
+    });
     storeIndices(vVertex, support);
 }
 

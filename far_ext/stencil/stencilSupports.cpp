@@ -53,9 +53,8 @@ void SupportUnion::Form(Support const *supports, int numSupports) {
         ++_lastStamp;
     }
     _base = supports[largest];
-    for (Index source : _base) {
-        _stamp[source] = _lastStamp;
-    }
+    _stamp.ForEach(_base.begin(), _base.size(),
+                   [stamp = _lastStamp](unsigned &ofSource, int) { ofSource = stamp; });
     _added.Resize(numSources);
     Index *const added = _added.data();
     int numAdded = 0;
@@ -65,12 +64,13 @@ void SupportUnion::Form(Support const *supports, int numSupports) {
             continue;
         }
         int const numBefore = numAdded;
-        for (Index source : supports[i]) {
-            unsigned &stamp = _stamp[source];
-            added[numAdded] = source;
-            numAdded += stamp != _lastStamp;
-            stamp = _lastStamp;
-        }
+        Index const *const sources = supports[i].begin();
+        _stamp.ForEach(sources, supports[i].size(),
+                       [&numAdded, added, sources, stamp = _lastStamp](unsigned &ofSource, int k) {
+                           added[numAdded] = sources[k];
+                           numAdded += ofSource != stamp;
+                           ofSource = stamp;
+                       });
         isSorted = isSorted && (numBefore == 0 || numBefore == numAdded);
     }
     if (!isSorted) {

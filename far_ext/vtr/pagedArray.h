@@ -22,13 +22,15 @@ public:
     using Index = Far::Index;
 
     /// For indices below \p end.
-    explicit PagedArray(Index end) : _places(std::size_t(end) / kPageSize + 1) {}
+    explicit PagedArray(Index end)
+        : _pageSize(std::min(kPageSize, std::size_t(end))),
+          _pageOfPlace(std::size_t(end) / kPageSize + 1) {}
 
     /// \brief Before each piece of work: gives pages free for other indices where there are many.
     ///
     /// What was in them is what new elements have then.
     void Begin() {
-        if (_used.size() > kMaxPages) {
+        if (_places.size() > kMaxPages) {
             free();
         }
     }
@@ -41,41 +43,72 @@ public:
     /// An element; a new one is T(), or what any element was when Begin() gave its page free.
     T &operator[](Index i) {
         std::size_t const place = std::size_t(i) / kPageSize;
-        T *page = _places[place];
-        if (!page) {
-            page = addPage(place);
+        if (place != _lastPlace) {
+            _lastPage = findPage(place);
+            _lastPlace = place;
         }
-        return page[std::size_t(i) % kPageSize];
+        return _lastPage[std::size_t(i) % kPageSize];
     }
-    /// An element that was asked for since Begin().
-    T const &Get(Index i) const {
-        return _places[std::size_t(i) / kPageSize][std::size_t(i) % kPageSize];
+    /// Calls function(element, k) for the elements of indices[k], 0 <= k < count, which ascend: where they are in
+    /// one page, as mostly, in a loop of as much work as over an array.
+    template <typename FUNCTION>
+    void ForEach(Index const *indices, int count, FUNCTION const &function) {
+        if (T *const page = findPageOfAll(indices, count)) {
+            for (int k = 0; k < count; ++k) {
+                function(page[std::size_t(indices[k]) % kPageSize], k);
+            }
+        } else {
+            for (int k = 0; k < count; ++k) {
+                function((*this)[indices[k]], k);
+            }
+        }
     }
 
 private:
-    static constexpr std::size_t kPageSize = 512;
-    static constexpr std::size_t kMaxPages = 256;
+    // Large, so that the indices of a list mostly are in one.
+    static constexpr std::size_t kPageSize = 65536;
+    static constexpr std::size_t kMaxPages = 4;
+    static constexpr std::size_t kNoPlace = ~std::size_t(0);
 
-    T *addPage(std::size_t place) {
-        if (_used.size() == _pages.size()) {
-            Buffer<T> page;
-            page.Resize(kPageSize);
-            std::fill_n(page.data(), kPageSize, T());
-            _pages.push_back(std::move(page));
+    // Null where they are in several.
+    T *findPageOfAll(Index const *indices, int count) {
+        if (_pageOfPlace.size() == 1 && _lastPage) {
+            return _lastPage;
         }
-        _used.push_back(place);
-        return _places[place] = _pages[_used.size() - 1].data();
+        if (count == 0 ||
+            std::size_t(indices[0]) / kPageSize != std::size_t(indices[count - 1]) / kPageSize) {
+            return nullptr;
+        }
+        return &(*this)[indices[0]] - std::size_t(indices[0]) % kPageSize;
+    }
+    T *findPage(std::size_t place) {
+        if (!_pageOfPlace[place]) {
+            if (_places.size() == _pages.size()) {
+                Buffer<T> page;
+                page.Resize(_pageSize);
+                std::fill_n(page.data(), _pageSize, T());
+                _pages.push_back(std::move(page));
+            }
+            _places.push_back(place);
+            _pageOfPlace[place] = _pages[_places.size() - 1].data();
+        }
+        return _pageOfPlace[place];
     }
     void free() {
-        for (std::size_t const place : _used) {
-            _places[place] = nullptr;
+        for (std::size_t const place : _places) {
+            _pageOfPlace[place] = nullptr;
         }
-        _used.clear();
+        _places.clear();
+        _lastPlace = kNoPlace;
+        _lastPage = nullptr;
     }
 
-    std::vector<T *> _places; // by page of the range: where it is, or null
+    std::size_t _pageSize;
+    std::vector<T *> _pageOfPlace; // null where there is none
     std::vector<Buffer<T>> _pages;
-    std::vector<std::size_t> _used; // by page of these, the first of them: which one it is
+    std::vector<std::size_t> _places; // of the first of these, which are in use
+    std::size_t _lastPlace = kNoPlace;
+    T *_lastPage = nullptr;
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -58,9 +58,9 @@ TEST(LimitRowWeights, AreSharedByRowsThatHaveTheSame) {
 TEST(DeviceLimit, DoesNotDependOnThreads) {
     FarExt::TopologyRefinerFactory::Options options;
     options.schemeOptions.faceMask = FarExt::FaceMask::Cosine;
-    auto const refiner = FarExt::TopologyRefinerFactory::Create(
-        ShapeDescriptor(MakeTorus(40, 40, TorusFaces::IrregularTriangles)).Get(), Sdc::Options(),
-        options);
+    Shape const torus = MakeTorus(40, 40, TorusFaces::IrregularTriangles);
+    auto const refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(torus).Get(),
+                                                                Sdc::Options(), options);
     FarExt::TopologyRefiner::UniformOptions uniform(1);
     uniform.fullTopologyInLastLevel = true;
     ASSERT_TRUE(refiner && refiner->RefineUniform(uniform));
