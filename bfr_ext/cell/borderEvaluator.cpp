@@ -167,13 +167,13 @@ void BorderEvaluator<REAL>::EvaluatePoint(std::size_t edge, Pair const &place, R
 template <typename REAL>
 void BorderEvaluator<REAL>::EvaluateKeptPoint(std::size_t edge, Pair const &place, REAL *result) {
     constexpr int kStep = Polyline::kLength >> kLastKeptLevel;
+    setEdge(edge);
     double const point = place[_isReversed ? 0 : 1];
     int const key = int(point * Polyline::kLength);
     if (key % kStep != 0) {
-        EvaluatePoint(edge, place, result);
+        sumUp(makeMatrix(*_edge.type, _edge.cell, {point}), result, 0);
         return;
     }
-    setEdge(edge);
     std::vector<REAL> const &weights =
         getPatterns(*_edge.type, _edge.cell)
             .template Get<std::vector<REAL>>(
