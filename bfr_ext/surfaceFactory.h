@@ -128,7 +128,7 @@ public:
     ///                depends on too many faces, the status naming the vertex or the face: where a vertex
     ///                of the face, or one joined to it by an edge, has more than 512 faces, 128 unless all
     ///                of its edges are alike, 64 if some of them are semi-sharp then; or is in
-    ///                a face with more than 512 vertices.  At a non-manifold vertex that is a corner for
+    ///                a face with more than 1,024 vertices.  At a non-manifold vertex that is a corner for
     ///                ever, as a pole that faces name twice, the faces of each fan count by themselves, up to 4,096
     bool FaceHasLimitSurface(Index face, FarExt::CallStatus *status = nullptr) const;
     /// The parameter plane of a face, which is in range.

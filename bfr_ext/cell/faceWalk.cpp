@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "faceWalk.h"
 
-#include "far_ext/limit/limitPatch.h"
+#include "far_ext/limit/limitRows.h"
 
 #include <algorithm>
 #include <utility>
@@ -13,9 +13,11 @@ using Sdc::Crease;
 
 namespace {
 
-// Faces at a vertex, and vertices of a face, up to which surfaces are made where all faces are of one type: some
-// seconds and 100 megabytes for all of them.
+// Faces at a vertex up to which surfaces are made where all are of one type: some seconds and 100 megabytes for all of
+// them.
 constexpr int kMaxFaces = 512;
+// Vertices of a face: surfaces behind a first step have twice those of level 0.
+constexpr int kMaxFaceSize = kMaxFacesAtLimit;
 // Where each face is of a type of its own.  At a single sharp edge steps do not converge with some more.
 constexpr int kMaxDifferentFaces = 128;
 // Where semi-sharp edges make types of each level besides.
@@ -86,13 +88,13 @@ void FaceWalk::findCrowds() {
             _crowds.push_back(crowd);
         }
     }
-    if (!_level.faceSizes.empty() && _level.faceSizes.back() <= kMaxFaces) {
+    if (!_level.faceSizes.empty() && _level.faceSizes.back() <= kMaxFaceSize) {
         return;
     }
     for (Index face = 0; face < _level.numFaces; ++face) {
-        if (_level.GetFaceSize(face) > kMaxFaces) {
+        if (_level.GetFaceSize(face) > kMaxFaceSize) {
             for (Index const vert : _level.GetFaceVertices(face)) {
-                _crowds.push_back({vert, face, _level.GetFaceSize(face), kMaxFaces});
+                _crowds.push_back({vert, face, _level.GetFaceSize(face), kMaxFaceSize});
             }
         }
     }

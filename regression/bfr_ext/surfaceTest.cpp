@@ -645,7 +645,7 @@ TEST(SurfaceFactoryTest, RefusesFacesWhereTooManyMeet) {
 }
 
 TEST(SurfaceFactoryTest, RefusesWhatIsAroundLargeFaces) {
-    constexpr int kMost = 512;
+    constexpr int kMost = 1024;
     for (int const n : {kMost, kMost + 1}) {
         // One face in the place of those at the pole.
         Shape shape = MakePole(n, 1);
@@ -664,7 +664,7 @@ TEST(SurfaceFactoryTest, RefusesWhatIsAroundLargeFaces) {
                 EXPECT_EQ(status.GetCode(), StatusCode::Unsupported);
                 EXPECT_EQ(status.GetComponentType(), FarExt::ComponentType::Face);
                 EXPECT_EQ(status.GetComponentIndex(), 0);
-                EXPECT_NE(status.GetErrorMessage().find(": face 0 has 513 vertices, "),
+                EXPECT_NE(status.GetErrorMessage().find(": face 0 has 1025 vertices, "),
                           std::string::npos);
             }
         }
