@@ -242,7 +242,7 @@ TEST(PagedArray, HasWhatWasWrittenSinceItBegan) {
             int const count = int(indices.size());
             array.Begin();
             array.ForEach(indices.data(), count, [&](int &element, int k) { element = round + k; });
-            for (int k = 0; k < count; ++k) {
+            for (int k = count - 1; k >= 0; --k) {
                 ASSERT_EQ(array[indices[std::size_t(k)]], round + k);
             }
         }
