@@ -12,19 +12,24 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief Elements by index, a few of a large range at a time, as scratch memory of one thread: they are in pages,
-/// and there are pages for indices that were asked for lately.
+/// \brief Elements by index as scratch memory of one thread, which uses a few of a range at a time.
 ///
-/// So the scratch memory of all threads is small beside the level that they work on.
+/// A range of up to 2^20 indices is an array.  Elements of a longer one are in pages, and there are pages for
+/// indices that were asked for lately: so the scratch memory of all threads is small beside the level that they
+/// work on.
 template <typename T>
 class PagedArray {
 public:
     using Index = Far::Index;
 
     /// For indices below \p end.
-    explicit PagedArray(Index end)
-        : _pageSize(std::min(kPageSize, std::size_t(end))),
-          _pageOfPlace(std::size_t(end) / kPageSize + 1) {}
+    explicit PagedArray(Index end) {
+        if (end <= kMaxWhole) {
+            _whole.assign(std::size_t(end), T());
+        } else {
+            _pageOfPlace.resize(std::size_t(end) / kPageSize + 1);
+        }
+    }
 
     /// \brief Before each piece of work: gives pages free for other indices where there are many.
     ///
@@ -36,12 +41,36 @@ public:
     }
     /// New elements are T() again.
     void Clear() {
+        std::fill(_whole.begin(), _whole.end(), T());
         free();
         _pages.clear();
     }
 
     /// An element; a new one is T(), or what any element was when Begin() gave its page free.
-    T &operator[](Index i) {
+    T &operator[](Index i) { return _whole.empty() ? findElement(i) : _whole[std::size_t(i)]; }
+    /// Calls function(element, k) for the elements of indices[k], 0 <= k < count.
+    template <typename FUNCTION>
+    void ForEach(Index const *indices, int count, FUNCTION const &function) {
+        if (!_whole.empty()) {
+            T *const whole = _whole.data();
+            for (int k = 0; k < count; ++k) {
+                function(whole[indices[k]], k);
+            }
+            return;
+        }
+        for (int k = 0; k < count; ++k) {
+            function(findElement(indices[k]), k);
+        }
+    }
+
+private:
+    static constexpr Index kMaxWhole = 1 << 20;
+    // Large, so that an index mostly is in the page of the one before.
+    static constexpr std::size_t kPageSize = 65536;
+    static constexpr std::size_t kMaxPages = 4;
+    static constexpr std::size_t kNoPlace = ~std::size_t(0);
+
+    T &findElement(Index i) {
         std::size_t const place = std::size_t(i) / kPageSize;
         if (place != _lastPlace) {
             _lastPage = findPage(place);
@@ -49,44 +78,12 @@ public:
         }
         return _lastPage[std::size_t(i) % kPageSize];
     }
-    /// Calls function(element, k) for the elements of indices[k], 0 <= k < count, which ascend: where they are in
-    /// one page, as mostly, in a loop of as much work as over an array.
-    template <typename FUNCTION>
-    void ForEach(Index const *indices, int count, FUNCTION const &function) {
-        if (T *const page = findPageOfAll(indices, count)) {
-            for (int k = 0; k < count; ++k) {
-                function(page[std::size_t(indices[k]) % kPageSize], k);
-            }
-        } else {
-            for (int k = 0; k < count; ++k) {
-                function((*this)[indices[k]], k);
-            }
-        }
-    }
-
-private:
-    // Large, so that the indices of a list mostly are in one.
-    static constexpr std::size_t kPageSize = 65536;
-    static constexpr std::size_t kMaxPages = 4;
-    static constexpr std::size_t kNoPlace = ~std::size_t(0);
-
-    // Null where they are in several.
-    T *findPageOfAll(Index const *indices, int count) {
-        if (_pageOfPlace.size() == 1 && _lastPage) {
-            return _lastPage;
-        }
-        if (count == 0 ||
-            std::size_t(indices[0]) / kPageSize != std::size_t(indices[count - 1]) / kPageSize) {
-            return nullptr;
-        }
-        return &(*this)[indices[0]] - std::size_t(indices[0]) % kPageSize;
-    }
     T *findPage(std::size_t place) {
         if (!_pageOfPlace[place]) {
             if (_places.size() == _pages.size()) {
                 Buffer<T> page;
-                page.Resize(_pageSize);
-                std::fill_n(page.data(), _pageSize, T());
+                page.Resize(kPageSize);
+                std::fill_n(page.data(), kPageSize, T());
                 _pages.push_back(std::move(page));
             }
             _places.push_back(place);
@@ -100,10 +97,9 @@ private:
         }
         _places.clear();
         _lastPlace = kNoPlace;
-        _lastPage = nullptr;
     }
 
-    std::size_t _pageSize;
+    std::vector<T> _whole;
     std::vector<T *> _pageOfPlace; // null where there is none
     std::vector<Buffer<T>> _pages;
     std::vector<std::size_t> _places; // of the first of these, which are in use

@@ -359,7 +359,7 @@ long findScratchBytes(TopologyRefiner const &refiner, int numThreads) {
 
 // Vertices that no face has make the level large and its tables quick to make.
 TEST(Allocation, ThreadsNeedLittleBesideALevel) {
-    constexpr int kNumVertices = 1 << 20;
+    constexpr int kNumVertices = 1 << 21;
     Shape shape = MakeTorus(40, 40, TorusFaces::Quads);
     shape.positions.resize(3 * std::size_t(kNumVertices));
     Subject const subject(shape, 1, 1);

@@ -4,6 +4,7 @@
 // indices.
 #include "far_ext/vtr/arrayWriter.h"
 #include "far_ext/vtr/indexSet.h"
+#include "far_ext/vtr/pagedArray.h"
 
 #include <gtest/gtest.h>
 
@@ -223,6 +224,32 @@ TEST(IndexSet, SortsAndNumbersIndicesOfAnyDensity) {
     std::vector<int> none;
     FarExt::internal::SortUnique(none, 1000);
     EXPECT_TRUE(none.empty());
+}
+
+// A short range is an array; of a long one there are pages, which are used again where there are many.
+TEST(PagedArray, HasWhatWasWrittenSinceItBegan) {
+    for (Far::Index const end : {1, 1000, 1 << 20, (1 << 20) + 1, 2000000000}) {
+        SCOPED_TRACE(end);
+        FarExt::internal::PagedArray<int> array(end);
+        EXPECT_EQ(array[end - 1], 0);
+        for (int round = 0; round < 50; ++round) {
+            std::vector<Far::Index> indices;
+            for (std::int64_t i = 0; i < 40; ++i) {
+                indices.push_back(Far::Index(i * (round + 1) * 1234577 % end));
+            }
+            std::sort(indices.begin(), indices.end());
+            indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+            int const count = int(indices.size());
+            array.Begin();
+            array.ForEach(indices.data(), count, [&](int &element, int k) { element = round + k; });
+            for (int k = count - 1; k >= 0; --k) {
+                ASSERT_EQ(array[indices[std::size_t(k)]], round + k);
+            }
+        }
+        array.Clear();
+        EXPECT_EQ(array[end / 2], 0);
+        EXPECT_EQ(array[end - 1], 0);
+    }
 }
 
 } // namespace OpenSubdivHex::Regression::arrayTest
