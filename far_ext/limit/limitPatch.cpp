@@ -123,20 +123,30 @@ Index LimitPatchGatherer::findKey(Index corner) {
     return comesApart(vert) ? _fanKeys.Find(corner) : vert;
 }
 
-// The same of an end of an edge.
-Index LimitPatchGatherer::findEndKey(Index edge, int end) {
-    Index const corner = _level.GetSideCorner(edge, 0);
-    return findKey(end == 0 ? corner : _level.GetNextCorner(_level.edgeFaces[edge][0], corner));
+// The same where all complete vertices have numbers: others do not come apart, as in plain neighborhoods.
+Index LimitPatchGatherer::findNumberedKey(Index corner) {
+    Index const key = findKey(corner);
+    return _verts.Find(key) == Far::INDEX_INVALID ? _level.faceVerts[corner] : key;
 }
 
-// The same of the first corner that a vertex has in the faces around another one, which does not come apart.
+// The corner at an end of an edge.
+Index LimitPatchGatherer::findEndCorner(Index edge, int end) const {
+    Index const corner = _level.GetSideCorner(edge, 0);
+    return end == 0 ? corner : _level.GetNextCorner(_level.edgeFaces[edge][0], corner);
+}
+
+Index LimitPatchGatherer::findEndKey(Index edge, int end) {
+    return findKey(findEndCorner(edge, end));
+}
+
+// That of the first corner that a vertex has in the faces around another one, which does not come apart.
 Index LimitPatchGatherer::findKeyBeside(Index vert, Index neighbor) {
     if (comesApart(neighbor)) {
         for (Index const face : _level.GetVertexFaces(vert)) {
             for (Index corner = _level.faceFirstCorner[face];
                  corner < _level.faceFirstCorner[face + 1]; ++corner) {
                 if (_level.faceVerts[corner] == neighbor) {
-                    return findKey(corner);
+                    return findNumberedKey(corner);
                 }
             }
         }
@@ -254,7 +264,7 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
     for (int i = 0; i < size; ++i) {
         Index const corner = first + (local + i) % size;
         _corners.push_back(corner);
-        Index const vert = addVertex(findKey(corner), _level.faceVerts[corner], patch);
+        Index const vert = addVertex(findNumberedKey(corner), _level.faceVerts[corner], patch);
         patch.faceVerts.push_back(vert);
         // Of the faces further out, only the corners at the neighbours of vertex 0 matter.
         if (isRing || vert < _numComplete) {
@@ -274,8 +284,10 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
 void LimitPatchGatherer::addEdge(Index corner, Index edge, LimitPatch &patch) {
     Index const size = Index(patch.otherCorners.size());
     Index const other = _edges.FindOrSet(edge, size);
-    bool const isComplete = _verts.Find(findEndKey(edge, 0)) < _numComplete ||
-                            _verts.Find(findEndKey(edge, 1)) < _numComplete;
+    auto const isEndComplete = [&](int end) {
+        return _verts.Find(findNumberedKey(findEndCorner(edge, end))) < _numComplete;
+    };
+    bool const isComplete = isEndComplete(0) || isEndComplete(1);
     patch.edgeSharpness.push_back(isComplete ? _level.GetEdgeSharpness(edge) : 0);
     if (other != size) {
         // Further out it does not matter which faces are joined: patches that differ in nothing else

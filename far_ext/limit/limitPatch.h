@@ -89,6 +89,8 @@ private:
     void clear(LimitPatch &patch);
     bool comesApart(Index vert);
     Index findKey(Index corner);
+    Index findNumberedKey(Index corner);
+    Index findEndCorner(Index edge, int end) const;
     Index findEndKey(Index edge, int end);
     Index findKeyBeside(Index vert, Index neighbor);
     template <typename FUNCTION>

@@ -18,6 +18,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <thread>
@@ -128,13 +129,31 @@ std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, int level) {
     return refiner;
 }
 
+/// Polygons of \p size sides around vertex 0.
+Shape makePole(int numFaces, int size) {
+    int const numOthers = numFaces * (size - 2); // vertices
+    Shape shape;
+    shape.positions = {0, 0, 1};
+    for (int i = 0; i < numOthers; ++i) {
+        double const angle = 2 * std::acos(-1.0) * i / numOthers;
+        shape.positions.insert(shape.positions.end(), {std::cos(angle), std::sin(angle), 0});
+    }
+    for (int face = 0; face < numFaces; ++face) {
+        shape.faceSizes.push_back(size);
+        shape.faceVertices.push_back(0);
+        for (int i = 0; i < size - 1; ++i) {
+            shape.faceVertices.push_back(1 + (face * (size - 2) + i) % numOthers);
+        }
+    }
+    return shape;
+}
+
 } // namespace
 
-// With so many faces at a vertex, what is made of them when it is first asked for is enough for several threads.  It is
-// made with a lock held, and in the midst of an evaluation.
+// With so many vertices around a face, what is made of them when it is first asked for is enough for several threads.
+// It is made with a lock held, and in the midst of an evaluation.
 TEST(Nested, SurfacesAreEvaluatedInsideOfSurfaces) {
-    constexpr int kValence = 4200;
-    Shape const shape = MakeBipyramid(kValence);
+    Shape const shape = makePole(500, 12);
     auto const refiner = createRefiner(shape, 0);
     std::vector<int> const faces = {0, 3};
     std::vector<double> const others = moved(shape.positions, 2);
