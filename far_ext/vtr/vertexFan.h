@@ -75,7 +75,7 @@ struct FanItems {
     bool isClosed;
 };
 
-void GatherFanItems(Level const &level, VertexFan const &fan, FanItems &result);
+OPENSUBDIVHEX_API void GatherFanItems(Level const &level, VertexFan const &fan, FanItems &result);
 
 /// Calls function(items) for the fans of a vertex, in their order; \p items keeps its memory.
 template <typename FUNCTION>

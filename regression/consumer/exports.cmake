@@ -9,7 +9,7 @@ set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report S
   LimitRows CheckLimitLevel LimitOrigins LatticePatch LatticeFaces PlainFaces
   RegularFaces RegularFaceMask RegularFaceRows RegularVertices
   FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
-  UseNextMasks FindCornerLimits PatchRefinement MarkFeatures StepRowBack MakePlainBaseCell IndexMap
+  UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement MarkFeatures StepRowBack MakePlainBaseCell IndexMap
   Device MakeDeviceLimit MakeDeviceRefinements
   CheckChannel CheckStencilMode GetChannelInterpolation GetModeInterpolation GetChosenNumThreads
   CheckLevel CheckDescriptors)
