@@ -425,9 +425,9 @@ CallStatus BaseMesh::AddChannel(Index numValues, Buffer<Index> faceValues,
                                 Sdc::Options::FVarLinearInterpolation interpolation) {
     int const channel = int(_hierarchy->channels.size());
     // Fans of faces around a value get values of their own, at most one for each corner.
-    if (CallStatus status =
-            CheckCount(std::int64_t(numValues) + _level->numCorners,
-                       "values and face-vertices in face-varying channel " + std::to_string(channel));
+    if (CallStatus status = CheckCount(std::int64_t(numValues) + _level->numCorners,
+                                       "values and face-vertices in face-varying channel " +
+                                           std::to_string(channel));
         !status.IsOk()) {
         return status;
     }
