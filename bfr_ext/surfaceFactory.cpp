@@ -143,7 +143,7 @@ CallStatus SurfaceFactory::checkFace(Index face) const {
 // Whether the patch of a face, of the mesh (channel -1) or of a channel, is not too large.
 CallStatus SurfaceFactory::checkCrowd(Index face, int channel, Index levelFace) const {
     internal::FaceWalk::Crowd const *const crowd =
-        _walks[std::size_t(channel + 1)]->FindCrowd(levelFace);
+        _walks.begin()[channel + 1]->FindCrowd(levelFace);
     if (!crowd) {
         return CallStatus();
     }
@@ -196,7 +196,7 @@ internal::CellType const *SurfaceFactory::findType(int channel, Index levelFace,
     if (!status.IsOk()) {
         return nullptr;
     }
-    Level const &level = _walks[std::size_t(channel + 1)]->GetLevel();
+    Level const &level = _walks.begin()[channel + 1]->GetLevel();
     CellPatch cell;
     internal::CellRules const rules = getRules(_refiner, interpolation);
     GatherBaseCell(level, levelFace, rules.sdcOptions, cell);

@@ -46,7 +46,8 @@ public:
     /// As TopologyLevel::GetFaceBaseFace.
     Index GetBaseFace(Index f, int half = 0) const {
         Index const entry = _baseFaces[std::size_t(f)];
-        return entry >= 0 ? entry : _splitFaces[std::size_t(~entry)].baseFaces[half];
+        Index const split = ~entry;
+        return entry >= 0 ? entry : _splitFaces[std::size_t(split)].baseFaces[half];
     }
 
     /// All split faces, ascending; those of coarser levels come first.

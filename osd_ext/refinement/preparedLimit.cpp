@@ -53,7 +53,7 @@ CallStatus CheckLimitPlaces(int level, std::int64_t numVertices) {
 CallStatus PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
                                   FarExt::HexSchemeOptions const &schemeOptions, LimitRows &rows) {
     for (int i = 0; i <= rows.GetLevel().depth; ++i) {
-        CallStatus const status = CheckLimitPlaces(i, mesh.levels[std::size_t(i)].numVertices);
+        CallStatus status = CheckLimitPlaces(i, mesh.levels[std::size_t(i)].numVertices);
         if (!status.IsOk()) {
             return status;
         }
