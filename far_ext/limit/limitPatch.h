@@ -57,7 +57,7 @@ struct LimitPatch {
 /// Whether a vertex of a level with full topology comes apart in patches.
 OPENSUBDIVHEX_API bool ComesApart(Level const &level, Far::Index vert);
 /// The faces that the patches around a vertex have together, of one of its fans where it comes apart.
-OPENSUBDIVHEX_API int CountFacesTogether(Level const &level, Far::Index vert);
+int CountFacesTogether(Level const &level, Far::Index vert);
 /// Faces that a vertex may have which comes apart: its fans are looked for among all of them.
 inline constexpr int kMaxFacesApart = 4096;
 
