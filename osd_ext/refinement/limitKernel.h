@@ -142,7 +142,9 @@ struct RegularLimitTask : LimitTask {
     }
     void Skip(int count) {
         LimitTask::Skip(count);
-        sums.data += count;
+        if (sums.data) { // none where OthersBeyond are used
+            sums.data += count;
+        }
     }
 
     Far::Index const *faceVerts;
