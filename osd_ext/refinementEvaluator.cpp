@@ -161,7 +161,7 @@ RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options 
             tileMap.Refine(*refinements[level - 1], level > 1 ? refinements[level - 2] : nullptr);
         }
         refinements.push_back(&mesh.refinements[level]);
-        FarExt::internal::RefinementMask const mask(mesh.levels[level],
+        FarExt::internal::RefinementRules const mask(mesh.levels[level],
                                                     refiner.GetHexSchemeOptions(), interpolation);
         internal::PrepareRefinement(mask, refinements, tileMap, _refinements[level]);
     }

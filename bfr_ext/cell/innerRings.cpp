@@ -13,7 +13,8 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 using FarExt::internal::LimitPatch;
 using FarExt::internal::Refinement;
-using FarExt::internal::RefinementMask;
+using FarExt::internal::RefinementRules;
+using FarExt::internal::VertexRule;
 
 namespace {
 
@@ -37,21 +38,21 @@ public:
     // Of a vertex, from the corners there.
     Weights const &FindVertex(std::vector<int> const &ring) {
         return find(Kind::Vertex, getKey(ring),
-                    [&](Refinement const &refinement, RefinementMask const &mask) {
-                        return toWeights(mask.GetVertexMask(
+                    [&](Refinement const &refinement, RefinementRules const &rules) {
+                        return toWeights(rules.GetVertexRule(
                             refinement.GetVertexChildVertex(_corners.GetVertex(ring[0]))));
                     });
     }
     Weights const &FindFVertex() {
         constexpr int kNumFaces = 3;
-        return find(Kind::FVertex, {}, [](Refinement const &, RefinementMask const &mask) {
-            FarExt::VertexVertexMask const plain = mask.GetPlainVertexMask(kNumFaces);
+        return find(Kind::FVertex, {}, [](Refinement const &, RefinementRules const &rules) {
+            FarExt::VertexVertexMask const plain = rules.GetPlainVertexMask(kNumFaces);
             return std::vector<double>{plain.vertexWeight, plain.faceWeight};
         });
     }
     Weights const &FindFace(int size) {
-        return find(Kind::Face, {size}, [&](Refinement const &, RefinementMask const &mask) {
-            double const *const weights = mask.GetPlainFaceWeights(size);
+        return find(Kind::Face, {size}, [&](Refinement const &, RefinementRules const &rules) {
+            double const *const weights = rules.GetCirculantRule(size).GetRow(0);
             return std::vector<double>(weights, weights + size);
         });
     }
@@ -66,8 +67,8 @@ public:
         key.push_back(_corners.GetFaceSize(before));
         key.push_back(_corners.GetFaceSize(corner));
         return find(Kind::Hexagon, key,
-                    [&](Refinement const &refinement, RefinementMask const &mask) {
-                        return findHexagon(corner, refinement, mask);
+                    [&](Refinement const &refinement, RefinementRules const &rules) {
+                        return findHexagon(corner, refinement, rules);
                     });
     }
 
@@ -86,23 +87,23 @@ private:
     Weights const &find(Kind kind, std::vector<int> const &key, MAKE const &make) {
         return _masks._weights.Get<Weights>(int(kind), key.data(), key.data() + key.size(), [&] {
             std::vector<double> weights;
-            CellRules const &rules = _masks.GetRules();
+            CellRules const &ofCells = _masks.GetRules();
             FarExt::internal::UseNextMasks(
-                _patch, rules.sdcOptions, rules.schemeOptions, rules.interpolation,
-                [&](Refinement const &refinement, RefinementMask const &mask) {
-                    weights = make(refinement, mask);
+                _patch, ofCells.sdcOptions, ofCells.schemeOptions, ofCells.interpolation,
+                [&](Refinement const &refinement, RefinementRules const &rules) {
+                    weights = make(refinement, rules);
                 });
             return Weights(std::move(weights));
         });
     }
 
-    static std::vector<double> toWeights(RefinementMask::VertexMask const &mask) {
-        return {mask.weights[mask.numSources - 1], mask.faceWeight};
+    static std::vector<double> toWeights(VertexRule const &rule) {
+        return {rule.weights[rule.numSources - 1], rule.faceWeight};
     }
 
     // From the V-vertex at the corner on, a row for each F-vertex.
     std::vector<double> findHexagon(int corner, Refinement const &refinement,
-                                    RefinementMask const &mask) const {
+                                    RefinementRules const &rules) const {
         Far::Index const face =
             refinement.GetEdgeChildFace(refinement.parent->faceEdges[Far::Index(corner)]);
         Far::ConstIndexArray const verts = refinement.child->GetFaceVertices(face);
@@ -110,10 +111,9 @@ private:
         auto const first = std::size_t(std::find(verts.begin(), verts.end(), vert) - verts.begin());
         std::vector<double> weights;
         weights.reserve(kHexagon * kHexagon);
-        std::vector<double> scratch;
+        FarExt::internal::FaceRule const rule = rules.GetFaceRule(face);
         for (std::size_t row = 0; row < kHexagon; ++row) {
-            double const *const ofRow =
-                mask.GetFaceVertexWeights(face, int((first + row) % kHexagon), scratch);
+            double const *const ofRow = rule.GetRow(int((first + row) % kHexagon));
             for (std::size_t i = 0; i < kHexagon; ++i) {
                 weights.push_back(ofRow[(first + i) % kHexagon]);
             }

@@ -315,10 +315,10 @@ CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
 
 void UseNextMasks(LimitPatch const &patch, Sdc::Options sdcOptions,
                   HexSchemeOptions const &schemeOptions, Interpolation interpolation,
-                  std::function<void(Refinement const &, RefinementMask const &)> const &function) {
+                  std::function<void(Refinement const &, RefinementRules const &)> const &function) {
     ExecutorScope const alone(nullptr, 1);
     RefinedPatch const refined(patch, sdcOptions, schemeOptions.faceMask);
-    function(refined.refinement, RefinementMask(refined.child, schemeOptions, interpolation));
+    function(refined.refinement, RefinementRules(refined.child, schemeOptions, interpolation));
 }
 
 std::vector<CornerLimit> FindCornerLimits(CellPatch const &cell, LimitMaskFinder &finder) {

@@ -4,7 +4,7 @@
 
 #include "limitMask.h"
 
-#include "far_ext/vtr/refinementMask.h"
+#include "far_ext/vtr/refinementRules.h"
 
 #include <functional>
 
@@ -90,7 +90,7 @@ OPENSUBDIVHEX_API CellRefinement RefineCell(CellPatch const &cell, Sdc::Options 
 OPENSUBDIVHEX_API void
 UseNextMasks(LimitPatch const &patch, Sdc::Options sdcOptions,
              HexSchemeOptions const &schemeOptions, Interpolation interpolation,
-             std::function<void(Refinement const &, RefinementMask const &)> const &function);
+             std::function<void(Refinement const &, RefinementRules const &)> const &function);
 
 /// \brief The limit at a corner of a cell, and the first derivatives there on the side of the cell, in
 /// terms of the vertices of the patch.  LimitStencilTableFactory says what they are derivatives by.

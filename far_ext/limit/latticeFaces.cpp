@@ -449,7 +449,7 @@ CallStatus LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitR
         return status;
     }
     std::vector<Set> sets;
-    std::vector<RefinementMask> const masks = MakeStepMasks(_mesh, schemeOptions, _level);
+    std::vector<RefinementRules> const masks = MakeStepMasks(_mesh, schemeOptions, _level);
     for (std::size_t i = 0; i < _sets.size(); ++i) {
         Set &set = _sets[i];
         PatchRows patchRows(_mesh, masks, 0, set.sources.data(), set.patch.GetNumPlaces());
@@ -491,7 +491,7 @@ LatticeFaces::VertexPlace LatticeFaces::FindPlace(Index vert) const {
     return {nullptr, 0, 0};
 }
 
-void LatticeFaces::setVertexMask(std::vector<RefinementMask> const &masks, LimitRows const &rows,
+void LatticeFaces::setVertexMask(std::vector<RefinementRules> const &masks, LimitRows const &rows,
                                  Index vert, Set &set) const {
     Index sources[LatticePatch::kMaxPlaces];
     VertexPlace const place = FindPlace(vert);

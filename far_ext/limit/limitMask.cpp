@@ -655,11 +655,7 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
         }
         return mask;
     }
-    Index const first = _level.faceFirstCorner[face];
-    bool const hasSector = !_level.GetSectorCorners(first, first + size).empty();
-    bool const isIrregular = !_level.GetIrregularCorners(first, first + size).empty();
-    return hasSector || isIrregular || Crease::IsSharp(diagonal) ? findAfterStep(face)
-                                                                 : makePlainFaceMask(size);
+    return IsPlain(face) ? makePlainFaceMask(size) : findAfterStep(face);
 }
 
 // The F-face is a level of its own here: it has no sector corners and no irregular ones, and a
@@ -667,6 +663,7 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
 LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     int const size = _level.GetFaceSize(face);
     Level child;
+    child.depth = _level.depth + 1;
     child.numFaces = 1;
     child.numCorners = size;
     child.faceFirstCorner.Resize(2);
@@ -693,9 +690,9 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
 // Makes of weights of the F-face's vertices those of the face's.
 Vector FaceLimitMaskFinder::stepBack(Vector const &cWeights, Index face) const {
     Vector result(cWeights.size(), 0.0);
-    Vector scratch;
-    for (int i = 0; i < int(cWeights.size()); ++i) {
-        addScaled(result, cWeights[i], _mask.GetFaceVertexWeights(face, i, scratch));
+    FaceRule const rule = _rules.GetFaceRule(face);
+    for (int i = 0; i < rule.GetSize(); ++i) {
+        addScaled(result, cWeights[i], rule.GetRow(i));
     }
     return result;
 }

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_MASK_H
 #define OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_MASK_H
 
-#include "far_ext/vtr/refinementMask.h"
+#include "far_ext/vtr/refinementRules.h"
 #include "limitPatch.h"
 
 #include <map>
@@ -75,14 +75,14 @@ public:
     FaceLimitMaskFinder(Level const &level, Sdc::Options sdcOptions,
                         HexSchemeOptions const &schemeOptions)
         : _level(level), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions),
-          _mask(level, schemeOptions, Interpolation::Vertex) {}
+          _rules(level, schemeOptions, Interpolation::Vertex) {}
 
     /// Of a face with an infinitely sharp diagonal the sides are half 0 and half 1; others have
     /// one.
     LimitMask Find(Far::Index face) const;
 
     /// Whether a face has the mask of all with its size.
-    bool IsPlain(Far::Index face) const { return _mask.IsFacePlain(face); }
+    bool IsPlain(Far::Index face) const { return _rules.GetFaceRule(face).IsCirculant(); }
 
 private:
     LimitMask findAfterStep(Far::Index face) const;
@@ -91,7 +91,7 @@ private:
     Level const &_level;
     Sdc::Options const _sdcOptions;
     HexSchemeOptions const _schemeOptions;
-    RefinementMask const _mask;
+    RefinementRules const _rules;
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -5,9 +5,9 @@ namespace OpenSubdivHex::FarExt::internal {
 
 using Far::Index;
 
-std::vector<RefinementMask> MakeStepMasks(MeshLevels const &mesh,
+std::vector<RefinementRules> MakeStepMasks(MeshLevels const &mesh,
                                           HexSchemeOptions const &schemeOptions, int last) {
-    std::vector<RefinementMask> masks;
+    std::vector<RefinementRules> masks;
     masks.reserve(std::size_t(last));
     for (int level = 0; level < last; ++level) {
         masks.emplace_back(mesh.levels[std::size_t(level)], schemeOptions, Interpolation::Vertex);
@@ -15,7 +15,7 @@ std::vector<RefinementMask> MakeStepMasks(MeshLevels const &mesh,
     return masks;
 }
 
-PatchRows::PatchRows(MeshLevels const &mesh, std::vector<RefinementMask> const &masks, int level,
+PatchRows::PatchRows(MeshLevels const &mesh, std::vector<RefinementRules> const &masks, int level,
                      Index const *sources, int numSources)
     : _mesh(mesh), _masks(masks), _level(std::size_t(level)), _rows(masks.size() + 1),
       _numSources(std::size_t(numSources)) {

@@ -13,7 +13,7 @@ namespace OpenSubdivHex::FarExt::internal {
 using PatchWeights = std::vector<LimitWeights>;
 
 /// The masks of the steps from each level before \p last to the next.
-std::vector<RefinementMask> MakeStepMasks(MeshLevels const &mesh,
+std::vector<RefinementRules> MakeStepMasks(MeshLevels const &mesh,
                                           HexSchemeOptions const &schemeOptions, int last);
 
 /// \brief The rows of vertices of later levels in terms of some vertices of a level, each found once from
@@ -25,7 +25,7 @@ public:
     /// \param masks    of all steps to the last level; they are referred to, as is \p mesh
     /// \param level    of the sources
     /// \param sources  all different
-    PatchRows(MeshLevels const &mesh, std::vector<RefinementMask> const &masks, int level,
+    PatchRows(MeshLevels const &mesh, std::vector<RefinementRules> const &masks, int level,
               Index const *sources, int numSources);
 
     /// That of a limit row of the last level; nothing where it depends on other vertices.
@@ -37,7 +37,7 @@ private:
     Row const &findRow(std::size_t level, Index vert);
 
     MeshLevels const &_mesh;
-    std::vector<RefinementMask> const &_masks;
+    std::vector<RefinementRules> const &_masks;
     std::size_t const _level;
     std::vector<std::unordered_map<Index, Row>> _rows; // by level and vertex
     std::size_t const _numSources;

@@ -203,7 +203,7 @@ CallStatus PlainFaces::FindRows(HexSchemeOptions const &schemeOptions, LimitRows
     if (!result.IsOk()) {
         return result;
     }
-    std::vector<RefinementMask> const masks = MakeStepMasks(_mesh, schemeOptions, _last);
+    std::vector<RefinementRules> const masks = MakeStepMasks(_mesh, schemeOptions, _last);
     std::vector<unsigned char> isComplete(_types.size(), 1);
     ParallelForRange(
         Index(_types.size()), [] { return Nothing(); },

@@ -16,7 +16,7 @@ void addToRow(SteppedRow &row, Index vert, LimitWeights const &weights, double f
 
 // The row in terms of the vertices of the parent.
 SteppedRow stepBack(SteppedRow const &cRow, Refinement const &refinement,
-                    RefinementMask const &mask) {
+                    RefinementRules const &mask) {
     SteppedRow row;
     for (auto const &ofVertex : cRow) {
         ForEachParentWeight(refinement, mask, ofVertex.first, [&](Index pVert, double weight) {
@@ -36,7 +36,7 @@ SteppedRow StepRowBack(MeshLevels const &mesh, HexSchemeOptions const &schemeOpt
                  1);
     }
     for (int child = cLevel; child > level; --child) {
-        RefinementMask const ofStep(mesh.levels[std::size_t(child) - 1], schemeOptions,
+        RefinementRules const ofStep(mesh.levels[std::size_t(child) - 1], schemeOptions,
                                     Interpolation::Vertex);
         row = stepBack(row, mesh.refinements[std::size_t(child) - 1], ofStep);
     }

@@ -4,7 +4,7 @@
 
 #include "limitRows.h"
 
-#include "far_ext/vtr/refinementMask.h"
+#include "far_ext/vtr/refinementRules.h"
 
 #include <array>
 #include <map>
@@ -24,18 +24,18 @@ using SteppedRow = std::map<Far::Index, LimitWeights>;
 /// \brief Calls function(vertex, weight) for the vertices of the parent that a vertex of the child is a
 /// sum of; a vertex may come more than once.
 ///
-/// \param mask  of the step
+/// \param rules  of the step
 template <typename FUNCTION>
-void ForEachParentWeight(Refinement const &refinement, RefinementMask const &mask, Far::Index cVert,
-                         FUNCTION function) {
+void ForEachParentWeight(Refinement const &refinement, RefinementRules const &rules,
+                         Far::Index cVert, FUNCTION function) {
     using Index = Far::Index;
     Level const &parent = *refinement.parent;
-    std::vector<double> scratch;
     auto const addFVertex = [&](Index corner, double factor) {
         Index const face = parent.FindFaceOfCorner(corner);
         Index const first = parent.faceFirstCorner[face];
-        double const *const weights = mask.GetFaceVertexWeights(face, corner - first, scratch);
-        for (int i = 0; i < parent.GetFaceSize(face); ++i) {
+        FaceRule const rule = rules.GetFaceRule(face);
+        double const *const weights = rule.GetRow(corner - first);
+        for (int i = 0; i < rule.GetSize(); ++i) {
             function(parent.faceVerts[first + i], factor * weights[i]);
         }
     };
@@ -44,7 +44,7 @@ void ForEachParentWeight(Refinement const &refinement, RefinementMask const &mas
         return;
     }
     Index const pVert = refinement.GetVVertexParent(cVert);
-    RefinementMask::VertexMask const ofVertex = mask.GetVertexMask(pVert);
+    VertexRule const ofVertex = rules.GetVertexRule(pVert);
     for (int i = 0; i < ofVertex.numSources; ++i) {
         function(ofVertex.sources[i], ofVertex.weights[i]);
     }

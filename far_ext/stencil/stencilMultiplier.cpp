@@ -37,21 +37,26 @@ void copyShort(T const *src, int size, T *dst) {
 
 constexpr Index kAhead = 8; // V-vertices
 
-// The weights of a plain face: all rows are the first, turned.
+// The weights of a circulant rule: all rows are the first, turned.
 template <int SIZE>
-struct PlainWeights {
-    explicit PlainWeights(double const *mask) { std::copy_n(mask, SIZE, weights); }
+struct CirculantWeights {
+    explicit CirculantWeights(FaceRule const &rule) { std::copy_n(rule.GetRow(0), SIZE, weights); }
     double operator()(int, int j) const { return weights[j]; }
 
     double weights[SIZE];
 };
 
-// Those of a face with a row for each corner.
+// Those of a dense rule.
 template <int SIZE>
-struct OwnWeights {
+struct DenseWeights {
+    explicit DenseWeights(FaceRule const &rule) {
+        for (int i = 0; i < SIZE; ++i) {
+            rows[i] = rule.GetRow(i);
+        }
+    }
     double operator()(int i, int j) const { return rows[i][(i + j) % SIZE]; }
 
-    double const (*rows)[SIZE];
+    double const *rows[SIZE];
 };
 
 // The F-vertices of a face: its rows of weights times the rows of its vertices.  The weight of the
@@ -148,13 +153,14 @@ void StencilMultiplier<REAL>::storeIndices(Index row, Support sources) const {
 template <typename REAL>
 void StencilMultiplier<REAL>::fillSourceFace(Index face, Scratch &scratch) const {
     Index const *const verts = _rows.GetFaceVertices(face);
-    int const size = _rows.GetFaceSize(face);
+    FaceRule const rule = _rows.GetFaceRule(face);
+    int const size = rule.GetSize();
     int const width = _supports.OfFaces()[face].size();
     for (int i = 0; i < size; ++i) {
-        double const *mask = _rows.GetFaceVertexWeights(face, i, scratch.mask);
+        double const *const row = rule.GetRow(i);
         scratch.sums.assign(width, 0.0);
         for (int j = 0; j < size; ++j) {
-            scratch.sums[scratch.position[_pSupports.OfVertices()[verts[j]][0]]] += mask[j];
+            scratch.sums[scratch.position[_pSupports.OfVertices()[verts[j]][0]]] += row[j];
         }
         std::transform(scratch.sums.begin(), scratch.sums.end(), scratch.rows[i],
                        [](double weight) { return REAL(weight); });
@@ -189,46 +195,36 @@ void StencilMultiplier<REAL>::loadParents(Index face, Scratch &scratch) const {
 // The face mask times the stencils of the face's vertices.
 template <typename REAL>
 void StencilMultiplier<REAL>::multiply(Index face, Scratch &scratch) const {
-    int const size = _rows.GetFaceSize(face);
+    FaceRule const rule = _rows.GetFaceRule(face);
+    int const size = rule.GetSize();
     int const width = _supports.OfFaces()[face].size();
     REAL const *const *const parents = scratch.parents.data();
     REAL *const *const rows = scratch.rows.data();
     constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
-    bool const isPlain = _rows.IsFacePlain(face);
-    if (width >= kVector && isPlain) {
-        double const *const mask = _rows.GetPlainFaceWeights(size);
+    if (width >= kVector && rule.IsCirculant()) {
         switch (size) {
         case 3:
-            return multiplyFace<3>(PlainWeights<3>(mask), parents, width, rows);
+            return multiplyFace<3>(CirculantWeights<3>(rule), parents, width, rows);
         case 4:
-            return multiplyFace<4>(PlainWeights<4>(mask), parents, width, rows);
+            return multiplyFace<4>(CirculantWeights<4>(rule), parents, width, rows);
         case 5:
-            return multiplyFace<5>(PlainWeights<5>(mask), parents, width, rows);
+            return multiplyFace<5>(CirculantWeights<5>(rule), parents, width, rows);
         case kHexagon:
-            return multiplyFace<kHexagon>(PlainWeights<kHexagon>(mask), parents, width, rows);
+            return multiplyFace<kHexagon>(CirculantWeights<kHexagon>(rule), parents, width, rows);
         }
     }
-    if (width >= kVector && !isPlain && size == kHexagon) {
-        double own[kHexagon][kHexagon];
-        OwnWeights<kHexagon> weights = {own};
-        if (auto const *const irregular = _rows.FindIrregularWeights(face)) {
-            weights.rows = irregular->weights;
-        } else {
-            for (int i = 0; i < kHexagon; ++i) {
-                std::copy_n(_rows.GetFaceVertexWeights(face, i, scratch.mask), kHexagon, own[i]);
-            }
-        }
-        return multiplyFace<kHexagon>(weights, parents, width, rows);
+    if (width >= kVector && size == kHexagon) {
+        return multiplyFace<kHexagon>(DenseWeights<kHexagon>(rule), parents, width, rows);
     }
     scratch.sums.resize(width);
     double *const sums = scratch.sums.data();
     for (int i = 0; i < size; ++i) {
-        double const *mask = _rows.GetFaceVertexWeights(face, i, scratch.mask);
+        double const *const row = rule.GetRow(i);
         std::transform(parents[0], parents[0] + width, sums,
-                       [weight = mask[0]](REAL value) { return weight * double(value); });
+                       [weight = row[0]](REAL value) { return weight * double(value); });
         for (int j = 1; j < size; ++j) {
             for (int k = 0; k < width; ++k) {
-                sums[k] += mask[j] * double(parents[j][k]);
+                sums[k] += row[j] * double(parents[j][k]);
             }
         }
         std::transform(sums, sums + width, rows[i], [](double weight) { return REAL(weight); });
@@ -263,17 +259,17 @@ void StencilMultiplier<REAL>::fillVVertex(Index vVertex, Scratch &scratch) const
     PagedArray<double> &sumOfSource = scratch.sumOfSource;
     sumOfSource.Begin();
     Index const pVert = _rows.GetVVertexParent(vVertex);
-    RefinementMask::VertexMask const mask = _rows.GetVertexMask(pVert);
+    VertexRule const rule = _rows.GetVertexRule(pVert);
     auto const add = [&](double weight, REAL const *weights, Support sources) {
         sumOfSource.ForEach(sources.begin(), sources.size(),
                             [=](double &sum, int k) { sum += weight * double(weights[k]); });
     };
-    _rows.ForEachSource(vVertex, mask, [&](Index source, double weight) {
+    _rows.ForEachSource(vVertex, rule, [&](Index source, double weight) {
         add(weight, parentWeights(source), _pSupports.OfVertices()[source]);
     });
-    if (mask.faceWeight > 0) {
+    if (rule.faceWeight > 0) {
         _rows.ForEachVertexFace(pVert, [&](Index face, Index row) {
-            add(mask.faceWeight, _stencils.GetWeights(row), _supports.OfFaces()[face]);
+            add(rule.faceWeight, _stencils.GetWeights(row), _supports.OfFaces()[face]);
         });
     }
     Support const support = _supports.OfVVertex(vVertex, scratch.sources);

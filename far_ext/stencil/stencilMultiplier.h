@@ -66,7 +66,6 @@ private:
         PagedArray<int> position;          // of each source in the support of the face
         PagedArray<double> sumOfSource;    // all 0 between two V-vertices
         Buffer<Index> sources;             // of a V-vertex, see RowSupports
-        std::vector<double> mask;          // of a corner, see RefinementMask
         std::vector<double> sums;          // one dense stencil
         Buffer<REAL> block;                // of dense stencils
         std::vector<REAL const *> parents; // dense stencils of a face's vertices over its support

@@ -211,8 +211,8 @@ void RowSupports::formVVertices(RefinementRows const &rows, RowSupports const &p
                                 Index numSources, bool keepsVertices, int *sizes) {
     auto const form = [&](Index vVertex, SupportUnion &sources, std::vector<Support> &supports) {
         Index const pVert = rows.GetVVertexParent(vVertex);
-        RefinementMask::VertexMask const mask = rows.GetVertexMask(pVert);
-        bool const hasFaces = mask.faceWeight > 0 && rows.HasVertexFaces(pVert);
+        VertexRule const rule = rows.GetVertexRule(pVert);
+        bool const hasFaces = rule.faceWeight > 0 && rows.HasVertexFaces(pVert);
         supports.clear();
         if (hasFaces) {
             supports.push_back(parents._ofVertices[pVert]);
@@ -222,7 +222,7 @@ void RowSupports::formVVertices(RefinementRows const &rows, RowSupports const &p
                 }
             });
         } else {
-            rows.ForEachSource(vVertex, mask, [&](Index source, double) {
+            rows.ForEachSource(vVertex, rule, [&](Index source, double) {
                 supports.push_back(parents._ofVertices[source]);
             });
         }
@@ -252,7 +252,7 @@ std::int64_t RowSupports::countLeastVVertexWeights(RefinementRows const &rows) c
     for (Index vVertex = 0; vVertex < rows.GetNumVVertices(); ++vVertex) {
         Index const pVert = rows.GetVVertexParent(vVertex);
         int most = 0;
-        if (rows.GetVertexMask(pVert).faceWeight > 0) {
+        if (rows.GetVertexRule(pVert).faceWeight > 0) {
             rows.ForEachVertexFace(
                 pVert, [&](Index face, Index) { most = std::max(most, _ofFaces[face].size()); });
         }

@@ -34,6 +34,9 @@ struct SharpVertex {
     double faceWeight;
     Far::Index neighbors[2]; ///< along the crease; meaningless where the weight is 0
     double neighborWeights[2];
+    /// How much of the smooth rule and of that of a crease is in the weights; the rest is that of a corner.
+    double smoothShare;
+    double creaseShare;
 };
 
 /// \brief A corner whose F-vertex is drawn towards its vertex, because that has many faces between

@@ -3,7 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_VTR_REFINEMENT_ROWS_H
 
 #include "refinement.h"
-#include "refinementMask.h"
+#include "refinementRules.h"
 #include "truncationMask.h"
 
 #include <optional>
@@ -72,10 +72,10 @@ public:
     bool HasVertexFaces(Index vert) const {
         return !_truncation && _vertFirstFace[vert] < _vertFirstFace[vert + 1];
     }
-    /// Calls function(vert, weight) for the sources of a V-vertex, of whose parent \p mask is, beside
+    /// Calls function(vert, weight) for the sources of a V-vertex, of whose parent \p rule is, beside
     /// the F-vertices around it.
     template <typename FUNCTION>
-    void ForEachSource(Index vVertex, RefinementMask::VertexMask const &mask,
+    void ForEachSource(Index vVertex, VertexRule const &rule,
                        FUNCTION function) const {
         if (_truncation) {
             TruncationMask::Sources sources;
@@ -84,36 +84,27 @@ public:
                 function(sources.verts[i], sources.weights[i]);
             }
         }
-        for (int i = 0; i < mask.numSources; ++i) {
-            function(mask.sources[i], mask.weights[i]);
+        for (int i = 0; i < rule.numSources; ++i) {
+            function(rule.sources[i], rule.weights[i]);
         }
     }
 
-    /// As in RefinementMask, with the numbers of the rows.
-    bool IsFacePlain(Index face) const { return _mask.IsFacePlain(faceId(face)); }
-    double const *GetPlainFaceWeights(int faceSize) const {
-        return _mask.GetPlainFaceWeights(faceSize);
-    }
-    RefinementMask::IrregularFaceWeights const *FindIrregularWeights(Index face) const {
-        return _mask.FindIrregularWeights(faceId(face));
-    }
-    double const *GetFaceVertexWeights(Index face, int corner, std::vector<double> &scratch) const {
-        return _mask.GetFaceVertexWeights(faceId(face), corner, scratch);
-    }
-    RefinementMask::VertexMask GetVertexMask(Index vert) const {
+    /// As in RefinementRules, with the numbers of the rows.
+    FaceRule GetFaceRule(Index face) const { return _rules.GetFaceRule(faceId(face)); }
+    VertexRule GetVertexRule(Index vert) const {
         if (_truncation) {
             return {0, 0, {}, {}};
         }
-        return _part.verts.empty() ? _mask.GetVertexMask(vert) : partVertexMask(vert);
+        return _part.verts.empty() ? _rules.GetVertexRule(vert) : partVertexRule(vert);
     }
 
 private:
-    RefinementMask::VertexMask partVertexMask(Index vert) const;
+    VertexRule partVertexRule(Index vert) const;
     void getTruncationSources(Index vVertex, TruncationMask::Sources &sources) const;
     Index partVertex(Index vert) const;
     Index faceId(Index face) const { return _part.faces.empty() ? face : _part.faces[face]; }
 
-    RefinementMask const _mask;
+    RefinementRules const _rules;
     std::optional<TruncationMask> _truncation;
     Part _part; // empty when the refinement is taken whole
     Index _numFaces;
@@ -151,12 +142,12 @@ std::vector<Far::Index> GetMadeVertices(Refinement const &refinement,
 template <typename REAL, class SRC, class DST>
 void InterpolateFaces(RefinementRows const &rows, Far::Index begin, Far::Index end, SRC const &src,
                       DST &dst) {
-    std::vector<double> scratch;
     for (Far::Index face = begin; face < end; ++face) {
         Far::Index const *const verts = rows.GetFaceVertices(face);
-        int const size = rows.GetFaceSize(face);
+        FaceRule const rule = rows.GetFaceRule(face);
+        int const size = rule.GetSize();
         for (int i = 0; i < size; ++i) {
-            double const *const weights = rows.GetFaceVertexWeights(face, i, scratch);
+            double const *const weights = rule.GetRow(i);
             auto &&point = dst[rows.GetFaceFirstRow(face) + i];
             point.Clear();
             for (int j = 0; j < size; ++j) {
@@ -174,15 +165,15 @@ void InterpolateVVertices(RefinementRows const &rows, Far::Index begin, Far::Ind
                           SRC const &src, DST &dst) {
     for (Far::Index vVertex = begin; vVertex < end; ++vVertex) {
         Far::Index const pVert = rows.GetVVertexParent(vVertex);
-        RefinementMask::VertexMask const mask = rows.GetVertexMask(pVert);
+        VertexRule const rule = rows.GetVertexRule(pVert);
         auto &&point = dst[vVertex];
         point.Clear();
-        rows.ForEachSource(vVertex, mask, [&](Far::Index vert, double weight) {
+        rows.ForEachSource(vVertex, rule, [&](Far::Index vert, double weight) {
             point.AddWithWeight(src[vert], REAL(weight));
         });
-        if (mask.faceWeight > 0) {
+        if (rule.faceWeight > 0) {
             rows.ForEachVertexFace(pVert, [&](Far::Index, Far::Index row) {
-                point.AddWithWeight(dst[row], REAL(mask.faceWeight));
+                point.AddWithWeight(dst[row], REAL(rule.faceWeight));
             });
         }
     }

@@ -2,6 +2,7 @@
 #include "sharpFeatures.h"
 
 #include "far_ext/mask.h"
+#include "far_ext/rules/sharpMask.h"
 #include "indexSet.h"
 #include "parallel.h"
 #include "truncationMask.h"
@@ -104,11 +105,11 @@ std::vector<Index> findSharpVertices(Level const &level) {
 
 SharpVertex smoothMask(Index vert, int numFaces) {
     VertexVertexMask const mask = ComputeVertexVertexMask(Interpolation::Vertex, numFaces);
-    return {vert, Crease::RULE_SMOOTH, mask.vertexWeight, mask.faceWeight, {vert, vert}, {0, 0}};
+    return {vert, Crease::RULE_SMOOTH, mask.vertexWeight, mask.faceWeight, {vert, vert}, {0, 0}, 1, 0};
 }
 
 SharpVertex cornerMask(Index vert) {
-    return {vert, Crease::RULE_CORNER, 1, 0, {vert, vert}, {0, 0}};
+    return {vert, Crease::RULE_CORNER, 1, 0, {vert, vert}, {0, 0}, 0, 0};
 }
 
 // Whether one face lies alone between the edges to two vertices.
@@ -127,22 +128,13 @@ bool isOneFaceBetween(Level const &level, Index vert, Index const neighbors[2]) 
 }
 
 SharpVertex creaseMask(Level const &level, Index vert, SharpEdges const &edges, int const pair[2]) {
-    SharpVertex mask = {vert, Crease::RULE_CREASE, 0, 0, {vert, vert}, {0, 0}};
-    bool const isLong[2] = {edges.isLong[pair[0]], edges.isLong[pair[1]]};
-    for (int i = 0; i < 2; ++i) {
-        mask.neighbors[i] = edges.neighbors[pair[i]];
-        if (isLong[i]) {
-            mask.neighborWeights[i] = isLong[1 - i] ? 3.0 / 32 : 1.0 / 8;
-        } else {
-            mask.neighborWeights[i] = isLong[1 - i] ? 2.0 / 8 : 1.0 / 8;
-        }
-    }
-    if (level.numHexagonalSteps >= kNumStepsToConstantMasks && !isLong[0] && !isLong[1] &&
-        !isNonManifold(level, vert) && !isOneFaceBetween(level, vert, mask.neighbors)) {
-        mask.neighborWeights[0] = mask.neighborWeights[1] = 3.0 / 8;
-    }
-    mask.vertexWeight = 1 - mask.neighborWeights[0] - mask.neighborWeights[1];
-    return mask;
+    Index const neighbors[2] = {edges.neighbors[pair[0]], edges.neighbors[pair[1]]};
+    bool const isBounded = level.numHexagonalSteps >= kNumStepsToConstantMasks &&
+                           !isNonManifold(level, vert) && !isOneFaceBetween(level, vert, neighbors);
+    auto const [left, right] =
+        ComputeCreaseMask(edges.isLong[pair[0]], edges.isLong[pair[1]], isBounded);
+    return {vert, Crease::RULE_CREASE,          1 - left - right, 0, {neighbors[0], neighbors[1]},
+            {left, right}, 0, 1};
 }
 
 SharpVertex maskOfRule(Level const &level, Crease const &creasing, Crease::Rule rule, Index vert,
@@ -172,6 +164,8 @@ SharpVertex blend(SharpVertex const &parent, SharpVertex const &child, double pa
         result.neighborWeights[i] =
             parentWeight * parent.neighborWeights[i] + childWeight * child.neighborWeights[i];
     }
+    result.smoothShare = parentWeight * parent.smoothShare + childWeight * child.smoothShare;
+    result.creaseShare = parentWeight * parent.creaseShare + childWeight * child.creaseShare;
     return result;
 }
 

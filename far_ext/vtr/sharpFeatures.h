@@ -23,22 +23,10 @@ std::vector<float> GatherSharpness(Level const &level, Far::Index vert);
 /// \brief Fills level.sharpVerts and level.sectorCorners from the level's boundaries and tags, with
 /// Sdc::Crease's rules.
 ///
-/// Where a vertex meets a crease or a sharp boundary, its sharp edges are crease edges and sharp
-/// boundaries (phase A, one unit long in the lattice) and diagonals and B boundaries (two units
-/// long).  Along two of them, with neighbours V_A and V_B at the end of an A and of a B,
-///
-///     A and A: V' = (6 V + V_l + V_r)/8      A and B: V' = (5 V + 2 V_A + V_B)/8
-///     B and B: V' = (26 V + 3 V_l + 3 V_r)/32
-///
-/// which reproduces linear functions.  Behind the first steps A and A meet at vertices of level 0
-/// alone, in every second level, and from kNumStepsToConstantMasks steps on
-///
-///     A and A: V' = (2 V + 3 V_l + 3 V_r)/8
-///
-/// so that all points of a parabola move alike, which bounds curvature of the curves; earlier, the
-/// surface beside them would be less even.  It does not hold where one face lies between the two
-/// edges, which would have no tangent plane, since what lies across would shrink as fast as the bend of
-/// the curve, nor where several sheets share the curve: there its curvature grows by sqrt(3/2) per level.
+/// Where a vertex meets a crease or a sharp boundary, V' has the mask of ComputeCreaseMask.  From
+/// kNumStepsToConstantMasks steps on it is the bounded one; earlier, the surface beside it would be less even.
+/// Never bounded are masks where one face lies between the two edges, which would have no tangent plane, since what
+/// lies across would shrink as fast as the bend of the curve, and where several sheets share the curve.
 void ComputeSharpMasks(Sdc::Options sdcOptions, Level &level);
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "truncationMask.h"
 
+#include "far_ext/rules/sharpMask.h"
+
 #include <algorithm>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -9,11 +11,6 @@ using Far::Index;
 using Sdc::Crease;
 
 namespace {
-
-constexpr double kAlongEdge = 1.0 / 3;   // of W in T on a sharp edge
-constexpr double kAlongCrease = 1.0 / 9; // of each neighbour in V' on a crease
-constexpr double kOfAround = 1.0 / 6;    // of each neighbor, for what faces around V would have
-constexpr double kOfHexagonalCrease = 1.0 / 8; // in SharpVertex, where both edges are A edges
 
 bool isBorder(Level const &level, Index edge) {
     return level.IsBoundary(edge) || Crease::IsSharp(level.GetEdgeSharpness(edge));
@@ -66,10 +63,8 @@ void TruncationMask::GetSources(Index cVert, Sources &sources) const {
 }
 
 auto TruncationMask::getShares(Index vert, SharpVertex const *sharp) const -> RuleShares {
-    double const smooth = sharp ? sharp->faceWeight * (_parent.GetNumVertexFaces(vert) + 1) : 1.0;
-    double const crease =
-        sharp ? (sharp->neighborWeights[0] + sharp->neighborWeights[1]) / (2 * kOfHexagonalCrease)
-              : 0.0;
+    double const smooth = sharp ? sharp->smoothShare : 1;
+    double const crease = sharp ? sharp->creaseShare : 0;
     bool const isFree = _parent.GetVertexEdges(vert).size() > _parent.GetNumVertexFaces(vert);
     return isFree ? RuleShares{0, crease, smooth} : RuleShares{smooth, crease, 0};
 }
@@ -145,8 +140,8 @@ void TruncationMask::addEdgeVertex(std::size_t end, Sources &sources) const {
     bool const isLinear = _interpolation == Interpolation::Varying;
     double const sharp = isLinear ? 1 : getSharpShare(_parent, edge);
     if (sharp == 1) {
-        sources.Add(vert, 1 - kAlongEdge);
-        sources.Add(other, kAlongEdge);
+        sources.Add(vert, 1 - kTruncateAlongEdge);
+        sources.Add(other, kTruncateAlongEdge);
         return;
     }
     Index const corner = _parent.GetSideCorner(edge, side);
@@ -159,16 +154,16 @@ void TruncationMask::addEdgeVertex(std::size_t end, Sources &sources) const {
             shares.smooth * mask.besideWeight + (1 - shares.smooth) * ofSector.besideWeight;
         mask.aroundWeight *= shares.smooth;
         double const ofLine = addAlongLine(
-            vert, sharpVertex, shares, (1 - sharp) * ofSector.aroundWeight * kOfAround, sources);
+            vert, sharpVertex, shares, (1 - sharp) * ofSector.aroundWeight * kTruncateAround, sources);
         mask.vertexWeight = 1 - 2 * mask.besideWeight - mask.aroundWeight - ofLine / (1 - sharp);
     }
-    mask.vertexWeight = sharp * (1 - kAlongEdge) + (1 - sharp) * mask.vertexWeight;
+    mask.vertexWeight = sharp * (1 - kTruncateAlongEdge) + (1 - sharp) * mask.vertexWeight;
     mask.besideWeight *= 1 - sharp;
     mask.aroundWeight *= 1 - sharp;
     if (mask.aroundWeight > 0) {
         addCentroids(vert, corner, mask, sources);
         if (sharp > 0) {
-            sources.Add(other, sharp * kAlongEdge);
+            sources.Add(other, sharp * kTruncateAlongEdge);
         }
         return;
     }
@@ -177,7 +172,7 @@ void TruncationMask::addEdgeVertex(std::size_t end, Sources &sources) const {
         ofFaces += mask.besideWeight / _parent.GetFaceSize(_parent.edgeFaces[edge][i]);
     }
     sources.Add(vert, mask.vertexWeight + ofFaces);
-    sources.Add(other, sharp * kAlongEdge + ofFaces);
+    sources.Add(other, sharp * kTruncateAlongEdge + ofFaces);
     for (int i : {0, 1}) {
         Index const face = _parent.edgeFaces[edge][i];
         Index const start = _parent.GetSideCorner(edge, i);
@@ -224,7 +219,7 @@ void TruncationMask::addVVertex(Index vert, Sources &sources) const {
     SharpVertex const *const sharp = _parent.FindSharpVertex(vert);
     RuleShares const shares = getShares(vert, sharp);
     // Neighbors come first, so that it does not matter for the sum which of them is left and right.
-    double rest = 1 - addAlongLine(vert, sharp, shares, kAlongCrease, sources);
+    double rest = 1 - addAlongLine(vert, sharp, shares, kTruncateAlongCrease, sources);
     if (shares.smooth > 0) {
         double const ofFaces = 1 - ComputeTruncateMask(numFaces).vertexWeight;
         double const ofFace = shares.smooth * ofFaces / numFaces;

@@ -19,7 +19,7 @@ using FarExt::StatusCode;
 using FarExt::internal::FVarChannel;
 using FarExt::internal::MeshLevels;
 using FarExt::internal::Refinement;
-using FarExt::internal::RefinementMask;
+using FarExt::internal::RefinementRules;
 
 namespace {
 
@@ -71,7 +71,7 @@ CallStatus DeviceEvaluator::Prepare(Options options) {
     MeshLevels const &mesh =
         _refiner.GetHierarchy().GetMesh(isFaceVarying ? options.fvarChannel : -1);
     std::vector<Refinement const *> refinements;
-    std::vector<RefinementMask> masks;
+    std::vector<RefinementRules> rules;
     FarExt::Interpolation const interpolation = FarExt::internal::GetModeInterpolation(
         _refiner, options.interpolationMode, options.fvarChannel);
     for (int level = 0; level <= _refiner.GetMaxLevel(); ++level) {
@@ -81,7 +81,7 @@ CallStatus DeviceEvaluator::Prepare(Options options) {
                                 2 * std::int64_t(ofMesh.numFaces));
         if (level < _refiner.GetMaxLevel()) {
             refinements.push_back(&mesh.refinements[std::size_t(level)]);
-            masks.emplace_back(ofMesh, _refiner.GetHexSchemeOptions(), interpolation);
+            rules.emplace_back(ofMesh, _refiner.GetHexSchemeOptions(), interpolation);
         }
     }
     std::vector<std::int32_t> values;
@@ -96,7 +96,7 @@ CallStatus DeviceEvaluator::Prepare(Options options) {
     }
     std::vector<float> weights;
     status = MakeDeviceRefinements(
-        refinements, masks, weights, _refinements,
+        refinements, rules, weights, _refinements,
         [&](std::size_t numIndices, std::function<void(std::int32_t *)> const &fill) {
             return loadIndices(numIndices, fill, values);
         });

@@ -10,15 +10,18 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <unordered_map>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
+using FarExt::internal::FaceRule;
 using FarExt::internal::ForEachRun;
 using FarExt::internal::Level;
 using FarExt::internal::ParallelFor;
 using FarExt::internal::Refinement;
-using FarExt::internal::RefinementMask;
+using FarExt::internal::RefinementRules;
+using FarExt::internal::VertexRule;
 
 namespace {
 
@@ -91,12 +94,12 @@ bool isRun(Range const &range, std::vector<Range> const &ranges) {
 // indices; the second writes them.
 class Maker {
 public:
-    Maker(RefinementMask const &mask, Refinement const &refinement, Refinement const *before,
+    Maker(RefinementRules const &rules, Refinement const &refinement, Refinement const *before,
           std::size_t firstIndex, std::vector<float> &weights, DeviceRefinement &result)
-        : _mask(mask), _refinement(refinement), _before(before), _level(*refinement.parent),
+        : _rules(rules), _refinement(refinement), _before(before), _level(*refinement.parent),
           _numIndices(firstIndex), _weights(weights), _result(result) {
         _result.numVVertices = refinement.child->numVVertices;
-        FarExt::VertexVertexMask const plain = mask.GetPlainVertexMask(kRunValence);
+        FarExt::VertexVertexMask const plain = rules.GetPlainVertexMask(kRunValence);
         _result.vertexWeight = float(plain.vertexWeight);
         _result.averagesFaces = plain.faceWeight != 0;
         if (_before && _level.isHexagonal) {
@@ -134,7 +137,10 @@ private:
     void planTruncation();
     void addRun(Range const &range);
     void listFace(Index face);
-    void listIrregularCorners(Range const &run);
+    void listCorner(Index face, int corner, std::uint32_t firstIndex);
+    void listDenseCorners(Range const &run);
+    bool isCirculant(FaceRule const &rule, int corner) const;
+    std::vector<Index> findFacesInNoRun() const;
     std::uint32_t takeIndicesOf(Index face);
     void listPlainVertex(Index vert);
     void listVertex(Index vert);
@@ -164,8 +170,9 @@ private:
     // The weights of corner 0 of plain faces, twice in a row.
     std::uint32_t getPlainWeights(int size) {
         return find(_plainWeights, size, [&] {
-            std::uint32_t const first = addWeights(_mask.GetPlainFaceWeights(size), size);
-            addWeights(_mask.GetPlainFaceWeights(size), size);
+            double const *const mask = _rules.GetCirculantRule(size).GetRow(0);
+            std::uint32_t const first = addWeights(mask, size);
+            addWeights(mask, size);
             return first;
         });
     }
@@ -185,7 +192,7 @@ private:
 
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-    RefinementMask const &_mask;
+    RefinementRules const &_rules;
     Refinement const &_refinement;
     Refinement const *_before;
     Level const &_level;
@@ -199,7 +206,7 @@ private:
     std::vector<Index> _listedFaces;           // F-faces
     std::vector<std::uint32_t> _firstIndices;  // of those
     std::vector<Index> _truncationSources;
-    std::vector<double> _scratch;
+    std::unordered_map<double const *, std::uint32_t> _rowWeights; // of rows of dense rules
 };
 
 void Maker::planFaces() {
@@ -207,7 +214,7 @@ void Maker::planFaces() {
     Index const numFFaces = _result.numConsecutiveCorners > 0 ? _level.numFFaces : 0;
     std::vector<Range> ranges;
     ForEachRun(
-        0, _level.numFaces, _mask.FindSharpFaces(),
+        0, _level.numFaces, findFacesInNoRun(),
         [&](Index begin, Index end, Index) {
             append(ranges, {begin, end, 0}, numFFaces,
                    [&](Index face) { return _level.GetFaceSize(face); });
@@ -225,34 +232,51 @@ void Maker::planFaces() {
 }
 
 void Maker::addRun(Range const &range) {
-    PlainFaceMask const mask = MakePlainFaceMask(_mask.GetPlainFaceWeights(range.size), range.size);
+    PlainFaceMask const mask = MakePlainFaceMask(_rules.GetCirculantRule(range.size));
     bool const isWeighted = !mask.weights.empty();
     _result.faceRuns.push_back({range.size, std::uint32_t(range.end - range.begin),
                                 std::uint32_t(_level.faceFirstCorner[std::size_t(range.begin)]),
                                 isWeighted, isWeighted ? getPlainWeights(range.size) : 0, mask.all,
                                 mask.self, mask.neighbor, mask.opposite});
-    listIrregularCorners(range);
+    listDenseCorners(range);
+}
+
+// Whether a corner has the row of the circulant rule of the face's size.
+bool Maker::isCirculant(FaceRule const &rule, int corner) const {
+    return rule.IsCirculant() ||
+           rule.GetRow(corner) == _rules.GetCirculantRule(rule.GetSize()).GetRow(corner);
+}
+
+// Those without any corner that a run would make.
+std::vector<Index> Maker::findFacesInNoRun() const {
+    std::vector<Index> faces;
+    for (RefinementRules::DenseFace const &dense : _rules.GetDenseFaces()) {
+        FaceRule const rule = _rules.GetDenseRule(dense.rule);
+        bool isInRun = false;
+        for (int i = 0; i < rule.GetSize(); ++i) {
+            isInRun = isInRun || isCirculant(rule, i);
+        }
+        if (!isInRun) {
+            faces.push_back(dense.face);
+        }
+    }
+    return faces;
 }
 
 // Behind runs, which make all F-vertices of their faces: these few again.
-void Maker::listIrregularCorners(Range const &run) {
-    Index const firstCorner = _level.faceFirstCorner[std::size_t(run.begin)];
-    Index const endCorner = _level.faceFirstCorner[std::size_t(run.end)];
-    Index endOfFace = firstCorner;
-    Index face = 0;
-    std::uint32_t firstIndex = 0;
-    for (FarExt::internal::IrregularCorner const &irregular :
-         _mask.GetIrregularCorners(firstCorner, endCorner)) {
-        Index const corner = irregular.corner;
-        if (corner >= endOfFace) {
-            face = _level.FindFaceOfCorner(corner);
-            endOfFace = _level.faceFirstCorner[std::size_t(face) + 1];
-            firstIndex = takeIndicesOf(face);
+void Maker::listDenseCorners(Range const &run) {
+    std::vector<RefinementRules::DenseFace> const &faces = _rules.GetDenseFaces();
+    auto next = std::lower_bound(
+        faces.begin(), faces.end(), run.begin,
+        [](RefinementRules::DenseFace const &dense, Index face) { return dense.face < face; });
+    for (; next != faces.end() && next->face < run.end; ++next) {
+        FaceRule const rule = _rules.GetDenseRule(next->rule);
+        std::uint32_t const firstIndex = takeIndicesOf(next->face);
+        for (int i = 0; i < rule.GetSize(); ++i) {
+            if (!isCirculant(rule, i)) {
+                listCorner(next->face, i, firstIndex);
+            }
         }
-        double const *const weights =
-            _mask.GetFaceVertexWeights(face, corner - (endOfFace - run.size), _scratch);
-        _result.corners.push_back({std::uint32_t(corner), std::uint32_t(run.size), firstIndex,
-                                   addWeights(weights, run.size)});
     }
 }
 
@@ -268,17 +292,28 @@ std::uint32_t Maker::takeIndicesOf(Index face) {
 }
 
 void Maker::listFace(Index face) {
-    int const size = _level.GetFaceSize(face);
-    Index const firstCorner = _level.faceFirstCorner[std::size_t(face)];
     std::uint32_t const firstIndex = takeIndicesOf(face);
-    bool const isPlain = _mask.IsFacePlain(face);
-    for (int i = 0; i < size; ++i) {
-        std::uint32_t const firstWeight =
-            isPlain ? getPlainWeights(size) + std::uint32_t(size - i)
-                    : addWeights(_mask.GetFaceVertexWeights(face, i, _scratch), size);
-        _result.corners.push_back(
-            {std::uint32_t(firstCorner + i), std::uint32_t(size), firstIndex, firstWeight});
+    for (int i = 0; i < _level.GetFaceSize(face); ++i) {
+        listCorner(face, i, firstIndex);
     }
+}
+
+void Maker::listCorner(Index face, int corner, std::uint32_t firstIndex) {
+    FaceRule const rule = _rules.GetFaceRule(face);
+    int const size = rule.GetSize();
+    std::uint32_t firstWeight = 0;
+    if (isCirculant(rule, corner)) {
+        firstWeight = getPlainWeights(size) + std::uint32_t(size - corner);
+    } else {
+        double const *const row = rule.GetRow(corner);
+        auto const [found, isNew] = _rowWeights.try_emplace(row);
+        if (isNew) {
+            found->second = addWeights(row, size);
+        }
+        firstWeight = found->second;
+    }
+    _result.corners.push_back({std::uint32_t(_level.faceFirstCorner[std::size_t(face)] + corner),
+                               std::uint32_t(size), firstIndex, firstWeight});
 }
 
 void Maker::planVertices() {
@@ -291,9 +326,13 @@ void Maker::planVertices() {
     if (_result.numVVertices == 0) {
         return;
     }
+    std::vector<Index> ruled;
+    for (RefinementRules::RuledVertex const &vertex : _rules.GetRuledVertices()) {
+        ruled.push_back(vertex.vert);
+    }
     std::vector<Range> ranges;
     ForEachRun(
-        0, _level.numVertices, _mask.FindFeatureVertices(),
+        0, _level.numVertices, ruled,
         [&](Index begin, Index end, Index) {
             while (begin < end) {
                 Index const behind = std::min(end, getEndOfOrder(begin));
@@ -325,7 +364,7 @@ void Maker::planVertices() {
 void Maker::listPlainVertex(Index vert) {
     int const numFaces = _level.GetNumVertexFaces(vert);
     std::uint32_t const firstWeight = find(_vertexWeights, numFaces, [&] {
-        double const weight = _mask.GetPlainVertexMask(numFaces).vertexWeight;
+        double const weight = _rules.GetPlainVertexMask(numFaces).vertexWeight;
         return addWeights(&weight, 1);
     });
     // Written member by member, not copied from a temporary (benchmark OpenGL, preparation/triangle/small:
@@ -339,20 +378,20 @@ void Maker::listPlainVertex(Index vert) {
 }
 
 void Maker::listVertex(Index vert) {
-    RefinementMask::VertexMask const mask = _mask.GetVertexMask(vert);
-    int const numCorners = mask.faceWeight != 0 ? _level.GetNumVertexFaces(vert) : 0;
+    VertexRule const rule = _rules.GetVertexRule(vert);
+    int const numCorners = rule.faceWeight != 0 ? _level.GetNumVertexFaces(vert) : 0;
     std::uint32_t const firstIndex =
-        takeIndices(std::size_t(mask.numSources) + std::size_t(numCorners));
-    std::uint32_t const firstWeight = addWeights(mask.weights, mask.numSources);
-    addWeights(&mask.faceWeight, 1);
+        takeIndices(std::size_t(rule.numSources) + std::size_t(numCorners));
+    std::uint32_t const firstWeight = addWeights(rule.weights, rule.numSources);
+    addWeights(&rule.faceWeight, 1);
     _result.vertices.push_back({std::uint32_t(_refinement.GetVertexChildVertex(vert)),
-                                std::uint32_t(mask.numSources), std::uint32_t(numCorners),
+                                std::uint32_t(rule.numSources), std::uint32_t(numCorners),
                                 firstIndex, firstWeight});
 }
 
 // All vertices have sources in the parent alone.
 void Maker::planTruncation() {
-    FarExt::internal::TruncationMask const mask(_refinement, _mask.GetInterpolation());
+    FarExt::internal::TruncationMask const mask(_refinement, _rules.GetInterpolation());
     FarExt::internal::TruncationMask::Sources sources;
     for (Index cVert = 0; cVert < _refinement.child->numVertices; ++cVert) {
         mask.GetSources(cVert, sources);
@@ -397,8 +436,8 @@ void Maker::Fill(std::int32_t *indices) const {
         Index const vert = _refinement.GetVVertexParent(Index(vertex.child));
         std::int32_t *next = indices + vertex.firstIndex;
         if (vertex.numSources > 0) {
-            RefinementMask::VertexMask const mask = _mask.GetVertexMask(vert);
-            next = std::copy_n(mask.sources, mask.numSources, next);
+            VertexRule const rule = _rules.GetVertexRule(vert);
+            next = std::copy_n(rule.sources, rule.numSources, next);
         }
         Index const firstFace = _level.vertFirstFace[std::size_t(vert)];
         for (std::uint32_t i = 0; i < vertex.numCorners; ++i) {
@@ -410,7 +449,7 @@ void Maker::Fill(std::int32_t *indices) const {
 } // namespace
 
 FarExt::CallStatus MakeDeviceRefinements(
-    std::vector<Refinement const *> const &refinements, std::vector<RefinementMask> const &masks,
+    std::vector<Refinement const *> const &refinements, std::vector<RefinementRules> const &rules,
     std::vector<float> &weights, std::vector<DeviceRefinement> &result,
     std::function<FarExt::CallStatus(
         std::size_t numIndices, std::function<void(std::int32_t *)> const &fill)> const &write) {
@@ -418,7 +457,7 @@ FarExt::CallStatus MakeDeviceRefinements(
     std::size_t numIndices = 0;
     result.resize(refinements.size());
     for (std::size_t i = 0; i < refinements.size(); ++i) {
-        makers.emplace_back(masks[i], *refinements[i], i > 0 ? refinements[i - 1] : nullptr,
+        makers.emplace_back(rules[i], *refinements[i], i > 0 ? refinements[i - 1] : nullptr,
                             numIndices, weights, result[i]);
         makers.back().Plan();
         numIndices = makers.back().GetNumIndices();

@@ -4,7 +4,7 @@
 
 #include "far_ext/export.h"
 #include "far_ext/vtr/refinement.h"
-#include "far_ext/vtr/refinementMask.h"
+#include "far_ext/vtr/refinementRules.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -65,7 +65,7 @@ struct DeviceVertex {
 /// Nearly all faces and vertices of a refined level are in runs.  There, indices take 24 bytes for
 /// each face of the parent that is no F-face, and 12 for each of its vertices: together about 5
 /// bytes for a vertex that is made.  All others are listed, in \c corners and \c vertices, and so are
-/// the irregular corners of faces in runs.
+/// the corners of faces in runs that have rows of their own.
 struct DeviceRefinement {
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
 
@@ -87,7 +87,7 @@ struct DeviceRefinement {
 
 /// \brief Prepares all refinements of a mesh, which lead from level 0 on.
 ///
-/// \param masks    by refinement
+/// \param rules    by refinement
 /// \param weights  gets those that the refinements point to
 /// \param result   one for each refinement
 /// \param write    is called once \p result is there, with the number of indices and a function that
@@ -97,7 +97,7 @@ struct DeviceRefinement {
 ///          or weights
 OPENSUBDIVHEX_API FarExt::CallStatus MakeDeviceRefinements(
     std::vector<FarExt::internal::Refinement const *> const &refinements,
-    std::vector<FarExt::internal::RefinementMask> const &masks, std::vector<float> &weights,
+    std::vector<FarExt::internal::RefinementRules> const &rules, std::vector<float> &weights,
     std::vector<DeviceRefinement> &result,
     std::function<FarExt::CallStatus(
         std::size_t numIndices, std::function<void(std::int32_t *)> const &fill)> const &write);

@@ -90,7 +90,7 @@ void selectVertices(PreparedRefinement const &prepared, Marks &isNeeded, Refinem
         forEachPart(run, isVertexNeeded, [&](Index begin, Index end) {
             std::fill(isNeeded.begin() + begin, isNeeded.begin() + end, 1);
             Index const numBefore = parent.vertFirstFace[begin] - parent.vertFirstFace[run.begin];
-            add(VertexRun{begin, end, run.firstCorner + std::size_t(numBefore), run.areIrregular});
+            add(VertexRun{begin, end, run.firstCorner + std::size_t(numBefore)});
         });
     });
     result.weightedVertices =
@@ -122,15 +122,15 @@ Marks findNeededFaces(PreparedRefinement const &prepared, Refinement const &refi
 
 void selectFaces(PreparedRefinement const &prepared, Marks const &isNeeded,
                  RefinementGroups &result) {
-    std::vector<IrregularRun> const &irregular = prepared.irregularFaces;
-    result.plainFaces = selectItems(prepared.plainFaces, [&](FaceRun const &run, auto add) {
+    std::vector<DenseRun> const &dense = prepared.denseRuns;
+    result.faceRuns = selectItems(prepared.faceRuns, [&](FaceRun const &run, auto add) {
         auto const isFaceNeeded = [&](Index face) { return isMarked(isNeeded, face); };
         forEachPart(run, isFaceNeeded, [&](Index begin, Index end) {
             auto const first = std::upper_bound(
-                irregular.begin(), irregular.end(),
+                dense.begin(), dense.end(),
                 prepared.parent->faceFirstCorner[std::size_t(begin)],
-                [](Index corner, IrregularRun const &a) { return corner < a.end; });
-            add(FaceRun{begin, end, Index(first - irregular.begin())});
+                [](Index corner, DenseRun const &a) { return corner < a.end; });
+            add(FaceRun{begin, end, Index(first - dense.begin())});
         });
     });
     result.weightedFaces =

@@ -8,17 +8,19 @@
 
 #include <algorithm>
 #include <numeric>
+#include <unordered_map>
 
 namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
+using FarExt::internal::FaceRule;
 using FarExt::internal::ForEachRun;
-using FarExt::internal::IrregularVertex;
 using FarExt::internal::Level;
 using FarExt::internal::ParallelFor;
 using FarExt::internal::Refinement;
-using FarExt::internal::RefinementMask;
+using FarExt::internal::RefinementRules;
 using FarExt::internal::SortUnique;
+using FarExt::internal::VertexRule;
 
 namespace {
 
@@ -91,62 +93,71 @@ private:
     int _size = 0; // of the faces of the last run
 };
 
-// Lists irregular faces of runs, from first to last.
-class IrregularLister {
+// Lists the faces with dense rules of runs of hexagons, from first to last.
+class DenseFaceLister {
 public:
-    // faces: all of the level, ascending; prepared has the masks
-    IrregularLister(Level const &level, std::vector<RefinementMask::IrregularFace> const &faces,
-                    PreparedRefinement &prepared)
-        : _firstCorners(level.faceFirstCorner.data()), _next(faces.begin()), _end(faces.end()),
-          _masks(prepared.masks.irregularFaces), _runs(prepared.irregularFaces),
-          _types(prepared.irregularTypes) {
-        _types.reserve(faces.size());
+    DenseFaceLister(Level const &level, RefinementRules const &rules, PreparedRefinement &prepared)
+        : _firstCorners(level.faceFirstCorner.data()), _rules(rules),
+          _next(rules.GetDenseFaces().begin()), _maskOfRule(std::size_t(rules.GetNumDenseRules()), -1),
+          _prepared(prepared) {
+        prepared.maskOfDenseFace.reserve(rules.GetDenseFaces().size());
     }
 
     void Add(Index begin, Index end) {
-        while (_next != _end && _next->face < begin) {
+        auto const endFaces = _rules.GetDenseFaces().end();
+        while (_next != endFaces && _next->face < begin) {
             ++_next;
         }
-        std::size_t const numBefore = _runs.size();
-        int lastPattern = 0;
-        for (; _next != _end && _next->face < end; ++_next) {
+        std::vector<DenseRun> &runs = _prepared.denseRuns;
+        std::size_t const numBefore = runs.size();
+        for (; _next != endFaces && _next->face < end; ++_next) {
             Index const corner = _firstCorners[_next->face];
             Index const endCorner = _firstCorners[_next->face + 1];
-            int const pattern = _masks[std::size_t(_next->type)].pattern;
-            bool const goesOn =
-                _runs.size() > numBefore && _runs.back().end == corner && lastPattern == pattern;
-            if (goesOn) {
-                _runs.back().end = endCorner;
+            if (runs.size() > numBefore && runs.back().end == corner) {
+                runs.back().end = endCorner;
             } else {
-                _runs.push_back({corner, endCorner, Index(_types.size())});
+                runs.push_back({corner, endCorner, Index(_prepared.maskOfDenseFace.size())});
             }
-            _types.push_back(_next->type);
-            lastPattern = pattern;
+            _prepared.maskOfDenseFace.push_back(findMask(_next->rule));
         }
     }
 
 private:
+    int findMask(int rule) {
+        int &number = _maskOfRule[std::size_t(rule)];
+        if (number < 0) {
+            number = int(_prepared.denseMasks.size());
+            DenseFaceMask &mask = _prepared.denseMasks.emplace_back();
+            FaceRule const faceRule = _rules.GetDenseRule(rule);
+            for (int corner = 0; corner < DenseFaceMask::kSize; ++corner) {
+                for (int vert = 0; vert < DenseFaceMask::kSize; ++vert) {
+                    mask.weights[vert][corner] = Spread(float(faceRule.GetRow(corner)[vert]));
+                }
+            }
+        }
+        return number;
+    }
+
     Index const *const _firstCorners;
-    std::vector<RefinementMask::IrregularFace>::const_iterator _next;
-    std::vector<RefinementMask::IrregularFace>::const_iterator const _end;
-    std::vector<IrregularFaceMask> const &_masks;
-    std::vector<IrregularRun> &_runs;
-    std::vector<int> &_types;
+    RefinementRules const &_rules;
+    std::vector<RefinementRules::DenseFace>::const_iterator _next;
+    std::vector<int> _maskOfRule;
+    PreparedRefinement &_prepared;
 };
 
-// The runs of all groups, which know their irregular faces.
-Groups<FaceRun> addIrregular(Level const &level, Groups<IndexRun> const &runs,
-                             std::vector<IrregularRun> const &irregular) {
+// The runs of all groups, which know their faces with dense rules.
+Groups<FaceRun> addDense(Level const &level, Groups<IndexRun> const &runs,
+                         std::vector<DenseRun> const &dense) {
     Groups<FaceRun> result;
     result.firsts = runs.firsts;
     result.items.Resize(runs.items.size());
-    std::transform(
-        runs.items.begin(), runs.items.end(), result.items.data(), [&](IndexRun const &run) {
-            auto const first = std::lower_bound(
-                irregular.begin(), irregular.end(), level.faceFirstCorner[std::size_t(run.begin)],
-                [](IrregularRun const &a, Index corner) { return a.begin < corner; });
-            return FaceRun{run.begin, run.end, Index(first - irregular.begin())};
-        });
+    std::transform(runs.items.begin(), runs.items.end(), result.items.data(),
+                   [&](IndexRun const &run) {
+                       auto const first = std::lower_bound(
+                           dense.begin(), dense.end(), level.faceFirstCorner[std::size_t(run.begin)],
+                           [](DenseRun const &a, Index corner) { return a.begin < corner; });
+                       return FaceRun{run.begin, run.end, Index(first - dense.begin())};
+                   });
     return result;
 }
 
@@ -155,15 +166,14 @@ class VertexRunMaker {
 public:
     explicit VertexRunMaker(Level const &level) : _firstFaces(level.vertFirstFace.data()) {}
 
-    void Add(Index begin, Index end, bool areIrregular, Group group) {
+    void Add(Index begin, Index end, Group group) {
         if (begin == end) {
             return;
         }
-        if (!_runs.empty() && _runs.back().end == begin &&
-            _runs.back().areIrregular == areIrregular && _groupOf.back() == group) {
+        if (!_runs.empty() && _runs.back().end == begin && _groupOf.back() == group) {
             _runs.back().end = end;
         } else {
-            _runs.push_back({begin, end, _numCorners, areIrregular});
+            _runs.push_back({begin, end, _numCorners});
             _groupOf.push_back(group);
         }
         _numCorners += std::size_t(_firstFaces[end] - _firstFaces[begin]);
@@ -203,13 +213,13 @@ private:
     Index _numBetween = 0;
 };
 
-// The faces that need weights of their own, or exact access (see PreparedRefinement).
-std::vector<Index> findWeightedFaces(RefinementMask const &mask, Level const &parent,
-                                     PlainMasks const &plainMasks) {
-    std::vector<Index> faces = mask.FindSharpFaces();
-    if (!plainMasks.HasIrregularKernels()) {
-        for (RefinementMask::IrregularFace const &irregular : mask.GetIrregularFaces()) {
-            faces.push_back(irregular.face);
+// The faces that are in no run: those with dense rules that are no hexagons, and those that need exact access
+// (see PreparedRefinement).
+std::vector<Index> findWeightedFaces(RefinementRules const &rules, Level const &parent) {
+    std::vector<Index> faces;
+    for (RefinementRules::DenseFace const &dense : rules.GetDenseFaces()) {
+        if (parent.GetFaceSize(dense.face) != DenseFaceMask::kSize) {
+            faces.push_back(dense.face);
         }
     }
     if (parent.numVertices > 0) {
@@ -223,8 +233,9 @@ std::vector<Index> findWeightedFaces(RefinementMask const &mask, Level const &pa
     return faces;
 }
 
-// Irregular ones with nothing of their own but that are left to runs.
-std::vector<Index> findWeightedVertices(RefinementMask const &mask, Refinement const &refinement) {
+// The vertices that are in no run: those with rules of their own, and those that need exact access.
+std::vector<Index> findWeightedVertices(RefinementRules const &rules,
+                                        Refinement const &refinement) {
     Level const &parent = *refinement.parent;
     if (!refinement.vVertexParents.empty()) {
         // All, since those that are plain keep their index.
@@ -233,7 +244,9 @@ std::vector<Index> findWeightedVertices(RefinementMask const &mask, Refinement c
     }
     std::vector<Index> verts;
     if (refinement.child->numVVertices > 0) {
-        verts = mask.FindWeightedVertices();
+        for (RefinementRules::RuledVertex const &ruled : rules.GetRuledVertices()) {
+            verts.push_back(ruled.vert);
+        }
         verts.push_back(parent.numVertices - 1);
         if (parent.numCorners > 0) {
             verts.push_back(parent.faceVerts[parent.numCorners - 1]);
@@ -243,55 +256,75 @@ std::vector<Index> findWeightedVertices(RefinementMask const &mask, Refinement c
     return verts;
 }
 
-// Groups all faces of the level, and makes the weights of those that need their own.
-void makeFaces(RefinementMask const &mask, Level const &parent,
+// The weights of faces that are in no run, each rule once.
+class FaceWeightLister {
+public:
+    FaceWeightLister(RefinementRules const &rules, std::vector<float> &weights)
+        : _rules(rules), _weights(weights) {}
+
+    // The position of those of a face, row by row.
+    std::size_t Find(Index face) {
+        FaceRule const rule = _rules.GetFaceRule(face);
+        // Of circulant rules, which are told by the size, negative numbers.
+        int const key = rule.IsCirculant() ? -rule.GetSize() : _rules.FindDenseRule(face);
+        auto const [found, isNew] = _positions.try_emplace(key, _weights.size());
+        if (isNew) {
+            for (int corner = 0; corner < rule.GetSize(); ++corner) {
+                double const *const row = rule.GetRow(corner);
+                _weights.insert(_weights.end(), row, row + rule.GetSize());
+            }
+        }
+        return found->second;
+    }
+
+private:
+    RefinementRules const &_rules;
+    std::vector<float> &_weights;
+    std::unordered_map<int, std::size_t> _positions;
+};
+
+// Groups all faces of the level, and lists the weights of those that are in no run.
+void makeFaces(RefinementRules const &rules, Level const &parent,
                std::vector<Group> const &groupOfTile, TileMap const &tileMap,
                PreparedRefinement &prepared) {
-    std::vector<Index> const indices = findWeightedFaces(mask, parent, prepared.masks);
+    std::vector<Index> const indices = findWeightedFaces(rules, parent);
     std::vector<WeightedFace> weighted;
     std::vector<Group> groupOfWeighted;
-    std::vector<double> scratch;
-    auto const addWeighted = [&](Index face, Group group) {
-        Far::ConstIndexArray const verts = parent.GetFaceVertices(face);
-        int const size = verts.size();
-        weighted.push_back({parent.faceFirstCorner[std::size_t(face)], size, verts.begin(),
-                            prepared.faceWeights.size()});
-        groupOfWeighted.push_back(group);
-        for (int corner = 0; corner < size; ++corner) {
-            double const *const weights = mask.GetFaceVertexWeights(face, corner, scratch);
-            prepared.faceWeights.insert(prepared.faceWeights.end(), weights, weights + size);
-        }
-    };
-    FaceRunMaker plain(parent);
-    IrregularLister irregular(parent, mask.GetIrregularFaces(), prepared);
+    FaceWeightLister weights(rules, prepared.faceWeights);
+    FaceRunMaker runs(parent);
+    DenseFaceLister dense(parent, rules, prepared);
     for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
         Group const group = groupOfTile[run.tile];
         ForEachRun(
             run.begin, run.end, indices,
             [&](Index begin, Index end, Index) {
-                plain.Add(begin, end, run.size, group);
-                irregular.Add(begin, end);
+                runs.Add(begin, end, run.size, group);
+                dense.Add(begin, end);
             },
-            [&](Index face, Index) { addWeighted(face, group); });
+            [&](Index face, Index) {
+                Far::ConstIndexArray const verts = parent.GetFaceVertices(face);
+                weighted.push_back({parent.faceFirstCorner[std::size_t(face)], verts.size(),
+                                    verts.begin(), weights.Find(face)});
+                groupOfWeighted.push_back(group);
+            });
     }
     prepared.weightedFaces = makeGroups(weighted, groupOfWeighted, prepared.numTiles);
-    prepared.irregularFaces.push_back({parent.numCorners, parent.numCorners, 0});
-    prepared.plainFaces =
-        addIrregular(parent, plain.Take(prepared.numTiles), prepared.irregularFaces);
+    prepared.denseRuns.push_back({parent.numCorners, parent.numCorners, 0});
+    prepared.faceRuns = addDense(parent, runs.Take(prepared.numTiles), prepared.denseRuns);
 }
 
-WeightedVertex makeWeightedVertex(RefinementMask const &mask, Refinement const &refinement,
+WeightedVertex makeWeightedVertex(RefinementRules const &rules, Refinement const &refinement,
                                   Index vert) {
-    RefinementMask::VertexMask const weights = mask.GetVertexMask(vert);
+    VertexRule const rule = rules.GetVertexRule(vert);
     WeightedVertex vertex = {vert,
                              refinement.GetVertexChildVertex(vert),
-                             float(weights.weights[weights.numSources - 1]),
-                             float(weights.faceWeight),
+                             float(rule.weights[rule.numSources - 1]),
+                             float(rule.faceWeight),
                              {vert, vert},
                              {0, 0}};
-    for (int i = 0; i + 1 < weights.numSources; ++i) {
-        vertex.neighbors[i] = weights.sources[i];
-        vertex.neighborWeights[i] = float(weights.weights[i]);
+    for (int i = 0; i + 1 < rule.numSources; ++i) {
+        vertex.neighbors[i] = rule.sources[i];
+        vertex.neighborWeights[i] = float(rule.weights[i]);
     }
     return vertex;
 }
@@ -299,14 +332,13 @@ WeightedVertex makeWeightedVertex(RefinementMask const &mask, Refinement const &
 // Groups all vertices of a level that make a V-vertex, from first to last.
 class VertexGrouper {
 public:
-    VertexGrouper(RefinementMask const &mask, Refinement const &refinement,
+    VertexGrouper(RefinementRules const &rules, Refinement const &refinement,
                   std::vector<Group> const &groupOfTile, PreparedRefinement &prepared)
-        : _mask(mask), _refinement(refinement), _parent(*refinement.parent),
+        : _rules(rules), _refinement(refinement), _parent(*refinement.parent),
           _groupOfTile(groupOfTile), _prepared(prepared),
           _arePlain(refinement.child->numVVertices == _parent.numVertices),
-          _weightedVerts(findWeightedVertices(mask, refinement)),
-          _nextWeighted(_weightedVerts.begin()), _irregularVerts(mask.GetIrregularVertices()),
-          _nextIrregular(_irregularVerts.begin()), _batches(prepared.numTiles), _runs(_parent) {
+          _weightedVerts(findWeightedVertices(rules, refinement)),
+          _nextWeighted(_weightedVerts.begin()), _batches(prepared.numTiles), _runs(_parent) {
         if (_arePlain && prepared.masks.averagesFaces && _parent.isHexagonal) {
             _levelOfNewVertices = prepared.before;
             if (prepared.before->isHexagonal && prepared.before->numSharpBoundariesA == 0 &&
@@ -413,26 +445,16 @@ private:
         if (!_arePlain) {
             return;
         }
-        while (begin < end) {
-            while (_nextIrregular != _irregularVerts.end() && _nextIrregular->vert < begin) {
-                ++_nextIrregular;
-            }
-            Index const next =
-                _nextIrregular == _irregularVerts.end() ? end : std::min(_nextIrregular->vert, end);
-            bool const areIrregular = next == begin;
-            Index const runEnd = areIrregular ? begin + 1 : next;
-            addToGroups(begin, runEnd, 1, group, [&](Index first, Index last, Group groupOfPart) {
-                _runs.Add(first, last, areIrregular, groupOfPart);
-            });
-            begin = runEnd;
-        }
+        addToGroups(begin, end, 1, group, [&](Index first, Index last, Group groupOfPart) {
+            _runs.Add(first, last, groupOfPart);
+        });
     }
     void add(Index begin, Index end, Group group) {
         for (; _nextWeighted != _weightedVerts.end() && *_nextWeighted < end; ++_nextWeighted) {
             Index const vert = *_nextWeighted;
             addRuns(begin, vert, group);
             addToGroups(vert, vert + 1, 1, group, [&](Index, Index, Group groupOfVertex) {
-                _weighted.push_back(makeWeightedVertex(_mask, _refinement, vert));
+                _weighted.push_back(makeWeightedVertex(_rules, _refinement, vert));
                 _groupOfWeighted.push_back(groupOfVertex);
             });
             begin = vert + 1;
@@ -452,7 +474,7 @@ private:
         });
     }
 
-    RefinementMask const &_mask;
+    RefinementRules const &_rules;
     Refinement const &_refinement;
     Level const &_parent;
     std::vector<Group> const &_groupOfTile;
@@ -462,8 +484,6 @@ private:
     std::vector<Index>::const_iterator _nextWeighted;
     std::vector<WeightedVertex> _weighted;
     std::vector<Group> _groupOfWeighted;
-    OpenSubdiv::Vtr::ConstArray<IrregularVertex> const _irregularVerts;
-    IrregularVertex const *_nextIrregular;
     BatchMaker _batches;
     VertexRunMaker _runs;
     FaceRunMaker _newVertexFaces;
@@ -473,52 +493,7 @@ private:
     Level const *_levelOfOlderVertices = nullptr;
 };
 
-// Whether a kernel for faces of a pattern may be used for a face.  The pattern may have more places: a
-// finite point that weighs nothing adds nothing, but perhaps to the sign of a zero.
-bool isCovered(RefinementMask::IrregularFaceWeights const &face, int pattern) {
-    for (int i = 0; i < IrregularFaceMask::kSize; ++i) {
-        if (IrregularFaceMask::IsPlain(pattern, i)) {
-            if (face.areIrregular[i]) {
-                return false;
-            }
-            continue;
-        }
-        for (int vert = 0; vert < IrregularFaceMask::kSize; ++vert) {
-            if (!IrregularFaceMask::HasWeight(pattern, i, vert) && face.weights[i][vert] != 0) {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
-IrregularFaceMask makeIrregularMask(RefinementMask::IrregularFaceWeights const &type) {
-    IrregularFaceMask mask = {};
-    while (!isCovered(type, mask.pattern)) {
-        ++mask.pattern;
-    }
-    mask.rowPattern = IrregularFaceMask::FindRowPattern(mask.pattern);
-    for (int i = 0; i < IrregularFaceMask::CountRows(mask.pattern); ++i) {
-        int const corner = IrregularFaceMask::FindCornerOfRow(mask.pattern, i);
-        for (int vert = 0; vert < IrregularFaceMask::kSize; ++vert) {
-            mask.weights[vert][i] = Spread(float(type.weights[corner][vert]));
-        }
-    }
-    return mask;
-}
-
-void addIrregularMasks(RefinementMask const &mask, PlainMasks &masks) {
-    for (RefinementMask::IrregularFaceWeights const &type : mask.GetIrregularTypes()) {
-        masks.irregularFaces.push_back(makeIrregularMask(type));
-    }
-    for (auto const &[numFaces, irregular] : mask.GetIrregularMasks()) {
-        FarExt::VertexVertexMask const &vertex = irregular[0].vertex;
-        masks.irregularVertices.resize(std::size_t(numFaces) + 1);
-        masks.irregularVertices.back() = {float(vertex.vertexWeight), float(vertex.faceWeight)};
-    }
-}
-
-PlainMasks makePlainMasks(RefinementMask const &mask, Level const &parent) {
+PlainMasks makePlainMasks(RefinementRules const &rules, Level const &parent) {
     PlainMasks masks;
     // F-vertices of a hexagonal refinement have three faces at most.
     int maxValence = parent.isHexagonal ? 3 : 0;
@@ -527,15 +502,14 @@ PlainMasks makePlainMasks(RefinementMask const &mask, Level const &parent) {
         maxValence = std::max(maxValence, parent.GetNumVertexFaces(vert));
     }
     for (int numFaces = 0; numFaces <= maxValence; ++numFaces) {
-        FarExt::VertexVertexMask const vertexMask = mask.GetPlainVertexMask(numFaces);
+        FarExt::VertexVertexMask const vertexMask = rules.GetPlainVertexMask(numFaces);
         masks.verticesInverse.push_back(float(vertexMask.vertexWeight));
     }
-    masks.averagesFaces = mask.GetPlainVertexMask(1).faceWeight != 0;
+    masks.averagesFaces = rules.GetPlainVertexMask(1).faceWeight != 0;
     for (Index const size : parent.faceSizes) {
         masks.faces.resize(std::size_t(size) + 1);
-        masks.faces[std::size_t(size)] = MakePlainFaceMask(mask.GetPlainFaceWeights(size), size);
+        masks.faces[std::size_t(size)] = MakePlainFaceMask(rules.GetCirculantRule(size));
     }
-    addIrregularMasks(mask, masks);
     return masks;
 }
 
@@ -569,7 +543,9 @@ void listVertices(Refinement const &refinement, FarExt::Interpolation interpolat
 
 } // namespace
 
-PlainFaceMask MakePlainFaceMask(double const *weights, int size) {
+PlainFaceMask MakePlainFaceMask(FaceRule const &circulant) {
+    int const size = circulant.GetSize();
+    double const *const weights = circulant.GetRow(0);
     PlainFaceMask mask;
     bool const hasOpposite = size == kMaxUnrolledSize;
     bool isOrdinary = weights[1] == weights[size - 1];
@@ -598,18 +574,18 @@ int GetNumTiles(Level const &lastParent) {
 
 Index GetNumFFaces(Level const &level) { return level.isHexagonal ? level.numFFaces : 0; }
 
-void PrepareRefinement(RefinementMask const &mask,
+void PrepareRefinement(RefinementRules const &rules,
                        std::vector<Refinement const *> const &refinements, TileMap const &tileMap,
                        PreparedRefinement &prepared) {
     Refinement const &refinement = *refinements.back();
     if (refinement.isTruncation) {
-        listVertices(refinement, mask.GetInterpolation(), prepared);
+        listVertices(refinement, rules.GetInterpolation(), prepared);
         return;
     }
     Level const &parent = *refinement.parent;
     std::size_t const numBefore = refinements.size() - 1;
     prepared.numVVertices = refinement.child->numVVertices;
-    prepared.masks = makePlainMasks(mask, parent);
+    prepared.masks = makePlainMasks(rules, parent);
     prepared.parent = &parent;
     prepared.before = numBefore > 0 ? refinements[numBefore - 1]->parent : nullptr;
     prepared.beforeThat = numBefore > 1 ? refinements[numBefore - 2]->parent : nullptr;
@@ -619,9 +595,9 @@ void PrepareRefinement(RefinementMask const &mask,
     for (int tile = 0; tile < tileMap.GetNumTiles(); ++tile) {
         groupOfTile[std::size_t(tile)] = tile * prepared.numTiles / tileMap.GetNumTiles();
     }
-    makeFaces(mask, parent, groupOfTile, tileMap, prepared);
+    makeFaces(rules, parent, groupOfTile, tileMap, prepared);
 
-    VertexGrouper vertices(mask, refinement, groupOfTile, prepared);
+    VertexGrouper vertices(rules, refinement, groupOfTile, prepared);
     vertices.AddFirstVertices(tileMap.GetFirstVertexRuns());
     std::vector<std::vector<TileMap::FaceRun>> const &fVertexRuns = tileMap.GetFVertexRuns();
     for (std::size_t i = 0; i < fVertexRuns.size(); ++i) {

@@ -4,7 +4,7 @@
 
 #include "tileMap.h"
 
-#include "far_ext/vtr/refinementMask.h"
+#include "far_ext/vtr/refinementRules.h"
 #include "osd_ext/simd/quad.h"
 
 #include <cstddef>
@@ -29,120 +29,26 @@ struct PlainFaceMask {
     std::vector<float> weights;
 };
 
-/// The mask of faces of \p size sides whose corner 0 has \p weights.
-PlainFaceMask MakePlainFaceMask(double const *weights, int size);
+/// The mask of faces with a rule.
+PlainFaceMask MakePlainFaceMask(FarExt::internal::FaceRule const &circulant);
 
-/// \brief The weights of an irregular face, a hexagon: a row for each corner.  Only Smooth has such
-/// faces.
-struct IrregularFaceMask {
+/// \brief The weights of a hexagon with a dense rule.
+struct DenseFaceMask {
     static constexpr int kSize = 6;
     static constexpr int kRowStride = 8; ///< quads, so that vectors of them are aligned
 
-    /// By vertex of the face, those of the rows that are not plain, one behind the other, each weight four
-    /// times; 0 behind them.
+    /// By vertex of the face, those of all rows, one behind the other, each weight four times.
     alignas(64) Quad weights[kSize][kRowStride];
-    /// Which of kPatterns has a place for each of the weights that are not 0.
-    int pattern;
-    int rowPattern; ///< see FindRowPattern
-
-    /// Patterns say which weights the row of a corner may have: bit j is the place of the vertex j places
-    /// behind the corner; or that the row is that of plain faces.
-    static constexpr unsigned kPlain = 0x40;
-    static constexpr unsigned kAll = 0b111111;
-    /// At a vertex, behind and before one.
-    static constexpr unsigned kAt = 0b110111;
-    static constexpr unsigned kBehind = 0b110011;
-    static constexpr unsigned kBefore = 0b100111;
-    /// Along a quad and behind it, but for the second level.
-    static constexpr unsigned kAlong = 0b011011;
-    static constexpr unsigned kAlongBack = 0b101101;
-    /// At a vertex among quads, along a quad and behind it, in the second level.
-    static constexpr unsigned kSecondAt = 0b101011;
-    static constexpr unsigned kSecondAlong = 0b111011;
-    static constexpr unsigned kSecondAlongBack = 0b101111;
-    static constexpr int kNumPatterns = 11;
-    /// The first ones fit meshes of quads and of triangles; with those behind other faces are multiplied by
-    /// some zeros, and with the last one by all there are.
-    static constexpr unsigned kPatterns[kNumPatterns][kSize] = {
-        {kAt, kBehind, kPlain, kPlain, kPlain, kBefore},
-        {kAt, kBehind, kBefore, kAt, kBehind, kBefore},
-        {kAt, kAlong, kAlongBack, kAt, kAlong, kAlongBack},
-        {kSecondAt, kAt, kPlain, kPlain, kPlain, kAt},
-        {kAt, kSecondAlong, kSecondAlongBack, kAt, kPlain, kPlain},
-        {kAt, kPlain, kPlain, kAt, kSecondAlong, kSecondAlongBack},
-        {kPlain, kAlong, kAlongBack, kPlain, kPlain, kPlain},
-        {kPlain, kPlain, kPlain, kPlain, kAlong, kAlongBack},
-        {kAt, kSecondAlong, kSecondAlongBack, kAt, kSecondAlong, kSecondAlongBack},
-        {kAt, kAll, kPlain, kPlain, kPlain, kAll},
-        {kAll, kAll, kAll, kAll, kAll, kAll}};
-
-    static constexpr bool IsPlain(int pattern, int corner) {
-        return kPatterns[pattern][corner] == kPlain;
-    }
-    /// Whether the row of a corner may have a weight for vertex number \p vert of the face.
-    static constexpr bool HasWeight(int pattern, int corner, int vert) {
-        return (kPatterns[pattern][corner] >> ((vert - corner + kSize) % kSize) & 1) != 0;
-    }
-    static constexpr bool HaveSamePlainRows(int a, int b) {
-        bool result = true;
-        for (int corner = 0; corner < kSize; ++corner) {
-            result &= IsPlain(a, corner) == IsPlain(b, corner);
-        }
-        return result;
-    }
-    /// The first pattern with the same plain rows.
-    static constexpr int FindRowPattern(int pattern) {
-        int result = 0;
-        while (!HaveSamePlainRows(result, pattern)) {
-            ++result;
-        }
-        return result;
-    }
-    /// @name The rows that are not plain
-    /// @{
-    static constexpr int CountRows(int pattern) {
-        int count = 0;
-        for (int corner = 0; corner < kSize; ++corner) {
-            count += IsPlain(pattern, corner) ? 0 : 1;
-        }
-        return count;
-    }
-    /// The corner of number \p i of them.
-    static constexpr int FindCornerOfRow(int pattern, int i) {
-        int corner = 0;
-        for (int numBefore = 0; numBefore < i || IsPlain(pattern, corner); ++corner) {
-            numBefore += IsPlain(pattern, corner) ? 0 : 1;
-        }
-        return corner;
-    }
-    /// @}
 };
 
-/// \brief V' = vertex V + faces (sum of P), by number of faces.
-struct IrregularVertexWeights {
-    float vertex;
-    float faces;
-};
-
-/// \brief The masks that the plain faces and vertices of a level share, and the irregular ones.
+/// \brief The masks that the plain faces and vertices of a level share.
 struct PlainMasks {
     std::vector<PlainFaceMask> faces;   ///< by size; sizes that do not occur are not filled
     std::vector<float> verticesInverse; ///< by number of faces: V' = inverse (V + sum of P)
     bool averagesFaces = true;          ///< else V' = V
-
-    /// Whether the kernels of irregular faces fit the plain hexagons beside them: those without an opposite
-    /// weight.  Else irregular faces are WeightedFaces.
-    bool HasIrregularKernels() const {
-        constexpr std::size_t kSize = IrregularFaceMask::kSize;
-        return faces.size() <= kSize ||
-               (faces[kSize].weights.empty() && faces[kSize].opposite == 0);
-    }
-
-    std::vector<IrregularFaceMask> irregularFaces;         ///< by type
-    std::vector<IrregularVertexWeights> irregularVertices; ///< by number of faces
 };
 
-/// \brief A face with weights of its own: a row for each corner.
+/// \brief A face that is in no run: a row of weights for each corner.
 struct WeightedFace {
     Far::Index corner; ///< the first
     int size;
@@ -150,20 +56,19 @@ struct WeightedFace {
     std::size_t firstWeight; ///< position in faceWeights
 };
 
-/// \brief Irregular faces, hexagons of one pattern that follow one another: their corners [begin, end).
-/// It may reach beyond the run of plain faces that it is in, where not all faces are refined.
-struct IrregularRun {
+/// \brief Hexagons with dense rules that follow one another: their corners [begin, end).  It may reach
+/// beyond the run of faces that it is in, where not all faces are refined.
+struct DenseRun {
     Far::Index begin;
     Far::Index end;
-    Far::Index firstType; ///< position in irregularTypes
+    Far::Index firstFace; ///< position in maskOfDenseFace
 };
 
-/// \brief Plain faces [begin, end), of which some are irregular.
+/// \brief Faces [begin, end) of one size: plain ones and, if they are hexagons, those with dense rules.
 struct FaceRun {
     Far::Index begin;
     Far::Index end;
-    Far::Index
-        firstIrregular; ///< position in irregularFaces of the first, or of one behind the run
+    Far::Index firstDense; ///< position in denseRuns of the first, or of one behind the run
 };
 
 /// \brief A vertex that a truncation makes, with sources of its own.
@@ -201,12 +106,11 @@ struct IndexRun {
     Far::Index end;
 };
 
-/// \brief A run of vertices, all plain or all irregular, and where their corners begin in vertCorners.
+/// \brief A run of plain vertices, and where their corners begin in vertCorners.
 struct VertexRun {
     Far::Index begin;
     Far::Index end;
     std::size_t firstCorner;
-    bool areIrregular;
 };
 
 /// \brief What a refinement does, in groups that are done side by side: those of tiles, and behind
@@ -216,7 +120,7 @@ struct VertexRun {
 /// Vertices that are F-vertices of all corners of a face of the level before it, and of the level
 /// before that one, come in runs of such faces.
 struct RefinementGroups {
-    Groups<FaceRun> plainFaces;
+    Groups<FaceRun> faceRuns;
     Groups<WeightedFace> weightedFaces;
 
     /// Of a truncation, all vertices that it makes, in tiles of some each.
@@ -252,10 +156,11 @@ struct PreparedRefinement : RefinementGroups {
     FarExt::internal::Level const *beforeThat = nullptr;
     int numTiles = 0;
 
-    std::vector<float> faceWeights; ///< of weighted faces
+    std::vector<float> faceWeights; ///< of weighted faces, those of a rule once
+    std::vector<DenseFaceMask> denseMasks;
     /// In the runs of plain faces, ascending; behind all, one that is in no run.
-    std::vector<IrregularRun> irregularFaces;
-    std::vector<int> irregularTypes; ///< of each of their faces, in PlainMasks::irregularFaces
+    std::vector<DenseRun> denseRuns;
+    std::vector<int> maskOfDenseFace; ///< of each of their faces, in denseMasks
 
     // Of listed vertices.
     std::vector<Far::Index> listedSources;
@@ -279,7 +184,7 @@ int GetNumTiles(FarExt::internal::Level const &lastParent);
 /// \brief Prepares the last of \p refinements, which lead to it from level 0.
 ///
 /// \param tileMap  of its parent
-void PrepareRefinement(FarExt::internal::RefinementMask const &mask,
+void PrepareRefinement(FarExt::internal::RefinementRules const &rules,
                        std::vector<FarExt::internal::Refinement const *> const &refinements,
                        TileMap const &tileMap, PreparedRefinement &prepared);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "refinementKernel.h"
 
-#include "irregularFaceKernel.h"
+#include "denseFaceKernel.h"
 #include "plainFaceKernel.h"
 
 #include "far_ext/indexing.h"
@@ -75,21 +75,21 @@ void refineWeightedFace(float const *weights, std::ptrdiff_t rowStride,
     }
 }
 
-// Hexagons of a run with irregular ones.
+// Hexagons of a run, some of which have dense rules.
 template <class ACCESS>
-void refineIrregularFaces(RefinementTask const &task, PlainFaceMask const &faceMask,
-                          FaceRun const &run, Index begin, Index end) {
+void refineDenseFaces(RefinementTask const &task, PlainFaceMask const &faceMask, FaceRun const &run,
+                      Index begin, Index end) {
     PreparedRefinement const &refinement = *task.refinement;
-    IrregularFaceKernels const &kernels = GetIrregularFaceKernels();
-    IrregularFaceKernels::Kernel const *const byWidth =
+    DenseFaceKernels const &kernels = GetDenseFaceKernels();
+    DenseFaceKernels::Kernel const *const byWidth =
         ACCESS::kIsPacked ? kernels.packed : kernels.strided;
-    byWidth[ACCESS::kWidth - 1]({&faceMask, refinement.masks.irregularFaces.data(),
-                                 refinement.irregularTypes.data(),
-                                 refinement.irregularFaces.data() + run.firstIrregular, begin, end,
+    byWidth[ACCESS::kWidth - 1]({&faceMask, refinement.denseMasks.data(),
+                                 refinement.maskOfDenseFace.data(),
+                                 refinement.denseRuns.data() + run.firstDense, begin, end,
                                  refinement.parent->faceVerts.data(), task.src, task.FVertices()});
 }
 
-// Faces of 3 to 6 sides, plain or irregular.
+// Faces of 3 to 6 sides.
 template <class ACCESS, int SIZE, bool HAS_OPPOSITE>
 void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMask,
                          FaceRun const &run) {
@@ -97,6 +97,11 @@ void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMa
     Level const &parent = *refinement.parent;
     Index const begin = parent.faceFirstCorner[std::size_t(run.begin)];
     Index const end = parent.faceFirstCorner[std::size_t(run.end)];
+    if constexpr (SIZE == DenseFaceMask::kSize) {
+        if (refinement.denseRuns[std::size_t(run.firstDense)].begin < end) {
+            return refineDenseFaces<ACCESS>(task, faceMask, run, begin, end);
+        }
+    }
     PlainFaceQuads const mask(faceMask);
     Elements<float const> const src = task.src;
     Elements<float> const dst = task.FVertices();
@@ -108,12 +113,6 @@ void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMa
                 mask, src, ConsecutiveVertices{indexing.GetCornerChildVertex(corner)}, dst, corner);
         }
         return;
-    }
-    // Else there are none: see PlainMasks::HasIrregularKernels().
-    if constexpr (SIZE == IrregularFaceMask::kSize && !HAS_OPPOSITE) {
-        if (refinement.irregularFaces[std::size_t(run.firstIrregular)].begin < end) {
-            return refineIrregularFaces<ACCESS>(task, faceMask, run, begin, end);
-        }
     }
     refineUnrolledFaces<ACCESS, SIZE, HAS_OPPOSITE>(mask, src, parent.faceVerts.data(), dst, begin,
                                                     end);
@@ -276,24 +275,10 @@ void refineVertexRun(RefinementTask const &task, VertexRun const &run) {
     }
     Elements<float const> const fVertices = asConst(task.FVertices());
     float const *const inverses = task.refinement->masks.verticesInverse.data();
-    IrregularVertexWeights const *const irregulars =
-        task.refinement->masks.irregularVertices.data();
     Index const *const firstFaces = task.refinement->parent->vertFirstFace.data();
     Index const *corners = task.refinement->vertCorners.data() + run.firstCorner;
     for (Index vert = run.begin; vert < run.end; ++vert) {
         int const numFaces = firstFaces[vert + 1] - firstFaces[vert];
-        if (run.areIrregular) {
-            IrregularVertexWeights const weights = irregulars[numFaces];
-            auto sum = ACCESS::LoadExactly(fVertices, corners[0]);
-            for (int i = 1; i < numFaces; ++i) {
-                sum = sum + ACCESS::LoadExactly(fVertices, corners[i]);
-            }
-            ACCESS::StoreExactly(task.dst, vert,
-                                 Spread(weights.vertex) * ACCESS::Load(task.src, vert) +
-                                     Spread(weights.faces) * sum);
-            corners += numFaces;
-            continue;
-        }
         auto sum = ACCESS::Load(task.src, vert);
         if (numFaces == kFVertexFaces) {
             sum = sum + ACCESS::LoadExactly(fVertices, corners[0]);
@@ -509,7 +494,7 @@ void RefineElements(std::vector<RefinementTask> const &tasks, int length) {
         PreparedRefinement const &refinement = *task.refinement;
         forEachGroup(0, refinement.numTiles, [&](int tile) {
             runKernel<ListedVertexKernel>(task, length, task.groups->listedVertices, tile);
-            runKernel<FaceKernel>(task, length, task.groups->plainFaces, tile);
+            runKernel<FaceKernel>(task, length, task.groups->faceRuns, tile);
             runKernel<FaceKernel>(task, length, task.groups->weightedFaces, tile);
             refineVertices(task, length, tile);
         });

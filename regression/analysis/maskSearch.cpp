@@ -29,7 +29,7 @@ using FarExt::HexSchemeOptions;
 using FarExt::IrregularVertexMask;
 using FarExt::internal::IrregularCorner;
 using FarExt::internal::Level;
-using FarExt::internal::RefinementMask;
+using FarExt::internal::RefinementRules;
 using Position = PositionReal<double>;
 
 constexpr int kQuad = 4;
@@ -319,7 +319,7 @@ private:
     Curvature _curvature;
     double _weight;
     std::unique_ptr<FarExt::TopologyRefiner> _refiner;
-    std::vector<RefinementMask> _masks; // by parent
+    std::vector<RefinementRules> _masks; // by parent
     std::vector<Position> _base;
     PolygonMesh _mesh;
     std::vector<VertexGroups> _chosen;

@@ -3,7 +3,7 @@
 #define OPENSUBDIVHEX_REGRESSION_ANALYSIS_MASKED_STEP_H
 
 #include "far_ext/vtr/refinement.h"
-#include "far_ext/vtr/refinementMask.h"
+#include "far_ext/vtr/refinementRules.h"
 
 #include <vector>
 
@@ -18,7 +18,7 @@ namespace OpenSubdivHex::Regression {
 /// \param dst         by vertex of the child
 template <typename GET_WEIGHTS, typename VALUE>
 void InterpolateMasked(FarExt::internal::Refinement const &refinement,
-                       FarExt::internal::RefinementMask const &mask, GET_WEIGHTS const &getWeights,
+                       FarExt::internal::RefinementRules const &mask, GET_WEIGHTS const &getWeights,
                        std::vector<VALUE> const &src, std::vector<VALUE> &dst) {
     auto const &parent = *refinement.parent;
     for (int face = 0; face < parent.numFaces; ++face) {
@@ -34,7 +34,7 @@ void InterpolateMasked(FarExt::internal::Refinement const &refinement,
         }
     }
     for (int vert = 0; vert < parent.numVertices; ++vert) {
-        auto const weights = mask.GetVertexMask(vert);
+        auto const weights = mask.GetVertexRule(vert);
         VALUE &value = dst[refinement.GetVertexChildVertex(vert)];
         value.Clear();
         for (int i = 0; i < weights.numSources; ++i) {

@@ -104,7 +104,7 @@ public:
     void Interpolate(int depth, std::vector<Position> const &src,
                      std::vector<Position> &dst) const {
         auto const &parent = _levels.levels[std::size_t(depth) - 1];
-        FarExt::internal::RefinementMask const mask(parent, {FarExt::FaceMask::Smooth},
+        FarExt::internal::RefinementRules const mask(parent, {FarExt::FaceMask::Smooth},
                                                     FarExt::Interpolation::Vertex);
         std::vector<double> scratch;
         InterpolateMasked(

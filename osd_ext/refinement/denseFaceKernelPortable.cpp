@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "irregularFaceKernelTemplate.h"
+#include "denseFaceKernelTemplate.h"
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-IrregularFaceKernels const kIrregularFaceKernelsPortable = kKernelsOfRows<OneRow>;
+DenseFaceKernels const kDenseFaceKernelsPortable = kKernelsOfRows<OneRow>;
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -3,7 +3,7 @@
 // Compiled for AVX-512 F and VL; called only where the machine has them.
 #ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
 
-#include "irregularFaceKernelTemplate.h"
+#include "denseFaceKernelTemplate.h"
 
 #include "osd_ext/simd/avx512.h"
 
@@ -56,7 +56,7 @@ struct FourRows {
 
 } // namespace
 
-IrregularFaceKernels const kIrregularFaceKernelsAvx512 = kKernelsOfRows<FourRows>;
+DenseFaceKernels const kDenseFaceKernelsAvx512 = kKernelsOfRows<FourRows>;
 
 } // namespace OpenSubdivHex::OsdExt::internal
 

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "irregularFaceKernel.h"
+#include "denseFaceKernel.h"
 
 #include "osd_ext/simdLevel.h"
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-IrregularFaceKernels const &GetIrregularFaceKernels() {
+DenseFaceKernels const &GetDenseFaceKernels() {
     switch (GetSimdLevel()) {
 #ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
     case SimdLevel::Avx512:
-        return kIrregularFaceKernelsAvx512;
+        return kDenseFaceKernelsAvx512;
     case SimdLevel::Avx2:
-        return kIrregularFaceKernelsAvx2;
+        return kDenseFaceKernelsAvx2;
 #endif
     default:
-        return kIrregularFaceKernelsPortable;
+        return kDenseFaceKernelsPortable;
     }
 }
 

@@ -3,7 +3,7 @@
 // Compiled for AVX2; called only where the machine has it.
 #ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
 
-#include "irregularFaceKernelTemplate.h"
+#include "denseFaceKernelTemplate.h"
 
 #include <immintrin.h>
 
@@ -43,7 +43,7 @@ struct TwoRows {
 
 } // namespace
 
-IrregularFaceKernels const kIrregularFaceKernelsAvx2 = kKernelsOfRows<TwoRows>;
+DenseFaceKernels const kDenseFaceKernelsAvx2 = kKernelsOfRows<TwoRows>;
 
 } // namespace OpenSubdivHex::OsdExt::internal
 

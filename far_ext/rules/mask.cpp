@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mask.h"
+#include "far_ext/mask.h"
 
-#include "vtr/pi.h"
+#include "far_ext/vtr/pi.h"
 
 #include <algorithm>
 #include <cmath>

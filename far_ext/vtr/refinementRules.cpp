@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinementRules.h"
+
+#include "indexSet.h"
+
+#include <cstring>
+#include <unordered_map>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+using Far::Index;
+
+namespace {
+
+constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
+constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
+constexpr int kQuad = 4;
+
+int getBits(float value) {
+    int bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+// What the rule of a face depends on, as numbers.
+using Key = std::vector<int>;
+struct KeyHash {
+    std::size_t operator()(Key const &key) const {
+        constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
+        std::uint64_t hash = 0;
+        for (int const number : key) {
+            hash = (hash ^ std::uint32_t(number)) * kFactor;
+            hash ^= hash >> 32;
+        }
+        return std::size_t(hash);
+    }
+};
+
+} // namespace
+
+void RefinementRules::makeCirculantRules(HexSchemeOptions schemeOptions, StepType step) {
+    bool const hasQuadMasks = step == StepType::Hexagonal &&
+                              schemeOptions.faceMask == FaceMask::Smooth &&
+                              _interpolation == Interpolation::Vertex;
+    _circulants.resize(_level.faceSizes.empty() ? 0 : std::size_t(_level.faceSizes.back()) + 1);
+    for (Index const size : _level.faceSizes) {
+        std::size_t const first = _weights.size();
+        _circulants[std::size_t(size)] = first;
+        _weights.resize(first + 2 * std::size_t(size));
+        double *const mask = _weights.data() + first;
+        if (step == StepType::TriHex) {
+            ComputeTriHexMask(size, mask);
+        } else if (hasQuadMasks && size == kQuad) {
+            std::copy_n(ComputeQuadMask(_level.numHexagonalSteps).inQuad, kQuad, mask);
+        } else {
+            ComputeFaceVertexMask(schemeOptions.faceMask, _interpolation, size, mask);
+        }
+        std::copy_n(mask, size, mask + size);
+    }
+}
+
+// Sharp vertices have their rules; in an irregular vertex, the smooth one has the share that these leave.
+void RefinementRules::makeRuledVertices(bool hasIrregular) {
+    auto nextIrregular = _level.irregularVerts.begin();
+    auto const endIrregular = hasIrregular ? _level.irregularVerts.end() : nextIrregular;
+    std::unordered_map<int, VertexVertexMask> irregularMasks; // by number of faces
+    auto const addIrregular = [&](IrregularVertex const &irregular, double smoothShare,
+                                  VertexRule &rule) {
+        int const numFaces = _level.GetNumVertexFaces(irregular.vert);
+        auto const [found, isNew] = irregularMasks.try_emplace(numFaces);
+        if (isNew) {
+            found->second = ComputeIrregularVertexMask(numFaces, _level.numHexagonalSteps).vertex;
+        }
+        VertexVertexMask const plain = GetPlainVertexMask(numFaces);
+        double const share = irregular.weight * smoothShare;
+        rule.faceWeight += share * (found->second.faceWeight - plain.faceWeight);
+        rule.weights[rule.numSources - 1] +=
+            share * (found->second.vertexWeight - plain.vertexWeight);
+    };
+    auto const addIrregularBefore = [&](Index vert) {
+        for (; nextIrregular != endIrregular && nextIrregular->vert < vert; ++nextIrregular) {
+            if (nextIrregular->weight > 0) {
+                Index const index = nextIrregular->vert;
+                VertexRule rule = plainRule(index, _level.GetNumVertexFaces(index));
+                addIrregular(*nextIrregular, 1, rule);
+                _ruledVertices.push_back({index, rule});
+            }
+        }
+    };
+    for (SharpVertex const &sharp : _level.sharpVerts) {
+        addIrregularBefore(sharp.vert);
+        VertexRule rule = {sharp.faceWeight, 0, {}, {}};
+        auto const add = [&rule](Index source, double weight) {
+            rule.sources[rule.numSources] = source;
+            rule.weights[rule.numSources++] = weight;
+        };
+        for (int i = 0; i < 2; ++i) {
+            if (sharp.neighborWeights[i] > 0) {
+                add(sharp.neighbors[i], sharp.neighborWeights[i]);
+            }
+        }
+        add(sharp.vert, sharp.vertexWeight);
+        if (nextIrregular != endIrregular && nextIrregular->vert == sharp.vert) {
+            addIrregular(*nextIrregular++, sharp.smoothShare, rule);
+        }
+        _ruledVertices.push_back({sharp.vert, rule});
+    }
+    addIrregularBefore(_level.numVertices);
+}
+
+// Finds the faces that are not circulant, and makes a rule for each kind of them.
+class RefinementRules::DenseRuleMaker {
+public:
+    DenseRuleMaker(RefinementRules &rules, FaceMask faceMask)
+        : _rules(rules), _level(rules._level), _faceMask(faceMask),
+          _isVertex(rules._interpolation == Interpolation::Vertex),
+          _quadMask(ComputeQuadMask(_level.numHexagonalSteps)) {
+        ComputeHalfFaceVertexMask(faceMask, rules._interpolation, &_halfFaceWeights[0][0]);
+    }
+
+    void Make() {
+        std::vector<Index> const faces = findFaces();
+        if (faces.empty()) {
+            return;
+        }
+        _rules._ruleOfFace.assign(std::size_t(_level.numFaces), kCirculant);
+        _rules._denseFaces.reserve(faces.size());
+        SectorCorner const *nextSector = _level.sectorCorners.data();
+        SectorCorner const *const endSectors = nextSector + _level.sectorCorners.size();
+        IrregularCorner const *nextIrregular = _level.irregularCorners.data();
+        IrregularCorner const *const endIrregular = nextIrregular + _level.irregularCorners.size();
+        std::unordered_map<Key, int, KeyHash> ruleOfKey;
+        Key before; // of the last face: those that follow one another are mostly alike
+        int rule = kCirculant;
+        for (Index const face : faces) {
+            Index const end = _level.faceFirstCorner[face + 1];
+            Tags tags = {face, nextSector, 0, nextIrregular, 0};
+            for (; nextSector != endSectors && nextSector->corner < end; ++nextSector) {
+                ++tags.numSectors;
+            }
+            for (; nextIrregular != endIrregular && nextIrregular->corner < end; ++nextIrregular) {
+                ++tags.numIrregular;
+            }
+            makeKey(tags);
+            if (_key != before) {
+                auto const [found, isNew] =
+                    ruleOfKey.try_emplace(_key, _rules.GetNumDenseRules());
+                rule = found->second;
+                if (isNew) {
+                    addRule(tags);
+                }
+                before = _key;
+            }
+            _rules._ruleOfFace[std::size_t(face)] = rule;
+            _rules._denseFaces.push_back({face, rule});
+        }
+    }
+
+private:
+    // What a face has besides its size.
+    struct Tags {
+        Index face;
+        SectorCorner const *sectors;
+        int numSectors;
+        IrregularCorner const *irregular;
+        int numIrregular;
+    };
+
+    std::vector<Index> findFaces() const;
+    void makeKey(Tags const &tags);
+    void addRule(Tags const &tags);
+    void addRow(std::vector<double> const &row);
+    void addIrregularWeights(IrregularCorner const &irregular, int corner,
+                             std::vector<double> &row) const;
+
+    RefinementRules &_rules;
+    Level const &_level;
+    FaceMask _faceMask;
+    bool _isVertex;
+    QuadMask _quadMask;
+    double _halfFaceWeights[kTrapezoid][kTrapezoid];
+    Key _key;
+};
+
+// Ascending.
+std::vector<Index> RefinementRules::DenseRuleMaker::findFaces() const {
+    std::vector<Index> faces(_level.halfFaces.begin(), _level.halfFaces.end());
+    if (!_isVertex) {
+        return faces;
+    }
+    for (std::size_t face = 0; face < _level.diagonalSharpness.size(); ++face) {
+        if (Sdc::Crease::IsSharp(_level.diagonalSharpness[face])) {
+            faces.push_back(Index(face));
+        }
+    }
+    for (SectorCorner const &sector : _level.sectorCorners) {
+        faces.push_back(_level.FindFaceOfCorner(sector.corner));
+    }
+    SortUnique(faces);
+    auto const numSharp = std::ptrdiff_t(faces.size());
+    Index end = 0; // of the last face with irregular corners
+    for (IrregularCorner const &irregular : _level.irregularCorners) {
+        if (irregular.corner >= end) {
+            faces.push_back(_level.FindFaceOfCorner(irregular.corner));
+            end = _level.faceFirstCorner[faces.back() + 1];
+        }
+    }
+    std::inplace_merge(faces.begin(), faces.begin() + numSharp, faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+}
+
+void RefinementRules::DenseRuleMaker::makeKey(Tags const &tags) {
+    bool const isHalf = _level.IsHalfFace(tags.face);
+    _key.assign({isHalf});
+    if (isHalf) {
+        return;
+    }
+    Index const first = _level.faceFirstCorner[tags.face];
+    _key.insert(_key.end(),
+                {_level.GetFaceSize(tags.face),
+                 getBits(std::min(1.0f, _level.GetDiagonalSharpness(tags.face))), tags.numSectors});
+    for (int i = 0; i < tags.numSectors; ++i) {
+        SectorCorner const &sector = tags.sectors[i];
+        _key.insert(_key.end(),
+                    {sector.corner - first, getBits(sector.sectorSize), getBits(sector.weight)});
+    }
+    for (int i = 0; i < tags.numIrregular; ++i) {
+        IrregularCorner const &irregular = tags.irregular[i];
+        _key.insert(_key.end(), {irregular.corner - first, irregular.kind, irregular.numFaces,
+                                 int(irregular.facesAround), getBits(irregular.weight)});
+    }
+}
+
+void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
+    _rules._rows.push_back(_rules._weights.size());
+    _rules._weights.insert(_rules._weights.end(), row.begin(), row.end());
+}
+
+// Corners of a face with nothing of their own have the rows of its circulant rule.
+void RefinementRules::DenseRuleMaker::addRule(Tags const &tags) {
+    int const size = _level.GetFaceSize(tags.face);
+    _rules._denseRules.push_back({size, _rules._rows.size()});
+    if (_level.IsHalfFace(tags.face)) {
+        for (auto const &ofCorner : _halfFaceWeights) {
+            addRow({ofCorner, ofCorner + kTrapezoid});
+        }
+        return;
+    }
+    double const sharp = std::min(1.0f, _level.GetDiagonalSharpness(tags.face));
+    SectorCorner const *sector = tags.sectors;
+    SectorCorner const *const endSector = sector + tags.numSectors;
+    IrregularCorner const *irregular = tags.irregular;
+    IrregularCorner const *const endIrregular = irregular + tags.numIrregular;
+    for (int i = 0; i < size; ++i) {
+        Index const corner = _level.faceFirstCorner[tags.face] + i;
+        double towards = 0;
+        for (; sector != endSector && sector->corner == corner; ++sector) {
+            towards += sector->weight * (1 - ComputeSectorShrink(_faceMask, sector->sectorSize));
+        }
+        bool const isIrregular = irregular != endIrregular && irregular->corner == corner;
+        std::size_t const circulantRow = _rules._circulants[std::size_t(size)] + std::size_t(size - i);
+        if (sharp == 0 && towards == 0 && !isIrregular) {
+            _rules._rows.push_back(circulantRow);
+            continue;
+        }
+        auto const circulant = _rules._weights.begin() + std::ptrdiff_t(circulantRow);
+        std::vector<double> row(circulant, circulant + size);
+        for (double &weight : row) {
+            weight *= 1 - sharp - towards;
+        }
+        row[std::size_t(i)] += towards;
+        if (sharp > 0) {
+            // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
+            // V and W are the ends of the diagonal, Q and P the two vertices between them.  At the ends
+            // both halves have the same weights.
+            auto const &half = kHexagonHalves[i < kDiagonalEnd ? 1 : 0];
+            int const place = int(std::find(half, half + kTrapezoid, i) - half);
+            for (int j = 0; j < kTrapezoid; ++j) {
+                row[std::size_t(half[j])] += sharp * _halfFaceWeights[place][j];
+            }
+        }
+        if (isIrregular) {
+            addIrregularWeights(*irregular++, i, row);
+        }
+        addRow(row);
+    }
+}
+
+// The corner is number \p corner of its face, whose weights these are so far.
+void RefinementRules::DenseRuleMaker::addIrregularWeights(IrregularCorner const &irregular,
+                                                          int corner,
+                                                          std::vector<double> &row) const {
+    using Kind = IrregularCorner::Kind;
+    Kind const kind = irregular.kind;
+    double const *mask = nullptr;
+    IrregularVertexMask ofVertex;
+    if (IrregularCorner::IsAtQuad(kind)) {
+        bool const isAtEdge = kind == Kind::kAlongQuad || kind == Kind::kBehindQuad;
+        mask = _quadMask.beside[isAtEdge ? 0 : 1];
+    } else {
+        ofVertex = ComputeIrregularVertexMask(irregular.numFaces, _level.numHexagonalSteps,
+                                              irregular.facesAround);
+        mask = kind == Kind::kAtVertex ? ofVertex.atVertex : ofVertex.atNeighbor;
+    }
+    bool const isBackwards = kind == Kind::kBeforeVertex || kind == Kind::kBehindQuad ||
+                             kind == Kind::kOneBeforeQuad;
+    for (int j = 0; j < kHexagon; ++j) {
+        double &weight = row[std::size_t((corner + (isBackwards ? kHexagon - j : j)) % kHexagon)];
+        weight += irregular.weight * (mask[j] - weight);
+    }
+}
+
+RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOptions,
+                                 Interpolation interpolation)
+    : _level(parent), _interpolation(interpolation) {
+    for (int numFaces = 0; numFaces < kNumKept; ++numFaces) {
+        _plainVertexMasks[numFaces] = ComputeVertexVertexMask(interpolation, numFaces);
+    }
+    StepType const step = schemeOptions.GetStepOfLevel(parent.depth + 1);
+    bool const isHexagonal = step == StepType::Hexagonal;
+    makeCirculantRules(schemeOptions, step);
+    if (interpolation == Interpolation::Vertex) {
+        makeRuledVertices(isHexagonal);
+    }
+    if (isHexagonal && parent.HasFeatures()) {
+        DenseRuleMaker(*this, schemeOptions.faceMask).Make();
+    }
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

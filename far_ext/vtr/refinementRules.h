@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_REFINEMENT_RULES_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_REFINEMENT_RULES_H
+
+#include "level.h"
+
+#include "far_ext/hexSchemeOptions.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief How the F-vertices of a face are made of its vertices: a row of weights for each corner.
+///
+/// Faces with equal rows share a rule.  The rows of a *circulant* rule are one mask, turned; those of a *dense*
+/// rule are any.
+class FaceRule {
+public:
+    FaceRule(int size, double const *weights, std::size_t const *rows)
+        : _size(size), _weights(weights), _rows(rows) {}
+
+    int GetSize() const { return _size; }
+    bool IsCirculant() const { return !_rows; }
+    /// The weights of the vertices of the face, in their order, for the F-vertex of \p corner.
+    double const *GetRow(int corner) const {
+        // A mask stands twice in a row, so that every rotation of it is contiguous.
+        return _weights + (_rows ? _rows[corner] : std::size_t(_size - corner));
+    }
+
+private:
+    int _size;
+    double const *_weights;   // of a circulant rule, from corner 0 on
+    std::size_t const *_rows; // of a dense rule: where each row begins in the weights of all rules
+};
+
+/// \brief How a V-vertex is made: V' = the sum of weights[i] sources[i], i < numSources, and faceWeight
+/// times the sum of the F-vertices around it.
+///
+/// The last source is its parent.  Neighbors come first, so that it does not matter for the sum which of
+/// them is left and right.
+struct VertexRule {
+    double faceWeight;
+    int numSources;
+    Far::Index sources[3];
+    double weights[3];
+};
+
+/// \brief The rules of one refinement, as data: with which weights the faces and vertices of a level make
+/// F-vertices and V-vertices.  RefinementRows adds the components that are made.
+///
+/// Tags of the level and the options of the scheme are turned into weights here, and nowhere else.  Faces
+/// have the circulant rule of their size but for those of GetDenseFaces(), and vertices the rule of one
+/// source of their number of faces but for those of GetRuledVertices().
+class OPENSUBDIVHEX_API RefinementRules {
+public:
+    using Index = Far::Index;
+
+    /// A face with a dense rule, and the number of that.
+    struct DenseFace {
+        Index face;
+        int rule;
+    };
+    /// A vertex with a rule of its own.
+    struct RuledVertex {
+        Index vert;
+        VertexRule rule;
+    };
+
+    /// Makes the rules of the refinement of \p parent, to which they refer.
+    RefinementRules(Level const &parent, HexSchemeOptions schemeOptions,
+                    Interpolation interpolation);
+
+    Interpolation GetInterpolation() const { return _interpolation; }
+
+    /// @name Faces
+    /// @{
+    FaceRule GetFaceRule(Index face) const {
+        int const rule = FindDenseRule(face);
+        return rule == kCirculant ? GetCirculantRule(_level.GetFaceSize(face)) : GetDenseRule(rule);
+    }
+    /// The number of the dense rule of a face; kCirculant where it has none.
+    int FindDenseRule(Index face) const {
+        return _ruleOfFace.empty() ? kCirculant : _ruleOfFace[std::size_t(face)];
+    }
+    static constexpr int kCirculant = -1;
+    /// The rule of faces of a size that the level has.
+    FaceRule GetCirculantRule(int size) const {
+        return {size, _weights.data() + _circulants[std::size_t(size)], nullptr};
+    }
+    /// All faces with dense rules, ascending.
+    std::vector<DenseFace> const &GetDenseFaces() const { return _denseFaces; }
+    int GetNumDenseRules() const { return int(_denseRules.size()); }
+    FaceRule GetDenseRule(int rule) const {
+        auto const [size, firstRow] = _denseRules[std::size_t(rule)];
+        return {size, _weights.data(), _rows.data() + firstRow};
+    }
+    /// @}
+
+    /// @name Vertices
+    /// @{
+    VertexRule GetVertexRule(Index vert) const {
+        RuledVertex const *const ruled = findRuled(vert);
+        return ruled ? ruled->rule : plainRule(vert, _level.GetNumVertexFaces(vert));
+    }
+    /// The rule of vertices with \p numFaces faces that have none of their own.
+    VertexVertexMask GetPlainVertexMask(int numFaces) const {
+        return numFaces < kNumKept ? _plainVertexMasks[numFaces]
+                                   : ComputeVertexVertexMask(_interpolation, numFaces);
+    }
+    /// Ascending.
+    std::vector<RuledVertex> const &GetRuledVertices() const { return _ruledVertices; }
+    /// @}
+
+private:
+    static constexpr int kNumKept = 8;
+    struct DenseRule {
+        int size;
+        std::size_t firstRow;
+    };
+    class DenseRuleMaker;
+
+    VertexRule plainRule(Index vert, int numFaces) const {
+        VertexVertexMask const mask = GetPlainVertexMask(numFaces);
+        return {mask.faceWeight, 1, {vert}, {mask.vertexWeight}};
+    }
+    RuledVertex const *findRuled(Index vert) const {
+        if (_ruledVertices.empty() || vert > _ruledVertices.back().vert) {
+            return nullptr;
+        }
+        auto const found = std::lower_bound(
+            _ruledVertices.begin(), _ruledVertices.end(), vert,
+            [](RuledVertex const &ruled, Index index) { return ruled.vert < index; });
+        return found->vert == vert ? &*found : nullptr;
+    }
+    void makeCirculantRules(HexSchemeOptions schemeOptions, StepType step);
+    void makeRuledVertices(bool hasIrregular);
+
+    Level const &_level;
+    Interpolation _interpolation;
+    VertexVertexMask _plainVertexMasks[kNumKept]; ///< by number of faces
+    std::vector<RuledVertex> _ruledVertices;
+
+    std::vector<double> _weights;         ///< of all rows
+    std::vector<std::size_t> _circulants; ///< by face size, position in _weights
+    std::vector<DenseRule> _denseRules;
+    std::vector<std::size_t> _rows; ///< of dense rules, positions in _weights
+    std::vector<DenseFace> _denseFaces;
+    std::vector<int> _ruleOfFace; ///< empty where all are circulant
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

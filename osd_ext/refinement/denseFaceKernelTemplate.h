@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Hexagons of which some have dense rules.  It is compiled once per SIMD level, by the rules of
+// limitKernelTemplate.h; products are rounded at all levels, so that results are the same.
+#ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_DENSE_FACE_KERNEL_TEMPLATE_H
+#define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_DENSE_FACE_KERNEL_TEMPLATE_H
+
+#include "denseFaceKernel.h"
+#include "plainFaceKernel.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace OpenSubdivHex::OsdExt::internal {
+namespace {
+
+/// \brief The portable SIMD level, whose vectors hold a quad of one row.
+///
+/// Those of other levels hold quads of some rows, which are summed up side by side; they have the same
+/// functions, for COUNT rows, kNumRows at most.
+struct OneRow {
+    static constexpr int kNumRows = 1;
+
+    template <int COUNT>
+    static OPENSUBDIVHEX_INLINE Quad Load(Quad const *quads) {
+        return *quads;
+    }
+    template <int COUNT>
+    static OPENSUBDIVHEX_INLINE Quad Spread(Quad const &quad) {
+        return quad;
+    }
+    template <int COUNT>
+    static OPENSUBDIVHEX_INLINE void Store(Quad *quads, Quad const &vector) {
+        *quads = vector;
+    }
+};
+
+// The sums of the rows from FIRST on, in the order of the vertices, as those of weighted faces.
+template <class ROWS, int FIRST = 0>
+OPENSUBDIVHEX_INLINE void sumDenseRows(DenseFaceMask const &mask, Quad const *v, Quad *points) {
+    constexpr int kRest = DenseFaceMask::kSize - FIRST;
+    if constexpr (kRest > 0) {
+        constexpr int kCount = kRest < ROWS::kNumRows ? kRest : ROWS::kNumRows;
+        auto const weigh = [&](int vert) {
+            return ROWS::template Load<kCount>(mask.weights[vert] + FIRST) *
+                   ROWS::template Spread<kCount>(v[vert]);
+        };
+        auto sum = weigh(0);
+        for (int vert = 1; vert < DenseFaceMask::kSize; ++vert) {
+            sum = sum + weigh(vert);
+        }
+        ROWS::template Store<kCount>(points + FIRST, sum);
+        sumDenseRows<ROWS, FIRST + kCount>(mask, v, points);
+    }
+}
+template <class ROWS>
+OPENSUBDIVHEX_INLINE void sumDenseRows(DenseFaceMask const &mask, QuadPair const *v,
+                                       QuadPair *points) {
+    constexpr int kSize = DenseFaceMask::kSize;
+    constexpr Quad QuadPair::*kHalves[] = {&QuadPair::first, &QuadPair::second};
+    for (Quad QuadPair::*const half : kHalves) {
+        Quad halves[kSize];
+        Quad sums[kSize];
+        for (int i = 0; i < kSize; ++i) {
+            halves[i] = v[i].*half;
+        }
+        sumDenseRows<ROWS>(mask, halves, sums);
+        for (int i = 0; i < kSize; ++i) {
+            points[i].*half = sums[i];
+        }
+    }
+}
+
+template <class ACCESS, class ROWS>
+OPENSUBDIVHEX_INLINE void refineDenseFace(DenseFaceMask const &mask, Elements<float const> const &src,
+                                          Elements<float> const &dst, Far::Index const *verts,
+                                          std::ptrdiff_t corner) {
+    constexpr int kSize = DenseFaceMask::kSize;
+    using Value = decltype(ACCESS::Load(src, 0));
+    Value v[kSize];
+    for (int i = 0; i < kSize; ++i) {
+        v[i] = ACCESS::Load(src, verts[i]);
+    }
+    Value points[kSize];
+    sumDenseRows<ROWS>(mask, v, points);
+    for (int i = 0; i + 1 < kSize; ++i) {
+        ACCESS::Store(dst, corner + i, points[i]);
+    }
+    ACCESS::StoreExactly(dst, corner + kSize - 1, points[kSize - 1]);
+}
+
+template <class ACCESS, class ROWS, bool HAS_OPPOSITE>
+void refineDenseFaces(DenseFaceTask const &task) {
+    constexpr int kSize = DenseFaceMask::kSize;
+    PlainFaceQuads const plain(*task.plainMask);
+    Elements<float const> const src = task.src;
+    Elements<float> const dst = task.dst;
+    Far::Index const *const verts = task.verts;
+    std::ptrdiff_t corner = task.begin;
+    for (DenseRun const *run = task.dense; corner != task.end; ++run) {
+        std::ptrdiff_t const begin = std::clamp<std::ptrdiff_t>(run->begin, corner, task.end);
+        refineUnrolledFaces<ACCESS, kSize, HAS_OPPOSITE>(plain, src, verts, dst, corner, begin);
+        corner = begin;
+        int const *mask = task.maskOfFace + run->firstFace + (corner - run->begin) / kSize;
+        std::ptrdiff_t const end = std::min(run->end, task.end);
+        for (; corner < end; corner += kSize) {
+            prefetchAhead(verts + corner);
+            prefetchAhead(ACCESS::At(dst, corner));
+            refineDenseFace<ACCESS, ROWS>(task.masks[*mask++], src, dst, verts + corner, corner);
+        }
+    }
+}
+
+template <class ACCESS, class ROWS>
+void refineFaces(DenseFaceTask const &task) {
+    if (task.plainMask->opposite != 0) {
+        refineDenseFaces<ACCESS, ROWS, true>(task);
+    } else {
+        refineDenseFaces<ACCESS, ROWS, false>(task);
+    }
+}
+
+template <class ROWS>
+constexpr DenseFaceKernels kKernelsOfRows = {
+    {refineFaces<Access<1, true>, ROWS>, refineFaces<Access<2, true>, ROWS>,
+     refineFaces<Access<3, true>, ROWS>, refineFaces<Access<4, true>, ROWS>},
+    {refineFaces<Access<1, false>, ROWS>, refineFaces<Access<2, false>, ROWS>,
+     refineFaces<Access<3, false>, ROWS>, refineFaces<Access<4, false>, ROWS>,
+     refineFaces<Access<5, false>, ROWS>, refineFaces<Access<6, false>, ROWS>,
+     refineFaces<Access<7, false>, ROWS>, refineFaces<Access<8, false>, ROWS>}};
+
+} // namespace
+} // namespace OpenSubdivHex::OsdExt::internal
+
+#endif
