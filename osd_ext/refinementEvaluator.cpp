@@ -162,7 +162,7 @@ RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options 
         }
         refinements.push_back(&mesh.refinements[level]);
         FarExt::internal::RefinementRules const mask(mesh.levels[level],
-                                                    refiner.GetHexSchemeOptions(), interpolation);
+                                                     refiner.GetHexSchemeOptions(), interpolation);
         internal::PrepareRefinement(mask, refinements, tileMap, _refinements[level]);
     }
     for (int level = 0; level <= maxLevel; ++level) {

@@ -313,9 +313,10 @@ CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
     return result;
 }
 
-void UseNextMasks(LimitPatch const &patch, Sdc::Options sdcOptions,
-                  HexSchemeOptions const &schemeOptions, Interpolation interpolation,
-                  std::function<void(Refinement const &, RefinementRules const &)> const &function) {
+void UseNextMasks(
+    LimitPatch const &patch, Sdc::Options sdcOptions, HexSchemeOptions const &schemeOptions,
+    Interpolation interpolation,
+    std::function<void(Refinement const &, RefinementRules const &)> const &function) {
     ExecutorScope const alone(nullptr, 1);
     RefinedPatch const refined(patch, sdcOptions, schemeOptions.faceMask);
     function(refined.refinement, RefinementRules(refined.child, schemeOptions, interpolation));

@@ -6,7 +6,7 @@ namespace OpenSubdivHex::FarExt::internal {
 using Far::Index;
 
 std::vector<RefinementRules> MakeStepMasks(MeshLevels const &mesh,
-                                          HexSchemeOptions const &schemeOptions, int last) {
+                                           HexSchemeOptions const &schemeOptions, int last) {
     std::vector<RefinementRules> masks;
     masks.reserve(std::size_t(last));
     for (int level = 0; level < last; ++level) {

@@ -14,7 +14,7 @@ using PatchWeights = std::vector<LimitWeights>;
 
 /// The masks of the steps from each level before \p last to the next.
 std::vector<RefinementRules> MakeStepMasks(MeshLevels const &mesh,
-                                          HexSchemeOptions const &schemeOptions, int last);
+                                           HexSchemeOptions const &schemeOptions, int last);
 
 /// \brief The rows of vertices of later levels in terms of some vertices of a level, each found once from
 /// those of the level before.

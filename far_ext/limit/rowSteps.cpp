@@ -37,7 +37,7 @@ SteppedRow StepRowBack(MeshLevels const &mesh, HexSchemeOptions const &schemeOpt
     }
     for (int child = cLevel; child > level; --child) {
         RefinementRules const ofStep(mesh.levels[std::size_t(child) - 1], schemeOptions,
-                                    Interpolation::Vertex);
+                                     Interpolation::Vertex);
         row = stepBack(row, mesh.refinements[std::size_t(child) - 1], ofStep);
     }
     return row;

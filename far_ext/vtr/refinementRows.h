@@ -75,8 +75,7 @@ public:
     /// Calls function(vert, weight) for the sources of a V-vertex, of whose parent \p rule is, beside
     /// the F-vertices around it.
     template <typename FUNCTION>
-    void ForEachSource(Index vVertex, VertexRule const &rule,
-                       FUNCTION function) const {
+    void ForEachSource(Index vVertex, VertexRule const &rule, FUNCTION function) const {
         if (_truncation) {
             TruncationMask::Sources sources;
             getTruncationSources(vVertex, sources);

@@ -16,24 +16,67 @@ constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
 constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
 constexpr int kQuad = 4;
 
-int getBits(float value) {
-    int bits = 0;
+std::uint32_t getBits(float value) {
+    std::uint32_t bits = 0;
     std::memcpy(&bits, &value, sizeof bits);
     return bits;
 }
 
-// What the rule of a face depends on, as numbers.
-using Key = std::vector<int>;
-struct KeyHash {
-    std::size_t operator()(Key const &key) const {
-        constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
-        std::uint64_t hash = 0;
-        for (int const number : key) {
-            hash = (hash ^ std::uint32_t(number)) * kFactor;
-            hash ^= hash >> 32;
+// What the rule of a face depends on.  Equal ones have equal rules.
+struct FaceTags {
+    Index firstCorner;
+    int size;
+    bool isHalf;    // then nothing else matters
+    float diagonal; // share of the rule of a sharp diagonal
+    SectorCorner const *sectors;
+    SectorCorner const *endSectors;
+    IrregularCorner const *irregular;
+    IrregularCorner const *endIrregular;
+
+    bool operator==(FaceTags const &other) const {
+        if (isHalf || other.isHalf) {
+            return isHalf && other.isHalf;
         }
-        return std::size_t(hash);
+        auto const isSameCorner = [&](auto const &x, auto const &y) {
+            return x.corner - firstCorner == y.corner - other.firstCorner && x.weight == y.weight;
+        };
+        return size == other.size && diagonal == other.diagonal &&
+               std::equal(sectors, endSectors, other.sectors, other.endSectors,
+                          [&](SectorCorner const &x, SectorCorner const &y) {
+                              return isSameCorner(x, y) && x.sectorSize == y.sectorSize;
+                          }) &&
+               std::equal(irregular, endIrregular, other.irregular, other.endIrregular,
+                          [&](IrregularCorner const &x, IrregularCorner const &y) {
+                              return isSameCorner(x, y) && x.kind == y.kind &&
+                                     x.numFaces == y.numFaces && x.facesAround == y.facesAround;
+                          });
     }
+
+    struct Hash {
+        std::size_t operator()(FaceTags const &tags) const {
+            if (tags.isHalf) {
+                return 0;
+            }
+            constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
+            std::uint64_t hash = 0;
+            auto const add = [&hash](std::uint32_t high, std::uint32_t low) {
+                hash = (hash ^ (std::uint64_t(high) << 32 | low)) * kFactor;
+                hash ^= hash >> 32;
+            };
+            add(std::uint32_t(tags.size), getBits(tags.diagonal));
+            for (SectorCorner const *sector = tags.sectors; sector != tags.endSectors; ++sector) {
+                add(getBits(sector->weight), getBits(sector->sectorSize));
+                add(std::uint32_t(sector->corner - tags.firstCorner), 0);
+            }
+            for (IrregularCorner const *corner = tags.irregular; corner != tags.endIrregular;
+                 ++corner) {
+                add(getBits(corner->weight), std::uint32_t(corner->numFaces));
+                add(std::uint32_t(corner->corner - tags.firstCorner),
+                    std::uint32_t(corner->kind) << 16 | std::uint32_t(corner->facesAround));
+            }
+            return std::size_t(hash);
+        }
+    };
 };
 
 } // namespace
@@ -125,50 +168,31 @@ public:
         }
         _rules._ruleOfFace.assign(std::size_t(_level.numFaces), kCirculant);
         _rules._denseFaces.reserve(faces.size());
-        SectorCorner const *nextSector = _level.sectorCorners.data();
-        SectorCorner const *const endSectors = nextSector + _level.sectorCorners.size();
-        IrregularCorner const *nextIrregular = _level.irregularCorners.data();
-        IrregularCorner const *const endIrregular = nextIrregular + _level.irregularCorners.size();
-        std::unordered_map<Key, int, KeyHash> ruleOfKey;
-        Key before; // of the last face: those that follow one another are mostly alike
+        std::unordered_map<FaceTags, int, FaceTags::Hash> ruleOfTags;
+        FaceTags tags = {};
+        tags.endSectors = _level.sectorCorners.data();
+        tags.endIrregular = _level.irregularCorners.data();
+        FaceTags before = {}; // of the last face: those that follow one another are mostly alike
         int rule = kCirculant;
         for (Index const face : faces) {
-            Index const end = _level.faceFirstCorner[face + 1];
-            Tags tags = {face, nextSector, 0, nextIrregular, 0};
-            for (; nextSector != endSectors && nextSector->corner < end; ++nextSector) {
-                ++tags.numSectors;
-            }
-            for (; nextIrregular != endIrregular && nextIrregular->corner < end; ++nextIrregular) {
-                ++tags.numIrregular;
-            }
-            makeKey(tags);
-            if (_key != before) {
-                auto const [found, isNew] =
-                    ruleOfKey.try_emplace(_key, _rules.GetNumDenseRules());
+            readTags(face, tags);
+            if (!(tags == before)) {
+                auto const [found, isNew] = ruleOfTags.try_emplace(tags, _rules.GetNumDenseRules());
                 rule = found->second;
                 if (isNew) {
                     addRule(tags);
                 }
-                before = _key;
             }
+            before = tags;
             _rules._ruleOfFace[std::size_t(face)] = rule;
             _rules._denseFaces.push_back({face, rule});
         }
     }
 
 private:
-    // What a face has besides its size.
-    struct Tags {
-        Index face;
-        SectorCorner const *sectors;
-        int numSectors;
-        IrregularCorner const *irregular;
-        int numIrregular;
-    };
-
     std::vector<Index> findFaces() const;
-    void makeKey(Tags const &tags);
-    void addRule(Tags const &tags);
+    void readTags(Index face, FaceTags &tags) const;
+    void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
     void addIrregularWeights(IrregularCorner const &irregular, int corner,
                              std::vector<double> &row) const;
@@ -179,7 +203,6 @@ private:
     bool _isVertex;
     QuadMask _quadMask;
     double _halfFaceWeights[kTrapezoid][kTrapezoid];
-    Key _key;
 };
 
 // Ascending.
@@ -210,26 +233,21 @@ std::vector<Index> RefinementRules::DenseRuleMaker::findFaces() const {
     return faces;
 }
 
-void RefinementRules::DenseRuleMaker::makeKey(Tags const &tags) {
-    bool const isHalf = _level.IsHalfFace(tags.face);
-    _key.assign({isHalf});
-    if (isHalf) {
-        return;
-    }
-    Index const first = _level.faceFirstCorner[tags.face];
-    _key.insert(_key.end(),
-                {_level.GetFaceSize(tags.face),
-                 getBits(std::min(1.0f, _level.GetDiagonalSharpness(tags.face))), tags.numSectors});
-    for (int i = 0; i < tags.numSectors; ++i) {
-        SectorCorner const &sector = tags.sectors[i];
-        _key.insert(_key.end(),
-                    {sector.corner - first, getBits(sector.sectorSize), getBits(sector.weight)});
-    }
-    for (int i = 0; i < tags.numIrregular; ++i) {
-        IrregularCorner const &irregular = tags.irregular[i];
-        _key.insert(_key.end(), {irregular.corner - first, irregular.kind, irregular.numFaces,
-                                 int(irregular.facesAround), getBits(irregular.weight)});
-    }
+// Corners are read on from those of the faces before.
+void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) const {
+    tags.firstCorner = _level.faceFirstCorner[face];
+    tags.size = _level.GetFaceSize(face);
+    tags.isHalf = _level.IsHalfFace(face);
+    tags.diagonal = std::min(1.0f, _level.GetDiagonalSharpness(face));
+    auto const readOn = [end = tags.firstCorner + tags.size](auto const &all, auto const *&begin,
+                                                             auto const *&behind) {
+        begin = behind;
+        while (behind != all.data() + all.size() && behind->corner < end) {
+            ++behind;
+        }
+    };
+    readOn(_level.sectorCorners, tags.sectors, tags.endSectors);
+    readOn(_level.irregularCorners, tags.irregular, tags.endIrregular);
 }
 
 void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
@@ -238,28 +256,27 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
-void RefinementRules::DenseRuleMaker::addRule(Tags const &tags) {
-    int const size = _level.GetFaceSize(tags.face);
+void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
+    int const size = tags.size;
     _rules._denseRules.push_back({size, _rules._rows.size()});
-    if (_level.IsHalfFace(tags.face)) {
+    if (tags.isHalf) {
         for (auto const &ofCorner : _halfFaceWeights) {
             addRow({ofCorner, ofCorner + kTrapezoid});
         }
         return;
     }
-    double const sharp = std::min(1.0f, _level.GetDiagonalSharpness(tags.face));
+    double const sharp = tags.diagonal;
     SectorCorner const *sector = tags.sectors;
-    SectorCorner const *const endSector = sector + tags.numSectors;
     IrregularCorner const *irregular = tags.irregular;
-    IrregularCorner const *const endIrregular = irregular + tags.numIrregular;
     for (int i = 0; i < size; ++i) {
-        Index const corner = _level.faceFirstCorner[tags.face] + i;
+        Index const corner = tags.firstCorner + i;
         double towards = 0;
-        for (; sector != endSector && sector->corner == corner; ++sector) {
+        for (; sector != tags.endSectors && sector->corner == corner; ++sector) {
             towards += sector->weight * (1 - ComputeSectorShrink(_faceMask, sector->sectorSize));
         }
-        bool const isIrregular = irregular != endIrregular && irregular->corner == corner;
-        std::size_t const circulantRow = _rules._circulants[std::size_t(size)] + std::size_t(size - i);
+        bool const isIrregular = irregular != tags.endIrregular && irregular->corner == corner;
+        std::size_t const circulantRow =
+            _rules._circulants[std::size_t(size)] + std::size_t(size - i);
         if (sharp == 0 && towards == 0 && !isIrregular) {
             _rules._rows.push_back(circulantRow);
             continue;
@@ -303,8 +320,8 @@ void RefinementRules::DenseRuleMaker::addIrregularWeights(IrregularCorner const 
                                               irregular.facesAround);
         mask = kind == Kind::kAtVertex ? ofVertex.atVertex : ofVertex.atNeighbor;
     }
-    bool const isBackwards = kind == Kind::kBeforeVertex || kind == Kind::kBehindQuad ||
-                             kind == Kind::kOneBeforeQuad;
+    bool const isBackwards =
+        kind == Kind::kBeforeVertex || kind == Kind::kBehindQuad || kind == Kind::kOneBeforeQuad;
     for (int j = 0; j < kHexagon; ++j) {
         double &weight = row[std::size_t((corner + (isBackwards ? kHexagon - j : j)) % kHexagon)];
         weight += irregular.weight * (mask[j] - weight);

@@ -105,7 +105,8 @@ std::vector<Index> findSharpVertices(Level const &level) {
 
 SharpVertex smoothMask(Index vert, int numFaces) {
     VertexVertexMask const mask = ComputeVertexVertexMask(Interpolation::Vertex, numFaces);
-    return {vert, Crease::RULE_SMOOTH, mask.vertexWeight, mask.faceWeight, {vert, vert}, {0, 0}, 1, 0};
+    return {vert, Crease::RULE_SMOOTH, mask.vertexWeight, mask.faceWeight, {vert, vert}, {0, 0}, 1,
+            0};
 }
 
 SharpVertex cornerMask(Index vert) {
@@ -133,8 +134,14 @@ SharpVertex creaseMask(Level const &level, Index vert, SharpEdges const &edges, 
                            !isNonManifold(level, vert) && !isOneFaceBetween(level, vert, neighbors);
     auto const [left, right] =
         ComputeCreaseMask(edges.isLong[pair[0]], edges.isLong[pair[1]], isBounded);
-    return {vert, Crease::RULE_CREASE,          1 - left - right, 0, {neighbors[0], neighbors[1]},
-            {left, right}, 0, 1};
+    return {vert,
+            Crease::RULE_CREASE,
+            1 - left - right,
+            0,
+            {neighbors[0], neighbors[1]},
+            {left, right},
+            0,
+            1};
 }
 
 SharpVertex maskOfRule(Level const &level, Crease const &creasing, Crease::Rule rule, Index vert,

@@ -153,8 +153,9 @@ void TruncationMask::addEdgeVertex(std::size_t end, Sources &sources) const {
         mask.besideWeight =
             shares.smooth * mask.besideWeight + (1 - shares.smooth) * ofSector.besideWeight;
         mask.aroundWeight *= shares.smooth;
-        double const ofLine = addAlongLine(
-            vert, sharpVertex, shares, (1 - sharp) * ofSector.aroundWeight * kTruncateAround, sources);
+        double const ofLine =
+            addAlongLine(vert, sharpVertex, shares,
+                         (1 - sharp) * ofSector.aroundWeight * kTruncateAround, sources);
         mask.vertexWeight = 1 - 2 * mask.besideWeight - mask.aroundWeight - ofLine / (1 - sharp);
     }
     mask.vertexWeight = sharp * (1 - kTruncateAlongEdge) + (1 - sharp) * mask.vertexWeight;

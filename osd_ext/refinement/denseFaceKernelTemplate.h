@@ -72,9 +72,9 @@ OPENSUBDIVHEX_INLINE void sumDenseRows(DenseFaceMask const &mask, QuadPair const
 }
 
 template <class ACCESS, class ROWS>
-OPENSUBDIVHEX_INLINE void refineDenseFace(DenseFaceMask const &mask, Elements<float const> const &src,
-                                          Elements<float> const &dst, Far::Index const *verts,
-                                          std::ptrdiff_t corner) {
+OPENSUBDIVHEX_INLINE void
+refineDenseFace(DenseFaceMask const &mask, Elements<float const> const &src,
+                Elements<float> const &dst, Far::Index const *verts, std::ptrdiff_t corner) {
     constexpr int kSize = DenseFaceMask::kSize;
     using Value = decltype(ACCESS::Load(src, 0));
     Value v[kSize];

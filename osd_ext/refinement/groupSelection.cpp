@@ -127,8 +127,7 @@ void selectFaces(PreparedRefinement const &prepared, Marks const &isNeeded,
         auto const isFaceNeeded = [&](Index face) { return isMarked(isNeeded, face); };
         forEachPart(run, isFaceNeeded, [&](Index begin, Index end) {
             auto const first = std::upper_bound(
-                dense.begin(), dense.end(),
-                prepared.parent->faceFirstCorner[std::size_t(begin)],
+                dense.begin(), dense.end(), prepared.parent->faceFirstCorner[std::size_t(begin)],
                 [](Index corner, DenseRun const &a) { return corner < a.end; });
             add(FaceRun{begin, end, Index(first - dense.begin())});
         });

@@ -98,8 +98,8 @@ class DenseFaceLister {
 public:
     DenseFaceLister(Level const &level, RefinementRules const &rules, PreparedRefinement &prepared)
         : _firstCorners(level.faceFirstCorner.data()), _rules(rules),
-          _next(rules.GetDenseFaces().begin()), _maskOfRule(std::size_t(rules.GetNumDenseRules()), -1),
-          _prepared(prepared) {
+          _next(rules.GetDenseFaces().begin()),
+          _maskOfRule(std::size_t(rules.GetNumDenseRules()), -1), _prepared(prepared) {
         prepared.maskOfDenseFace.reserve(rules.GetDenseFaces().size());
     }
 
@@ -151,13 +151,13 @@ Groups<FaceRun> addDense(Level const &level, Groups<IndexRun> const &runs,
     Groups<FaceRun> result;
     result.firsts = runs.firsts;
     result.items.Resize(runs.items.size());
-    std::transform(runs.items.begin(), runs.items.end(), result.items.data(),
-                   [&](IndexRun const &run) {
-                       auto const first = std::lower_bound(
-                           dense.begin(), dense.end(), level.faceFirstCorner[std::size_t(run.begin)],
-                           [](DenseRun const &a, Index corner) { return a.begin < corner; });
-                       return FaceRun{run.begin, run.end, Index(first - dense.begin())};
-                   });
+    std::transform(
+        runs.items.begin(), runs.items.end(), result.items.data(), [&](IndexRun const &run) {
+            auto const first = std::lower_bound(
+                dense.begin(), dense.end(), level.faceFirstCorner[std::size_t(run.begin)],
+                [](DenseRun const &a, Index corner) { return a.begin < corner; });
+            return FaceRun{run.begin, run.end, Index(first - dense.begin())};
+        });
     return result;
 }
 
@@ -313,9 +313,8 @@ void makeFaces(RefinementRules const &rules, Level const &parent,
     prepared.faceRuns = addDense(parent, runs.Take(prepared.numTiles), prepared.denseRuns);
 }
 
-WeightedVertex makeWeightedVertex(RefinementRules const &rules, Refinement const &refinement,
+WeightedVertex makeWeightedVertex(VertexRule const &rule, Refinement const &refinement,
                                   Index vert) {
-    VertexRule const rule = rules.GetVertexRule(vert);
     WeightedVertex vertex = {vert,
                              refinement.GetVertexChildVertex(vert),
                              float(rule.weights[rule.numSources - 1]),
@@ -338,7 +337,8 @@ public:
           _groupOfTile(groupOfTile), _prepared(prepared),
           _arePlain(refinement.child->numVVertices == _parent.numVertices),
           _weightedVerts(findWeightedVertices(rules, refinement)),
-          _nextWeighted(_weightedVerts.begin()), _batches(prepared.numTiles), _runs(_parent) {
+          _nextWeighted(_weightedVerts.begin()), _nextRuled(rules.GetRuledVertices().begin()),
+          _batches(prepared.numTiles), _runs(_parent) {
         if (_arePlain && prepared.masks.averagesFaces && _parent.isHexagonal) {
             _levelOfNewVertices = prepared.before;
             if (prepared.before->isHexagonal && prepared.before->numSharpBoundariesA == 0 &&
@@ -454,12 +454,21 @@ private:
             Index const vert = *_nextWeighted;
             addRuns(begin, vert, group);
             addToGroups(vert, vert + 1, 1, group, [&](Index, Index, Group groupOfVertex) {
-                _weighted.push_back(makeWeightedVertex(_rules, _refinement, vert));
+                _weighted.push_back(makeWeightedVertex(getNextRule(vert), _refinement, vert));
                 _groupOfWeighted.push_back(groupOfVertex);
             });
             begin = vert + 1;
         }
         addRuns(begin, end, group);
+    }
+    // The rule of the next weighted vertex.
+    VertexRule getNextRule(Index vert) {
+        while (_nextRuled != _rules.GetRuledVertices().end() && _nextRuled->vert < vert) {
+            ++_nextRuled;
+        }
+        bool const isRuled =
+            _nextRuled != _rules.GetRuledVertices().end() && _nextRuled->vert == vert;
+        return isRuled ? _nextRuled->rule : _rules.GetVertexRule(vert);
     }
     void listCorners() {
         _prepared.vertCorners.Resize(_runs.GetNumCorners());
@@ -482,6 +491,7 @@ private:
     bool const _arePlain; // those that are not weighted; else there are no others
     std::vector<Index> const _weightedVerts;
     std::vector<Index>::const_iterator _nextWeighted;
+    std::vector<RefinementRules::RuledVertex>::const_iterator _nextRuled;
     std::vector<WeightedVertex> _weighted;
     std::vector<Group> _groupOfWeighted;
     BatchMaker _batches;

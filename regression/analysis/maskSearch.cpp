@@ -280,7 +280,6 @@ private:
 
     void refine(MaskWeights const &weights) {
         std::vector<Position> points = _base;
-        std::vector<double> scratch;
         SearchedLevels const levels = spread(_searched, weights);
         for (std::size_t depth = 0; depth < _masks.size(); ++depth) {
             Level const &parent = getLevels().levels[depth];
@@ -298,7 +297,7 @@ private:
                     mask = findMask(_searched, *ofLevel, irregular[0]);
                 }
                 if (!mask.weights) {
-                    return _masks[depth].GetFaceVertexWeights(face, i, scratch);
+                    return _masks[depth].GetFaceRule(face).GetRow(i);
                 }
                 for (int j = 0; j < size; ++j) {
                     turned[(i + (mask.isBackwards ? size - j : j)) % size] = mask.weights[j];

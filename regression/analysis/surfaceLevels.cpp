@@ -105,11 +105,10 @@ public:
                      std::vector<Position> &dst) const {
         auto const &parent = _levels.levels[std::size_t(depth) - 1];
         FarExt::internal::RefinementRules const mask(parent, {FarExt::FaceMask::Smooth},
-                                                    FarExt::Interpolation::Vertex);
-        std::vector<double> scratch;
+                                                     FarExt::Interpolation::Vertex);
         InterpolateMasked(
             _levels.refinements[std::size_t(depth) - 1], mask,
-            [&](int face, int i) { return mask.GetFaceVertexWeights(face, i, scratch); }, src, dst);
+            [&](int face, int i) { return mask.GetFaceRule(face).GetRow(i); }, src, dst);
     }
 
 private:

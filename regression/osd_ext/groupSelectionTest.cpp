@@ -113,7 +113,7 @@ int expectParts(TopologyRefiner const &refiner, std::mt19937 &random) {
         PreparedRefinement prepared;
         OsdExt::internal::PrepareRefinement(
             FarExt::internal::RefinementRules(mesh.levels[level], refiner.GetHexSchemeOptions(),
-                                             FarExt::Interpolation::Vertex),
+                                              FarExt::Interpolation::Vertex),
             refinements, tileMap, prepared);
         std::vector<float> dst = makeElements(refinement.child->numVertices, kUntouched);
         OsdExt::internal::RefineElements(
