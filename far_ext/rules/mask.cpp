@@ -178,8 +178,7 @@ IrregularWeights findWeights(int numFaces) {
 }
 
 // The first levels, where points are uneven: what F-vertices around a vertex are made of, as in
-// IrregularVertexMask, in parts of a whole.  Among triangles the same vertices take part as in later
-// levels, if only by one part, since evaluators have kernels for those.
+// IrregularVertexMask, in parts of a whole.
 constexpr double kParts = 256;
 struct FirstAround {
     int atVertex[6];
