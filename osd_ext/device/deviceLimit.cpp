@@ -142,12 +142,8 @@ void addLattice(LatticeFaces::Set const &set, std::vector<int> const &halves,
     for (int const orbit : orbits) {
         AddOrbitWeights(sources, set.patch, MakePair(set.orbits[std::size_t(orbit)]),
                         lattice.weights);
-        constexpr std::size_t kUnit = DeviceLimit::kWeightsOfTexel;
-        lattice.weights.resize((lattice.weights.size() + kUnit - 1) / kUnit * kUnit);
     }
     lattice.numOrbits = std::uint32_t(orbits.size());
-    lattice.firstWeight = std::uint32_t(limit.weights.size());
-    limit.weights.insert(limit.weights.end(), lattice.weights.begin(), lattice.weights.end());
 }
 
 void addLattices(LatticeFaces const &faces, DeviceLimit &limit) {
@@ -158,7 +154,7 @@ void addLattices(LatticeFaces const &faces, DeviceLimit &limit) {
     }
 }
 
-// Adds the vertices whose limit is a sum of vertices of a level.  Their weights will be behind those that there are.
+// Adds the vertices whose limit is a sum of vertices of a level.
 void addVertices(LimitOrigins const &origins, int level, LimitRowWeights &weights,
                  DeviceLimit &limit) {
     Index sources[LimitOrigins::kMaxSources];
@@ -166,9 +162,9 @@ void addVertices(LimitOrigins const &origins, int level, LimitRowWeights &weight
         LimitRow const row = origins.GetRow(level, vert, sources);
         std::size_t const firstSource = limit.sources.size();
         row.ForEachPart([&](int i) { limit.sources.push_back(std::uint32_t(row.sources[i])); });
-        limit.vertices.push_back(
-            {std::uint32_t(vert), std::uint32_t(limit.sources.size() - firstSource),
-             std::uint32_t(firstSource), std::uint32_t(limit.weights.size() + weights.Add(row))});
+        limit.vertices.push_back({std::uint32_t(vert),
+                                  std::uint32_t(limit.sources.size() - firstSource),
+                                  std::uint32_t(firstSource), std::uint32_t(weights.Add(row))});
     }
 }
 
@@ -194,7 +190,7 @@ CallStatus MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
         addVertices(origins, i, weights, limit);
         ofLevel.numVertices = std::uint32_t(limit.vertices.size()) - ofLevel.firstVertex;
     }
-    limit.weights.insert(limit.weights.end(), weights.Get().begin(), weights.Get().end());
+    limit.weights = weights.Get();
     constexpr auto kWordsOf = [](auto const &array) {
         return array.size() * sizeof(array[0]) / sizeof(std::uint32_t);
     };
