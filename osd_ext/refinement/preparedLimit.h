@@ -22,8 +22,8 @@ FarExt::CallStatus CheckLimitPlaces(int level, std::int64_t numVertices);
 /// before: their limit is made from the values of the level of their face, so that a frame needs no
 /// values of the last level for them.  Nearly all
 /// else are vertices of F-faces, of the level or of one before.  What is kept for them is the faces.
-/// The others are stencils of vertices, of the first level in which they are regular or else of the
-/// last one, whose weights are those of their type: so what a frame reads is mostly indices.
+/// The others are stencils of vertices of the last level, whose weights are those of their type: so what
+/// a frame reads is mostly indices.
 class PreparedLimit {
 public:
     /// Elements of all vertices of the level: points, and behind them du and dv or nothing.
