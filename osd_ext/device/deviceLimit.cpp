@@ -47,18 +47,11 @@ DeviceOwnFace makeOwnFace(Level const &level, RegularFace const &face) {
     DeviceOwnFace result = {std::uint32_t(level.faceVerts[std::size_t(face.firstCorner)]), {}};
     for (int i = 0; i < kRegularFaceSize; ++i) {
         std::uint32_t(&around)[kRegularFaceSize] = result.around[i];
-        Index const *const verts =
-            level.faceVerts.data() + level.faceFirstCorner[std::size_t(face.beyond[i])];
-        // Of a vertex that has no face beyond, three of the face itself.
-        int count = 2;
-        for (int k = 0; k < kRegularFaceSize && count < kRegularFaceSize - 1; ++k) {
-            if (verts[k] != face.neighbors[i] && verts[k] != face.next[i] &&
-                verts[k] != face.previous[i]) {
-                around[count++] = std::uint32_t(verts[k]);
-            }
-        }
         around[0] = std::uint32_t(face.neighbors[i]);
         around[1] = std::uint32_t(face.previous[i]);
+        for (int k = 0; k < RegularFace::kNumOthers; ++k) {
+            around[2 + k] = std::uint32_t(face.GetOther(level, i, k));
+        }
         around[kRegularFaceSize - 1] = std::uint32_t(face.next[i]);
     }
     return result;
@@ -74,7 +67,7 @@ DeviceLimit::Set addFaces(Level const &level, RegularFaces::Set const &set, MAKE
     result.firstFace = std::uint32_t(first);
     result.firstVertex = std::uint32_t(set.firstVertex);
     if (!set.faces.empty()) {
-        RegularLimitWeights<Scalar> const weights = MakeRegularLimitWeights(set.mask, false);
+        RegularLimitWeights<Scalar> const weights = MakeRegularLimitWeights(set.mask);
         static_assert(sizeof(weights) == sizeof(result.weights));
         std::memcpy(result.weights, &weights, sizeof(weights));
     }

@@ -116,12 +116,12 @@ FUNCTION float getSourceFloat(uint vert, uint k) {
 }
 
 // Float k of six vertices, from vert on.
-FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k, bool hasOneTip) {
+FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k) {
     Six ofVertices;
     Six neighbors;
     Six next;
     Six previous;
-    Six beyond;
+    Six others;
     Six tips;
     for (int j = 0; j < 6; ++j) {
         ofVertices.x[j] = getSourceFloat(of.verts[j], k);
@@ -132,12 +132,8 @@ FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k, bool 
         neighbors.x[j] = x[0];
         previous.x[j] = x[1];
         next.x[j] = x[5];
-        float sum = add(x[0], x[1]);
-        for (int l = 2; l < 6; ++l) {
-            sum = add(sum, x[l]);
-        }
-        beyond.x[j] = sum;
-        tips.x[j] = addProduct(add(next.x[j], previous.x[j]), regularWeights[51], sum);
+        others.x[j] = add(x[2], add(x[3], x[4]));
+        tips.x[j] = addProduct(add(next.x[j], previous.x[j]), regularWeights[51], others.x[j]);
     }
     Six pairs;
     for (int j = 0; j < 6; ++j) {
@@ -159,12 +155,9 @@ FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k, bool 
         PLACE duResult = duOffset + PLACE(vert) * duStride + PLACE(k);
         PLACE dvResult = dvOffset + PLACE(vert) * dvStride + PLACE(k);
         for (int j = 0; j < 6; ++j) {
-            float tip = tips.x[j];
-            float across = dv.x[j];
-            if (!hasOneTip) {
-                tip = addProduct(add(next.x[j], previous.x[j]), regularWeights[52], beyond.x[j]);
-                across = addProduct(across, regularWeights[53], add(next.x[j], -previous.x[j]));
-            }
+            float tip = addProduct(add(next.x[j], previous.x[j]), regularWeights[52], others.x[j]);
+            float across =
+                addProduct(dv.x[j], regularWeights[53], add(next.x[j], -previous.x[j]));
             float x = addProduct(du.x[j], regularWeights[35], tip);
             x = addProduct(x, regularWeights[49], across);
             duResults[duResult + PLACE(j) * duStride] = x;
@@ -173,9 +166,9 @@ FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k, bool 
     }
 }
 
-FUNCTION void makeLimitsOfFace(REFERENCE(Neighborhood) of, uint vert, bool hasOneTip) {
+FUNCTION void makeLimitsOfFace(REFERENCE(Neighborhood) of, uint vert) {
     for (int k = 0; k < LENGTH; ++k) {
-        makeSixLimits(of, vert, uint(k), hasOneTip);
+        makeSixLimits(of, vert, uint(k));
     }
 }
 
@@ -195,7 +188,7 @@ FUNCTION void makeRegularLimit(uint i) {
                 getVertexOfCorner(beyond + (turned < 6u ? turned : turned - 6u));
         }
     }
-    makeLimitsOfFace(of, firstFVertex + corner, true);
+    makeLimitsOfFace(of, firstFVertex + corner);
 }
 
 // The vertices of a DeviceOwnFace.
@@ -209,7 +202,7 @@ FUNCTION void makeOwnLimit(uint i) {
             of.around[6 * j + l] = indices[place + PLACE(1 + 6 * j + l)];
         }
     }
-    makeLimitsOfFace(of, vert, false);
+    makeLimitsOfFace(of, vert);
 }
 
 // Lattice faces: the arithmetic of latticeKernelTemplate.h, but that no sources are joined.

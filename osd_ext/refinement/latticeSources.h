@@ -48,7 +48,7 @@ struct LatticeLoader {
         for (int corner = 0; corner < FACE_SIZE; ++corner, place += RegularFaceGroup::kSize) {
             float const *sources[SIMD::kNumFaces];
             for (int i = 0; i < SIMD::kNumFaces; ++i) {
-                sources[i] = ACCESS::AtPlace(values, place[i], RegularFaceGroup::kPointStride);
+                sources[i] = ACCESS::AtPlace(values, place[i]);
             }
             x[corner] = ACCESS::template Load<SIMD>(sources, length);
         }
