@@ -205,7 +205,7 @@ FUNCTION void makeOwnLimit(uint i) {
     makeLimitsOfFace(of, vert);
 }
 
-// Lattice faces: the arithmetic of latticeKernelTemplate.h, but that no sources are joined.
+// Lattice faces: the arithmetic of latticeKernelTemplate.h.
 
 // The waves of an orbit around the face stand in a Six: the mean, what alternates with 4 and 6 corners,
 // then cosine and sine of each frequency.

@@ -126,23 +126,18 @@ struct VertexLimitTask : LimitTask {
     float const *weights;
 };
 
-/// What has weights in lattice faces: all sources, all when outer ones are joined, or the nearest ones.
-enum class LatticeSourceKind { All, Joined, Compact };
-
 /// \brief The limit in lattice faces of one size, RegularFaceGroup::kSize of them at a time: outputs are by
 /// vertex.
 struct LatticeTask : LimitTask {
     static constexpr int kNumDerivatives = 4; ///< weights of derivatives in terms of others
-    static constexpr int kNumOuterWeights = 2;
 
     /// Of outputs.
     int GetNumOrbits() const { return 2 * numPairs + numHalves + numAxes; }
 
     int faceSize;
-    LatticeSourceKind sourceKind;
-    float outerWeights[kNumOuterWeights]; ///< those of LatticeFaces::Set, to join sources
-    int numPairs;                         ///< orbits of outputs, these first
-    int numHalves;                        ///< pairs without their mirror images
+    bool isCompact; ///< whether the nearest sources alone have weights
+    int numPairs;   ///< orbits of outputs, these first
+    int numHalves;  ///< pairs without their mirror images
     int numAxes;
     std::uint32_t const
         *places; ///< by group, those of all sources of its faces, as in RegularFaceGroup

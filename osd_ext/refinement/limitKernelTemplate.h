@@ -358,22 +358,19 @@ struct LimitKernels {
 private:
     template <class ACCESS, int FACE_SIZE>
     static void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
-        switch (task.sourceKind) {
-        case LatticeSourceKind::Compact:
-            return evaluateLattice<ACCESS, FACE_SIZE, LatticeSourceKind::Compact>(task, begin, end);
-        case LatticeSourceKind::Joined:
-            return evaluateLattice<ACCESS, FACE_SIZE, LatticeSourceKind::Joined>(task, begin, end);
-        default:
-            return evaluateLattice<ACCESS, FACE_SIZE, LatticeSourceKind::All>(task, begin, end);
+        if (task.isCompact) {
+            evaluateLattice<ACCESS, FACE_SIZE, true>(task, begin, end);
+        } else {
+            evaluateLattice<ACCESS, FACE_SIZE, false>(task, begin, end);
         }
     }
-    template <class ACCESS, int FACE_SIZE, LatticeSourceKind KIND>
+    template <class ACCESS, int FACE_SIZE, bool IS_COMPACT>
     static void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
         if (task.numOutputs > 1) {
-            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, KIND, LimitTask::kMaxOutputs>(
+            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, IS_COMPACT, LimitTask::kMaxOutputs>(
                 task, begin, end);
         } else {
-            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, KIND, 1>(task, begin, end);
+            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, IS_COMPACT, 1>(task, begin, end);
         }
     }
 };
