@@ -130,9 +130,9 @@ public:
     /// Where level 0 is a regular lattice of triangles, quads or hexagons, all vertices come from it:
     /// there a frame takes two to four times as long as Evaluate().  Elsewhere most come from hexagons of
     /// the levels before, six at a time: four to seven times as long on deep levels, of which the last
-    /// one is needed for the other vertices alone.  These are near the irregular vertices and faces of
-    /// level 0 and near features, and all of the first two or three levels of meshes without hexagons:
-    /// eight to ten times as long.
+    /// one is needed for the other vertices alone.  These are those of level 0 and near irregular
+    /// vertices, irregular faces and features, and all of the first two or three levels of meshes without
+    /// hexagons: eight to ten times as long.
     ///
     /// The first frame of a level finds the masks, which takes as long as eight to forty, and keeps
     /// about 21 bytes for each vertex and 100 for each of the others.

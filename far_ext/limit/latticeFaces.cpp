@@ -254,85 +254,6 @@ private:
     Kind _axes;
 };
 
-/// \brief What LatticeFaces::Set::outerWeights are to fulfil for some orbits.
-class OuterWeightEquations {
-public:
-    OuterWeightEquations(LatticePatch const &patch, std::vector<LatticeFaces::Orbit> const &orbits)
-        : _patch(patch) {
-        for (LatticeFaces::Orbit const &orbit : orbits) {
-            for (std::size_t sum = 0; sum < LimitWeights().size(); ++sum) {
-                addEquations(orbit.weights, sum);
-            }
-        }
-    }
-
-    bool AreFulfilled(std::array<double, 2> const &weights) const {
-        return std::all_of(_equations.begin(), _equations.end(), [&](Equation const &equation) {
-            double const expected = weights[0] * equation.first + weights[1] * equation.second;
-            return std::abs(expected - equation.outer) < kWeightTolerance;
-        });
-    }
-    /// By least squares.
-    std::array<double, 2> Solve() const {
-        constexpr double kNothing = 1e-18; // of squares
-        double const firstFirst = sumProducts(&Equation::first, &Equation::first);
-        double const firstSecond = sumProducts(&Equation::first, &Equation::second);
-        double const secondSecond = sumProducts(&Equation::second, &Equation::second);
-        double const outerFirst = sumProducts(&Equation::outer, &Equation::first);
-        double const outerSecond = sumProducts(&Equation::outer, &Equation::second);
-        double const area = firstFirst * secondSecond - firstSecond * firstSecond;
-        if (area > kNothing) {
-            return {(outerFirst * secondSecond - outerSecond * firstSecond) / area,
-                    (outerSecond * firstFirst - outerFirst * firstSecond) / area};
-        }
-        return {firstFirst > kNothing ? outerFirst / firstFirst : 0, 0};
-    }
-
-private:
-    /// outer = a first + b second
-    struct Equation {
-        double outer;
-        double first;
-        double second;
-    };
-
-    double sumProducts(double Equation::*factor, double Equation::*other) const {
-        double sum = 0;
-        for (Equation const &equation : _equations) {
-            sum += equation.*factor * equation.*other;
-        }
-        return sum;
-    }
-
-    void addEquations(PatchWeights const &weights, std::size_t sum) {
-        int const size = _patch.GetFaceSize();
-        auto const w = [&](int orbit, int corner) {
-            int const place = _patch.TurnPlace(orbit * size, (corner + size) % size);
-            return weights[std::size_t(place)][sum];
-        };
-        for (int i = 0; i < size; ++i) {
-            switch (size) {
-            case 3:
-                _equations.push_back({w(7, i), w(2, i), 0});
-                _equations.push_back({w(8, i), w(2, i), 0});
-                _equations.push_back({w(6, i + 1) - w(5, i), w(2, i) - w(2, i + 1), 0});
-                break;
-            case 4:
-                _equations.push_back({w(6, i), w(4, i), w(5, i + 1)});
-                _equations.push_back({w(7, i), w(5, i), w(4, i - 1)});
-                break;
-            default:
-                _equations.push_back({w(5, i), w(2, i), 0});
-                _equations.push_back({w(6, i), w(2, i), 0});
-                break;
-            }
-        }
-    }
-
-    LatticePatch const &_patch;
-    std::vector<Equation> _equations;
-};
-
 /// A mark for each output of a set, whether it is the mirror image of another.
 std::vector<unsigned char> markMirrored(LatticeFaces::Set const &set) {
     std::vector<unsigned char> marks;
@@ -399,7 +320,7 @@ void LatticeFaces::findFaces(int faceSize) {
     if (faces.empty()) {
         return;
     }
-    Set &set = _sets.emplace_back(Set{patch, std::move(faces), {}, {}, {}, 0, {}, {}, {}, {}});
+    Set &set = _sets.emplace_back(Set{patch, std::move(faces), {}, {}, 0, {}, {}, {}, {}});
     auto const numPlaces = std::size_t(patch.GetNumPlaces());
     set.sources.Resize(set.faces.size() * numPlaces);
     ParallelFor(Index(set.faces.size()), [&](Index i) {
@@ -538,15 +459,6 @@ bool LatticeFaces::setOrbits(Sample &sample, Set &set) {
     set.orbits = finder.GetOrbits();
     sample.order = finder.GetOrder();
     set.numOutputs = int(sample.order.size());
-    OuterWeightEquations const equations(set.patch, set.orbits);
-    std::array<double, 2> const outerWeights = equations.Solve();
-    if (equations.AreFulfilled(outerWeights)) {
-        set.outerWeights = outerWeights;
-        if (set.corners &&
-            !OuterWeightEquations(set.patch, {*set.corners}).AreFulfilled(outerWeights)) {
-            set.corners.reset();
-        }
-    }
     return true;
 }
 

@@ -40,17 +40,7 @@ public:
         Buffer<Index> sources; ///< by face, all places of the patch
 
         std::vector<Orbit> orbits; ///< pairs first
-        /// \brief How the weights of outer places follow from those of nearer ones, if they do in all rows.
-        ///
-        /// With w(k, i) for the weight of place i of orbit k these are a and b in
-        ///   triangles  w(7, i) = w(8, i) = a w(2, i) and w(6, i + 1) - w(5, i) = a (w(2, i) - w(2, i + 1)),
-        ///   quads      w(6, i) = a w(4, i) + b w(5, i + 1) and w(7, i) = a w(5, i) + b w(4, i - 1),
-        ///   hexagons   w(5, i) = w(6, i) = a w(2, i),
-        /// since of the outermost faces sums alone have a part in what becomes of the face: but with
-        /// FaceMask::Average and Cosine not where levels are so deep that vertices of triangles lie close to a
-        /// corner, from level 4 on.
-        std::optional<std::array<double, 2>> outerWeights;
-        int numOutputs = 0; ///< of a face: all vertices of its orbits in turn
+        int numOutputs = 0;        ///< of a face: all vertices of its orbits in turn
         /// \brief By face, the vertices.
         ///
         /// Between two faces each makes half of the vertices, those that are no mirror images in it; a face
@@ -65,7 +55,7 @@ public:
         // The rows of vertices of level 0, by place around the edge that is the vertex's first.
         LimitMask vertexMask;
         std::vector<int> vertexPlaces;
-        /// These rows as an orbit, if it has an axis, and the outer weights of others if they have such.
+        /// These rows as an orbit, if it has an axis.
         std::optional<Orbit> corners;
     };
 

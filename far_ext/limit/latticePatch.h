@@ -20,16 +20,6 @@ struct LatticeOrbits {
     static constexpr int kNumPairs = IS_COMPACT ? 1 : FACE_SIZE == 6 ? 2 : 3;
 };
 
-/// \brief How many orbits are left when outer ones are joined to nearer ones, where the weights of outer
-/// vertices follow from those of nearer ones (LatticeFaces::Set).
-///
-/// Those that are joined to a new one in triangles have an axis.
-template <int FACE_SIZE>
-struct JoinedOrbits {
-    static constexpr int kNumAxes = FACE_SIZE == 4 ? 2 : FACE_SIZE == 3 ? 4 : 3;
-    static constexpr int kNumPairs = FACE_SIZE == 4 ? 2 : 1;
-};
-
 /// \brief What the surface of a face depends on in the regular lattice of triangles, six at a vertex, of
 /// quads, or of hexagons: the vertices of the faces at its vertices and at their neighbours.
 ///

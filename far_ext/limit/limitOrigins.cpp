@@ -14,35 +14,19 @@ CallStatus LimitOrigins::Find(HexSchemeOptions const &schemeOptions) {
         return result;
     }
     _regularFaces.emplace(_mesh, _rows.GetLevel().depth, _latticeFaces.GetMarks());
-    result = _regularFaces->FindMasks(schemeOptions, _rows);
-    if (!result.IsOk()) {
-        return result;
-    }
-    _regularVertices.emplace(_mesh, schemeOptions, _rows, _regularFaces->GetOthers());
-    return result;
+    return _regularFaces->FindMasks(schemeOptions, _rows);
 }
 
 std::vector<Index> LimitOrigins::GetVertices(int level) const {
     if (level == _rows.GetLevel().depth) {
-        return _regularVertices->GetOthers();
+        return _regularFaces->GetOthers();
     }
-    std::vector<Index> verts = _regularVertices->GetVertices(level);
-    if (level == 0) {
-        std::vector<Index> const &ofLattice = _latticeFaces.GetVertices();
-        verts.insert(verts.end(), ofLattice.begin(), ofLattice.end());
-    }
-    return verts;
+    return level == 0 ? _latticeFaces.GetVertices() : std::vector<Index>();
 }
 
 LimitRow LimitOrigins::GetRow(int level, Index vert, Index sources[kMaxSources]) const {
-    if (level == _rows.GetLevel().depth) {
-        return _rows.GetRow(vert, 0, sources);
-    }
-    std::vector<Index> const &ofLattice = _latticeFaces.GetVertices();
-    bool const isOfLattice =
-        level == 0 && std::binary_search(ofLattice.begin(), ofLattice.end(), vert);
-    return isOfLattice ? _latticeFaces.GetRow(vert, sources)
-                       : _regularVertices->GetRow(level, vert, sources);
+    return level == _rows.GetLevel().depth ? _rows.GetRow(vert, 0, sources)
+                                           : _latticeFaces.GetRow(vert, sources);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

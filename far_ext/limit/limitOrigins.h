@@ -4,7 +4,6 @@
 
 #include "latticeFaces.h"
 #include "regularFaces.h"
-#include "regularVertices.h"
 
 #include <algorithm>
 #include <optional>
@@ -15,8 +14,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// \brief What the limit at each vertex of a level is made of, for evaluation without tables.
 ///
 /// Vertices in lattice faces are made from level 0.  Else most are F-vertices of regular faces of a level
-/// before, or vertices of F-faces.  The others are sums of vertices: of the first level in which they are
-/// regular, or else of the last one.
+/// before, or vertices of F-faces.  The others are sums of vertices of the last level.
 class OPENSUBDIVHEX_API LimitOrigins {
 public:
     using Index = Far::Index;
@@ -36,7 +34,7 @@ public:
     std::vector<RegularFaces::OfLevel> const &GetFaces() const {
         return _regularFaces->GetLevels();
     }
-    /// The vertices whose limit is a sum of vertices of \p level.
+    /// The vertices whose limit is a sum of vertices of \p level: of the last one, or of level 0.
     std::vector<Index> GetVertices(int level) const;
     /// The row of one of these.  Valid until \p sources is used again.
     LimitRow GetRow(int level, Index vert, Index sources[kMaxSources]) const;
@@ -46,7 +44,6 @@ private:
     LimitRows &_rows;
     LatticeFaces _latticeFaces;
     std::optional<RegularFaces> _regularFaces;
-    std::optional<RegularVertices> _regularVertices;
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -8,7 +8,6 @@
 
 #include <bitset>
 #include <cmath>
-#include <numeric>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -138,17 +137,10 @@ std::vector<RegularFace> findOwnFaces(Level const &level, Marks const &marks,
     });
 }
 
-// Of the hexagon beyond the neighbour of a corner, the vertex that is in no other face that matters.
-Index findFarthest(Level const &level, RegularFace const &face, int corner) {
-    Index const *const verts = level.faceVerts.data() + level.faceFirstCorner[face.beyond[corner]];
-    auto const local = int(std::find(verts, verts + kSize, face.neighbors[corner]) - verts);
-    return verts[(local + kSize / 2) % kSize];
-}
-
 // Whether a face's sources are all different, so that a row of their weights tells each one's: not
 // so on small tori, which have no other end.
 bool hasDifferentSources(Level const &level, RegularFace const &face, int corner) {
-    std::vector<Index> sources = {findFarthest(level, face, corner)};
+    std::vector<Index> sources = {face.GetOther(level, corner, 1)};
     for (int i = 0; i < kSize; ++i) {
         sources.insert(sources.end(), {level.faceVerts[face.firstCorner + i], face.neighbors[i],
                                        face.next[i], face.previous[i]});
@@ -164,7 +156,6 @@ RegularFaceMask makeMask(Level const &level, RegularFace const &face, int corner
         auto const found = row.find(vert);
         return found == row.end() ? 0 : found->second[std::size_t(sum)];
     };
-    Index const farthest = findFarthest(level, face, corner);
     RegularFaceMask mask;
     for (int sum = 0; sum < RegularFaceMask::kNumSums; ++sum) {
         RegularFaceMask::Sum &result = mask.sums[sum];
@@ -174,11 +165,9 @@ RegularFaceMask makeMask(Level const &level, RegularFace const &face, int corner
             result.neighbors[i] = find(face.neighbors[at], sum);
             result.pairs[i] = find(i == 0 ? face.previous[(at + 1) % kSize] : face.next[at], sum);
         }
-        result.beyond = find(farthest, sum);
-        result.neighbors[0] -= result.beyond;
-        result.next = find(face.next[corner], sum) - result.pairs[0] - result.beyond;
-        result.previous =
-            find(face.previous[corner], sum) - result.pairs[kSize - 1] - result.beyond;
+        result.next = find(face.next[corner], sum) - result.pairs[0];
+        result.previous = find(face.previous[corner], sum) - result.pairs[kSize - 1];
+        result.others = find(face.GetOther(level, corner, 1), sum);
     }
     return mask;
 }
@@ -202,8 +191,8 @@ bool isRow(Level const &level, RegularFace const &face, RegularFaceMask const &m
     }
     subtract(face.next[corner], [](Sum const &s) { return s.next; });
     subtract(face.previous[corner], [](Sum const &s) { return s.previous; });
-    for (Index vert : level.GetFaceVertices(face.beyond[corner])) {
-        subtract(vert, [](Sum const &s) { return s.beyond; });
+    for (int i = 0; i < RegularFace::kNumOthers; ++i) {
+        subtract(face.GetOther(level, corner, i), [](Sum const &s) { return s.others; });
     }
     return std::all_of(row.begin(), row.end(), [](SteppedRow::value_type const &left) {
         return std::all_of(left.second.begin(), left.second.end(),
@@ -211,69 +200,7 @@ bool isRow(Level const &level, RegularFace const &face, RegularFaceMask const &m
     });
 }
 
-// Where the sources of a row begin, behind the vertices of the face.
-constexpr int kNeighbors = kSize;
-constexpr int kNext = 2 * kSize;
-constexpr int kPrevious = 3 * kSize;
-constexpr int kBeyond = 4 * kSize;
-constexpr int kNumOthersBeyond = kSize / 2; // of each face
-
 } // namespace
-
-bool RegularFaceMask::HasOneTip() const {
-    return std::all_of(sums, sums + kNumSums, [this](Sum const &sum) {
-        return std::abs(sum.next - sum.previous) < kWeightTolerance &&
-               std::abs(sum.beyond * sums[0].next - sums[0].beyond * sum.next) < kWeightTolerance;
-    });
-}
-
-RegularFaceRows::RegularFaceRows(RegularFaceMask const &mask) {
-    for (int i = 0; i < RegularFaceMask::kNumSums; ++i) {
-        RegularFaceMask::Sum const &sum = mask.sums[i];
-        double *const weights = _weights[i];
-        for (int k = 0; k < kSize; ++k) {
-            weights[k] = sum.verts[k];
-            weights[kNeighbors + k] = sum.neighbors[k];
-            weights[kNext + k] = sum.pairs[k];
-            weights[kPrevious + k] = sum.pairs[(k + kSize - 1) % kSize];
-        }
-        weights[kNeighbors] += sum.beyond;
-        weights[kNext] += sum.next + sum.beyond;
-        weights[kPrevious] += sum.previous + sum.beyond;
-        std::fill(weights + kBeyond, weights + kNumSources, sum.beyond);
-    }
-}
-
-LimitRow RegularFaceRows::GetRow(int corner, Index numbers[kNumSources]) const {
-    for (int k = 0; k < kSize; ++k) {
-        for (int first : {0, kNeighbors, kNext, kPrevious}) {
-            numbers[first + k] = first + (corner + k) % kSize;
-        }
-    }
-    std::iota(numbers + kBeyond, numbers + kNumSources, kBeyond + kNumOthersBeyond * corner);
-    return {kNumSources, numbers, _weights[0], _weights[1], _weights[2]};
-}
-
-void RegularFaceRows::GetFaceSources(Level const &level, RegularFace const &face,
-                                     Index sources[kNumFaceSources]) {
-    std::copy_n(level.faceVerts.data() + face.firstCorner, kSize, sources);
-    std::copy_n(face.neighbors, kSize, sources + kNeighbors);
-    std::copy_n(face.next, kSize, sources + kNext);
-    std::copy_n(face.previous, kSize, sources + kPrevious);
-    Index *others = sources + kBeyond;
-    for (int corner = 0; corner < kSize; ++corner) {
-        if (!face.HasCorner(corner)) {
-            others = std::fill_n(others, kNumOthersBeyond, face.neighbors[corner]);
-            continue;
-        }
-        for (Index const vert : level.GetFaceVertices(face.beyond[corner])) {
-            if (vert != face.neighbors[corner] && vert != face.next[corner] &&
-                vert != face.previous[corner]) {
-                *others++ = vert;
-            }
-        }
-    }
-}
 
 RegularFaces::RegularFaces(MeshLevels const &mesh, int level, std::vector<unsigned char> isMade)
     : _mesh(mesh), _level(level), _isMade(std::move(isMade)), _levels(std::size_t(level) + 1) {
@@ -380,8 +307,7 @@ CallStatus RegularFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitR
             if (set->faces.empty()) {
                 continue;
             }
-            auto const mask = findMask(int(i), *set, schemeOptions, rows);
-            if (mask && (set == &_levels[i].ownVertices || mask->HasOneTip())) {
+            if (auto const mask = findMask(int(i), *set, schemeOptions, rows)) {
                 set->mask = *mask;
                 continue;
             }

@@ -4,6 +4,7 @@
 
 #include "limitRows.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -24,7 +25,19 @@ constexpr int kRegularFaceSize = HexIndexing::kNumEFaceCorners;
 /// Where only some of its vertices are regular, the others have an outer neighbour perhaps, but no face
 /// beyond: there it is the face itself.
 struct RegularFace {
+    /// Of the face beyond a corner, the vertices that are in no other face around.
+    static constexpr int kNumOthers = 3;
+
     bool HasCorner(int corner) const { return (corners >> corner & 1) != 0; }
+    /// The others of the face beyond a corner, from that behind "previous" on; where there is no face beyond,
+    /// any vertices.
+    Far::Index GetOther(Level const &level, int corner, int number) const {
+        Far::Index const *const verts =
+            level.faceVerts.data() + level.faceFirstCorner[beyond[corner]];
+        auto const local =
+            int(std::find(verts, verts + kRegularFaceSize, neighbors[corner]) - verts);
+        return verts[(local + 2 + number) % kRegularFaceSize];
+    }
 
     Far::Index firstCorner;
     unsigned corners; ///< a bit for each corner whose vertex has a limit of the face's mask
@@ -48,34 +61,9 @@ struct RegularFaceMask {
         double pairs[kRegularFaceSize];
         double next; ///< of corner 0, on top of what it weighs in its pair
         double previous;
-        double beyond; ///< the vertices of the face beyond corner 0
+        double others; ///< the others of the face beyond corner 0
     };
     Sum sums[kNumSums];
-
-    /// Whether "next", "previous" and the face beyond are in all three sums in the same proportion, the
-    /// first two weighing the same: so it is for F-vertices.
-    OPENSUBDIVHEX_API bool HasOneTip() const;
-};
-
-/// \brief The rows of what a RegularFaceMask is for: in terms of the sources of a face, so that all faces
-/// have the same.
-struct RegularFaceRows {
-    /// Vertices of the face, their neighbours, "next", "previous", and three others of each face beyond.
-    static constexpr int kNumFaceSources = 7 * kRegularFaceSize;
-    /// Of these, those that a row has.
-    static constexpr int kNumSources = 4 * kRegularFaceSize + 3;
-
-    explicit RegularFaceRows(RegularFaceMask const &mask);
-
-    /// That of a corner, its sources being numbers among those of a face.  Valid until \p numbers are
-    /// used again.
-    LimitRow GetRow(int corner, Far::Index numbers[kNumSources]) const;
-    /// Those beyond a corner without a face there are any.
-    OPENSUBDIVHEX_API static void GetFaceSources(Level const &level, RegularFace const &face,
-                                                 Far::Index sources[kNumFaceSources]);
-
-private:
-    double _weights[RegularFaceMask::kNumSums][kNumSources];
 };
 
 /// \brief The vertices of a level whose limit follows from faces of that level or of one before, for

@@ -74,12 +74,6 @@ public:
     virtual FarExt::CallStatus CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
                                            std::string const &what) const = 0;
 
-    /// \brief Whether few invocations that do much each are best, since few run at a time.
-    ///
-    /// One of DeviceKernel::LatticeLimit then makes all of a face, up to kMaxCompiledLength floats of the
-    /// elements, by weights in an array; else a float of some orbits, by weights that are parameters.
-    virtual bool IsSerial() { return false; }
-
     /// Makes a kernel ready to be run.
     virtual FarExt::CallStatus Prepare(DeviceKernel kernel, int length, int faceSize) = 0;
     /// Runs a kernel that is ready, behind all before it that wrote what Wait() stood behind.

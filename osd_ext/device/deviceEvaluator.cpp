@@ -502,38 +502,30 @@ void DeviceEvaluator::evaluateLimit(Frame &frame, Elements const &src,
     frame.Wait();
 }
 
-// Some floats at a time, so that invocations can be counted; and all orbits where the device is serial, else
-// some, whose weights are parameters.
+// Some floats at a time, so that invocations can be counted, of some orbits, whose weights are parameters.
 void DeviceEvaluator::evaluateLattices(Frame &frame, Elements src, std::vector<Elements> outputs,
                                        int length, Limit const &limit) {
     constexpr int kMaxFloats = kMaxCompiledLength;
-    constexpr std::uint32_t kMaxParameterOrbits = 4;
-    bool const isSerial = _device->IsSerial();
+    constexpr std::uint32_t kMaxOrbits = 4;
     for (; length > 0; length -= kMaxFloats) {
-        int const numFloats = std::min(length, kMaxFloats);
-        auto const numParts = std::uint32_t(isSerial ? 1 : numFloats);
+        auto const numFloats = std::uint32_t(std::min(length, kMaxFloats));
         for (DeviceLimit::Lattice const &lattice : limit.lattices) {
             std::size_t const numWeights = lattice.weights.size() / lattice.numOrbits;
-            DeviceTask task =
-                makeTask(DeviceKernel::LatticeLimit, isSerial ? numFloats : 1, src, outputs[0]);
+            DeviceTask task = makeTask(DeviceKernel::LatticeLimit, 1, src, outputs[0]);
             task.faceSize = lattice.faceSize;
             DeviceParameters &parameters = task.parameters;
             parameters.numFaces = lattice.numFaces;
-            parameters.numParts = numParts;
+            parameters.numFloats = numFloats;
             parameters.firstIndex = limit.firstLatticeIndex + lattice.firstIndex;
             parameters.firstOutput = limit.firstLatticeIndex + lattice.firstOutput;
-            parameters.firstWeight = lattice.firstWeight;
-            std::uint32_t const maxOrbits = isSerial ? lattice.numOrbits : kMaxParameterOrbits;
-            for (std::uint32_t first = 0; first < lattice.numOrbits; first += maxOrbits) {
-                parameters.numOrbits = std::min(lattice.numOrbits - first, maxOrbits);
+            for (std::uint32_t first = 0; first < lattice.numOrbits; first += kMaxOrbits) {
+                parameters.numOrbits = std::min(lattice.numOrbits - first, kMaxOrbits);
                 parameters.numPairs =
-                    std::min(lattice.numPairs - std::min(lattice.numPairs, first), maxOrbits);
-                if (!isSerial) {
-                    std::copy_n(lattice.weights.begin() + std::ptrdiff_t(first * numWeights),
-                                parameters.numOrbits * numWeights, parameters.latticeWeights);
-                }
-                // Fits: a face has more indices than parts, and 32 bits reach them (MakeDeviceLimit).
-                runLimit(frame, task, limit, outputs, lattice.numFaces * numParts);
+                    std::min(lattice.numPairs - std::min(lattice.numPairs, first), kMaxOrbits);
+                std::copy_n(lattice.weights.begin() + std::ptrdiff_t(first * numWeights),
+                            parameters.numOrbits * numWeights, parameters.latticeWeights);
+                // Fits: a face has more indices than floats, and 32 bits reach them (MakeDeviceLimit).
+                runLimit(frame, task, limit, outputs, lattice.numFaces * numFloats);
                 parameters.firstOutput +=
                     std::uint64_t(parameters.numOrbits + parameters.numPairs) *
                     std::uint64_t(lattice.faceSize) * lattice.numFaces;

@@ -45,11 +45,7 @@ template <int LENGTH, int SIZE>
 struct DeviceKernels : DeviceArguments {
 #define PLACE Place
 #define ARRAY(binding, block, type, name)
-#define READ_FLOATS(binding, block, name)
-#define READ_INDICES(binding, block, name)
-#define READ(name, place) name[place]
-#define READ_RESULT(place) results[place]
-#define ORBIT_WEIGHT(first, number) latticeWeights[(first) + (number)]
+#define READ_ARRAY(binding, block, type, name)
 #define FUNCTION OPENSUBDIVHEX_KERNEL_FUNCTION
 #define REFERENCE(type) type &
 #define PRECISE
@@ -58,11 +54,7 @@ struct DeviceKernels : DeviceArguments {
 #undef PRECISE
 #undef REFERENCE
 #undef FUNCTION
-#undef ORBIT_WEIGHT
-#undef READ_RESULT
-#undef READ
-#undef READ_INDICES
-#undef READ_FLOATS
+#undef READ_ARRAY
 #undef ARRAY
 #undef PLACE
 };

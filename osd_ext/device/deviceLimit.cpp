@@ -47,18 +47,11 @@ DeviceOwnFace makeOwnFace(Level const &level, RegularFace const &face) {
     DeviceOwnFace result = {std::uint32_t(level.faceVerts[std::size_t(face.firstCorner)]), {}};
     for (int i = 0; i < kRegularFaceSize; ++i) {
         std::uint32_t(&around)[kRegularFaceSize] = result.around[i];
-        Index const *const verts =
-            level.faceVerts.data() + level.faceFirstCorner[std::size_t(face.beyond[i])];
-        // Of a vertex that has no face beyond, three of the face itself.
-        int count = 2;
-        for (int k = 0; k < kRegularFaceSize && count < kRegularFaceSize - 1; ++k) {
-            if (verts[k] != face.neighbors[i] && verts[k] != face.next[i] &&
-                verts[k] != face.previous[i]) {
-                around[count++] = std::uint32_t(verts[k]);
-            }
-        }
         around[0] = std::uint32_t(face.neighbors[i]);
         around[1] = std::uint32_t(face.previous[i]);
+        for (int k = 0; k < RegularFace::kNumOthers; ++k) {
+            around[2 + k] = std::uint32_t(face.GetOther(level, i, k));
+        }
         around[kRegularFaceSize - 1] = std::uint32_t(face.next[i]);
     }
     return result;
@@ -74,7 +67,7 @@ DeviceLimit::Set addFaces(Level const &level, RegularFaces::Set const &set, MAKE
     result.firstFace = std::uint32_t(first);
     result.firstVertex = std::uint32_t(set.firstVertex);
     if (!set.faces.empty()) {
-        RegularLimitWeights<Scalar> const weights = MakeRegularLimitWeights(set.mask, false);
+        RegularLimitWeights<Scalar> const weights = MakeRegularLimitWeights(set.mask);
         static_assert(sizeof(weights) == sizeof(result.weights));
         std::memcpy(result.weights, &weights, sizeof(weights));
     }
@@ -142,12 +135,8 @@ void addLattice(LatticeFaces::Set const &set, std::vector<int> const &halves,
     for (int const orbit : orbits) {
         AddOrbitWeights(sources, set.patch, MakePair(set.orbits[std::size_t(orbit)]),
                         lattice.weights);
-        constexpr std::size_t kUnit = DeviceLimit::kWeightsOfTexel;
-        lattice.weights.resize((lattice.weights.size() + kUnit - 1) / kUnit * kUnit);
     }
     lattice.numOrbits = std::uint32_t(orbits.size());
-    lattice.firstWeight = std::uint32_t(limit.weights.size());
-    limit.weights.insert(limit.weights.end(), lattice.weights.begin(), lattice.weights.end());
 }
 
 void addLattices(LatticeFaces const &faces, DeviceLimit &limit) {
@@ -158,7 +147,7 @@ void addLattices(LatticeFaces const &faces, DeviceLimit &limit) {
     }
 }
 
-// Adds the vertices whose limit is a sum of vertices of a level.  Their weights will be behind those that there are.
+// Adds the vertices whose limit is a sum of vertices of a level.
 void addVertices(LimitOrigins const &origins, int level, LimitRowWeights &weights,
                  DeviceLimit &limit) {
     Index sources[LimitOrigins::kMaxSources];
@@ -166,9 +155,9 @@ void addVertices(LimitOrigins const &origins, int level, LimitRowWeights &weight
         LimitRow const row = origins.GetRow(level, vert, sources);
         std::size_t const firstSource = limit.sources.size();
         row.ForEachPart([&](int i) { limit.sources.push_back(std::uint32_t(row.sources[i])); });
-        limit.vertices.push_back(
-            {std::uint32_t(vert), std::uint32_t(limit.sources.size() - firstSource),
-             std::uint32_t(firstSource), std::uint32_t(limit.weights.size() + weights.Add(row))});
+        limit.vertices.push_back({std::uint32_t(vert),
+                                  std::uint32_t(limit.sources.size() - firstSource),
+                                  std::uint32_t(firstSource), std::uint32_t(weights.Add(row))});
     }
 }
 
@@ -194,7 +183,7 @@ CallStatus MakeDeviceLimit(FarExt::internal::MeshLevels const &mesh,
         addVertices(origins, i, weights, limit);
         ofLevel.numVertices = std::uint32_t(limit.vertices.size()) - ofLevel.firstVertex;
     }
-    limit.weights.insert(limit.weights.end(), weights.Get().begin(), weights.Get().end());
+    limit.weights = weights.Get();
     constexpr auto kWordsOf = [](auto const &array) {
         return array.size() * sizeof(array[0]) / sizeof(std::uint32_t);
     };

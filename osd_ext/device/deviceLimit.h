@@ -54,13 +54,9 @@ struct DeviceLimit {
         std::uint32_t firstIndex;
         std::uint32_t firstOutput; ///< behind the sources
         std::uint32_t numOrbits;
-        std::uint32_t numPairs; ///< of orbits, these first: others have no mirror images
-        /// Of each orbit those of AddOrbitWeights, and zeros behind them.
-        std::vector<float> weights;
-        std::uint32_t firstWeight; ///< where these are in DeviceLimit::weights, too
+        std::uint32_t numPairs;     ///< of orbits, these first: others have no mirror images
+        std::vector<float> weights; ///< of each orbit those of AddOrbitWeights
     };
-    /// The weights of an orbit are a multiple of these, and so is their position: devices read four at once.
-    static constexpr std::size_t kWeightsOfTexel = 4;
     static constexpr std::uint32_t kNoVertex = 0xffffffffu;
 
     /// Faces of one kind that have a mask in common.
@@ -84,7 +80,7 @@ struct DeviceLimit {
     std::vector<DeviceOwnFace> ownFaces;
     std::vector<DeviceLimitVertex> vertices; ///< those that no face makes, by level
     std::vector<std::uint32_t> sources;      ///< of these, the indices
-    std::vector<float> weights;
+    std::vector<float> weights;              ///< of these
 };
 
 /// \brief Prepares the limit at the vertices of the level of \p rows, one of \p mesh.

@@ -44,11 +44,11 @@ PARAMETER(uint, hasDerivatives)
 
 PARAMETER_ARRAY(float, regularWeights, 54) // RegularLimitWeights, in their order
 
-// Lattice faces, and how many invocations each has, each of which makes LENGTH floats of its elements.
+// Lattice faces, and how many floats of the elements are made: an invocation makes one of a face.
 PARAMETER(uint, numFaces)
-PARAMETER(uint, numParts)
+PARAMETER(uint, numFloats)
 // Their orbits that are made together, and how many of them, the first ones, are pairs.
 PARAMETER(uint, numOrbits)
 PARAMETER(uint, numPairs)
 PARAMETER(PLACE, firstOutput)               // position in indices of the first orbit's vertices
-PARAMETER_ARRAY(float, latticeWeights, 528) // of up to 4 orbits, unless they are in weights
+PARAMETER_ARRAY(float, latticeWeights, 520) // of up to 4 orbits

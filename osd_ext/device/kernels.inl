@@ -5,11 +5,7 @@
 // body of DeviceKernels.  Whoever takes it defines before
 //   PLACE                a type for positions in arrays
 //   ARRAY                (binding, block, type, name): declares an array that is written
-//   READ_FLOATS,         (binding, block, name): declare arrays that are read alone, at READ(name, place)
-//   READ_INDICES
-//   READ_RESULT          (place): reads what a kernel before has written to the results
-//   ORBIT_WEIGHT         (first, number): a weight of the orbit in a lattice whose weights begin at first,
-//                        among the parameters or in weights
+//   READ_ARRAY           (binding, block, type, name): declares an array that is read alone
 //   PARAMETER            (type, name): declares what kernelParameters.inl lists
 //   FUNCTION             what stands before a function
 //   REFERENCE(type)      the type of an argument that the function changes, or that is large
@@ -21,13 +17,13 @@
 // are in the order of RefinementEvaluator's wherever most vertices are; products and sums are rounded
 // one by one, so that the same arrays give the same bits on every device.
 
-READ_FLOATS(0, Sources, sources)
+READ_ARRAY(0, Sources, float, sources)
 ARRAY(1, Results, float, results)
-READ_INDICES(2, Indices, indices)
-READ_FLOATS(3, Weights, weights)
+READ_ARRAY(2, Indices, uint, indices)
+READ_ARRAY(3, Weights, float, weights)
 ARRAY(4, DuResults, float, duResults)
 ARRAY(5, DvResults, float, dvResults)
-READ_INDICES(6, ListedVertices, listedVertices)
+READ_ARRAY(6, ListedVertices, uint, listedVertices)
 ARRAY(7, Triangles, uint, triangles)
 
 struct Element {
@@ -69,21 +65,19 @@ FUNCTION void addTo(REFERENCE(Element) sum, float weight, Element e) {
     }
 }
 
-// Source i of those that lie so far apart.
-FUNCTION Element getElement(PLACE offset, PLACE stride, uint i) {
+FUNCTION Element getSource(uint i) {
     Element e;
-    PLACE place = offset + PLACE(i) * stride;
+    PLACE place = sourceOffset + PLACE(i) * sourceStride;
     for (int k = 0; k < LENGTH; ++k) {
-        e.x[k] = READ(sources, place + PLACE(k));
+        e.x[k] = sources[place + PLACE(k)];
     }
     return e;
 }
-FUNCTION Element getSource(uint i) { return getElement(sourceOffset, sourceStride, i); }
 FUNCTION Element getFVertex(uint corner) {
     Element e;
     PLACE place = resultOffset + PLACE(firstFVertex + corner) * resultStride;
     for (int k = 0; k < LENGTH; ++k) {
-        e.x[k] = READ_RESULT(place + PLACE(k));
+        e.x[k] = results[place + PLACE(k)];
     }
     return e;
 }
@@ -97,12 +91,12 @@ FUNCTION void store(uint i, Element e) {
 FUNCTION uint getVertexOfCorner(uint corner) {
     return corner < numConsecutiveCorners
                ? firstConsecutiveVertex + corner
-               : READ(listedVertices, firstListedVertex + PLACE(corner - numConsecutiveCorners));
+               : listedVertices[firstListedVertex + PLACE(corner - numConsecutiveCorners)];
 }
 
 // Elements one behind the other, those of the control values or of what the indices list.
 FUNCTION void copyElement(uint i) {
-    store(i, getSource(hasIndices != 0u ? READ(indices, firstIndex + PLACE(i)) : i));
+    store(i, getSource(hasIndices != 0u ? indices[firstIndex + PLACE(i)] : i));
 }
 
 // A plain face of 3 to 6 sides: P = weightOfSelf V + weightOfNeighbors (V before + V behind) +
@@ -157,7 +151,7 @@ FUNCTION void makeFVerticesByWeights(uint i) {
     for (uint c = 0u; c < faceSize; ++c) {
         Element e = getZero();
         for (uint j = 0u; j < faceSize; ++j) {
-            addTo(e, READ(weights, firstWeight + PLACE(faceSize - c + j)),
+            addTo(e, weights[firstWeight + PLACE(faceSize - c + j)],
                   getSource(getVertexOfCorner(corner + j)));
         }
         store(firstFVertex + corner + c, e);
@@ -167,17 +161,17 @@ FUNCTION void makeFVerticesByWeights(uint i) {
 // A DeviceCorner.
 FUNCTION void makeListedFVertex(uint i) {
     PLACE place = firstIndex + PLACE(4) * PLACE(i);
-    uint size = READ(indices, place + PLACE(1));
-    PLACE vert = PLACE(READ(indices, place + PLACE(2)));
-    PLACE first = PLACE(READ(indices, place + PLACE(3)));
+    uint size = indices[place + PLACE(1)];
+    PLACE vert = PLACE(indices[place + PLACE(2)]);
+    PLACE first = PLACE(indices[place + PLACE(3)]);
     Element e = getZero();
     for (uint j = 0u; j < size; ++j) {
-        float weight = READ(weights, first + PLACE(j));
+        float weight = weights[first + PLACE(j)];
         if (weight != 0.0f) {
-            addTo(e, weight, getSource(READ(indices, vert + PLACE(j))));
+            addTo(e, weight, getSource(indices[vert + PLACE(j)]));
         }
     }
-    store(firstFVertex + READ(indices, place), e);
+    store(firstFVertex + indices[place], e);
 }
 
 // A vertex with three faces.
@@ -185,9 +179,9 @@ FUNCTION void makeVVertexOfRun(uint i) {
     Element e = getSource(firstVertex + i);
     if (averagesFaces != 0u) {
         PLACE place = firstIndex + PLACE(3) * PLACE(i);
-        Element a = getFVertex(READ(indices, place));
-        Element b = getFVertex(READ(indices, place + PLACE(1)));
-        Element c = getFVertex(READ(indices, place + PLACE(2)));
+        Element a = getFVertex(indices[place]);
+        Element b = getFVertex(indices[place + PLACE(1)]);
+        Element c = getFVertex(indices[place + PLACE(2)]);
         if (addsInTurn != 0u) {
             e = addElements(addElements(addElements(e, a), b), c);
         } else {
@@ -201,28 +195,28 @@ FUNCTION void makeVVertexOfRun(uint i) {
 // A DeviceVertex.
 FUNCTION void makeListedVVertex(uint i) {
     PLACE place = firstIndex + PLACE(5) * PLACE(i);
-    uint child = READ(indices, place);
-    uint numSources = READ(indices, place + PLACE(1));
-    uint numCorners = READ(indices, place + PLACE(2));
-    PLACE next = PLACE(READ(indices, place + PLACE(3)));
-    PLACE first = PLACE(READ(indices, place + PLACE(4)));
+    uint child = indices[place];
+    uint numSources = indices[place + PLACE(1)];
+    uint numCorners = indices[place + PLACE(2)];
+    PLACE next = PLACE(indices[place + PLACE(3)]);
+    PLACE first = PLACE(indices[place + PLACE(4)]);
     Element e = getZero();
     for (uint j = 0u; j < numSources; ++j) {
-        addTo(e, READ(weights, first + PLACE(j)), getSource(READ(indices, next + PLACE(j))));
+        addTo(e, weights[first + PLACE(j)], getSource(indices[next + PLACE(j)]));
     }
     if (numSources == 0u) {
         e = getSource(child);
         for (uint j = 0u; j < numCorners; ++j) {
-            e = addElements(e, getFVertex(READ(indices, next + PLACE(j))));
+            e = addElements(e, getFVertex(indices[next + PLACE(j)]));
         }
-        e = scaleElement(READ(weights, first), e);
+        e = scaleElement(weights[first], e);
     } else if (numCorners > 0u) {
         next = next + PLACE(numSources);
-        Element sum = getFVertex(READ(indices, next));
+        Element sum = getFVertex(indices[next]);
         for (uint j = 1u; j < numCorners; ++j) {
-            sum = addElements(sum, getFVertex(READ(indices, next + PLACE(j))));
+            sum = addElements(sum, getFVertex(indices[next + PLACE(j)]));
         }
-        addTo(e, READ(weights, first + PLACE(numSources)), sum);
+        addTo(e, weights[first + PLACE(numSources)], sum);
     }
     store(child, e);
 }
@@ -239,8 +233,8 @@ FUNCTION void makeTriangles(uint i) {
     uint corner = firstCorner + i * faceSize;
     uint size = faceSize;
     if (hasIndices != 0u) {
-        corner = READ(indices, firstIndex + PLACE(i));
-        size = READ(indices, firstIndex + PLACE(i + 1u)) - corner;
+        corner = indices[firstIndex + PLACE(i)];
+        size = indices[firstIndex + PLACE(i + 1u)] - corner;
     }
     PLACE place = resultOffset + PLACE(3) * PLACE(corner - 2u * (firstFace + i));
     uint low = corner;

@@ -112,16 +112,16 @@ struct Neighborhood {
 };
 
 FUNCTION float getSourceFloat(uint vert, uint k) {
-    return READ(sources, sourceOffset + PLACE(vert) * sourceStride + PLACE(k));
+    return sources[sourceOffset + PLACE(vert) * sourceStride + PLACE(k)];
 }
 
 // Float k of six vertices, from vert on.
-FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k, bool hasOneTip) {
+FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k) {
     Six ofVertices;
     Six neighbors;
     Six next;
     Six previous;
-    Six beyond;
+    Six others;
     Six tips;
     for (int j = 0; j < 6; ++j) {
         ofVertices.x[j] = getSourceFloat(of.verts[j], k);
@@ -132,12 +132,8 @@ FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k, bool 
         neighbors.x[j] = x[0];
         previous.x[j] = x[1];
         next.x[j] = x[5];
-        float sum = add(x[0], x[1]);
-        for (int l = 2; l < 6; ++l) {
-            sum = add(sum, x[l]);
-        }
-        beyond.x[j] = sum;
-        tips.x[j] = addProduct(add(next.x[j], previous.x[j]), regularWeights[51], sum);
+        others.x[j] = add(x[2], add(x[3], x[4]));
+        tips.x[j] = addProduct(add(next.x[j], previous.x[j]), regularWeights[51], others.x[j]);
     }
     Six pairs;
     for (int j = 0; j < 6; ++j) {
@@ -159,12 +155,9 @@ FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k, bool 
         PLACE duResult = duOffset + PLACE(vert) * duStride + PLACE(k);
         PLACE dvResult = dvOffset + PLACE(vert) * dvStride + PLACE(k);
         for (int j = 0; j < 6; ++j) {
-            float tip = tips.x[j];
-            float across = dv.x[j];
-            if (!hasOneTip) {
-                tip = addProduct(add(next.x[j], previous.x[j]), regularWeights[52], beyond.x[j]);
-                across = addProduct(across, regularWeights[53], add(next.x[j], -previous.x[j]));
-            }
+            float tip = addProduct(add(next.x[j], previous.x[j]), regularWeights[52], others.x[j]);
+            float across =
+                addProduct(dv.x[j], regularWeights[53], add(next.x[j], -previous.x[j]));
             float x = addProduct(du.x[j], regularWeights[35], tip);
             x = addProduct(x, regularWeights[49], across);
             duResults[duResult + PLACE(j) * duStride] = x;
@@ -173,63 +166,46 @@ FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k, bool 
     }
 }
 
-// All floats: the first ones outside of a loop, which compilers of OpenGL do not unroll where as much is
-// in it.
-FUNCTION void makeLimitsOfFace(REFERENCE(Neighborhood) of, uint vert, bool hasOneTip) {
-    makeSixLimits(of, vert, 0u, hasOneTip);
-    if (LENGTH > 1) {
-        makeSixLimits(of, vert, 1u, hasOneTip);
+FUNCTION void makeLimitsOfFace(REFERENCE(Neighborhood) of, uint vert) {
+    for (int k = 0; k < LENGTH; ++k) {
+        makeSixLimits(of, vert, uint(k));
     }
-    if (LENGTH > 2) {
-        makeSixLimits(of, vert, 2u, hasOneTip);
-    }
-    for (int k = 3; k < LENGTH; ++k) {
-        makeSixLimits(of, vert, uint(k), hasOneTip);
-    }
-}
-
-// getVertexOfCorner() without a branch.
-FUNCTION uint selectVertexOfCorner(uint corner) {
-    bool isListed = corner >= numConsecutiveCorners;
-    uint listed = READ(listedVertices,
-                       firstListedVertex + PLACE(isListed ? corner - numConsecutiveCorners : 0u));
-    return isListed ? listed : firstConsecutiveVertex + corner;
 }
 
 // The F-vertices of a DeviceRegularFace.
 FUNCTION void makeRegularLimit(uint i) {
     PLACE place = firstIndex + PLACE(8) * PLACE(i);
-    uint corner = READ(indices, place);
-    uint locals = READ(indices, place + PLACE(7));
+    uint corner = indices[place];
+    uint locals = indices[place + PLACE(7)];
     Neighborhood of;
     for (int j = 0; j < 6; ++j) {
-        of.verts[j] = selectVertexOfCorner(corner + uint(j));
-        uint beyond = READ(indices, place + PLACE(1 + j));
+        of.verts[j] = getVertexOfCorner(corner + uint(j));
+        uint beyond = indices[place + PLACE(1 + j)];
         uint local = (locals >> uint(3 * j)) & 7u;
         for (int l = 0; l < 6; ++l) {
             uint turned = local + uint(l);
             of.around[6 * j + l] =
-                selectVertexOfCorner(beyond + (turned < 6u ? turned : turned - 6u));
+                getVertexOfCorner(beyond + (turned < 6u ? turned : turned - 6u));
         }
     }
-    makeLimitsOfFace(of, firstFVertex + corner, true);
+    makeLimitsOfFace(of, firstFVertex + corner);
 }
 
 // The vertices of a DeviceOwnFace.
 FUNCTION void makeOwnLimit(uint i) {
     PLACE place = firstIndex + PLACE(37) * PLACE(i);
-    uint vert = READ(indices, place);
+    uint vert = indices[place];
     Neighborhood of;
     for (int j = 0; j < 6; ++j) {
         of.verts[j] = vert + uint(j);
         for (int l = 0; l < 6; ++l) {
-            of.around[6 * j + l] = READ(indices, place + PLACE(1 + 6 * j + l));
+            of.around[6 * j + l] = indices[place + PLACE(1 + 6 * j + l)];
         }
     }
-    makeLimitsOfFace(of, vert, false);
+    makeLimitsOfFace(of, vert);
 }
 
-// Lattice faces: the arithmetic of latticeKernelTemplate.h, but that no sources are joined.
+// Lattice faces: the arithmetic of latticeKernelTemplate.h.
 
 // The waves of an orbit around the face stand in a Six: the mean, what alternates with 4 and 6 corners,
 // then cosine and sine of each frequency.
@@ -352,15 +328,15 @@ FUNCTION PairOfSixes weighLattice(REFERENCE(LatticeSources) of, int first, int s
     int numAll = getNumSums() + getNumDifferences();
     for (int wave = 0; wave < getNumSingleWaves(); ++wave) {
         int at = 3 * numAll * wave + sum;
-        even.x[wave] = multiply(ORBIT_WEIGHT(first, at), of.waves[0].x[wave]);
+        even.x[wave] = multiply(latticeWeights[first + at], of.waves[0].x[wave]);
         for (int i = 1; i < getNumSums(); ++i) {
             even.x[wave] =
-                addProduct(even.x[wave], ORBIT_WEIGHT(first, at + 3 * i), of.waves[i].x[wave]);
+                addProduct(even.x[wave], latticeWeights[first + at + 3 * i], of.waves[i].x[wave]);
         }
         at = at + 3 * getNumSums();
-        odd.x[wave] = multiply(ORBIT_WEIGHT(first, at), of.waves[getNumSums()].x[wave]);
+        odd.x[wave] = multiply(latticeWeights[first + at], of.waves[getNumSums()].x[wave]);
         for (int i = 1; i < getNumDifferences(); ++i) {
-            odd.x[wave] = addProduct(odd.x[wave], ORBIT_WEIGHT(first, at + 3 * i),
+            odd.x[wave] = addProduct(odd.x[wave], latticeWeights[first + at + 3 * i],
                                      of.waves[getNumSums() + i].x[wave]);
         }
     }
@@ -368,19 +344,19 @@ FUNCTION PairOfSixes weighLattice(REFERENCE(LatticeSources) of, int first, int s
         int cosine = getNumSingleWaves() + 2 * i;
         int sine = cosine + 1;
         int at = 3 * numAll * cosine + 2 * sum;
-        even.x[cosine] = multiply(ORBIT_WEIGHT(first, at), of.waves[0].x[cosine]);
-        even.x[sine] = multiply(ORBIT_WEIGHT(first, at), of.waves[0].x[sine]);
-        odd.x[sine] = multiply(ORBIT_WEIGHT(first, at + 1), of.waves[0].x[cosine]);
-        odd.x[cosine] = multiply(ORBIT_WEIGHT(first, at + 1), of.waves[0].x[sine]);
+        even.x[cosine] = multiply(latticeWeights[first + at], of.waves[0].x[cosine]);
+        even.x[sine] = multiply(latticeWeights[first + at], of.waves[0].x[sine]);
+        odd.x[sine] = multiply(latticeWeights[first + at + 1], of.waves[0].x[cosine]);
+        odd.x[cosine] = multiply(latticeWeights[first + at + 1], of.waves[0].x[sine]);
         for (int j = 1; j < numAll; ++j) {
             at = at + 6;
             even.x[cosine] =
-                addProduct(even.x[cosine], ORBIT_WEIGHT(first, at), of.waves[j].x[cosine]);
-            even.x[sine] = addProduct(even.x[sine], ORBIT_WEIGHT(first, at), of.waves[j].x[sine]);
+                addProduct(even.x[cosine], latticeWeights[first + at], of.waves[j].x[cosine]);
+            even.x[sine] = addProduct(even.x[sine], latticeWeights[first + at], of.waves[j].x[sine]);
             odd.x[sine] =
-                addProduct(odd.x[sine], ORBIT_WEIGHT(first, at + 1), of.waves[j].x[cosine]);
+                addProduct(odd.x[sine], latticeWeights[first + at + 1], of.waves[j].x[cosine]);
             odd.x[cosine] =
-                addProduct(odd.x[cosine], ORBIT_WEIGHT(first, at + 1), of.waves[j].x[sine]);
+                addProduct(odd.x[cosine], latticeWeights[first + at + 1], of.waves[j].x[sine]);
         }
     }
     Six halfSum = findLatticeValues(even);
@@ -405,40 +381,35 @@ struct LatticeOutputs {
 FUNCTION LatticeOutputs getOutputs(PLACE place) {
     LatticeOutputs outputs;
     for (int corner = 0; corner < SIZE; ++corner) {
-        outputs.verts[corner] = READ(indices, place + PLACE(corner) * PLACE(numFaces));
+        outputs.verts[corner] = indices[place + PLACE(corner) * PLACE(numFaces)];
     }
     return outputs;
 }
 
-// Parameters are read before the branch: Mesa's drivers for processors read them in each.
 FUNCTION void storePoints(REFERENCE(LatticeOutputs) outputs, uint k, Six point) {
     for (int corner = 0; corner < SIZE; ++corner) {
         uint vert = outputs.verts[corner];
-        PLACE place = resultOffset + PLACE(vert) * resultStride + PLACE(k);
         if (vert != getNoVertex()) {
-            results[place] = point.x[corner];
+            results[resultOffset + PLACE(vert) * resultStride + PLACE(k)] = point.x[corner];
         }
     }
 }
 FUNCTION void storeDerivatives(REFERENCE(LatticeOutputs) outputs, uint k, Six du, Six dv) {
     for (int corner = 0; corner < SIZE; ++corner) {
         uint vert = outputs.verts[corner];
-        PLACE ofDu = duOffset + PLACE(vert) * duStride + PLACE(k);
-        PLACE ofDv = dvOffset + PLACE(vert) * dvStride + PLACE(k);
         if (vert != getNoVertex()) {
-            duResults[ofDu] = du.x[corner];
-            dvResults[ofDv] = dv.x[corner];
+            duResults[duOffset + PLACE(vert) * duStride + PLACE(k)] = du.x[corner];
+            dvResults[dvOffset + PLACE(vert) * dvStride + PLACE(k)] = dv.x[corner];
         }
     }
 }
 
-// Those of AddOrbitWeights; and with those that DeviceLimit has behind them.
+// Those of AddOrbitWeights.
 FUNCTION int getNumWeights() {
     return 3 * (getNumSums() + getNumDifferences()) *
                (getNumSingleWaves() + 2 * getNumFrequencies()) +
            4;
 }
-FUNCTION int getNumPaddedWeights() { return (getNumWeights() + 3) / 4 * 4; }
 
 // Float k of an orbit whose weights begin at first; of a pair that of its mirror images, too.
 FUNCTION void makeOrbit(REFERENCE(LatticeSources) of, REFERENCE(LatticeOutputs) outputs,
@@ -458,85 +429,66 @@ FUNCTION void makeOrbit(REFERENCE(LatticeSources) of, REFERENCE(LatticeOutputs) 
                 float u = du.second.x[corner];
                 float v = dv.second.x[corner];
                 du.second.x[corner] =
-                    addProduct(multiply(ORBIT_WEIGHT(first, ofDerivatives + 1), v),
-                               ORBIT_WEIGHT(first, ofDerivatives), u);
+                    addProduct(multiply(latticeWeights[first + ofDerivatives + 1], v),
+                               latticeWeights[first + ofDerivatives], u);
                 dv.second.x[corner] =
-                    addProduct(multiply(ORBIT_WEIGHT(first, ofDerivatives + 3), v),
-                               ORBIT_WEIGHT(first, ofDerivatives + 2), u);
+                    addProduct(multiply(latticeWeights[first + ofDerivatives + 3], v),
+                               latticeWeights[first + ofDerivatives + 2], u);
             }
             storeDerivatives(images, k, du.second, dv.second);
         }
     }
 }
 
-// LENGTH floats of some orbits of a lattice face, pairs first, whose indices stand place after place, of
-// all faces in turn.  Loops end behind their bodies: Mesa's drivers for processors would go through one
-// that ends before it once more.
+// A float of some orbits of a lattice face, pairs first, whose indices stand place after place, of all faces
+// in turn.
 FUNCTION void makeLatticeLimit(uint i) {
-    uint face = i / numParts;
-    uint k = uint(LENGTH) * (i - face * numParts);
+    uint face = i / numFloats;
+    uint k = i - face * numFloats;
     LatticePlaces places;
     for (int orbit = 0; orbit < getNumAxes() + 2 * getNumDifferences(); ++orbit) {
         for (int corner = 0; corner < SIZE; ++corner) {
             int number = orbit * SIZE + corner;
             places.verts[number] =
-                READ(indices, firstIndex + PLACE(number) * PLACE(numFaces) + PLACE(face));
+                indices[firstIndex + PLACE(number) * PLACE(numFaces) + PLACE(face)];
         }
     }
-    LatticeSources of[LENGTH];
-    for (int j = 0; j < LENGTH; ++j) {
-        findLatticeSources(places, k + uint(j), of[j]);
-    }
+    LatticeSources of;
+    findLatticeSources(places, k, of);
     PLACE place = firstOutput + PLACE(face);
     PLACE next = PLACE(SIZE) * PLACE(numFaces);
-    uint orbit = 0u;
     int first = 0;
-    if (numPairs > 0u) {
-        do {
-            LatticeOutputs outputs = getOutputs(place);
-            LatticeOutputs images = getOutputs(place + next);
-            for (int j = 0; j < LENGTH; ++j) {
-                makeOrbit(of[j], outputs, images, first, k + uint(j), true);
-            }
-            place = place + next + next;
-            first = first + getNumPaddedWeights();
-            orbit = orbit + 1u;
-        } while (orbit < numPairs);
-    }
-    if (orbit < numOrbits) {
-        do {
-            LatticeOutputs outputs = getOutputs(place);
-            for (int j = 0; j < LENGTH; ++j) {
-                makeOrbit(of[j], outputs, outputs, first, k + uint(j), false);
-            }
+    for (uint orbit = 0u; orbit < numOrbits; ++orbit) {
+        bool isPair = orbit < numPairs;
+        LatticeOutputs outputs = getOutputs(place);
+        place = place + next;
+        LatticeOutputs images = outputs;
+        if (isPair) {
+            images = getOutputs(place);
             place = place + next;
-            first = first + getNumPaddedWeights();
-            orbit = orbit + 1u;
-        } while (orbit < numOrbits);
+        }
+        makeOrbit(of, outputs, images, first, k, isPair);
+        first = first + getNumWeights();
     }
 }
 
 // The limit of a DeviceLimitVertex.
 FUNCTION void makeListedLimit(uint i) {
     PLACE place = firstIndex + PLACE(4) * PLACE(i);
-    uint vert = READ(indices, place);
-    uint numSources = READ(indices, place + PLACE(1));
-    PLACE next = PLACE(READ(indices, place + PLACE(2)));
-    PLACE first = PLACE(READ(indices, place + PLACE(3)));
+    uint vert = indices[place];
+    uint numSources = indices[place + PLACE(1)];
+    PLACE next = PLACE(indices[place + PLACE(2)]);
+    PLACE first = PLACE(indices[place + PLACE(3)]);
     Element point = getZero();
     Element du = getZero();
     Element dv = getZero();
-    // Parameters are read before the loop: see storePoints().
-    PLACE offset = sourceOffset;
-    PLACE stride = sourceStride;
-    bool isAll = hasDerivatives != 0u;
     for (uint j = 0u; j < numSources; ++j) {
-        Element e = getElement(offset, stride, READ(indices, next + PLACE(j)));
+        Element e = getSource(indices[next + PLACE(j)]);
         PLACE weight = first + PLACE(3) * PLACE(j);
-        addTo(point, READ(weights, weight), e);
-        if (isAll) {
-            addTo(du, READ(weights, weight + PLACE(1)), e);
-            addTo(dv, READ(weights, weight + PLACE(2)), e);
+        addTo(point, weights[weight], e);
+        if (hasDerivatives != 0u) {
+            addTo(du, weights[weight + PLACE(1)], e);
+            addTo(dv, weights[weight + PLACE(2)], e);
         }
     }
     store(vert, point);

@@ -29,33 +29,12 @@ constexpr char const *kNames[] = {
     "makeListedFVertex", "makeVVertexOfRun",   "makeListedVVertex",   "makeRegularLimit",
     "makeOwnLimit",      "makeLatticeLimit",   "makeListedLimit",     "makeTriangles"};
 
-// What stands before the kernels, behind LENGTH and SIZE: see kernels.inl.  What is read alone may be
-// TEXTURES.  Where the device is SERIAL, four weights of orbits are a texel, whatever the others
-// are: see GlTextures::Bind().
+// What stands before the kernels, behind LENGTH and SIZE: see kernels.inl.
 constexpr char const *kHead = R"(
 layout(local_size_x = 64) in;
 #define PLACE uint
-#ifdef TEXTURES
-#define READ_FLOATS(number, block, name) layout(binding = number) uniform samplerBuffer name;
-#define READ_INDICES(number, block, name) layout(binding = number) uniform usamplerBuffer name;
-#define READ(name, place) texelFetch(name, int(place)).x
-#define READ_RESULT(place) READ(readResults, place)
-READ_FLOATS(1, ReadResults, readResults)
-#else
-#define READ_FLOATS(number, block, name) \
-    layout(std430, binding = number) readonly buffer block { float name[]; };
-#define READ_INDICES(number, block, name) \
-    layout(std430, binding = number) readonly buffer block { uint name[]; };
-#define READ(name, place) name[place]
-#define READ_RESULT(place) results[place]
-#endif
-#ifdef SERIAL
-layout(binding = 4) uniform samplerBuffer fourWeights;
-#define ORBIT_WEIGHT(first, number) \
-    texelFetch(fourWeights, int(firstWeight) / 4 + (first) / 4 + (number) / 4)[(number) % 4]
-#else
-#define ORBIT_WEIGHT(first, number) latticeWeights[(first) + (number)]
-#endif
+#define READ_ARRAY(number, block, type, name) \
+    layout(std430, binding = number) readonly buffer block { type name[]; };
 #define ARRAY(number, block, type, name) \
     layout(std430, binding = number) buffer block { type name[]; };
 #define PARAMETER(type, name) uniform type name;
@@ -174,23 +153,16 @@ CallStatus GlDevice::CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats
     return CallStatus();
 }
 
-bool GlDevice::IsSerial() { return _textures.AreFaster(); }
-
 CallStatus GlDevice::Prepare(DeviceKernel kernel, int length, int faceSize) {
-    return prepare({kernel, length, faceSize, _textures.AreFaster()});
-}
-
-CallStatus GlDevice::prepare(Key const &key) {
-    Kernel &prepared = _kernels[key];
+    Kernel &prepared = _kernels[{kernel, length, faceSize}];
     if (prepared.program) {
         return CallStatus();
     }
-    auto const [kernel, length, faceSize, readsTextures] = key;
     char const *const name = kNames[int(kernel)];
-    std::string const definitions =
-        "#version 430\n#define LENGTH " + std::to_string(length) + "\n#define SIZE " +
-        std::to_string(faceSize == 0 ? kMinUnrolledFace : faceSize) + "\n#define KERNEL " + name +
-        "\n" + (readsTextures ? "#define TEXTURES\n" : "") + (IsSerial() ? "#define SERIAL\n" : "");
+    std::string const definitions = "#version 430\n#define LENGTH " + std::to_string(length) +
+                                    "\n#define SIZE " +
+                                    std::to_string(faceSize == 0 ? kMinUnrolledFace : faceSize) +
+                                    "\n#define KERNEL " + name + "\n";
     std::vector<char const *> texts = {definitions.c_str(), kHead};
     texts.insert(texts.end(), std::begin(kKernelTexts), std::end(kKernelTexts));
     texts.push_back(kMain);
@@ -213,14 +185,7 @@ CallStatus GlDevice::prepare(Key const &key) {
 }
 
 void GlDevice::Run(DeviceTask const &task) {
-    Key const key = {task.kernel, task.length, task.faceSize, _textures.Bind(task)};
-    if (_status.IsOk()) {
-        _status = prepare(key);
-    }
-    if (!_status.IsOk()) {
-        return;
-    }
-    Kernel const &kernel = _kernels.at(key);
+    Kernel const &kernel = _kernels.at({task.kernel, task.length, task.faceSize});
     DeviceParameters parameters = task.parameters;
     parameters.count = task.count;
     kernel.program->Use();
@@ -243,9 +208,7 @@ void GlDevice::Run(DeviceTask const &task) {
     glDispatchCompute(numGroups / numRows + (numGroups % numRows != 0), numRows, 1);
 }
 
-void GlDevice::Wait() {
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-}
+void GlDevice::Wait() { glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT); }
 
 // Binds nothing, as if nothing had been.
 CallStatus GlDevice::EndFrame() {
@@ -255,8 +218,7 @@ CallStatus GlDevice::EndFrame() {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
     }
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
-    _textures.Unbind();
-    return std::exchange(_status, CallStatus());
+    return CallStatus();
 }
 
 } // namespace OpenSubdivHex::OsdExt::internal

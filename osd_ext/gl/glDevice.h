@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_OSD_EXT_GL_GL_DEVICE_H
 
 #include "glObjects.h"
-#include "glTextures.h"
 
 #include "osd_ext/device/device.h"
 
@@ -28,24 +27,20 @@ public:
               std::function<void(void *)> const &write) override;
     FarExt::CallStatus CheckBuffer(DeviceBufferName buffer, std::int64_t numFloats,
                                    std::string const &what) const override;
-    bool IsSerial() override;
     FarExt::CallStatus Prepare(DeviceKernel kernel, int length, int faceSize) override;
     void Run(DeviceTask const &task) override;
     void Wait() override;
     FarExt::CallStatus EndFrame() override;
 
 private:
-    // With length and face size, and whether arrays are read as textures.
-    using Key = std::tuple<DeviceKernel, int, int, bool>;
+    // With length and face size.
+    using Key = std::tuple<DeviceKernel, int, int>;
     struct Kernel {
         std::unique_ptr<GlProgram> program;
         std::vector<GLint> uniforms; // in the order of kernelParameters.inl
     };
-    FarExt::CallStatus prepare(Key const &key);
 
     std::map<Key, Kernel> _kernels;
-    GlTextures _textures;
-    FarExt::CallStatus _status; // of what was run since the last frame
 };
 
 } // namespace OpenSubdivHex::OsdExt::internal

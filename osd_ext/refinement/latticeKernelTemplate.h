@@ -152,10 +152,10 @@ private:
 
 /// \brief Makes the values of orbits, by output: sums the waves of the sources with the weights of an
 /// orbit, and joins the sums to values.
-template <class SIMD, int FACE_SIZE, LatticeSourceKind KIND, int NUM_OUTPUTS>
+template <class SIMD, int FACE_SIZE, bool IS_COMPACT, int NUM_OUTPUTS>
 struct LatticeKernel {
     using Vector = typename SIMD::Vector;
-    using Sources = LatticeSources<SIMD, FACE_SIZE, KIND>;
+    using Sources = LatticeSources<SIMD, FACE_SIZE, IS_COMPACT>;
     using Values = Vector[NUM_OUTPUTS][FACE_SIZE];
     static constexpr int kMaxOutputs = LimitTask::kMaxOutputs;
     static constexpr bool kAlternates = FACE_SIZE % 2 == 0;
@@ -304,10 +304,10 @@ private:
     }
 };
 
-template <class SIMD, class ACCESS, int FACE_SIZE, LatticeSourceKind KIND, int NUM_OUTPUTS>
+template <class SIMD, class ACCESS, int FACE_SIZE, bool IS_COMPACT, int NUM_OUTPUTS>
 void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
-    using Kernel = LatticeKernel<SIMD, FACE_SIZE, KIND, NUM_OUTPUTS>;
-    using Sources = LatticeSources<SIMD, FACE_SIZE, KIND>;
+    using Kernel = LatticeKernel<SIMD, FACE_SIZE, IS_COMPACT, NUM_OUTPUTS>;
+    using Sources = LatticeSources<SIMD, FACE_SIZE, IS_COMPACT>;
     constexpr int kGroup = RegularFaceGroup::kSize;
     constexpr int kNumDerivatives = LatticeTask::kNumDerivatives;
     Elements<float const> const values = task.values;
@@ -315,9 +315,9 @@ void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) 
     for (int i = 0; i < NUM_OUTPUTS; ++i) {
         outputs[i] = task.outputs[i];
     }
-    using Read = typename Sources::Read;
+    using Orbits = typename Sources::Orbits;
     std::ptrdiff_t const numPlaces =
-        std::ptrdiff_t(kGroup) * FACE_SIZE * (Read::kNumAxes + 2 * Read::kNumPairs);
+        std::ptrdiff_t(kGroup) * FACE_SIZE * (Orbits::kNumAxes + 2 * Orbits::kNumPairs);
     using Writer = LatticeWriter<SIMD, ACCESS, FACE_SIZE, NUM_OUTPUTS>;
     Writer const writer{outputs, task.length};
     std::ptrdiff_t const numVerts = std::ptrdiff_t(Writer::kNumVerts) * task.GetNumOrbits();
@@ -328,7 +328,7 @@ void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) 
             loadSources<SIMD, ACCESS>(
                 LatticeLoader<SIMD, ACCESS, FACE_SIZE>{values, task.length,
                                                        task.places + group * numPlaces + first},
-                task, sources);
+                sources);
             Far::Index const *verts = task.verts + group * numVerts + first;
             unsigned char const *areConsecutive = task.areConsecutive;
             float const *weights = task.weights;

@@ -120,12 +120,9 @@ void LatticeLimit::Prepare(LatticeFaces const &faces) {
 
 LatticeLimit::Sources LatticeLimit::findSources(LatticeFaces::Set const &of) {
     if (std::optional<SourceOrbits> const compact = FindCompactSourceOrbits(of)) {
-        return {LatticeSourceKind::Compact, *compact, *compact};
+        return {true, *compact};
     }
-    SourceOrbits const all = GetAllSourceOrbits(of.patch);
-    return of.outerWeights
-               ? Sources{LatticeSourceKind::Joined, all, GetJoinedSourceOrbits(of.patch)}
-               : Sources{LatticeSourceKind::All, all, all};
+    return {false, GetAllSourceOrbits(of.patch)};
 }
 
 LatticeLimit::Corners LatticeLimit::makeCorners(LatticeFaces const &faces,
@@ -137,8 +134,7 @@ LatticeLimit::Corners LatticeLimit::makeCorners(LatticeFaces const &faces,
     if (!of.corners || faceSize == 3) {
         return corners;
     }
-    if (sources.kind == LatticeSourceKind::Compact &&
-        !DependsOnThese(sources.summed, of.patch, *of.corners)) {
+    if (sources.areCompact && !DependsOnThese(sources.orbits, of.patch, *of.corners)) {
         return corners;
     }
     corners.resize(of.faces.size() * faceSize, Far::INDEX_INVALID);
@@ -154,16 +150,12 @@ LatticeLimit::Corners LatticeLimit::makeCorners(LatticeFaces const &faces,
 
 void LatticeLimit::setSources(LatticeFaces::Set const &of, Sources const &sources,
                               std::vector<Index> const &faces, Set &set) {
-    bool const isJoined = sources.kind == LatticeSourceKind::Joined;
-    set.sourceKind = sources.kind;
-    for (std::size_t i = 0; i < std::size(set.outerWeights); ++i) {
-        set.outerWeights[i] = isJoined ? float((*of.outerWeights)[i]) : 0;
-    }
+    set.isCompact = sources.areCompact;
     std::vector<int> places;
-    for (int const orbit : sources.read.axes) {
+    for (int const orbit : sources.orbits.axes) {
         addOrbits(orbit, 1, set.faceSize, places);
     }
-    for (int const orbit : sources.read.pairs) {
+    for (int const orbit : sources.orbits.pairs) {
         addOrbits(orbit, 2, set.faceSize, places);
     }
     auto const numPlaces = std::size_t(of.patch.GetNumPlaces());
@@ -183,9 +175,7 @@ void LatticeLimit::setOutputs(LatticeFaces::Set const &of, Sources const &source
     set.numAxes = numInside + (corners.empty() ? 0 : 1);
     std::vector<int> outputs;
     auto const addWeights = [&](LatticeFaces::Orbit const &orbit) {
-        bool const isJoined = sources.kind == LatticeSourceKind::Joined;
-        AddOrbitWeights(sources.summed, of.patch, isJoined ? JoinSources(of.patch, orbit) : orbit,
-                        set.weights);
+        AddOrbitWeights(sources.orbits, of.patch, orbit, set.weights);
     };
     auto const addOutputs = [&](int orbit, int first, int numOrbits) {
         addOrbits(first, numOrbits, set.faceSize, outputs);
@@ -247,7 +237,7 @@ void LatticeLimit::Evaluate(LimitTask const &common) const {
         LatticeTask task;
         static_cast<LimitTask &>(task) = common;
         task.faceSize = set.faceSize;
-        task.sourceKind = set.sourceKind;
+        task.isCompact = set.isCompact;
         task.numPairs = set.numPairs;
         task.numHalves = set.numHalves;
         task.numAxes = set.numAxes;
@@ -257,7 +247,6 @@ void LatticeLimit::Evaluate(LimitTask const &common) const {
         task.ahead = set.ahead.data();
         task.firstAhead = set.firstAhead.data();
         task.numGroupsAhead = set.numGroupsAhead;
-        std::copy(std::begin(set.outerWeights), std::end(set.outerWeights), task.outerWeights);
         task.weights = set.weights.data();
         EvaluateLimit(task, set.numGroups);
     }

@@ -34,8 +34,7 @@ public:
 private:
     struct Set {
         int faceSize;
-        LatticeSourceKind sourceKind;
-        float outerWeights[LatticeTask::kNumOuterWeights];
+        bool isCompact;
         int numPairs;
         int numHalves;
         int numAxes;
@@ -49,11 +48,10 @@ private:
         std::vector<float> weights;
     };
 
-    /// Which sources of a face are read, and which of these, or of what they are joined to, are summed up.
+    /// Which sources of a face are summed up.
     struct Sources {
-        LatticeSourceKind kind;
-        SourceOrbits read;
-        SourceOrbits summed;
+        bool areCompact;
+        SourceOrbits orbits;
     };
     /// The vertices at the corners of faces, one by one; invalid where other faces make them.
     using Corners = std::vector<Far::Index>;

@@ -10,7 +10,6 @@
 #include "far_ext/limit/latticePatch.h"
 
 #include <cstdint>
-#include <type_traits>
 
 namespace OpenSubdivHex::OsdExt::internal {
 namespace {
@@ -20,13 +19,10 @@ namespace {
 /// Of the two orbits of a pair these are their sum, which is like an orbit on an axis, and their
 /// difference, which changes its sign in the mirror: its waves are turned by a quarter, so that one
 /// weight stands for cosine and sine.
-template <class SIMD, int FACE_SIZE, LatticeSourceKind KIND>
+template <class SIMD, int FACE_SIZE, bool IS_COMPACT>
 struct LatticeSources {
     using T = typename SIMD::Vector;
-    /// Those that are read, and what they become.
-    using Read = FarExt::internal::LatticeOrbits<FACE_SIZE, KIND == LatticeSourceKind::Compact>;
-    using Orbits = std::conditional_t<KIND == LatticeSourceKind::Joined,
-                                      FarExt::internal::JoinedOrbits<FACE_SIZE>, Read>;
+    using Orbits = FarExt::internal::LatticeOrbits<FACE_SIZE, IS_COMPACT>;
     static constexpr int kNumSums = Orbits::kNumAxes + Orbits::kNumPairs;
     static constexpr int kNumDifferences = Orbits::kNumPairs;
     static constexpr int kSize = kNumSums + kNumDifferences;
@@ -48,7 +44,7 @@ struct LatticeLoader {
         for (int corner = 0; corner < FACE_SIZE; ++corner, place += RegularFaceGroup::kSize) {
             float const *sources[SIMD::kNumFaces];
             for (int i = 0; i < SIMD::kNumFaces; ++i) {
-                sources[i] = ACCESS::AtPlace(values, place[i], RegularFaceGroup::kPointStride);
+                sources[i] = ACCESS::AtPlace(values, place[i]);
             }
             x[corner] = ACCESS::template Load<SIMD>(sources, length);
         }
@@ -60,10 +56,10 @@ struct LatticeLoader {
 };
 
 /// Adds the waves of orbits to LatticeSources.
-template <class SIMD, int FACE_SIZE, LatticeSourceKind KIND>
+template <class SIMD, int FACE_SIZE, bool IS_COMPACT>
 struct LatticeSourceWriter {
     using Vector = typename SIMD::Vector;
-    using Sources = LatticeSources<SIMD, FACE_SIZE, KIND>;
+    using Sources = LatticeSources<SIMD, FACE_SIZE, IS_COMPACT>;
 
     OPENSUBDIVHEX_INLINE void SetAxis(int axis, Vector const (&x)[FACE_SIZE]) {
         set(axis, findWaves<SIMD>(x));
@@ -101,14 +97,12 @@ private:
     }
 };
 
-/// Sources as they are.
-template <class SIMD, class ACCESS, int FACE_SIZE, LatticeSourceKind KIND>
+template <class SIMD, class ACCESS, int FACE_SIZE, bool IS_COMPACT>
 OPENSUBDIVHEX_INLINE void loadSources(LatticeLoader<SIMD, ACCESS, FACE_SIZE> const &loader,
-                                      LatticeTask const &,
-                                      LatticeSources<SIMD, FACE_SIZE, KIND> &result) {
+                                      LatticeSources<SIMD, FACE_SIZE, IS_COMPACT> &result) {
     using Vector = typename SIMD::Vector;
-    using Orbits = typename LatticeSources<SIMD, FACE_SIZE, KIND>::Orbits;
-    LatticeSourceWriter<SIMD, FACE_SIZE, KIND> writer{result};
+    using Orbits = typename LatticeSources<SIMD, FACE_SIZE, IS_COMPACT>::Orbits;
+    LatticeSourceWriter<SIMD, FACE_SIZE, IS_COMPACT> writer{result};
     Vector x[FACE_SIZE];
     for (int i = 0; i < Orbits::kNumAxes; ++i) {
         loader.Load(i, x);
@@ -120,106 +114,6 @@ OPENSUBDIVHEX_INLINE void loadSources(LatticeLoader<SIMD, ACCESS, FACE_SIZE> con
         loader.Load(Orbits::kNumAxes + 2 * i + 1, y);
         writer.SetPair(i, x, y);
     }
-}
-
-/// All sources, the outer ones joined as GetJoinedSourceOrbits() says: of triangles,
-template <class SIMD, class ACCESS>
-OPENSUBDIVHEX_INLINE void loadSources(LatticeLoader<SIMD, ACCESS, 3> const &loader,
-                                      LatticeTask const &task,
-                                      LatticeSources<SIMD, 3, LatticeSourceKind::Joined> &result) {
-    using Vector = typename SIMD::Vector;
-    LatticeSourceWriter<SIMD, 3, LatticeSourceKind::Joined> writer{result};
-    Vector const weight = SIMD::Spread(task.outerWeights[0]);
-    Vector const halfWeight = SIMD::Spread(task.outerWeights[0] / 2);
-    Vector x[3];
-    Vector y[3];
-    Vector joined[3];
-    // Orbits 5 and 6.
-    loader.Load(5, x);
-    loader.Load(6, y);
-    for (int i = 0; i < 3; ++i) {
-        joined[i] = x[(i + 1) % 3] + y[(i + 2) % 3];
-    }
-    writer.SetAxis(3, joined);
-    for (int i = 0; i < 3; ++i) {
-        joined[i] = (y[(i + 1) % 3] - x[i]) + (x[(i + 2) % 3] - y[i]);
-    }
-    // Orbits 2, 7 and 8.
-    loader.Load(2, x);
-    for (int i = 0; i < 3; ++i) {
-        joined[i] = SIMD::MultiplyAdd(halfWeight, joined[i], x[i]);
-    }
-    loader.Load(7, x);
-    loader.Load(8, y);
-    for (int i = 0; i < 3; ++i) {
-        addProduct<SIMD>(joined[i], weight, x[i] + y[i]);
-    }
-    writer.SetAxis(2, joined);
-    loader.Load(0, x);
-    writer.SetAxis(0, x);
-    loader.Load(1, x);
-    writer.SetAxis(1, x);
-    loader.Load(3, x);
-    loader.Load(4, y);
-    writer.SetPair(0, x, y);
-}
-/// of quads,
-template <class SIMD, class ACCESS>
-OPENSUBDIVHEX_INLINE void loadSources(LatticeLoader<SIMD, ACCESS, 4> const &loader,
-                                      LatticeTask const &task,
-                                      LatticeSources<SIMD, 4, LatticeSourceKind::Joined> &result) {
-    using Vector = typename SIMD::Vector;
-    LatticeSourceWriter<SIMD, 4, LatticeSourceKind::Joined> writer{result};
-    Vector const weight = SIMD::Spread(task.outerWeights[0]);
-    Vector const ofOther = SIMD::Spread(task.outerWeights[1]);
-    Vector x[4];
-    Vector y[4];
-    loader.Load(0, x);
-    writer.SetAxis(0, x);
-    loader.Load(1, x);
-    writer.SetAxis(1, x);
-    loader.Load(2, x);
-    loader.Load(3, y);
-    writer.SetPair(0, x, y);
-    Vector outer[4];
-    Vector ofMirror[4];
-    loader.Load(4, x);
-    loader.Load(5, y);
-    loader.Load(6, outer);
-    loader.Load(7, ofMirror);
-    for (int i = 0; i < 4; ++i) {
-        addProduct<SIMD>(x[i], weight, outer[i]);
-        addProduct<SIMD>(x[i], ofOther, ofMirror[(i + 1) % 4]);
-        addProduct<SIMD>(y[i], weight, ofMirror[i]);
-        addProduct<SIMD>(y[i], ofOther, outer[(i + 3) % 4]);
-    }
-    writer.SetPair(1, x, y);
-}
-/// and of hexagons.
-template <class SIMD, class ACCESS>
-OPENSUBDIVHEX_INLINE void loadSources(LatticeLoader<SIMD, ACCESS, 6> const &loader,
-                                      LatticeTask const &task,
-                                      LatticeSources<SIMD, 6, LatticeSourceKind::Joined> &result) {
-    using Vector = typename SIMD::Vector;
-    LatticeSourceWriter<SIMD, 6, LatticeSourceKind::Joined> writer{result};
-    Vector const weight = SIMD::Spread(task.outerWeights[0]);
-    Vector x[6];
-    Vector y[6];
-    Vector joined[6];
-    loader.Load(0, x);
-    writer.SetAxis(0, x);
-    loader.Load(1, x);
-    writer.SetAxis(1, x);
-    loader.Load(2, joined);
-    loader.Load(5, x);
-    loader.Load(6, y);
-    for (int i = 0; i < 6; ++i) {
-        addProduct<SIMD>(joined[i], weight, x[i] + y[i]);
-    }
-    writer.SetAxis(2, joined);
-    loader.Load(3, x);
-    loader.Load(4, y);
-    writer.SetPair(0, x, y);
 }
 
 } // namespace

@@ -186,35 +186,6 @@ bool DependsOnThese(SourceOrbits const &sources, LatticePatch const &patch,
     return true;
 }
 
-SourceOrbits GetJoinedSourceOrbits(LatticePatch const &patch) {
-    switch (patch.GetFaceSize()) {
-    case 3:
-        return {{0, 1, 2, 5}, {3}};
-    case 4:
-        return {{0, 1}, {2, 4}};
-    default:
-        return {{0, 1, 2}, {3}};
-    }
-}
-
-LatticeFaces::Orbit JoinSources(LatticePatch const &patch, LatticeFaces::Orbit const &orbit) {
-    LatticeFaces::Orbit result = orbit;
-    int const size = patch.GetFaceSize();
-    if (size != 3) {
-        return result;
-    }
-    // Two sources that are mirror images weigh as much as their mean, but for a part that orbit 2 has.
-    for (int i = 0; i < size; ++i) {
-        LimitWeights const &first = orbit.weights[std::size_t(patch.TurnPlace(5 * size, i + 1))];
-        LimitWeights const &second = orbit.weights[std::size_t(patch.TurnPlace(6 * size, i + 2))];
-        LimitWeights &joined = result.weights[std::size_t(patch.TurnPlace(5 * size, i))];
-        for (std::size_t sum = 0; sum < joined.size(); ++sum) {
-            joined[sum] = (first[sum] + second[sum]) / 2;
-        }
-    }
-    return result;
-}
-
 LatticeFaces::Orbit MakePair(LatticeFaces::Orbit const &orbit) {
     LatticeFaces::Orbit result = orbit;
     if (orbit.isPair) {

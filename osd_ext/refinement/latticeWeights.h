@@ -30,22 +30,6 @@ GroupByHalves(FarExt::internal::LatticeFaces::Set const &set);
 bool DependsOnThese(SourceOrbits const &sources, FarExt::internal::LatticePatch const &patch,
                     FarExt::internal::LatticeFaces::Orbit const &orbit);
 
-/// @name Joined orbits, of all sources
-/// @{
-/// \brief Those that are left: in triangles the first joined one, which has an axis, stands for orbit 5.
-///
-/// With x(k, i) for source i of orbit k, and the LatticeFaces::Set::outerWeights a and b, sources become
-///   triangles  x(5, i + 1) + x(6, i + 2) in orbit 5, and in orbit 2
-///              x(2, i) + a (x(7, i) + x(8, i)) + a / 2 (x(6, i + 1) - x(5, i) + x(5, i + 2) - x(6, i)),
-///   quads      x(4, i) + a x(6, i) + b x(7, i + 1) and x(5, i) + a x(7, i) + b x(6, i - 1),
-///   hexagons   x(2, i) + a (x(5, i) + x(6, i)).
-SourceOrbits GetJoinedSourceOrbits(FarExt::internal::LatticePatch const &patch);
-/// An orbit with weights for these.
-FarExt::internal::LatticeFaces::Orbit
-JoinSources(FarExt::internal::LatticePatch const &patch,
-            FarExt::internal::LatticeFaces::Orbit const &orbit);
-/// @}
-
 /// An orbit as the first of a pair: of one on an axis, du and dv instead of derivatives along it and across.
 FarExt::internal::LatticeFaces::Orbit MakePair(FarExt::internal::LatticeFaces::Orbit const &orbit);
 

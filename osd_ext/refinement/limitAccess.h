@@ -91,12 +91,11 @@ struct LimitAccess {
         }
     }
 
-    /// The element at a place in points, or sums, that are \p pointStride floats apart.
+    /// The element at a place in points, as in RegularFaceGroup.
     static OPENSUBDIVHEX_INLINE float const *AtPlace(Elements<float const> const &elements,
-                                                     std::uint32_t place, int pointStride) {
+                                                     std::uint32_t place) {
         return elements.data +
-               (kIsPoints ? place
-                          : std::ptrdiff_t(place / unsigned(pointStride)) * elements.stride);
+               (kIsPoints ? place : std::ptrdiff_t(place / unsigned(kPoint)) * elements.stride);
     }
     template <class FLOAT>
     static OPENSUBDIVHEX_INLINE FLOAT *At(Elements<FLOAT> const &elements, std::ptrdiff_t i) {

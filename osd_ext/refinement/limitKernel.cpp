@@ -17,7 +17,6 @@ using FarExt::internal::kRegularFaceSize;
 using FarExt::internal::Level;
 using FarExt::internal::RegularFace;
 using FarExt::internal::RegularFaceMask;
-using FarExt::internal::RegularFaceRows;
 
 namespace {
 
@@ -70,18 +69,8 @@ RegularFaceMask::Sum combine(Combination const &c) {
     }
     sum.next = c.ofDu * c.du.next + c.ofDv * c.dv.next;
     sum.previous = c.ofDu * c.du.previous + c.ofDv * c.dv.previous;
-    sum.beyond = c.ofDu * c.du.beyond + c.ofDv * c.dv.beyond;
+    sum.others = c.ofDu * c.du.others + c.ofDv * c.dv.others;
     return sum;
-}
-
-// With weights for the three vertices beyond that nothing else weighs, instead of all of the face.
-RegularFaceMask weighOthers(RegularFaceMask mask) {
-    for (RegularFaceMask::Sum &sum : mask.sums) {
-        sum.neighbors[0] += sum.beyond;
-        sum.next += sum.beyond;
-        sum.previous += sum.beyond;
-    }
-    return mask;
 }
 
 SourceWeights getSource(RegularFaceMask::Sum const &sum, int kind) {
@@ -156,7 +145,6 @@ void forEachRange(TASK const &task, Index count, Index range, EVALUATE evaluate)
         [&](Nothing, Index begin, Index end) { evaluate(task, begin, end); }, range);
 }
 
-constexpr Index kSumRange = 2048;
 constexpr Index kGroupRange = 128;
 constexpr Index kLatticeOutputs = 16384; ///< of a range, the more the fewer groups
 
@@ -166,10 +154,9 @@ constexpr Index kLatticeOutputs = 16384; ///< of a range, the more the fewer gro
 // alike, what is across with opposite signs.  With cos and sin of the angle from the axis to du,
 // du = cos along + sin across and dv = cos across - sin along; the angle is a multiple of 60 degrees,
 // so that cos is not 0, and along and across are scaled to save two products.
-RegularLimitWeights<Scalar> MakeRegularLimitWeights(RegularFaceMask const &mask, bool sumsOthers) {
-    RegularFaceMask const weighed = sumsOthers ? weighOthers(mask) : mask;
-    RegularFaceMask::Sum const &du = weighed.sums[1];
-    RegularFaceMask::Sum const &dv = weighed.sums[2];
+RegularLimitWeights<Scalar> MakeRegularLimitWeights(RegularFaceMask const &mask) {
+    RegularFaceMask::Sum const &du = mask.sums[1];
+    RegularFaceMask::Sum const &dv = mask.sums[2];
     double cosine = du.verts[0] - du.verts[3];
     double sine = dv.verts[3] - dv.verts[0];
     double const length = std::hypot(cosine, sine);
@@ -177,22 +164,21 @@ RegularLimitWeights<Scalar> MakeRegularLimitWeights(RegularFaceMask const &mask,
     sine /= length;
 
     RegularLimitWeights<Scalar> weights;
-    weights.point = makeSymmetric(weighed.sums[0]);
+    weights.point = makeSymmetric(mask.sums[0]);
     RegularFaceMask::Sum const along = combine({du, dv, cosine * cosine, -cosine * sine});
     RegularFaceMask::Sum const across = combine({du, dv, sine / cosine, 1});
     weights.along = makeSymmetric(along);
     weights.across = makeAntisymmetric(across);
     weights.duOfAcross = float(sine * cosine);
     weights.dvOfDu = float(-sine / cosine);
-    weights.beyondOfTip = float(weighed.sums[0].beyond / getTip(weighed.sums[0]));
-    weights.beyondOfTipAlong = float(along.beyond / getTip(along));
+    weights.othersOfTip = float(mask.sums[0].others / getTip(mask.sums[0]));
+    weights.othersOfTipAlong = float(along.others / getTip(along));
     weights.tipAcross = float((across.next - across.previous) / 2);
     return weights;
 }
 
-std::vector<RegularFaceGroup>
-MakeRegularFaceGroups(Level const &level, std::vector<RegularFace> const &faces,
-                      FarExt::internal::Buffer<Index> const &sumsOfFaces) {
+std::vector<RegularFaceGroup> MakeRegularFaceGroups(Level const &level,
+                                                    std::vector<RegularFace> const &faces) {
     constexpr int kSize = RegularFaceGroup::kSize;
     auto const numFaces = Index(faces.size());
     std::vector<RegularFaceGroup> groups(std::size_t((numFaces + kSize - 1) / kSize));
@@ -201,47 +187,21 @@ MakeRegularFaceGroups(Level const &level, std::vector<RegularFace> const &faces,
         RegularFaceGroup &group = groups[std::size_t(k / kSize)];
         int const member = k % kSize;
         for (int i = 0; i < kRegularFaceSize; ++i) {
-            auto const setPlace = [&](RegularFaceGroup::Places &places, Index index, int stride) {
-                places[i][member] = std::uint32_t(index) * std::uint32_t(stride);
+            auto const setPlace = [&](RegularFaceGroup::Places &places, Index vert) {
+                places[i][member] =
+                    std::uint32_t(vert) * std::uint32_t(RegularFaceGroup::kPointStride);
             };
-            auto const setPoint = [&](RegularFaceGroup::Places &places, Index vert) {
-                setPlace(places, vert, RegularFaceGroup::kPointStride);
-            };
-            setPoint(group.verts, level.faceVerts[std::size_t(face.firstCorner) + std::size_t(i)]);
-            setPoint(group.neighbors, face.neighbors[i]);
-            setPoint(group.next, face.next[i]);
-            setPoint(group.previous, face.previous[i]);
-            setPlace(group.beyond, sumsOfFaces[std::size_t(face.beyond[i])],
-                     RegularFaceGroup::kSumStride);
+            setPlace(group.verts, level.faceVerts[std::size_t(face.firstCorner) + std::size_t(i)]);
+            setPlace(group.neighbors, face.neighbors[i]);
+            setPlace(group.next, face.next[i]);
+            setPlace(group.previous, face.previous[i]);
+            for (int other = 0; other < RegularFace::kNumOthers; ++other) {
+                setPlace(group.others[other], face.GetOther(level, i, other));
+            }
         }
         group.firstCorners[member] = face.firstCorner;
     });
     return groups;
-}
-
-std::vector<OthersBeyond> MakeOthersBeyond(Level const &level,
-                                           std::vector<RegularFace> const &faces) {
-    constexpr int kSize = RegularFaceGroup::kSize;
-    constexpr int kNumOthers = OthersBeyond::kSize * kRegularFaceSize;
-    auto const numFaces = Index(faces.size());
-    std::vector<OthersBeyond> groups(std::size_t((numFaces + kSize - 1) / kSize));
-    FarExt::internal::ParallelFor(Index(groups.size()) * kSize, [&](Index k) {
-        Index sources[RegularFaceRows::kNumFaceSources];
-        RegularFaceRows::GetFaceSources(level, faces[std::size_t(std::min(k, numFaces - 1))],
-                                        sources);
-        Index const *others = std::end(sources) - kNumOthers;
-        for (int corner = 0; corner < kRegularFaceSize; ++corner) {
-            for (RegularFaceGroup::Places &places : groups[std::size_t(k / kSize)].places) {
-                places[corner][k % kSize] =
-                    std::uint32_t(*others++) * std::uint32_t(RegularFaceGroup::kPointStride);
-            }
-        }
-    });
-    return groups;
-}
-
-void SumFaces(RegularLimitTask const &task, Index numSums) {
-    forEachRange(task, numSums, kSumRange, getKernel().sumFaces);
 }
 
 void EvaluateLimit(RegularLimitTask const &task, Index numGroups) {

@@ -52,57 +52,36 @@ struct RegularLimitWeights {
     SymmetricWeights<SIMD> point;
     SymmetricWeights<SIMD> along;
     AntisymmetricWeights<SIMD> across;
-    T duOfAcross;  ///< du = along + duOfAcross across
-    T dvOfDu;      ///< dv = across + dvOfDu du
-    T beyondOfTip; ///< of the point; and of the others, where the mask has one tip
-
-    T beyondOfTipAlong;
-    T tipAcross; ///< "next" has it, and "previous" with the opposite sign
+    T duOfAcross;       ///< du = along + duOfAcross across
+    T dvOfDu;           ///< dv = across + dvOfDu du
+    T othersOfTip;      ///< of the point: the three others of the face beyond
+    T othersOfTipAlong; ///< the same along the axis
+    T tipAcross;        ///< "next" has it, and "previous" with the opposite sign
 };
 
-/// \param sumsOthers  whether what is beyond is that of OthersBeyond, not the sums of faces
-RegularLimitWeights<Scalar> MakeRegularLimitWeights(FarExt::internal::RegularFaceMask const &mask,
-                                                    bool sumsOthers);
+RegularLimitWeights<Scalar> MakeRegularLimitWeights(FarExt::internal::RegularFaceMask const &mask);
 
 /// \brief Some regular faces, side by side: as many as the widest vectors hold, the last ones of a
 /// level filled up by repeating one.
 ///
-/// Instead of vertices and faces there are their places in arrays of points and of sums of points,
-/// which have these strides: so that evaluating points, as is mostly done, takes no products.
+/// Instead of vertices there are their places in arrays of points, which have this stride: so that
+/// evaluating points, as is mostly done, takes no products.
 struct RegularFaceGroup {
     static constexpr int kSize = 4;
     static constexpr int kPointStride = 3;
-    static constexpr int kSumStride = 4;
     using Places = std::uint32_t[FarExt::internal::kRegularFaceSize][kSize];
 
     Places verts;
-    Places neighbors; ///< these three as in RegularFace
+    Places neighbors; ///< these as in RegularFace
     Places next;
     Places previous;
-    Places beyond; ///< the only faces; not used with OthersBeyond
+    Places others[FarExt::internal::RegularFace::kNumOthers];
     Far::Index firstCorners[kSize];
 };
 
-/// \param sumsOfFaces  for each face of the level, where its sum is
 std::vector<RegularFaceGroup>
 MakeRegularFaceGroups(FarExt::internal::Level const &level,
-                      std::vector<FarExt::internal::RegularFace> const &faces,
-                      FarExt::internal::Buffer<Far::Index> const &sumsOfFaces);
-
-/// \brief Of each face beyond a RegularFaceGroup, the three vertices that are in no other face around, or
-/// any where there is no such face.
-///
-/// Where regular faces lie side by side, each face is beyond six of them, and its sum is made once.
-/// F-faces that give limits of their own vertices lie apart: their groups have these instead, each of
-/// which most often is in one group alone.
-struct OthersBeyond {
-    static constexpr int kSize = 3;
-
-    RegularFaceGroup::Places places[kSize];
-};
-
-std::vector<OthersBeyond> MakeOthersBeyond(FarExt::internal::Level const &level,
-                                           std::vector<FarExt::internal::RegularFace> const &faces);
+                      std::vector<FarExt::internal::RegularFace> const &faces);
 
 /// \brief Some vertices of one type, side by side; the last ones of a type filled up likewise.
 struct VertexGroup {
@@ -136,23 +115,7 @@ struct LimitTask {
 
 /// \brief The limit that faces of a level give: outputs are by corner.
 struct RegularLimitTask : LimitTask {
-    /// Floats from the sum of a face to the next.
-    static std::ptrdiff_t GetSumStride(int length) {
-        return length == RegularFaceGroup::kPointStride ? RegularFaceGroup::kSumStride : length;
-    }
-    void Skip(int count) {
-        LimitTask::Skip(count);
-        if (sums.data) { // none where OthersBeyond are used
-            sums.data += count;
-        }
-    }
-
-    Far::Index const *faceVerts;
-    Far::Index const *summedFaces; ///< hexagons, by their first corners
-    Elements<float> sums;          ///< of the values of the vertices of each of these
     RegularFaceGroup const *groups;
-    /// By group; null where the sums are used, and the mask has one tip.
-    OthersBeyond const *othersBeyond;
     RegularLimitWeights<Scalar> const *weights;
 };
 
@@ -163,23 +126,18 @@ struct VertexLimitTask : LimitTask {
     float const *weights;
 };
 
-/// What has weights in lattice faces: all sources, all when outer ones are joined, or the nearest ones.
-enum class LatticeSourceKind { All, Joined, Compact };
-
 /// \brief The limit in lattice faces of one size, RegularFaceGroup::kSize of them at a time: outputs are by
 /// vertex.
 struct LatticeTask : LimitTask {
     static constexpr int kNumDerivatives = 4; ///< weights of derivatives in terms of others
-    static constexpr int kNumOuterWeights = 2;
 
     /// Of outputs.
     int GetNumOrbits() const { return 2 * numPairs + numHalves + numAxes; }
 
     int faceSize;
-    LatticeSourceKind sourceKind;
-    float outerWeights[kNumOuterWeights]; ///< those of LatticeFaces::Set, to join sources
-    int numPairs;                         ///< orbits of outputs, these first
-    int numHalves;                        ///< pairs without their mirror images
+    bool isCompact; ///< whether the nearest sources alone have weights
+    int numPairs;   ///< orbits of outputs, these first
+    int numHalves;  ///< pairs without their mirror images
     int numAxes;
     std::uint32_t const
         *places; ///< by group, those of all sources of its faces, as in RegularFaceGroup
@@ -199,11 +157,9 @@ struct LatticeTask : LimitTask {
 
 /// \brief The kernels of one SimdLevel; all are instances of limitKernelTemplate.h.
 struct LimitKernel {
-    /// Writes sums [begin, end).
-    void (*sumFaces)(RegularLimitTask const &task, Far::Index begin, Far::Index end);
-    /// Writes the outputs of groups [begin, end), the sums being there.
-    void (*evaluateFaces)(RegularLimitTask const &task, Far::Index begin, Far::Index end);
     /// Writes the outputs of groups [begin, end).
+    void (*evaluateFaces)(RegularLimitTask const &task, Far::Index begin, Far::Index end);
+    /// The same.
     void (*evaluateVertices)(VertexLimitTask const &task, Far::Index begin, Far::Index end);
     /// The same.
     void (*evaluateLattice)(LatticeTask const &task, Far::Index begin, Far::Index end);
@@ -215,8 +171,6 @@ extern LimitKernel const kLimitKernelAvx512;
 
 /// @name All faces or groups, in parallel, with the kernel of the SimdLevel in use
 /// @{
-/// Writes the sums, which EvaluateLimit() needs.
-void SumFaces(RegularLimitTask const &task, Far::Index numSums);
 void EvaluateLimit(RegularLimitTask const &task, Far::Index numGroups);
 void EvaluateLimit(VertexLimitTask const &task, Far::Index numGroups);
 void EvaluateLimit(LatticeTask const &task, Far::Index numGroups);

@@ -170,18 +170,19 @@ struct FaceElements {
 
     OPENSUBDIVHEX_INLINE void Load(Elements<float const> const &points,
                                    RegularFaceGroup::Places const &places, Values &x) const {
-        load(points, places, RegularFaceGroup::kPointStride, x);
+        for (int corner = 0; corner < kRegularFaceSize; ++corner) {
+            float const *sources[SIMD::kNumFaces];
+            for (int i = 0; i < SIMD::kNumFaces; ++i) {
+                sources[i] = ACCESS::AtPlace(points, places[corner][first + i]);
+            }
+            x[corner] = ACCESS::template Load<SIMD>(sources, length);
+        }
     }
-    OPENSUBDIVHEX_INLINE void LoadSums(Elements<float const> const &sums,
-                                       RegularFaceGroup::Places const &places, Values &x) const {
-        load(sums, places, RegularFaceGroup::kSumStride, x);
-    }
-    OPENSUBDIVHEX_INLINE void LoadOthers(Elements<float const> const &points,
-                                         OthersBeyond const &others, Values &x) const {
-        Values more[OthersBeyond::kSize - 1];
-        Load(points, others.places[0], x);
-        Load(points, others.places[1], more[0]);
-        Load(points, others.places[2], more[1]);
+    OPENSUBDIVHEX_INLINE void LoadOthers(Elements<float const> const &points, Values &x) const {
+        Values more[2];
+        Load(points, group.others[0], x);
+        Load(points, group.others[1], more[0]);
+        Load(points, group.others[2], more[1]);
         for (int i = 0; i < kRegularFaceSize; ++i) {
             x[i] = x[i] + (more[0][i] + more[1][i]);
         }
@@ -205,25 +206,11 @@ struct FaceElements {
     }
 
     RegularFaceGroup const &group;
-    OthersBeyond const *othersBeyond;
     int first;
     int length; ///< of the elements
-
-private:
-    OPENSUBDIVHEX_INLINE void load(Elements<float const> const &elements,
-                                   RegularFaceGroup::Places const &places, int pointStride,
-                                   Values &x) const {
-        for (int corner = 0; corner < kRegularFaceSize; ++corner) {
-            float const *sources[SIMD::kNumFaces];
-            for (int i = 0; i < SIMD::kNumFaces; ++i) {
-                sources[i] = ACCESS::AtPlace(elements, places[corner][first + i], pointStride);
-            }
-            x[corner] = ACCESS::template Load<SIMD>(sources, length);
-        }
-    }
 };
 
-template <class SIMD, class ACCESS, bool HAS_DERIVATIVES, bool SUMS_OTHERS>
+template <class SIMD, class ACCESS, bool HAS_DERIVATIVES>
 OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
                                         RegularLimitWeights<SIMD> const &weights,
                                         FaceElements<SIMD, ACCESS> const &faces) {
@@ -237,18 +224,14 @@ OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
     sources[1] = findWavesOfCorners<SIMD>(x);
     Vector next[kRegularFaceSize];
     Vector previous[kRegularFaceSize];
-    Vector beyond[kRegularFaceSize];
+    Vector others[kRegularFaceSize];
     Vector tips[kRegularFaceSize];
     faces.Load(task.values, group.next, next);
     faces.Load(task.values, group.previous, previous);
-    if constexpr (SUMS_OTHERS) {
-        faces.LoadOthers(task.values, *faces.othersBeyond, beyond);
-    } else {
-        faces.LoadSums({task.sums.data, task.sums.stride}, group.beyond, beyond);
-    }
+    faces.LoadOthers(task.values, others);
     for (int i = 0; i < kRegularFaceSize; ++i) {
         x[i] = next[i] + previous[(i + 1) % kRegularFaceSize];
-        tips[i] = SIMD::MultiplyAdd(weights.beyondOfTip, beyond[i], next[i] + previous[i]);
+        tips[i] = SIMD::MultiplyAdd(weights.othersOfTip, others[i], next[i] + previous[i]);
     }
     sources[2] = findWavesOfEdges<SIMD>(x);
 
@@ -262,11 +245,8 @@ OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
         Vector across[kRegularFaceSize];
         addWaves<SIMD>(weigh<SIMD>(weights.across, sources), across);
         for (int i = 0; i < kRegularFaceSize; ++i) {
-            if constexpr (SUMS_OTHERS) {
-                tips[i] =
-                    SIMD::MultiplyAdd(weights.beyondOfTipAlong, beyond[i], next[i] + previous[i]);
-                addProduct<SIMD>(across[i], weights.tipAcross, next[i] - previous[i]);
-            }
+            tips[i] = SIMD::MultiplyAdd(weights.othersOfTipAlong, others[i], next[i] + previous[i]);
+            addProduct<SIMD>(across[i], weights.tipAcross, next[i] - previous[i]);
             addProduct<SIMD>(x[i], weights.along.tip, tips[i]);
             addProduct<SIMD>(x[i], weights.duOfAcross, across[i]);
             addProduct<SIMD>(across[i], weights.dvOfDu, x[i]);
@@ -276,37 +256,15 @@ OPENSUBDIVHEX_INLINE void evaluateFaces(RegularLimitTask const &task,
     }
 }
 
-template <class SIMD, class ACCESS, bool HAS_DERIVATIVES, bool SUMS_OTHERS>
+template <class SIMD, class ACCESS, bool HAS_DERIVATIVES>
 void evaluateGroups(RegularLimitTask const &given, Far::Index begin, Far::Index end) {
     // A copy, since the compiler must expect that outputs are written to the given one.
     RegularLimitTask const task = given;
     RegularLimitWeights<SIMD> const weights = spreadWeights<SIMD>(*task.weights);
     for (Far::Index group = begin; group < end; ++group) {
         for (int first = 0; first < RegularFaceGroup::kSize; first += SIMD::kNumFaces) {
-            FaceElements<SIMD, ACCESS> const faces = {
-                task.groups[group], SUMS_OTHERS ? task.othersBeyond + group : nullptr, first,
-                task.length};
-            evaluateFaces<SIMD, ACCESS, HAS_DERIVATIVES, SUMS_OTHERS>(task, weights, faces);
-        }
-    }
-}
-
-template <class ACCESS>
-void sumVertices(RegularLimitTask const &task, Far::Index begin, Far::Index end) {
-    Elements<float const> const values = task.values;
-    auto const load = [&](Far::Index vert) {
-        float const *const place = ACCESS::At(values, vert);
-        return ACCESS::template Load<OneFace>(&place, task.length);
-    };
-    for (Far::Index i = begin; i < end; ++i) {
-        Far::Index const *const verts = task.faceVerts + task.summedFaces[i];
-        Quad const sum = (load(verts[0]) + load(verts[1])) + (load(verts[2]) + load(verts[3])) +
-                         (load(verts[4]) + load(verts[5]));
-        float *const place = task.sums.data + i * task.sums.stride;
-        if constexpr (ACCESS::kIsPoints) {
-            OneFace::StoreQuads(&place, sum); // the fourth float is read, too
-        } else {
-            ACCESS::template Store<OneFace>(&place, sum, task.length);
+            FaceElements<SIMD, ACCESS> const faces = {task.groups[group], first, task.length};
+            evaluateFaces<SIMD, ACCESS, HAS_DERIVATIVES>(task, weights, faces);
         }
     }
 }
@@ -330,7 +288,7 @@ void evaluateVertices(VertexLimitTask const &task, Far::Index begin, Far::Index 
             auto const addSource = [&](Vector(&sums)[NUM_OUTPUTS]) {
                 float const *sources[kNumFaces];
                 for (int i = 0; i < kNumFaces; ++i) {
-                    sources[i] = ACCESS::AtPlace(values, places[i], RegularFaceGroup::kPointStride);
+                    sources[i] = ACCESS::AtPlace(values, places[i]);
                 }
                 Vector const value = ACCESS::template Load<SIMD>(sources, task.length);
                 for (int i = 0; i < NUM_OUTPUTS; ++i) {
@@ -365,22 +323,11 @@ void evaluateVertices(VertexLimitTask const &task, Far::Index begin, Far::Index 
 /// The kernels for a SIMD level.
 template <class SIMD>
 struct LimitKernels {
-    static void SumFaces(RegularLimitTask const &task, Far::Index begin, Far::Index end) {
-        forEachQuad(task, [=](RegularLimitTask const &part, auto access) {
-            sumVertices<decltype(access)>(part, begin, end);
-        });
-    }
     static void EvaluateFaces(RegularLimitTask const &task, Far::Index begin, Far::Index end) {
         forEachQuad(task, [=](RegularLimitTask const &part, auto access) {
             using Access = decltype(access);
-            bool const hasDerivatives = part.numOutputs > 1;
-            if (part.othersBeyond) {
-                hasDerivatives ? evaluateGroups<SIMD, Access, true, true>(part, begin, end)
-                               : evaluateGroups<SIMD, Access, false, true>(part, begin, end);
-            } else {
-                hasDerivatives ? evaluateGroups<SIMD, Access, true, false>(part, begin, end)
-                               : evaluateGroups<SIMD, Access, false, false>(part, begin, end);
-            }
+            part.numOutputs > 1 ? evaluateGroups<SIMD, Access, true>(part, begin, end)
+                                : evaluateGroups<SIMD, Access, false>(part, begin, end);
         });
     }
     static void EvaluateVertices(VertexLimitTask const &task, Far::Index begin, Far::Index end) {
@@ -406,28 +353,24 @@ struct LimitKernels {
         });
     }
 
-    static constexpr LimitKernel kKernel = {SumFaces, EvaluateFaces, EvaluateVertices,
-                                            EvaluateLattice};
+    static constexpr LimitKernel kKernel = {EvaluateFaces, EvaluateVertices, EvaluateLattice};
 
 private:
     template <class ACCESS, int FACE_SIZE>
     static void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
-        switch (task.sourceKind) {
-        case LatticeSourceKind::Compact:
-            return evaluateLattice<ACCESS, FACE_SIZE, LatticeSourceKind::Compact>(task, begin, end);
-        case LatticeSourceKind::Joined:
-            return evaluateLattice<ACCESS, FACE_SIZE, LatticeSourceKind::Joined>(task, begin, end);
-        default:
-            return evaluateLattice<ACCESS, FACE_SIZE, LatticeSourceKind::All>(task, begin, end);
+        if (task.isCompact) {
+            evaluateLattice<ACCESS, FACE_SIZE, true>(task, begin, end);
+        } else {
+            evaluateLattice<ACCESS, FACE_SIZE, false>(task, begin, end);
         }
     }
-    template <class ACCESS, int FACE_SIZE, LatticeSourceKind KIND>
+    template <class ACCESS, int FACE_SIZE, bool IS_COMPACT>
     static void evaluateLattice(LatticeTask const &task, Far::Index begin, Far::Index end) {
         if (task.numOutputs > 1) {
-            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, KIND, LimitTask::kMaxOutputs>(
+            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, IS_COMPACT, LimitTask::kMaxOutputs>(
                 task, begin, end);
         } else {
-            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, KIND, 1>(task, begin, end);
+            internal::evaluateLattice<SIMD, ACCESS, FACE_SIZE, IS_COMPACT, 1>(task, begin, end);
         }
     }
 };

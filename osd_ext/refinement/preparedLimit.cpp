@@ -15,7 +15,6 @@ using FarExt::CallStatus;
 using FarExt::internal::LimitOrigins;
 using FarExt::internal::LimitRow;
 using FarExt::internal::LimitRows;
-using FarExt::internal::RegularFace;
 using FarExt::internal::RegularFaces;
 
 namespace {
@@ -75,30 +74,10 @@ CallStatus PreparedLimit::Prepare(FarExt::internal::MeshLevels const &mesh,
 }
 
 void PreparedLimit::prepareFaces(RegularFaces::OfLevel const &faces, LevelLimit &result) {
-    FarExt::internal::Level const &level = *result.level;
-    std::vector<unsigned char> isBeyond(std::size_t(level.numFaces), 0);
-    for (RegularFace const &face : faces.fVertices.faces) {
-        for (Index const beyond : face.beyond) {
-            isBeyond[std::size_t(beyond)] = 1;
-        }
-    }
-    result.summedFaces = FarExt::internal::ParallelSelect(
-        level.numFaces, [&](Index face) { return isBeyond[std::size_t(face)] != 0; });
-    FarExt::internal::Buffer<Index> sumsOfFaces;
-    sumsOfFaces.Resize(isBeyond.size());
-    std::fill(sumsOfFaces.data(), sumsOfFaces.data() + sumsOfFaces.size(), 0);
-    FarExt::internal::ParallelFor(Index(result.summedFaces.size()), [&](Index i) {
-        Index &face = result.summedFaces[std::size_t(i)];
-        sumsOfFaces[std::size_t(face)] = i;
-        face = level.faceFirstCorner[face];
-    });
     for (RegularFaces::Set const *set : {&faces.fVertices, &faces.ownVertices}) {
-        bool const sumsOthers = set == &faces.ownVertices;
         if (!set->faces.empty()) {
-            result.sets.push_back(
-                {MakeRegularFaceGroups(level, set->faces, sumsOfFaces),
-                 sumsOthers ? MakeOthersBeyond(level, set->faces) : std::vector<OthersBeyond>(),
-                 set->firstVertex, MakeRegularLimitWeights(set->mask, sumsOthers)});
+            result.sets.push_back({MakeRegularFaceGroups(*result.level, set->faces),
+                                   set->firstVertex, MakeRegularLimitWeights(set->mask)});
         }
     }
 }
@@ -175,16 +154,13 @@ std::vector<unsigned char> PreparedLimit::FindSources(Index numVertices) const {
             std::for_each(std::begin(ofCorner), std::end(ofCorner), markPlace);
         }
     };
-    // No faces of the last level use sums.
     for (FaceSet const &set : last.sets) {
         for (RegularFaceGroup const &group : set.groups) {
             markPlaces(group.verts);
             markPlaces(group.neighbors);
             markPlaces(group.next);
             markPlaces(group.previous);
-        }
-        for (OthersBeyond const &others : set.othersBeyond) {
-            std::for_each(std::begin(others.places), std::end(others.places), markPlaces);
+            std::for_each(std::begin(group.others), std::end(group.others), markPlaces);
         }
     }
     std::for_each(last.places.begin(), last.places.end(), markPlace);
@@ -216,12 +192,10 @@ void PreparedLimit::EvaluateLattice(Elements<float const> values, int length,
 }
 
 void PreparedLimit::Evaluate(int level, Elements<float const> values, bool isReadBehind, int length,
-                             Outputs const &outputs) {
+                             Outputs const &outputs) const {
     LevelLimit const &ofLevel = _levels[std::size_t(level)];
     LimitTask const common = makeTask(values, isReadBehind, length, outputs);
-    if (!ofLevel.sets.empty()) {
-        evaluateFaces(ofLevel, common);
-    }
+    evaluateFaces(ofLevel, common);
     // Behind the faces, which write something for all their vertices.
     VertexLimitTask task;
     static_cast<LimitTask &>(task) = common;
@@ -231,23 +205,15 @@ void PreparedLimit::Evaluate(int level, Elements<float const> values, bool isRea
     EvaluateLimit(task, Index(ofLevel.vertexGroups.size()));
 }
 
-void PreparedLimit::evaluateFaces(LevelLimit const &ofLevel, LimitTask const &common) {
-    RegularLimitTask summing;
-    static_cast<LimitTask &>(summing) = common;
-    summing.faceVerts = ofLevel.level->faceVerts.data();
-    summing.sums.stride = RegularLimitTask::GetSumStride(common.length);
-    _sums.Resize(ofLevel.summedFaces.size() * std::size_t(summing.sums.stride));
-    summing.sums.data = _sums.data();
-    summing.summedFaces = ofLevel.summedFaces.data();
-    SumFaces(summing, Index(ofLevel.summedFaces.size()));
+void PreparedLimit::evaluateFaces(LevelLimit const &ofLevel, LimitTask const &common) const {
     for (FaceSet const &set : ofLevel.sets) {
-        RegularLimitTask task = summing;
+        RegularLimitTask task;
+        static_cast<LimitTask &>(task) = common;
         for (int i = 0; i < task.numOutputs; ++i) {
             task.outputs[i].data += std::ptrdiff_t(set.firstVertex) * task.outputs[i].stride;
         }
         task.groups = set.groups.data();
         task.weights = &set.weights;
-        task.othersBeyond = set.othersBeyond.empty() ? nullptr : set.othersBeyond.data();
         EvaluateLimit(task, Index(set.groups.size()));
     }
 }

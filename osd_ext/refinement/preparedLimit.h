@@ -22,8 +22,8 @@ FarExt::CallStatus CheckLimitPlaces(int level, std::int64_t numVertices);
 /// before: their limit is made from the values of the level of their face, so that a frame needs no
 /// values of the last level for them.  Nearly all
 /// else are vertices of F-faces, of the level or of one before.  What is kept for them is the faces.
-/// The others are stencils of vertices, of the first level in which they are regular or else of the
-/// last one, whose weights are those of their type: so what a frame reads is mostly indices.
+/// The others are stencils of vertices of the last level, whose weights are those of their type: so what
+/// a frame reads is mostly indices.
 class PreparedLimit {
 public:
     /// Elements of all vertices of the level: points, and behind them du and dv or nothing.
@@ -41,7 +41,7 @@ public:
     /// \param values        of \p level; of the last level those will do that FindSources() marks
     /// \param isReadBehind  whether one float may be read behind the last of them
     void Evaluate(int level, Elements<float const> values, bool isReadBehind, int length,
-                  Outputs const &outputs);
+                  Outputs const &outputs) const;
     /// \brief Writes the outputs of vertices that follow from level 0 and none between, behind those that
     /// Evaluate() writes.
     ///
@@ -65,15 +65,12 @@ private:
     /// Faces of a level that have a mask in common.
     struct FaceSet {
         std::vector<RegularFaceGroup> groups;
-        std::vector<OthersBeyond> othersBeyond; ///< of F-faces, for their own vertices; else empty
-        Far::Index firstVertex;                 ///< that of corner 0
+        Far::Index firstVertex; ///< that of corner 0
         RegularLimitWeights<Scalar> weights;
     };
     struct LevelLimit {
         FarExt::internal::Level const *level;
         std::vector<FaceSet> sets;
-        std::vector<Far::Index>
-            summedFaces; ///< those beyond any faces that use sums, by their first corners
         std::vector<VertexGroup> vertexGroups;
         FarExt::internal::Buffer<std::uint32_t> places; ///< of the sources of these
     };
@@ -81,15 +78,13 @@ private:
     static void prepareFaces(FarExt::internal::RegularFaces::OfLevel const &faces,
                              LevelLimit &result);
     void prepareVertices(FarExt::internal::LimitOrigins const &origins, LevelLimit &result);
-    void evaluateFaces(LevelLimit const &ofLevel, LimitTask const &common);
+    void evaluateFaces(LevelLimit const &ofLevel, LimitTask const &common) const;
 
     static LimitTask makeTask(Elements<float const> values, bool isReadBehind, int length,
                               Outputs const &outputs);
 
     LatticeLimit _lattice;
     std::vector<LevelLimit> _levels;
-    FarExt::internal::Buffer<float> _sums; // of faces of a level
-
     LimitRowWeights _weights; // of vertices
 };
 

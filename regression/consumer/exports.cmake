@@ -7,7 +7,7 @@
 set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report SortUnique
   RefinementMask TruncationMask PrimvarRows PrimvarLimitRows
   LimitRows CheckLimitLevel LimitOrigins LatticePatch LatticeFaces PlainFaces
-  RegularFaces RegularFaceMask RegularFaceRows RegularVertices
+  RegularFaces
   FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
   UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement MarkFeatures StepRowBack MakePlainBaseCell IndexMap
   Device MakeDeviceLimit MakeDeviceRefinements

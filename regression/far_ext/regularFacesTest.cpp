@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which vertices of a level have a limit that follows from regular faces, or from themselves, of the
-// levels before.
+// Which vertices of a level have a limit that follows from regular faces of the levels before.
 #include "far_ext/limit/regularFaces.h"
-#include "far_ext/limit/regularVertices.h"
-#include "far_ext/limit/rowSteps.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "regression/far_ext/referenceMatch.h"
 
@@ -12,7 +9,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -21,8 +17,6 @@ namespace OpenSubdivHex::Regression::regularFacesTest {
 using FarExt::TopologyRefiner;
 using FarExt::internal::LimitRows;
 using FarExt::internal::RegularFaces;
-using FarExt::internal::RegularVertices;
-using FarExt::internal::SteppedRow;
 
 namespace {
 
@@ -40,43 +34,6 @@ RegularFaces findFaces(TopologyRefiner const &refiner) {
 
 std::size_t countFaces(RegularFaces const &faces, int level) {
     return faces.GetLevels()[std::size_t(level)].fVertices.faces.size();
-}
-
-// Those of all vertices of the last level, each of which must have the row in terms of level 0 that it
-// has from the last level.
-RegularVertices findVertices(TopologyRefiner const &refiner) {
-    auto const &mesh = refiner.GetHierarchy().mesh;
-    auto const &schemeOptions = refiner.GetHexSchemeOptions();
-    int const last = refiner.GetMaxLevel();
-    LimitRows rows(mesh.levels[std::size_t(last)], refiner.GetSchemeOptions(), schemeOptions);
-    if (!rows.Find().IsOk()) {
-        throw std::runtime_error("no masks");
-    }
-    std::vector<Far::Index> verts(std::size_t(mesh.levels[std::size_t(last)].numVertices));
-    std::iota(verts.begin(), verts.end(), 0);
-    RegularVertices vertices(mesh, schemeOptions, rows, verts);
-    std::size_t numVertices = vertices.GetOthers().size();
-    for (int level = 0; level < last; ++level) {
-        numVertices += vertices.GetVertices(level).size();
-        for (Far::Index const vert : vertices.GetVertices(level)) {
-            Far::Index sources[FarExt::internal::PlainNeighborhoodGatherer::kNumRegular];
-            SteppedRow row = FarExt::internal::StepRowBack(mesh, schemeOptions,
-                                                           rows.GetRow(vert, 0, sources), last, 0);
-            for (auto const &[source, weights] : FarExt::internal::StepRowBack(
-                     mesh, schemeOptions, vertices.GetRow(level, vert, sources), level, 0)) {
-                for (std::size_t i = 0; i < weights.size(); ++i) {
-                    row[source][i] -= weights[i];
-                }
-            }
-            for (auto const &[source, weights] : row) {
-                for (double const weight : weights) {
-                    EXPECT_NEAR(weight, 0, 1e-8) << "vertex " << vert << " of level " << level;
-                }
-            }
-        }
-    }
-    EXPECT_EQ(numVertices, verts.size());
-    return vertices;
 }
 
 } // namespace
@@ -156,32 +113,6 @@ TEST(RegularFaces, GiveSomeOfTheirOwnVertices) {
     }
     EXPECT_EQ(faces.GetOthers().size(), 6u + 24u + 3 * 48u);
     EXPECT_EQ(std::count(made.begin(), made.end(), 1), std::ptrdiff_t(made.size()));
-}
-
-// Whatever the mask, vertices among hexagons are regular where they come from.
-TEST(RegularVertices, AreAllThatATorusOfHexagonsHadBefore) {
-    for (ReferenceMask mask : {ReferenceMask::Smooth, ReferenceMask::Cosine}) {
-        auto const refiner = CreateRefiner(GetShape("hexTorus"), mask, 2);
-        RegularVertices const vertices = findVertices(*refiner);
-        std::vector<Far::Index> const &ofBase = vertices.GetVertices(0);
-        EXPECT_EQ(ofBase.size(), std::size_t(refiner->GetLevel(0).GetNumVertices()));
-        EXPECT_EQ(vertices.GetOthers().front(), refiner->GetLevel(1).GetNumVertices());
-    }
-}
-
-// The corners of a cube have three faces, and hexagons around all their neighbours from level 2 on; so
-// have, one level later each, those of the quads of a level.
-TEST(RegularVertices, AreOfTheFirstLevelInWhichTheyAreRegular) {
-    auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 4);
-    RegularVertices const vertices = findVertices(*refiner);
-    EXPECT_TRUE(vertices.GetVertices(0).empty());
-    EXPECT_TRUE(vertices.GetVertices(1).empty());
-    ASSERT_GE(vertices.GetVertices(2).size(), 8u);
-    EXPECT_EQ(vertices.GetVertices(2)[7], 7);
-    std::vector<Far::Index> const &ofLevel3 = vertices.GetVertices(3);
-    EXPECT_EQ(std::count_if(ofLevel3.begin(), ofLevel3.end(),
-                            [&](int vert) { return vert < refiner->GetLevel(1).GetNumVertices(); }),
-              24);
 }
 
 // Its masks weigh opposite vertices of hexagons more than others.

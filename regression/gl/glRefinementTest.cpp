@@ -11,9 +11,6 @@
 
 #include <cstdlib>
 
-// Through which epoxy's glGetString goes; its header cannot be there beside those of OpenGL.
-extern "C" GLubyte const *(*epoxy_glGetString)(GLenum name);
-
 namespace OpenSubdivHex::Regression::glRefinementTest {
 
 using OsdExt::GLRefinementEvaluator;
@@ -53,70 +50,9 @@ struct OpenGl {
 
 class GlRefinement : public DeviceEvaluator<OpenGl> {};
 
-/// While this lives, the driver says that it is none for the processor.
-class OtherRenderer {
-public:
-    OtherRenderer() {
-        epoxy_glGetString(GL_RENDERER); // which finds the driver's function
-        getDriversString = epoxy_glGetString;
-        epoxy_glGetString = getString;
-    }
-    OtherRenderer(OtherRenderer const &) = delete;
-    OtherRenderer &operator=(OtherRenderer const &) = delete;
-    ~OtherRenderer() { epoxy_glGetString = getDriversString; }
-
-private:
-    static GLubyte const *getString(GLenum name) {
-        return name == GL_RENDERER ? reinterpret_cast<GLubyte const *>("hardware")
-                                   : getDriversString(name);
-    }
-
-    static inline decltype(epoxy_glGetString) getDriversString = nullptr;
-};
-
 } // namespace
 
 INSTANTIATE_TYPED_TEST_SUITE_P(OpenGl, DeviceEvaluator, OpenGl, KindName);
-
-// Drivers for the processor read textures, which others do not: all points, du and dv.
-TEST_F(GlRefinement, GivesTheSameBitsFromArraysAsFromTextures) {
-    constexpr int kLevel = 3;
-    constexpr int kLength = 3;
-    Descriptor const desc(0, kLength, kLength);
-    FarExt::HexSchemeOptions schemeOptions;
-    schemeOptions.faceMask = FarExt::FaceMask::Smooth;
-    std::vector<Shape> shapes = GetLatticeShapes();
-    for (char const *const name : {"cube", "icosahedron", "torus"}) {
-        shapes.push_back(GetShape(name));
-    }
-    for (Shape const &shape : shapes) {
-        SCOPED_TRACE(shape.name);
-        auto const refiner =
-            MakeRefiner(shape, kLevel, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions, true);
-        auto const evaluate = [&] {
-            auto const evaluator = GLRefinementEvaluator::Create(*refiner);
-            std::vector<float> const blank(std::size_t(evaluator->GetNumElements(kLevel)) * kLength,
-                                           kBlank);
-            Buffer const src =
-                kind.MakeBuffer(MakeValues(evaluator->GetNumElements(0), kLength), kLength);
-            Buffer const outputs[] = {kind.MakeBuffer(blank, kLength),
-                                      kind.MakeBuffer(blank, kLength),
-                                      kind.MakeBuffer(blank, kLength)};
-            EXPECT_TRUE(evaluator->EvaluateLimit(src.get(), desc, outputs[0].get(), desc,
-                                                 outputs[1].get(), desc, outputs[2].get(), desc,
-                                                 kLevel));
-            std::vector<float> result;
-            for (Buffer const &output : outputs) {
-                std::vector<float> const values = kind.Read(*output, blank.size());
-                result.insert(result.end(), values.begin(), values.end());
-            }
-            return result;
-        };
-        std::vector<float> const expected = evaluate();
-        OtherRenderer const other;
-        EXPECT_EQ(evaluate(), expected);
-    }
-}
 
 // More elements than one dimension of groups has invocations.
 TEST_F(GlRefinement, DispatchesMoreThanOneRowOfGroups) {
