@@ -13,12 +13,11 @@
 #include "regression/osd_ext/evaluators.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/threads/onThreads.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <functional>
-#include <thread>
 
 namespace OpenSubdivHex::Regression::sharedTest {
 
@@ -26,25 +25,6 @@ using FarExt::StencilTableFactory;
 using FarExt::TopologyRefiner;
 
 namespace {
-
-constexpr int kNumThreads = 4;
-
-/// Calls run(thread) on several threads at once.
-void runOnThreads(std::function<void(int)> const &run) {
-    std::atomic<int> numWaiting{0};
-    std::vector<std::thread> threads;
-    for (int thread = 0; thread < kNumThreads; ++thread) {
-        threads.emplace_back([&, thread] {
-            ++numWaiting;
-            while (numWaiting < kNumThreads) {
-            }
-            run(thread);
-        });
-    }
-    for (std::thread &thread : threads) {
-        thread.join();
-    }
-}
 
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, int level) {
     Sdc::Options options;
@@ -115,16 +95,10 @@ std::vector<float> evaluateWithoutTable(TopologyRefiner const &refiner) {
     return dst;
 }
 
-/// Whether each thread makes what one alone does.
+/// Expects of each thread that it makes what one alone does.
 template <typename MAKE>
 void expectSameOnThreads(MAKE const &make) {
-    auto const expected = make();
-    EXPECT_FALSE(expected.empty());
-    std::vector<decltype(make())> made(kNumThreads);
-    runOnThreads([&](int thread) { made[std::size_t(thread)] = make(); });
-    for (auto const &ofThread : made) {
-        EXPECT_TRUE(ofThread == expected);
-    }
+    ExpectOnThreads(make(), make);
 }
 
 } // namespace
@@ -190,7 +164,7 @@ TEST(Shared, SimdLevelIsSetMeanwhile) {
     auto const refiner = createRefiner(GetFeatureShape("cubeOfCharts"), 3);
     auto const table = StencilTableFactory::Create(*refiner);
     std::vector<float> const expected = evaluate<OsdExt::CpuEvaluator>(*table);
-    runOnThreads([&](int thread) {
+    RunOnThreads([&](int thread) {
         for (int i = 0; i < 20; ++i) {
             if (thread == 0) {
                 OsdExt::SetSimdLevel(GetSimdLevels()[std::size_t(i) % GetSimdLevels().size()]);
@@ -212,7 +186,7 @@ TEST(Shared, ErrorsAreReportedFromAllThreads) {
     numErrors = 0;
     auto const refiner = createRefiner(GetFeatureShape("cubeOfCharts"), 1);
     constexpr int kNumRounds = 50;
-    runOnThreads([&](int) {
+    RunOnThreads([&](int) {
         for (int i = 0; i < kNumRounds; ++i) {
             StencilTableFactory::Options options;
             options.maxLevel = -1;
@@ -222,7 +196,7 @@ TEST(Shared, ErrorsAreReportedFromAllThreads) {
         }
     });
     FarExt::SetErrorCallback(nullptr);
-    EXPECT_EQ(numErrors, kNumThreads * kNumRounds);
+    EXPECT_EQ(numErrors, kNumThreadsAtOnce * kNumRounds);
 }
 
 } // namespace OpenSubdivHex::Regression::sharedTest

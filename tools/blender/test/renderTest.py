@@ -27,7 +27,7 @@ SIZE = 600
 SAMPLES = 256 if is_writing else 64
 # Means of blocks of pixels are compared, in which noise is small and a moved edge is not.
 BLOCK = 24
-LARGEST_DIFFERENCE = 2.0  # of 255
+LARGEST_DIFFERENCE = 1.5  # of 255
 
 
 def make_material(name, colour, roughness):
