@@ -417,6 +417,7 @@ TYPED_TEST_P(DeviceEvaluator, KeepsFewBytesOfLargeLevels) {
 }
 
 // Where numbering alone tells where vertices are, sums are in the order of the processor's.
+// The corners of dense faces that have the row of plain ones are made by another sum there.
 TYPED_TEST_P(DeviceEvaluator, GivesMostBitsOfTheCpu) {
     for (auto mask : {FarExt::FaceMask::Average, FarExt::FaceMask::Smooth}) {
         FarExt::HexSchemeOptions schemeOptions;
@@ -437,7 +438,7 @@ TYPED_TEST_P(DeviceEvaluator, GivesMostBitsOfTheCpu) {
             std::ptrdiff_t const numOthers = std::inner_product(
                 values.begin(), values.end(), dst.begin(), std::ptrdiff_t(0), std::plus<>(),
                 [](float a, float b) { return std::ptrdiff_t(a != b); });
-            EXPECT_LE(numOthers, std::ptrdiff_t(dst.size() / 7)) << "level " << level;
+            EXPECT_LE(numOthers, std::ptrdiff_t(dst.size() / 4)) << "level " << level;
         }
     }
 }
