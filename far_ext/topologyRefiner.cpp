@@ -105,7 +105,7 @@ CallStatus TopologyRefiner::replaceLevels(REFINE refine) {
 
 bool TopologyRefiner::RefineUniform(UniformOptions options, CallStatus *status) {
     int const refinementLevel = options.refinementLevel;
-    LevelRefiner refiner(*_hierarchy, _sdcOptions, _schemeOptions.faceMask);
+    LevelRefiner refiner(*_hierarchy, {_sdcOptions, _schemeOptions.faceMask});
     Far::ConstIndexArray const labels(options.faceLabels.data(), int(options.faceLabels.size()));
     CallStatus result = checkLevel(refinementLevel);
     if (result.IsOk()) {
@@ -143,7 +143,7 @@ bool TopologyRefiner::RefineUniform(UniformOptions options, CallStatus *status) 
 template <typename REAL>
 bool TopologyRefiner::refineCoplanar(REAL const *restPositions, CoplanarOptions const &options,
                                      CallStatus *status) {
-    LevelRefiner refiner(*_hierarchy, _sdcOptions, _schemeOptions.faceMask);
+    LevelRefiner refiner(*_hierarchy, {_sdcOptions, _schemeOptions.faceMask});
     internal::CoplanarEdges edges(*_hierarchy, _schemeOptions, options.angleTolerance);
     CallStatus result = checkLevel(options.refinementLevel);
     if (result.IsOk()) {

@@ -3,7 +3,6 @@
 
 #include "far_ext/executor.h"
 #include "far_ext/vtr/hexRefinement.h"
-#include "far_ext/vtr/irregularFeatures.h"
 
 #include <numeric>
 #include <utility>
@@ -174,8 +173,7 @@ namespace {
 struct RefinedPatch {
     RefinedPatch(LimitPatch const &patch, Sdc::Options sdcOptions, FaceMask faceMask) {
         BuildPatchLevel(patch, parent);
-        RefineHexagonally(parent, sdcOptions, true, refinement, child);
-        FindIrregularFeatures(faceMask, refinement, child);
+        RefineHexagonally(parent, {sdcOptions, faceMask}, true, refinement, child);
     }
 
     Level parent;

@@ -75,9 +75,6 @@ void LimitMultiplier<REAL>::SetRows(SharedRows const &rows, Index const *sources
     _sources = rows._sources;
     for (Source &source : _sources) {
         source.index = firstSource + sources[source.index];
-        if (_stencils) {
-            Prefetch(&_stencils->Get(source.index), 1);
-        }
     }
 }
 
@@ -170,10 +167,6 @@ void LimitMultiplier<REAL>::makeUnion() {
 // The difference of each source to the first one, by column.
 template <typename REAL>
 void LimitMultiplier<REAL>::findDifferences(Columns const &columns) {
-    for (int source = 0; source < int(_sources.size()); ++source) {
-        LevelStencils::Stencil const &stencil = getStencil(source);
-        Prefetch(stencil.weights, std::size_t(stencil.support.size()) * sizeof(double));
-    }
     findLists();
     _positions.clear();
     for (List &list : _lists) {

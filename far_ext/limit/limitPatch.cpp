@@ -4,7 +4,6 @@
 #include "far_ext/vtr/baseLevel.h"
 #include "far_ext/vtr/hexRefinement.h"
 #include "far_ext/vtr/indexSet.h"
-#include "far_ext/vtr/irregularFeatures.h"
 #include "far_ext/vtr/refinementRows.h"
 #include "far_ext/vtr/sharpFeatures.h"
 
@@ -742,8 +741,7 @@ PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
     Level child;
     Refinement refinement;
     BuildPatchLevel(pPatch, parent);
-    RefineHexagonally(parent, sdcOptions, true, refinement, child);
-    FindIrregularFeatures(schemeOptions.faceMask, refinement, child);
+    RefineHexagonally(parent, {sdcOptions, schemeOptions.faceMask}, true, refinement, child);
     LimitPatchGatherer(child, sdcOptions, schemeOptions.faceMask)
         .Gather(refinement.GetVertexChildVertex(0), cPatch);
 

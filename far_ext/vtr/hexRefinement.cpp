@@ -51,7 +51,7 @@ void fillEdgeChildFaces(Refinement &refinement) {
 
 } // namespace
 
-void RefineHexagonally(Level const &parent, Sdc::Options sdcOptions, bool fullTopology,
+void RefineHexagonally(Level const &parent, TagOptions tagOptions, bool fullTopology,
                        Refinement &refinement, Level &child) {
     BeginRefinement(parent, GetHexagonalSizes(GetSizes(parent)), fullTopology, refinement, child);
     child.isHexagonal = true;
@@ -68,7 +68,7 @@ void RefineHexagonally(Level const &parent, Sdc::Options sdcOptions, bool fullTo
     fillEdgeChildFaces(refinement);
     placeRelations(child);
     HexLevelWriter(refinement, child).Write();
-    EndRefinement(sdcOptions, refinement, child);
+    EndRefinement(tagOptions, refinement, child);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -11,7 +11,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// \brief Makes \p child the hexagonal refinement of \p parent: relations, tags and, with \p
 /// fullTopology, the masks of its sharp vertices.  Its sizes must fit 32 bits.  Without \p
 /// fullTopology only the face-vertices and the tags of faces are made.
-void RefineHexagonally(Level const &parent, Sdc::Options sdcOptions, bool fullTopology,
+void RefineHexagonally(Level const &parent, TagOptions tagOptions, bool fullTopology,
                        Refinement &refinement, Level &child);
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -2,7 +2,6 @@
 #include "levelRefiner.h"
 
 #include "hexRefinement.h"
-#include "irregularFeatures.h"
 #include "truncationRefinement.h"
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -30,8 +29,8 @@ struct NextLevel {
 
 } // namespace
 
-LevelRefiner::LevelRefiner(Hierarchy &hierarchy, Sdc::Options sdcOptions, FaceMask faceMask)
-    : _hierarchy(hierarchy), _sdcOptions(sdcOptions), _faceMask(faceMask) {
+LevelRefiner::LevelRefiner(Hierarchy &hierarchy, TagOptions tagOptions)
+    : _hierarchy(hierarchy), _tagOptions(tagOptions) {
     _checkers.emplace_back(GetSizes(hierarchy.mesh.levels[0]), "");
     for (std::size_t channel = 0; channel < hierarchy.channels.size(); ++channel) {
         _checkers.emplace_back(GetSizes(hierarchy.channels[channel].values.levels[0]),
@@ -104,8 +103,7 @@ CallStatus LevelRefiner::addHexagonalLevel(bool fullTopology) {
         NextLevel next(mesh, _numLevels);
         CallStatus status = checker.Add(GetHexagonalSizes(GetSizes(next.parent)));
         if (status.IsOk()) {
-            RefineHexagonally(next.parent, _sdcOptions, fullTopology, next.refinement, next.child);
-            FindIrregularFeatures(_faceMask, next.refinement, next.child);
+            RefineHexagonally(next.parent, _tagOptions, fullTopology, next.refinement, next.child);
         }
         return status;
     };
@@ -120,10 +118,10 @@ CallStatus LevelRefiner::addPolygonLevel(PolygonRules const &rules, bool fullTop
     std::size_t const last = std::size_t(_numLevels) - 1;
     Level const &mesh = _hierarchy.mesh.levels[last];
     std::deque<PolygonRefiner> refiners;
-    refiners.emplace_back(mesh, rules, _sdcOptions);
+    refiners.emplace_back(mesh, rules, _tagOptions);
     for (FVarChannel const &channel : _hierarchy.channels) {
         refiners.emplace_back(channel.values.levels[last],
-                              GetRulesOfChannel(mesh, rules, channel.levels[last]), _sdcOptions);
+                              GetRulesOfChannel(mesh, rules, channel.levels[last]), _tagOptions);
     }
     return addLevels(refiners, fullTopology);
 }
@@ -132,10 +130,10 @@ CallStatus LevelRefiner::addTruncation(Far::ConstIndexArray faceLabels, bool ful
     Level const &mesh = _hierarchy.mesh.levels[0];
     EndCuts const cuts = FindEndCuts(_hierarchy, faceLabels);
     std::deque<TruncationRefiner> refiners;
-    refiners.emplace_back(mesh, cuts, _sdcOptions);
+    refiners.emplace_back(mesh, cuts, _tagOptions);
     for (FVarChannel const &channel : _hierarchy.channels) {
         refiners.emplace_back(channel.values.levels[0],
-                              GetEndCutsOfChannel(mesh, cuts, channel.levels[0]), _sdcOptions);
+                              GetEndCutsOfChannel(mesh, cuts, channel.levels[0]), _tagOptions);
     }
     return addLevels(refiners, fullTopology);
 }
@@ -151,7 +149,6 @@ CallStatus LevelRefiner::addLevels(std::deque<REFINER> &refiners, bool fullTopol
     auto const refine = [&](REFINER &refiner, MeshLevels &levels) {
         NextLevel next(levels, _numLevels);
         refiner.Refine(fullTopology, next.refinement, next.child);
-        FindIrregularFeatures(_faceMask, next.refinement, next.child);
     };
     refine(refiners[0], _hierarchy.mesh);
     for (std::size_t i = 0; i < _hierarchy.channels.size(); ++i) {

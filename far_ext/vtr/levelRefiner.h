@@ -13,7 +13,7 @@ namespace OpenSubdivHex::FarExt::internal {
 class LevelRefiner {
 public:
     /// Begins behind level 0 of \p hierarchy, to which it refers.
-    LevelRefiner(Hierarchy &hierarchy, Sdc::Options sdcOptions, FaceMask faceMask);
+    LevelRefiner(Hierarchy &hierarchy, TagOptions tagOptions);
 
     /// \brief Checks the sizes of the levels behind the last one, up to \p refinementLevel, as far
     /// as they are known before any is made: all, but for tri-hex refinements of a mesh with
@@ -41,8 +41,7 @@ private:
 
     Hierarchy &_hierarchy;
     int _numLevels = 1; ///< behind which the next is added
-    Sdc::Options const _sdcOptions;
-    FaceMask const _faceMask;
+    TagOptions const _tagOptions;
     std::vector<SizeChecker> _checkers; ///< of the mesh, then of each channel
 };
 

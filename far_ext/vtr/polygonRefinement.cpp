@@ -35,8 +35,8 @@ constexpr Index kJoinedEnd = -2; // stays; the edge is that of the digon's other
 
 } // namespace
 
-PolygonRefiner::PolygonRefiner(Level const &parent, PolygonRules rules, Sdc::Options sdcOptions)
-    : _parent(parent), _rules(std::move(rules)), _sdcOptions(sdcOptions) {
+PolygonRefiner::PolygonRefiner(Level const &parent, PolygonRules rules, TagOptions tagOptions)
+    : _parent(parent), _rules(std::move(rules)), _tagOptions(tagOptions) {
     countVertices();
     findDigons();
     markEndEdges();
@@ -71,7 +71,7 @@ std::size_t PolygonRefiner::findEnd(Index startCorner) const {
 }
 
 BoundaryKind PolygonRefiner::getBoundaryKind() const {
-    bool const isFree = isHexagonal() || _sdcOptions.GetVtxBoundaryInterpolation() ==
+    bool const isFree = isHexagonal() || _tagOptions.sdcOptions.GetVtxBoundaryInterpolation() ==
                                              Sdc::Options::VTX_BOUNDARY_NONE;
     return isFree ? kFreeBoundary : kSharpBoundaryA;
 }
@@ -535,7 +535,7 @@ void PolygonRefiner::Refine(bool fullTopology, Refinement &refinement, Level &ch
         Builder<false>(*this, refinement, child).Build();
         FinishFaces(child);
     }
-    EndRefinement(_sdcOptions, refinement, child);
+    EndRefinement(_tagOptions, refinement, child);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -48,7 +48,7 @@ PolygonRules GetRulesOfChannel(Level const &mesh, PolygonRules const &rules,
 class PolygonRefiner {
 public:
     /// Counts what the refinement of \p parent, which it refers to, makes.
-    PolygonRefiner(Level const &parent, PolygonRules rules, Sdc::Options sdcOptions);
+    PolygonRefiner(Level const &parent, PolygonRules rules, TagOptions tagOptions);
 
     LevelSizes GetSizes() const { return _sizes; }
 
@@ -97,7 +97,7 @@ private:
 
     Level const &_parent;
     PolygonRules const _rules;
-    Sdc::Options const _sdcOptions;
+    TagOptions const _tagOptions;
     LevelSizes _sizes{};
 
     // What the ranges of components before a range make, by range.

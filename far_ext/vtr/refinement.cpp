@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "refinement.h"
 
+#include "irregularFeatures.h"
 #include "sharpFeatures.h"
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -25,16 +26,15 @@ void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopo
     child.hasFullTopology = fullTopology;
 }
 
-void EndRefinement(Sdc::Options sdcOptions, Refinement const &refinement, Level &child) {
-    RefineTags(refinement, sdcOptions, child);
+void EndRefinement(TagOptions options, Refinement const &refinement, Level &child) {
+    RefineTags(refinement, options.sdcOptions, child);
     if (child.hasFullTopology) {
-        ComputeSharpMasks(sdcOptions, child);
+        ComputeSharpMasks(options.sdcOptions, child);
     } else {
         child.sharpVerts.clear();
         child.sectorCorners.clear();
     }
-    child.irregularVerts.clear();
-    child.irregularCorners.clear();
+    FindIrregularFeatures(options.faceMask, refinement, child);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -4,6 +4,8 @@
 
 #include "levelSizes.h"
 
+#include "far_ext/mask.h"
+
 #include <opensubdiv/sdc/options.h>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -106,9 +108,15 @@ struct Refinement {
 void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopology,
                      Refinement &refinement, Level &child);
 
+/// What the tags of levels depend on.
+struct TagOptions {
+    Sdc::Options sdcOptions;
+    FaceMask faceMask;
+};
+
 /// \brief Ends a refinement whose child has its relations: adds the tags and, with full topology,
-/// the masks of sharp vertices.  No irregular ones: see FindIrregularFeatures.
-void EndRefinement(Sdc::Options sdcOptions, Refinement const &refinement, Level &child);
+/// the masks of sharp vertices and what has masks of its own besides.  RefinementRules make rules of them.
+void EndRefinement(TagOptions options, Refinement const &refinement, Level &child);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

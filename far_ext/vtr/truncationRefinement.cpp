@@ -111,8 +111,8 @@ EndCuts GetEndCutsOfChannel(Level const &mesh, EndCuts const &cuts, FVarLevel co
     return result;
 }
 
-TruncationRefiner::TruncationRefiner(Level const &parent, EndCuts cuts, Sdc::Options sdcOptions)
-    : _parent(parent), _cuts(std::move(cuts)), _sdcOptions(sdcOptions) {
+TruncationRefiner::TruncationRefiner(Level const &parent, EndCuts cuts, TagOptions tagOptions)
+    : _parent(parent), _cuts(std::move(cuts)), _tagOptions(tagOptions) {
     _vertexCounts = ParallelSums<ChildCounts>(_parent.numVertices, [this](Index begin, Index end) {
         ChildCounts counts;
         for (Index pVert = begin; pVert < end; ++pVert) {
@@ -320,7 +320,7 @@ void TruncationRefiner::Refine(bool fullTopology, Refinement &refinement, Level 
         Builder<false>(*this, refinement, child).Build();
         FinishFaces(child);
     }
-    EndRefinement(_sdcOptions, refinement, child);
+    EndRefinement(_tagOptions, refinement, child);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

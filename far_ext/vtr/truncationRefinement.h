@@ -35,7 +35,7 @@ EndCuts GetEndCutsOfChannel(Level const &mesh, EndCuts const &cuts, FVarLevel co
 class TruncationRefiner {
 public:
     /// Counts what the refinement of \p parent, a level 0 to which it refers, makes.
-    TruncationRefiner(Level const &parent, EndCuts cuts, Sdc::Options sdcOptions);
+    TruncationRefiner(Level const &parent, EndCuts cuts, TagOptions tagOptions);
 
     LevelSizes GetSizes() const { return _sizes; }
 
@@ -54,7 +54,7 @@ private:
 
     Level const &_parent;
     EndCuts const _cuts;
-    Sdc::Options const _sdcOptions;
+    TagOptions const _tagOptions;
     LevelSizes _sizes{};
     // What the ranges of components before a range make, by range.
     std::vector<ChildCounts> _vertexCounts; ///< V-vertices and V-faces

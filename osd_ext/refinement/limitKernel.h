@@ -101,8 +101,8 @@ struct LimitTask {
     void Skip(int count) {
         length -= count;
         values.data += count;
-        for (Elements<float> &output : outputs) {
-            output.data += count;
+        for (int i = 0; i < numOutputs; ++i) { // the others are null
+            outputs[i].data += count;
         }
     }
 
