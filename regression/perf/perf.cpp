@@ -92,18 +92,18 @@ void run(Suite::Options const &options, std::string const &command, Paths const 
 }
 
 #ifdef PERF_HAS_GL
-/// Says why something is not measured; throws instead where the environment says that it is needed.
-std::string describeMissing(std::string const &reason, char const *needed) {
-    if (std::getenv(needed)) {
-        throw std::runtime_error(reason);
-    }
-    return reason + ": not measured";
-}
-
 void runDevice(Suite::Options options, std::string const &command, Paths const &paths) {
     GlContext const context;
     bool const hasGl = context.GetError().empty();
     Environment environment = describeRun(command);
+    // What is needed and missing fails the run, once all else is measured.
+    std::string failure;
+    auto const describeMissing = [&](std::string const &reason, char const *needed) {
+        if (std::getenv(needed)) {
+            failure += (failure.empty() ? "" : "; ") + reason;
+        }
+        return reason + ": not measured";
+    };
     std::string const renderer =
         hasGl ? context.GetRenderer()
               : describeMissing(context.GetError(), "OPENSUBDIVHEX_NEEDS_GL");
@@ -131,6 +131,9 @@ void runDevice(Suite::Options options, std::string const &command, Paths const &
         AddDeviceBenchmarks(suite, context);
     }
     runSuite(suite, environment, paths);
+    if (!failure.empty()) {
+        throw std::runtime_error(failure);
+    }
 }
 #else
 void runDevice(Suite::Options const &, std::string const &, Paths const &) {
