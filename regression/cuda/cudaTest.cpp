@@ -10,6 +10,8 @@
 #include "regression/device/deviceEvaluatorTest.h"
 #include "stencilsByThread.h"
 
+#include <cuda_runtime_api.h>
+
 #include <cstdlib>
 
 namespace OpenSubdivHex::Regression::cudaTest {
@@ -128,6 +130,44 @@ TEST_F(CudaTable, GivesPointsAndDerivativesOfLimits) {
                                             onDevice.get()));
     for (int i = 0; i < 3; ++i) {
         ASSERT_NO_FATAL_FAILURE(expectFloats(buffers[i], outputs[i], 4 * kNumUnits));
+    }
+}
+
+// Elements far apart: beyond 2^31 bytes, and beyond as many floats.
+TEST_F(CudaTable, WritesBeyondTwoGigabytesAndBeyondAsManyFloats) {
+    auto const refiner =
+        MakeRefiner(GetShape("cube"), 2, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, {}, true);
+    auto const evaluator = CudaRefinementEvaluator::Create(*refiner);
+    constexpr int kLength = 3;
+    auto const numElements = std::size_t(evaluator->GetNumElements(2));
+    Descriptor const desc(0, kLength, kLength);
+    Buffer const src = kind.MakeBuffer(MakeValues(evaluator->GetNumElements(0), kLength), kLength);
+    Buffer const dense = makeBlank(numElements * kLength, kLength);
+    for (std::size_t const unit : {sizeof(float), std::size_t(1)}) {
+        std::size_t const stride = (std::size_t(1) << 31) / unit / (numElements - 1) + 1;
+        ASSERT_GE((numElements - 1) * stride * unit, std::size_t(1) << 31);
+        std::size_t const numFloats = numElements * stride;
+        float *far = nullptr;
+        if (cudaMalloc(reinterpret_cast<void **>(&far), numFloats * sizeof(float)) != cudaSuccess) {
+            cudaGetLastError();
+            GTEST_SKIP() << "the device has no buffer of " << numFloats * sizeof(float) << " bytes";
+        }
+        std::unique_ptr<float, void (*)(float *)> const owner(far, [](float *p) { cudaFree(p); });
+        Descriptor const farDesc(0, kLength, int(stride));
+        auto const expectSame = [&] {
+            std::vector<float> found(numElements * kLength);
+            ASSERT_EQ(cudaMemcpy2D(found.data(), kLength * sizeof(float), far,
+                                   stride * sizeof(float), kLength * sizeof(float), numElements,
+                                   cudaMemcpyDeviceToHost),
+                      cudaSuccess);
+            EXPECT_EQ(found, kind.Read(*dense, found.size()));
+        };
+        ASSERT_TRUE(evaluator->Evaluate(src.get(), desc, dense.get(), desc, 2));
+        ASSERT_TRUE(evaluator->Evaluate(src->BindCudaBuffer(), desc, far, farDesc, 2));
+        ASSERT_NO_FATAL_FAILURE(expectSame());
+        ASSERT_TRUE(evaluator->EvaluateLimit(src.get(), desc, dense.get(), desc, 2));
+        ASSERT_TRUE(evaluator->EvaluateLimit(src->BindCudaBuffer(), desc, far, farDesc, 2));
+        ASSERT_NO_FATAL_FAILURE(expectSame());
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <EGL/eglext.h>
 
+#include <cstring>
+
 namespace OpenSubdivHex::Regression {
 
 namespace {
@@ -13,19 +15,51 @@ FUNCTION getFunction(char const *name) {
     return reinterpret_cast<FUNCTION>(eglGetProcAddress(name));
 }
 
-} // namespace
-
-GlContext::GlContext() {
+/// Displays without a window that may exist: those of devices, as NVIDIA's driver has them, then the one
+/// of Mesa, which takes processors, too.
+std::vector<EGLDisplay> findDisplays() {
     auto const getPlatformDisplay =
         getFunction<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
-    if (getPlatformDisplay) {
-        _display = getPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA,
-                                      reinterpret_cast<void *>(EGL_DEFAULT_DISPLAY), nullptr);
+    if (!getPlatformDisplay) {
+        return {};
     }
-    if (_display == EGL_NO_DISPLAY || !eglInitialize(_display, nullptr, nullptr)) {
-        _error = "EGL has no display without a window";
-        return;
+    constexpr EGLint kMaxDevices = 16;
+    EGLDeviceEXT devices[kMaxDevices];
+    EGLint numDevices = 0;
+    auto const queryDevices = getFunction<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
+    auto const queryString = getFunction<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+    if (!queryDevices || !queryString || !queryDevices(kMaxDevices, devices, &numDevices)) {
+        numDevices = 0;
     }
+    std::vector<EGLDisplay> displays;
+    for (EGLint i = 0; i < numDevices; ++i) {
+        char const *const extensions = queryString(devices[i], EGL_EXTENSIONS);
+        if (extensions && !std::strstr(extensions, "EGL_MESA_device_software")) {
+            displays.push_back(getPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
+        }
+    }
+    displays.push_back(getPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA,
+                                          reinterpret_cast<void *>(EGL_DEFAULT_DISPLAY), nullptr));
+    return displays;
+}
+
+} // namespace
+
+GlContext::GlContext() : _error("EGL has no display without a window") {
+    for (EGLDisplay display : findDisplays()) {
+        if (display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr)) {
+            _display = display;
+            if (makeContext()) {
+                _error.clear();
+                return;
+            }
+            _error = "EGL makes no context of OpenGL 4.3 without a surface";
+            release();
+        }
+    }
+}
+
+bool GlContext::makeContext() {
     EGLint const configAttributes[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
                                        EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
@@ -41,13 +75,13 @@ GlContext::GlContext() {
         eglChooseConfig(_display, configAttributes, &config, 1, &numConfigs) && numConfigs > 0) {
         _context = eglCreateContext(_display, config, EGL_NO_CONTEXT, contextAttributes);
     }
-    if (_context == EGL_NO_CONTEXT ||
-        !eglMakeCurrent(_display, EGL_NO_SURFACE, EGL_NO_SURFACE, _context)) {
-        _error = "EGL makes no context of OpenGL 4.3 without a surface";
-    }
+    return _context != EGL_NO_CONTEXT &&
+           eglMakeCurrent(_display, EGL_NO_SURFACE, EGL_NO_SURFACE, _context);
 }
 
-GlContext::~GlContext() {
+GlContext::~GlContext() { release(); }
+
+void GlContext::release() {
     if (_display == EGL_NO_DISPLAY) {
         return;
     }
@@ -56,6 +90,8 @@ GlContext::~GlContext() {
         eglDestroyContext(_display, _context);
     }
     eglTerminate(_display);
+    _context = EGL_NO_CONTEXT;
+    _display = EGL_NO_DISPLAY;
 }
 
 std::vector<float> GlContext::Read(GLuint buffer, std::size_t numFloats,

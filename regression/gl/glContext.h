@@ -12,7 +12,8 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// \brief A context of OpenGL 4.3 or later without a window, current while it lives.
+/// \brief A context of OpenGL 4.3 or later without a window, current while it lives: of a device, else of
+/// the processor.
 class GlContext {
 public:
     GlContext();
@@ -47,6 +48,9 @@ public:
     void UnbindFramebuffer();
 
 private:
+    bool makeContext();
+    void release();
+
     EGLDisplay _display = EGL_NO_DISPLAY;
     EGLContext _context = EGL_NO_CONTEXT;
     std::string _error;

@@ -3,6 +3,7 @@
 // CUDA: all levels without a table, against tables and against copying on the device; the limit; and
 // what lies before the first frame: nanoseconds per vertex.
 #include "makers.h"
+#include "meshes.h"
 
 #include "far_ext/stencilTableFactory.h"
 #include "osd_ext/cudaEvaluator.h"
@@ -46,9 +47,8 @@ std::shared_ptr<CudaRefinementEvaluator> makeEvaluator(FarExt::TopologyRefiner c
     return result;
 }
 
-std::shared_ptr<CudaStencilTable> makeCudaTable(FarExt::TopologyRefiner const &refiner) {
-    Table const table = FarExt::StencilTableFactory::Create(refiner, {});
-    return std::shared_ptr<CudaStencilTable>(CudaStencilTable::Create(table.get()));
+std::shared_ptr<CudaStencilTable> makeCudaTable(Far::StencilTable const &table) {
+    return std::shared_ptr<CudaStencilTable>(CudaStencilTable::Create(&table));
 }
 
 /// Control values on the device, with those on the processor.
@@ -79,17 +79,15 @@ Contestant makeFrame(std::string const &name, double movedBytes,
     return contestant;
 }
 
-Contest makeFrames(BenchMesh const &mesh) {
+/// All levels, with tables where they are asked for, or else huge.
+Contest makeFrames(BenchMesh const &mesh, bool hasTables) {
     RefinerPointer const refiner = MakeRefined(mesh);
     auto const own = makeEvaluator(*refiner);
     auto const control = std::make_shared<ControlValues>(*refiner);
     auto const numVertices = int(own->GetNumElementsAllLevels());
     BufferPointer const dst = makeBuffer(numVertices);
-    auto const table = makeCudaTable(*refiner);
     double const bytes = double(numVertices) * kLength * sizeof(float);
     double const ownBytes = 1.25 * bytes + double(own->GetNumDeviceBytes());
-    double const tableBytes =
-        bytes + GetNumBytes(*Table(FarExt::StencilTableFactory::Create(*refiner, {})));
     // Half of the bytes are read, the others written.
     auto const numCopied = std::size_t(ownBytes / 2);
     BufferPointer const copied[] = {makeBuffer(int(numCopied / sizeof(float) / kLength) + 1),
@@ -115,27 +113,36 @@ Contest makeFrames(BenchMesh const &mesh) {
             },
             validate),
         makeFrame(
-            "OsdExt::CudaEvaluator", tableBytes,
-            [=] {
-                return CudaEvaluator::EvalStencils(control->buffer.get(), kPacked, dst.get(),
-                                                   kPacked, table.get());
-            },
-            validate),
-        makeFrame(
-            "one thread for each stencil", tableBytes,
-            [=] {
-                return EvalStencilsByThread(control->buffer->BindCudaBuffer(),
-                                            dst->BindCudaBuffer(), kLength, *table);
-            },
-            validate),
-        makeFrame(
             "cudaMemcpy on the device", ownBytes,
             [src = copied[0], to = copied[1], numCopied] {
                 return cudaMemcpyAsync(to->BindCudaBuffer(), src->BindCudaBuffer(), numCopied,
                                        cudaMemcpyDeviceToDevice, nullptr) == cudaSuccess;
             },
             [=] { return double(numVertices); })};
-    contest.pairings = {{"cuda-copy", 0, {3}}, {"cuda-table", 0, {1}}, {"cuda-thread", 1, {2}}};
+    contest.pairings = {{hasTables ? "cuda-copy" : "cuda-huge", 0, {1}}};
+    if (!hasTables) {
+        return contest;
+    }
+    Table const onHost = FarExt::StencilTableFactory::Create(*refiner, {});
+    auto const table = makeCudaTable(*onHost);
+    double const tableBytes = bytes + GetNumBytes(*onHost);
+    contest.contestants.push_back(makeFrame(
+        "OsdExt::CudaEvaluator", tableBytes,
+        [=] {
+            return CudaEvaluator::EvalStencils(control->buffer.get(), kPacked, dst.get(), kPacked,
+                                               table.get());
+        },
+        validate));
+    contest.contestants.push_back(makeFrame(
+        "one thread for each stencil", tableBytes,
+        [=] {
+            return EvalStencilsByThread(control->buffer->BindCudaBuffer(), dst->BindCudaBuffer(),
+                                        kLength, *table);
+        },
+        validate));
+    contest.pairings.push_back({"cuda-table", 0, {2, 3}});
+    contest.pairings.push_back({"cuda-levels-thread", 0, {3}});
+    contest.pairings.push_back({"cuda-thread", 2, {3}});
     return contest;
 }
 
@@ -189,7 +196,8 @@ Contest makePreparations(BenchMesh const &mesh) {
     Contest contest;
     contest.contestants = {
         add("OsdExt::CudaRefinementEvaluator", [=] { return makeEvaluator(*refiner); }),
-        add("stencil table", [=] { return makeCudaTable(*refiner); })};
+        add("stencil table",
+            [=] { return makeCudaTable(*FarExt::StencilTableFactory::Create(*refiner, {})); })};
     contest.pairings = {{"cuda-preparation", 0, {1}}};
     return contest;
 }
@@ -211,13 +219,29 @@ std::function<void()> makeFrameOf(BenchMesh const &mesh) {
     };
 }
 
+/// Whether the device has room for all levels of a mesh, indices, and as many bytes to copy.
+bool hasRoom(BenchMesh const &mesh) {
+    std::size_t numFree = 0;
+    std::size_t numBytes = 0;
+    double levelBytes = 0;
+    for (int level = 1; level <= mesh.level; ++level) {
+        levelBytes += CountHexVertices(*mesh.shape, level) * kLength * sizeof(float);
+    }
+    return cudaMemGetInfo(&numFree, &numBytes) == cudaSuccess && double(numFree) > 4 * levelBytes;
+}
+
 } // namespace
 
-std::string GetCudaDevice() {
+std::string GetCudaDevice(std::string &reason) {
     int numDevices = 0;
     cudaDeviceProp properties;
-    if (cudaGetDeviceCount(&numDevices) != cudaSuccess || numDevices == 0 ||
-        cudaGetDeviceProperties(&properties, 0) != cudaSuccess) {
+    cudaError_t error = cudaGetDeviceCount(&numDevices);
+    if (error == cudaSuccess && numDevices > 0) {
+        error = cudaGetDeviceProperties(&properties, 0);
+    }
+    if (error != cudaSuccess || numDevices == 0) {
+        reason = std::string("no device") +
+                 (error != cudaSuccess ? std::string(", ") + cudaGetErrorString(error) : "");
         return {};
     }
     return properties.name;
@@ -226,7 +250,7 @@ std::string GetCudaDevice() {
 void AddCudaBenchmarks(Suite &suite) {
     for (BenchMesh const &mesh : suite.GetMeshes()) {
         suite.AddContest({"CUDA, all levels, length 3", "vertex", mesh, Memory::Resident},
-                         [=] { return makeFrames(mesh); });
+                         [=] { return makeFrames(mesh, true); });
         suite.AddContest(
             {"CUDA, limit with derivatives, length 3", "vertex", mesh, Memory::Resident},
             [=] { return makeLimits(mesh); });
@@ -234,6 +258,11 @@ void AddCudaBenchmarks(Suite &suite) {
                          [=] { return makePreparations(mesh); });
     }
     AddFrameBenchmark(suite, "cuda-frame", makeFrameOf);
+    BenchMesh const huge = suite.GetHugeMesh();
+    if (hasRoom(huge)) {
+        suite.AddContest({GetRow("cuda-huge").work, "vertex", huge, Memory::Resident},
+                         [=] { return makeFrames(huge, false); });
+    }
 }
 
 } // namespace OpenSubdivHex::Regression

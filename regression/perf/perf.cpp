@@ -11,6 +11,7 @@
 #include "regression/gl/glContext.h"
 #endif
 
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <regex>
@@ -34,15 +35,18 @@ struct Paths {
     std::string markdown;
 };
 
-void write(Results const &results, Environment const &environment, Paths const &paths) {
-    std::string const markdown = FormatMarkdown(results, environment);
-    std::cout << markdown << std::flush;
+void writeFiles(Results const &results, Environment const &environment, Paths const &paths) {
     if (!paths.markdown.empty()) {
-        writeFile(paths.markdown, markdown);
+        writeFile(paths.markdown, FormatMarkdown(results, environment));
     }
     if (!paths.json.empty()) {
         writeFile(paths.json, FormatJson(results, environment));
     }
+}
+
+void write(Results const &results, Environment const &environment, Paths const &paths) {
+    std::cout << FormatMarkdown(results, environment) << std::flush;
+    writeFiles(results, environment, paths);
 }
 
 Environment describeRun(std::string const &command) {
@@ -58,7 +62,8 @@ void report(std::string const &measuredPath, std::string const &command, Paths c
 }
 
 void runSuite(Suite &suite, Environment const &environment, Paths const &paths) {
-    bool const isComplete = suite.Run();
+    // The files have what was measured so far, in case the run is ended.
+    bool const isComplete = suite.Run([&] { writeFiles(suite.GetResults(), environment, paths); });
     write(suite.GetResults(), environment, paths);
     if (!isComplete) {
         throw std::runtime_error("not complete, see above");
@@ -89,31 +94,46 @@ void run(Suite::Options const &options, std::string const &command, Paths const 
 #ifdef PERF_HAS_GL
 void runDevice(Suite::Options options, std::string const &command, Paths const &paths) {
     GlContext const context;
-    if (!context.GetError().empty()) {
-        throw std::runtime_error(context.GetError());
-    }
+    bool const hasGl = context.GetError().empty();
     Environment environment = describeRun(command);
-    std::string const renderer = context.GetRenderer();
+    // What is needed and missing fails the run, once all else is measured.
+    std::string failure;
+    auto const describeMissing = [&](std::string const &reason, char const *needed) {
+        if (std::getenv(needed)) {
+            failure += (failure.empty() ? "" : "; ") + reason;
+        }
+        return reason + ": not measured";
+    };
+    std::string const renderer =
+        hasGl ? context.GetRenderer()
+              : describeMissing(context.GetError(), "OPENSUBDIVHEX_NEEDS_GL");
     bool const isProcessor = renderer.find("llvmpipe") != std::string::npos ||
                              renderer.find("softpipe") != std::string::npos;
     environment.emplace_back("OpenGL",
                              renderer + (isProcessor ? ", on the processor: no GPU" : ""));
 #ifdef PERF_HAS_CUDA
-    std::string const cuda = GetCudaDevice();
-    environment.emplace_back("CUDA", cuda.empty() ? "no device: not measured" : cuda);
+    std::string reason;
+    std::string const cuda = GetCudaDevice(reason);
+    environment.emplace_back(
+        "CUDA", cuda.empty() ? describeMissing(reason, "OPENSUBDIVHEX_NEEDS_CUDA") : cuda);
 #else
     environment.emplace_back("CUDA", "not built: not measured");
 #endif
     options.title = "Results of the benchmarks of devices";
     options.rows = &GetDeviceRows();
     Suite suite(std::move(options));
-    AddDeviceBenchmarks(suite, context);
 #ifdef PERF_HAS_CUDA
     if (!cuda.empty()) {
         AddCudaBenchmarks(suite);
     }
 #endif
+    if (hasGl) {
+        AddDeviceBenchmarks(suite, context);
+    }
     runSuite(suite, environment, paths);
+    if (!failure.empty()) {
+        throw std::runtime_error(failure);
+    }
 }
 #else
 void runDevice(Suite::Options const &, std::string const &, Paths const &) {
@@ -133,9 +153,10 @@ int main(int argc, char **argv) {
     std::string command = "perf";
     CLI::App app("Compares OpenSubdivHex with Far, Osd, OpenMesh and CGAL.", "perf");
     bool isOfDevice = false;
-    app.add_flag("--device", isOfDevice,
-                 "Instead of the processor, measure evaluators of OpenGL, in a context without a "
-                 "window, and of CUDA where there is a device");
+    app.add_flag(
+        "--device", isOfDevice,
+        "Instead of the processor, measure evaluators of CUDA, where there is a device, and "
+        "of OpenGL, where there is a context without a window");
     app.add_flag("--quick", options.isQuick, "Tiny sizes and one turn: to see that all runs");
     app.add_option(
            "--filter", options.filter,

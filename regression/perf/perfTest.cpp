@@ -13,6 +13,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace OpenSubdivHex::Regression::perfTest {
 namespace {
@@ -56,9 +57,12 @@ TEST(Perf, VerdictsFollowTheBounds) {
 
 TEST(Perf, RowsHaveNamesOfTheirOwn) {
     std::set<std::string> names;
-    for (Row const &row : GetRows()) {
-        EXPECT_TRUE(names.insert(row.name).second) << row.name;
-        EXPECT_TRUE(row.isUpperBound ? row.aim <= row.atLeast : row.aim >= row.atLeast) << row.name;
+    for (std::vector<Row> const *rows : {&GetRows(), &GetDeviceRows(), &GetPythonRows()}) {
+        for (Row const &row : *rows) {
+            EXPECT_TRUE(names.insert(row.name).second) << row.name;
+            EXPECT_TRUE(row.isUpperBound ? row.aim <= row.atLeast : row.aim >= row.atLeast)
+                << row.name;
+        }
     }
     EXPECT_THROW(GetRow("topology"), std::out_of_range);
 }

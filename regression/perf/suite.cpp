@@ -98,8 +98,15 @@ void Suite::nameFrameMesh() {
         _results.conditions += " *frame* is a\ncontrol mesh of " +
                                formatCount(_frameMesh.shape->GetNumFaces()) + " quads, which has " +
                                formatCount(CountHexVertices(*_frameMesh.shape, _frameMesh.level)) +
-                               " vertices" + level + ".";
+                               " vertices" + level + "; *huge* is that mesh one level further.";
     }
+}
+
+BenchMesh Suite::GetHugeMesh() const {
+    BenchMesh mesh = _frameMesh;
+    mesh.size = "huge";
+    ++mesh.level;
+    return mesh;
 }
 
 void Suite::add(Setting const &setting, int numTurns, std::function<void(benchmark::State &)> run) {
@@ -151,7 +158,7 @@ void AddFrameBenchmark(Suite &suite, std::string const &row,
     });
 }
 
-void Suite::run(Memory memory) {
+void Suite::run(Memory memory, std::function<void()> const &afterEach) {
     benchmark::ClearRegisteredBenchmarks();
     bool isAny = false;
     for (Benchmark const &entry : _benchmarks) {
@@ -160,13 +167,14 @@ void Suite::run(Memory memory) {
         }
         isAny = true;
         benchmark::RegisterBenchmark(entry.name.c_str(),
-                                     [this, &entry](benchmark::State &state) {
+                                     [this, &entry, &afterEach](benchmark::State &state) {
                                          try {
                                              entry.run(state);
                                          } catch (std::exception const &exception) {
                                              _isComplete = false;
                                              state.SkipWithError(exception.what());
                                          }
+                                         afterEach();
                                      })
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond)
@@ -179,11 +187,11 @@ void Suite::run(Memory memory) {
     }
 }
 
-bool Suite::Run() {
-    run(Memory::Default);
-    run(Memory::Resident);
+bool Suite::Run(std::function<void()> const &afterEach) {
+    run(Memory::Default, afterEach);
+    run(Memory::Resident, afterEach);
     if (KeepFreedMemory()) {
-        run(Memory::Warm);
+        run(Memory::Warm, afterEach);
     }
     return _isComplete;
 }

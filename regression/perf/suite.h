@@ -43,6 +43,8 @@ public:
 
     /// One whose last level is a frame of a device.
     BenchMesh const &GetFrameMesh() const { return _frameMesh; }
+    /// The same a level further: all its levels together have more than 2^31 bytes at length 3.
+    BenchMesh GetHugeMesh() const;
 
     /// Adds a benchmark whose contestants \p makeContest makes when it is run.
     void AddContest(Setting const &setting, std::function<Contest()> const &makeContest);
@@ -51,9 +53,9 @@ public:
     void AddMeasurement(Setting const &setting, std::string const &row,
                         std::function<std::pair<double, double>()> const &measure);
 
-    /// \brief Runs all benchmarks, those on a warm heap last.
+    /// \brief Runs all benchmarks, those on a warm heap last, and calls \p afterEach behind each of them.
     /// \return  false if one of them failed, which the log names
-    bool Run();
+    bool Run(std::function<void()> const &afterEach);
 
     Results const &GetResults() const { return _results; }
 
@@ -65,7 +67,7 @@ private:
         std::function<void(benchmark::State &)> run;
     };
     void add(Setting const &setting, int numTurns, std::function<void(benchmark::State &)> run);
-    void run(Memory memory);
+    void run(Memory memory, std::function<void()> const &afterEach);
     void nameFrameMesh();
 
     Options _options;
@@ -99,8 +101,8 @@ void AddGrowthBenchmarks(Suite &suite);
 void AddBusyBenchmarks(Suite &suite);
 /// Those of GetDeviceRows(), in a context of OpenGL that lives as long as the suite.
 void AddDeviceBenchmarks(Suite &suite, GlContext const &context);
-/// The others of these, which need a device of CUDA: its name, empty where there is none.
-std::string GetCudaDevice();
+/// The others of these, which need a device of CUDA: its name; empty where there is none, with \p reason.
+std::string GetCudaDevice(std::string &reason);
 void AddCudaBenchmarks(Suite &suite);
 /// Adds a benchmark of \p row, milliseconds: the median of some frames, which \p makeFrame makes.
 void AddFrameBenchmark(Suite &suite, std::string const &row,
