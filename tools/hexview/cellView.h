@@ -16,8 +16,6 @@
 
 namespace OpenSubdivHex::Tools {
 
-constexpr int kLength = 3; ///< floats of a point
-
 /// \brief The base faces of a mesh, each refined as far as a camera needs it.
 class CellView {
 public:

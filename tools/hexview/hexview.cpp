@@ -37,6 +37,8 @@ struct Arguments {
     std::string evaluator = "cpu";
     bool isAdaptive = false;
     CellSettings cells;
+    bool arePatches = false;
+    PatchSettings patches;
     std::string shading = "smooth";
     bool hasNoEdges = false;
     bool hasControlMesh = false;
@@ -53,6 +55,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
     constexpr int kMaxLevel = 10;
     constexpr int kMaxPixels = 8192;
     constexpr int kMaxFrames = 64;
+    constexpr int kMaxRate = 32; // OpenGL has 64, of sides that are cut in two
     app.add_option("INPUT", arguments->input, "Mesh to show: .obj, .off or .ply")
         ->type_name("FILE")
         ->required();
@@ -92,6 +95,26 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                                ->excludes(level)
                                ->excludes(limit)
                                ->excludes(evaluator);
+    auto *const patches =
+        app.add_flag("--patches", arguments->arePatches,
+                     "Draw the patches of the level, by OpenSubdiv's shaders: the limit surface, "
+                     "tessellated by OpenGL")
+            ->excludes(limit)
+            ->excludes(evaluator)
+            ->excludes(adaptive);
+    auto *const rate = app.add_option("--rate", arguments->patches.rate,
+                                      "Segments of each side of a patch; sides at faces that are "
+                                      "neither quads nor hexagons have half as many")
+                           ->check(MakeRange(1, kMaxRate))
+                           ->needs(patches)
+                           ->capture_default_str();
+    app.add_option("--edge-pixels", arguments->patches.edgePixels,
+                   "In place of a rate, as many segments as are so many pixels long")
+        ->check(MakeRange(1, 1000))
+        ->type_name("PIXELS")
+        ->needs(patches)
+        ->excludes(rate)
+        ->each([arguments](std::string const &) { arguments->patches.isByPixels = true; });
     app.add_option("--pixel-error", arguments->cells.pixelError,
                    "How many pixels faces may be away from the limit surface")
         ->check(MakeRange(1e-3, 1e3))
@@ -154,7 +177,8 @@ void addOptions(CLI::App &app, Arguments *arguments) {
     app.set_version_flag("--version", "hexview " OPENSUBDIVHEX_VERSION);
     app.footer(
         "In the window: drag to turn, the wheel to come nearer, drag vertices of the control "
-        "mesh.\nKeys: 0 to 7 level, V adaptive, F freeze its cells, Tab shading, E edges, C "
+        "mesh.\nKeys: 0 to 7 level, P patches, V adaptive, F freeze its cells, Tab shading, E "
+        "edges, C "
         "control "
         "mesh,\nA animation, Esc end.\nExit status: 0 success, 1 bad input or failed output, 2 bad "
         "usage.");
@@ -176,6 +200,7 @@ SurfaceSettings findSettings(Arguments const &arguments, MeshTags const &tags) {
     settings.evaluator = FindRule<ViewEvaluator>(kEvaluatorNames, arguments.evaluator);
     settings.isAdaptive = arguments.isAdaptive;
     settings.cells = arguments.cells;
+    settings.arePatches = arguments.arePatches;
     return settings;
 }
 
@@ -201,6 +226,7 @@ void run(Arguments const &arguments) {
     drawSettings.shading = FindRule<Shading>(kShadingNames, arguments.shading);
     drawSettings.hasEdges = !arguments.hasNoEdges;
     drawSettings.hasControlMesh = arguments.hasControlMesh;
+    drawSettings.patches = arguments.patches;
     OrbitCamera camera = OrbitCamera::Around(GatherPositions(shown, mesh.positions));
     camera.azimuth = arguments.azimuth;
     camera.elevation = arguments.elevation;

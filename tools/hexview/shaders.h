@@ -16,6 +16,9 @@ enum ArrayBinding : unsigned {
     kFaceArray
 };
 
+/// Of all shaders of drawings.
+inline constexpr char const *kVersion = "#version 430\n";
+
 /// \brief The normal of each side: the sum of the vector areas that it spans with its neighbours in
 /// the polygons around.  Once all normals are there, the mean curvature: the mean of the normal
 /// curvatures towards the neighbours.
@@ -92,17 +95,12 @@ void main() {
 }
 )";
 
-inline constexpr char const *kSurfaceFragmentShader = R"(#version 430
-in vec3 position;
-in vec3 normal;
-in float curvature;
-in vec2 coord;
-flat in uvec2 face;
+/// What places show: for fragment shaders, behind their version.
+inline constexpr char const *kShading = R"(
 uniform vec3 eye;
 uniform vec3 up;
 uniform float size; // of the mesh
 uniform int shading;
-out vec4 color;
 
 const vec3 kPaint = vec3(0.92, 0.72, 0.46);
 
@@ -120,7 +118,8 @@ vec3 getLevelColor(uint level) {
     return mix(vec3(0.95), getHue(0.66 - 0.11 * float(level % 7u)), 0.7);
 }
 
-void main() {
+// What a place shows; its curvature is the mean one, and it has a base face and a level.
+vec4 shade(vec3 position, vec3 normal, float curvature, vec2 coord, uvec2 face) {
     vec3 toEye = normalize(eye - position);
     vec3 n = shading == 1 ? normalize(cross(dFdx(position), dFdy(position))) : normalize(normal);
     if (dot(n, toEye) < 0.0) {
@@ -150,7 +149,68 @@ void main() {
     }
     vec3 halfway = normalize(light + toEye);
     float gloss = shading == 2 ? 0.0 : 0.25 * pow(max(dot(n, halfway), 0.0), 40.0);
-    color = vec4(paint * diffuse + gloss, 1.0);
+    return vec4(paint * diffuse + gloss, 1.0);
+}
+)";
+
+inline constexpr char const *kSurfaceFragmentShader = R"(
+in vec3 position;
+in vec3 normal;
+in float curvature;
+in vec2 coord;
+flat in uvec2 face;
+out vec4 color;
+
+void main() {
+    color = shade(position, normal, curvature, coord, face);
+}
+)";
+
+/// What OpenSubdiv's shaders of patches ask for: the camera, and how finely they tessellate.
+inline constexpr char const *kPatchClient = R"(
+uniform mat4 view;
+uniform mat4 lens;
+uniform float rate;
+uniform int firstPatch; // of the call
+mat4 OsdModelViewMatrix() { return view; }
+mat4 OsdProjectionMatrix() { return lens; }
+mat4 OsdModelViewProjectionMatrix() { return lens * view; }
+float OsdTessLevel() { return rate; }
+int OsdGregoryQuadOffsetBase() { return 0; }
+int OsdPrimitiveIdBase() { return firstPatch; }
+int OsdBaseVertex() { return 0; }
+)";
+
+/// Behind OpenSubdiv's common source, kPatchClient and kShading.  The mean curvature is that of the patch.
+inline constexpr char const *kPatchFragmentShader = R"(
+in block { OutputVertex v; } inpt;
+layout(std430, binding = 6) readonly buffer Coords { vec2 coords[]; };
+layout(std430, binding = 7) readonly buffer Faces { uvec2 faces[]; };
+uniform bool hasEdges;
+out vec4 color;
+
+void main() {
+    mat3 turn = transpose(mat3(view));
+    vec3 position = turn * (inpt.v.position.xyz - view[3].xyz);
+    vec3 normal = inpt.v.normal;
+    vec3 du = inpt.v.tangent;
+    vec3 dv = inpt.v.bitangent;
+    float e = dot(du, du);
+    float f = dot(du, dv);
+    float g = dot(dv, dv);
+    float square = e * g - f * f;
+    float curvature = square > 0.0 ? (dot(inpt.v.Nu, du) * g + dot(inpt.v.Nv, dv) * e -
+                                      (dot(inpt.v.Nu, dv) + dot(inpt.v.Nv, du)) * f) / (2.0 * square)
+                                   : 0.0;
+    vec2 st = inpt.v.tessCoord;
+    int number = int(inpt.v.patchCoord.w);
+    vec2 coord = mix(mix(coords[4 * number], coords[4 * number + 1], st.x),
+                     mix(coords[4 * number + 3], coords[4 * number + 2], st.x), st.y);
+    color = shade(position, turn * normal, curvature, coord, faces[number]);
+    vec2 pixels = min(st, 1.0 - st) / max(fwidth(st), vec2(1e-6));
+    if (hasEdges && min(pixels.x, pixels.y) < 0.6) {
+        color = vec4(0.25, 0.20, 0.15, 1.0);
+    }
 }
 )";
 

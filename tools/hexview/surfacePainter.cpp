@@ -3,6 +3,8 @@
 
 #include "shaders.h"
 
+#include <opensubdiv/osd/glslPatchShaderSource.h>
+
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
@@ -56,11 +58,12 @@ glm::vec3 OrbitCamera::GetUp() const {
     return glm::normalize(glm::vec3(0, 1, 0) - back.y * back);
 }
 
-glm::mat4 OrbitCamera::GetProjection(float aspect) const {
+glm::mat4 OrbitCamera::GetView() const { return glm::lookAt(GetEye(), center, GetUp()); }
+
+glm::mat4 OrbitCamera::GetLens(float aspect) const {
     float const eyeDistance = glm::length(GetEye() - center);
     float const nearest = std::max(eyeDistance - 2 * size, 0.01f * eyeDistance);
-    return glm::perspective(findFieldOfView(aspect), aspect, nearest, eyeDistance + 2 * size) *
-           glm::lookAt(GetEye(), center, GetUp());
+    return glm::perspective(findFieldOfView(aspect), aspect, nearest, eyeDistance + 2 * size);
 }
 
 BfrExt::Camera OrbitCamera::ForPicture(int width, int height) const {
@@ -78,7 +81,7 @@ BfrExt::Camera OrbitCamera::ForPicture(int width, int height) const {
 
 SurfacePainter::SurfacePainter()
     : _surfaceProgram({{GL_VERTEX_SHADER, {kSurfaceVertexShader}},
-                       {GL_FRAGMENT_SHADER, {kSurfaceFragmentShader}}}),
+                       {GL_FRAGMENT_SHADER, {kVersion, kShading, kSurfaceFragmentShader}}}),
       _edgeProgram(
           {{GL_VERTEX_SHADER, {kEdgeVertexShader}}, {GL_FRAGMENT_SHADER, {kEdgeFragmentShader}}}),
       _controlProgram({{GL_VERTEX_SHADER, {kControlVertexShader}},
@@ -98,14 +101,14 @@ void SurfacePainter::Draw(ViewedSurface &surface, OrbitCamera const &camera,
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glBindVertexArray(_vertexArray);
     glm::mat4 const projection = camera.GetProjection(float(width) / float(std::max(height, 1)));
-    if (settings.hasFaces) {
+    PatchView const *const patches = surface.GetPatches();
+    if (settings.hasFaces && patches) {
+        drawPatches(*patches, camera, settings, width, height);
+    } else if (settings.hasFaces) {
         surface.Bind();
         _surfaceProgram.Use();
         glUniformMatrix4fv(_surfaceProgram["projection"], 1, GL_FALSE, glm::value_ptr(projection));
-        glUniform3fv(_surfaceProgram["eye"], 1, glm::value_ptr(camera.GetEye()));
-        glUniform3fv(_surfaceProgram["up"], 1, glm::value_ptr(camera.GetUp()));
-        glUniform1f(_surfaceProgram["size"], camera.size);
-        glUniform1i(_surfaceProgram["shading"], int(settings.shading));
+        setShading(_surfaceProgram, camera, settings.shading);
         // A pixel of an edge is up to one beside the faces that it lies between: where these are steep,
         // they would hide it.
         glEnable(GL_POLYGON_OFFSET_FILL);
@@ -113,7 +116,7 @@ void SurfacePainter::Draw(ViewedSurface &surface, OrbitCamera const &camera,
         glDrawArrays(GL_TRIANGLES, 0, 3 * surface.GetNumTriangles());
         glDisable(GL_POLYGON_OFFSET_FILL);
     }
-    if (settings.hasEdges) {
+    if (settings.hasEdges && !patches) {
         surface.Bind();
         surface.BindEdges();
         _edgeProgram.Use();
@@ -126,6 +129,50 @@ void SurfacePainter::Draw(ViewedSurface &surface, OrbitCamera const &camera,
     }
     glBindVertexArray(0);
     glUseProgram(0);
+}
+
+void SurfacePainter::setShading(ViewProgram const &program, OrbitCamera const &camera,
+                                Shading shading) {
+    glUniform3fv(program["eye"], 1, glm::value_ptr(camera.GetEye()));
+    glUniform3fv(program["up"], 1, glm::value_ptr(camera.GetUp()));
+    glUniform1f(program["size"], camera.size);
+    glUniform1i(program["shading"], int(shading));
+}
+
+// OpenSubdiv's shaders take a rate, or segments for the height of the picture, which is 2 in the cube of OpenGL.
+void SurfacePainter::drawPatches(PatchView const &patches, OrbitCamera const &camera,
+                                 DrawSettings const &settings, int width, int height) {
+    bool const isByPixels = settings.patches.isByPixels;
+    std::unique_ptr<ViewProgram> &program = _patchPrograms[isByPixels ? 1 : 0];
+    if (!program) {
+        using Source = OpenSubdiv::Osd::GLSLPatchShaderSource;
+        auto const type = OpenSubdiv::Far::PatchDescriptor::GREGORY_BASIS;
+        std::string const head = std::string(kVersion) +
+                                 (isByPixels ? "#define OSD_ENABLE_SCREENSPACE_TESSELLATION\n"
+                                               "#define OSD_FRACTIONAL_EVEN_SPACING\n"
+                                             : "") +
+                                 "#define OSD_COMPUTE_NORMAL_DERIVATIVES\n" +
+                                 Source::GetCommonShaderSource() + kPatchClient;
+        std::string const vertex = head + Source::GetVertexShaderSource(type);
+        std::string const control = head + Source::GetTessControlShaderSource(type);
+        std::string const evaluation = head + Source::GetTessEvalShaderSource(type);
+        std::string const fragment = head + kShading + kPatchFragmentShader;
+        program = std::make_unique<ViewProgram>(
+            std::vector<ViewProgram::Shader>{{GL_VERTEX_SHADER, {vertex.c_str()}},
+                                             {GL_TESS_CONTROL_SHADER, {control.c_str()}},
+                                             {GL_TESS_EVALUATION_SHADER, {evaluation.c_str()}},
+                                             {GL_FRAGMENT_SHADER, {fragment.c_str()}}});
+    }
+    program->Use();
+    setShading(*program, camera, settings.shading);
+    glUniformMatrix4fv((*program)["view"], 1, GL_FALSE, glm::value_ptr(camera.GetView()));
+    float const aspect = float(width) / float(std::max(height, 1));
+    glUniformMatrix4fv((*program)["lens"], 1, GL_FALSE, glm::value_ptr(camera.GetLens(aspect)));
+    glUniform1f((*program)["rate"], isByPixels ? float(height) / 2 / settings.patches.edgePixels
+                                               : settings.patches.rate);
+    glUniform1i((*program)["hasEdges"], settings.hasEdges ? 1 : 0);
+    glUniform1i((*program)["OsdPatchParamBuffer"], 0);
+    patches.Draw(*program);
 }
 
 void SurfacePainter::drawControlMesh(ViewedSurface &surface, glm::mat4 const &projection,

@@ -9,6 +9,8 @@
 
 #include <glm/glm.hpp>
 
+#include <memory>
+
 namespace OpenSubdivHex::Tools {
 
 /// How faces are drawn; in the numbers of kSurfaceFragmentShader.
@@ -21,6 +23,7 @@ struct DrawSettings {
     bool hasEdges = true;
     bool hasControlMesh = false;
     int chosenVertex = -1; ///< of the control mesh
+    PatchSettings patches; ///< of a surface of patches
 };
 
 /// \brief A perspective camera that goes around a point, with y up.
@@ -31,7 +34,10 @@ struct OrbitCamera {
     glm::vec3 GetEye() const;
     glm::vec3 GetUp() const;
     /// From space to the cube that OpenGL draws.
-    glm::mat4 GetProjection(float aspect) const;
+    glm::mat4 GetProjection(float aspect) const { return GetLens(aspect) * GetView(); }
+    /// From space to that of the eye, and from there on.
+    glm::mat4 GetView() const;
+    glm::mat4 GetLens(float aspect) const; ///< \copydoc GetView()
     /// The same camera, for a picture of that many pixels.
     BfrExt::Camera ForPicture(int width, int height) const;
 
@@ -56,6 +62,9 @@ public:
 
 private:
     void drawControlMesh(ViewedSurface &surface, glm::mat4 const &projection, int chosenVertex);
+    void drawPatches(PatchView const &patches, OrbitCamera const &camera,
+                     DrawSettings const &settings, int width, int height);
+    static void setShading(ViewProgram const &program, OrbitCamera const &camera, Shading shading);
 
     GLuint _vertexArray = 0; // without attributes
     GlArray _controlPoints;
@@ -63,6 +72,8 @@ private:
     ViewProgram _surfaceProgram;
     ViewProgram _edgeProgram;
     ViewProgram _controlProgram;
+    std::unique_ptr<ViewProgram>
+        _patchPrograms[2]; // by rate and by pixels; made when they are used
 };
 
 } // namespace OpenSubdivHex::Tools

@@ -50,6 +50,9 @@ std::unique_ptr<FarExt::TopologyRefiner> makeRefiner(Mesh const &mesh,
     // Cells begin with the faces of the surface level.
     FarExt::TopologyRefiner::UniformOptions uniform(
         settings.isAdaptive ? settings.scheme.GetSurfaceLevel() : settings.level);
+    if (settings.arePatches && !settings.isAdaptive) {
+        uniform = FarExt::PatchTableFactory::Options(settings.level).GetRefineUniformOptions();
+    }
     uniform.fullTopologyInLastLevel = true;
     if (!refiner || !refiner->RefineUniform(uniform, &status)) {
         fail(status);
@@ -141,6 +144,11 @@ bool areEqual(BfrExt::Camera const &a, BfrExt::Camera const &b) {
            a.fieldOfView == b.fieldOfView && a.width == b.width && a.height == b.height;
 }
 
+double getMilliseconds(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+        .count();
+}
+
 } // namespace
 
 ViewedSurface::ViewedSurface(Mesh mesh)
@@ -158,8 +166,14 @@ ViewedSurface::ViewedSurface(Mesh mesh)
 
 void ViewedSurface::Refine(SurfaceSettings const &settings) {
     auto refiner = makeRefiner(_mesh, settings);
-    if (settings.isAdaptive) {
-        auto cells = std::make_unique<CellView>(_mesh, std::move(refiner), findUvChannel(_mesh));
+    if (settings.isAdaptive || settings.arePatches) {
+        std::unique_ptr<CellView> cells;
+        std::unique_ptr<PatchView> patches;
+        if (settings.isAdaptive) {
+            cells = std::make_unique<CellView>(_mesh, std::move(refiner), findUvChannel(_mesh));
+        } else {
+            patches = std::make_unique<PatchView>(*refiner, settings.level);
+        }
         _settings = settings;
         _refiner.reset();
         _cpuEvaluator.reset();
@@ -167,6 +181,10 @@ void ViewedSurface::Refine(SurfaceSettings const &settings) {
         _glTable.reset();
         _tableEvaluator.reset();
         _cells = std::move(cells);
+        _patches = std::move(patches);
+        if (_patches) {
+            Evaluate();
+        }
         return;
     }
     FarExt::TopologyLevel const &level = refiner->GetLevel(settings.level);
@@ -226,6 +244,7 @@ void ViewedSurface::Refine(SurfaceSettings const &settings) {
     _glTable = std::move(glTable);
     _tableEvaluator = std::move(tableEvaluator);
     _cells.reset();
+    _patches.reset();
     _points.Resize(std::size_t(kLength * level.GetNumVertices()));
     _normals.Resize(4 * drawn.sideVertices.size());
     setTopology(drawn);
@@ -302,8 +321,7 @@ void ViewedSurface::Follow(BfrExt::Camera const &camera, CellSettings const &set
     makeNormals(true);
     glFinish();
     _hasMoved = false;
-    _milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    _milliseconds = getMilliseconds(start);
 }
 
 void ViewedSurface::Evaluate() {
@@ -313,6 +331,12 @@ void ViewedSurface::Evaluate() {
     }
     glFinish();
     auto const start = std::chrono::steady_clock::now();
+    if (_patches) {
+        _patches->Evaluate(_controlPoints);
+        glFinish();
+        _milliseconds = getMilliseconds(start);
+        return;
+    }
     if (_cpuEvaluator) {
         std::vector<float> points(_points.GetSize());
         if (_settings.isLimit) {
@@ -337,8 +361,7 @@ void ViewedSurface::Evaluate() {
     }
     makeNormals(false);
     glFinish();
-    _milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    _milliseconds = getMilliseconds(start);
 }
 
 // The normals, unless they are there, and then the mean curvature.

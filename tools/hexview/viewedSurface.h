@@ -5,6 +5,7 @@
 #include "cellView.h"
 #include "drawnTopology.h"
 #include "glObjects.h"
+#include "patchView.h"
 
 #include "far_ext/topologyRefiner.h"
 #include "osd_ext/glEvaluation.h"
@@ -45,6 +46,7 @@ struct SurfaceSettings {
     bool isAdaptive =
         false;          ///< in place of level, isLimit and evaluator: cells that a camera needs
     CellSettings cells; ///< for Follow()
+    bool arePatches = false; ///< in place of isLimit and evaluator: the patches of the level
 };
 
 /// \brief A mesh with its refined level, or the cells that a camera needs, in buffers of OpenGL.
@@ -75,8 +77,12 @@ public:
 
     /// Null without cells.
     CellView const *GetCells() const { return _cells.get(); }
-    int GetNumVertices() const { return int(_points.GetSize() / 3); }
-    int GetNumFaces() const { return _numFaces; }
+    /// Null without patches, which are drawn in place of triangles.
+    PatchView const *GetPatches() const { return _patches.get(); }
+    int GetNumVertices() const {
+        return _patches ? _patches->GetNumPoints() : int(_points.GetSize() / 3);
+    }
+    int GetNumFaces() const { return _patches ? _patches->GetNumPatches() : _numFaces; }
     int GetNumTriangles() const { return int(_cornerSides.GetSize() / 3); }
     int GetNumEdges() const { return int(_edgeSides.GetSize() / 2); }
     /// Milliseconds of the last Evaluate(), with the normals; of cells, with finding them.
@@ -102,6 +108,7 @@ private:
     std::unique_ptr<OpenSubdiv::Osd::GLStencilTableSSBO> _glTable;
     std::unique_ptr<OpenSubdiv::Osd::GLComputeEvaluator> _tableEvaluator;
     std::unique_ptr<CellView> _cells;
+    std::unique_ptr<PatchView> _patches;
     BfrExt::Camera _camera; // that the cells are for
     CellSettings _cellSettings;
     bool _hasMoved = false; // control points, since Follow()

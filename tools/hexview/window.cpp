@@ -113,6 +113,7 @@ private:
     void showPanel();
     void readMouse(float width, float height);
     void showCells();
+    void showPatches();
     void refine();
     void follow(int width, int height);
     void animate();
@@ -178,6 +179,18 @@ void Viewer::showCells() {
     }
 }
 
+// How patches are tessellated.
+void Viewer::showPatches() {
+    PatchSettings &patches = _drawSettings.patches;
+    ImGui::Checkbox("by pixels", &patches.isByPixels);
+    if (patches.isByPixels) {
+        ImGui::SliderFloat("pixels", &patches.edgePixels, 1, 100, "%.0f",
+                           ImGuiSliderFlags_AlwaysClamp);
+    } else {
+        ImGui::SliderFloat("rate", &patches.rate, 1, 32, "%.0f", ImGuiSliderFlags_AlwaysClamp);
+    }
+}
+
 void Viewer::showPanel() {
     ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
     ImGui::Begin("hexview", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
@@ -188,8 +201,13 @@ void Viewer::showPanel() {
     } else {
         isChanged |= ImGui::SliderInt("level", &_settings.level, 0, kMaxLevel, "%d",
                                       ImGuiSliderFlags_AlwaysClamp);
-        isChanged |= ImGui::Checkbox("limit points", &_settings.isLimit);
-        isChanged |= chooseEnum("evaluator", kEvaluators, &_settings.evaluator);
+        isChanged |= ImGui::Checkbox("patches", &_settings.arePatches);
+        if (_settings.arePatches) {
+            showPatches();
+        } else {
+            isChanged |= ImGui::Checkbox("limit points", &_settings.isLimit);
+            isChanged |= chooseEnum("evaluator", kEvaluators, &_settings.evaluator);
+        }
     }
     ImGui::Separator();
     isChanged |= chooseEnum("scheme", kSchemes, &_settings.scheme.schemeType);
@@ -219,7 +237,8 @@ void Viewer::showPanel() {
         _surface.Evaluate();
     }
     ImGui::Separator();
-    ImGui::Text("%d vertices, %d faces", _surface.GetNumVertices(), _surface.GetNumFaces());
+    ImGui::Text(_surface.GetPatches() ? "%d points, %d patches" : "%d vertices, %d faces",
+                _surface.GetNumVertices(), _surface.GetNumFaces());
     ImGui::Text("%.2f ms for a frame's vertices", _surface.GetMilliseconds());
     if (!_error.empty()) {
         ImGui::TextColored({0.9f, 0.3f, 0.2f, 1}, "%s", _error.c_str());
@@ -229,7 +248,7 @@ void Viewer::showPanel() {
 }
 
 // Digits choose the level; e, c and a are for edges, control mesh and animation, v for cells that the
-// view needs and f for freezing them, and the tabulator goes through the shadings.
+// view needs and f for freezing them, p for patches, and the tabulator goes through the shadings.
 void Viewer::PressKey(int key) {
     switch (key) {
     case GLFW_KEY_E:
@@ -243,6 +262,11 @@ void Viewer::PressKey(int key) {
         break;
     case GLFW_KEY_V:
         _settings.isAdaptive = !_settings.isAdaptive;
+        refine();
+        break;
+    case GLFW_KEY_P:
+        _settings.arePatches = !_settings.arePatches;
+        _settings.isAdaptive = false;
         refine();
         break;
     case GLFW_KEY_F:

@@ -4,7 +4,7 @@
 usage: viewTest.py pictures|window HEXVIEW MESHES
 
 pictures  draws without a window: every evaluator the same picture, every shading another one, cells
-          that a view needs, frames of the animation
+          that a view needs, patches, frames of the animation
 window    opens a window in Xvfb, presses keys and a button, drags the camera and a control vertex with
           the mouse, and looks at the screen
 """
@@ -87,6 +87,7 @@ def test_pictures(program, meshes):
                 "base-faces")
     expect(len(hues_of(cube, 500)) >= 3, "three sides of a cube have three colours")
     test_cells(program, meshes)
+    test_patches(program, meshes)
     test_what_is_shown(program, os.path.join(meshes, "cube.obj"))
     test_frames(program, os.path.join(meshes, "cube.obj"))
     test_sizes(program, os.path.join(meshes, "cube.obj"))
@@ -137,6 +138,42 @@ def test_cells(program, meshes):
             (["--adaptive", "--limit"], "--limit", 2),
             (["--pixel-error", "1"], "--adaptive", 2),
             (["--adaptive", "--scheme", "doo-sabin", "--png", "no.png"], "level 0", 1)):
+        run = subprocess.run([program, torus, *options], capture_output=True, text=True)
+        expect(run.returncode == code and cause in run.stderr and not os.path.exists("no.png"),
+               f"{options} is refused")
+
+
+def test_patches(program, meshes):
+    for name in ("torus", "lantern"):
+        mesh = os.path.join(meshes, name + ".obj")
+        for shading in ("smooth", "reflection"):
+            limit = draw(program, mesh, "-l", "5", "--limit", "--no-edges", "--shading", shading)
+            for options in ([], ["--edge-pixels", "4"]):
+                patches = draw(program, mesh, "-l", "3", "--patches", "--no-edges", "--shading",
+                               shading, *options)
+                expect(share_of_different(limit, patches) < 0.01,
+                       f"patches of the {name} look like its limit, {shading} {options}")
+    torus = os.path.join(meshes, "torus.obj")
+    fine, coarse = (draw(program, torus, "-l", "0", "--patches", "--no-edges", "--shading",
+                         "facets", "--rate", rate) for rate in ("16", "1"))
+    expect(share_of_different(fine, coarse, 16) > 0.02, "few segments are coarse")
+    edges = draw(program, torus, "-l", "2", "--patches")
+    plain = draw(program, torus, "-l", "2", "--patches", "--no-edges")
+    expect(share_of_dark(edges) > share_of_dark(plain) + 0.02, "patches have dark borders")
+    cube = draw(program, os.path.join(meshes, "cube.obj"), "-l", "3", "--patches", "--no-edges",
+                "--shading", "base-faces")
+    expect(len(hues_of(cube, 500)) >= 3, "patches have the colours of three sides of a cube")
+    # Meshes without texture coordinates have a checker in each face.
+    triangles = os.path.join(meshes, "triangles.obj")
+    for mesh, shading in ((triangles, "checker"), (torus, "curvature")):
+        level = draw(program, mesh, "-l", "5", "--limit", "--no-edges", "--shading", shading)
+        patches = draw(program, mesh, "-l", "3", "--patches", "--no-edges", "--shading", shading)
+        expect(share_of_different(level, patches) < 0.05, f"patches have the {shading} of the limit")
+    for options, cause, code in (
+            (["--patches", "--limit"], "--limit", 2),
+            (["--patches", "--adaptive"], "--adaptive", 2),
+            (["--rate", "2"], "--patches", 2),
+            (["--patches", "--scheme", "doo-sabin", "--png", "no.png"], "hexagonal", 1)):
         run = subprocess.run([program, torus, *options], capture_output=True, text=True)
         expect(run.returncode == code and cause in run.stderr and not os.path.exists("no.png"),
                f"{options} is refused")
@@ -349,6 +386,8 @@ def test_window_of_cells(screen):
     screen.do("key", "f")
     screen.settle(lambda image: share_of_different(image, frozen, 16) > 0.05,
                   "cells follow the camera unless they are frozen")
+    screen.do("key", "p")
+    screen.settle(lambda image: len(hues_of(image, 1000)) == 1, "P shows patches of one level")
 
 
 def test_window(program, meshes):

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "patchView.h"
+
+#include "drawnTopology.h"
+#include "shaders.h"
+
+#include "far_ext/patchMap.h"
+#include "osd_ext/ompEvaluator.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace OpenSubdivHex::Tools {
+
+namespace {
+
+constexpr int kNumPoints = 20; // of a patch
+
+} // namespace
+
+PatchView::PatchView(FarExt::TopologyRefiner const &refiner, int level) {
+    FarExt::PatchTableFactory::Options const options(level);
+    FarExt::CallStatus status;
+    auto const table = FarExt::PatchTableFactory::Create(refiner, options, &status);
+    if (!table) {
+        throw std::runtime_error(status.GetErrorMessage());
+    }
+    _stencils = FarExt::PatchTableFactory::CreateLocalPointStencilTable(refiner, options, &status);
+    FarExt::PatchMap const map(refiner, options, &status);
+    if (!_stencils || !status.IsOk()) {
+        throw std::runtime_error(status.GetErrorMessage());
+    }
+    _table.reset(OpenSubdiv::Osd::GLPatchTable::Create(table.get()));
+    _numPatches = table->GetNumPatchesTotal();
+    _numPoints = table->GetNumLocalPoints();
+    std::vector<float> coords;
+    std::vector<int> faces;
+    for (int patch = 0; patch < _numPatches; ++patch) {
+        coords.insert(coords.end(), map.GetCoords(patch).begin(), map.GetCoords(patch).end());
+        faces.push_back(map.GetBaseFace(patch));
+        faces.push_back(level);
+    }
+    _coords.Assign(coords);
+    _faces.Assign(faces);
+}
+
+void PatchView::Evaluate(std::vector<float> const &controlPoints) {
+    using OpenSubdiv::Osd::BufferDescriptor;
+    _values.resize(controlPoints.size() + std::size_t(kLength * _numPoints));
+    std::copy(controlPoints.begin(), controlPoints.end(), _values.begin());
+    BufferDescriptor const control(0, kLength, kLength);
+    BufferDescriptor const points(int(controlPoints.size()), kLength, kLength);
+    OsdExt::OmpEvaluator::EvalStencils(
+        _values.data(), control, _values.data(), points, _stencils->GetSizes().data(),
+        _stencils->GetOffsets().data(), _stencils->GetControlIndices().data(),
+        _stencils->GetWeights().data(), 0, _stencils->GetNumStencils());
+    _points.Assign(_values);
+}
+
+void PatchView::Draw(ViewProgram const &program) const {
+    _coords.Bind(kCoordArray);
+    _faces.Bind(kFaceArray);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_BUFFER, _table->GetPatchParamTextureBuffer());
+    glBindBuffer(GL_ARRAY_BUFFER, _points.BindVBO());
+    glEnableVertexAttribArray(0);
+    glVertexAttribPointer(0, kLength, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, _table->GetPatchIndexBuffer());
+    // Mesa's driver for processors splits calls of more than 1,024 vertices, and counts primitives anew in each part.
+    constexpr int kPatchesPerCall = 1024 / kNumPoints;
+    glPatchParameteri(GL_PATCH_VERTICES, kNumPoints);
+    for (int first = 0; first < _numPatches; first += kPatchesPerCall) {
+        int const count = std::min(kPatchesPerCall, _numPatches - first);
+        glUniform1i(program["firstPatch"], first);
+        glDrawElements(
+            GL_PATCHES, count * kNumPoints, GL_UNSIGNED_INT,
+            reinterpret_cast<void const *>(sizeof(unsigned) * kNumPoints * std::size_t(first)));
+    }
+    glDisableVertexAttribArray(0);
+    glBindTexture(GL_TEXTURE_BUFFER, 0);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+}
+
+} // namespace OpenSubdivHex::Tools
