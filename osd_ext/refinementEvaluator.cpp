@@ -161,9 +161,10 @@ RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options 
             tileMap.Refine(*refinements[level - 1], level > 1 ? refinements[level - 2] : nullptr);
         }
         refinements.push_back(&mesh.refinements[level]);
-        FarExt::internal::RefinementRules const mask(mesh.levels[level],
-                                                     refiner.GetHexSchemeOptions(), interpolation);
-        internal::PrepareRefinement(mask, refinements, tileMap, _refinements[level]);
+        std::shared_ptr<FarExt::internal::RefinementRules const> const rules =
+            FarExt::internal::GetRules(mesh.levels[level], refiner.GetHexSchemeOptions(),
+                                       interpolation);
+        internal::PrepareRefinement(*rules, refinements, tileMap, _refinements[level]);
     }
     for (int level = 0; level <= maxLevel; ++level) {
         numElements.push_back(mesh.levels[std::size_t(level)].numVertices);

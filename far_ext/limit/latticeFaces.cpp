@@ -370,16 +370,16 @@ CallStatus LatticeFaces::FindMasks(HexSchemeOptions const &schemeOptions, LimitR
         return status;
     }
     std::vector<Set> sets;
-    std::vector<RefinementRules> const masks = MakeStepMasks(_mesh, schemeOptions, _level);
     for (std::size_t i = 0; i < _sets.size(); ++i) {
         Set &set = _sets[i];
-        PatchRows patchRows(_mesh, masks, 0, set.sources.data(), set.patch.GetNumPlaces());
+        PatchRows patchRows(_mesh, schemeOptions, 0, _level, set.sources.data(),
+                            set.patch.GetNumPlaces());
         Index sources[PlainNeighborhoodGatherer::kNumRegular];
         for (Index const vert : samples[i].verts) {
             samples[i].weights.push_back(patchRows.Find(rows.GetRow(vert, 0, sources)));
         }
         if (ofSets[i] >= 0) {
-            setVertexMask(masks, rows, ofSets[i], set);
+            setVertexMask(schemeOptions, rows, ofSets[i], set);
         }
         if (setOrbits(samples[i], set)) {
             setOutputs(samples[i], set);
@@ -412,14 +412,15 @@ LatticeFaces::VertexPlace LatticeFaces::FindPlace(Index vert) const {
     return {nullptr, 0, 0};
 }
 
-void LatticeFaces::setVertexMask(std::vector<RefinementRules> const &masks, LimitRows const &rows,
+void LatticeFaces::setVertexMask(HexSchemeOptions const &schemeOptions, LimitRows const &rows,
                                  Index vert, Set &set) const {
     Index sources[LatticePatch::kMaxPlaces];
     VertexPlace const place = FindPlace(vert);
     getSources(place, sources);
     Index regularSources[PlainNeighborhoodGatherer::kNumRegular];
-    PatchWeights const weights = PatchRows(_mesh, masks, 0, sources, set.patch.GetNumPlaces())
-                                     .Find(rows.GetRow(vert, 0, regularSources));
+    PatchWeights const weights =
+        PatchRows(_mesh, schemeOptions, 0, _level, sources, set.patch.GetNumPlaces())
+            .Find(rows.GetRow(vert, 0, regularSources));
     LimitMask::Tangents tangents;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         LimitWeights const &ofPlace = weights[i];

@@ -103,7 +103,7 @@ private:
                                             bool isMirrored, int turns);
     void findFaces(int faceSize);
     static void getSources(VertexPlace const &of, Index *sources);
-    void setVertexMask(std::vector<RefinementRules> const &masks, LimitRows const &rows, Index vert,
+    void setVertexMask(HexSchemeOptions const &schemeOptions, LimitRows const &rows, Index vert,
                        Set &set) const;
     static bool setOrbits(Sample &sample, Set &set);
     void setOutputs(Sample const &sample, Set &set);

@@ -690,7 +690,7 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
 // Makes of weights of the F-face's vertices those of the face's.
 Vector FaceLimitMaskFinder::stepBack(Vector const &cWeights, Index face) const {
     Vector result(cWeights.size(), 0.0);
-    FaceRule const rule = _rules.GetFaceRule(face);
+    FaceRule const rule = _rules->GetFaceRule(face);
     for (int i = 0; i < rule.GetSize(); ++i) {
         addScaled(result, cWeights[i], rule.GetRow(i));
     }

@@ -75,14 +75,14 @@ public:
     FaceLimitMaskFinder(Level const &level, Sdc::Options sdcOptions,
                         HexSchemeOptions const &schemeOptions)
         : _level(level), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions),
-          _rules(level, schemeOptions, Interpolation::Vertex) {}
+          _rules(GetRules(level, schemeOptions, Interpolation::Vertex)) {}
 
     /// Of a face with an infinitely sharp diagonal the sides are half 0 and half 1; others have
     /// one.
     LimitMask Find(Far::Index face) const;
 
     /// Whether a face has the mask of all with its size.
-    bool IsPlain(Far::Index face) const { return _rules.GetFaceRule(face).IsCirculant(); }
+    bool IsPlain(Far::Index face) const { return _rules->GetFaceRule(face).IsCirculant(); }
 
 private:
     LimitMask findAfterStep(Far::Index face) const;
@@ -91,7 +91,7 @@ private:
     Level const &_level;
     Sdc::Options const _sdcOptions;
     HexSchemeOptions const _schemeOptions;
-    RefinementRules const _rules;
+    std::shared_ptr<RefinementRules const> const _rules;
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

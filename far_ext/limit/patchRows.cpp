@@ -5,20 +5,13 @@ namespace OpenSubdivHex::FarExt::internal {
 
 using Far::Index;
 
-std::vector<RefinementRules> MakeStepMasks(MeshLevels const &mesh,
-                                           HexSchemeOptions const &schemeOptions, int last) {
-    std::vector<RefinementRules> masks;
-    masks.reserve(std::size_t(last));
-    for (int level = 0; level < last; ++level) {
-        masks.emplace_back(mesh.levels[std::size_t(level)], schemeOptions, Interpolation::Vertex);
+PatchRows::PatchRows(MeshLevels const &mesh, HexSchemeOptions const &schemeOptions, int level,
+                     int last, Index const *sources, int numSources)
+    : _mesh(mesh), _level(std::size_t(level)), _rules(std::size_t(last)),
+      _rows(std::size_t(last) + 1), _numSources(std::size_t(numSources)) {
+    for (std::size_t step = _level; step < _rules.size(); ++step) {
+        _rules[step] = GetRules(mesh.levels[step], schemeOptions, Interpolation::Vertex);
     }
-    return masks;
-}
-
-PatchRows::PatchRows(MeshLevels const &mesh, std::vector<RefinementRules> const &masks, int level,
-                     Index const *sources, int numSources)
-    : _mesh(mesh), _masks(masks), _level(std::size_t(level)), _rows(masks.size() + 1),
-      _numSources(std::size_t(numSources)) {
     for (std::size_t source = 0; source < _numSources; ++source) {
         Row row(_numSources, 0);
         row[source] = 1;
@@ -48,7 +41,7 @@ PatchRows::Row const &PatchRows::findRow(std::size_t level, Index vert) {
     if (level == _level) {
         _isComplete = false;
     } else {
-        ForEachParentWeight(_mesh.refinements[level - 1], _masks[level - 1], vert,
+        ForEachParentWeight(_mesh.refinements[level - 1], *_rules[level - 1], vert,
                             [&](Index pVert, double weight) {
                                 Row const &pRow = findRow(level - 1, pVert);
                                 for (std::size_t source = 0; source < _numSources; ++source) {

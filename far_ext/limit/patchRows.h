@@ -12,23 +12,20 @@ namespace OpenSubdivHex::FarExt::internal {
 /// The rows of a vertex by source of a patch.
 using PatchWeights = std::vector<LimitWeights>;
 
-/// The masks of the steps from each level before \p last to the next.
-std::vector<RefinementRules> MakeStepMasks(MeshLevels const &mesh,
-                                           HexSchemeOptions const &schemeOptions, int last);
-
 /// \brief The rows of vertices of later levels in terms of some vertices of a level, each found once from
 /// those of the level before.
 class PatchRows {
 public:
     using Index = Far::Index;
 
-    /// \param masks    of all steps to the last level; they are referred to, as is \p mesh
+    /// \param mesh     is referred to
     /// \param level    of the sources
+    /// \param last     of the rows
     /// \param sources  all different
-    PatchRows(MeshLevels const &mesh, std::vector<RefinementRules> const &masks, int level,
+    PatchRows(MeshLevels const &mesh, HexSchemeOptions const &schemeOptions, int level, int last,
               Index const *sources, int numSources);
 
-    /// That of a limit row of the last level; nothing where it depends on other vertices.
+    /// That of a limit row of level \c last; nothing where it depends on other vertices.
     PatchWeights Find(LimitRow const &ofLimit);
 
 private:
@@ -37,8 +34,8 @@ private:
     Row const &findRow(std::size_t level, Index vert);
 
     MeshLevels const &_mesh;
-    std::vector<RefinementRules> const &_masks;
     std::size_t const _level;
+    std::vector<std::shared_ptr<RefinementRules const>> _rules; // of steps, by level before
     std::vector<std::unordered_map<Index, Row>> _rows; // by level and vertex
     std::size_t const _numSources;
     bool _isComplete = true;

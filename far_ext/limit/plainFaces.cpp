@@ -203,14 +203,13 @@ CallStatus PlainFaces::FindRows(HexSchemeOptions const &schemeOptions, LimitRows
     if (!result.IsOk()) {
         return result;
     }
-    std::vector<RefinementRules> const masks = MakeStepMasks(_mesh, schemeOptions, _last);
     std::vector<unsigned char> isComplete(_types.size(), 1);
     ParallelForRange(
         Index(_types.size()), [] { return Nothing(); },
         [&](Nothing, Index begin, Index end) {
             for (Index i = begin; i < end; ++i) {
                 Type &type = _types[std::size_t(i)];
-                PatchRows patchRows(_mesh, masks, _level,
+                PatchRows patchRows(_mesh, schemeOptions, _level, _last,
                                     GetSources(_faces[std::size_t(type.sample)]), type.numSources);
                 for (Index const vert : _samples[std::size_t(i)]) {
                     Index sources[PlainNeighborhoodGatherer::kNumRegular];

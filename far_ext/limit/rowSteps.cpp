@@ -16,10 +16,10 @@ void addToRow(SteppedRow &row, Index vert, LimitWeights const &weights, double f
 
 // The row in terms of the vertices of the parent.
 SteppedRow stepBack(SteppedRow const &cRow, Refinement const &refinement,
-                    RefinementRules const &mask) {
+                    RefinementRules const &rules) {
     SteppedRow row;
     for (auto const &ofVertex : cRow) {
-        ForEachParentWeight(refinement, mask, ofVertex.first, [&](Index pVert, double weight) {
+        ForEachParentWeight(refinement, rules, ofVertex.first, [&](Index pVert, double weight) {
             addToRow(row, pVert, ofVertex.second, weight);
         });
     }
@@ -36,9 +36,9 @@ SteppedRow StepRowBack(MeshLevels const &mesh, HexSchemeOptions const &schemeOpt
                  1);
     }
     for (int child = cLevel; child > level; --child) {
-        RefinementRules const ofStep(mesh.levels[std::size_t(child) - 1], schemeOptions,
-                                     Interpolation::Vertex);
-        row = stepBack(row, mesh.refinements[std::size_t(child) - 1], ofStep);
+        std::shared_ptr<RefinementRules const> const rules =
+            GetRules(mesh.levels[std::size_t(child) - 1], schemeOptions, Interpolation::Vertex);
+        row = stepBack(row, mesh.refinements[std::size_t(child) - 1], *rules);
     }
     return row;
 }

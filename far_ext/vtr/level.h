@@ -13,9 +13,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
+
+class RefinementRules;
 
 /// \brief How a boundary edge refines.  Stands in Level::edgeFaces in place of the second
 /// face.  The phases A and B of sharp boundaries alternate as INDEXING.md shows.
@@ -373,6 +376,9 @@ struct Level {
     // What has masks of its own with FaceMask::Smooth; empty with others.
     std::vector<IrregularVertex> irregularVerts;   ///< ascending
     std::vector<IrregularCorner> irregularCorners; ///< ascending; one for a corner at most
+
+    /// See GetRules(), which makes them; by Interpolation.
+    mutable std::shared_ptr<RefinementRules const> rules[2];
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

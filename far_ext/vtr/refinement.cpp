@@ -24,6 +24,7 @@ void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopo
     child.numFFaceCorners = parent.numCorners;
     child.partedVerts.clear();
     child.hasFullTopology = fullTopology;
+    std::fill(std::begin(child.rules), std::end(child.rules), nullptr);
 }
 
 void EndRefinement(TagOptions options, Refinement const &refinement, Level &child) {

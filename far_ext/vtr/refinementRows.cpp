@@ -11,7 +11,7 @@ using Far::Index;
 
 RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions schemeOptions,
                                Interpolation interpolation)
-    : _rules(*refinement.parent, schemeOptions, interpolation) {
+    : _rules(GetRules(*refinement.parent, schemeOptions, interpolation)) {
     Level const &parent = *refinement.parent;
     _numFaces = parent.numFaces;
     _numVVertices = refinement.child->numVVertices;
@@ -32,7 +32,7 @@ RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions sc
 
 RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions schemeOptions,
                                Interpolation interpolation, Part part)
-    : _rules(*refinement.parent, schemeOptions, interpolation), _part(std::move(part)) {
+    : _rules(GetRules(*refinement.parent, schemeOptions, interpolation)), _part(std::move(part)) {
     Level const &parent = *refinement.parent;
     _numFaces = Index(_part.faces.size());
     _numVVertices = Index(_part.vVertices.size());
@@ -61,7 +61,7 @@ RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions sc
             _partVertFirstFace[nextVert] = Index(_partVertFaces.size());
         }
         // None are there when the mask does not ask for them.
-        if (_rules.GetVertexRule(pVert).faceWeight > 0) {
+        if (_rules->GetVertexRule(pVert).faceWeight > 0) {
             for (Index k = parent.vertFirstFace[pVert]; k < parent.vertFirstFace[pVert + 1]; ++k) {
                 _partVertFaces.push_back(numberOfFace(parent.vertFaces[k]));
                 _partVertFaceLocals.push_back(parent.vertFaceLocals[k]);
@@ -79,7 +79,7 @@ RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions sc
 }
 
 VertexRule RefinementRows::partVertexRule(Index vert) const {
-    VertexRule rule = _rules.GetVertexRule(_part.verts[vert]);
+    VertexRule rule = _rules->GetVertexRule(_part.verts[vert]);
     int const last = rule.numSources - 1;
     rule.sources[last] = vert;
     for (int i = 0; i < last; ++i) {
@@ -129,7 +129,8 @@ RefinementRows::Part FindPart(Refinement const &refinement, HexSchemeOptions sch
         return findTruncationPart(refinement, interpolation, wanted);
     }
     Level const &parent = *refinement.parent;
-    RefinementRules const rules(parent, schemeOptions, interpolation);
+    std::shared_ptr<RefinementRules const> const rules =
+        GetRules(parent, schemeOptions, interpolation);
     RefinementRows::Part part;
     Index endOfFace = 0; // of the last corner, past its face
     for (Index cVert : wanted) {
@@ -143,7 +144,7 @@ RefinementRows::Part FindPart(Refinement const &refinement, HexSchemeOptions sch
         }
         part.vVertices.push_back(cVert);
         Index const pVert = refinement.GetVVertexParent(cVert);
-        VertexRule const rule = rules.GetVertexRule(pVert);
+        VertexRule const rule = rules->GetVertexRule(pVert);
         part.verts.insert(part.verts.end(), rule.sources, rule.sources + rule.numSources);
         if (rule.faceWeight > 0) {
             for (Index face : parent.GetVertexFaces(pVert)) {

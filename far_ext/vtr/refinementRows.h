@@ -89,12 +89,12 @@ public:
     }
 
     /// As in RefinementRules, with the numbers of the rows.
-    FaceRule GetFaceRule(Index face) const { return _rules.GetFaceRule(faceId(face)); }
+    FaceRule GetFaceRule(Index face) const { return _rules->GetFaceRule(faceId(face)); }
     VertexRule GetVertexRule(Index vert) const {
         if (_truncation) {
             return {0, 0, {}, {}};
         }
-        return _part.verts.empty() ? _rules.GetVertexRule(vert) : partVertexRule(vert);
+        return _part.verts.empty() ? _rules->GetVertexRule(vert) : partVertexRule(vert);
     }
 
 private:
@@ -103,7 +103,7 @@ private:
     Index partVertex(Index vert) const;
     Index faceId(Index face) const { return _part.faces.empty() ? face : _part.faces[face]; }
 
-    RefinementRules const _rules;
+    std::shared_ptr<RefinementRules const> const _rules;
     std::optional<TruncationMask> _truncation;
     Part _part; // empty when the refinement is taken whole
     Index _numFaces;

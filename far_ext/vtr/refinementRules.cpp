@@ -81,9 +81,8 @@ struct FaceTags {
 
 } // namespace
 
-void RefinementRules::makeCirculantRules(HexSchemeOptions schemeOptions, StepType step) {
-    bool const hasQuadMasks = step == StepType::Hexagonal &&
-                              schemeOptions.faceMask == FaceMask::Smooth &&
+void RefinementRules::makeCirculantRules() {
+    bool const hasQuadMasks = _step == StepType::Hexagonal && _faceMask == FaceMask::Smooth &&
                               _interpolation == Interpolation::Vertex;
     _circulants.resize(_level.faceSizes.empty() ? 0 : std::size_t(_level.faceSizes.back()) + 1);
     for (Index const size : _level.faceSizes) {
@@ -91,12 +90,12 @@ void RefinementRules::makeCirculantRules(HexSchemeOptions schemeOptions, StepTyp
         _circulants[std::size_t(size)] = first;
         _weights.resize(first + 2 * std::size_t(size));
         double *const mask = _weights.data() + first;
-        if (step == StepType::TriHex) {
+        if (_step == StepType::TriHex) {
             ComputeTriHexMask(size, mask);
         } else if (hasQuadMasks && size == kQuad) {
             std::copy_n(ComputeQuadMask(_level.numHexagonalSteps).inQuad, kQuad, mask);
         } else {
-            ComputeFaceVertexMask(schemeOptions.faceMask, _interpolation, size, mask);
+            ComputeFaceVertexMask(_faceMask, _interpolation, size, mask);
         }
         std::copy_n(mask, size, mask + size);
     }
@@ -330,19 +329,34 @@ void RefinementRules::DenseRuleMaker::addIrregularWeights(IrregularCorner const 
 
 RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOptions,
                                  Interpolation interpolation)
-    : _level(parent), _interpolation(interpolation) {
+    : _level(parent), _faceMask(schemeOptions.faceMask),
+      _step(schemeOptions.GetStepOfLevel(parent.depth + 1)), _interpolation(interpolation) {
     for (int numFaces = 0; numFaces < kNumKept; ++numFaces) {
         _plainVertexMasks[numFaces] = ComputeVertexVertexMask(interpolation, numFaces);
     }
-    StepType const step = schemeOptions.GetStepOfLevel(parent.depth + 1);
-    bool const isHexagonal = step == StepType::Hexagonal;
-    makeCirculantRules(schemeOptions, step);
+    bool const isHexagonal = _step == StepType::Hexagonal;
+    makeCirculantRules();
     if (interpolation == Interpolation::Vertex) {
         makeRuledVertices(isHexagonal);
     }
     if (isHexagonal && parent.HasFeatures()) {
-        DenseRuleMaker(*this, schemeOptions.faceMask).Make();
+        DenseRuleMaker(*this, _faceMask).Make();
     }
+}
+
+std::shared_ptr<RefinementRules const> GetRules(Level const &parent, HexSchemeOptions schemeOptions,
+                                                Interpolation interpolation) {
+    std::shared_ptr<RefinementRules const> &kept = parent.rules[std::size_t(interpolation)];
+    std::shared_ptr<RefinementRules const> rules = std::atomic_load(&kept);
+    if (rules && rules->AreThoseOf(schemeOptions)) {
+        return rules;
+    }
+    auto const made = std::make_shared<RefinementRules const>(parent, schemeOptions, interpolation);
+    // Of those that several threads have made, all get the first.
+    return rules || std::atomic_compare_exchange_strong(
+                        &kept, &rules, std::shared_ptr<RefinementRules const>(made))
+               ? made
+               : rules;
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

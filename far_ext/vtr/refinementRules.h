@@ -7,6 +7,7 @@
 #include "far_ext/hexSchemeOptions.h"
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -72,6 +73,11 @@ public:
                     Interpolation interpolation);
 
     Interpolation GetInterpolation() const { return _interpolation; }
+    /// Whether these are the rules of the same refinement of the level by other options.
+    bool AreThoseOf(HexSchemeOptions schemeOptions) const {
+        return schemeOptions.faceMask == _faceMask &&
+               schemeOptions.GetStepOfLevel(_level.depth + 1) == _step;
+    }
 
     /// @name Faces
     /// @{
@@ -133,10 +139,12 @@ private:
             [](RuledVertex const &ruled, Index index) { return ruled.vert < index; });
         return found->vert == vert ? &*found : nullptr;
     }
-    void makeCirculantRules(HexSchemeOptions schemeOptions, StepType step);
+    void makeCirculantRules();
     void makeRuledVertices(bool hasIrregular);
 
     Level const &_level;
+    FaceMask _faceMask;
+    StepType _step;
     Interpolation _interpolation;
     VertexVertexMask _plainVertexMasks[kNumKept]; ///< by number of faces
     std::vector<RuledVertex> _ruledVertices;
@@ -148,6 +156,11 @@ private:
     std::vector<DenseFace> _denseFaces;
     std::vector<int> _ruleOfFace; ///< empty where all are circulant
 };
+
+/// \brief The rules of the refinement of \p parent, which keeps them: they are made once for all who use them,
+/// by the options of the first.  Several threads may call it at once.
+OPENSUBDIVHEX_API std::shared_ptr<RefinementRules const>
+GetRules(Level const &parent, HexSchemeOptions schemeOptions, Interpolation interpolation);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

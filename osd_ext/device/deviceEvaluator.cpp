@@ -71,7 +71,7 @@ CallStatus DeviceEvaluator::Prepare(Options options) {
     MeshLevels const &mesh =
         _refiner.GetHierarchy().GetMesh(isFaceVarying ? options.fvarChannel : -1);
     std::vector<Refinement const *> refinements;
-    std::vector<RefinementRules> rules;
+    std::vector<std::shared_ptr<RefinementRules const>> rules;
     FarExt::Interpolation const interpolation = FarExt::internal::GetModeInterpolation(
         _refiner, options.interpolationMode, options.fvarChannel);
     for (int level = 0; level <= _refiner.GetMaxLevel(); ++level) {
@@ -81,7 +81,8 @@ CallStatus DeviceEvaluator::Prepare(Options options) {
                                 2 * std::int64_t(ofMesh.numFaces));
         if (level < _refiner.GetMaxLevel()) {
             refinements.push_back(&mesh.refinements[std::size_t(level)]);
-            rules.emplace_back(ofMesh, _refiner.GetHexSchemeOptions(), interpolation);
+            rules.push_back(
+                FarExt::internal::GetRules(ofMesh, _refiner.GetHexSchemeOptions(), interpolation));
         }
     }
     std::vector<std::int32_t> values;

@@ -449,15 +449,16 @@ void Maker::Fill(std::int32_t *indices) const {
 } // namespace
 
 FarExt::CallStatus MakeDeviceRefinements(
-    std::vector<Refinement const *> const &refinements, std::vector<RefinementRules> const &rules,
-    std::vector<float> &weights, std::vector<DeviceRefinement> &result,
+    std::vector<Refinement const *> const &refinements,
+    std::vector<std::shared_ptr<RefinementRules const>> const &rules, std::vector<float> &weights,
+    std::vector<DeviceRefinement> &result,
     std::function<FarExt::CallStatus(
         std::size_t numIndices, std::function<void(std::int32_t *)> const &fill)> const &write) {
     std::vector<Maker> makers;
     std::size_t numIndices = 0;
     result.resize(refinements.size());
     for (std::size_t i = 0; i < refinements.size(); ++i) {
-        makers.emplace_back(rules[i], *refinements[i], i > 0 ? refinements[i - 1] : nullptr,
+        makers.emplace_back(*rules[i], *refinements[i], i > 0 ? refinements[i - 1] : nullptr,
                             numIndices, weights, result[i]);
         makers.back().Plan();
         numIndices = makers.back().GetNumIndices();

@@ -97,8 +97,8 @@ struct DeviceRefinement {
 ///          or weights
 OPENSUBDIVHEX_API FarExt::CallStatus MakeDeviceRefinements(
     std::vector<FarExt::internal::Refinement const *> const &refinements,
-    std::vector<FarExt::internal::RefinementRules> const &rules, std::vector<float> &weights,
-    std::vector<DeviceRefinement> &result,
+    std::vector<std::shared_ptr<FarExt::internal::RefinementRules const>> const &rules,
+    std::vector<float> &weights, std::vector<DeviceRefinement> &result,
     std::function<FarExt::CallStatus(
         std::size_t numIndices, std::function<void(std::int32_t *)> const &fill)> const &write);
 

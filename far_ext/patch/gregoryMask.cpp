@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gregoryMask.h"
+
+#include "far_ext/vtr/pi.h"
+
+#include <cmath>
+#include <utility>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+using Point = GregoryMask::Point;
+
+Point operator+(Point a, Point const &b) {
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        a[i] += b[i];
+    }
+    return a;
+}
+Point operator*(double s, Point a) {
+    for (double &x : a) {
+        x *= s;
+    }
+    return a;
+}
+Point operator-(Point const &a, Point const &b) { return a + -1.0 * b; }
+
+enum Row { kRow0, kRow1, kRowM, kRowCenter };
+
+Point makePoint(int row) {
+    Point point{};
+    point[std::size_t(3 * row)] = 1;
+    return point;
+}
+
+// t(angle) of a row.
+Point makeDerivative(int row, double angle) {
+    Point point{};
+    point[std::size_t(3 * row + 1)] = std::cos(angle);
+    point[std::size_t(3 * row + 2)] = std::sin(angle);
+    return point;
+}
+
+// A cubic with a patch on its left, and a quadratic: the derivative across, to the left.
+struct Curve {
+    Point points[4];
+    Point across[3];
+};
+
+// How long, in the direction of c' and at right angles to it, the derivative of a patch is that
+// leaves the curve at its ends: a and b of a D + b c'.
+struct Inward {
+    double across[2];
+    double along[2];
+};
+
+// c' is 3 times the difference of points.
+Point makeTangent(Curve const &curve, int i) {
+    return 3.0 * (curve.points[i + 1] - curve.points[i]);
+}
+
+Curve makeCurve(CurveShape const &shape, int row0, int row1, double signOfM) {
+    CurveEnd const *const ends = shape.ends;
+    Curve curve;
+    curve.points[0] = makePoint(row0);
+    curve.points[3] = makePoint(row1);
+    curve.points[1] = curve.points[0] + ends[0].length / 3 * makeDerivative(row0, ends[0].angle);
+    curve.points[2] = curve.points[3] + ends[1].length / 3 * makeDerivative(row1, ends[1].angle);
+    curve.across[0] = makeDerivative(row0, ends[0].angle + kPi / 2);
+    curve.across[2] = makeDerivative(row1, ends[1].angle - kPi / 2);
+    // In the middle a quadratic is a quarter of its ends and half of its second coefficient.
+    Point const middle = 2 * signOfM * makeDerivative(kRowM, 0);
+    Point const ofEnds = 0.5 * (curve.across[0] + curve.across[2]);
+    curve.across[1] = (1 + shape.blend) * middle - (1 + 2 * shape.blend) * ofEnds;
+    return curve;
+}
+
+// The lengths of c' at both ends are \p lengths in the terms that \p neighbors have.
+Inward makeInward(CurveNeighbor const neighbors[2], double const lengths[2]) {
+    Inward inward{};
+    double const directions[2] = {1, -1};
+    for (int end = 0; end < 2; ++end) {
+        CurveNeighbor const &neighbor = neighbors[end];
+        inward.across[end] = neighbor.length * std::sin(neighbor.angle);
+        inward.along[end] =
+            directions[end] * neighbor.length * std::cos(neighbor.angle) / lengths[end];
+    }
+    return inward;
+}
+
+// The derivative inwards is a cubic, whose coefficients 1 and 2 are three times the differences from
+// the points of the curve to the inner points.
+std::pair<Point, Point> makeInnerPoints(Curve const &curve, Inward const &inward) {
+    double const *const a = inward.across;
+    double const *const b = inward.along;
+    Point const *const d = curve.across;
+    Point const c[3] = {makeTangent(curve, 0), makeTangent(curve, 1), makeTangent(curve, 2)};
+    Point const first = a[1] * d[0] + 2 * a[0] * d[1] + b[1] * c[0] + 2 * b[0] * c[1];
+    Point const second = 2 * a[1] * d[1] + a[0] * d[2] + 2 * b[1] * c[1] + b[0] * c[2];
+    return {curve.points[1] + 1.0 / 9 * first, curve.points[2] + 1.0 / 9 * second};
+}
+
+void addInnerPoints(Curve const &curve, Inward const &inward, GregoryMask &mask) {
+    auto const points = makeInnerPoints(curve, inward);
+    mask.points.push_back(points.first);
+    mask.points.push_back(points.second);
+}
+
+Curve reverse(Curve const &curve) {
+    Curve result = curve;
+    for (int i = 0; i < 4; ++i) {
+        result.points[i] = curve.points[3 - i];
+    }
+    for (int i = 0; i < 3; ++i) {
+        result.across[i] = -1.0 * curve.across[2 - i];
+    }
+    return result;
+}
+
+// Both halves of a curve, with c' as it is on the whole: their own is half of it.
+std::pair<Curve, Curve> halve(Curve const &curve) {
+    Point const *const p = curve.points;
+    Point const q0 = 0.5 * (p[0] + p[1]);
+    Point const q1 = 0.5 * (p[1] + p[2]);
+    Point const q2 = 0.5 * (p[2] + p[3]);
+    Point const r0 = 0.5 * (q0 + q1);
+    Point const r1 = 0.5 * (q1 + q2);
+    Point const middle = 0.5 * (r0 + r1);
+    Point const *const d = curve.across;
+    Point const d0 = 0.5 * (d[0] + d[1]);
+    Point const d1 = 0.5 * (d[1] + d[2]);
+    Point const across = 0.5 * (d0 + d1);
+    return {{{p[0], q0, r0, middle}, {d[0], d0, across}},
+            {{middle, r1, q2, p[3]}, {across, d1, d[2]}}};
+}
+
+} // namespace
+
+void AddCurvePoints(CurveShape const &shape, GregoryMask &mask) {
+    Curve const curve = makeCurve(shape, kRow0, kRow1, 1);
+    mask.points.push_back(curve.points[1]);
+    mask.points.push_back(curve.points[2]);
+}
+
+void AddInnerPoints(CurveShape const &shape, CurveNeighbor const neighbors[2], double signOfM,
+                    bool isReverse, GregoryMask &mask) {
+    Curve const curve = isReverse ? makeCurve(shape, kRow1, kRow0, signOfM)
+                                  : makeCurve(shape, kRow0, kRow1, signOfM);
+    double const lengths[2] = {shape.ends[0].length, shape.ends[1].length};
+    addInnerPoints(curve, makeInward(neighbors, lengths), mask);
+}
+
+void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2], double signOfM,
+                   int numSides, int side, GregoryMask &mask) {
+    // The regular polygon with sides of length 1.
+    double const apothem = 1 / (2 * std::tan(kPi / numSides));
+    double const unit = 2 * std::sin(kPi / numSides); // of the centre's derivatives, radius 1
+    Curve const whole = makeCurve(shape, kRow0, kRow1, signOfM);
+    auto const halves = halve(whole);
+    Curve const &first = halves.first;
+    Curve const &second = halves.second;
+    for (Point const &point :
+         {first.points[1], first.points[2], first.points[3], second.points[1], second.points[2]}) {
+        mask.points.push_back(point);
+    }
+    // At the middle the frame is c' of the whole, which is 1 there, and D.  Sides of kites are half
+    // as long.
+    CurveNeighbor const spoke = {kPi / 2, apothem};
+    CurveNeighbor const before = {neighbors[0].angle, neighbors[0].length / 2};
+    CurveNeighbor const behind = {neighbors[1].angle, neighbors[1].length / 2};
+    CurveNeighbor const ofFirst[2] = {before, spoke};
+    CurveNeighbor const ofSecond[2] = {spoke, behind};
+    double const firstLengths[2] = {shape.ends[0].length / 2, 0.5};
+    double const secondLengths[2] = {0.5, shape.ends[1].length / 2};
+    addInnerPoints(first, makeInward(ofFirst, firstLengths), mask);
+    addInnerPoints(second, makeInward(ofSecond, secondLengths), mask);
+
+    double const direction = 2 * kPi * (side + 0.5) / numSides;
+    Curve line;
+    line.points[0] = first.points[3];
+    line.points[3] = makePoint(kRowCenter);
+    line.points[1] = line.points[0] + apothem / 3 * first.across[2];
+    line.points[2] = line.points[3] + apothem * unit / 3 * makeDerivative(kRowCenter, direction);
+    // To the left of the line, which leads to the centre, lies the first half.
+    line.across[0] = -2.0 * makeTangent(first, 2);
+    line.across[2] = unit * makeDerivative(kRowCenter, direction - kPi / 2);
+    line.across[1] = 0.5 * (line.across[0] + line.across[2]);
+    mask.points.push_back(line.points[1]);
+    mask.points.push_back(line.points[2]);
+    CurveNeighbor const halfSide = {kPi / 2, 0.5};
+    CurveNeighbor const otherLine = {2 * kPi / numSides, apothem};
+    CurveNeighbor const ofLine[2] = {halfSide, otherLine};
+    double const lengths[2] = {apothem, apothem};
+    Inward const inward = makeInward(ofLine, lengths);
+    addInnerPoints(line, inward, mask);
+    // Of the kite on the other side the line leads from the centre to the middle.
+    CurveNeighbor const fromCenter[2] = {otherLine, halfSide};
+    auto const points = makeInnerPoints(reverse(line), makeInward(fromCenter, lengths));
+    mask.points.push_back(points.second);
+    mask.points.push_back(points.first);
+}
+
+} // namespace OpenSubdivHex::FarExt::internal

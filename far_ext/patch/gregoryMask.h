@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_GREGORY_MASK_H
+#define OPENSUBDIVHEX_FAR_EXT_PATCH_GREGORY_MASK_H
+
+#include "far_ext/export.h"
+
+#include <array>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief How the points of Gregory patches follow from the limit: the one derivation of them.
+///
+/// A patch has its corners on the limit surface.  At each corner the limit has a point P and the
+/// derivatives U and V: t(a) = cos(a) U + sin(a) V is the derivative in the direction a, where an edge
+/// of the level is about 1 long.
+///
+/// - A *curve* is the cubic from one corner to another, which leaves both along t.  Half the sides of
+///   a patch are curves that it shares with another patch; the points on them are shared.
+/// - *Across* a curve both patches have the same derivative D, a quadratic: at the ends it is t at
+///   right angles to the curve, and in the middle that of the limit, M.
+/// - The *inner points* of a patch beside the curve c are those with which its derivative inwards is
+///   a D + b c', where a and b are linear and, at the ends, what the corners ask for.  So tangent
+///   planes agree across all curves, whatever the lengths.
+///
+/// All is linear in P, U, V and M, with factors that depend on topology alone: a *mask*.
+///
+/// Rows of weights, three for each row of the limit: of its point, its du and its dv.  Rows 0 and 1 are
+/// those of the corners of a curve, row 2 has M as its du, and row 3 the centre of a face.
+struct GregoryMask {
+    static constexpr int kNumRows = 4;
+    static constexpr int kNumTerms = 3 * kNumRows;
+    using Point = std::array<double, kNumTerms>;
+
+    std::vector<Point> points;
+};
+
+/// One end of a curve, seen from a patch that lies to the left of it.
+struct CurveEnd {
+    double angle;  ///< of the curve as it leaves the corner
+    double length; ///< of its derivative there, in terms of t
+};
+
+/// A curve.
+struct CurveShape {
+    CurveEnd ends[2];
+    double blend; ///< as PatchQuantity::Blend
+};
+
+/// \brief What the other side of a patch is like that meets a curve at one of its ends.
+struct CurveNeighbor {
+    double angle;  ///< of the corner, between both
+    double length; ///< as of a CurveEnd
+};
+
+/// The points of a curve beside its ends: 2.
+OPENSUBDIVHEX_API void AddCurvePoints(CurveShape const &shape, GregoryMask &mask);
+
+/// \brief The inner points of the patch to the left of a curve: 2, the first beside end 0.
+///
+/// \param signOfM    -1 where M is the derivative to the right
+/// \param isReverse  whether the patch has end 1 first: shape and neighbours are in its order, rows 0 and
+///                   1 are those of the curve
+OPENSUBDIVHEX_API void AddInnerPoints(CurveShape const &shape, CurveNeighbor const neighbors[2],
+                                      double signOfM, bool isReverse, GregoryMask &mask);
+
+/// The first points of a side of a face with kites: those in its halves, and its middle.
+inline constexpr int kNumHalfPoints = 5;
+
+/// \brief The points that a face of \p numSides sides, which is made of a patch for each of its
+/// corners, has beside one of its sides and on the line from its middle to the centre.
+///
+/// Such a patch, a *kite*, has a corner of the face, the middle of the next side, the centre and the
+/// middle of the side before.  In this order: the two points in the first half of the side, its
+/// middle, the two points in its second half; two inner points in each of the kites beside these
+/// halves; on the line from the middle to the centre two points, two inner points of the kite of the
+/// first half, and two of that of the second half, all from the middle on.
+///
+/// \param shape      of the side, counter-clockwise
+/// \param neighbors  the sides before and behind
+/// \param signOfM    -1 where M is the derivative away from the face
+/// \param side       its number; corner 0 lies in the direction of U of the centre
+OPENSUBDIVHEX_API void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2],
+                                     double signOfM, int numSides, int side, GregoryMask &mask);
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

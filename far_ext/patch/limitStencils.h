@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_LIMIT_STENCILS_H
+#define OPENSUBDIVHEX_FAR_EXT_PATCH_LIMIT_STENCILS_H
+
+#include "far_ext/limit/limitRows.h"
+
+#include <functional>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief Sums of vertices of a level as sums of control vertices: what patch points are made of.
+///
+/// Each is a point with two derivatives, as a LimitRow is.
+class LimitStencils {
+public:
+    using Index = Far::Index;
+
+    /// Ascending indices of control vertices, each with three weights: for the point, du and dv.
+    struct Stencil {
+        int size;
+        Index const *indices;
+        double const *weights[3];
+    };
+
+    /// A row whose arrays it keeps.
+    struct KeptRow {
+        void Clear();
+        /// Adds to the weights of a source, which may come more than once.
+        void Add(Index source, double weight, double du, double dv);
+        LimitRow Get() const;
+
+        std::vector<Index> sources;
+        std::vector<double> weights[3];
+    };
+
+    /// \brief Makes those of \p numRows rows, in parallel.
+    ///
+    /// \param level    whose vertices the rows have
+    /// \param getRow   called as getRow(number, kept) by several threads: the row of that number, which
+    ///                 is valid until \p kept is used again
+    /// \return         TooLarge where a size of the stencils of the level is
+    CallStatus Form(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions, int level,
+                    Index numRows, std::function<LimitRow(Index, KeptRow &)> const &getRow);
+
+    Stencil Get(Index row) const;
+
+private:
+    static constexpr Index kRange = 64;
+
+    // The stencils of a range of rows.
+    struct Range {
+        std::vector<int> firsts; // and the end
+        std::vector<Index> indices;
+        std::vector<double> weights[3];
+    };
+
+    std::vector<Range> _ranges;
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

@@ -1,0 +1,941 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "patchBuilder.h"
+
+#include "cellFrames.h"
+#include "gregoryMask.h"
+#include "limitStencils.h"
+
+#include "far_ext/limit/limitMask.h"
+#include "far_ext/limit/rowSteps.h"
+#include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/pi.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+using Far::Index;
+using Sdc::Crease;
+
+namespace {
+
+// The masks that patches have in common, each once.
+class MaskCache {
+public:
+    // What a mask was made from.
+    class Key {
+    public:
+        Key &operator<<(double number) {
+            char bytes[sizeof number];
+            std::memcpy(bytes, &number, sizeof number);
+            _bytes.append(bytes, sizeof number);
+            return *this;
+        }
+
+    private:
+        friend class MaskCache;
+        std::string _bytes;
+    };
+
+    template <typename MAKE>
+    GregoryMask const *Find(Key const &key, MAKE const &make) {
+        auto const added = _masks.try_emplace(key._bytes);
+        if (added.second) {
+            make(added.first->second);
+        }
+        return &added.first->second; // elements stay where they are
+    }
+
+private:
+    std::unordered_map<std::string, GregoryMask> _masks;
+};
+
+// Points of one curve, or of one side of a face with kites: a mask of some rows.
+struct PointGroup {
+    Index rows[GregoryMask::kNumRows]; // INDEX_INVALID behind the last
+    GregoryMask const *mask;
+};
+
+} // namespace
+
+/// \brief The patches of one level: which limits they are made of, and which points they have.
+class PatchBuilder::LevelBuilder {
+public:
+    LevelBuilder(PatchBuilder &builder, int level)
+        : _builder(builder), _cells(builder._cells), _depth(level),
+          _surfaceDepth(builder._schemeOptions.GetSurfaceLevel()), _mesh(builder._hierarchy.mesh),
+          _level(_mesh.levels[std::size_t(level)]), _toChild(_mesh.refinements[std::size_t(level)]),
+          _toLimit(GetStepsToLimit(builder._schemeOptions)),
+          _rows(_level, builder._sdcOptions, builder._schemeOptions),
+          _faceMasks(_level, builder._sdcOptions, _toLimit),
+          _childFaceMasks(*_toChild.child, builder._sdcOptions, _toLimit),
+          _childMask(_level, builder._schemeOptions, Interpolation::Vertex) {}
+
+    /// Finds the limits at the corners of cells.
+    CallStatus FindLimits();
+    /// The vertices at corners of cells, ascending.
+    std::vector<Index> const &GetVertices() const { return _verts; }
+    /// Numbers the points of curves from \p firstPoint on; returns the end.
+    Index AddPoints(Index firstPoint);
+    /// Makes the stencils of the limits.
+    CallStatus FormStencils();
+    /// Adds the points of all patches.
+    void AddPatches(std::vector<Index> const &pointOfVertex, std::vector<Index> &points) const;
+
+    /// The group of each vertex point, or of number GetVertices().size() and more the others.
+    PointGroup const &GetGroup(std::size_t i) const { return _groups[i]; }
+    std::size_t GetNumGroups() const { return _groups.size(); }
+    LimitStencils const &GetStencils() const { return _stencils; }
+    Index FindRow(Index vert, int side) const {
+        return side == 0 ? _rowOfVertex[std::size_t(vert)] : findFurtherRow(vert, side);
+    }
+
+private:
+    // An edge or a diagonal.
+    struct CurvePoints {
+        Index points[2] = {Far::INDEX_INVALID, Far::INDEX_INVALID}; // beside its two vertices
+        // Of the patch on each side, in the order of the side.
+        Index inner[2] = {Far::INDEX_INVALID, Far::INDEX_INVALID};
+        // Of the sides of faces with kites: the five points of the halves, and whose order they have.
+        Index halves = Far::INDEX_INVALID;
+        int sideOfHalves = 0;
+        Index rowOfM = Far::INDEX_INVALID; // of side 0, or of both if it is not sharp
+        Index secondRowOfM = Far::INDEX_INVALID;
+    };
+    // What the middle of a curve, or the centre of a face, is a limit of.
+    struct CenterRow {
+        enum Kind { kEdge, kEdgeSide, kDiagonal, kDiagonalSide, kCenter } kind;
+        Index index;
+        int side;
+    };
+    // A side of a cell: one side of an edge or a diagonal.
+    struct CellSide {
+        bool isDiagonal;
+        Index index; // of the edge, or of the face
+        int side;
+    };
+    // A curve as the cell on one of its sides has it.
+    struct CellCurve {
+        CurveShape shape;
+        CurveNeighbor neighbors[2];
+        Index rows[2];
+    };
+
+    int getSize(Index face) const { return _level.GetFaceSize(face); }
+    bool isCell(Index face, int half) const { return _cells.HasCell(_depth, face, half); }
+    static int getNumCorners(int faceSize) { return HasHalves(faceSize) ? 4 : faceSize; }
+    // The place in the face of a cell's corner.
+    int getLocal(Index face, int half, int corner) const {
+        int const size = getSize(face);
+        int const numCorners = getNumCorners(size);
+        corner = (corner + numCorners) % numCorners;
+        return HasHalves(size) ? kHexagonHalves[half][corner] : corner;
+    }
+    CellSide getCellSide(Index face, int half, int side) const;
+    // The cell on a side of an edge or diagonal, and which of its sides that is.
+    PatchCell getCell(CellSide const &curve, int *side) const;
+    bool hasSide(CellSide const &curve) const {
+        return curve.isDiagonal || _level.edgeFaces[curve.index][curve.side] >= 0;
+    }
+    bool isSharp(CellSide const &curve) const {
+        return curve.isDiagonal ? Crease::IsInfinite(_level.GetDiagonalSharpness(curve.index))
+                                : _level.IsBoundary(curve.index) ||
+                                      Crease::IsInfinite(_level.GetEdgeSharpness(curve.index));
+    }
+    CornerFrame getFrame(Index face, int half, int corner) const {
+        return _frames->Get(face, getLocal(face, half, corner), half);
+    }
+    double getLength(Index face, int half, int side, int end) const;
+    std::uint8_t getVertexCode(Index vert) const;
+    bool isBesideOther(Index vert) const;
+    PatchSite getSite(PatchQuantity quantity, CellSide const &curve, Index vert, Index other) const;
+    void addShares(Index vert, LimitStencils::KeptRow &kept) const;
+    CellCurve getCellCurve(PatchCell cell, int side) const;
+    static void addToKey(CellCurve const &curve, MaskCache::Key &key) {
+        key << curve.shape.blend;
+        for (int end = 0; end < 2; ++end) {
+            key << curve.shape.ends[end].angle << curve.shape.ends[end].length
+                << curve.neighbors[end].angle << curve.neighbors[end].length;
+        }
+    }
+    CurvePoints &getPoints(CellSide const &curve) {
+        return (curve.isDiagonal ? _diagonals : _edges)[std::size_t(curve.index)];
+    }
+    CurvePoints const &getPoints(CellSide const &curve) const {
+        return (curve.isDiagonal ? _diagonals : _edges)[std::size_t(curve.index)];
+    }
+    Index findFurtherRow(Index vert, int side) const;
+    Index addCenterRow(CenterRow const &row) {
+        _centerRows.push_back(row);
+        return Index(_numVertexRows + Index(_centerRows.size()) - 1);
+    }
+    Index addGroup(PointGroup const &group);
+    void addCurve(bool isDiagonal, Index index);
+    void addSides(CellSide const *sides, int numSides, bool isShared, CurvePoints &points);
+    void addKites(Index face);
+    LimitRow getRow(Index number, LimitStencils::KeptRow &kept) const;
+    void addAcross(Index const verts[4], double factor, bool isOfChild,
+                   LimitStencils::KeptRow &kept) const;
+    void addOfChild(Index cVert, double du, LimitStencils::KeptRow &kept) const;
+
+    PatchBuilder &_builder;
+    PatchCells const &_cells;
+    int const _depth;
+    int const _surfaceDepth;
+    MeshLevels const &_mesh;
+    Level const &_level;
+    Refinement const &_toChild;
+    HexSchemeOptions const _toLimit;
+    LimitRows _rows;
+    FaceLimitMaskFinder const _faceMasks;
+    FaceLimitMaskFinder const _childFaceMasks;
+    RefinementMask const _childMask;
+    std::optional<CellFrames> _frames;
+
+    std::vector<Index> _verts;
+    std::vector<Index> _rowOfVertex;
+    struct FurtherRow {
+        Index vert;
+        int side;
+    };
+    std::vector<FurtherRow> _furtherRows; // ascending
+    Index _numVertexRows = 0;
+    std::vector<CenterRow> _centerRows;
+
+    std::vector<CurvePoints> _edges;
+    std::vector<CurvePoints> _diagonals; // by face
+    std::vector<Index> _kites;           // by face, and the centre; INDEX_INVALID
+    std::vector<PointGroup> _groups;
+    MaskCache _masks;
+    Index _numPoints = 0;
+    LimitStencils _stencils;
+};
+
+CallStatus PatchBuilder::LevelBuilder::FindLimits() {
+    std::vector<unsigned char> marks(std::size_t(_level.numVertices), 0);
+    for (PatchCell const &cell : _cells.GetCells(_depth)) {
+        for (int corner = 0; corner < getNumCorners(getSize(cell.face)); ++corner) {
+            int const local = getLocal(cell.face, cell.half, corner);
+            marks[std::size_t(_level.GetFaceVertices(cell.face)[local])] = 1;
+        }
+    }
+    _verts = ParallelSelect(_level.numVertices,
+                            [&](Index vert) { return marks[std::size_t(vert)] != 0; });
+    if (CallStatus const result = _rows.Find(_verts); !result.IsOk()) {
+        return result;
+    }
+    _frames.emplace(_level, _rows, _verts);
+    _rowOfVertex.assign(std::size_t(_level.numVertices), Far::INDEX_INVALID);
+    for (Index vert : _verts) {
+        _rowOfVertex[std::size_t(vert)] = _numVertexRows++;
+    }
+    for (PatchCell const &cell : _cells.GetCells(_depth)) {
+        for (int corner = 0; corner < getNumCorners(getSize(cell.face)); ++corner) {
+            CornerFrame const frame = getFrame(cell.face, cell.half, corner);
+            if (frame.side > 0) {
+                _furtherRows.push_back({frame.vert, frame.side});
+            }
+        }
+    }
+    auto const isBefore = [](FurtherRow const &a, FurtherRow const &b) {
+        return a.vert != b.vert ? a.vert < b.vert : a.side < b.side;
+    };
+    std::sort(_furtherRows.begin(), _furtherRows.end(), isBefore);
+    _furtherRows.erase(std::unique(_furtherRows.begin(), _furtherRows.end(),
+                                   [&](FurtherRow const &a, FurtherRow const &b) {
+                                       return !isBefore(a, b) && !isBefore(b, a);
+                                   }),
+                       _furtherRows.end());
+    _numVertexRows += Index(_furtherRows.size());
+    return CallStatus();
+}
+
+Index PatchBuilder::LevelBuilder::findFurtherRow(Index vert, int side) const {
+    auto const found =
+        std::lower_bound(_furtherRows.begin(), _furtherRows.end(), FurtherRow{vert, side},
+                         [](FurtherRow const &a, FurtherRow const &b) {
+                             return a.vert != b.vert ? a.vert < b.vert : a.side < b.side;
+                         });
+    return Index(_verts.size()) + Index(found - _furtherRows.begin());
+}
+
+auto PatchBuilder::LevelBuilder::getCellSide(Index face, int half, int side) const -> CellSide {
+    if (HasHalves(getSize(face)) && side == 0) {
+        return {true, face, half};
+    }
+    int const local = getLocal(face, half, side);
+    Index const edge = _level.faceEdges[_level.faceFirstCorner[face] + local];
+    bool const isFirst =
+        _level.edgeFaces[edge][0] == face && _level.edgeFaceLocals[edge][0] == local;
+    return {false, edge, isFirst ? 0 : 1};
+}
+
+PatchCell PatchBuilder::LevelBuilder::getCell(CellSide const &curve, int *side) const {
+    if (curve.isDiagonal) {
+        *side = 0;
+        return {curve.index, curve.side};
+    }
+    Index const face = _level.edgeFaces[curve.index][curve.side];
+    int const local = _level.edgeFaceLocals[curve.index][curve.side];
+    if (!HasHalves(getSize(face))) {
+        *side = local;
+        return {face, 0};
+    }
+    *side = local % kDiagonalEnd + 1;
+    return {face, GetHalfOfEdge(local)};
+}
+
+// How long the derivative of a cell's side is at its start or end.
+double PatchBuilder::LevelBuilder::getLength(Index face, int half, int side, int end) const {
+    int const numCorners = getNumCorners(getSize(face));
+    side = (side + numCorners) % numCorners;
+    Index const vert = _level.GetFaceVertices(face)[getLocal(face, half, side + end)];
+    CellSide const curve = getCellSide(face, half, side);
+    bool const isLong = curve.isDiagonal || _level.IsSharpBoundaryB(curve.index);
+    Index const other = _level.GetFaceVertices(face)[getLocal(face, half, side + 1 - end)];
+    return (isLong ? 2 : 1) *
+           _builder._constants.Get(getSite(PatchQuantity::Length, curve, vert, other));
+}
+
+std::uint8_t PatchBuilder::LevelBuilder::getVertexCode(Index vert) const {
+    if (_level.FindSharpVertex(vert)) {
+        return PatchSite::kSharp;
+    }
+    int depth = _surfaceDepth;
+    while (vert >= _mesh.levels[std::size_t(depth)].numVertices) {
+        ++depth;
+    }
+    return depth == _surfaceDepth
+               ? std::uint8_t(PatchSite::kBase +
+                              std::min(_level.GetNumVertexFaces(vert), PatchSite::kMaxFaces))
+               : std::uint8_t(std::min(_depth - depth, PatchSite::kMaxAge));
+}
+
+bool PatchBuilder::LevelBuilder::isBesideOther(Index vert) const {
+    Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
+    return std::any_of(faces.begin(), faces.end(), [this](Index face) {
+        return !HasHalves(getSize(face)) && !_level.IsHalfFace(face);
+    });
+}
+
+PatchSite PatchBuilder::LevelBuilder::getSite(PatchQuantity quantity, CellSide const &curve,
+                                              Index vert, Index other) const {
+    int const steps = _depth - _surfaceDepth;
+    PatchSite site;
+    site.quantity = quantity;
+    site.steps = std::uint8_t(std::min(steps, PatchSite::kMaxSteps));
+    site.vert = getVertexCode(vert);
+    site.otherVert = getVertexCode(other);
+    site.isBesideOther = isBesideOther(vert);
+    site.isOtherBesideOther = isBesideOther(other);
+    if (curve.isDiagonal) {
+        site.kind = PatchSite::kDiagonal;
+        return site;
+    }
+    site.kind = _level.IsSharpBoundaryB(curve.index) ? PatchSite::kLongBoundary
+                : isSharp(curve)                     ? PatchSite::kSharpEdge
+                                                     : PatchSite::kEdge;
+    // Behind the surface level faces are hexagons, and few quads and others.
+    auto const getFaceSize = [&](int side) {
+        Index const face = _level.edgeFaces[curve.index][side];
+        constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
+        if (face < 0) {
+            return steps == 0 ? 0 : kHexagon;
+        }
+        int const size = _level.IsHalfFace(face) ? kHexagon : getSize(face);
+        return steps == 0                      ? std::min(size, PatchSite::kMaxFaceSize)
+               : size == kHexagon || size == 4 ? size
+                                               : 5;
+    };
+    int const sizes[2] = {getFaceSize(0), getFaceSize(1)};
+    site.smallFace = std::uint8_t(std::min(sizes[0], sizes[1]));
+    site.largeFace = std::uint8_t(std::max(sizes[0], sizes[1]));
+    return site;
+}
+
+// In place of as much of the limit's derivatives, mean differences to neighbours: these, too, are derivatives
+// of what is linear.
+void PatchBuilder::LevelBuilder::addShares(Index vert, LimitStencils::KeptRow &kept) const {
+    int const numFaces = _level.GetNumVertexFaces(vert);
+    if (_level.FindSharpVertex(vert) || _frames->HasBeginning(vert)) {
+        return;
+    }
+    Index const first = _level.vertFirstFace[vert];
+    for (Index k = first; k < first + numFaces; ++k) {
+        Index const edge = _level.faceEdges[_level.GetVertexCorner(k)];
+        if (Crease::IsSharp(_level.GetEdgeSharpness(edge)) ||
+            Crease::IsSharp(_level.GetDiagonalSharpness(_level.vertFaces[k]))) {
+            return;
+        }
+    }
+    PatchSite site;
+    site.quantity = PatchQuantity::EdgeShare;
+    site.steps = std::uint8_t(std::min(_depth - _surfaceDepth, PatchSite::kMaxSteps));
+    site.kind = PatchSite::kVertex;
+    site.vert = getVertexCode(vert);
+    site.isBesideOther = isBesideOther(vert);
+    double const ofEdges = _builder._constants.Get(site);
+    site.quantity = PatchQuantity::DiagonalShare;
+    double const ofDiagonals = site.isBesideOther ? 0 : _builder._constants.Get(site);
+    if (ofEdges == 0 && ofDiagonals == 0) {
+        return;
+    }
+    for (int sum : {1, 2}) {
+        for (double &weight : kept.weights[sum]) {
+            weight *= 1 - ofEdges - ofDiagonals;
+        }
+    }
+    auto const add = [&](Index neighbor, double angle, double share) {
+        double const du = share * std::cos(angle);
+        double const dv = share * std::sin(angle);
+        kept.Add(neighbor, 0, du, dv);
+        kept.Add(vert, 0, -du, -dv);
+    };
+    for (int i = 0; i < numFaces; ++i) {
+        Index const face = _level.vertFaces[first + i];
+        int const local = _level.vertFaceLocals[first + i];
+        int const size = getSize(face);
+        double const angle = _frames->GetEdgeAngle(vert, i);
+        auto const getNeighbor = [&](int step) {
+            return _level.GetFaceVertices(face)[(local + step) % size];
+        };
+        add(getNeighbor(1), angle, 2 * ofEdges / numFaces);
+        if (ofDiagonals != 0) {
+            // Twice as far away.
+            add(getNeighbor(kDiagonalEnd), angle + kPi / numFaces, ofDiagonals / numFaces);
+        }
+    }
+}
+
+auto PatchBuilder::LevelBuilder::getCellCurve(PatchCell cell, int side) const -> CellCurve {
+    CellCurve result;
+    Index verts[2];
+    for (int end = 0; end < 2; ++end) {
+        CornerFrame const frame = getFrame(cell.face, cell.half, side + end);
+        verts[end] = frame.vert;
+        result.rows[end] = FindRow(frame.vert, frame.side);
+        result.shape.ends[end] = {end == 0 ? frame.begin : frame.end,
+                                  getLength(cell.face, cell.half, side, end)};
+        // Of the side before its end, of that behind its start.
+        result.neighbors[end] = {
+            frame.end - frame.begin,
+            getLength(cell.face, cell.half, side + (end == 0 ? -1 : 1), 1 - end)};
+    }
+    // The same for both sides: of vertices the older one comes first.
+    result.shape.blend = _builder._constants.Get(
+        getSite(PatchQuantity::Blend, getCellSide(cell.face, cell.half, side),
+                std::min(verts[0], verts[1]), std::max(verts[0], verts[1])));
+    return result;
+}
+
+Index PatchBuilder::LevelBuilder::addGroup(PointGroup const &group) {
+    Index const first = _numPoints;
+    _groups.push_back(group);
+    _numPoints += Index(group.mask->points.size());
+    return first;
+}
+
+Index PatchBuilder::LevelBuilder::AddPoints(Index firstPoint) {
+    _numPoints = firstPoint;
+    _edges.resize(std::size_t(_level.numEdges));
+    _diagonals.resize(std::size_t(_level.numFaces));
+    _kites.assign(2 * std::size_t(_level.numFaces), Far::INDEX_INVALID);
+    for (Index edge = 0; edge < _level.numEdges; ++edge) {
+        addCurve(false, edge);
+    }
+    for (Index face = 0; face < _level.numFaces; ++face) {
+        if (HasHalves(getSize(face))) {
+            addCurve(true, face);
+        }
+    }
+    for (PatchCell const &cell : _cells.GetCells(_depth)) {
+        if (HasKites(getSize(cell.face))) {
+            addKites(cell.face);
+        }
+    }
+    return _numPoints;
+}
+
+void PatchBuilder::LevelBuilder::addCurve(bool isDiagonal, Index index) {
+    // The sides where there are patches.
+    CellSide sides[2];
+    int numSides = 0;
+    for (int side = 0; side < 2; ++side) {
+        CellSide const curve = {isDiagonal, index, side};
+        int ofCell = 0;
+        if (hasSide(curve)) {
+            PatchCell const cell = getCell(curve, &ofCell);
+            if (isCell(cell.face, cell.half)) {
+                sides[numSides++] = curve;
+            }
+        }
+    }
+    if (numSides == 0) {
+        return;
+    }
+    CurvePoints &points = getPoints(sides[0]);
+    bool const isShared = !isSharp(sides[0]);
+    if (isShared) {
+        points.rowOfM = points.secondRowOfM =
+            addCenterRow({isDiagonal ? CenterRow::kDiagonal : CenterRow::kEdge, index, 0});
+        addSides(sides, numSides, true, points);
+        return;
+    }
+    for (int i = 0; i < numSides; ++i) {
+        (sides[i].side == 0 ? points.rowOfM : points.secondRowOfM) = addCenterRow(
+            {isDiagonal ? CenterRow::kDiagonalSide : CenterRow::kEdgeSide, index, sides[i].side});
+        addSides(sides + i, 1, false, points);
+    }
+}
+
+// The points of one curve for patches on some of its sides, which have the same tangent planes.
+void PatchBuilder::LevelBuilder::addSides(CellSide const *sides, int numSides, bool isShared,
+                                          CurvePoints &points) {
+    MaskCache::Key key;
+    bool needsPoints = false;
+    struct Side {
+        CellCurve curve;
+        int side;
+    } found[2];
+    int numFound = 0;
+    for (int i = 0; i < numSides; ++i) {
+        int ofCell = 0;
+        PatchCell const cell = getCell(sides[i], &ofCell);
+        if (!HasKites(getSize(cell.face))) {
+            found[numFound++] = {getCellCurve(cell, ofCell), sides[i].side};
+            needsPoints = needsPoints || points.points[0] == Far::INDEX_INVALID;
+        }
+    }
+    if (numFound == 0) {
+        return;
+    }
+    // In the order of the first one of the sides.
+    CellCurve const &first = found[0].curve;
+    double const signs[2] = {isShared && found[0].side == 1 ? -1.0 : 1.0,
+                             isShared && found[0].side == 0 ? -1.0 : 1.0};
+    key << needsPoints << numFound << signs[0];
+    for (int i = 0; i < numFound; ++i) {
+        addToKey(found[i].curve, key);
+    }
+    GregoryMask const *const known = _masks.Find(key, [&](GregoryMask &made) {
+        if (needsPoints) {
+            AddCurvePoints(first.shape, made);
+        }
+        for (int i = 0; i < numFound; ++i) {
+            AddInnerPoints(found[i].curve.shape, found[i].curve.neighbors, signs[i], i > 0, made);
+        }
+    });
+    Index next =
+        addGroup({{first.rows[0], first.rows[1],
+                   found[0].side == 0 ? points.rowOfM : points.secondRowOfM, Far::INDEX_INVALID},
+                  known});
+    if (needsPoints) {
+        points.points[found[0].side] = next++;
+        points.points[1 - found[0].side] = next++;
+    }
+    for (int i = 0; i < numFound; ++i) {
+        points.inner[found[i].side] = next;
+        next += 2;
+    }
+}
+
+void PatchBuilder::LevelBuilder::addKites(Index face) {
+    int const size = getSize(face);
+    Index const rowOfCenter = addCenterRow({CenterRow::kCenter, face, 0});
+    for (int i = 0; i < size; ++i) {
+        CellSide const side = getCellSide(face, 0, i);
+        CurvePoints &points = getPoints(side);
+        CellCurve const curve = getCellCurve({face, 0}, i);
+        bool const hasHalves = points.halves != Far::INDEX_INVALID;
+        double const sign = !isSharp(side) && side.side == 1 ? -1 : 1;
+        MaskCache::Key key;
+        key << size << i << sign << hasHalves;
+        addToKey(curve, key);
+        GregoryMask const *const mask = _masks.Find(key, [&](GregoryMask &made) {
+            AddKitePoints(curve.shape, curve.neighbors, sign, size, i, made);
+            if (hasHalves) {
+                made.points.erase(made.points.begin(), made.points.begin() + kNumHalfPoints);
+            }
+        });
+        Index first = addGroup({{curve.rows[0], curve.rows[1],
+                                 side.side == 0 ? points.rowOfM : points.secondRowOfM, rowOfCenter},
+                                mask});
+        if (!hasHalves) {
+            points.halves = first;
+            points.sideOfHalves = side.side;
+            first += kNumHalfPoints;
+        }
+        if (i == 0) {
+            _kites[2 * std::size_t(face)] = first;
+        }
+        points.inner[side.side] = first;
+    }
+    GregoryMask const *const center = _masks.Find(
+        MaskCache::Key() << size, [](GregoryMask &made) { made.points.push_back({1}); });
+    _kites[2 * std::size_t(face) + 1] = addGroup(
+        {{rowOfCenter, Far::INDEX_INVALID, Far::INDEX_INVALID, Far::INDEX_INVALID}, center});
+}
+
+void PatchBuilder::LevelBuilder::addOfChild(Index cVert, double du,
+                                            LimitStencils::KeptRow &kept) const {
+    ForEachParentWeight(_toChild, _childMask, cVert,
+                        [&](Index vert, double weight) { kept.Add(vert, 0, du * weight, 0); });
+}
+
+// From the long side of half a hexagon to the other one.
+void PatchBuilder::LevelBuilder::addAcross(Index const verts[4], double factor, bool isOfChild,
+                                           LimitStencils::KeptRow &kept) const {
+    double const weight = factor / std::sqrt(3.0);
+    for (int i = 0; i < 4; ++i) {
+        double const du = i < 2 ? -weight : weight;
+        if (isOfChild) {
+            addOfChild(verts[i], du, kept);
+        } else {
+            kept.Add(verts[i], 0, du, 0);
+        }
+    }
+}
+
+LimitRow PatchBuilder::LevelBuilder::getRow(Index number, LimitStencils::KeptRow &kept) const {
+    kept.Clear();
+    if (number < _numVertexRows) {
+        bool const isFirst = number < Index(_verts.size());
+        FurtherRow const vertex = isFirst ? FurtherRow{_verts[std::size_t(number)], 0}
+                                          : _furtherRows[std::size_t(number) - _verts.size()];
+        Index sources[PlainNeighborhoodGatherer::kNumRegular];
+        LimitRow const row = _rows.GetRow(vertex.vert, vertex.side, sources);
+        for (int i = 0; i < row.size; ++i) {
+            kept.sources.push_back(row.sources[i]);
+            kept.weights[0].push_back(row.weights[i]);
+            kept.weights[1].push_back(row.du[i]);
+            kept.weights[2].push_back(row.dv[i]);
+        }
+        if (isFirst && _builder._constants.HasShares()) {
+            addShares(vertex.vert, kept);
+        }
+        return kept.Get();
+    }
+    CenterRow const &row = _centerRows[std::size_t(number - _numVertexRows)];
+    Level const &child = *_toChild.child;
+    switch (row.kind) {
+    case CenterRow::kEdge: {
+        // On the next level edges are half as long, and the diagonal is the edge.
+        Index const cFace = _toChild.GetEdgeChildFace(row.index);
+        Far::ConstIndexArray const verts = child.GetFaceVertices(cFace);
+        LimitMask const mask = _childFaceMasks.Find(cFace);
+        for (int i = 0; i < verts.size(); ++i) {
+            if (double const dv = mask.sides[0].dv[std::size_t(i)]; dv != 0) {
+                addOfChild(verts[i], -2 * dv, kept);
+            }
+        }
+        break;
+    }
+    case CenterRow::kEdgeSide: {
+        if (_level.IsSharpBoundaryB(row.index)) {
+            Index const face = _level.edgeFaces[row.index][0];
+            addAcross(_level.GetFaceVertices(face).begin(), 1, false, kept);
+            break;
+        }
+        Index const cFace = _toChild.GetEdgeChildFace(row.index);
+        Far::ConstIndexArray const verts = child.GetFaceVertices(cFace);
+        Index ofHalf[4];
+        for (int i = 0; i < 4; ++i) {
+            ofHalf[i] = verts[HasHalves(verts.size()) ? kHexagonHalves[row.side][i] : i];
+        }
+        addAcross(ofHalf, 2, true, kept);
+        break;
+    }
+    case CenterRow::kDiagonal: {
+        Far::ConstIndexArray const verts = _level.GetFaceVertices(row.index);
+        LimitMask const mask = _faceMasks.Find(row.index);
+        for (int i = 0; i < verts.size(); ++i) {
+            kept.Add(verts[i], 0, -mask.sides[0].dv[std::size_t(i)], 0);
+        }
+        break;
+    }
+    case CenterRow::kDiagonalSide: {
+        Far::ConstIndexArray const verts = _level.GetFaceVertices(row.index);
+        Index ofHalf[4];
+        for (int i = 0; i < 4; ++i) {
+            ofHalf[i] = verts[kHexagonHalves[row.side][i]];
+        }
+        addAcross(ofHalf, 1, false, kept);
+        break;
+    }
+    case CenterRow::kCenter: {
+        Far::ConstIndexArray const verts = _level.GetFaceVertices(row.index);
+        LimitMask const mask = _faceMasks.Find(row.index);
+        for (int i = 0; i < verts.size(); ++i) {
+            auto const k = std::size_t(i);
+            kept.Add(verts[i], mask.weights[k], mask.sides[0].du[k], mask.sides[0].dv[k]);
+        }
+        break;
+    }
+    }
+    return kept.Get();
+}
+
+CallStatus PatchBuilder::LevelBuilder::FormStencils() {
+    return _stencils.Form(
+        _builder._hierarchy, _builder._schemeOptions, _depth,
+        _numVertexRows + Index(_centerRows.size()),
+        [this](Index number, LimitStencils::KeptRow &kept) { return getRow(number, kept); });
+}
+
+void PatchBuilder::LevelBuilder::AddPatches(std::vector<Index> const &pointOfVertex,
+                                            std::vector<Index> &points) const {
+    auto const getVertexPoint = [&](Index face, int half, int corner) {
+        Index const vert = _level.GetFaceVertices(face)[getLocal(face, half, corner)];
+        return pointOfVertex[std::size_t(vert)];
+    };
+    // A side of a patch: points on it beside its start and end, then inner points there.
+    auto const setSide = [](Index *patch, int side, Index const(&ofSide)[4]) {
+        int const next = (side + 1) % 4;
+        patch[5 * side + 1] = ofSide[0];
+        patch[5 * next + 2] = ofSide[1];
+        patch[5 * side + 3] = ofSide[2];
+        patch[5 * next + 4] = ofSide[3];
+    };
+    for (PatchCell const &cell : _cells.GetCells(_depth)) {
+        Index const face = cell.face;
+        int const size = getSize(face);
+        if (!HasKites(size)) {
+            std::size_t const first = points.size();
+            points.resize(first + kNumPatchPoints);
+            for (int side = 0; side < 4; ++side) {
+                CellSide const curve = getCellSide(face, cell.half, side);
+                CurvePoints const &ofCurve = getPoints(curve);
+                Index const inner = ofCurve.inner[curve.side];
+                points[first + 5 * std::size_t(side)] = getVertexPoint(face, cell.half, side);
+                setSide(
+                    points.data() + first, side,
+                    {ofCurve.points[curve.side], ofCurve.points[1 - curve.side], inner, inner + 1});
+            }
+            continue;
+        }
+        for (int i = 0; i < size; ++i) {
+            struct Side {
+                Index halves[kNumHalfPoints];
+                Index inner;
+            } sides[2]; // that behind the corner, and that before it
+            for (int k = 0; k < 2; ++k) {
+                CellSide const curve = getCellSide(face, 0, k == 0 ? i : i - 1);
+                CurvePoints const &ofCurve = getPoints(curve);
+                bool const isReverse = ofCurve.sideOfHalves != curve.side;
+                for (int j = 0; j < kNumHalfPoints; ++j) {
+                    sides[k].halves[j] = ofCurve.halves + (isReverse ? kNumHalfPoints - 1 - j : j);
+                }
+                sides[k].inner = ofCurve.inner[curve.side];
+            }
+            Index const *const behind = sides[0].halves;
+            Index const *const before = sides[1].halves;
+            Index const in = sides[0].inner;
+            Index const inBefore = sides[1].inner;
+            std::size_t const first = points.size();
+            points.resize(first + kNumPatchPoints);
+            Index *const patch = points.data() + first;
+            patch[0] = getVertexPoint(face, 0, i);
+            patch[5] = behind[2];
+            patch[10] = _kites[2 * std::size_t(face) + 1];
+            patch[15] = before[2];
+            setSide(patch, 0, {behind[0], behind[1], in, in + 1});
+            setSide(patch, 1, {in + 4, in + 5, in + 6, in + 7});
+            setSide(patch, 2, {inBefore + 5, inBefore + 4, inBefore + 9, inBefore + 8});
+            setSide(patch, 3, {before[3], before[4], inBefore + 2, inBefore + 3});
+        }
+    }
+}
+
+PatchBuilder::PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
+                           HexSchemeOptions const &schemeOptions, PatchCells const &cells,
+                           PatchConstants constants)
+    : _hierarchy(hierarchy), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions), _cells(cells),
+      _constants(std::move(constants)) {}
+
+PatchBuilder::~PatchBuilder() = default;
+CallStatus PatchBuilder::Build() {
+    for (int level = _cells.GetFirstLevel(); level <= _cells.GetLastLevel(); ++level) {
+        _levels.push_back(std::make_unique<LevelBuilder>(*this, level));
+        if (CallStatus const result = _levels.back()->FindLimits(); !result.IsOk()) {
+            return result;
+        }
+    }
+    auto const numVertices =
+        std::size_t(_hierarchy.mesh.levels[std::size_t(_cells.GetLastLevel())].numVertices);
+    std::vector<Index> pointOfVertex(numVertices, Far::INDEX_INVALID);
+    for (auto const &level : _levels) {
+        for (Index const vert : level->GetVertices()) {
+            if (pointOfVertex[std::size_t(vert)] == Far::INDEX_INVALID) {
+                pointOfVertex[std::size_t(vert)] = _numPoints++;
+                _vertexPoints.push_back({level.get(), level->FindRow(vert, 0)});
+            }
+        }
+    }
+    for (auto const &level : _levels) {
+        _numPoints = level->AddPoints(_numPoints);
+    }
+    _patchPoints.reserve(std::size_t(kNumPatchPoints * _cells.GetNumPatches()));
+    for (auto const &level : _levels) {
+        if (CallStatus const result = level->FormStencils(); !result.IsOk()) {
+            return result;
+        }
+        level->AddPatches(pointOfVertex, _patchPoints);
+    }
+    return CallStatus();
+}
+
+namespace {
+
+// Sums rows by masks.
+template <typename REAL>
+class GroupSums {
+public:
+    void Add(LimitStencils const &stencils, PointGroup const &group, PointStencils<REAL> &result) {
+        int numRows = 0;
+        while (numRows < GregoryMask::kNumRows && group.rows[numRows] != Far::INDEX_INVALID) {
+            _rows[numRows] = stencils.Get(group.rows[numRows]);
+            _positions[numRows] = 0;
+            ++numRows;
+        }
+        // The indices that any row has, ascending, and the weights of all rows for each.
+        _columns.clear();
+        _terms.clear();
+        for (;;) {
+            Index least = std::numeric_limits<Index>::max();
+            for (int row = 0; row < numRows; ++row) {
+                if (_positions[row] < _rows[row].size) {
+                    least = std::min(least, _rows[row].indices[_positions[row]]);
+                }
+            }
+            if (least == std::numeric_limits<Index>::max()) {
+                break;
+            }
+            Column column = {least, 0};
+            std::array<double, GregoryMask::kNumTerms> terms{};
+            for (int row = 0; row < numRows; ++row) {
+                int &position = _positions[row];
+                if (position < _rows[row].size && _rows[row].indices[position] == least) {
+                    for (int sum = 0; sum < 3; ++sum) {
+                        terms[std::size_t(3 * row + sum)] = _rows[row].weights[sum][position];
+                    }
+                    column.rows |= 1u << row;
+                    ++position;
+                }
+            }
+            _columns.push_back(column);
+            _terms.push_back(terms);
+        }
+        for (GregoryMask::Point const &point : group.mask->points) {
+            unsigned rows = 0;
+            for (int i = 0; i < 3 * numRows; ++i) {
+                rows |= point[std::size_t(i)] != 0 ? 1u << (i / 3) : 0;
+            }
+            int size = 0;
+            for (std::size_t k = 0; k < _columns.size(); ++k) {
+                if ((_columns[k].rows & rows) == 0) {
+                    continue;
+                }
+                double weight = 0;
+                for (int i = 0; i < 3 * numRows; ++i) {
+                    weight += point[std::size_t(i)] * _terms[k][std::size_t(i)];
+                }
+                result.indices.push_back(_columns[k].index);
+                result.weights.push_back(REAL(weight));
+                ++size;
+            }
+            result.sizes.push_back(size);
+        }
+    }
+
+private:
+    struct Column {
+        Index index;
+        unsigned rows; // a bit for each
+    };
+
+    LimitStencils::Stencil _rows[GregoryMask::kNumRows];
+    int _positions[GregoryMask::kNumRows];
+    std::vector<Column> _columns;
+    std::vector<std::array<double, GregoryMask::kNumTerms>> _terms;
+};
+
+} // namespace
+
+template <typename REAL>
+CallStatus PatchBuilder::MakeStencils(PointStencils<REAL> &stencils) const {
+    // Groups of all levels, behind the vertices.
+    std::vector<Index> firsts = {Index(_vertexPoints.size())};
+    for (auto const &level : _levels) {
+        firsts.push_back(firsts.back() + Index(level->GetNumGroups()));
+    }
+    GregoryMask vertexMask;
+    vertexMask.points.push_back({1});
+    constexpr Index kRange = 256;
+    std::vector<PointStencils<REAL>> ranges(
+        std::size_t(GetNumParallelRanges(firsts.back(), kRange)));
+    ParallelForRange(
+        firsts.back(), [] { return GroupSums<REAL>(); },
+        [&](GroupSums<REAL> &sums, Index begin, Index end) {
+            PointStencils<REAL> &range = ranges[std::size_t(begin / kRange)];
+            std::size_t level = 0;
+            for (Index i = begin; i < end; ++i) {
+                if (i < firsts[0]) {
+                    VertexPoint const &point = _vertexPoints[std::size_t(i)];
+                    sums.Add(
+                        point.level->GetStencils(),
+                        {{point.row, Far::INDEX_INVALID, Far::INDEX_INVALID, Far::INDEX_INVALID},
+                         &vertexMask},
+                        range);
+                    continue;
+                }
+                while (i >= firsts[level + 1]) {
+                    ++level;
+                }
+                sums.Add(_levels[level]->GetStencils(),
+                         _levels[level]->GetGroup(std::size_t(i - firsts[level])), range);
+            }
+        },
+        kRange);
+    std::vector<std::size_t> firstPoints = {0};
+    std::vector<std::size_t> firstWeights = {0};
+    for (PointStencils<REAL> const &range : ranges) {
+        firstPoints.push_back(firstPoints.back() + range.sizes.size());
+        firstWeights.push_back(firstWeights.back() + range.weights.size());
+    }
+    if (firstWeights.back() > std::size_t(std::numeric_limits<Index>::max())) {
+        return CallStatus(StatusCode::TooLarge, ComponentType::Level, _cells.GetLastLevel(),
+                          "the patch points of level " + std::to_string(_cells.GetLastLevel()) +
+                              " would have " + std::to_string(firstWeights.back()) +
+                              " weights, more than Far's 32-bit offsets reach");
+    }
+    ResizeLarge(stencils.sizes, firstPoints.back());
+    ResizeLarge(stencils.indices, firstWeights.back());
+    ResizeLarge(stencils.weights, firstWeights.back());
+    ParallelForRange(
+        Index(ranges.size()), [] { return Nothing(); },
+        [&](Nothing, Index begin, Index end) {
+            for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+                PointStencils<REAL> &range = ranges[i];
+                std::copy(range.sizes.begin(), range.sizes.end(),
+                          stencils.sizes.begin() + std::ptrdiff_t(firstPoints[i]));
+                std::copy(range.indices.begin(), range.indices.end(),
+                          stencils.indices.begin() + std::ptrdiff_t(firstWeights[i]));
+                std::copy(range.weights.begin(), range.weights.end(),
+                          stencils.weights.begin() + std::ptrdiff_t(firstWeights[i]));
+                range = PointStencils<REAL>();
+            }
+        },
+        1);
+    return CallStatus();
+}
+
+template CallStatus PatchBuilder::MakeStencils(PointStencils<float> &) const;
+template CallStatus PatchBuilder::MakeStencils(PointStencils<double> &) const;
+
+} // namespace OpenSubdivHex::FarExt::internal

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_BUILDER_H
+#define OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_BUILDER_H
+
+#include "patchCells.h"
+#include "patchConstants.h"
+
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// Points of a Gregory patch.
+inline constexpr int kNumPatchPoints = 20;
+
+/// \brief The stencils of points, in the order of the points.
+template <typename REAL>
+struct PointStencils {
+    std::vector<int> sizes;
+    std::vector<Far::Index> indices;
+    std::vector<REAL> weights;
+};
+
+/// \brief Makes Gregory patches of cells: numbers their points, and makes the stencils of these.
+///
+/// Points are, in this order: the vertices at corners of cells, ascending; level by level those of
+/// edges, diagonals, and faces that are made of kites.
+class PatchBuilder {
+public:
+    using Index = Far::Index;
+
+    PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
+                 HexSchemeOptions const &schemeOptions, PatchCells const &cells,
+                 PatchConstants constants);
+    /// With the constants of the mask.
+    PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
+                 HexSchemeOptions const &schemeOptions, PatchCells const &cells)
+        : PatchBuilder(hierarchy, sdcOptions, schemeOptions, cells,
+                       PatchConstants(schemeOptions.faceMask)) {}
+    ~PatchBuilder();
+
+    /// Finds all limits that points are made of, and numbers the points.
+    CallStatus Build();
+
+    /// kNumPatchPoints for each patch, in the order of the cells.
+    std::vector<Index> const &GetPatchPoints() const { return _patchPoints; }
+    Index GetNumPoints() const { return _numPoints; }
+
+    /// Of all points; TooLarge where there are too many weights.
+    template <typename REAL>
+    CallStatus MakeStencils(PointStencils<REAL> &stencils) const;
+
+private:
+    class LevelBuilder;
+    // A point at a vertex, from the first level where cells have it.
+    struct VertexPoint {
+        LevelBuilder const *level;
+        Index row;
+    };
+
+    Hierarchy const &_hierarchy;
+    Sdc::Options const _sdcOptions;
+    HexSchemeOptions const _schemeOptions;
+    PatchCells const &_cells;
+    PatchConstants const _constants;
+    std::vector<std::unique_ptr<LevelBuilder>> _levels;
+    std::vector<VertexPoint> _vertexPoints;
+    std::vector<Index> _patchPoints;
+    Index _numPoints = 0;
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

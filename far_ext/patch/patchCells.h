@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CELLS_H
+#define OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CELLS_H
+
+#include "far_ext/vtr/hierarchy.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief A cell that is a patch, or several: a half of a hexagon is one patch, a quad is one, and
+/// each other face is a *kite* for each of its corners.
+struct PatchCell {
+    Far::Index face;
+    int half; ///< of a hexagon, as in kHexagonHalves; else 0
+};
+
+/// Whether a face of so many sides is made of kites.
+constexpr bool HasKites(int faceSize) { return faceSize != 4 && !HasHalves(faceSize); }
+/// The patches of a cell.
+constexpr int GetNumPatches(int faceSize) { return HasKites(faceSize) ? faceSize : 1; }
+
+/// \brief Which cells of which levels are patches: together they are all of the surface but its holes.
+class PatchCells {
+public:
+    using Index = Far::Index;
+
+    /// All cells of one level.
+    PatchCells(MeshLevels const &mesh, int level);
+
+    int GetFirstLevel() const { return _firstLevel; }
+    int GetLastLevel() const { return _firstLevel + int(_cells.size()) - 1; }
+    /// Those of a level, by ascending face and half.
+    std::vector<PatchCell> const &GetCells(int level) const {
+        return _cells[std::size_t(level - _firstLevel)];
+    }
+    /// Whether a cell of a level is among them.
+    bool HasCell(int level, Index face, int half) const {
+        return (_marks[std::size_t(level - _firstLevel)][std::size_t(face)] >> half & 1) != 0;
+    }
+    /// All patches.
+    std::int64_t GetNumPatches() const { return _numPatches; }
+
+private:
+    void addCells(MeshLevels const &mesh, int level);
+
+    int _firstLevel;
+    std::vector<std::vector<PatchCell>> _cells;
+    std::vector<std::vector<unsigned char>> _marks; // by face: bits of halves
+    std::int64_t _numPatches = 0;
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CONSTANTS_H
+#define OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CONSTANTS_H
+
+#include "far_ext/mask.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief Numbers that make patches come closer to the limit surface than its derivatives at their corners
+/// alone do.  Each depends on what lies around in the topology, its *site*.
+enum class PatchQuantity : std::uint8_t {
+    Length, ///< of the derivative of a curve at its end, in terms of the limit's
+    Blend,  ///< how much more than the limit's the derivative across a curve has in the middle
+    /// How much of the derivatives at a vertex are differences to its neighbours along edges, and along
+    /// diagonals.
+    EdgeShare,
+    DiagonalShare
+};
+
+/// \brief What a constant depends on.
+struct PatchSite {
+    enum Kind : std::uint8_t { kEdge, kDiagonal, kLongBoundary, kSharpEdge, kVertex };
+    /// At a vertex: of the surface level with so many faces (kBase + 6: six or more), or made so many steps
+    /// before the level (2: or more), or sharp.
+    static constexpr std::uint8_t kBase = 10;
+    static constexpr std::uint8_t kSharp = 50;
+    static constexpr int kMaxFaces = 6;
+    static constexpr int kMaxAge = 2;
+    static constexpr int kMaxSteps = 3;
+    static constexpr int kMaxFaceSize = 8;
+
+    PatchQuantity quantity = PatchQuantity::Length;
+    std::uint8_t steps = 0; ///< behind the surface level; kMaxSteps: or more
+    Kind kind = kEdge;
+    std::uint8_t vert = 0;
+    std::uint8_t otherVert = 0; ///< at the other end
+    std::uint8_t smallFace = 0; ///< sizes of the faces of an edge; 0 where it has one or none
+    std::uint8_t largeFace = 0;
+    /// Whether a face of the vertex, and of the other one, is no hexagon.
+    bool isBesideOther = false;
+    bool isOtherBesideOther = false;
+
+    std::uint64_t GetKey() const;
+};
+
+/// \brief All constants of a mask: those that a scan found for FaceMask::Smooth
+/// (regression/analysis/scanPatches), and else a rule of a few numbers.
+class OPENSUBDIVHEX_API PatchConstants {
+public:
+    explicit PatchConstants(FaceMask mask);
+
+    double Get(PatchSite const &site) const {
+        auto const found = _values.find(site.GetKey());
+        return found != _values.end() ? found->second : GetDefault(site);
+    }
+    /// For scans.
+    void Set(PatchSite const &site, double value) {
+        _values[site.GetKey()] = value;
+        _hasShares = _hasShares || site.kind == PatchSite::kVertex;
+    }
+
+    /// What a site without a constant of its own has.
+    static double GetDefault(PatchSite const &site);
+    /// Whether any vertex has shares.
+    bool HasShares() const { return _hasShares; }
+
+private:
+    std::unordered_map<std::uint64_t, double> _values;
+    bool _hasShares = false;
+};
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif

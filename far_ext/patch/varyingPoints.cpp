@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "varyingPoints.h"
+
+#include "far_ext/stencilTableFactory.h"
+
+#include <map>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+using Far::Index;
+
+VaryingPoints::VaryingPoints(TopologyRefiner const &refiner, PatchCells const &cells)
+    : _refiner(refiner), _lastLevel(cells.GetLastLevel()) {
+    MeshLevels const &mesh = refiner.GetHierarchy().mesh;
+    std::vector<Index> pointOfVertex(std::size_t(mesh.levels[std::size_t(_lastLevel)].numVertices),
+                                     Far::INDEX_INVALID);
+    auto const getVertexPoint = [&](Index vert) {
+        Index &point = pointOfVertex[std::size_t(vert)];
+        if (point == Far::INDEX_INVALID) {
+            point = addPoint({vert});
+        }
+        return point;
+    };
+    for (int depth = cells.GetFirstLevel(); depth <= _lastLevel; ++depth) {
+        Level const &level = mesh.levels[std::size_t(depth)];
+        std::map<Index, Index> pointOfEdge;
+        for (PatchCell const &cell : cells.GetCells(depth)) {
+            Far::ConstIndexArray const verts = level.GetFaceVertices(cell.face);
+            int const size = verts.size();
+            if (!HasKites(size)) {
+                for (int i = 0; i < 4; ++i) {
+                    int const local = HasHalves(size) ? kHexagonHalves[cell.half][i] : i;
+                    _patchPoints.push_back(getVertexPoint(verts[local]));
+                }
+                continue;
+            }
+            Index const center = addPoint({verts.begin(), verts.end()});
+            auto const getMiddle = [&](int i) {
+                Index const edge = level.faceEdges[level.faceFirstCorner[cell.face] + i];
+                auto const added = pointOfEdge.try_emplace(edge, Far::INDEX_INVALID);
+                if (added.second) {
+                    added.first->second = addPoint({verts[i], verts[(i + 1) % size]});
+                }
+                return added.first->second;
+            };
+            for (int i = 0; i < size; ++i) {
+                _patchPoints.push_back(getVertexPoint(verts[i]));
+                _patchPoints.push_back(getMiddle(i));
+                _patchPoints.push_back(center);
+                _patchPoints.push_back(getMiddle((i + size - 1) % size));
+            }
+        }
+    }
+}
+
+Index VaryingPoints::addPoint(std::vector<Index> const &verts) {
+    _verts.insert(_verts.end(), verts.begin(), verts.end());
+    _firstVerts.push_back(int(_verts.size()));
+    return Index(_firstVerts.size()) - 2;
+}
+
+template <typename REAL>
+CallStatus VaryingPoints::MakeStencils(PointStencils<REAL> &stencils) const {
+    typename StencilTableFactoryReal<REAL>::Options options;
+    options.interpolationMode = INTERPOLATE_VARYING;
+    options.generateIntermediateLevels = false;
+    options.generateControlVerts = _lastLevel == 0;
+    options.maxLevel = _lastLevel;
+    CallStatus status;
+    auto const table = StencilTableFactoryReal<REAL>::Create(_refiner, options, &status);
+    if (!table) {
+        return status;
+    }
+    std::map<Index, double> sum;
+    for (std::size_t point = 0; point + 1 < _firstVerts.size(); ++point) {
+        sum.clear();
+        double const weight = 1.0 / (_firstVerts[point + 1] - _firstVerts[point]);
+        for (int i = _firstVerts[point]; i < _firstVerts[point + 1]; ++i) {
+            auto const row = std::size_t(_verts[std::size_t(i)]);
+            int const begin = table->GetOffsets()[row];
+            for (int k = begin; k < begin + table->GetSizes()[row]; ++k) {
+                sum[table->GetControlIndices()[std::size_t(k)]] +=
+                    weight * double(table->GetWeights()[std::size_t(k)]);
+            }
+        }
+        stencils.sizes.push_back(int(sum.size()));
+        for (auto const &term : sum) {
+            stencils.indices.push_back(term.first);
+            stencils.weights.push_back(REAL(term.second));
+        }
+    }
+    return CallStatus();
+}
+
+template CallStatus VaryingPoints::MakeStencils(PointStencils<float> &) const;
+template CallStatus VaryingPoints::MakeStencils(PointStencils<double> &) const;
+
+} // namespace OpenSubdivHex::FarExt::internal

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "patchTableFactory.h"
+
+#include "far_ext/patch/farPatchTable.h"
+#include "far_ext/patch/patchChecks.h"
+#include "far_ext/patch/varyingPoints.h"
+#include "far_ext/vtr/buffer.h"
+
+#include <limits>
+#include <numeric>
+#include <string>
+
+namespace OpenSubdivHex::FarExt {
+
+using Far::Index;
+using internal::LocalPoints;
+using internal::PointStencils;
+
+namespace {
+
+// A table whose arrays are given.
+class FilledStencilTable : public Far::StencilTable {
+public:
+    FilledStencilTable(int numControlVertices, std::vector<int> sizes, std::vector<Index> indices,
+                       std::vector<float> weights)
+        : Far::StencilTable(numControlVertices) {
+        _sizes = std::move(sizes);
+        _indices = std::move(indices);
+        _weights = std::move(weights);
+        _offsets.resize(_sizes.size());
+        std::exclusive_scan(_sizes.begin(), _sizes.end(), _offsets.begin(), 0);
+    }
+};
+
+LocalPoints toLocalPoints(int numControlPoints, PointStencils<float> stencils) {
+    return {numControlPoints,
+            std::move(stencils.sizes),
+            std::move(stencils.indices),
+            std::move(stencils.weights),
+            {}};
+}
+LocalPoints toLocalPoints(int numControlPoints, PointStencils<double> stencils) {
+    return {numControlPoints,
+            std::move(stencils.sizes),
+            std::move(stencils.indices),
+            {},
+            std::move(stencils.weights)};
+}
+
+template <typename REAL, typename POINTS>
+CallStatus makeLocalPoints(POINTS const &points, int numControlPoints, LocalPoints &result) {
+    PointStencils<REAL> stencils;
+    CallStatus const status = points.MakeStencils(stencils);
+    result = toLocalPoints(numControlPoints, std::move(stencils));
+    return status;
+}
+
+template <typename POINTS>
+CallStatus makeLocalPoints(bool isDouble, POINTS const &points, int numControlPoints,
+                           LocalPoints &result) {
+    return isDouble ? makeLocalPoints<double>(points, numControlPoints, result)
+                    : makeLocalPoints<float>(points, numControlPoints, result);
+}
+
+std::vector<Index> shift(std::vector<Index> points, int offset) {
+    for (Index &point : points) {
+        point += offset;
+    }
+    return points;
+}
+
+// Kites have depth 1 in the terms of Far: their sides are half as long as those of their neighbours, where
+// patches have a transition.
+std::vector<Far::PatchParam> makeParams(internal::MeshLevels const &mesh,
+                                        internal::PatchCells const &cells) {
+    std::vector<Far::PatchParam> params;
+    params.reserve(std::size_t(cells.GetNumPatches()));
+    for (int depth = cells.GetFirstLevel(); depth <= cells.GetLastLevel(); ++depth) {
+        internal::Level const &level = mesh.levels[std::size_t(depth)];
+        for (internal::PatchCell const &cell : cells.GetCells(depth)) {
+            int const size = level.GetFaceSize(cell.face);
+            bool const isKite = internal::HasKites(size);
+            unsigned short transitions = 0;
+            for (int side = HasHalves(size) ? 1 : 0; side < 4 && !isKite; ++side) {
+                int const local = HasHalves(size) ? kHexagonHalves[cell.half][side] : side;
+                Index const edge = level.faceEdges[level.faceFirstCorner[cell.face] + local];
+                for (Index const face : level.edgeFaces[edge]) {
+                    bool const hasKites = face >= 0 &&
+                                          internal::HasKites(level.GetFaceSize(face)) &&
+                                          cells.HasCell(depth, face, 0);
+                    transitions |= hasKites ? 1u << side : 0u;
+                }
+            }
+            for (int i = 0; i < internal::GetNumPatches(size); ++i) {
+                Far::PatchParam param;
+                param.Set(Index(params.size()), 0, 0, isKite ? 1 : 0, isKite, 0, transitions,
+                          false);
+                params.push_back(param);
+            }
+        }
+    }
+    return params;
+}
+
+} // namespace
+
+std::unique_ptr<Far::PatchTable const>
+PatchTableFactory::Create(TopologyRefiner const &refiner, Options options, CallStatus *status) {
+    std::optional<internal::PatchCells> cells;
+    if (!internal::Report(internal::FindPatchCells(refiner, options, cells), status)) {
+        return nullptr;
+    }
+    internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
+    int const numControlVerts = refiner.GetLevel(0).GetNumVertices();
+    internal::PatchTableContent content;
+    content.isDouble = options.patchPrecisionDouble;
+    internal::PatchBuilder builder(hierarchy, refiner.GetSchemeOptions(),
+                                   refiner.GetHexSchemeOptions(), *cells);
+    CallStatus result = builder.Build();
+    if (result.IsOk()) {
+        result = makeLocalPoints(content.isDouble, builder, numControlVerts, content.points);
+    }
+    if (result.IsOk() && options.generateVaryingTables) {
+        internal::VaryingPoints const points(refiner, *cells);
+        content.varyingVertices = shift(points.GetPatchPoints(), numControlVerts);
+        result = makeLocalPoints(content.isDouble, points, numControlVerts, content.varyingPoints);
+    }
+    if (!internal::Report(result, status)) {
+        return nullptr;
+    }
+    content.vertices = shift(builder.GetPatchPoints(), numControlVerts);
+    content.params = makeParams(hierarchy.mesh, *cells);
+    auto table = internal::MakeFarPatchTable(std::move(content));
+    internal::Report(table ? CallStatus()
+                           : internal::Failure(StatusCode::Unsupported,
+                                               "this version of OpenSubdiv makes no table of "
+                                               "Gregory patches"),
+                     status);
+    return table;
+}
+
+std::unique_ptr<Far::StencilTable const>
+PatchTableFactory::CreateLocalPointStencilTable(TopologyRefiner const &refiner, Options options,
+                                                CallStatus *status) {
+    std::optional<internal::PatchCells> cells;
+    if (!internal::Report(internal::FindPatchCells(refiner, options, cells), status)) {
+        return nullptr;
+    }
+    internal::PatchBuilder builder(refiner.GetHierarchy(), refiner.GetSchemeOptions(),
+                                   refiner.GetHexSchemeOptions(), *cells);
+    CallStatus result = builder.Build();
+    PointStencils<float> stencils;
+    if (result.IsOk()) {
+        result = builder.MakeStencils(stencils);
+    }
+    if (!internal::Report(result, status)) {
+        return nullptr;
+    }
+    return std::make_unique<FilledStencilTable const>(
+        refiner.GetLevel(0).GetNumVertices(), std::move(stencils.sizes),
+        std::move(stencils.indices), std::move(stencils.weights));
+}
+
+std::unique_ptr<Far::StencilTable const> PatchTableFactory::AppendLocalPointStencilTable(
+    Far::StencilTable const *base, Far::StencilTable const *localPoints, CallStatus *status) {
+    auto const fail = [&](StatusCode code, std::string const &message) {
+        internal::Report(internal::Failure(code, message), status);
+        return nullptr;
+    };
+    if (!base || !localPoints) {
+        return fail(StatusCode::InvalidArgument, "a stencil table to be joined is null");
+    }
+    int const numControlVerts = base->GetNumControlVertices();
+    if (numControlVerts != localPoints->GetNumControlVertices()) {
+        return fail(StatusCode::InvalidArgument,
+                    "stencils of " + std::to_string(numControlVerts) +
+                        " control vertices cannot be joined to local points of " +
+                        std::to_string(localPoints->GetNumControlVertices()));
+    }
+    std::size_t const numWeights = base->GetWeights().size() + localPoints->GetWeights().size();
+    if (numWeights > std::size_t(std::numeric_limits<Index>::max())) {
+        return fail(StatusCode::TooLarge, "both tables have " + std::to_string(numWeights) +
+                                              " weights, more than Far's 32-bit offsets reach");
+    }
+    auto const join = [&](auto const &first, auto const &second) {
+        auto result = first;
+        result.insert(result.end(), second.begin(), second.end());
+        return result;
+    };
+    internal::Report(CallStatus(), status);
+    return std::make_unique<FilledStencilTable const>(
+        numControlVerts, join(base->GetSizes(), localPoints->GetSizes()),
+        join(base->GetControlIndices(), localPoints->GetControlIndices()),
+        join(base->GetWeights(), localPoints->GetWeights()));
+}
+
+} // namespace OpenSubdivHex::FarExt

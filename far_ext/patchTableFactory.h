@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_TABLE_FACTORY_H
+#define OPENSUBDIVHEX_FAR_EXT_PATCH_TABLE_FACTORY_H
+
+#include "topologyRefiner.h"
+
+#include <opensubdiv/far/patchTable.h>
+#include <opensubdiv/far/stencilTable.h>
+
+#include <memory>
+
+namespace OpenSubdivHex::FarExt {
+
+/// \brief Makes a Far::PatchTable of the limit surface: what OpenSubdiv's evaluators, patch maps and
+/// tessellation shaders take, made by public functions of OpenSubdiv alone.
+///
+/// All patches are bicubic Gregory patches of 20 points (GREGORY_BASIS), in one array: one for each half
+/// of a hexagon, one for each quad, and in other faces one for each corner, a *kite* with that corner,
+/// the middle of the next side, the centre and the middle of the side before.  They are ordered by level, face,
+/// half (as in kHexagonHalves) and corner; PatchMap says where they lie.  Holes have none.
+///
+/// **Points.** The corners of patches lie on the limit surface.  Between them patches are close to it: the
+/// guide has numbers.  Patches that meet share the points of their common side, but where a side of a kite is
+/// half of its neighbour's, and have the same tangent planes along it; at sharp edges, and at the vertices
+/// there, each side has its own.
+///
+/// The 20 points of every patch are local points, and the indices of patches count the control vertices
+/// first: point i of the local points has the index GetLevel(0).GetNumVertices() + i.  So a buffer has the control
+/// vertices and, behind them, what Far::PatchTable::GetLocalPointStencilTable() makes of these.  Where other
+/// vertices lie between, as with AppendLocalPointStencilTable(), evaluators are given a descriptor whose
+/// offset is larger by as many elements.
+///
+/// **Parameters.** Each patch is a face of its own, with the index of the patch, in the terms of
+/// Far::PatchParam and Far::PatchMap: s and t are those of the patch, from 0 to 1.
+///
+/// Several threads may call it at once, also for the same refiner.  std::bad_alloc passes through.
+class OPENSUBDIVHEX_API PatchTableFactory {
+public:
+    /// \brief The fields of Far::PatchTableFactory::Options that have a meaning here.
+    struct Options {
+        /// Patches of the faces of level \p isolationLevel, and the defaults.
+        Options(int isolationLevel) : maxIsolationLevel(isolationLevel) {}
+
+        /// The level whose faces are patches: that of the surface (HexSchemeOptions::GetSurfaceLevel()) or
+        /// more, and less than refiner.GetMaxLevel().
+        int maxIsolationLevel;
+        bool generateVaryingTables =
+            true; ///< with points of their own, as generateVaryingLocalPoints has
+        /// Whether the stencils of points, of varying ones too, are of type double; else float.
+        bool patchPrecisionDouble = false;
+
+        /// Sets patchPrecisionDouble, for float or double.
+        template <typename REAL>
+        void SetPatchPrecision() {
+            patchPrecisionDouble = sizeof(REAL) == sizeof(double);
+        }
+
+        /// \brief How the refiner is refined for these patches: by a level more than they are of, since
+        /// the surface in the middle of edges is a limit of that, with full topology.
+        TopologyRefiner::UniformOptions GetRefineUniformOptions() const {
+            TopologyRefiner::UniformOptions options(maxIsolationLevel + 1);
+            options.fullTopologyInLastLevel = true;
+            return options;
+        }
+    };
+
+    /// \brief Makes the table.
+    ///
+    /// Weights of a local point sum to 1; some are negative.  The same bits for any number of threads.
+    ///
+    /// \return  null on failure: InvalidArgument (a level out of range or without full topology: see
+    ///          GetRefineUniformOptions()), Unsupported (a level that is not refined by hexagonal steps; a
+    ///          boundary that follows the paper's rule, VTX_BOUNDARY_NONE, whose edge is named; what has
+    ///          no limit: see LimitStencilTableFactory), or TooLarge (more than 2^28 - 1 patches, or
+    ///          2^31 - 1 weights of points).
+    static std::unique_ptr<Far::PatchTable const>
+    Create(TopologyRefiner const &refiner, Options options, CallStatus *status = nullptr);
+
+    /// \brief The stencils of the local points alone, as the table has them, for those who evaluate the
+    /// points with others: see AppendLocalPointStencilTable().
+    ///
+    /// \return  null on failure, as Create()
+    static std::unique_ptr<Far::StencilTable const>
+    CreateLocalPointStencilTable(TopologyRefiner const &refiner, Options options,
+                                 CallStatus *status = nullptr);
+
+    /// \brief Joins the stencils of \p base, as StencilTableFactory makes them, and those of local points,
+    /// in this order: as Far::StencilTableFactory::AppendLocalPointStencilTable().
+    ///
+    /// \return  null on failure: InvalidArgument (a null pointer, or tables of different numbers of control
+    ///          vertices) or TooLarge (more than 2^31 - 1 weights)
+    static std::unique_ptr<Far::StencilTable const>
+    AppendLocalPointStencilTable(Far::StencilTable const *base,
+                                 Far::StencilTable const *localPoints,
+                                 CallStatus *status = nullptr);
+};
+
+} // namespace OpenSubdivHex::FarExt
+
+#endif

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_REGRESSION_FAR_EXT_PATCH_FIXTURE_H
+#define OPENSUBDIVHEX_REGRESSION_FAR_EXT_PATCH_FIXTURE_H
+
+#include "far_ext/patchMap.h"
+#include "far_ext/patchTableFactory.h"
+#include "regression/reference/reference.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <vector>
+
+namespace OpenSubdivHex::Regression {
+
+/// A point of a patch, with its derivatives by s and t.
+struct PatchPoint {
+    Eigen::Vector3d p;
+    Eigen::Vector3d ds;
+    Eigen::Vector3d dt;
+
+    Eigen::Vector3d GetNormal() const { return ds.cross(dt).normalized(); }
+};
+
+/// \brief The patches of one level in double precision: which cell each belongs to, and what they are for
+/// given positions, by Far's own basis.
+class PatchSurface {
+public:
+    using Index = Far::Index;
+
+    /// A cell, and its first patch.
+    struct Cell {
+        Index face;
+        int half;
+        Index firstPatch;
+    };
+
+    /// \p positions are those of the control vertices; patches are of \p level.
+    PatchSurface(FarExt::TopologyRefiner const &refiner, int level,
+                 ReferenceValues const &positions)
+        : _level(refiner.GetLevel(level)), _numControlVerts(refiner.GetLevel(0).GetNumVertices()) {
+        FarExt::PatchTableFactory::Options options(level);
+        options.SetPatchPrecision<double>();
+        FarExt::CallStatus status;
+        _table = FarExt::PatchTableFactory::Create(refiner, options, &status);
+        if (!_table) {
+            ADD_FAILURE() << status.GetErrorMessage();
+            return;
+        }
+        auto const &stencils = *_table->GetLocalPointStencilTable<double>();
+        _points = ReferenceValues::Zero(stencils.GetNumStencils(), positions.cols());
+        for (int i = 0; i < stencils.GetNumStencils(); ++i) {
+            int const offset = stencils.GetOffsets()[std::size_t(i)];
+            for (int k = offset; k < offset + stencils.GetSizes()[std::size_t(i)]; ++k) {
+                _points.row(i) += stencils.GetWeights()[std::size_t(k)] *
+                                  positions.row(stencils.GetControlIndices()[std::size_t(k)]);
+            }
+        }
+        _firstPatches.assign(2 * std::size_t(_level.GetNumFaces()), Far::INDEX_INVALID);
+        Index numPatches = 0;
+        for (Index face = 0; face < _level.GetNumFaces(); ++face) {
+            int const size = _level.GetFaceVertices(face).size();
+            for (int half = 0; half < (size == 6 ? 2 : 1); ++half) {
+                if (size == 6 ? !_level.IsFaceHole(face, half) : !_level.IsFaceHole(face)) {
+                    _firstPatches[2 * std::size_t(face) + std::size_t(half)] = numPatches;
+                    numPatches += size == 4 || size == 6 ? 1 : size;
+                }
+            }
+        }
+        EXPECT_EQ(_table->GetNumPatchesTotal(), numPatches);
+    }
+
+    bool IsValid() const { return bool(_table); }
+    Far::PatchTable const &GetTable() const { return *_table; }
+    ReferenceValues const &GetPoints() const { return _points; }
+    FarExt::TopologyLevel const &GetLevel() const { return _level; }
+
+    /// INDEX_INVALID for a hole.
+    Index GetFirstPatch(Index face, int half) const {
+        return _firstPatches[2 * std::size_t(face) + std::size_t(half)];
+    }
+    /// By number among the local points.
+    Index GetPoint(Index patch, int i) const {
+        return _table->GetPatchVertices(0, patch)[i] - _numControlVerts;
+    }
+
+    PatchPoint Evaluate(Index patch, double s, double t) const {
+        double weights[3][20];
+        _table->EvaluateBasis<double>(FarExt::PatchMap::GetHandle(patch), s, t, weights[0],
+                                      weights[1], weights[2]);
+        Eigen::Vector3d sums[3];
+        for (int k = 0; k < 3; ++k) {
+            sums[k].setZero();
+            for (int i = 0; i < 20; ++i) {
+                sums[k] += weights[k][i] * _points.row(GetPoint(patch, i)).transpose();
+            }
+        }
+        return {sums[0], sums[1], sums[2]};
+    }
+
+    /// \brief At a part of the way along an edge or, with \p local < 0, along the diagonal of the half, as the
+    /// cell on one of its sides has it; \p half is of no matter for edges.
+    PatchPoint EvaluateSide(Index face, int local, int half, double part) const {
+        int const size = _level.GetFaceVertices(face).size();
+        int side = local;
+        if (size == 6 && local >= 0) {
+            half = FarExt::GetHalfOfEdge(local);
+            side = local % 3 + 1;
+        } else if (size == 6) {
+            side = 0;
+        } else {
+            half = 0;
+        }
+        Index patch = GetFirstPatch(face, half);
+        if (size == 4 || size == 6) {
+            double const s[] = {part, 1, 1 - part, 0};
+            double const t[] = {0, part, 1, 1 - part};
+            return Evaluate(patch, s[side], t[side]);
+        }
+        return part < 0.5 ? Evaluate(patch + local, 2 * part, 0)
+                          : Evaluate(patch + (local + 1) % size, 0, 2 - 2 * part);
+    }
+
+    /// Whether there are patches on a side of an edge.
+    bool HasSide(Index edge, int side) const {
+        auto const faces = _level.GetEdgeFaces(edge);
+        if (side >= faces.size()) {
+            return false;
+        }
+        int const local = _level.GetEdgeFaceLocalIndices(edge)[side];
+        bool const isCut = _level.GetFaceVertices(faces[side]).size() == 6;
+        return GetFirstPatch(faces[side], isCut ? FarExt::GetHalfOfEdge(local) : 0) !=
+               Far::INDEX_INVALID;
+    }
+
+private:
+    FarExt::TopologyLevel const &_level;
+    Index const _numControlVerts;
+    std::unique_ptr<Far::PatchTable const> _table;
+    ReferenceValues _points;
+    std::vector<Index> _firstPatches; // by face and half
+};
+
+} // namespace OpenSubdivHex::Regression
+
+#endif
