@@ -75,7 +75,7 @@ public:
           _rows(_level, builder._sdcOptions, builder._schemeOptions),
           _faceMasks(_level, builder._sdcOptions, _toLimit),
           _childFaceMasks(*_toChild.child, builder._sdcOptions, _toLimit),
-          _childMask(_level, builder._schemeOptions, Interpolation::Vertex) {}
+          _rules(GetRules(_level, builder._schemeOptions, Interpolation::Vertex)) {}
 
     /// Finds the limits at the corners of cells.
     CallStatus FindLimits();
@@ -195,7 +195,7 @@ private:
     LimitRows _rows;
     FaceLimitMaskFinder const _faceMasks;
     FaceLimitMaskFinder const _childFaceMasks;
-    RefinementMask const _childMask;
+    std::shared_ptr<RefinementRules const> const _rules;
     std::optional<CellFrames> _frames;
 
     std::vector<Index> _verts;
@@ -584,7 +584,7 @@ void PatchBuilder::LevelBuilder::addKites(Index face) {
 
 void PatchBuilder::LevelBuilder::addOfChild(Index cVert, double du,
                                             LimitStencils::KeptRow &kept) const {
-    ForEachParentWeight(_toChild, _childMask, cVert,
+    ForEachParentWeight(_toChild, *_rules, cVert,
                         [&](Index vert, double weight) { kept.Add(vert, 0, du * weight, 0); });
 }
 
