@@ -22,12 +22,12 @@ numBytes=$(du -sb "$bundle" | cut -f 1)
 echo "bundle: $numBytes bytes"
 [[ $numBytes -le 60000000 ]] || fail "more than 60 MB"
 
-# Debian 12 has glibc 2.36.
-newest=$(find "$bundle" -type f -exec objdump -T {} + 2>/dev/null | grep -o 'GLIBC_[0-9.]*' |
-    sort -uV | tail -n 1)
+# Ubuntu 22.04 has glibc 2.35, and GCC's libraries.
+newest=$({ find "$bundle" -path "$bundle/lib/gcc" -prune -o -type f -exec objdump -T {} + || true; } 2>/dev/null |
+    grep -F '*UND*' | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -n 1)
 echo "bundle: needs $newest"
-[[ $(printf '%s\n' "$newest" GLIBC_2.36 | sort -V | tail -n 1) == GLIBC_2.36 ]] ||
-    fail "$newest is newer than that of Debian 12"
+[[ $(printf '%s\n' "$newest" GLIBC_2.35 | sort -V | tail -n 1) == GLIBC_2.35 ]] ||
+    fail "$newest is newer than that of Ubuntu 22.04"
 
 # The root: glibc, and tools with their libraries.
 tools=(bash cat date dirname env grep head mkdir rm sleep tail timeout uname wc)
@@ -48,9 +48,12 @@ if unshare --map-root-user --root="$work/root" "$(command -v bash)" -c : 2>/dev/
     enter=(unshare --map-root-user --root="$work/root")
 elif chroot "$work/root" "$(command -v bash)" -c : 2>/dev/null; then
     enter=(chroot "$work/root")
-else
+elif ! compgen -G '/dev/nvidia[0-9]*' >/dev/null; then
     echo "bundle: this user may not change its root: run beside what this machine has" >&2
     enter=()
+else
+    echo "bundle: this user may not change its root, and the device would be run: not run" >&2
+    exit 0
 fi
 
 # runBundle STATUS ARGUMENT...
@@ -78,18 +81,17 @@ for step in json.load(open(sys.argv[1]))["steps"]:
     done
 }
 
-# What this machine has must not count as a device of the bundle.
-if [[ ${#enter[@]} -gt 0 ]] || ! compgen -G '/dev/nvidia[0-9]*' >/dev/null; then
-    runBundle 0 all
-    grep -q 'there is no device' "$work/out" || fail "it does not say that there is no device"
-    expectSteps 'cudaTest:no device' 'glRefinementTest:no device' 'glTest:no device' \
-        'sanitizer:no device' 'bench:no device'
-    grep -q '"details": "1 passed, 0 failed, [1-9][0-9]* skipped: there is no device of CUDA' \
-        "$results/report.json" || fail "cudaTest has not said that there is no device"
-    grep -q '^- CUDA: no device' "$results/bench.md" || fail "bench.md: CUDA was measured"
-    grep -q '"name": "cuda-huge"' "$results/bench.json" || fail "bench.json has no rows of CUDA"
+runBundle 0 all
+grep -q 'there is no device' "$work/out" || fail "it does not say that there is no device"
+expectSteps 'cudaTest:no device' 'glRefinementTest:no device' 'glTest:no device' \
+    'sanitizer:no device' 'bench:no device'
+grep -q '"details": "1 passed, 0 failed, [1-9][0-9]* skipped: there is no device of CUDA' \
+    "$results/report.json" || fail "cudaTest has not said that there is no device"
+grep -q '^- CUDA: no device' "$results/bench.md" || fail "bench.md: CUDA was measured"
+grep -q '"name": "cuda-huge"' "$results/bench.json" || fail "bench.json has no rows of CUDA"
 
-    # Programs that are not whole.
+# Programs that are not whole, where the system has no such library.
+if [[ ${#enter[@]} -gt 0 ]]; then
     library=$(echo "$bundle"/lib/libosdCPU.so.*)
     mv "$library" "$work"
     runBundle 1 tests
