@@ -18,4 +18,8 @@ bool CpuEvaluator::run(float const *src, Osd::BufferDescriptor const &srcDesc,
     return true;
 }
 
+void CpuEvaluator::runPatches(internal::PatchTask const &task, int numPlaces) {
+    internal::EvaluatePatches(task, 0, numPlaces);
+}
+
 } // namespace OpenSubdivHex::OsdExt

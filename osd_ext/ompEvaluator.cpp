@@ -64,4 +64,14 @@ bool OmpEvaluator::run(float const *src, Osd::BufferDescriptor const &srcDesc,
     return true;
 }
 
+void OmpEvaluator::runPatches(internal::PatchTask const &task, int numPlaces) {
+    constexpr int kBatch = 1024; // some tens of microseconds
+    int const numBatches = numPlaces / kBatch + (numPlaces % kBatch != 0);
+    auto const evaluateBatch = [&](int batch) {
+        int const begin = batch * kBatch;
+        internal::EvaluatePatches(task, begin, begin + std::min(numPlaces - begin, kBatch));
+    };
+    FarExt::ParallelFor(numBatches, std::cref(evaluateBatch));
+}
+
 } // namespace OpenSubdivHex::OsdExt

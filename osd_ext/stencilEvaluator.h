@@ -29,7 +29,7 @@ struct StencilOutput {
 /// \brief The static functions of CpuEvaluator, OmpEvaluator and TbbEvaluator, which are its EVALUATOR.
 ///
 /// They have the signatures of Osd::CpuEvaluator, so that templates over the evaluator, such as
-/// Osd::Mesh and EvalStencilsInPlace, accept them.  There are no EvalPatches functions.
+/// Osd::Mesh and EvalStencilsInPlace, accept them.  PatchEvaluator has the EvalPatches functions.
 ///
 /// **Tables.** Any Far::StencilTable or Far::LimitStencilTable, of this library or of OpenSubdiv,
 /// or a class with their functions, and CompactStencilTable.  Offsets may be missing, as Far's

@@ -12,14 +12,20 @@ namespace OpenSubdivHex::OsdExt {
 /// many threads as FarExt::SetNumThreads() or a FarExt::ExecutorScope says.
 ///
 /// This header is all of it: a program that includes it links TBB.
-class TbbEvaluator : public StencilEvaluator<TbbEvaluator> {
+class TbbEvaluator : public StencilEvaluator<TbbEvaluator>, public PatchEvaluator<TbbEvaluator> {
     friend class StencilEvaluator<TbbEvaluator>;
+    friend class PatchEvaluator<TbbEvaluator>;
     static bool run(float const *src, Osd::BufferDescriptor const &srcDesc,
                     internal::StencilOutput const *outputs, int numOutputs,
                     internal::StencilRows const &rows, int start, int end) {
         FarExt::TbbExecutor executor;
         FarExt::ExecutorScope const scope(&executor, FarExt::internal::GetChosenNumThreads());
         return OmpEvaluator::run(src, srcDesc, outputs, numOutputs, rows, start, end);
+    }
+    static void runPatches(internal::PatchTask const &task, int numPlaces) {
+        FarExt::TbbExecutor executor;
+        FarExt::ExecutorScope const scope(&executor, FarExt::internal::GetChosenNumThreads());
+        OmpEvaluator::runPatches(task, numPlaces);
     }
 };
 
