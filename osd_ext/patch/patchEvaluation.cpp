@@ -36,7 +36,7 @@ struct Places {
     float scales[kQuad]; // of derivatives
 };
 
-enum class PatchType { Regular, Gregory, Quad };
+enum class PatchType { Regular, Gregory, Bilinear };
 constexpr int kNumTypes = 3;
 
 constexpr int getNumPoints(PatchType type) {
@@ -241,7 +241,7 @@ void evaluate(PatchTask const &task, Places &places) {
     Quad const scale = load(places.scales);
     PatchOutput const *const outputs = task.outputs;
     Points points;
-    if constexpr (TYPE == PatchType::Quad) {
+    if constexpr (TYPE == PatchType::Bilinear) {
         Quad const S = Spread(1) + Spread(-1) * s;
         Quad const T = Spread(1) + Spread(-1) * t;
         for (int component = 0; component < task.srcDesc.length; ++component) {
@@ -316,8 +316,8 @@ void evaluate(PatchTask const &task, PatchType type, int numDerivatives, Places 
         return evaluate<PatchType::Regular>(task, numDerivatives, places);
     case PatchType::Gregory:
         return evaluate<PatchType::Gregory>(task, numDerivatives, places);
-    case PatchType::Quad:
-        return evaluate<PatchType::Quad>(task, numDerivatives, places);
+    case PatchType::Bilinear:
+        return evaluate<PatchType::Bilinear>(task, numDerivatives, places);
     }
 }
 
@@ -374,7 +374,7 @@ void EvaluatePatches(PatchTask const &task, int begin, int end) {
             type = PatchType::Gregory;
             break;
         case PatchDescriptor::QUADS:
-            type = PatchType::Quad;
+            type = PatchType::Bilinear;
             break;
         default:
             evaluateByOsd(task, place);

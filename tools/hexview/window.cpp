@@ -195,13 +195,21 @@ void Viewer::showPanel() {
     ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
     ImGui::Begin("hexview", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::PushItemWidth(150);
-    bool isChanged = ImGui::Checkbox("adaptive", &_settings.isAdaptive);
+    bool isChanged = false;
+    if (ImGui::Checkbox("adaptive", &_settings.isAdaptive)) {
+        _settings.arePatches = false;
+        isChanged = true;
+    }
+    ImGui::SameLine();
+    if (ImGui::Checkbox("patches", &_settings.arePatches)) {
+        _settings.isAdaptive = false;
+        isChanged = true;
+    }
     if (_settings.isAdaptive) {
         showCells();
     } else {
         isChanged |= ImGui::SliderInt("level", &_settings.level, 0, kMaxLevel, "%d",
                                       ImGuiSliderFlags_AlwaysClamp);
-        isChanged |= ImGui::Checkbox("patches", &_settings.arePatches);
         if (_settings.arePatches) {
             showPatches();
         } else {
@@ -262,6 +270,7 @@ void Viewer::PressKey(int key) {
         break;
     case GLFW_KEY_V:
         _settings.isAdaptive = !_settings.isAdaptive;
+        _settings.arePatches = false;
         refine();
         break;
     case GLFW_KEY_P:
