@@ -18,6 +18,7 @@ PYBIND11_MODULE(_opensubdivhex, module) {
     BindLevel(module);
     BindPrimvarRefiner(module);
     BindStencilTables(module);
+    BindPatches(module);
     BindEvaluators(module);
     BindSurfaces(module);
 }

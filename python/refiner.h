@@ -135,6 +135,7 @@ void BindRefiner(py::module_ &module);
 void BindLevel(py::module_ &module);
 void BindPrimvarRefiner(py::module_ &module);
 void BindStencilTables(py::module_ &module);
+void BindPatches(py::module_ &module);
 void BindEvaluators(py::module_ &module);
 void BindSurfaces(py::module_ &module);
 

@@ -527,6 +527,56 @@ class LimitStencilTable(StencilTable):
     def du_to_scipy(self) -> Any: ...
     def dv_to_scipy(self) -> Any: ...
 
+class PatchTable:
+    def __init__(self, refiner: TopologyRefiner, isolation_level: int) -> None: ...
+    @property
+    def base_faces(self) -> NDArray[np.int32]: ...
+    @property
+    def coords(self) -> NDArray[np.float64]: ...
+    @property
+    def faces(self) -> NDArray[np.int32]: ...
+    @property
+    def local_point_stencil_table(self) -> StencilTable: ...
+    @property
+    def num_control_vertices(self) -> int: ...
+    @property
+    def num_local_points(self) -> int: ...
+    @property
+    def num_patches(self) -> int: ...
+    @property
+    def patch_vertices(self) -> NDArray[np.int32]: ...
+    def evaluate(
+        self,
+        patches: ArrayLike,
+        st: ArrayLike,
+        points: ArrayLike,
+    ) -> NDArray[np.float32]: ...
+    def evaluate_with_derivatives(
+        self,
+        patches: ArrayLike,
+        st: ArrayLike,
+        points: ArrayLike,
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]: ...
+    def evaluate_with_second_derivatives(
+        self,
+        patches: ArrayLike,
+        st: ArrayLike,
+        points: ArrayLike,
+    ) -> tuple[
+        NDArray[np.float32],
+        NDArray[np.float32],
+        NDArray[np.float32],
+        NDArray[np.float32],
+        NDArray[np.float32],
+        NDArray[np.float32],
+    ]: ...
+    def find_places(
+        self,
+        faces: ArrayLike,
+        uv: ArrayLike,
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64]]: ...
+    def make_points(self, values: ArrayLike) -> NDArray[np.float32]: ...
+
 class CompactStencilTable:
     def __init__(self, table: StencilTable) -> None: ...
     @property

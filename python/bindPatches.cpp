@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// PatchTable: the patches of a level, with their places, evaluated at arrays of places.
+#include "arrays.h"
+#include "refiner.h"
+#include "stencilTable.h"
+
+#include "far_ext/patchMap.h"
+#include "far_ext/patchTableFactory.h"
+#include "osd_ext/ompEvaluator.h"
+
+#include <opensubdiv/osd/cpuPatchTable.h>
+
+#include <algorithm>
+
+namespace OpenSubdivHex::Python {
+
+namespace {
+
+using FarExt::PatchMap;
+using FarExt::PatchTableFactory;
+
+constexpr int kNumPoints = 20; // of a patch
+constexpr int kNumCorners = 4;
+
+struct PatchTable {
+    std::unique_ptr<Far::PatchTable const> table;
+    std::unique_ptr<Osd::CpuPatchTable const> evaluated;
+    std::unique_ptr<PatchMap const> map;
+    StencilTable localPoints;
+
+    int GetNumPatches() const { return map->GetNumPatches(); }
+    int GetNumControlVertices() const { return localPoints.numSources; }
+    int GetNumLocalPoints() const { return table->GetNumLocalPoints(); }
+    int GetNumPoints() const { return GetNumControlVertices() + GetNumLocalPoints(); }
+};
+
+PatchTable createTable(Refiner const &refiner, int isolationLevel) {
+    PatchTable made;
+    FarExt::CallStatus status;
+    refiner.Read([&](FarExt::TopologyRefiner const &topology) {
+        PatchTableFactory::Options const options(isolationLevel);
+        made.table = PatchTableFactory::Create(topology, options, &status);
+        if (!made.table) {
+            return;
+        }
+        std::shared_ptr<Far::StencilTable const> const localPoints =
+            PatchTableFactory::CreateLocalPointStencilTable(topology, options, &status);
+        if (!localPoints) {
+            return;
+        }
+        made.localPoints.table = StencilTable::Pointer<float>(localPoints);
+        made.localPoints.numSources = topology.GetLevel(0).GetNumVertices();
+        made.map = std::make_unique<PatchMap>(topology, options, &status);
+        made.evaluated = std::make_unique<Osd::CpuPatchTable>(made.table.get());
+    });
+    RaiseUnlessOk(status);
+    return made;
+}
+
+py::array_t<float> makePoints(PatchTable const &self, py::object const &values) {
+    int const numControl = self.GetNumControlVertices();
+    auto const source = TakeSource<float>(values, "values", numControl);
+    auto const width = py::ssize_t(source.desc.length);
+    py::array_t<float> points({py::ssize_t(self.GetNumPoints()), width});
+    float *const data = points.mutable_data();
+    py::gil_scoped_release const release;
+    for (int i = 0; i < numControl; ++i) {
+        std::copy_n(source.data + std::ptrdiff_t(i) * source.desc.stride, width, data + i * width);
+    }
+    Osd::BufferDescriptor const control(0, int(width), int(width));
+    Osd::BufferDescriptor const local(int(width) * numControl, int(width), int(width));
+    auto const &stencils = *std::get<StencilTable::Pointer<float>>(self.localPoints.table);
+    OsdExt::OmpEvaluator::EvalStencils(data, control, data, local, stencils.GetSizes().data(),
+                                       stencils.GetOffsets().data(),
+                                       stencils.GetControlIndices().data(),
+                                       stencils.GetWeights().data(), 0, stencils.GetNumStencils());
+    return points;
+}
+
+/// The places that two arrays have.
+std::vector<Osd::PatchCoord> takePlaces(PatchTable const &self, py::object const &patches,
+                                        py::object const &st) {
+    py::array_t<int> const indices = TakeIndices(patches, "patches");
+    auto const coords = TakeSource<float>(st, "st", int(indices.size()));
+    if (coords.desc.length != 2) {
+        throw py::value_error("st: the shape (n, 2) is needed, not " + DescribeShape(coords.array));
+    }
+    std::vector<Osd::PatchCoord> places;
+    places.reserve(std::size_t(indices.size()));
+    for (py::ssize_t i = 0; i < indices.size(); ++i) {
+        int const patch = indices.data()[i];
+        CheckIndex(patch, self.GetNumPatches(), "patches");
+        float const *const place = coords.data + i * coords.desc.stride;
+        places.emplace_back(PatchMap::GetHandle(patch), place[0], place[1]);
+    }
+    return places;
+}
+
+/// Points, and derivatives behind them: \p numOutputs arrays.
+py::object evaluate(PatchTable const &self, py::object const &patches, py::object const &st,
+                    py::object const &points, int numOutputs) {
+    std::vector<Osd::PatchCoord> const places = takePlaces(self, patches, st);
+    auto const source = TakeSource<float>(points, "points", self.GetNumPoints());
+    constexpr int kMaxOutputs = 6;
+    py::tuple result(numOutputs);
+    float *outputs[kMaxOutputs] = {};
+    int const width = source.desc.length;
+    for (int i = 0; i < numOutputs; ++i) {
+        py::array_t<float> output({py::ssize_t(places.size()), py::ssize_t(width)});
+        outputs[i] = output.mutable_data();
+        result[std::size_t(i)] = output;
+    }
+    {
+        py::gil_scoped_release const release;
+        Osd::BufferDescriptor const desc(0, width, width);
+        OsdExt::OmpEvaluator::EvalPatches(
+            source.data, source.desc, outputs[0], desc, outputs[1], desc, outputs[2], desc,
+            outputs[3], desc, outputs[4], desc, outputs[5], desc, int(places.size()), places.data(),
+            self.evaluated->GetPatchArrayBuffer(), self.evaluated->GetPatchIndexBuffer(),
+            self.evaluated->GetPatchParamBuffer());
+    }
+    return numOutputs == 1 ? py::object(result[0]) : py::object(result);
+}
+
+py::tuple findPlaces(PatchTable const &self, py::object const &faces, py::object const &uv) {
+    py::array_t<int> const indices = TakeIndices(faces, "faces");
+    auto const coords = TakeSource<double>(uv, "uv", int(indices.size()));
+    if (coords.desc.length != 2) {
+        throw py::value_error("uv: the shape (n, 2) is needed, not " + DescribeShape(coords.array));
+    }
+    for (py::ssize_t i = 0; i < indices.size(); ++i) {
+        CheckIndex(indices.data()[i], self.map->GetNumFaces(), "faces");
+    }
+    py::array_t<int> patches(indices.size());
+    py::array_t<double> st({indices.size(), py::ssize_t(2)});
+    int *const patch = patches.mutable_data();
+    double *const place = st.mutable_data();
+    py::gil_scoped_release const release;
+    for (py::ssize_t i = 0; i < indices.size(); ++i) {
+        double const *const at = coords.data + i * coords.desc.stride;
+        PatchMap::Place const found = self.map->FindPlace(indices.data()[i], at[0], at[1]);
+        patch[i] = found.patch;
+        place[2 * i] = found.s;
+        place[2 * i + 1] = found.t;
+    }
+    py::gil_scoped_acquire const acquire;
+    return py::make_tuple(patches, st);
+}
+
+template <typename QUERY>
+py::array_t<int> listFaces(PatchTable const &self, QUERY const &query) {
+    std::vector<int> faces;
+    for (int patch = 0; patch < self.GetNumPatches(); ++patch) {
+        faces.push_back(query(*self.map, patch));
+    }
+    return TakeOver(std::move(faces));
+}
+
+py::array_t<double> listCoords(PatchTable const &self) {
+    py::array_t<double> result(
+        {py::ssize_t(self.GetNumPatches()), py::ssize_t(kNumCorners), py::ssize_t(2)});
+    double *next = result.mutable_data();
+    for (int patch = 0; patch < self.GetNumPatches(); ++patch) {
+        auto const &coords = self.map->GetCoords(patch);
+        next = std::copy(coords.begin(), coords.end(), next);
+    }
+    return result;
+}
+
+} // namespace
+
+void BindPatches(py::module_ &module) {
+    py::class_<PatchTable>(
+        module, "PatchTable",
+        "PatchTable(refiner, isolation_level)\n\n"
+        "The limit surface as bicubic Gregory patches, as FarExt::PatchTableFactory makes them: "
+        "those of\nthe faces of a level.\n\n"
+        "Args:\n"
+        "    isolation_level: that of the surface or more, and less than the refiner's max_level, "
+        "which\n"
+        "        needs full topology: refine_uniform(isolation_level + 1,\n"
+        "        full_topology_in_last_level=True)\n\n"
+        "Nothing refers to the refiner afterwards.  Raises StatusError.")
+        .def(py::init(&createTable), py::arg("refiner"), py::arg("isolation_level"))
+        .def_property_readonly("num_patches", &PatchTable::GetNumPatches)
+        .def_property_readonly("num_control_vertices", &PatchTable::GetNumControlVertices)
+        .def_property_readonly("num_local_points", &PatchTable::GetNumLocalPoints)
+        .def_property_readonly(
+            "local_point_stencil_table", [](PatchTable const &self) { return self.localPoints; },
+            "StencilTable: the local points in terms of the control vertices.")
+        .def_property_readonly(
+            "patch_vertices",
+            [](py::object const &self) {
+                auto const &table = self.cast<PatchTable const &>();
+                return View(table.evaluated->GetPatchIndexBuffer(),
+                            {py::ssize_t(table.GetNumPatches()), py::ssize_t(kNumPoints)}, self);
+            },
+            "int32, shape (patches, 20), a view: the points of each, of make_points().")
+        .def_property_readonly(
+            "faces",
+            [](PatchTable const &self) {
+                return listFaces(self, [](PatchMap const &map, int p) { return map.GetFace(p); });
+            },
+            "int32, shape (patches,): the face of the surface level that each lies in.")
+        .def_property_readonly(
+            "base_faces",
+            [](PatchTable const &self) {
+                return listFaces(self,
+                                 [](PatchMap const &map, int p) { return map.GetBaseFace(p); });
+            },
+            "int32, shape (patches,): the face of level 0 that each lies in.")
+        .def_property_readonly(
+            "coords", &listCoords,
+            "float64, shape (patches, 4, 2): u and v of the four corners of each in its face.")
+        .def("make_points", &makePoints,
+             "make_points(values)\n\n"
+             "The points of patches: float32, shape (control vertices + local points, width).\n\n"
+             "Args:\n"
+             "    values: of the control vertices, shape (control vertices, width)",
+             py::arg("values"))
+        .def("find_places", &findPlaces,
+             "find_places(faces, uv)\n\n"
+             "The patches that have places of faces of the surface level: a tuple of int32, shape "
+             "(n,), -1\nwhere there is none, and of st, float64, shape (n, 2).\n\n"
+             "Args:\n"
+             "    faces: integers, shape (n,)\n"
+             "    uv: shape (n, 2)",
+             py::arg("faces"), py::arg("uv"))
+        .def(
+            "evaluate",
+            [](PatchTable const &self, py::object const &patches, py::object const &st,
+               py::object const &points) { return evaluate(self, patches, st, points, 1); },
+            "evaluate(patches, st, points)\n\n"
+            "The surface at places of patches: float32, shape (n, width).\n\n"
+            "Args:\n"
+            "    patches: integers, shape (n,)\n"
+            "    st: shape (n, 2), from 0 to 1\n"
+            "    points: those of make_points()",
+            py::arg("patches"), py::arg("st"), py::arg("points"))
+        .def(
+            "evaluate_with_derivatives",
+            [](PatchTable const &self, py::object const &patches, py::object const &st,
+               py::object const &points) { return evaluate(self, patches, st, points, 3); },
+            "evaluate_with_derivatives(patches, st, points)\n\n"
+            "The same, and the derivatives by s and by t: a tuple of three.",
+            py::arg("patches"), py::arg("st"), py::arg("points"))
+        .def(
+            "evaluate_with_second_derivatives",
+            [](PatchTable const &self, py::object const &patches, py::object const &st,
+               py::object const &points) { return evaluate(self, patches, st, points, 6); },
+            "evaluate_with_second_derivatives(patches, st, points)\n\n"
+            "The same, and the second ones, by s twice, by s and t, and by t twice: a tuple of "
+            "six.",
+            py::arg("patches"), py::arg("st"), py::arg("points"));
+}
+
+} // namespace OpenSubdivHex::Python
