@@ -93,9 +93,10 @@ def test_derivatives_are_those_of_the_patch(table):
     differences = (shift(1, 0)[0] - shift(-1, 0)[0]) / (2 * step)
     scale = (differences * ds).sum(axis=1) / (ds * ds).sum(axis=1)
     np.testing.assert_allclose(scale, 1, atol=0.1)
+    # Inside of Gregory patches they are approximate, as those of OpenSubdiv.
     for actual, expected in ((ds, differences),
                              (dt, (shift(0, 1)[0] - shift(0, -1)[0]) / (2 * step))):
-        np.testing.assert_allclose(actual, expected, atol=2e-2 * np.abs(expected).max())
+        np.testing.assert_allclose(actual, expected, atol=8e-2 * np.abs(expected).max())
 
 
 def test_kites_at_a_pyramid():
