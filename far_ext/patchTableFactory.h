@@ -71,7 +71,7 @@ public:
     /// \return  null on failure: InvalidArgument (a level out of range or without full topology: see
     ///          GetRefineUniformOptions()), Unsupported (a level that is not refined by hexagonal steps; a
     ///          boundary that follows the paper's rule, VTX_BOUNDARY_NONE, whose edge is named; what has
-    ///          no limit: see LimitStencilTableFactory), or TooLarge (more than 2^28 - 1 patches, or
+    ///          no limit: see LimitStencilTableFactory; a mesh of holes alone), or TooLarge (more than 2^28 - 1 patches, or
     ///          2^31 - 1 weights of points).
     static std::unique_ptr<Far::PatchTable const>
     Create(TopologyRefiner const &refiner, Options options, CallStatus *status = nullptr);

@@ -56,6 +56,10 @@ CallStatus FindPatchCells(TopologyRefiner const &refiner, PatchTableFactory::Opt
         }
     }
     cells.emplace(mesh, level);
+    if (cells->GetNumPatches() == 0) {
+        return CallStatus(StatusCode::Unsupported, ComponentType::Level, level,
+                          "there are no patches: all faces are holes");
+    }
     if (cells->GetNumPatches() > kMaxPatches) {
         return CallStatus(StatusCode::TooLarge, ComponentType::Level, level,
                           "level " + std::to_string(level) + " would have " +

@@ -192,6 +192,10 @@ void CheckOracleCase(OracleCase const &oracleCase) {
         oracleCase.level >= refiner->GetHexSchemeOptions().GetSurfaceLevel() && dice.IsOneOf(32)) {
         CheckSurfaces(levels, dice);
     }
+    if (oracleCase.schemeType == FarExt::SchemeType::Hexagonal && !oracleCase.isCoplanar &&
+        dice.IsOneOf(32)) {
+        CheckPatches(levels, dice);
+    }
     if (dice.IsOneOf(2048)) {
         CheckThreads(oracleCase);
     }

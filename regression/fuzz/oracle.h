@@ -16,7 +16,7 @@ namespace OpenSubdivHex::Regression {
 
 /// \brief Refines the case and compares all ways to the same values with each other, and with the
 /// reference: topology, base faces, values of vertices, varying and face-varying values, tables, tables of some
-/// faces, evaluators, limits, surfaces of base faces with their tessellations, streams and views, other orders of faces and
+/// faces, evaluators, limits, surfaces of base faces with their tessellations, streams and views, patches, other orders of faces and
 /// vertices, numbers of threads.
 ///
 /// The dearer comparisons are made for a share of the cases, which OracleCase::checks chooses.
@@ -88,6 +88,10 @@ void CheckLimits(OracleLevels const &levels, Dice &dice);
 /// \brief Surfaces of base faces, of one of the values: against the limits of vertices, at single places and
 /// in tessellations, streams and views.
 void CheckSurfaces(OracleLevels const &levels, Dice &dice);
+
+/// \brief Patches of a level: they cover their faces, places are found in them, weights sum up, and their corners lie
+/// on the surface.
+void CheckPatches(OracleLevels const &levels, Dice &dice);
 
 /// \brief Faces in other orders, begun elsewhere and turned over, and vertices of other numbers
 /// give the same surface.

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meshSurfaces.h"
+#include "oracle.h"
+
+#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/patchMap.h"
+
+#include <cmath>
+
+namespace OpenSubdivHex::Regression {
+
+using FarExt::PatchMap;
+using FarExt::PatchTableFactory;
+using FarExt::TopologyLevel;
+using FarExt::TopologyRefiner;
+
+namespace {
+
+constexpr int kNumCorners = 4;
+constexpr int kPointsOfCorner = 5;
+
+/// Fails unless patches are refused for a reason.
+void checkPatchRefusal(TopologyRefiner const &refiner, int depth,
+                       FarExt::CallStatus const &status) {
+    TopologyLevel const &level = refiner.GetLevel(depth);
+    bool isReason = true; // that all faces are holes
+    for (int face = 0; face < level.GetNumFaces(); ++face) {
+        isReason = isReason && level.IsFaceHole(face);
+    }
+    for (int vert = 0; vert < level.GetNumVertices(); ++vert) {
+        isReason = isReason || IsOnFreeBoundary(refiner, level, vert);
+    }
+    FarExt::LimitStencilTableFactory::Options options;
+    options.level = depth;
+    options.generateFaceCenters = true;
+    isReason = isReason || !FarExt::LimitStencilTableFactory::Create(refiner, options);
+    if (!isReason || status.GetCode() != FarExt::StatusCode::Unsupported) {
+        Fail("no patches of level ", depth, ": ", status.GetErrorMessage());
+    }
+}
+
+/// The points that stencils make.
+ReferenceValues applyStencils(Far::StencilTableReal<double> const &table,
+                              ReferenceValues const &base) {
+    ReferenceValues points = ReferenceValues::Zero(table.GetNumStencils(), base.cols());
+    for (int i = 0; i < table.GetNumStencils(); ++i) {
+        double sum = 0;
+        int const offset = table.GetOffsets()[std::size_t(i)];
+        for (int k = offset; k < offset + table.GetSizes()[std::size_t(i)]; ++k) {
+            int const index = table.GetControlIndices()[std::size_t(k)];
+            if (index < 0 || index >= base.rows()) {
+                Fail("point ", i, " of patches has the source ", index);
+            }
+            double const weight = table.GetWeights()[std::size_t(k)];
+            points.row(i) += weight * base.row(index);
+            sum += weight;
+        }
+        if (!(std::abs(sum - 1) < 1e-9)) {
+            Fail("point ", i, " of patches has weights that sum to ", sum);
+        }
+    }
+    return points;
+}
+
+/// Twice the area of a patch in its face.
+double getArea(std::array<double, 8> const &coords) {
+    double area = 0;
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+        std::size_t const next = (i + 1) % kNumCorners;
+        area += coords[2 * i] * coords[2 * next + 1] - coords[2 * next] * coords[2 * i + 1];
+    }
+    return area;
+}
+
+/// Twice the area of a regular polygon with sides 1 long.
+double getFaceArea(int size) { return size / (2 * std::tan(std::acos(-1.0) / size)); }
+
+/// Faces are covered by their patches, and places are found in these.
+void checkPlaces(PatchMap const &map, TopologyLevel const &level, Dice &dice) {
+    std::vector<double> areas(std::size_t(level.GetNumFaces()), 0);
+    for (int patch = 0; patch < map.GetNumPatches(); ++patch) {
+        double const area = getArea(map.GetCoords(patch));
+        if (!(area > 0)) {
+            Fail("patch ", patch, " has the area ", area);
+        }
+        areas[std::size_t(map.GetFace(patch))] += area;
+    }
+    for (int face = 0; face < level.GetNumFaces(); ++face) {
+        int const size = level.GetFaceVertices(face).size();
+        double const area = areas[std::size_t(face)];
+        if (!(std::abs(area - getFaceArea(size)) < 1e-9 * size * size) && area != 0) {
+            Fail("the patches of face ", face, " have the area ", area);
+        }
+        // Somewhere on the way from the centre to an edge.
+        double const radius = 0.5 / std::tan(std::acos(-1.0) / size);
+        double const share = 0.01 * dice.Roll(100);
+        double const u = 0.5 + share * 0.3 * (dice.Roll(3) - 1);
+        double const v = radius * (1 - share);
+        PatchMap::Place const place = map.FindPlace(face, u, v);
+        if ((place.patch < 0) != (area == 0)) {
+            Fail("face ", face, " has the patch ", place.patch, " at ", u, ", ", v);
+        }
+        if (place.patch < 0) {
+            continue;
+        }
+        double found[2];
+        map.GetFacePlace(place, &found[0], &found[1]);
+        constexpr double kAllowed = 1e-6; // of s and t, which steep sides magnify
+        bool const isInside = place.s >= -kAllowed && place.s <= 1 + kAllowed &&
+                              place.t >= -kAllowed && place.t <= 1 + kAllowed;
+        if (map.GetFace(place.patch) != face || !isInside ||
+            !(std::hypot(found[0] - u, found[1] - v) < kAllowed)) {
+            Fail("the place ", u, ", ", v, " of face ", face, " is found in patch ", place.patch,
+                 " of face ", map.GetFace(place.patch), " at ", place.s, ", ", place.t,
+                 ", which is ", found[0], ", ", found[1]);
+        }
+    }
+}
+
+/// Corners that are vertices, or centres of faces, lie on the limit surface.
+void checkCorners(OracleLevels const &levels, Far::PatchTable const &table, PatchMap const &map,
+                  ReferenceValues const &points) {
+    MeshSurfaces<double> const mesh(levels, levels.values[0]);
+    int const numControl = int(levels.values[0].levels[0].rows());
+    for (int patch = 0; patch < map.GetNumPatches(); ++patch) {
+        if (!mesh.Has(map.GetFace(patch))) {
+            continue;
+        }
+        PatchMap::Place const corner = {patch, 0, 0};
+        Far::PatchTable::PatchHandle const handle = PatchMap::GetHandle(corner.patch);
+        bool const isKite = table.GetPatchParam(handle).NonQuadRoot();
+        Far::ConstIndexArray const vertices = table.GetPatchVertices(handle);
+        for (int i = 0; i < kNumCorners; i += isKite ? 2 : 1) {
+            double const uv[2] = {map.GetCoords(patch)[std::size_t(2 * i)],
+                                  map.GetCoords(patch)[std::size_t(2 * i + 1)]};
+            Eigen::RowVectorXd const expected = mesh.Evaluate(map.GetFace(patch), uv).row(0);
+            Eigen::RowVectorXd const actual =
+                points.row(vertices[kPointsOfCorner * i] - numControl);
+            if (!(GetDifference(actual, expected) <= mesh.GetTolerance())) {
+                Fail("corner ", i, " of patch ", patch, " in face ", map.GetFace(patch), " at ",
+                     uv[0], ", ", uv[1], " is ", actual, ", not ", expected);
+            }
+        }
+    }
+}
+
+} // namespace
+
+void CheckPatches(OracleLevels const &levels, Dice &dice) {
+    TopologyRefiner const &refiner = levels.refiner;
+    int const surfaceLevel = refiner.GetHexSchemeOptions().GetSurfaceLevel();
+    int const last = refiner.GetMaxLevel();
+    if (last <= surfaceLevel || !refiner.GetLevel(last).HasFullTopology()) {
+        return;
+    }
+    int const depth = surfaceLevel + dice.Roll(last - surfaceLevel);
+    PatchTableFactory::Options options(depth);
+    options.SetPatchPrecision<double>();
+    FarExt::CallStatus status;
+    auto const table = PatchTableFactory::Create(refiner, options, &status);
+    if (!table) {
+        checkPatchRefusal(refiner, depth, status);
+        return;
+    }
+    PatchMap const map(refiner, options, &status);
+    if (map.GetNumPatches() != table->GetNumPatchesTotal()) {
+        Fail("there are ", map.GetNumPatches(), " places of ", table->GetNumPatchesTotal(),
+             " patches");
+    }
+    checkPlaces(map, refiner.GetLevel(surfaceLevel), dice);
+    auto const *const stencils = table->GetLocalPointStencilTable<double>();
+    if (!stencils) {
+        Fail("patches have no points of double precision");
+    }
+    ReferenceValues const points = applyStencils(*stencils, levels.values[0].levels[0]);
+    checkCorners(levels, *table, map, points);
+}
+
+} // namespace OpenSubdivHex::Regression
