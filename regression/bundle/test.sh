@@ -41,19 +41,18 @@ for name in libm.so.6 libdl.so.2 libpthread.so.0 librt.so.1; do
     echo "$folder/$name"
 done >>"$work/libraries"
 xargs -a "$work/libraries" cp -L --parents -t "$work/root"
-mkdir -p "$work/root/dev"
+mkdir -p "$work/root/dev" "$work/root/proc"
 : >"$work/root/dev/null"
 
-if unshare --map-root-user --root="$work/root" "$(command -v bash)" -c : 2>/dev/null; then
-    enter=(unshare --map-root-user --root="$work/root")
-elif chroot "$work/root" "$(command -v bash)" -c : 2>/dev/null; then
-    enter=(chroot "$work/root")
-elif ! compgen -G '/dev/nvidia[0-9]*' >/dev/null; then
+# Programs find their libraries by way of /proc.
+enter=(unshare --map-root-user --pid --fork "--root=$work/root" --mount-proc)
+if ! "${enter[@]}" "$(command -v bash)" -c : 2>/dev/null; then
+    if compgen -G '/dev/nvidia[0-9]*' >/dev/null; then
+        echo "bundle: this user may not change its root, and the device would be run: not run" >&2
+        exit 0
+    fi
     echo "bundle: this user may not change its root: run beside what this machine has" >&2
     enter=()
-else
-    echo "bundle: this user may not change its root, and the device would be run: not run" >&2
-    exit 0
 fi
 
 # runBundle STATUS ARGUMENT...
