@@ -164,20 +164,6 @@ std::unique_ptr<WritableTable<REAL>> buildTable(SymbolicTable const &symbolic,
     return table;
 }
 
-// The vertices of each level, or their values, in the faces that lie in base faces; those of levels
-// that the table does not have are left out.
-std::vector<std::vector<Index>> findVerticesOfBaseFaces(StencilPlan const &plan,
-                                                        ConstIndexArray baseFaces) {
-    auto const faces =
-        internal::FindFacesOfBaseFaces(plan.hierarchy.mesh, baseFaces, plan.lastLevel);
-    std::vector<std::vector<Index>> verts(faces.size());
-    for (int level = plan.firstStored; level <= plan.lastLevel; ++level) {
-        verts[level] =
-            internal::FindVerticesOfFaces(plan.hierarchy, level, plan.channel, faces[level]);
-    }
-    return verts;
-}
-
 // Where the wanted vertices of each level are among those that a selection makes.
 std::vector<std::vector<Index>> findRows(StencilPlan const &plan, StencilSelection const &selection,
                                          std::vector<std::vector<Index>> const &wanted) {
@@ -293,7 +279,7 @@ auto StencilTableFactoryReal<REAL>::CreateOfFaces(TopologyRefiner const &refiner
         kept.controls = GetVerticesOfFaces(refiner, baseFaces, options, 0);
         plan.numControlStencils = Index(kept.controls.size());
     }
-    auto const wanted = findVerticesOfBaseFaces(plan, baseFaces);
+    auto const wanted = internal::FindVerticesOfBaseFaces(plan, baseFaces);
     StencilSelection const selection(plan, wanted);
     kept.rows = findRows(plan, selection, wanted);
     kept.indices = selection.indices;

@@ -175,6 +175,16 @@ std::vector<Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int level, in
     return verts;
 }
 
+std::vector<std::vector<Index>> FindVerticesOfBaseFaces(StencilPlan const &plan,
+                                                        Far::ConstIndexArray baseFaces) {
+    auto const faces = FindFacesOfBaseFaces(plan.hierarchy.mesh, baseFaces, plan.lastLevel);
+    std::vector<std::vector<Index>> verts(faces.size());
+    for (int level = plan.firstStored; level <= plan.lastLevel; ++level) {
+        verts[level] = FindVerticesOfFaces(plan.hierarchy, level, plan.channel, faces[level]);
+    }
+    return verts;
+}
+
 StencilSelection::StencilSelection(StencilPlan const &plan, std::vector<std::vector<Index>> wanted,
                                    bool hasWholes)
     : parts(findParts(plan, std::move(wanted), hasWholes, wholeLevel)) {

@@ -27,6 +27,11 @@ FindFacesOfBaseFaces(MeshLevels const &mesh, Far::ConstIndexArray baseFaces, int
 std::vector<Far::Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int level, int channel,
                                             std::vector<FacePart> const &parts);
 
+/// The same of all levels of a plan, in the faces that lie in base faces; none of levels that the table does not
+/// have.
+std::vector<std::vector<Far::Index>> FindVerticesOfBaseFaces(StencilPlan const &plan,
+                                                             Far::ConstIndexArray baseFaces);
+
 /// \brief The least parts of all refinements that make wanted vertices, in terms of the control
 /// vertices.
 struct StencilSelection {

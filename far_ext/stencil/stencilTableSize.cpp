@@ -3,10 +3,9 @@
 
 #include "symbolicTable.h"
 
-#include "far_ext/vtr/indexSet.h"
-
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -47,34 +46,12 @@ RowWeights countUnfactorizedWeights(StencilPlan const &plan, int level) {
     return result;
 }
 
-// Estimates the weights of factorized rows from those of some base faces.
-class WeightSampler {
-public:
-    explicit WeightSampler(StencilPlan const &plan) : _plan(plan) {}
-
-    // Forms the supports of the first levels of the sample.
-    CallStatus Form();
-    RowWeights Estimate(int level) const;
-
-private:
-    static constexpr int kMaxSampledLevel = 4;
-    static constexpr Index kMaxSampledFaces = 512;
-
-    std::vector<Index> takeSample() const;
-    std::vector<Index> getFaces(int level, std::vector<FacePart> const &parts) const;
-    std::vector<Index> findMade(int level, std::vector<Index> const &pFaces) const;
-    RowWeights average(int level, std::vector<Index> const &pFaces, std::vector<Index> const &made,
-                       int const *sizes) const;
-    Index countIsolated(int level) const;
-
-    StencilPlan const &_plan;
-    std::vector<RowWeights> _averages; // by level, from 1 on: per row
-};
+constexpr int kMaxSampledLevel = 4;
+constexpr Index kMaxSampledFaces = 512;
 
 // One face in each of equal ranges, at places in them that no regular numbering of the mesh meets:
 // the fractional parts of multiples of the golden ratio.
-std::vector<Index> WeightSampler::takeSample() const {
-    std::int64_t const numFaces = _plan.hierarchy.mesh.levels[0].numFaces;
+std::vector<Index> takeSample(std::int64_t numFaces) {
     std::int64_t const numSampled = std::min(numFaces, std::int64_t(kMaxSampledFaces));
     std::vector<Index> result;
     for (std::int64_t i = 0; i < numSampled; ++i) {
@@ -87,131 +64,46 @@ std::vector<Index> WeightSampler::takeSample() const {
     return result;
 }
 
-// The faces of the mesh or of the value mesh, each with the base face of its half 0 alone.
-std::vector<Index> WeightSampler::getFaces(int level, std::vector<FacePart> const &parts) const {
-    std::vector<Index> faces;
-    for (FacePart const &part : parts) {
-        if ((part.halves & 1u) == 0) {
-            continue;
-        }
-        if (_plan.channel < 0) {
-            faces.push_back(part.face);
-            continue;
-        }
-        FVarLevel const &fvarLevel = _plan.hierarchy.channels[_plan.channel].levels[level];
-        faces.push_back(fvarLevel.valueFaces[part.face]);
-        if (FVarLevel::SplitFace const *split = fvarLevel.FindSplitFace(part.face)) {
-            faces.push_back(split->valueFaces[1]);
-        }
-    }
-    return faces;
-}
-
-// Calls function(cVert, count) for F-vertices of a face, of which count have stencils of that size: in
-// a truncation each its own, and the far ones of boundaries, too.
-template <typename FUNCTION>
-void forEachFVertex(Refinement const &refinement, Index pFace, FUNCTION function) {
-    Level const &parent = *refinement.parent;
-    Index const begin = parent.faceFirstCorner[pFace];
-    if (!refinement.isTruncation) {
-        function(refinement.GetCornerChildVertex(begin), parent.GetFaceSize(pFace));
-        return;
-    }
-    for (Index corner = begin; corner < parent.faceFirstCorner[pFace + 1]; ++corner) {
-        function(refinement.GetCornerChildVertex(corner), 1);
-        if (parent.IsBoundary(parent.faceEdges[corner])) {
-            function(GetEdgeEndVertex(refinement, FindEdgeEnd(parent, corner) ^ 1u), 1);
-        }
-    }
-}
-
-// The vertices made of faces' corners, one for each stencil size of a face, and of their vertices.
-std::vector<Index> WeightSampler::findMade(int level, std::vector<Index> const &pFaces) const {
-    Level const &parent = _plan.GetLevel(level - 1);
-    Refinement const &refinement = _plan.GetRefinement(level);
-    std::vector<Index> verts;
-    for (Index pFace : pFaces) {
-        forEachFVertex(refinement, pFace, [&](Index cVert, int) { verts.push_back(cVert); });
-        for (Index pVert : parent.GetFaceVertices(pFace)) {
-            if (Index const cVert = refinement.GetVertexChildVertex(pVert);
-                cVert != Far::INDEX_INVALID) {
-                verts.push_back(cVert);
-            }
-        }
-    }
-    SortUnique(verts);
-    return verts;
-}
-
-// A vertex counts as a part for each of its faces.
-RowWeights WeightSampler::average(int level, std::vector<Index> const &pFaces,
-                                  std::vector<Index> const &made, int const *sizes) const {
-    Level const &parent = _plan.GetLevel(level - 1);
-    Refinement const &refinement = _plan.GetRefinement(level);
-    auto const sizeOf = [&](Index cVert) {
-        return sizes[std::lower_bound(made.begin(), made.end(), cVert) - made.begin()];
-    };
-    RowWeights weights;
-    double numFVertices = 0;
-    double numVVertices = 0;
-    for (Index pFace : pFaces) {
-        forEachFVertex(refinement, pFace, [&](Index cVert, int count) {
-            numFVertices += count;
-            weights.ofFVertices += double(count) * sizeOf(cVert);
-        });
-        for (Index pVert : parent.GetFaceVertices(pFace)) {
-            Index const cVert = refinement.GetVertexChildVertex(pVert);
-            if (cVert != Far::INDEX_INVALID) {
-                double const share = 1.0 / parent.GetNumVertexFaces(pVert);
-                numVVertices += share;
-                weights.ofVVertices += share * sizeOf(cVert);
-            }
-        }
-    }
-    weights.ofFVertices /= std::max(numFVertices, 1.0);
-    weights.ofVVertices /= numVVertices > 0 ? numVVertices : 1;
-    return weights;
-}
-
-CallStatus WeightSampler::Form() {
-    StencilPlan plan = _plan;
+// The weights of a row, on average, in the first levels of some base faces, from level 1 on.
+CallStatus findAverages(StencilPlan plan, std::vector<RowWeights> &averages) {
     plan.firstStored = 1;
-    plan.lastLevel = std::min(_plan.lastLevel, kMaxSampledLevel);
+    plan.lastLevel = std::min(plan.lastLevel, kMaxSampledLevel);
     plan.numControlStencils = 0;
     if (plan.lastLevel == 0) {
         return CallStatus();
     }
-    std::vector<Index> const baseFaces = takeSample();
-    auto const parts = FindFacesOfBaseFaces(
-        plan.hierarchy.mesh, ConstIndexArray(baseFaces.data(), int(baseFaces.size())),
-        plan.lastLevel - 1);
-    std::vector<std::vector<Index>> faces;
-    std::vector<std::vector<Index>> wanted(1);
-    for (int level = 1; level <= plan.lastLevel; ++level) {
-        faces.push_back(getFaces(level - 1, parts[level - 1]));
-        wanted.push_back(findMade(level, faces[level - 1]));
-    }
-    StencilSelection const selection(plan, std::move(wanted));
+    std::vector<Index> const faces = takeSample(plan.hierarchy.mesh.levels[0].numFaces);
+    StencilSelection const selection(
+        plan, FindVerticesOfBaseFaces(plan, ConstIndexArray(faces.data(), int(faces.size()))));
     SymbolicTable symbolic(plan, selection);
     if (CallStatus status = symbolic.Form(); !status.IsOk()) {
         return status;
     }
     for (int level = 1; level <= plan.lastLevel; ++level) {
         std::vector<Index> const made =
-            GetMadeVertices(_plan.GetRefinement(level), selection.parts[level - 1]);
-        _averages.push_back(average(level, faces[level - 1], made, symbolic.GetSizes(level)));
+            GetMadeVertices(plan.GetRefinement(level), selection.parts[level - 1]);
+        auto const numVVertices =
+            std::lower_bound(made.begin(), made.end(), plan.GetLevel(level).numVVertices) -
+            made.begin();
+        int const *const sizes = symbolic.GetSizes(level);
+        auto const average = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+            return std::accumulate(sizes + begin, sizes + end, 0.0) /
+                   double(std::max<std::ptrdiff_t>(end - begin, 1));
+        };
+        averages.push_back(
+            {average(numVVertices, std::ptrdiff_t(made.size())), average(0, numVVertices)});
     }
     return CallStatus();
 }
 
 // V-vertices without a face, whose rows have one weight: a scheme keeps all of them, or none.
-Index WeightSampler::countIsolated(int level) const {
+Index countIsolated(StencilPlan const &plan, int level) {
     for (int made = 1; made <= level; ++made) {
-        if (_plan.GetLevel(made).numVVertices == 0) {
+        if (plan.GetLevel(made).numVVertices == 0) {
             return 0;
         }
     }
-    Level const &base = _plan.GetLevel(0);
+    Level const &base = plan.GetLevel(0);
     Index count = 0;
     for (Index vert = 0; vert < base.numVertices; ++vert) {
         count += base.GetNumVertexFaces(vert) == 0 ? 1 : 0;
@@ -219,18 +111,19 @@ Index WeightSampler::countIsolated(int level) const {
     return count;
 }
 
-RowWeights WeightSampler::Estimate(int level) const {
-    int const numSampled = int(_averages.size());
-    RowWeights average = _averages[std::min(level, numSampled) - 1];
+RowWeights estimateWeights(StencilPlan const &plan, int level,
+                           std::vector<RowWeights> const &averages) {
+    int const numSampled = int(averages.size());
+    RowWeights average = averages[std::min(level, numSampled) - 1];
     if (level > numSampled) {
         // Supports grow towards a limit, each level by half as much as the one before.
-        RowWeights const &before = _averages[numSampled - 2];
+        RowWeights const &before = averages[numSampled - 2];
         double const growth = 1 - std::ldexp(1.0, numSampled - level);
         average.ofFVertices += growth * (average.ofFVertices - before.ofFVertices);
         average.ofVVertices += growth * (average.ofVVertices - before.ofVVertices);
     }
-    Index const numIsolated = countIsolated(level);
-    Level const &made = _plan.GetLevel(level);
+    Index const numIsolated = countIsolated(plan, level);
+    Level const &made = plan.GetLevel(level);
     return {average.ofFVertices * (made.numVertices - made.numVVertices),
             average.ofVVertices * (made.numVVertices - numIsolated) + numIsolated};
 }
@@ -255,9 +148,9 @@ double estimateSupportBytes(StencilPlan const &plan, int level, RowWeights const
 
 CallStatus EstimateTableSize(StencilPlan const &plan, std::size_t weightBytes,
                              StencilTableSize &size) {
-    WeightSampler sampler(plan);
+    std::vector<RowWeights> averages;
     if (plan.factorize) {
-        if (CallStatus status = sampler.Form(); !status.IsOk()) {
+        if (CallStatus status = findAverages(plan, averages); !status.IsOk()) {
             return status;
         }
     }
@@ -268,8 +161,8 @@ CallStatus EstimateTableSize(StencilPlan const &plan, std::size_t weightBytes,
     double numRowBytes = 0; // of the level before the last, when it is not in the table
     double numSourceBytes = 0;
     for (int level = plan.firstBuilt; level <= plan.lastLevel; ++level) {
-        RowWeights const weights =
-            plan.factorize ? sampler.Estimate(level) : countUnfactorizedWeights(plan, level);
+        RowWeights const weights = plan.factorize ? estimateWeights(plan, level, averages)
+                                                  : countUnfactorizedWeights(plan, level);
         if (level >= plan.firstStored) {
             size.numStencils += plan.GetNumVertices(level);
             numWeights += weights.Total();

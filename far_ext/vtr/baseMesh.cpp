@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "baseMesh.h"
 
-#include "farRelations.h"
 #include "indexSet.h"
 #include "inputChecks.h"
 #include "parallel.h"
@@ -29,6 +28,41 @@ CallStatus invalid(ComponentType component, Index index, std::string message) {
 
 CallStatus tooLarge(ComponentType component, Index index, std::string message) {
     return CallStatus(StatusCode::TooLarge, component, index, std::move(message));
+}
+
+// Whether all edges are those of a base whose faces have the same vertices.
+bool hasEdgesOf(Far::TopologyLevel const &base, Level const &level) {
+    if (base.GetNumEdges() != level.numEdges) {
+        return false;
+    }
+    auto const countWrong = [](Index count, auto const &countOfRange) {
+        return ParallelSums<Index>(count, countOfRange).back();
+    };
+    // The edges of faces follow one another in Far's levels, too.
+    Index const numWrongFaces = countWrong(level.numFaces, [&](Index begin, Index end) {
+        Index const *const first = level.faceEdges.data() + level.faceFirstCorner[begin];
+        Index const *const last = level.faceEdges.data() + level.faceFirstCorner[end];
+        return Index(!std::equal(first, last, base.GetFaceEdges(begin).begin()));
+    });
+    Index const numWrongEdges = countWrong(level.numEdges, [&](Index begin, Index end) {
+        Index numWrong = 0;
+        for (Index edge = begin; edge < end; ++edge) {
+            Index const *const verts = base.GetEdgeVertices(edge).begin();
+            Far::ConstIndexArray const faces = base.GetEdgeFaces(edge);
+            Far::LocalIndex const *const locals = base.GetEdgeFaceLocalIndices(edge).begin();
+            IndexPair const levelVerts = level.edgeVerts[edge];
+            IndexPair const levelFaces = level.edgeFaces[edge];
+            LocalIndexPair const levelLocals = level.edgeFaceLocals[edge];
+            int const last = levelFaces[1] < 0 ? 0 : 1;
+            bool const isRight =
+                faces.size() == last + 1 && levelFaces[0] == faces[0] &&
+                levelLocals[0] == locals[0] &&
+                (last == 0 || (levelFaces[1] == faces[1] && levelLocals[1] == locals[1]));
+            numWrong += !isRight || verts[0] != levelVerts[0] || verts[1] != levelVerts[1];
+        }
+        return numWrong;
+    });
+    return numWrongFaces == 0 && numWrongEdges == 0;
 }
 
 // Whether an array is empty or has no entry that is sharp.
@@ -225,10 +259,17 @@ CallStatus BaseMesh::CompleteTopology() {
     return checkValences(std::move(status));
 }
 
-bool BaseMesh::CopyTopology(Far::TopologyRefiner const &base) {
+bool BaseMesh::CompleteTopology(Far::TopologyLevel const &base) {
+    if (!_repeatedVerts.empty()) {
+        return false;
+    }
     // Valences are those that Far takes.
-    return _repeatedVerts.empty() && CopyRelations(base, getBoundary(), *_level) &&
-           checkValences(CallStatus()).IsOk();
+    if (CompleteTopology().IsOk() && _level->lineEdges.empty() && hasEdgesOf(base, *_level)) {
+        return true;
+    }
+    _level->lineEdges.clear();
+    _level->nonManifoldEdges.clear();
+    return false;
 }
 
 CallStatus BaseMesh::CompleteTopology(Buffer<EdgeSides> edges, std::vector<ApartSide> sides) {

@@ -44,8 +44,10 @@ public:
     /// @{
     /// Finds the edges, as Far would.
     CallStatus CompleteTopology();
-    /// Takes those of a base that has edges: see CopyRelations() and BuildLevelOfEdges().
-    bool CopyTopology(Far::TopologyRefiner const &base);
+    /// \brief The same, if \p base, which has the same faces, has the same edges.
+    ///
+    /// \return  whether it has; else the level has its faces alone, and no vertex twice in any
+    bool CompleteTopology(Far::TopologyLevel const &base);
     CallStatus CompleteTopology(Buffer<EdgeSides> edges, std::vector<ApartSide> sides);
     /// @}
 

@@ -128,7 +128,7 @@ CallStatus RefinerReader::readApartEdge(Index edge, std::vector<ApartSide> &side
 }
 
 CallStatus RefinerReader::readEdges() {
-    if (_mesh.CopyTopology(_refiner)) {
+    if (_mesh.CompleteTopology(_base)) {
         return CallStatus();
     }
     Index const numEdges = _base.GetNumEdges();
