@@ -36,14 +36,34 @@ namespace OpenSubdivHex::FarExt {
 /// Several threads may call it at once, also for the same refiner.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API PatchTableFactory {
 public:
-    /// \brief The fields of Far::PatchTableFactory::Options that have a meaning here.
+    /// \brief The fields of Far::PatchTableFactory::Options that have a meaning here, and those for patches of
+    /// several levels.
     struct Options {
-        /// Patches of the faces of level \p isolationLevel, and the defaults.
+        /// Patches of the faces of level \p isolationLevel alone, and the defaults.
         Options(int isolationLevel) : maxIsolationLevel(isolationLevel) {}
 
-        /// The level whose faces are patches: that of the surface (HexSchemeOptions::GetSurfaceLevel()) or
+        /// The finest level of patches: that of the surface (HexSchemeOptions::GetSurfaceLevel()) or
         /// more, and less than refiner.GetMaxLevel().
         int maxIsolationLevel;
+        /// \brief The coarsest level of patches; -1: maxIsolationLevel, so that all are of one level.
+        ///
+        /// From there on faces are refined where \p tolerance says so or, if that is 0, those with an irregular
+        /// vertex (of other than three faces), those that are no hexagons and, up to sharpIsolationLevel,
+        /// those with something sharp.  A face is refined whole, and with it, if need be, the face beyond an
+        /// edge: so no corner of a patch lies inside of a side of another, and patches of different levels
+        /// meet as others do.
+        int minIsolationLevel = -1;
+        /// Up to which level faces with something sharp are refined; -1: maxIsolationLevel.
+        int sharpIsolationLevel = -1;
+        /// \brief How close patches are to come to the limit surface where \p positions has the control
+        /// vertices, in their units; 0: as close as they do by the levels above.
+        ///
+        /// The distance is measured at some 20 points of each patch, at right angles to it.  Patches
+        /// of maxIsolationLevel, and those of faces that are no hexagons and no quads, which are refined up to
+        /// that, are not measured.
+        double tolerance = 0;
+        float const *positions =
+            nullptr; ///< x, y, z of each control vertex, where there is a tolerance
         bool generateVaryingTables =
             true; ///< with points of their own, as generateVaryingLocalPoints has
         /// Whether the stencils of points, of varying ones too, are of type double; else float.
@@ -69,7 +89,7 @@ public:
     /// Weights of a local point sum to 1; some are negative.  The same bits for any number of threads.
     ///
     /// \return  null on failure: InvalidArgument (a level out of range or without full topology: see
-    ///          GetRefineUniformOptions()), Unsupported (a level that is not refined by hexagonal steps; a
+    ///          GetRefineUniformOptions(); a tolerance that is negative or no number, or without positions), Unsupported (a level that is not refined by hexagonal steps; a
     ///          boundary that follows the paper's rule, VTX_BOUNDARY_NONE, whose edge is named; what has
     ///          no limit: see LimitStencilTableFactory; a mesh of holes alone), or TooLarge (more than 2^28 - 1 patches, or
     ///          2^31 - 1 weights of points).

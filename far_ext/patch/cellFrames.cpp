@@ -74,10 +74,14 @@ CellFrames::CellFrames(Level const &level, LimitRows const &rows, std::vector<In
         std::vector<SharpCorner> corners;
         double doubt = 0;
     };
+    struct State {
+        IndexMap places;
+        int turnOfRegular = -1;
+    };
     std::vector<Range> ranges(std::size_t(GetNumParallelRanges(numVerts, kShortParallelRange)));
     ParallelForRange(
-        numVerts, [] { return IndexMap(); },
-        [&](IndexMap &places, Index begin, Index end) {
+        numVerts, [] { return State(); },
+        [&](State &state, Index begin, Index end) {
             Range &range = ranges[std::size_t(begin / kShortParallelRange)];
             for (Index i = begin; i < end; ++i) {
                 Index const vert = verts[std::size_t(i)];
@@ -90,12 +94,22 @@ CellFrames::CellFrames(Level const &level, LimitRows const &rows, std::vector<In
                     continue;
                 }
                 int const numDirections = 2 * level.GetNumVertexFaces(vert);
+                Index regularSources[PlainNeighborhoodGatherer::kNumRegular];
+                LimitRow const row = rows.GetRow(vert, 0, regularSources);
+                // Regular vertices have one mask, from the first of their faces on.
+                bool const isRegular = row.sources == regularSources;
+                if (isRegular && state.turnOfRegular >= 0) {
+                    _turns[std::size_t(vert)] = state.turnOfRegular;
+                    continue;
+                }
                 double doubt = 0;
-                double const turn = findTurn(vert, rows, places, doubt) * numDirections / (2 * kPi);
+                double const turn =
+                    findTurn(vert, row, state.places, doubt) * numDirections / (2 * kPi);
                 auto const nearest = int(std::lround(turn));
                 range.doubt = std::max({range.doubt, 2 * std::abs(turn - nearest), doubt});
-                _turns[std::size_t(vert)] =
-                    ((nearest % numDirections) + numDirections) % numDirections;
+                int const found = ((nearest % numDirections) + numDirections) % numDirections;
+                _turns[std::size_t(vert)] = found;
+                state.turnOfRegular = isRegular ? found : state.turnOfRegular;
             }
         },
         kShortParallelRange);
@@ -110,7 +124,7 @@ CellFrames::CellFrames(Level const &level, LimitRows const &rows, std::vector<In
 }
 
 // Where the first edge of the vertex lies, in terms of du and dv.
-double CellFrames::findTurn(Index vert, LimitRows const &rows, IndexMap &places,
+double CellFrames::findTurn(Index vert, LimitRow const &row, IndexMap &places,
                             double &doubt) const {
     // A layout in the plane, with the first edge along the x axis.
     std::vector<Complex> layout = {0};
@@ -149,8 +163,6 @@ double CellFrames::findTurn(Index vert, LimitRows const &rows, IndexMap &places,
         }
     }
     // Derivatives of the layout: with an even map, du is at some angle, and dv at right angles.
-    Index regularSources[PlainNeighborhoodGatherer::kNumRegular];
-    LimitRow const row = rows.GetRow(vert, 0, regularSources);
     Complex sums[2] = {0, 0};
     for (int i = 0; i < row.size; ++i) {
         if (Index const at = places.Find(row.sources[i]); at != Far::INDEX_INVALID) {

@@ -55,7 +55,7 @@ private:
     };
     static constexpr Index kIsSharp = -1;
 
-    double findTurn(Index vert, LimitRows const &rows, IndexMap &places, double &doubt) const;
+    double findTurn(Index vert, LimitRow const &row, IndexMap &places, double &doubt) const;
     void addSides(Index vert, std::vector<SharpCorner> &corners) const;
 
     Level const &_level;

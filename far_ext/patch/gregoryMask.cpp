@@ -67,22 +67,25 @@ Curve makeCurve(CurveShape const &shape, int row0, int row1, double signOfM) {
     curve.points[3] = makePoint(row1);
     curve.points[1] = curve.points[0] + ends[0].length / 3 * makeDerivative(row0, ends[0].angle);
     curve.points[2] = curve.points[3] + ends[1].length / 3 * makeDerivative(row1, ends[1].angle);
-    curve.across[0] = makeDerivative(row0, ends[0].angle + kPi / 2);
-    curve.across[2] = makeDerivative(row1, ends[1].angle - kPi / 2);
+    curve.across[0] = ends[0].unit * makeDerivative(row0, ends[0].angle + kPi / 2);
+    curve.across[2] = ends[1].unit * makeDerivative(row1, ends[1].angle - kPi / 2);
     // In the middle a quadratic is a quarter of its ends and half of its second coefficient.
-    Point const middle = 2 * signOfM * makeDerivative(kRowM, 0);
+    Point const middle = 2 * signOfM * shape.unit * makeDerivative(kRowM, 0);
     Point const ofEnds = 0.5 * (curve.across[0] + curve.across[2]);
     curve.across[1] = (1 + shape.blend) * middle - (1 + 2 * shape.blend) * ofEnds;
     return curve;
 }
 
+constexpr double kUnits[2] = {1, 1};
+
 // The lengths of c' at both ends are \p lengths in the terms that \p neighbors have.
-Inward makeInward(CurveNeighbor const neighbors[2], double const lengths[2]) {
+Inward makeInward(CurveNeighbor const neighbors[2], double const lengths[2],
+                  double const units[2] = kUnits) {
     Inward inward{};
     double const directions[2] = {1, -1};
     for (int end = 0; end < 2; ++end) {
         CurveNeighbor const &neighbor = neighbors[end];
-        inward.across[end] = neighbor.length * std::sin(neighbor.angle);
+        inward.across[end] = neighbor.length * std::sin(neighbor.angle) / units[end];
         inward.along[end] =
             directions[end] * neighbor.length * std::cos(neighbor.angle) / lengths[end];
     }
@@ -148,7 +151,8 @@ void AddInnerPoints(CurveShape const &shape, CurveNeighbor const neighbors[2], d
     Curve const curve = isReverse ? makeCurve(shape, kRow1, kRow0, signOfM)
                                   : makeCurve(shape, kRow0, kRow1, signOfM);
     double const lengths[2] = {shape.ends[0].length, shape.ends[1].length};
-    addInnerPoints(curve, makeInward(neighbors, lengths), mask);
+    double const units[2] = {shape.ends[0].unit, shape.ends[1].unit};
+    addInnerPoints(curve, makeInward(neighbors, lengths, units), mask);
 }
 
 void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2], double signOfM,

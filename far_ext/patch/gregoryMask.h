@@ -37,14 +37,16 @@ struct GregoryMask {
 
 /// One end of a curve, seen from a patch that lies to the left of it.
 struct CurveEnd {
-    double angle;  ///< of the curve as it leaves the corner
-    double length; ///< of its derivative there, in terms of t
+    double angle;    ///< of the curve as it leaves the corner
+    double length;   ///< of its derivative there, in terms of t
+    double unit = 1; ///< of the derivative across, in terms of t
 };
 
 /// A curve.
 struct CurveShape {
     CurveEnd ends[2];
-    double blend; ///< as PatchQuantity::Blend
+    double blend;    ///< as PatchQuantity::Blend
+    double unit = 1; ///< of the derivative across in the middle, in terms of M
 };
 
 /// \brief What the other side of a patch is like that meets a curve at one of its ends.

@@ -34,30 +34,47 @@ void LimitStencils::KeptRow::Add(Index source, double weight, double du, double 
     weights[2][i] += dv;
 }
 
-LimitRow LimitStencils::KeptRow::Get() const {
-    return {int(sources.size()), sources.data(), weights[0].data(), weights[1].data(),
-            weights[2].data()};
+void LimitStencils::KeptRow::Append(LimitRow const &row) {
+    sources.insert(sources.end(), row.sources, row.sources + row.size);
+    weights[0].insert(weights[0].end(), row.weights, row.weights + row.size);
+    weights[1].insert(weights[1].end(), row.du, row.du + row.size);
+    weights[2].insert(weights[2].end(), row.dv, row.dv + row.size);
+}
+
+LimitRow LimitStencils::KeptRow::Get(int begin, int end) const {
+    return {end - begin, sources.data() + begin, weights[0].data() + begin,
+            weights[1].data() + begin, weights[2].data() + begin};
 }
 
 CallStatus LimitStencils::Form(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
                                int level, Index numRows,
                                std::function<LimitRow(Index, KeptRow &)> const &getRow) {
     Index const numVerts = hierarchy.mesh.levels[std::size_t(level)].numVertices;
+    // The rows of each range, and the sources of all.
+    struct RangeRows {
+        KeptRow all;
+        std::vector<int> firsts;
+    };
+    std::vector<RangeRows> rows(std::size_t(GetNumParallelRanges(numRows, kRange)));
+    std::vector<std::atomic<unsigned char>> marks(
+        static_cast<std::size_t>(numVerts)); // by several threads
+    ParallelForRange(
+        numRows, [] { return KeptRow(); },
+        [&](KeptRow &kept, Index begin, Index end) {
+            RangeRows &range = rows[std::size_t(begin / kRange)];
+            range.firsts.push_back(0);
+            for (Index number = begin; number < end; ++number) {
+                LimitRow const row = getRow(number, kept);
+                range.all.Append(row);
+                range.firsts.push_back(int(range.all.sources.size()));
+                row.ForEachPart([&](int i) {
+                    marks[std::size_t(row.sources[i])].store(1, std::memory_order_relaxed);
+                });
+            }
+        },
+        kRange);
     std::optional<LevelStencils> stencils;
     if (level > 0) {
-        std::vector<std::atomic<unsigned char>> marks(
-            static_cast<std::size_t>(numVerts)); // by several threads
-        ParallelForRange(
-            numRows, [] { return KeptRow(); },
-            [&](KeptRow &kept, Index begin, Index end) {
-                for (Index number = begin; number < end; ++number) {
-                    LimitRow const row = getRow(number, kept);
-                    row.ForEachPart([&](int i) {
-                        marks[std::size_t(row.sources[i])].store(1, std::memory_order_relaxed);
-                    });
-                }
-            },
-            kRange);
         std::vector<std::vector<Index>> wanted(std::size_t(level) + 1);
         wanted.back() = ParallelSelect(numVerts, [&](Index vert) {
             return marks[std::size_t(vert)].load(std::memory_order_relaxed) != 0;
@@ -67,10 +84,6 @@ CallStatus LimitStencils::Form(Hierarchy const &hierarchy, HexSchemeOptions cons
             return result;
         }
     }
-    struct State {
-        LimitMultiplier<double> multiplier;
-        KeptRow kept;
-    };
     constexpr Index kGroup = 16; // rows that are near one another, and share sources
     static_assert(kGroup <= kMaxLimitRows && kRange % kGroup == 0);
     Index const firstSource = stencils ? stencils->GetFirst(level) : 0;
@@ -79,21 +92,22 @@ CallStatus LimitStencils::Form(Hierarchy const &hierarchy, HexSchemeOptions cons
     ParallelForRange(
         numRows,
         [&] {
-            return State{
-                LimitMultiplier<double>(stencils ? &*stencils : nullptr, numControlVerts, true),
-                {}};
+            return LimitMultiplier<double>(stencils ? &*stencils : nullptr, numControlVerts, true);
         },
-        [&](State &state, Index begin, Index end) {
+        [&](LimitMultiplier<double> &multiplier, Index begin, Index end) {
+            RangeRows const &ofRange = rows[std::size_t(begin / kRange)];
             Range &range = _ranges[std::size_t(begin / kRange)];
             range.firsts = {0};
             for (Index group = begin; group < end; group += kGroup) {
-                state.multiplier.Clear();
+                multiplier.Clear();
                 for (Index row = group; row < std::min(end, group + kGroup); ++row) {
-                    state.multiplier.AddRow(getRow(row, state.kept), firstSource);
+                    auto const i = std::size_t(row - begin);
+                    multiplier.AddRow(ofRange.all.Get(ofRange.firsts[i], ofRange.firsts[i + 1]),
+                                      firstSource);
                 }
-                auto const columns = state.multiplier.FindColumns();
+                auto const columns = multiplier.FindColumns();
                 std::size_t firsts[kGroup];
-                int const numInGroup = state.multiplier.GetNumRows();
+                int const numInGroup = multiplier.GetNumRows();
                 for (int row = 0; row < numInGroup; ++row) {
                     auto const size =
                         int(std::count_if(columns.rows, columns.rows + columns.size,
@@ -113,7 +127,7 @@ CallStatus LimitStencils::Form(Hierarchy const &hierarchy, HexSchemeOptions cons
                                    range.weights[1].data() + first,
                                    range.weights[2].data() + first};
                 }
-                state.multiplier.Fill(columns, places);
+                multiplier.Fill(columns, places);
             }
         },
         kRange);

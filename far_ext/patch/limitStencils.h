@@ -28,7 +28,11 @@ public:
         void Clear();
         /// Adds to the weights of a source, which may come more than once.
         void Add(Index source, double weight, double du, double dv);
-        LimitRow Get() const;
+        /// Adds a row behind what is there.
+        void Append(LimitRow const &row);
+        /// The row of sources \p begin to \p end - 1.
+        LimitRow Get(int begin, int end) const;
+        LimitRow Get() const { return Get(0, int(sources.size())); }
 
         std::vector<Index> sources;
         std::vector<double> weights[3];
@@ -37,8 +41,8 @@ public:
     /// \brief Makes those of \p numRows rows, in parallel.
     ///
     /// \param level    whose vertices the rows have
-    /// \param getRow   called as getRow(number, kept) by several threads: the row of that number, which
-    ///                 is valid until \p kept is used again
+    /// \param getRow   called as getRow(number, kept) by several threads, once for each row: the row of that
+    ///                 number, which is valid until \p kept is used again
     /// \return         TooLarge where a size of the stencils of the level is
     CallStatus Form(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions, int level,
                     Index numRows, std::function<LimitRow(Index, KeptRow &)> const &getRow);

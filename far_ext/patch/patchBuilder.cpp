@@ -67,8 +67,9 @@ struct PointGroup {
 /// \brief The patches of one level: which limits they are made of, and which points they have.
 class PatchBuilder::LevelBuilder {
 public:
-    LevelBuilder(PatchBuilder &builder, int level)
-        : _builder(builder), _cells(builder._cells), _depth(level),
+    /// \param coarser  that of the level before, if it has patches
+    LevelBuilder(PatchBuilder &builder, int level, LevelBuilder const *coarser)
+        : _builder(builder), _coarser(coarser), _cells(builder._cells), _depth(level),
           _surfaceDepth(builder._schemeOptions.GetSurfaceLevel()), _mesh(builder._hierarchy.mesh),
           _level(_mesh.levels[std::size_t(level)]), _toChild(_mesh.refinements[std::size_t(level)]),
           _toLimit(GetStepsToLimit(builder._schemeOptions)),
@@ -79,6 +80,8 @@ public:
 
     /// Finds the limits at the corners of cells.
     CallStatus FindLimits();
+    /// Finds where cells meet those of the level before, which has found its limits.
+    CallStatus FindBorders();
     /// The vertices at corners of cells, ascending.
     std::vector<Index> const &GetVertices() const { return _verts; }
     /// Numbers the points of curves from \p firstPoint on; returns the end.
@@ -113,6 +116,18 @@ private:
         enum Kind { kEdge, kEdgeSide, kDiagonal, kDiagonalSide, kCenter } kind;
         Index index;
         int side;
+    };
+    // A diagonal that is an edge of the level before, where that has a cell on its other side: the curve is
+    // as it is there.
+    struct Border {
+        Index edge;
+        CurveShape shape; // from the first vertex of the edge, in terms of the limits of this level
+    };
+    // A direction at a vertex.
+    struct Direction {
+        Index vert;
+        int side;
+        double angle;
     };
     // A side of a cell: one side of an edge or a diagonal.
     struct CellSide {
@@ -152,16 +167,25 @@ private:
         return _frames->Get(face, getLocal(face, half, corner), half);
     }
     double getLength(Index face, int half, int side, int end) const;
-    std::uint8_t getVertexCode(Index vert) const;
-    bool isBesideOther(Index vert) const;
+    std::uint8_t findVertexCode(Index vert) const;
+    bool findBesideOther(Index vert) const;
+    std::uint8_t getVertexCode(Index vert) const { return _codes[std::size_t(vert)].code; }
+    bool isBesideOther(Index vert) const { return _codes[std::size_t(vert)].isBesideOther; }
     PatchSite getSite(PatchQuantity quantity, CellSide const &curve, Index vert, Index other) const;
     void addShares(Index vert, LimitStencils::KeptRow &kept) const;
     CellCurve getCellCurve(PatchCell cell, int side) const;
+    Border const *findBorder(Index face) const {
+        auto const found = _borders.find(face);
+        return found != _borders.end() ? &found->second : nullptr;
+    }
+    CallStatus formDirections(std::vector<Direction> const &directions,
+                              std::vector<std::vector<std::pair<Index, double>>> &result) const;
     static void addToKey(CellCurve const &curve, MaskCache::Key &key) {
-        key << curve.shape.blend;
+        key << curve.shape.blend << curve.shape.unit;
         for (int end = 0; end < 2; ++end) {
-            key << curve.shape.ends[end].angle << curve.shape.ends[end].length
-                << curve.neighbors[end].angle << curve.neighbors[end].length;
+            key << curve.shape.ends[end].unit << curve.shape.ends[end].angle
+                << curve.shape.ends[end].length << curve.neighbors[end].angle
+                << curve.neighbors[end].length;
         }
     }
     CurvePoints &getPoints(CellSide const &curve) {
@@ -177,6 +201,13 @@ private:
     }
     Index addGroup(PointGroup const &group);
     void addCurve(bool isDiagonal, Index index);
+    // Whether the next level has a cell on the other side of an edge.
+    bool hasFinerCell(CellSide const &curve) const {
+        Index const cFace =
+            curve.isDiagonal ? Far::INDEX_INVALID : _toChild.GetEdgeChildFace(curve.index);
+        return cFace != Far::INDEX_INVALID && HasHalves(_toChild.child->GetFaceSize(cFace)) &&
+               _cells.HasCell(_depth + 1, cFace, 1 - curve.side);
+    }
     void addSides(CellSide const *sides, int numSides, bool isShared, CurvePoints &points);
     void addKites(Index face);
     LimitRow getRow(Index number, LimitStencils::KeptRow &kept) const;
@@ -185,6 +216,7 @@ private:
     void addOfChild(Index cVert, double du, LimitStencils::KeptRow &kept) const;
 
     PatchBuilder &_builder;
+    LevelBuilder const *const _coarser;
     PatchCells const &_cells;
     int const _depth;
     int const _surfaceDepth;
@@ -199,6 +231,12 @@ private:
     std::optional<CellFrames> _frames;
 
     std::vector<Index> _verts;
+    // What constants depend on, by vertex.
+    struct VertexCode {
+        std::uint8_t code;
+        bool isBesideOther;
+    };
+    std::vector<VertexCode> _codes;
     std::vector<Index> _rowOfVertex;
     struct FurtherRow {
         Index vert;
@@ -208,6 +246,7 @@ private:
     Index _numVertexRows = 0;
     std::vector<CenterRow> _centerRows;
 
+    std::unordered_map<Index, Border> _borders; // by face
     std::vector<CurvePoints> _edges;
     std::vector<CurvePoints> _diagonals; // by face
     std::vector<Index> _kites;           // by face, and the centre; INDEX_INVALID
@@ -230,6 +269,11 @@ CallStatus PatchBuilder::LevelBuilder::FindLimits() {
     if (CallStatus const result = _rows.Find(_verts); !result.IsOk()) {
         return result;
     }
+    _codes.resize(std::size_t(_level.numVertices));
+    ParallelFor(Index(_verts.size()), [&](Index i) {
+        Index const vert = _verts[std::size_t(i)];
+        _codes[std::size_t(vert)] = {findVertexCode(vert), findBesideOther(vert)};
+    });
     _frames.emplace(_level, _rows, _verts);
     _rowOfVertex.assign(std::size_t(_level.numVertices), Far::INDEX_INVALID);
     for (Index vert : _verts) {
@@ -297,13 +341,17 @@ double PatchBuilder::LevelBuilder::getLength(Index face, int half, int side, int
     side = (side + numCorners) % numCorners;
     Index const vert = _level.GetFaceVertices(face)[getLocal(face, half, side + end)];
     CellSide const curve = getCellSide(face, half, side);
+    if (Border const *const border = curve.isDiagonal ? findBorder(face) : nullptr) {
+        // From its start half 1 runs against the edge.
+        return border->shape.ends[half == 0 ? end : 1 - end].length;
+    }
     bool const isLong = curve.isDiagonal || _level.IsSharpBoundaryB(curve.index);
     Index const other = _level.GetFaceVertices(face)[getLocal(face, half, side + 1 - end)];
     return (isLong ? 2 : 1) *
            _builder._constants.Get(getSite(PatchQuantity::Length, curve, vert, other));
 }
 
-std::uint8_t PatchBuilder::LevelBuilder::getVertexCode(Index vert) const {
+std::uint8_t PatchBuilder::LevelBuilder::findVertexCode(Index vert) const {
     if (_level.FindSharpVertex(vert)) {
         return PatchSite::kSharp;
     }
@@ -317,7 +365,7 @@ std::uint8_t PatchBuilder::LevelBuilder::getVertexCode(Index vert) const {
                : std::uint8_t(std::min(_depth - depth, PatchSite::kMaxAge));
 }
 
-bool PatchBuilder::LevelBuilder::isBesideOther(Index vert) const {
+bool PatchBuilder::LevelBuilder::findBesideOther(Index vert) const {
     Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
     return std::any_of(faces.begin(), faces.end(), [this](Index face) {
         return !HasHalves(getSize(face)) && !_level.IsHalfFace(face);
@@ -427,11 +475,123 @@ auto PatchBuilder::LevelBuilder::getCellCurve(PatchCell cell, int side) const ->
             frame.end - frame.begin,
             getLength(cell.face, cell.half, side + (end == 0 ? -1 : 1), 1 - end)};
     }
+    if (Border const *const border =
+            HasHalves(getSize(cell.face)) && side == 0 ? findBorder(cell.face) : nullptr) {
+        for (int end = 0; end < 2; ++end) {
+            result.shape.ends[end].unit = border->shape.ends[cell.half == 0 ? end : 1 - end].unit;
+        }
+        result.shape.blend = border->shape.blend;
+        result.shape.unit = border->shape.unit;
+        return result;
+    }
     // The same for both sides: of vertices the older one comes first.
     result.shape.blend = _builder._constants.Get(
         getSite(PatchQuantity::Blend, getCellSide(cell.face, cell.half, side),
                 std::min(verts[0], verts[1]), std::max(verts[0], verts[1])));
     return result;
+}
+
+// Weights of control vertices for the derivatives in some directions.
+CallStatus PatchBuilder::LevelBuilder::formDirections(
+    std::vector<Direction> const &directions,
+    std::vector<std::vector<std::pair<Index, double>>> &result) const {
+    LimitStencils stencils;
+    CallStatus const status =
+        stencils.Form(_builder._hierarchy, _builder._schemeOptions, _depth,
+                      Index(directions.size()), [&](Index number, LimitStencils::KeptRow &kept) {
+                          Direction const &direction = directions[std::size_t(number)];
+                          Index sources[PlainNeighborhoodGatherer::kNumRegular];
+                          LimitRow const row =
+                              _rows.GetRow(direction.vert, direction.side, sources);
+                          kept.Clear();
+                          for (int i = 0; i < row.size; ++i) {
+                              kept.Add(row.sources[i], 0,
+                                       std::cos(direction.angle) * row.du[i] +
+                                           std::sin(direction.angle) * row.dv[i],
+                                       0);
+                          }
+                          return kept.Get();
+                      });
+    for (std::size_t i = 0; i < directions.size() && status.IsOk(); ++i) {
+        LimitStencils::Stencil const stencil = stencils.Get(Index(i));
+        result.emplace_back();
+        for (int k = 0; k < stencil.size; ++k) {
+            result.back().emplace_back(stencil.indices[k], stencil.weights[1][k]);
+        }
+    }
+    return status;
+}
+
+CallStatus PatchBuilder::LevelBuilder::FindBorders() {
+    if (!_coarser) {
+        return CallStatus();
+    }
+    Refinement const &fromParent = _mesh.refinements[std::size_t(_depth) - 1];
+    std::vector<Direction> directions;
+    std::vector<Direction> coarseDirections;
+    std::vector<Index> faces;
+    for (PatchCell const &cell : _cells.GetCells(_depth)) {
+        if (cell.face < _level.numFFaces || !HasHalves(getSize(cell.face)) ||
+            isCell(cell.face, 1 - cell.half)) {
+            continue;
+        }
+        CellSide const beyond = {false, fromParent.GetEFaceParent(cell.face), 1 - cell.half};
+        int sideBeyond = 0;
+        PatchCell const cellBeyond = _coarser->getCell(beyond, &sideBeyond);
+        if (!_coarser->isCell(cellBeyond.face, cellBeyond.half)) {
+            continue; // a hole
+        }
+        CellCurve const coarse = _coarser->getCellCurve(cellBeyond, sideBeyond);
+        Border border = {beyond.index, coarse.shape};
+        for (int end = 0; end < 2; ++end) {
+            // Both run from the first vertex of the edge, or back: half 0 and side 0 do.
+            int const ofOwn = cell.half == 0 ? end : 1 - end;
+            int const ofCoarse = beyond.side == 0 ? end : 1 - end;
+            border.shape.ends[end] = coarse.shape.ends[ofCoarse];
+            auto const getDirection = [&](LevelBuilder const &level, PatchCell of, int side,
+                                          int atEnd) {
+                CornerFrame const frame = level.getFrame(of.face, of.half, side + atEnd);
+                return Direction{frame.vert, frame.side, atEnd == 0 ? frame.begin : frame.end};
+            };
+            directions.push_back(getDirection(*this, cell, 0, ofOwn));
+            coarseDirections.push_back(getDirection(*_coarser, cellBeyond, sideBeyond, ofCoarse));
+        }
+        faces.push_back(cell.face);
+        _borders.emplace(cell.face, border);
+    }
+    std::vector<std::vector<std::pair<Index, double>>> weights;
+    std::vector<std::vector<std::pair<Index, double>>> coarseWeights;
+    CallStatus status = formDirections(directions, weights);
+    if (status.IsOk()) {
+        status = _coarser->formDirections(coarseDirections, coarseWeights);
+    }
+    for (std::size_t i = 0; i < faces.size() && status.IsOk(); ++i) {
+        Border &border = _borders.at(faces[i]);
+        bool const isSharp = _coarser->isSharp({false, border.edge, 0});
+        for (std::size_t end = 0; end < 2; ++end) {
+            // How many times as long the derivative is in terms of the level before.
+            auto const &fine = weights[2 * i + end];
+            double product = 0;
+            double square = 0;
+            auto coarse = coarseWeights[2 * i + end].begin();
+            auto const last = coarseWeights[2 * i + end].end();
+            for (auto const &weight : fine) {
+                while (coarse != last && coarse->first < weight.first) {
+                    ++coarse;
+                }
+                product += coarse != last && coarse->first == weight.first
+                               ? weight.second * coarse->second
+                               : 0;
+                square += weight.second * weight.second;
+            }
+            double const ratio = square > 0 ? product / square : 2;
+            border.shape.ends[end].length *= ratio;
+            border.shape.ends[end].unit = isSharp ? 1 : ratio;
+        }
+        // The middle is the same limit, of a level on which lengths are half.
+        border.shape.unit = isSharp ? 1 : 2;
+    }
+    return status;
 }
 
 Index PatchBuilder::LevelBuilder::addGroup(PointGroup const &group) {
@@ -480,6 +640,10 @@ void PatchBuilder::LevelBuilder::addCurve(bool isDiagonal, Index index) {
         return;
     }
     CurvePoints &points = getPoints(sides[0]);
+    if (Border const *const border = isDiagonal ? findBorder(index) : nullptr) {
+        CurvePoints const &ofEdge = _coarser->_edges[std::size_t(border->edge)];
+        std::copy_n(ofEdge.points, 2, points.points);
+    }
     bool const isShared = !isSharp(sides[0]);
     if (isShared) {
         points.rowOfM = points.secondRowOfM =
@@ -502,14 +666,18 @@ void PatchBuilder::LevelBuilder::addSides(CellSide const *sides, int numSides, b
     struct Side {
         CellCurve curve;
         int side;
+        bool hasInner;
     } found[2];
     int numFound = 0;
     for (int i = 0; i < numSides; ++i) {
         int ofCell = 0;
         PatchCell const cell = getCell(sides[i], &ofCell);
         if (!HasKites(getSize(cell.face))) {
-            found[numFound++] = {getCellCurve(cell, ofCell), sides[i].side};
+            found[numFound++] = {getCellCurve(cell, ofCell), sides[i].side, true};
             needsPoints = needsPoints || points.points[0] == Far::INDEX_INVALID;
+        } else if (numSides == 1 && hasFinerCell(sides[i])) {
+            found[numFound++] = {getCellCurve(cell, ofCell), sides[i].side, false};
+            needsPoints = true;
         }
     }
     if (numFound == 0) {
@@ -519,7 +687,7 @@ void PatchBuilder::LevelBuilder::addSides(CellSide const *sides, int numSides, b
     CellCurve const &first = found[0].curve;
     double const signs[2] = {isShared && found[0].side == 1 ? -1.0 : 1.0,
                              isShared && found[0].side == 0 ? -1.0 : 1.0};
-    key << needsPoints << numFound << signs[0];
+    key << needsPoints << numFound << signs[0] << found[0].hasInner;
     for (int i = 0; i < numFound; ++i) {
         addToKey(found[i].curve, key);
     }
@@ -528,6 +696,9 @@ void PatchBuilder::LevelBuilder::addSides(CellSide const *sides, int numSides, b
             AddCurvePoints(first.shape, made);
         }
         for (int i = 0; i < numFound; ++i) {
+            if (!found[i].hasInner) {
+                continue;
+            }
             AddInnerPoints(found[i].curve.shape, found[i].curve.neighbors, signs[i], i > 0, made);
         }
     });
@@ -540,8 +711,10 @@ void PatchBuilder::LevelBuilder::addSides(CellSide const *sides, int numSides, b
         points.points[1 - found[0].side] = next++;
     }
     for (int i = 0; i < numFound; ++i) {
-        points.inner[found[i].side] = next;
-        next += 2;
+        if (found[i].hasInner) {
+            points.inner[found[i].side] = next;
+            next += 2;
+        }
     }
 }
 
@@ -610,13 +783,9 @@ LimitRow PatchBuilder::LevelBuilder::getRow(Index number, LimitStencils::KeptRow
                                           : _furtherRows[std::size_t(number) - _verts.size()];
         Index sources[PlainNeighborhoodGatherer::kNumRegular];
         LimitRow const row = _rows.GetRow(vertex.vert, vertex.side, sources);
-        for (int i = 0; i < row.size; ++i) {
-            kept.sources.push_back(row.sources[i]);
-            kept.weights[0].push_back(row.weights[i]);
-            kept.weights[1].push_back(row.du[i]);
-            kept.weights[2].push_back(row.dv[i]);
-        }
-        if (isFirst && _builder._constants.HasShares()) {
+        kept.Append(row);
+        if (isFirst && _builder._constants.HasShares() &&
+            !_builder._isInSeveralLevels[std::size_t(vertex.vert)]) {
             addShares(vertex.vert, kept);
         }
         return kept.Get();
@@ -761,19 +930,26 @@ PatchBuilder::PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
 PatchBuilder::~PatchBuilder() = default;
 CallStatus PatchBuilder::Build() {
     for (int level = _cells.GetFirstLevel(); level <= _cells.GetLastLevel(); ++level) {
-        _levels.push_back(std::make_unique<LevelBuilder>(*this, level));
+        LevelBuilder const *const coarser = _levels.empty() ? nullptr : _levels.back().get();
+        _levels.push_back(std::make_unique<LevelBuilder>(*this, level, coarser));
         if (CallStatus const result = _levels.back()->FindLimits(); !result.IsOk()) {
+            return result;
+        }
+        if (CallStatus const result = _levels.back()->FindBorders(); !result.IsOk()) {
             return result;
         }
     }
     auto const numVertices =
         std::size_t(_hierarchy.mesh.levels[std::size_t(_cells.GetLastLevel())].numVertices);
     std::vector<Index> pointOfVertex(numVertices, Far::INDEX_INVALID);
+    _isInSeveralLevels.assign(numVertices, 0);
     for (auto const &level : _levels) {
         for (Index const vert : level->GetVertices()) {
             if (pointOfVertex[std::size_t(vert)] == Far::INDEX_INVALID) {
                 pointOfVertex[std::size_t(vert)] = _numPoints++;
                 _vertexPoints.push_back({level.get(), level->FindRow(vert, 0)});
+            } else {
+                _isInSeveralLevels[std::size_t(vert)] = 1;
             }
         }
     }
@@ -800,69 +976,95 @@ public:
         int numRows = 0;
         while (numRows < GregoryMask::kNumRows && group.rows[numRows] != Far::INDEX_INVALID) {
             _rows[numRows] = stencils.Get(group.rows[numRows]);
-            _positions[numRows] = 0;
             ++numRows;
         }
-        // The indices that any row has, ascending, and the weights of all rows for each.
-        _columns.clear();
-        _terms.clear();
-        for (;;) {
-            Index least = std::numeric_limits<Index>::max();
-            for (int row = 0; row < numRows; ++row) {
-                if (_positions[row] < _rows[row].size) {
-                    least = std::min(least, _rows[row].indices[_positions[row]]);
-                }
-            }
-            if (least == std::numeric_limits<Index>::max()) {
-                break;
-            }
-            Column column = {least, 0};
-            std::array<double, GregoryMask::kNumTerms> terms{};
-            for (int row = 0; row < numRows; ++row) {
-                int &position = _positions[row];
-                if (position < _rows[row].size && _rows[row].indices[position] == least) {
-                    for (int sum = 0; sum < 3; ++sum) {
-                        terms[std::size_t(3 * row + sum)] = _rows[row].weights[sum][position];
-                    }
-                    column.rows |= 1u << row;
-                    ++position;
-                }
-            }
-            _columns.push_back(column);
-            _terms.push_back(terms);
-        }
+        mergeColumns(numRows);
+        spreadTerms(numRows);
+        std::size_t const numColumns = _columns.size();
         for (GregoryMask::Point const &point : group.mask->points) {
             unsigned rows = 0;
+            _sums.assign(numColumns, 0.0);
             for (int i = 0; i < 3 * numRows; ++i) {
-                rows |= point[std::size_t(i)] != 0 ? 1u << (i / 3) : 0;
-            }
-            int size = 0;
-            for (std::size_t k = 0; k < _columns.size(); ++k) {
-                if ((_columns[k].rows & rows) == 0) {
+                double const factor = point[std::size_t(i)];
+                if (factor == 0) {
                     continue;
                 }
-                double weight = 0;
-                for (int i = 0; i < 3 * numRows; ++i) {
-                    weight += point[std::size_t(i)] * _terms[k][std::size_t(i)];
+                rows |= 1u << (i / 3);
+                double const *const terms = _terms.data() + std::size_t(i) * numColumns;
+                for (std::size_t k = 0; k < numColumns; ++k) {
+                    _sums[k] += factor * terms[k];
                 }
-                result.indices.push_back(_columns[k].index);
-                result.weights.push_back(REAL(weight));
-                ++size;
             }
-            result.sizes.push_back(size);
+            std::size_t const first = result.indices.size();
+            result.indices.resize(first + numColumns);
+            result.weights.resize(first + numColumns);
+            std::size_t next = first;
+            for (std::size_t k = 0; k < numColumns; ++k) {
+                result.indices[next] = _columns[k].index;
+                result.weights[next] = REAL(_sums[k]);
+                next += (_columns[k].rows & rows) != 0 ? 1 : 0;
+            }
+            result.indices.resize(next);
+            result.weights.resize(next);
+            result.sizes.push_back(int(next - first));
         }
     }
 
 private:
     struct Column {
         Index index;
-        unsigned rows; // a bit for each
+        unsigned rows; // a bit for each that has it
     };
 
+    // The indices that any row has, ascending.
+    void mergeColumns(int numRows) {
+        _columns.clear();
+        int positions[GregoryMask::kNumRows] = {};
+        for (;;) {
+            Index least = std::numeric_limits<Index>::max();
+            for (int row = 0; row < numRows; ++row) {
+                if (positions[row] < _rows[row].size) {
+                    least = std::min(least, _rows[row].indices[positions[row]]);
+                }
+            }
+            if (least == std::numeric_limits<Index>::max()) {
+                return;
+            }
+            Column column = {least, 0};
+            for (int row = 0; row < numRows; ++row) {
+                int &position = positions[row];
+                if (position < _rows[row].size && _rows[row].indices[position] == least) {
+                    column.rows |= 1u << row;
+                    ++position;
+                }
+            }
+            _columns.push_back(column);
+        }
+    }
+
+    // The weights of all rows, by column.
+    void spreadTerms(int numRows) {
+        std::size_t const numColumns = _columns.size();
+        _terms.assign(3 * std::size_t(numRows) * numColumns, 0.0);
+        for (int row = 0; row < numRows; ++row) {
+            int position = 0;
+            double *const terms = _terms.data() + 3 * std::size_t(row) * numColumns;
+            for (std::size_t k = 0; k < numColumns; ++k) {
+                if ((_columns[k].rows >> row & 1) == 0) {
+                    continue;
+                }
+                for (std::size_t sum = 0; sum < 3; ++sum) {
+                    terms[sum * numColumns + k] = _rows[row].weights[sum][position];
+                }
+                ++position;
+            }
+        }
+    }
+
     LimitStencils::Stencil _rows[GregoryMask::kNumRows];
-    int _positions[GregoryMask::kNumRows];
     std::vector<Column> _columns;
-    std::vector<std::array<double, GregoryMask::kNumTerms>> _terms;
+    std::vector<double> _terms; // by row, by sum, by column
+    std::vector<double> _sums;
 };
 
 } // namespace

@@ -65,6 +65,7 @@ private:
     PatchConstants const _constants;
     std::vector<std::unique_ptr<LevelBuilder>> _levels;
     std::vector<VertexPoint> _vertexPoints;
+    std::vector<char> _isInSeveralLevels; // by vertex: then its tangents are the limit's
     std::vector<Index> _patchPoints;
     Index _numPoints = 0;
 };

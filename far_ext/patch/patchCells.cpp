@@ -5,35 +5,148 @@ namespace OpenSubdivHex::FarExt::internal {
 
 using Far::Index;
 
-PatchCells::PatchCells(MeshLevels const &mesh, int level) : _firstLevel(level) {
-    Level const &topology = mesh.levels[std::size_t(level)];
-    std::vector<unsigned char> marks(std::size_t(topology.numFaces), 0);
-    for (Index face = 0; face < topology.numFaces; ++face) {
-        int const numHalves = HasHalves(topology.GetFaceSize(face)) ? 2 : 1;
-        unsigned const holes = topology.GetHoles(face);
-        for (int half = 0; half < numHalves; ++half) {
-            bool const isHole = numHalves == 1 ? holes == kHole : (holes >> half & 1) != 0;
-            if (!isHole) {
-                marks[std::size_t(face)] |= 1 << half;
+namespace {
+
+constexpr unsigned char kBothHalves = 3;
+
+// The bits of all cells of a face.
+unsigned char getAllCells(Level const &level, Index face) {
+    return HasHalves(level.GetFaceSize(face)) ? kBothHalves : 1;
+}
+
+std::vector<unsigned char> makeAllCells(Level const &level) {
+    std::vector<unsigned char> marks(std::size_t(level.numFaces));
+    for (Index face = 0; face < level.numFaces; ++face) {
+        marks[std::size_t(face)] = getAllCells(level, face);
+    }
+    return marks;
+}
+
+// The cells that the refined faces of a level make.
+std::vector<unsigned char> makeChildren(Refinement const &refinement,
+                                        std::vector<unsigned char> const &refined) {
+    Level const &parent = *refinement.parent;
+    Level const &child = *refinement.child;
+    std::vector<unsigned char> marks(std::size_t(child.numFaces), 0);
+    for (Index face = 0; face < parent.numFaces; ++face) {
+        marks[std::size_t(face)] = refined[std::size_t(face)] ? getAllCells(child, face) : 0;
+    }
+    for (Index edge = 0; edge < parent.numEdges; ++edge) {
+        Index const cFace = refinement.GetEdgeChildFace(edge);
+        for (int side = 0; side < 2; ++side) {
+            Index const face = parent.edgeFaces[edge][side];
+            if (cFace != Far::INDEX_INVALID && face >= 0 && refined[std::size_t(face)]) {
+                bool const isCut = HasHalves(child.GetFaceSize(cFace));
+                marks[std::size_t(cFace)] |= 1 << (isCut ? side : 0);
             }
         }
     }
-    _marks.push_back(std::move(marks));
-    addCells(mesh, level);
+    return marks;
 }
 
-void PatchCells::addCells(MeshLevels const &mesh, int level) {
+} // namespace
+
+PatchCells::PatchCells(MeshLevels const &mesh, int level) : _firstLevel(level) {
+    addCells(mesh, level, makeAllCells(mesh.levels[std::size_t(level)]));
+}
+
+PatchCells::PatchCells(MeshLevels const &mesh, int level, std::vector<Index> const &faces)
+    : _firstLevel(level) {
+    Level const &topology = mesh.levels[std::size_t(level)];
+    Marks marks(std::size_t(topology.numFaces), 0);
+    for (Index const face : faces) {
+        marks[std::size_t(face)] = getAllCells(topology, face);
+    }
+    addCells(mesh, level, std::move(marks));
+}
+
+PatchCells::PatchCells(MeshLevels const &mesh, int firstLevel, int lastLevel,
+                       FindRefined const &findRefined)
+    : _firstLevel(firstLevel) {
+    // By level and face.
+    enum Answer : unsigned char { kUnknown, kNo, kYes };
+    std::vector<std::vector<unsigned char>> answers;
+    for (int level = firstLevel; level < lastLevel; ++level) {
+        answers.emplace_back(std::size_t(mesh.levels[std::size_t(level)].numFaces), kUnknown);
+    }
+    std::vector<Marks> existing(std::size_t(lastLevel - firstLevel) + 1);
+    std::vector<Marks> allRefined(existing.size());
+    existing[0] = makeAllCells(mesh.levels[std::size_t(firstLevel)]);
+    int depth = firstLevel;
+    while (depth < lastLevel) {
+        auto const i = std::size_t(depth - firstLevel);
+        Level const &level = mesh.levels[std::size_t(depth)];
+        std::vector<Index> open;
+        for (Index face = 0; face < level.numFaces; ++face) {
+            if (existing[i][std::size_t(face)] != 0 && answers[i][std::size_t(face)] == kUnknown &&
+                level.GetHoles(face) != kHole) {
+                open.push_back(face);
+            }
+        }
+        if (!open.empty()) {
+            Marks const wanted = findRefined(depth, open);
+            for (std::size_t k = 0; k < open.size(); ++k) {
+                answers[i][std::size_t(open[k])] = wanted[k] ? kYes : kNo;
+            }
+        }
+        // A half that is to be refined needs the other one, and so the face beyond its edge.
+        bool isComplete = true;
+        Marks refined(std::size_t(level.numFaces), 0);
+        for (Index face = 0; face < level.numFaces; ++face) {
+            unsigned char const cells = existing[i][std::size_t(face)];
+            if (cells == 0 || answers[i][std::size_t(face)] != kYes) {
+                continue;
+            }
+            if (cells == getAllCells(level, face)) {
+                refined[std::size_t(face)] = 1;
+                continue;
+            }
+            Refinement const &fromParent = mesh.refinements[std::size_t(depth) - 1];
+            Index const edge = fromParent.GetEFaceParent(face);
+            Index const beyond = fromParent.parent->edgeFaces[edge][cells == 1 ? 1 : 0];
+            answers[i - 1][std::size_t(beyond)] = kYes;
+            isComplete = false;
+        }
+        if (!isComplete) {
+            // From the level before on again, whose face beyond may itself be a half.
+            --depth;
+            continue;
+        }
+        existing[i + 1] = makeChildren(mesh.refinements[std::size_t(depth)], refined);
+        allRefined[i] = std::move(refined);
+        ++depth;
+    }
+    for (int level = firstLevel; level <= lastLevel; ++level) {
+        auto const i = std::size_t(level - firstLevel);
+        for (std::size_t face = 0; face < allRefined[i].size(); ++face) {
+            existing[i][face] = allRefined[i][face] ? 0 : existing[i][face];
+        }
+        addCells(mesh, level, std::move(existing[i]));
+    }
+    while (_cells.size() > 1 && _cells.back().empty()) {
+        _cells.pop_back();
+        _marks.pop_back();
+    }
+}
+
+// Those that exist, but for holes.
+void PatchCells::addCells(MeshLevels const &mesh, int level, Marks existing) {
     Level const &topology = mesh.levels[std::size_t(level)];
     std::vector<PatchCell> cells;
     for (Index face = 0; face < topology.numFaces; ++face) {
+        unsigned char &marks = existing[std::size_t(face)];
+        int const size = topology.GetFaceSize(face);
+        unsigned const holes = topology.GetHoles(face);
+        marks &= ~(HasHalves(size) ? holes : holes == kHole ? 1u : 0u);
         for (int half = 0; half < 2; ++half) {
-            if (HasCell(level, face, half)) {
+            if ((marks >> half & 1) != 0) {
                 cells.push_back({face, half});
-                _numPatches += internal::GetNumPatches(topology.GetFaceSize(face));
+                _numPatches += internal::GetNumPatches(size);
             }
         }
     }
     _cells.push_back(std::move(cells));
+    _marks.push_back(std::move(existing));
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -4,6 +4,7 @@
 
 #include "far_ext/vtr/hierarchy.h"
 
+#include <functional>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -21,12 +22,26 @@ constexpr bool HasKites(int faceSize) { return faceSize != 4 && !HasHalves(faceS
 constexpr int GetNumPatches(int faceSize) { return HasKites(faceSize) ? faceSize : 1; }
 
 /// \brief Which cells of which levels are patches: together they are all of the surface but its holes.
+///
+/// Faces are refined whole, both halves of a hexagon together, and an E-face only if both faces of its edge
+/// were.  So every border between cells of different levels is one edge of the coarser level, and the
+/// diagonal of its E-face in the finer one, half of which is a cell: no corner lies inside of a side.
 class PatchCells {
 public:
     using Index = Far::Index;
 
     /// All cells of one level.
     PatchCells(MeshLevels const &mesh, int level);
+    /// Those of some of its faces.
+    PatchCells(MeshLevels const &mesh, int level, std::vector<Index> const &faces);
+
+    /// Which faces are to be refined: those for which this is called, of one level at a time; it returns a
+    /// mark for each.  A face that has to be for the sake of others is refined, too.
+    using FindRefined =
+        std::function<std::vector<unsigned char>(int level, std::vector<Index> const &faces)>;
+    /// Cells of levels \p firstLevel to \p lastLevel, at which no face is refined.
+    PatchCells(MeshLevels const &mesh, int firstLevel, int lastLevel,
+               FindRefined const &findRefined);
 
     int GetFirstLevel() const { return _firstLevel; }
     int GetLastLevel() const { return _firstLevel + int(_cells.size()) - 1; }
@@ -36,17 +51,20 @@ public:
     }
     /// Whether a cell of a level is among them.
     bool HasCell(int level, Index face, int half) const {
-        return (_marks[std::size_t(level - _firstLevel)][std::size_t(face)] >> half & 1) != 0;
+        return level >= _firstLevel && level <= GetLastLevel() &&
+               (_marks[std::size_t(level - _firstLevel)][std::size_t(face)] >> half & 1) != 0;
     }
     /// All patches.
     std::int64_t GetNumPatches() const { return _numPatches; }
 
 private:
-    void addCells(MeshLevels const &mesh, int level);
+    using Marks = std::vector<unsigned char>; ///< by face: bits of halves
+
+    void addCells(MeshLevels const &mesh, int level, Marks existing);
 
     int _firstLevel;
     std::vector<std::vector<PatchCell>> _cells;
-    std::vector<std::vector<unsigned char>> _marks; // by face: bits of halves
+    std::vector<Marks> _marks;
     std::int64_t _numPatches = 0;
 };
 
