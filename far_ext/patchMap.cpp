@@ -264,7 +264,7 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
         int const i = findChild(cell, wanted, child);
         // A half has its long side first, and no child there.
         int const numBefore = cell.isHalf && i > 0 ? i - 1 : i;
-        node = _children[std::size_t(node.firstChild + numBefore)];
+        node = _children[std::size_t(node.firstChild) + std::size_t(numBefore)];
         cell = std::move(child);
     }
     if (node.firstPatch == Far::INDEX_INVALID) {

@@ -50,7 +50,7 @@ LocalPoints toLocalPoints(int numControlPoints, PointStencils<double> stencils) 
 template <typename REAL, typename POINTS>
 CallStatus makeLocalPoints(POINTS const &points, int numControlPoints, LocalPoints &result) {
     PointStencils<REAL> stencils;
-    CallStatus const status = points.MakeStencils(stencils);
+    CallStatus status = points.MakeStencils(stencils);
     result = toLocalPoints(numControlPoints, std::move(stencils));
     return status;
 }

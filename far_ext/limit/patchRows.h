@@ -36,7 +36,7 @@ private:
     MeshLevels const &_mesh;
     std::size_t const _level;
     std::vector<std::shared_ptr<RefinementRules const>> _rules; // of steps, by level before
-    std::vector<std::unordered_map<Index, Row>> _rows; // by level and vertex
+    std::vector<std::unordered_map<Index, Row>> _rows;          // by level and vertex
     std::size_t const _numSources;
     bool _isComplete = true;
 };

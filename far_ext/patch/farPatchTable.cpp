@@ -24,8 +24,8 @@ using Descriptor = OpenSubdiv::Far::TopologyDescriptor;
 template <typename REAL>
 class FilledTable : public StencilTableReal<REAL> {
 public:
-    FilledTable(int numControlVertices, std::vector<int> sizes, std::vector<Index> indices,
-                std::vector<REAL> weights)
+    FilledTable(int numControlVertices, std::vector<int> &&sizes, std::vector<Index> &&indices,
+                std::vector<REAL> &&weights)
         : StencilTableReal<REAL>(numControlVertices) {
         this->_offsets.resize(sizes.size());
         std::exclusive_scan(sizes.begin(), sizes.end(), this->_offsets.begin(), 0);

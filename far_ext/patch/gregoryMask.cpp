@@ -30,15 +30,15 @@ enum Row { kRow0, kRow1, kRowM, kRowCenter };
 
 Point makePoint(int row) {
     Point point{};
-    point[std::size_t(3 * row)] = 1;
+    point[3 * std::size_t(row)] = 1;
     return point;
 }
 
 // t(angle) of a row.
 Point makeDerivative(int row, double angle) {
     Point point{};
-    point[std::size_t(3 * row + 1)] = std::cos(angle);
-    point[std::size_t(3 * row + 2)] = std::sin(angle);
+    point[3 * std::size_t(row) + 1] = std::cos(angle);
+    point[3 * std::size_t(row) + 2] = std::sin(angle);
     return point;
 }
 

@@ -80,7 +80,7 @@ CallStatus LimitStencils::Form(Hierarchy const &hierarchy, HexSchemeOptions cons
             return marks[std::size_t(vert)].load(std::memory_order_relaxed) != 0;
         });
         stencils.emplace(hierarchy, schemeOptions, std::move(wanted));
-        if (CallStatus const result = stencils->Form(); !result.IsOk()) {
+        if (CallStatus result = stencils->Form(); !result.IsOk()) {
             return result;
         }
     }

@@ -266,7 +266,7 @@ CallStatus PatchBuilder::LevelBuilder::FindLimits() {
     }
     _verts = ParallelSelect(_level.numVertices,
                             [&](Index vert) { return marks[std::size_t(vert)] != 0; });
-    if (CallStatus const result = _rows.Find(_verts); !result.IsOk()) {
+    if (CallStatus result = _rows.Find(_verts); !result.IsOk()) {
         return result;
     }
     _codes.resize(std::size_t(_level.numVertices));
@@ -496,7 +496,7 @@ CallStatus PatchBuilder::LevelBuilder::formDirections(
     std::vector<Direction> const &directions,
     std::vector<std::vector<std::pair<Index, double>>> &result) const {
     LimitStencils stencils;
-    CallStatus const status =
+    CallStatus status =
         stencils.Form(_builder._hierarchy, _builder._schemeOptions, _depth,
                       Index(directions.size()), [&](Index number, LimitStencils::KeptRow &kept) {
                           Direction const &direction = directions[std::size_t(number)];
@@ -928,14 +928,15 @@ PatchBuilder::PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
       _constants(std::move(constants)) {}
 
 PatchBuilder::~PatchBuilder() = default;
+
 CallStatus PatchBuilder::Build() {
     for (int level = _cells.GetFirstLevel(); level <= _cells.GetLastLevel(); ++level) {
         LevelBuilder const *const coarser = _levels.empty() ? nullptr : _levels.back().get();
         _levels.push_back(std::make_unique<LevelBuilder>(*this, level, coarser));
-        if (CallStatus const result = _levels.back()->FindLimits(); !result.IsOk()) {
+        if (CallStatus result = _levels.back()->FindLimits(); !result.IsOk()) {
             return result;
         }
-        if (CallStatus const result = _levels.back()->FindBorders(); !result.IsOk()) {
+        if (CallStatus result = _levels.back()->FindBorders(); !result.IsOk()) {
             return result;
         }
     }
@@ -958,7 +959,7 @@ CallStatus PatchBuilder::Build() {
     }
     _patchPoints.reserve(std::size_t(kNumPatchPoints * _cells.GetNumPatches()));
     for (auto const &level : _levels) {
-        if (CallStatus const result = level->FormStencils(); !result.IsOk()) {
+        if (CallStatus result = level->FormStencils(); !result.IsOk()) {
             return result;
         }
         level->AddPatches(pointOfVertex, _patchPoints);

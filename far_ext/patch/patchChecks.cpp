@@ -81,7 +81,7 @@ bool isIrregular(Level const &level, Index face) {
 CallStatus FindPatchCells(TopologyRefiner const &refiner, PatchTableFactory::Options const &options,
                           std::optional<PatchCells> &cells) {
     int const level = options.maxIsolationLevel;
-    if (CallStatus const result = checkLevels(refiner, level); !result.IsOk()) {
+    if (CallStatus result = checkLevels(refiner, level); !result.IsOk()) {
         return result;
     }
     MeshLevels const &mesh = refiner.GetHierarchy().mesh;
@@ -97,7 +97,7 @@ CallStatus FindPatchCells(TopologyRefiner const &refiner, PatchTableFactory::Opt
         }
     }
     int const minLevel = options.minIsolationLevel < 0 ? level : options.minIsolationLevel;
-    if (CallStatus const result = checkIsolation(refiner, options, minLevel); !result.IsOk()) {
+    if (CallStatus result = checkIsolation(refiner, options, minLevel); !result.IsOk()) {
         return result;
     }
     if (minLevel == level) {

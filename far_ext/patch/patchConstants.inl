@@ -1,4 +1,4 @@
-    {{kBlend, 0, kEdge, 13, 13, 4, 6, true, true}, 0.67},
+{{kBlend, 0, kEdge, 13, 13, 4, 6, true, true}, 0.67},
     {{kBlend, 0, kEdge, 13, 13, 5, 6, true, true}, 0.18},
     {{kBlend, 0, kEdge, 13, 13, 6, 6, false, false}, 0.125},
     {{kBlend, 0, kEdge, 13, 13, 6, 6, false, true}, -0.005},

@@ -26,7 +26,7 @@ public:
 
     /// \brief The largest distance in the cells of each of some faces of a level, which ascend; infinite for
     /// faces that are made of kites.
-    CallStatus Measure(int level, std::vector<Index> const &faces,
+    CallStatus Measure(int depth, std::vector<Index> const &faces,
                        std::vector<double> &distances) const;
 
 private:

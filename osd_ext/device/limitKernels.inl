@@ -156,8 +156,7 @@ FUNCTION void makeSixLimits(REFERENCE(Neighborhood) of, uint vert, uint k) {
         PLACE dvResult = dvOffset + PLACE(vert) * dvStride + PLACE(k);
         for (int j = 0; j < 6; ++j) {
             float tip = addProduct(add(next.x[j], previous.x[j]), regularWeights[52], others.x[j]);
-            float across =
-                addProduct(dv.x[j], regularWeights[53], add(next.x[j], -previous.x[j]));
+            float across = addProduct(dv.x[j], regularWeights[53], add(next.x[j], -previous.x[j]));
             float x = addProduct(du.x[j], regularWeights[35], tip);
             x = addProduct(x, regularWeights[49], across);
             duResults[duResult + PLACE(j) * duStride] = x;
@@ -184,8 +183,7 @@ FUNCTION void makeRegularLimit(uint i) {
         uint local = (locals >> uint(3 * j)) & 7u;
         for (int l = 0; l < 6; ++l) {
             uint turned = local + uint(l);
-            of.around[6 * j + l] =
-                getVertexOfCorner(beyond + (turned < 6u ? turned : turned - 6u));
+            of.around[6 * j + l] = getVertexOfCorner(beyond + (turned < 6u ? turned : turned - 6u));
         }
     }
     makeLimitsOfFace(of, firstFVertex + corner);
@@ -352,7 +350,8 @@ FUNCTION PairOfSixes weighLattice(REFERENCE(LatticeSources) of, int first, int s
             at = at + 6;
             even.x[cosine] =
                 addProduct(even.x[cosine], latticeWeights[first + at], of.waves[j].x[cosine]);
-            even.x[sine] = addProduct(even.x[sine], latticeWeights[first + at], of.waves[j].x[sine]);
+            even.x[sine] =
+                addProduct(even.x[sine], latticeWeights[first + at], of.waves[j].x[sine]);
             odd.x[sine] =
                 addProduct(odd.x[sine], latticeWeights[first + at + 1], of.waves[j].x[cosine]);
             odd.x[cosine] =

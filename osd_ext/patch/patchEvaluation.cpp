@@ -61,28 +61,28 @@ struct Basis {
 
 OPENSUBDIVHEX_INLINE Basis makeBezier(Quad const &s) {
     Quad const one = Spread(1);
-    Quad const S = one + Spread(-1) * s;
+    Quad const oneMinusS = one + Spread(-1) * s;
     Quad const three = Spread(3);
     Quad const six = Spread(6);
     Quad const minus = Spread(-1);
     Basis basis;
-    basis.weights[0][0] = S * (S * S);
-    basis.weights[0][1] = three * (S * S) * s;
-    basis.weights[0][2] = three * (s * s) * S;
+    basis.weights[0][0] = oneMinusS * (oneMinusS * oneMinusS);
+    basis.weights[0][1] = three * (oneMinusS * oneMinusS) * s;
+    basis.weights[0][2] = three * (s * s) * oneMinusS;
     basis.weights[0][3] = s * (s * s);
-    basis.weights[1][0] = minus * three * (S * S);
-    basis.weights[1][1] = three * (S * S) + minus * six * (s * S);
-    basis.weights[1][2] = six * (s * S) + minus * three * (s * s);
+    basis.weights[1][0] = minus * three * (oneMinusS * oneMinusS);
+    basis.weights[1][1] = three * (oneMinusS * oneMinusS) + minus * six * (s * oneMinusS);
+    basis.weights[1][2] = six * (s * oneMinusS) + minus * three * (s * s);
     basis.weights[1][3] = three * (s * s);
-    basis.weights[2][0] = six * S;
-    basis.weights[2][1] = six * (s + Spread(-2) * S);
-    basis.weights[2][2] = six * (S + Spread(-2) * s);
+    basis.weights[2][0] = six * oneMinusS;
+    basis.weights[2][1] = six * (s + Spread(-2) * oneMinusS);
+    basis.weights[2][2] = six * (oneMinusS + Spread(-2) * s);
     basis.weights[2][3] = six * s;
     return basis;
 }
 
 OPENSUBDIVHEX_INLINE Basis makeBSpline(Quad const &s) {
-    Quad const S = Spread(1) + Spread(-1) * s;
+    Quad const oneMinusS = Spread(1) + Spread(-1) * s;
     Quad const sixth = Spread(1.0f / 6);
     auto const cube = [&](Quad const &x) { return sixth * (x * (x * x)); };
     auto const inner = [&](Quad const &x) {
@@ -90,17 +90,17 @@ OPENSUBDIVHEX_INLINE Basis makeBSpline(Quad const &s) {
     };
     auto const derivative = [](Quad const &x) { return x * (Spread(1.5f) * x + Spread(-2)); };
     Basis basis;
-    basis.weights[0][0] = cube(S);
+    basis.weights[0][0] = cube(oneMinusS);
     basis.weights[0][1] = inner(s);
-    basis.weights[0][2] = inner(S);
+    basis.weights[0][2] = inner(oneMinusS);
     basis.weights[0][3] = cube(s);
-    basis.weights[1][0] = Spread(-0.5f) * (S * S);
+    basis.weights[1][0] = Spread(-0.5f) * (oneMinusS * oneMinusS);
     basis.weights[1][1] = derivative(s);
-    basis.weights[1][2] = Spread(-1) * derivative(S);
+    basis.weights[1][2] = Spread(-1) * derivative(oneMinusS);
     basis.weights[1][3] = Spread(0.5f) * (s * s);
-    basis.weights[2][0] = S;
+    basis.weights[2][0] = oneMinusS;
     basis.weights[2][1] = Spread(3) * s + Spread(-2);
-    basis.weights[2][2] = Spread(3) * S + Spread(-2);
+    basis.weights[2][2] = Spread(3) * oneMinusS + Spread(-2);
     basis.weights[2][3] = s;
     return basis;
 }
@@ -116,13 +116,13 @@ GregoryShares makeGregoryShares(Places const &places) {
     for (int i = 0; i < kQuad; ++i) {
         float const s = places.s[i];
         float const t = places.t[i];
-        float const S = 1 - s;
-        float const T = 1 - t;
+        float const oneMinusS = 1 - s;
+        float const oneMinusT = 1 - t;
         auto const share = [](float a, float b) { return a + b <= 0 ? a : a / (a + b); };
         shares[0][i] = share(s, t);
-        shares[1][i] = share(t, S);
-        shares[2][i] = share(S, T);
-        shares[3][i] = share(T, s);
+        shares[1][i] = share(t, oneMinusS);
+        shares[2][i] = share(oneMinusS, oneMinusT);
+        shares[3][i] = share(oneMinusT, s);
     }
     GregoryShares result;
     for (int corner = 0; corner < 4; ++corner) {
@@ -242,18 +242,18 @@ void evaluate(PatchTask const &task, Places &places) {
     PatchOutput const *const outputs = task.outputs;
     Points points;
     if constexpr (TYPE == PatchType::Bilinear) {
-        Quad const S = Spread(1) + Spread(-1) * s;
-        Quad const T = Spread(1) + Spread(-1) * t;
+        Quad const oneMinusS = Spread(1) + Spread(-1) * s;
+        Quad const oneMinusT = Spread(1) + Spread(-1) * t;
         for (int component = 0; component < task.srcDesc.length; ++component) {
             gather<TYPE>(task, places, component, points);
-            Quad const low = S * points[0] + s * points[1];
-            Quad const high = S * points[3] + s * points[2];
-            write(outputs[0], places, component, T * low + t * high);
+            Quad const low = oneMinusS * points[0] + s * points[1];
+            Quad const high = oneMinusS * points[3] + s * points[2];
+            write(outputs[0], places, component, oneMinusT * low + t * high);
             if constexpr (NUM_DERIVATIVES > 0) {
                 Quad const minus = Spread(-1);
                 Quad const ofLow = points[1] + minus * points[0];
                 Quad const ofHigh = points[2] + minus * points[3];
-                write(outputs[1], places, component, scale * (T * ofLow + t * ofHigh));
+                write(outputs[1], places, component, scale * (oneMinusT * ofLow + t * ofHigh));
                 write(outputs[2], places, component, scale * (high + minus * low));
                 if constexpr (NUM_DERIVATIVES > 1) {
                     write(outputs[3], places, component, Spread(0));
