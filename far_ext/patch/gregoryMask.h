@@ -2,8 +2,6 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_GREGORY_MASK_H
 #define OPENSUBDIVHEX_FAR_EXT_PATCH_GREGORY_MASK_H
 
-#include "far_ext/export.h"
-
 #include <array>
 #include <vector>
 
@@ -56,15 +54,15 @@ struct CurveNeighbor {
 };
 
 /// The points of a curve beside its ends: 2.
-OPENSUBDIVHEX_API void AddCurvePoints(CurveShape const &shape, GregoryMask &mask);
+void AddCurvePoints(CurveShape const &shape, GregoryMask &mask);
 
 /// \brief The inner points of the patch to the left of a curve: 2, the first beside end 0.
 ///
 /// \param signOfM    -1 where M is the derivative to the right
 /// \param isReverse  whether the patch has end 1 first: shape and neighbours are in its order, rows 0 and
 ///                   1 are those of the curve
-OPENSUBDIVHEX_API void AddInnerPoints(CurveShape const &shape, CurveNeighbor const neighbors[2],
-                                      double signOfM, bool isReverse, GregoryMask &mask);
+void AddInnerPoints(CurveShape const &shape, CurveNeighbor const neighbors[2], double signOfM,
+                    bool isReverse, GregoryMask &mask);
 
 /// The first points of a side of a face with kites: those in its halves, and its middle.
 inline constexpr int kNumHalfPoints = 5;
@@ -82,8 +80,8 @@ inline constexpr int kNumHalfPoints = 5;
 /// \param neighbors  the sides before and behind
 /// \param signOfM    -1 where M is the derivative away from the face
 /// \param side       its number; corner 0 lies in the direction of U of the centre
-OPENSUBDIVHEX_API void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2],
-                                     double signOfM, int numSides, int side, GregoryMask &mask);
+void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2], double signOfM,
+                   int numSides, int side, GregoryMask &mask);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

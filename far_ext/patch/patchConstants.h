@@ -48,9 +48,10 @@ struct PatchSite {
     std::uint64_t GetKey() const;
 };
 
-/// \brief All constants of a mask: those that a scan found for FaceMask::Smooth
-/// (regression/analysis/scanPatches), and else a rule of a few numbers.
-class OPENSUBDIVHEX_API PatchConstants {
+/// \brief All constants of a mask: for FaceMask::Smooth those that a descent found, from the errors of a torus, of
+/// spheres of quads and of truncated meshes (regression/analysis/patchErrors prints some of these); else a rule of a few
+/// numbers.
+class PatchConstants {
 public:
     explicit PatchConstants(FaceMask mask);
 
@@ -58,7 +59,7 @@ public:
         auto const found = _values.find(site.GetKey());
         return found != _values.end() ? found->second : GetDefault(site);
     }
-    /// For scans.
+    /// Replaces that of a site.
     void Set(PatchSite const &site, double value) {
         _values[site.GetKey()] = value;
         _hasShares = _hasShares || site.kind == PatchSite::kVertex;
