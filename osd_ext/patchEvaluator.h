@@ -21,7 +21,7 @@ namespace OpenSubdivHex::OsdExt {
 /// **Elements** and **aliasing** are as in StencilEvaluator: elements that are read may not be written.
 /// Outputs may be null, and are then left out.
 ///
-/// **Order.** Places of one patch that follow one another take the least time (benchmark patches).
+/// **Order.** Places of one patch that follow one another take the least time.
 ///
 /// **Threads.** As in StencilEvaluator: results are the same, bit for bit, for any evaluator and number of
 /// threads.
