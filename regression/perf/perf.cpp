@@ -83,6 +83,7 @@ void run(Suite::Options const &options, std::string const &command, Paths const 
     AddTableFreeBenchmarks(suite);
     AddMaskBenchmarks(suite);
     AddLimitBenchmarks(suite);
+    AddPatchBenchmarks(suite);
     AddSurfaceBenchmarks(suite);
     AddViewBenchmarks(suite);
     AddDrawingBenchmarks(suite);

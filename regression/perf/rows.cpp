@@ -69,6 +69,14 @@ std::vector<Row> const &GetRows() {
                           "own, level alone", 0.4, 0.5});
         result.push_back({"limit-evaluation-table", "limit with derivatives, table-free, 1 thread",
                           "own limit table", 1, 3});
+        result.push_back({"patches-in-order",
+                          "patches, points and first derivatives, in order, 1 thread",
+                          "Osd::CpuEvaluator", 4, 8});
+        result.push_back({"patches-random",
+                          "patches, points and first derivatives, in random order, 1 thread",
+                          "Osd::CpuEvaluator", 2, 4});
+        result.push_back({"patch-table", "patch table, per patch, 1 thread",
+                          "Far::PatchTableFactory, stencils", 3, 5});
         result.push_back({"surface-points", "tessellated surfaces, per point, 1 thread",
                           "Bfr::Surface::Evaluate", 8, 15});
         result.push_back({"surface-stencils", "tessellated surfaces, per point, 1 thread",

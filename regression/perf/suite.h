@@ -94,6 +94,7 @@ void AddEvaluationBenchmarks(Suite &suite);
 void AddTableFreeBenchmarks(Suite &suite);
 void AddMaskBenchmarks(Suite &suite);
 void AddLimitBenchmarks(Suite &suite);
+void AddPatchBenchmarks(Suite &suite);
 void AddSurfaceBenchmarks(Suite &suite);
 void AddViewBenchmarks(Suite &suite);
 void AddDrawingBenchmarks(Suite &suite);

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Patches: places with both first derivatives, by Osd's evaluator and by this one on the same table, nanoseconds per
+// place, with the places of a patch together and in random order; and the making of a table, nanoseconds per
+// patch, against Far's for Catmull-Clark, both with stencils of the control vertices for all points.
+#include "evaluation.h"
+
+#include "far_ext/patchTableFactory.h"
+
+#include <opensubdiv/far/patchTableFactory.h>
+#include <opensubdiv/far/stencilTableFactory.h>
+#include <opensubdiv/osd/cpuPatchTable.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace OpenSubdivHex::Regression {
+namespace {
+
+/// Places in patches, and what is evaluated there.
+struct PatchFrame {
+    Osd::PatchCoord *BindCpuBuffer() { return coords.data(); }
+
+    std::unique_ptr<Osd::CpuPatchTable> table;
+    std::vector<Osd::PatchCoord> coords;
+    Buffer points;
+    Buffer results[3];
+    std::vector<float> expected;
+};
+
+std::shared_ptr<PatchFrame> makeFrame(BenchMesh const &mesh, bool isRandom) {
+    constexpr int kPlacesOfPatch = 8;
+    auto const refiner = MakeFullyRefined(mesh);
+    auto const table = FarExt::PatchTableFactory::Create(*refiner, mesh.level - 1);
+    Require(table != nullptr, "no patches");
+    auto frame = std::make_shared<PatchFrame>();
+    frame->table.reset(Osd::CpuPatchTable::Create(table.get()));
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> number(0, 1);
+    for (int patch = 0; patch < table->GetNumPatchesTotal(); ++patch) {
+        Far::PatchTable::PatchHandle handle;
+        handle.arrayIndex = 0;
+        handle.patchIndex = patch;
+        handle.vertIndex = patch * table->GetPatchArrayDescriptor(0).GetNumControlVertices();
+        for (int i = 0; i < kPlacesOfPatch; ++i) {
+            float const s = number(random);
+            frame->coords.emplace_back(handle, s, number(random));
+        }
+    }
+    if (isRandom) {
+        std::shuffle(frame->coords.begin(), frame->coords.end(), random);
+    }
+    int const numPoints = refiner->GetLevel(0).GetNumVertices() + table->GetNumLocalPoints();
+    frame->points.reset(Osd::CpuVertexBuffer::Create(3, numPoints));
+    for (int i = 0; i < 3 * numPoints; ++i) {
+        frame->points->BindCpuBuffer()[i] = number(random);
+    }
+    for (Buffer &buffer : frame->results) {
+        buffer.reset(Osd::CpuVertexBuffer::Create(3, int(frame->coords.size())));
+    }
+    return frame;
+}
+
+template <class EVALUATOR>
+Contestant makeContestant(std::string const &name, std::shared_ptr<PatchFrame> const &frame) {
+    Osd::BufferDescriptor const desc(0, 3, 3);
+    auto const numPlaces = int(frame->coords.size());
+    Contestant contestant;
+    contestant.name = name;
+    contestant.movedBytes = double(numPlaces) * (sizeof(Osd::PatchCoord) + 9 * sizeof(float));
+    contestant.work = [=] {
+        Require(EVALUATOR::EvalPatches(frame->points.get(), desc, frame->results[0].get(), desc,
+                                       frame->results[1].get(), desc, frame->results[2].get(), desc,
+                                       numPlaces, frame.get(), frame->table.get()),
+                name + ": not evaluated");
+    };
+    contestant.validate = [=] {
+        float const *const results = frame->results[2]->BindCpuBuffer();
+        if (frame->expected.empty()) {
+            frame->expected.assign(results, results + 3 * std::size_t(numPlaces));
+        }
+        constexpr float kTolerance = 1e-4f;
+        for (std::size_t i = 0; i < frame->expected.size(); ++i) {
+            Require(std::abs(results[i] - frame->expected[i]) < kTolerance,
+                    name + ": other results");
+        }
+        return double(numPlaces);
+    };
+    return contestant;
+}
+
+Contest makeEvaluationContest(BenchMesh const &mesh, bool isRandom) {
+    auto const frame = makeFrame(mesh, isRandom);
+    Contest contest;
+    contest.contestants = {makeContestant<OsdExt::CpuEvaluator>("OsdExt::CpuEvaluator", frame),
+                           makeContestant<Osd::CpuEvaluator>("Osd::CpuEvaluator", frame)};
+    contest.pairings = {{isRandom ? "patches-random" : "patches-in-order", 0, {1}}};
+    return contest;
+}
+
+Contest makeTableContest(BenchMesh const &mesh) {
+    std::shared_ptr<FarExt::TopologyRefiner> const refiner = MakeFullyRefined(mesh);
+    std::shared_ptr<Far::TopologyRefiner> const farRefiner = MakeFarBase(mesh);
+    using Table = std::unique_ptr<Far::PatchTable const>;
+    auto const table = std::make_shared<Table>();
+    Contestant own;
+    own.name = "FarExt::PatchTableFactory";
+    own.work = [=] { *table = FarExt::PatchTableFactory::Create(*refiner, mesh.level - 1); };
+    own.validate = [=] {
+        Require(*table != nullptr, "no patches");
+        return double((*table)->GetNumPatchesTotal());
+    };
+    own.release = [=] { table->reset(); };
+    auto const stencils = std::make_shared<std::unique_ptr<Far::StencilTable const>>();
+    Contestant peer;
+    peer.name = "Far::PatchTableFactory, stencils";
+    peer.prepare = [=] { farRefiner->Unrefine(); };
+    peer.work = [=] {
+        OpenSubdiv::Far::PatchTableFactory::Options options(mesh.level - 1);
+        options.SetEndCapType(OpenSubdiv::Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS);
+        farRefiner->RefineAdaptive(options.GetRefineAdaptiveOptions());
+        table->reset(OpenSubdiv::Far::PatchTableFactory::Create(*farRefiner, options));
+        std::unique_ptr<Far::StencilTable const> const levels(
+            OpenSubdiv::Far::StencilTableFactory::Create(*farRefiner));
+        stencils->reset(OpenSubdiv::Far::StencilTableFactory::AppendLocalPointStencilTable(
+            *farRefiner, levels.get(), (*table)->GetLocalPointStencilTable()));
+    };
+    peer.validate = [=] { return double((*table)->GetNumPatchesTotal()); };
+    peer.release = [=] {
+        table->reset();
+        stencils->reset();
+    };
+    Contest contest;
+    contest.contestants = {own, peer};
+    contest.pairings = {{"patch-table", 0, {1}}};
+    return contest;
+}
+
+} // namespace
+
+void AddPatchBenchmarks(Suite &suite) {
+    // Refined by a level more than the patches are of.
+    for (BenchMesh mesh : suite.GetMeshes()) {
+        if (mesh.size != "small") {
+            continue; // points of patches take kilobytes each
+        }
+        mesh.level = std::min(mesh.level, 3);
+        suite.AddContest({"patches, in order", "place", mesh, Memory::Resident},
+                         [=] { return makeEvaluationContest(mesh, false); });
+        suite.AddContest({"patches, in random order", "place", mesh, Memory::Resident},
+                         [=] { return makeEvaluationContest(mesh, true); });
+    }
+    for (BenchMesh mesh : suite.GetIrregularMeshes()) {
+        mesh.level = std::min(mesh.level, 2);
+        suite.AddContest({"patch table", "patch", mesh, Memory::Warm},
+                         [=] { return makeTableContest(mesh); });
+    }
+}
+
+} // namespace OpenSubdivHex::Regression
