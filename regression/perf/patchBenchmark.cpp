@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Patches: places with both first derivatives, by Osd's evaluator and by this one on the same table, nanoseconds per
-// place, with the places of a patch together and in random order; and the making of a table, nanoseconds per
-// patch, against Far's for Catmull-Clark, both with stencils of the control vertices for all points.
+// place, with the places of a patch together and in random order.
 #include "evaluation.h"
 
 #include "far_ext/patchTableFactory.h"
 
-#include <opensubdiv/far/patchTableFactory.h>
-#include <opensubdiv/far/stencilTableFactory.h>
 #include <opensubdiv/osd/cpuPatchTable.h>
 
 #include <algorithm>
@@ -99,62 +96,16 @@ Contest makeEvaluationContest(BenchMesh const &mesh, bool isRandom) {
     return contest;
 }
 
-Contest makeTableContest(BenchMesh const &mesh) {
-    std::shared_ptr<FarExt::TopologyRefiner> const refiner = MakeFullyRefined(mesh);
-    std::shared_ptr<Far::TopologyRefiner> const farRefiner = MakeFarBase(mesh);
-    using Table = std::unique_ptr<Far::PatchTable const>;
-    auto const table = std::make_shared<Table>();
-    Contestant own;
-    own.name = "FarExt::PatchTableFactory";
-    own.work = [=] { *table = FarExt::PatchTableFactory::Create(*refiner, mesh.level - 1); };
-    own.validate = [=] {
-        Require(*table != nullptr, "no patches");
-        return double((*table)->GetNumPatchesTotal());
-    };
-    own.release = [=] { table->reset(); };
-    auto const stencils = std::make_shared<std::unique_ptr<Far::StencilTable const>>();
-    Contestant peer;
-    peer.name = "Far::PatchTableFactory, stencils";
-    peer.prepare = [=] { farRefiner->Unrefine(); };
-    peer.work = [=] {
-        OpenSubdiv::Far::PatchTableFactory::Options options(mesh.level - 1);
-        options.SetEndCapType(OpenSubdiv::Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS);
-        farRefiner->RefineAdaptive(options.GetRefineAdaptiveOptions());
-        table->reset(OpenSubdiv::Far::PatchTableFactory::Create(*farRefiner, options));
-        std::unique_ptr<Far::StencilTable const> const levels(
-            OpenSubdiv::Far::StencilTableFactory::Create(*farRefiner));
-        stencils->reset(OpenSubdiv::Far::StencilTableFactory::AppendLocalPointStencilTable(
-            *farRefiner, levels.get(), (*table)->GetLocalPointStencilTable()));
-    };
-    peer.validate = [=] { return double((*table)->GetNumPatchesTotal()); };
-    peer.release = [=] {
-        table->reset();
-        stencils->reset();
-    };
-    Contest contest;
-    contest.contestants = {own, peer};
-    contest.pairings = {{"patch-table", 0, {1}}};
-    return contest;
-}
-
 } // namespace
 
 void AddPatchBenchmarks(Suite &suite) {
-    // Refined by a level more than the patches are of.
     for (BenchMesh mesh : suite.GetMeshes()) {
-        if (mesh.size != "small") {
-            continue; // points of patches take kilobytes each
-        }
-        mesh.level = std::min(mesh.level, 3);
+        // Refined by a level more than the patches are of, whose points take kilobytes each.
+        mesh.level = std::min(mesh.level, mesh.size == "small" ? 3 : 2);
         suite.AddContest({"patches, in order", "place", mesh, Memory::Resident},
                          [=] { return makeEvaluationContest(mesh, false); });
         suite.AddContest({"patches, in random order", "place", mesh, Memory::Resident},
                          [=] { return makeEvaluationContest(mesh, true); });
-    }
-    for (BenchMesh mesh : suite.GetIrregularMeshes()) {
-        mesh.level = std::min(mesh.level, 2);
-        suite.AddContest({"patch table", "patch", mesh, Memory::Warm},
-                         [=] { return makeTableContest(mesh); });
     }
 }
 

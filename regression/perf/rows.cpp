@@ -75,8 +75,6 @@ std::vector<Row> const &GetRows() {
         result.push_back({"patches-random",
                           "patches, points and first derivatives, in random order, 1 thread",
                           "Osd::CpuEvaluator", 2, 4});
-        result.push_back({"patch-table", "patch table, per patch, 1 thread",
-                          "Far::PatchTableFactory, stencils", 3, 5});
         result.push_back({"surface-points", "tessellated surfaces, per point, 1 thread",
                           "Bfr::Surface::Evaluate", 8, 15});
         result.push_back({"surface-stencils", "tessellated surfaces, per point, 1 thread",
