@@ -12,7 +12,7 @@ set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report S
   UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement MarkFeatures StepRowBack MakePlainBaseCell IndexMap
   Device MakeDeviceLimit MakeDeviceRefinements
   CheckChannel CheckStencilMode GetChannelInterpolation GetModeInterpolation GetChosenNumThreads
-  CheckLevel CheckDescriptors)
+  CheckLevel CheckDescriptors CheckPatchTask EvaluatePatches)
 
 execute_process(COMMAND ${nm} --dynamic --defined-only --format=posix ${library}
   OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
