@@ -24,7 +24,7 @@ constexpr int kNumPoints = 20; // of a patch
 constexpr int kNumCorners = 4;
 
 struct PatchTable {
-    std::unique_ptr<Far::PatchTable const> table;
+    std::shared_ptr<Far::PatchTable const> table;
     std::unique_ptr<Osd::CpuPatchTable const> evaluated;
     std::unique_ptr<PatchMap const> map;
     StencilTable localPoints;
@@ -44,12 +44,9 @@ PatchTable createTable(Refiner const &refiner, int isolationLevel) {
         if (!made.table) {
             return;
         }
-        std::shared_ptr<Far::StencilTable const> const localPoints =
-            PatchTableFactory::CreateLocalPointStencilTable(topology, options, &status);
-        if (!localPoints) {
-            return;
-        }
-        made.localPoints.table = StencilTable::Pointer<float>(localPoints);
+        // Those of the table, which lives as long as they do.
+        made.localPoints.table =
+            StencilTable::Pointer<float>(made.table, made.table->GetLocalPointStencilTable());
         made.localPoints.numSources = topology.GetLevel(0).GetNumVertices();
         made.map = std::make_unique<PatchMap>(topology, options, &status);
         made.evaluated = std::make_unique<Osd::CpuPatchTable>(made.table.get());

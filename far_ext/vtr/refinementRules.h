@@ -73,7 +73,7 @@ public:
                     Interpolation interpolation);
 
     Interpolation GetInterpolation() const { return _interpolation; }
-    /// Whether these are the rules of the same refinement of the level by other options.
+    /// Whether \p schemeOptions make the same rules of the level.
     bool AreThoseOf(HexSchemeOptions schemeOptions) const {
         return schemeOptions.faceMask == _faceMask &&
                schemeOptions.GetStepOfLevel(_level.depth + 1) == _step;

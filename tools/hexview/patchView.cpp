@@ -21,18 +21,14 @@ constexpr int kNumPoints = 20; // of a patch
 PatchView::PatchView(FarExt::TopologyRefiner const &refiner, int level) {
     FarExt::PatchTableFactory::Options const options(level);
     FarExt::CallStatus status;
-    auto const table = FarExt::PatchTableFactory::Create(refiner, options, &status);
-    if (!table) {
+    _patches = FarExt::PatchTableFactory::Create(refiner, options, &status);
+    if (!_patches) {
         throw std::runtime_error(status.GetErrorMessage());
     }
-    _stencils = FarExt::PatchTableFactory::CreateLocalPointStencilTable(refiner, options, &status);
-    FarExt::PatchMap const map(refiner, options, &status);
-    if (!_stencils || !status.IsOk()) {
-        throw std::runtime_error(status.GetErrorMessage());
-    }
-    _table.reset(OpenSubdiv::Osd::GLPatchTable::Create(table.get()));
-    _numPatches = table->GetNumPatchesTotal();
-    _numPoints = table->GetNumLocalPoints();
+    FarExt::PatchMap const map(refiner, options); // refuses what the factory refuses
+    _table.reset(OpenSubdiv::Osd::GLPatchTable::Create(_patches.get()));
+    _numPatches = _patches->GetNumPatchesTotal();
+    _numPoints = _patches->GetNumLocalPoints();
     std::vector<float> coords;
     std::vector<int> faces;
     for (int patch = 0; patch < _numPatches; ++patch) {
@@ -50,10 +46,11 @@ void PatchView::Evaluate(std::vector<float> const &controlPoints) {
     std::copy(controlPoints.begin(), controlPoints.end(), _values.begin());
     BufferDescriptor const control(0, kLength, kLength);
     BufferDescriptor const points(int(controlPoints.size()), kLength, kLength);
-    OsdExt::OmpEvaluator::EvalStencils(
-        _values.data(), control, _values.data(), points, _stencils->GetSizes().data(),
-        _stencils->GetOffsets().data(), _stencils->GetControlIndices().data(),
-        _stencils->GetWeights().data(), 0, _stencils->GetNumStencils());
+    Far::StencilTable const &stencils = *_patches->GetLocalPointStencilTable();
+    OsdExt::OmpEvaluator::EvalStencils(_values.data(), control, _values.data(), points,
+                                       stencils.GetSizes().data(), stencils.GetOffsets().data(),
+                                       stencils.GetControlIndices().data(),
+                                       stencils.GetWeights().data(), 0, stencils.GetNumStencils());
     _points.Assign(_values);
 }
 

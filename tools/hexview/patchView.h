@@ -38,7 +38,7 @@ public:
     void Draw(ViewProgram const &program) const;
 
 private:
-    std::unique_ptr<Far::StencilTable const> _stencils;
+    std::unique_ptr<Far::PatchTable const> _patches;
     std::unique_ptr<OpenSubdiv::Osd::GLPatchTable> _table;
     int _numPatches = 0;
     int _numPoints = 0;
