@@ -59,18 +59,9 @@ public:
         return Evaluate(patch, s[side], t[side]);
     }
     PatchPoint Evaluate(int patch, double s, double t) const {
-        double weights[3][20];
-        _table->EvaluateBasis<double>(FarExt::PatchMap::GetHandle(patch), s, t, weights[0],
-                                      weights[1], weights[2]);
-        Eigen::Vector3d sums[3];
-        for (int k = 0; k < 3; ++k) {
-            sums[k].setZero();
-            for (int i = 0; i < 20; ++i) {
-                sums[k] +=
-                    weights[k][i] * _points[std::size_t(GetPoint(patch, i) - _numControlVerts)];
-            }
-        }
-        return {sums[0], sums[1], sums[2]};
+        return EvaluatePatch(*_table, patch, s, t, [&](int i) {
+            return _points[std::size_t(GetPoint(patch, i) - _numControlVerts)];
+        });
     }
 
 private:

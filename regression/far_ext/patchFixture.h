@@ -23,6 +23,24 @@ struct PatchPoint {
     Eigen::Vector3d GetNormal() const { return ds.cross(dt).normalized(); }
 };
 
+/// A place of a patch, of which getPoint(i) is point number i.
+template <typename GET_POINT>
+PatchPoint EvaluatePatch(Far::PatchTable const &table, Far::Index patch, double s, double t,
+                         GET_POINT const &getPoint) {
+    constexpr int kNumPoints = 20;
+    double weights[3][kNumPoints];
+    table.EvaluateBasis<double>(FarExt::PatchMap::GetHandle(patch), s, t, weights[0], weights[1],
+                                weights[2]);
+    Eigen::Vector3d sums[3];
+    for (int k = 0; k < 3; ++k) {
+        sums[k].setZero();
+        for (int i = 0; i < kNumPoints; ++i) {
+            sums[k] += weights[k][i] * getPoint(i);
+        }
+    }
+    return {sums[0], sums[1], sums[2]};
+}
+
 /// \brief The patches of one level in double precision: which cell each belongs to, and what they are for
 /// given positions, by Far's own basis.
 class PatchSurface {
@@ -86,17 +104,9 @@ public:
     }
 
     PatchPoint Evaluate(Index patch, double s, double t) const {
-        double weights[3][20];
-        _table->EvaluateBasis<double>(FarExt::PatchMap::GetHandle(patch), s, t, weights[0],
-                                      weights[1], weights[2]);
-        Eigen::Vector3d sums[3];
-        for (int k = 0; k < 3; ++k) {
-            sums[k].setZero();
-            for (int i = 0; i < 20; ++i) {
-                sums[k] += weights[k][i] * _points.row(GetPoint(patch, i)).transpose();
-            }
-        }
-        return {sums[0], sums[1], sums[2]};
+        return EvaluatePatch(*_table, patch, s, t, [&](int i) -> Eigen::Vector3d {
+            return _points.row(GetPoint(patch, i)).transpose();
+        });
     }
 
     /// \brief At a part of the way along an edge or, with \p local < 0, along the diagonal of the half, as the
