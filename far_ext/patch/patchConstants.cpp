@@ -16,8 +16,6 @@ constexpr auto kEdgeShare = PatchQuantity::EdgeShare;
 constexpr auto kDiagonalShare = PatchQuantity::DiagonalShare;
 constexpr auto kEdge = PatchSite::kEdge;
 constexpr auto kDiagonal = PatchSite::kDiagonal;
-constexpr auto kLongBoundary = PatchSite::kLongBoundary;
-constexpr auto kSharpEdge = PatchSite::kSharpEdge;
 constexpr auto kVertex = PatchSite::kVertex;
 
 // In the order of the members of PatchSite.
