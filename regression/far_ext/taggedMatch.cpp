@@ -49,7 +49,8 @@ bool areAsSharp(TaggedMesh const &mesh, float sharpness, float expected) {
 }
 
 /// By corner: Far's own tags tell which values its FVarLinearInterpolation keeps in place.  Corners
-/// that Far does not know, of faces that repeat a vertex, do as the vertex does.
+/// that Far does not know, of faces that repeat a vertex, do as the vertex does.  Far takes some
+/// vertices that a face has twice for manifold, and so would let their values move.
 std::vector<float> valueSharpness(Far::TopologyRefiner const &base, int channel,
                                   TaggedMesh const &mesh) {
     Far::TopologyLevel const &level = base.GetLevel(0);
@@ -68,7 +69,8 @@ std::vector<float> valueSharpness(Far::TopologyRefiner const &base, int channel,
             auto const tag = tags[siblings[i]];
             float own = mesh.vertices[v].sharpness;
             if (tag.isMismatch() && !tag.isSemiSharp()) {
-                own = tag.isInfSharp() ? kInfiniteSharpness : 0;
+                bool const stays = tag.isInfSharp() || mesh.vertices[v].isNonManifold;
+                own = stays ? kInfiniteSharpness : 0;
             }
             if (tags.size() == 1 && mesh.vertices[v].isNonManifold && IsPinned(mesh, v)) {
                 own = kInfiniteSharpness;

@@ -164,4 +164,25 @@ TEST(Oracle, LimitBesideTheFarEndOfACreaseByChaikin) {
     EXPECT_NO_THROW(CheckOracleCase(oracleCase));
 }
 
+// Far takes vertex 4 for manifold, since its walk around the vertex finds the first corner of face 2 alone.
+TEST(Oracle, ValuesOfAVertexThatAFaceHasTwiceStay) {
+    OracleCase oracleCase;
+    oracleCase.shape.positions = {-0.109375, -0.703125, 1.875,   -1.90625,  0.234375, 1.15625,
+                                  1.59375,   -0.109375, 0.84375, -1.609375, 0.765625, 0.421875,
+                                  -1.65625,  -1.140625, -1.4375, -0.5,      0.359375, 0.328125};
+    oracleCase.shape.faceSizes = {3, 3, 6};
+    oracleCase.shape.faceVertices = {0, 4, 1, 0, 2, 4, 1, 4, 2, 3, 4, 5};
+    oracleCase.shape.fvarChannels.push_back(
+        {2,
+         {-1.078125, 0.359375, 0.21875, -0.46875, 1.359375, 1.421875, -0.921875, -1.15625, 1.5,
+          -0.1875, -1.40625, 1.6875, 0.65625, 0.453125, 1.671875, -1.953125, 0.515625, 0.796875},
+         {0, 1, 2, 0, 3, 4, 5, 4, 6, 7, 4, 8}});
+    oracleCase.sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    oracleCase.sdcOptions.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_NONE);
+    oracleCase.mask = ReferenceMask::Average;
+    oracleCase.level = 1;
+    oracleCase.checks = 21374;
+    EXPECT_NO_THROW(CheckOracleCase(oracleCase));
+}
+
 } // namespace OpenSubdivHex::Regression::oracleTest
