@@ -34,7 +34,8 @@ enum class PatternOf {
     HeightFit,
     TermIntervals,
     SlopeBounds,
-    SecondDerivatives
+    SecondDerivatives,
+    PatchPoints
 };
 
 /// \brief What was made for some keys, of whatever type.

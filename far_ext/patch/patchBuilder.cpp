@@ -167,6 +167,8 @@ private:
         return _frames->Get(face, getLocal(face, half, corner), half);
     }
     double getLength(Index face, int half, int side, int end) const;
+    int getSteps() const { return _builder._ages ? _builder._ages->steps : _depth - _surfaceDepth; }
+    int findAge(Index vert) const;
     std::uint8_t findVertexCode(Index vert) const;
     bool findBesideOther(Index vert) const;
     std::uint8_t getVertexCode(Index vert) const { return _codes[std::size_t(vert)].code; }
@@ -351,18 +353,26 @@ double PatchBuilder::LevelBuilder::getLength(Index face, int half, int side, int
            _builder._constants.Get(getSite(PatchQuantity::Length, curve, vert, other));
 }
 
-std::uint8_t PatchBuilder::LevelBuilder::findVertexCode(Index vert) const {
-    if (_level.FindSharpVertex(vert)) {
-        return PatchSite::kSharp;
+// Steps since a vertex was made; -1: it is one of the surface level.
+int PatchBuilder::LevelBuilder::findAge(Index vert) const {
+    if (_builder._ages) {
+        return _builder._ages->ofVertices[std::size_t(vert)];
     }
     int depth = _surfaceDepth;
     while (vert >= _mesh.levels[std::size_t(depth)].numVertices) {
         ++depth;
     }
-    return depth == _surfaceDepth
-               ? std::uint8_t(PatchSite::kBase +
-                              std::min(_level.GetNumVertexFaces(vert), PatchSite::kMaxFaces))
-               : std::uint8_t(std::min(_depth - depth, PatchSite::kMaxAge));
+    return depth == _surfaceDepth ? -1 : _depth - depth;
+}
+
+std::uint8_t PatchBuilder::LevelBuilder::findVertexCode(Index vert) const {
+    if (_level.FindSharpVertex(vert)) {
+        return PatchSite::kSharp;
+    }
+    int const age = findAge(vert);
+    return age < 0 ? std::uint8_t(PatchSite::kBase +
+                                  std::min(_level.GetNumVertexFaces(vert), PatchSite::kMaxFaces))
+                   : std::uint8_t(std::min(age, PatchSite::kMaxAge));
 }
 
 bool PatchBuilder::LevelBuilder::findBesideOther(Index vert) const {
@@ -374,7 +384,7 @@ bool PatchBuilder::LevelBuilder::findBesideOther(Index vert) const {
 
 PatchSite PatchBuilder::LevelBuilder::getSite(PatchQuantity quantity, CellSide const &curve,
                                               Index vert, Index other) const {
-    int const steps = _depth - _surfaceDepth;
+    int const steps = getSteps();
     PatchSite site;
     site.quantity = quantity;
     site.steps = std::uint8_t(std::min(steps, PatchSite::kMaxSteps));
@@ -424,7 +434,7 @@ void PatchBuilder::LevelBuilder::addShares(Index vert, LimitStencils::KeptRow &k
     }
     PatchSite site;
     site.quantity = PatchQuantity::EdgeShare;
-    site.steps = std::uint8_t(std::min(_depth - _surfaceDepth, PatchSite::kMaxSteps));
+    site.steps = std::uint8_t(std::min(getSteps(), PatchSite::kMaxSteps));
     site.kind = PatchSite::kVertex;
     site.vert = getVertexCode(vert);
     site.isBesideOther = isBesideOther(vert);

@@ -6,6 +6,8 @@
 #include "patchConstants.h"
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -19,6 +21,13 @@ struct PointStencils {
     std::vector<int> sizes;
     std::vector<Far::Index> indices;
     std::vector<REAL> weights;
+};
+
+/// \brief How long ago a level and its vertices were made, which constants of patches depend on: for levels
+/// that are not numbered as those of a hierarchy.
+struct PatchAges {
+    int steps = 0;               ///< of the level, behind the surface level
+    std::vector<int> ofVertices; ///< steps since a vertex was made; -1: one of the surface level
 };
 
 /// \brief Makes Gregory patches of cells: numbers their points, and makes the stencils of these.
@@ -38,6 +47,9 @@ public:
         : PatchBuilder(hierarchy, sdcOptions, schemeOptions, cells,
                        PatchConstants(schemeOptions.faceMask)) {}
     ~PatchBuilder();
+
+    /// Takes the ages of the only level that has cells from here, not from the numbering of levels.
+    void SetAges(PatchAges ages) { _ages = std::move(ages); }
 
     /// Finds all limits that points are made of, and numbers the points.
     CallStatus Build();
@@ -63,6 +75,7 @@ private:
     HexSchemeOptions const _schemeOptions;
     PatchCells const &_cells;
     PatchConstants const _constants;
+    std::optional<PatchAges> _ages;
     std::vector<std::unique_ptr<LevelBuilder>> _levels;
     std::vector<VertexPoint> _vertexPoints;
     std::vector<char> _isInSeveralLevels; // by vertex: then its tangents are the limit's

@@ -50,6 +50,12 @@ PatchCells::PatchCells(MeshLevels const &mesh, int level) : _firstLevel(level) {
     addCells(mesh, level, makeAllCells(mesh.levels[std::size_t(level)]));
 }
 
+PatchCells::PatchCells(MeshLevels const &mesh, int level, PatchCell cell) : _firstLevel(level) {
+    Marks marks(std::size_t(mesh.levels[std::size_t(level)].numFaces), 0);
+    marks[std::size_t(cell.face)] = static_cast<unsigned char>(1 << cell.half);
+    addCells(mesh, level, std::move(marks));
+}
+
 PatchCells::PatchCells(MeshLevels const &mesh, int level, std::vector<Index> const &faces)
     : _firstLevel(level) {
     Level const &topology = mesh.levels[std::size_t(level)];

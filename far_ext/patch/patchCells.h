@@ -32,6 +32,8 @@ public:
 
     /// All cells of one level.
     PatchCells(MeshLevels const &mesh, int level);
+    /// One cell of a level.
+    PatchCells(MeshLevels const &mesh, int level, PatchCell cell);
     /// Those of some of its faces.
     PatchCells(MeshLevels const &mesh, int level, std::vector<Index> const &faces);
 
