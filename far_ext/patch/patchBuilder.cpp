@@ -70,7 +70,8 @@ public:
     /// \param coarser  that of the level before, if it has patches
     LevelBuilder(PatchBuilder &builder, int level, LevelBuilder const *coarser)
         : _builder(builder), _coarser(coarser), _cells(builder._cells), _depth(level),
-          _surfaceDepth(builder._schemeOptions.GetSurfaceLevel()), _mesh(builder._hierarchy.mesh),
+          _surfaceDepth(builder._schemeOptions.GetSurfaceLevel()),
+          _mesh(builder._hierarchy.GetMesh(builder._channel)),
           _level(_mesh.levels[std::size_t(level)]), _toChild(_mesh.refinements[std::size_t(level)]),
           _toLimit(GetStepsToLimit(builder._schemeOptions)),
           _rows(_level, builder._sdcOptions, builder._schemeOptions),
@@ -507,7 +508,7 @@ CallStatus PatchBuilder::LevelBuilder::formDirections(
     std::vector<std::vector<std::pair<Index, double>>> &result) const {
     LimitStencils stencils;
     CallStatus status =
-        stencils.Form(_builder._hierarchy, _builder._schemeOptions, _depth,
+        stencils.Form(_builder._hierarchy, _builder._channel, _builder._schemeOptions, _depth,
                       Index(directions.size()), [&](Index number, LimitStencils::KeptRow &kept) {
                           Direction const &direction = directions[std::size_t(number)];
                           Index sources[PlainNeighborhoodGatherer::kNumRegular];
@@ -862,7 +863,7 @@ LimitRow PatchBuilder::LevelBuilder::getRow(Index number, LimitStencils::KeptRow
 
 CallStatus PatchBuilder::LevelBuilder::FormStencils() {
     return _stencils.Form(
-        _builder._hierarchy, _builder._schemeOptions, _depth,
+        _builder._hierarchy, _builder._channel, _builder._schemeOptions, _depth,
         _numVertexRows + Index(_centerRows.size()),
         [this](Index number, LimitStencils::KeptRow &kept) { return getRow(number, kept); });
 }
@@ -931,11 +932,11 @@ void PatchBuilder::LevelBuilder::AddPatches(std::vector<Index> const &pointOfVer
     }
 }
 
-PatchBuilder::PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
+PatchBuilder::PatchBuilder(Hierarchy const &hierarchy, int channel, Sdc::Options sdcOptions,
                            HexSchemeOptions const &schemeOptions, PatchCells const &cells,
                            PatchConstants constants)
-    : _hierarchy(hierarchy), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions), _cells(cells),
-      _constants(std::move(constants)) {}
+    : _hierarchy(hierarchy), _channel(channel), _sdcOptions(sdcOptions),
+      _schemeOptions(schemeOptions), _cells(cells), _constants(std::move(constants)) {}
 
 PatchBuilder::~PatchBuilder() = default;
 
@@ -950,8 +951,9 @@ CallStatus PatchBuilder::Build() {
             return result;
         }
     }
+    MeshLevels const &mesh = _hierarchy.GetMesh(_channel);
     auto const numVertices =
-        std::size_t(_hierarchy.mesh.levels[std::size_t(_cells.GetLastLevel())].numVertices);
+        std::size_t(mesh.levels[std::size_t(_cells.GetLastLevel())].numVertices);
     std::vector<Index> pointOfVertex(numVertices, Far::INDEX_INVALID);
     _isInSeveralLevels.assign(numVertices, 0);
     for (auto const &level : _levels) {

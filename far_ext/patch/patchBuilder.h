@@ -33,18 +33,20 @@ struct PatchAges {
 /// \brief Makes Gregory patches of cells: numbers their points, and makes the stencils of these.
 ///
 /// Points are, in this order: the vertices at corners of cells, ascending; level by level those of
-/// edges, diagonals, and faces that are made of kites.
+/// edges, diagonals, and faces that are made of kites.  Those of a face-varying channel are in the space of its
+/// values, and cells are faces of its value mesh.
 class PatchBuilder {
 public:
     using Index = Far::Index;
 
-    PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
+    /// \param channel  of \p hierarchy, or -1 for its mesh
+    PatchBuilder(Hierarchy const &hierarchy, int channel, Sdc::Options sdcOptions,
                  HexSchemeOptions const &schemeOptions, PatchCells const &cells,
                  PatchConstants constants);
     /// With the constants of the mask.
-    PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
+    PatchBuilder(Hierarchy const &hierarchy, int channel, Sdc::Options sdcOptions,
                  HexSchemeOptions const &schemeOptions, PatchCells const &cells)
-        : PatchBuilder(hierarchy, sdcOptions, schemeOptions, cells,
+        : PatchBuilder(hierarchy, channel, sdcOptions, schemeOptions, cells,
                        PatchConstants(schemeOptions.faceMask)) {}
     ~PatchBuilder();
 
@@ -71,6 +73,7 @@ private:
     };
 
     Hierarchy const &_hierarchy;
+    int const _channel;
     Sdc::Options const _sdcOptions;
     HexSchemeOptions const _schemeOptions;
     PatchCells const &_cells;

@@ -15,8 +15,9 @@ constexpr double kOne = 1;
 
 // That of a table which stores no level.
 StencilPlan makePlan(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
-                     int lastLevel) {
+                     int lastLevel, int channel) {
     StencilPlan plan = {hierarchy, schemeOptions};
+    plan.channel = channel;
     plan.lastLevel = lastLevel;
     plan.firstStored = lastLevel + 1;
     return plan;
@@ -25,8 +26,8 @@ StencilPlan makePlan(Hierarchy const &hierarchy, HexSchemeOptions const &schemeO
 } // namespace
 
 LevelStencils::LevelStencils(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
-                             std::vector<std::vector<Index>> wanted)
-    : _plan(makePlan(hierarchy, schemeOptions, int(wanted.size()) - 1)),
+                             std::vector<std::vector<Index>> wanted, int channel)
+    : _plan(makePlan(hierarchy, schemeOptions, int(wanted.size()) - 1, channel)),
       _selection(_plan, std::move(wanted), true), _symbolic(_plan, _selection),
       _levels(std::size_t(_plan.lastLevel)) {}
 

@@ -21,8 +21,9 @@ public:
     /// \param hierarchy  is referred to
     /// \param wanted     the vertices of levels 0, 1 ... that are needed, ascending; of two levels at
     ///                   least
+    /// \param channel    a smooth face-varying channel, whose values are the vertices, or -1
     LevelStencils(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
-                  std::vector<std::vector<Index>> wanted);
+                  std::vector<std::vector<Index>> wanted, int channel = -1);
 
     /// Makes the stencils of all that is needed, or says what is too large.
     CallStatus Form();
