@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_FAR_EXT_STENCIL_LEVEL_STENCILS_H
 
 #include "stencilMultiplier.h"
-#include "symbolicTable.h"
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -35,7 +34,7 @@ public:
     Stencil const &Get(Index number) const { return _stencils[std::size_t(number)]; }
 
 private:
-    void addLevel(int level, RowSupports const &supports, StencilPlaces<double> const *places);
+    void addLevel(int level);
 
     StencilPlan const _plan;
     StencilSelection const _selection;
