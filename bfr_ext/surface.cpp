@@ -5,6 +5,7 @@
 #include "cell/cellPattern.h"
 #include "cell/patchEvaluator.h"
 #include "cell/plainFace.h"
+#include "cell/rateEvaluator.h"
 #include "cell/refinedCells.h"
 
 #include <algorithm>
@@ -208,6 +209,29 @@ void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const contro
         sum(stencil.GetDvvWeights(), dvv);
         result += resultDesc.stride;
     }
+}
+
+template <typename REAL>
+void Surface<REAL>::Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation,
+                             REAL const controlPoints[], PointDescriptor const &pointDesc, REAL p[],
+                             PointDescriptor const &resultDesc) const {
+    Evaluate(tessellation, controlPoints, pointDesc, p, nullptr, nullptr, resultDesc);
+}
+
+template <typename REAL>
+void Surface<REAL>::Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation,
+                             REAL const controlPoints[], PointDescriptor const &pointDesc, REAL p[],
+                             REAL du[], REAL dv[], PointDescriptor const &resultDesc) const {
+    if (!IsValid() || !tessellation.IsValid() || tessellation.GetFaceSize() != GetFaceSize()) {
+        return;
+    }
+    REAL *const results[3] = {p, du, dv};
+    useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
+        internal::EvaluateRates(*_type, tessellation,
+                                {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
+                                 results, resultDesc.stride},
+                                border);
+    });
 }
 
 template <typename REAL>
@@ -478,7 +502,7 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation,
                 evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, getResult(place));
             }
         } else if (numPlaces > 0) {
-            evaluator.EvaluateEdge(edge, level, numPlaces, getResult(first + 1), resultDesc.stride);
+            evaluator.EvaluateEdge(edge, level, getResult(first + 1), resultDesc.stride);
         }
     }
 }
@@ -509,8 +533,7 @@ void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
                 int const level = tessellation._levels[edge];
                 int const numPoints = Polyline(level).GetNumPoints();
                 edgePoints.resize(std::size_t(numPoints) * size);
-                evaluator.EvaluateEdge(edge, level, numPoints, edgePoints.data(),
-                                       std::ptrdiff_t(size));
+                evaluator.EvaluateEdge(edge, level, edgePoints.data(), std::ptrdiff_t(size));
                 evaluatedEdge = run.edge;
             }
             std::copy_n(&edgePoints[std::size_t(run.index + i) * size], size, result);

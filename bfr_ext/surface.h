@@ -4,6 +4,7 @@
 
 #include "tessellation.h"
 
+#include <opensubdiv/bfr/tessellation.h>
 #include <opensubdiv/far/types.h>
 
 #include <algorithm>
@@ -218,6 +219,32 @@ public:
     void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[], REAL duu[],
                   REAL duv[], REAL dvv[], PointDescriptor const &resultDesc) const;
+
+    /// \brief Writes the points at all places of a tessellation of Bfr, with rates: any number of segments on each
+    /// edge, evenly spaced.
+    ///
+    /// Rates, options, coordinates and facets are Bfr's.  Derivatives are by the u and v that its coordinates are:
+    /// Parameterization::ConvertFromBfr() says where these lie.
+    ///
+    /// \param tessellation  made for a face of this size, as of GetParameterization().GetBfr(); a triangle may have
+    ///                      the sub-faces of Catmull-Clark, too.  Nothing is written where it is of another size,
+    ///                      or invalid.
+    ///
+    /// Two faces that share an edge get the same points there, to the bit, if the edge has the same rate in both,
+    /// with the exceptions said above.  A place of an edge has the same point at whatever rates, levels and
+    /// polylines have it: 1/3 and 2/6, 1/4 and the first one of level 2.
+    ///
+    /// The weights of a type of faces are found when it is first evaluated with some inner rates, which takes some
+    /// ten microseconds a place, and kept in the cache: for each place inside a number for each control point,
+    /// and two more where derivatives are asked for.  Those of more than 4,096 places inside, and of rates above
+    /// 1,024 on an edge, are found each time.
+    void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL const controlPoints[],
+                  PointDescriptor const &pointDesc, REAL p[],
+                  PointDescriptor const &resultDesc) const;
+    /// The same with first derivatives.
+    void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL const controlPoints[],
+                  PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
+                  PointDescriptor const &resultDesc) const;
 
     /// Writes the weights of the control points that make the point at \p uv.
     /// \return  GetNumControlPoints()
