@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_SURFACE_H
 #define OPENSUBDIVHEX_BFR_EXT_SURFACE_H
 
-#include "tessellation.h"
+#include "levelTessellation.h"
 
 #include <opensubdiv/bfr/tessellation.h>
 #include <opensubdiv/far/types.h>
@@ -207,16 +207,16 @@ public:
     /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the
     /// cache.  Inside of trees of more than 128 cells the control points are refined cell by cell instead,
     /// in double precision.
-    void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+    void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;
     /// The same with first derivatives.
-    void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+    void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                   PointDescriptor const &resultDesc) const;
     /// The same with first and second derivatives, of which the second ones are found place by place: that
     /// takes some ten microseconds each.
-    void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+    void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[], REAL duu[],
                   REAL duv[], REAL dvv[], PointDescriptor const &resultDesc) const;
 
@@ -280,30 +280,31 @@ private:
     }
     // Has what evaluates it brought to the cache, while control points are gathered.
     void prefetch() const;
-    bool canEvaluate(Tessellation const &tessellation) const;
+    bool canEvaluate(LevelTessellation const &tessellation) const;
     internal::BasePoint findPoint(REAL const uv[2]) const;
     bool evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
                           PointDescriptor const &pointDesc, REAL p[]) const;
-    void evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+    void evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[3],
                   PointDescriptor const &resultDesc) const;
-    void evaluateInside(Tessellation const &tessellation, internal::PatchEvaluator<REAL> &evaluator,
-                        REAL const controlPoints[], PointDescriptor const &pointDesc,
-                        REAL *const results[3], PointDescriptor const &resultDesc) const;
-    void evaluateTree(Tessellation const &tessellation, REAL const controlPoints[],
+    void evaluateInside(LevelTessellation const &tessellation,
+                        internal::PatchEvaluator<REAL> &evaluator, REAL const controlPoints[],
+                        PointDescriptor const &pointDesc, REAL *const results[3],
+                        PointDescriptor const &resultDesc) const;
+    void evaluateTree(LevelTessellation const &tessellation, REAL const controlPoints[],
                       PointDescriptor const &pointDesc, REAL *const results[3],
                       PointDescriptor const &resultDesc) const;
     template <typename FUNCTION>
     void useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
                    FUNCTION const &function) const;
-    void evaluateBorder(Tessellation const &tessellation,
+    void evaluateBorder(LevelTessellation const &tessellation,
                         internal::BorderEvaluator<REAL> &evaluator,
                         internal::PatchEvaluator<REAL> const *inside, REAL p[],
                         PointDescriptor const &resultDesc) const;
-    bool evaluateLatticeBorder(Tessellation const &tessellation, REAL const controlPoints[],
+    bool evaluateLatticeBorder(LevelTessellation const &tessellation, REAL const controlPoints[],
                                PointDescriptor const &pointDesc, REAL p[],
                                PointDescriptor const &resultDesc) const;
-    void evaluateSectionBorder(Tessellation const &tessellation,
+    void evaluateSectionBorder(LevelTessellation const &tessellation,
                                internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                PointDescriptor const &resultDesc) const;
 

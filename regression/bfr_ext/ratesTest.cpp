@@ -270,7 +270,7 @@ TEST(Rates, PlacesOfEdgesDoNotDependOnRates) {
         std::vector<double> const thirds = evaluateAtRate(3);
         std::vector<double> const ninths = evaluateAtRate(9);
         std::vector<double> const quarters = evaluateAtRate(4);
-        BfrExt::Tessellation const ofLevel(surface.GetParameterization(), 2);
+        BfrExt::LevelTessellation const ofLevel(surface.GetParameterization(), 2);
         std::vector<double> ofLevelPoints(3 * std::size_t(ofLevel.GetNumCoords()));
         surface.Evaluate(ofLevel, control.data(), 3, ofLevelPoints.data(), 3);
         for (std::size_t edge = 0; edge < std::size_t(surface.GetFaceSize()); ++edge) {
